@@ -1,0 +1,1 @@
+"""Closed forms, each with its citation, used by many tests."""
