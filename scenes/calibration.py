@@ -1,0 +1,72 @@
+"""Calibrated surrogate constants: values with their evidence, as a TOML file. Data only; the fit itself is in ``calibrate``."""
+
+import tomllib
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from scenes.files import write_text
+from scenes.scene import Scene
+
+
+@dataclass(frozen=True, eq=False)
+class Calibration:
+    """Constants found for a scene.
+
+    ``constants`` are dotted overrides in SI, applied to a scene by ``apply``. ``parameters`` name the fitted coordinates
+    (with ``values``, ``lower``, ``upper`` bounds and ``justification``); ``information`` is the matrix (p,p) of the scaled
+    parameters; ``weak_directions`` describe what the curves cannot tell; ``residuals`` are per condition; ``valid``
+    holds the range of the conditions used.
+    """
+
+    constants: dict[str, float]
+    parameters: list[str]
+    values: list[float]
+    units: list[str]
+    lower: list[float]
+    upper: list[float]
+    justification: list[str]
+    information: np.ndarray
+    weak_directions: list[str]
+    residuals: dict[str, dict[str, float]]
+    conditions: list[str]
+    objective: float
+    valid: dict[str, list[float]] = field(default_factory=dict)
+    provenance: dict[str, str] = field(default_factory=dict)
+
+    def apply(self, scene: Scene) -> Scene:
+        """``scene`` with the calibrated constants; constants of an effect the scene lacks are left out."""
+        return scene.replace({key: value for key, value in self.constants.items()
+                              if getattr(scene, key.split(".")[0]) is not None})
+
+    def save(self, path: str | Path) -> None:
+        """Write TOML atomically."""
+        tables = asdict(self) | {"information": np.asarray(self.information).tolist()}
+        plain = {key: value for key, value in tables.items() if not isinstance(value, dict)}
+        nested = {key: value for key, value in tables.items() if isinstance(value, dict)}
+        lines = [f"{key} = {_toml(value)}" for key, value in plain.items()]
+        for name, table in nested.items():
+            lines += ["", f"[{name}]"] + [f"{_toml(key)} = {_toml(value)}" for key, value in table.items()]
+        write_text(path, "\n".join(lines) + "\n")
+
+    @classmethod
+    def load(cls, path: str | Path) -> "Calibration":
+        """Read what ``save`` wrote."""
+        data = tomllib.loads(Path(path).read_text())
+        return cls(**data | {"information": np.array(data["information"])})
+
+
+def _toml(value) -> str:
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, (int, float)):
+        return repr(float(value)) if isinstance(value, float) else str(value)
+    if isinstance(value, str):
+        escaped = value.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n")
+        return f'"{escaped}"'
+    if isinstance(value, (list, tuple)):
+        return "[" + ", ".join(_toml(item) for item in value) + "]"
+    if isinstance(value, dict):
+        return "{ " + ", ".join(f"{_toml(key)} = {_toml(item)}" for key, item in value.items()) + " }"
+    raise TypeError(f"cannot write {type(value).__name__} as TOML")

@@ -1,0 +1,64 @@
+"""Two-step Coulomb friction with static and dynamic coefficients and transition speeds (the law of ADAMS/Solver CONTACT).
+
+With s = |v| the sliding speed, v_s the static and v_d the dynamic transition speed::
+
+    mu(s) = mu_s (3 r - r^3) / 2,  r = s / v_s                      s <= v_s
+    mu(s) = mu_s + (mu_d - mu_s) x^2 (3 - 2 x),  x = (s - v_s)/(v_d - v_s)   v_s < s < v_d
+    mu(s) = mu_d                                                    s >= v_d
+
+The first branch is the cubic step from -mu_s at -v_s to mu_s at v_s. The force is ``-mu(s) N v/s``. Absent table: none.
+"""
+
+from typing import NamedTuple
+
+from pydantic import model_validator
+
+from scenes.jit import njit
+from scenes.table import Table
+from scenes.units import NonNegativeNumber, PositiveVelocity
+
+
+class FrictionTable(Table):
+    """``[friction]``: coefficients (dimensionless) and transition speeds (m/s)."""
+
+    static: NonNegativeNumber
+    dynamic: NonNegativeNumber
+    static_speed: PositiveVelocity
+    dynamic_speed: PositiveVelocity
+
+    @model_validator(mode="after")
+    def _speeds_in_order(self):
+        if self.dynamic_speed <= self.static_speed:
+            raise ValueError("dynamic_speed above static_speed")
+        return self
+
+    def record(self) -> "Friction":
+        return Friction(self.static, self.dynamic, self.static_speed, self.dynamic_speed)
+
+
+class Friction(NamedTuple):
+    """Kernel record of the two-step Coulomb law."""
+
+    static: float
+    dynamic: float
+    static_speed: float
+    dynamic_speed: float
+
+
+@njit
+def coefficient_over_speed(friction, speed):
+    """mu(s)/s (s/m) at sliding speed ``speed`` >= 0 (m/s): finite at rest, so the force needs no direction there."""
+    if speed <= friction.static_speed:
+        ratio = speed / friction.static_speed
+        return 0.5 * friction.static * (3.0 - ratio * ratio) / friction.static_speed
+    if speed >= friction.dynamic_speed:
+        return friction.dynamic / speed
+    x = (speed - friction.static_speed) / (friction.dynamic_speed - friction.static_speed)
+    return (friction.static + (friction.dynamic - friction.static) * x * x * (3.0 - 2.0 * x)) / speed
+
+
+def steepest_slope(friction) -> float:
+    """Largest d(mu)/ds (s/m): the damping per newton of normal force that bounds an explicit step."""
+    start = 1.5 * friction.static / friction.static_speed
+    drop = 1.5 * abs(friction.dynamic - friction.static) / (friction.dynamic_speed - friction.static_speed)
+    return max(start, drop)

@@ -1,0 +1,68 @@
+"""Initial state of payload and platform at ignition. Absent table: centred, aligned, at rest.
+
+Position is the displacement of the payload from its centred place; attitude is a rotation vector (axis times angle) from
+scene axes to body axes. Velocities are inertial, in scene axes; rates are in the body's own axes.
+"""
+
+from typing import NamedTuple
+
+from scenes.table import Table
+from scenes.units import Angle, Length, Rate, Velocity
+
+
+class Displacement(Table):
+    """Lengths along scene axes (m)."""
+
+    x: Length = 0.0
+    y: Length = 0.0
+    z: Length = 0.0
+
+
+class RotationVector(Table):
+    """Axis times angle, in scene axes (rad)."""
+
+    x: Angle = 0.0
+    y: Angle = 0.0
+    z: Angle = 0.0
+
+
+class LinearVelocity(Table):
+    """Inertial velocity in scene axes (m/s)."""
+
+    x: Velocity = 0.0
+    y: Velocity = 0.0
+    z: Velocity = 0.0
+
+
+class AngularRate(Table):
+    """Inertial angular velocity in body axes (rad/s)."""
+
+    x: Rate = 0.0
+    y: Rate = 0.0
+    z: Rate = 0.0
+
+
+class InitialTable(Table):
+    """``[initial]``: state at ignition."""
+
+    position: Displacement = Displacement()
+    attitude: RotationVector = RotationVector()
+    velocity: LinearVelocity = LinearVelocity()
+    rate: AngularRate = AngularRate()
+    platform_velocity: LinearVelocity = LinearVelocity()
+    platform_rate: AngularRate = AngularRate()
+
+    def record(self) -> "Initial":
+        return Initial(*(tuple(part.model_dump().values()) for part in (
+            self.position, self.attitude, self.velocity, self.rate, self.platform_velocity, self.platform_rate)))
+
+
+class Initial(NamedTuple):
+    """Plain record of the initial state: six triples, SI."""
+
+    position: tuple = (0.0, 0.0, 0.0)
+    attitude: tuple = (0.0, 0.0, 0.0)
+    velocity: tuple = (0.0, 0.0, 0.0)
+    rate: tuple = (0.0, 0.0, 0.0)
+    platform_velocity: tuple = (0.0, 0.0, 0.0)
+    platform_rate: tuple = (0.0, 0.0, 0.0)

@@ -1,0 +1,38 @@
+"""Numba settings shared by every kernel, and a disk cache that cannot go stale.
+
+Numba keys its cache by the file of the compiled function only: a kernel whose *callee* in another file changed is loaded
+from disk with the old callee inside. The cache directory is therefore named by a digest of all kernel sources, so any
+edit starts an empty cache.
+"""
+
+import functools
+import hashlib
+import os
+from pathlib import Path
+
+import numba
+
+_KERNEL_PACKAGES = ("scenes", "highfi", "lowfi")
+
+
+def kernel_digest() -> str:
+    """Hexadecimal digest (16 digits) of every source file that may hold a kernel, and of the Numba version."""
+    root = Path(__file__).resolve().parent.parent
+    digest = hashlib.sha256(numba.__version__.encode())
+    for package in _KERNEL_PACKAGES:
+        for path in sorted((root / package).rglob("*.py")):
+            digest.update(str(path.relative_to(root)).encode())
+            digest.update(path.read_bytes())
+    return digest.hexdigest()[:16]
+
+
+def _cache_directory() -> Path:
+    chosen = os.environ.get("NUMBA_CACHE_DIR")
+    default = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache")) / "tipoff" / "kernels"
+    return (Path(chosen) if chosen else default) / kernel_digest()
+
+
+numba.config.CACHE_DIR = str(_cache_directory())
+
+# error_model="numpy": division by zero gives inf, which reaches the status check, instead of an exception inside a kernel.
+njit = functools.partial(numba.njit, cache=True, error_model="numpy", nogil=True)

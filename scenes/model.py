@@ -1,0 +1,105 @@
+"""What kernels of both fidelities are given: constant records made once from a scene, None where an effect is absent.
+
+Places on the payload are measured from its *actual* mass centre in body axes; places on the rail from the platform's mass
+centre at ignition (the scene origin when the platform is fixed), in platform axes, which coincide with scene axes then.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from scenes.body import tensor
+from scenes.effects import contact, thrust, thrust_offset
+from scenes.effects.friction import Friction
+from scenes.effects.gravity import Gravity
+from scenes.effects.initial import Initial
+from scenes.effects.platform import Platform
+from scenes.scene import Scene
+
+
+class Payload(NamedTuple):
+    """Mass (kg), inertia about the mass centre (3,3), its inverse, and the mass centre at rest in scene axes (m)."""
+
+    mass: float
+    inertia: np.ndarray
+    inverse_inertia: np.ndarray
+    mass_centre: tuple
+
+
+class Faces(NamedTuple):
+    """Pad faces, f of them, and the rail walls they may touch.
+
+    centre (f,3) m in body axes; axis (f,) 1 or 2, the normal's axis; sign (f,) of the normal; half_length and half_width
+    (f,) m; relief (f,) m; wall (f,) m, coordinate of the undeformed wall along axis in platform axes; pad (f,) index.
+    """
+
+    centre: np.ndarray
+    axis: np.ndarray
+    sign: np.ndarray
+    half_length: np.ndarray
+    half_width: np.ndarray
+    relief: np.ndarray
+    wall: np.ndarray
+    pad: np.ndarray
+
+
+class Model(NamedTuple):
+    """All records of one scene. ``rail_start`` and ``rail_end`` (m) are X in platform axes."""
+
+    payload: Payload
+    faces: Faces
+    rail_start: float
+    rail_end: float
+    thrust: thrust.Thrust
+    reacts_on_platform: bool
+    thrust_offset: thrust_offset.ThrustOffset | None
+    contact: contact.Laws | None
+    penalty: float | None
+    friction: Friction | None
+    platform: Platform | None
+    gravity: Gravity | None
+    initial: Initial
+    thrust_arm: float
+
+
+def build(scene: Scene) -> Model:
+    """Records of ``scene``."""
+    offset = scene.mass_offset.eccentricity.offset() if scene.mass_offset else (0.0, 0.0, 0.0)
+    inertia = tensor(scene.payload.inertia)
+    platform = scene.platform.record() if scene.platform else None
+    origin = np.array(platform.mass_centre if platform else (0.0, 0.0, 0.0))
+    touching = scene.contact is not None
+    return Model(
+        payload=Payload(scene.payload.mass, inertia, np.linalg.inv(inertia), offset),
+        faces=_faces(scene, np.array(offset), origin),
+        rail_start=scene.rail.start - origin[0],
+        rail_end=scene.rail.end - origin[0],
+        thrust=scene.thrust.record(),
+        reacts_on_platform=scene.thrust.reaction == "platform",
+        thrust_offset=thrust_offset.record(scene.thrust_offset, scene.mass_offset, scene.thrust.arm),
+        contact=contact.laws(scene.contact.record()) if touching else None,
+        penalty=scene.contact.penalty if touching else None,
+        # Friction without contact has no normal force to act on, so it is absent too.
+        friction=scene.friction.record() if scene.friction and touching else None,
+        platform=platform,
+        gravity=scene.gravity.record() if scene.gravity else None,
+        initial=scene.initial.record() if scene.initial else Initial(),
+        thrust_arm=scene.thrust.arm,
+    )
+
+
+def _faces(scene: Scene, offset: np.ndarray, origin: np.ndarray) -> Faces:
+    clearance = scene.contact.clearance if scene.contact else 0.0
+    rows = []
+    for index, pad in enumerate(scene.pads):
+        corner = np.array(pad.position)
+        for normal in pad.normals:
+            axis, sign = "xyz".index(normal[1]), 1.0 if normal[0] == "+" else -1.0
+            across = 3 - axis
+            centre = corner.copy()
+            centre[across] -= np.sign(corner[across]) * pad.inset
+            wall = corner[axis] + sign * clearance - origin[axis]
+            rows.append((centre - offset, axis, sign, pad.length / 2, pad.width / 2, pad.relief, wall, index))
+    columns = list(zip(*rows))
+    return Faces(np.array(columns[0]), np.array(columns[1], dtype=np.int64), *map(np.array, columns[2:7]),
+                 np.array(columns[7], dtype=np.int64))

@@ -1,0 +1,136 @@
+"""What became of an ejection: exit, settled velocity and rate, jam. One home for the definitions, used by both fidelities.
+
+* **Exit**: first instant at which the trailing edge of the last pad face is past the rail end.
+* **Settled window**: 2 ms from the later of exit + 1 ms and thrust below 0.1 % of its peak; settled values are means over it.
+* **Jammed**: after thrust fell below 1 % of its peak, or under constant thrust, relative axial speed below the friction
+  transition speed (10 mm/s without friction) for 5 ms.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from scenes import rotation
+from scenes.effects import thrust
+from scenes.scene import Scene
+
+SETTLE_DELAY = 1e-3
+SETTLE_WINDOW = 2e-3
+JAM_DURATION = 5e-3
+
+
+class Outcome(NamedTuple):
+    """Exit time (s), settled window start (s), means over it: velocity (m/s), rate (rad/s); lateral velocity (m/s), direction
+    error of the velocity (rad) and attitude at exit as a rotation vector (rad). All None unless the payload exited and settled."""
+
+    exit_time: float | None = None
+    window_start: float | None = None
+    velocity: list[float] | None = None
+    rate: list[float] | None = None
+    lateral_velocity: float | None = None
+    direction_error: float | None = None
+    exit_attitude: list[float] | None = None
+
+
+class Milestones(NamedTuple):
+    """Instants a scene fixes beforehand: thrust below 0.1 % and 1 % of its peak (s), and the jam speed (m/s)."""
+
+    settled_thrust: float
+    spent_thrust: float
+    jam_speed: float
+    constant_thrust: bool
+    edges: np.ndarray
+    rail_end: float
+
+
+def milestones(scene: Scene, model) -> Milestones:
+    """Instants and trailing edges ``edges`` (f,3) in body axes that ``judge`` needs."""
+    edges = model.faces.centre.copy()
+    edges[:, 0] -= model.faces.half_length
+    speed = model.friction.static_speed if model.friction else 0.01
+    record = model.thrust
+    return Milestones(thrust.burnout(record, 1e-3, scene.duration), thrust.burnout(record, 1e-2, scene.duration), speed,
+                      scene.thrust.kind == "constant", edges, model.rail_end)
+
+
+def relative_motion(motion) -> dict[str, np.ndarray]:
+    """Payload position (m) and velocity (m/s) relative to the platform in its axes, and rate (rad/s) in payload body axes."""
+    frame = rotation.matrices(motion.platform_quaternion)
+    separation = motion.position - motion.platform_position
+    spin = np.einsum("nij,nj->ni", frame, motion.platform_rate)
+    drift = motion.velocity - motion.platform_velocity - np.cross(spin, separation)
+    body = rotation.matrices(motion.quaternion)
+    return {"relative_position": np.einsum("nji,nj->ni", frame, separation),
+            "relative_velocity": np.einsum("nji,nj->ni", frame, drift),
+            "relative_rate": motion.rate - np.einsum("nji,nj->ni", body, spin)}
+
+
+def clearance_to_exit(motion, marks: Milestones) -> np.ndarray:
+    """Distance (n,) m by which the rearmost trailing edge is past the rail end (negative while on the rail)."""
+    body, frame = rotation.matrices(motion.quaternion), rotation.matrices(motion.platform_quaternion)
+    places = motion.position[:, None, :] + np.einsum("nij,fj->nfi", body, marks.edges)
+    along = np.einsum("ni,nfi->nf", frame[:, :, 0], places - motion.platform_position[:, None, :])
+    return along.min(axis=1) - marks.rail_end
+
+
+def exit_time(motion, marks: Milestones) -> float | None:
+    """Exit (s) from a cubic through the samples around the crossing, or None."""
+    past = clearance_to_exit(motion, marks)
+    after = np.flatnonzero(past > 0.0)
+    if after.size == 0:
+        return None
+    if after[0] == 0:
+        return float(motion.time[0])
+    near = slice(max(after[0] - 3, 0), after[0] + 3)
+    roots = CubicSpline(motion.time[near], past[near]).roots(extrapolate=False)
+    low, high = motion.time[after[0] - 1], motion.time[after[0]]
+    inside = [root for root in roots if low <= root <= high]
+    return float(inside[0]) if inside else float(high)
+
+
+def window_start(exit_at: float, marks: Milestones) -> float:
+    """Start (s) of the settled window."""
+    return max(exit_at + SETTLE_DELAY, marks.settled_thrust)
+
+
+def mean(time: np.ndarray, values: np.ndarray, start: float, end: float) -> np.ndarray:
+    """Mean over start..end (s) of samples (n,3), by the integral of a cubic spline."""
+    first, last = np.searchsorted(time, [start, end])
+    near = slice(max(first - 3, 0), last + 3)
+    spline = CubicSpline(time[near], values[near])
+    return spline.integrate(start, end) / (end - start)
+
+
+def is_jammed(motion, marks: Milestones) -> bool:
+    """Whether the payload has come to rest on the rail by the last sample."""
+    now = motion.time[-1]
+    if now < JAM_DURATION or not (marks.constant_thrust or now - JAM_DURATION >= marks.spent_thrust):
+        return False
+    recent = motion.time >= now - JAM_DURATION * (1.0 + 1e-9)
+    speed = relative_motion(motion)["relative_velocity"][recent, 0]
+    return bool((np.abs(speed) < marks.jam_speed).all())
+
+
+def judge(motion, marks: Milestones) -> tuple[str, Outcome]:
+    """Status ("exited", "jammed" or "time_limit") and outcome of samples so far."""
+    exit_at = exit_time(motion, marks)
+    if exit_at is None:
+        return ("jammed" if is_jammed(motion, marks) else "time_limit"), Outcome()
+    start = window_start(exit_at, marks)
+    end = start + SETTLE_WINDOW
+    if motion.time[-1] < end * (1.0 - 1e-12):
+        return "time_limit", Outcome(exit_time=exit_at)
+    velocity = mean(motion.time, motion.velocity, start, end)
+    rate = mean(motion.time, motion.rate, start, end)
+    lateral = float(np.hypot(velocity[1], velocity[2]))
+    index = min(int(np.searchsorted(motion.time, exit_at)), motion.time.size - 1)
+    return "exited", Outcome(exit_at, start, velocity.tolist(), rate.tolist(), lateral,
+                             float(np.arctan2(lateral, velocity[0])), _rotation_vector(motion.quaternion[index]))
+
+
+def _rotation_vector(q: np.ndarray) -> list[float]:
+    q = q if q[0] >= 0.0 else -q
+    sine = float(np.linalg.norm(q[1:]))
+    factor = 2.0 if sine < 1e-12 else 2.0 * np.arctan2(sine, q[0]) / sine
+    return (factor * q[1:]).tolist()

@@ -1,0 +1,111 @@
+"""The result of one run, the same in both fidelities: names, units and coordinates, and a netCDF file of it.
+
+Positions and velocities are of the payload's mass centre, inertial, in initial scene axes; rates are in body axes;
+quaternions are scalar first, body to inertial.
+"""
+
+import json
+from dataclasses import dataclass, field, fields
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+
+import numpy as np
+import xarray
+
+from scenes import ledger, outcome
+from scenes.files import replacing
+
+STATUSES = ("exited", "time_limit", "jammed", "diverged", "refused")
+_VECTOR = ("x", "y", "z")
+_DIMENSIONS = {
+    "position": ("time", "axis"), "velocity": ("time", "axis"), "quaternion": ("time", "component"),
+    "rate": ("time", "axis"), "platform_position": ("time", "axis"), "platform_velocity": ("time", "axis"),
+    "platform_quaternion": ("time", "component"), "platform_rate": ("time", "axis"),
+    "pad_force": ("time", "face", "axis"), "energy": ("time", "entry"), "transverse_energy": ("time", "entry"),
+}
+_UNITS = {
+    "position": "m", "velocity": "m/s", "quaternion": "1", "rate": "rad/s", "platform_position": "m",
+    "platform_velocity": "m/s", "platform_quaternion": "1", "platform_rate": "rad/s", "pad_force": "N",
+    "energy": "J", "transverse_energy": "J",
+}
+
+
+def versions() -> dict[str, str]:
+    """Versions of the libraries a result depends on."""
+    found = {}
+    for name in ("tipoff", "numpy", "scipy", "numba", "scikit-fem", "gmsh"):
+        try:
+            found[name] = version(name)
+        except PackageNotFoundError:
+            found[name] = "not installed"
+    return found
+
+
+@dataclass(frozen=True, eq=False)
+class Trajectory:
+    """Sampled motion of payload and platform, pad forces on the payload (scene axes) and both energy ledgers.
+
+    Arrays have the samples first: time (n,) s, vectors (n,3), quaternions (n,4), pad_force (n,f,3) N, ledgers
+    (n, len(ledger.ENTRIES)) J. ``checks`` holds the kept promises (dimensionless), ``cost`` wall_s, compile_s, steps, dt_s
+    and what a fidelity adds, ``scene`` the resolved inputs. A diverged or refused run has no settled values.
+    """
+
+    fidelity: str
+    status: str
+    time: np.ndarray
+    position: np.ndarray
+    velocity: np.ndarray
+    quaternion: np.ndarray
+    rate: np.ndarray
+    platform_position: np.ndarray
+    platform_velocity: np.ndarray
+    platform_quaternion: np.ndarray
+    platform_rate: np.ndarray
+    pad_force: np.ndarray
+    energy: np.ndarray
+    transverse_energy: np.ndarray
+    outcome: outcome.Outcome
+    checks: dict[str, float]
+    cost: dict[str, float]
+    scene: dict
+    message: str = ""
+    numerics: dict = field(default_factory=dict)
+    versions: dict[str, str] = field(default_factory=versions)
+
+    def __post_init__(self):
+        if self.status not in STATUSES:
+            raise ValueError(f"status {self.status!r}, expected one of {STATUSES}")
+        for name in _DIMENSIONS:
+            if not np.isfinite(getattr(self, name)).all():
+                raise ValueError(f"{name} holds NaN or inf: a run must stop before it reaches a result")
+
+    def to_xarray(self) -> xarray.Dataset:
+        """Labelled copy with units as attributes; motion relative to the platform is added."""
+        variables = {name: (dims, getattr(self, name), {"units": _UNITS[name]}) for name, dims in _DIMENSIONS.items()}
+        relative = outcome.relative_motion(self)
+        for name, unit in (("relative_position", "m"), ("relative_velocity", "m/s"), ("relative_rate", "rad/s")):
+            variables[name] = (("time", "axis"), relative[name], {"units": unit})
+        coordinates = {"time": ("time", self.time, {"units": "s"}), "axis": list(_VECTOR),
+                       "component": ["w", "x", "y", "z"], "entry": list(ledger.ENTRIES)}
+        plain = {name: json.dumps(getattr(self, name)) for name in ("checks", "cost", "scene", "numerics", "versions")}
+        return xarray.Dataset(variables, coordinates, attrs={
+            "fidelity": self.fidelity, "status": self.status, "message": self.message,
+            "outcome": json.dumps(self.outcome._asdict()), **plain})
+
+    def save(self, path: str | Path) -> None:
+        """Write netCDF atomically."""
+        with replacing(path) as temporary:
+            self.to_xarray().to_netcdf(temporary, engine="h5netcdf")
+
+    @classmethod
+    def load(cls, path: str | Path) -> "Trajectory":
+        """Read what ``save`` wrote. Raises OSError for a missing or damaged file."""
+        with xarray.open_dataset(path, engine="h5netcdf", decode_timedelta=False) as data:
+            arrays = {name: data[name].values for name in _DIMENSIONS}
+            plain = {name: json.loads(data.attrs[name]) for name in ("checks", "cost", "scene", "numerics", "versions")}
+            result = outcome.Outcome(**json.loads(data.attrs["outcome"]))
+            return cls(fidelity=data.attrs["fidelity"], status=data.attrs["status"], message=data.attrs["message"],
+                       time=data["time"].values, outcome=result, **arrays, **plain)
+
+
+assert set(_DIMENSIONS) <= {item.name for item in fields(Trajectory)}

@@ -1,0 +1,79 @@
+"""Quantities with units: text such as ``"0.05 mm"`` becomes an SI float, or a fault that names what was expected.
+
+Inside the program everything is SI and radians. Files must write units; a bare number is taken as SI only where the
+caller says so (overrides made by a program, resolved scenes read back).
+"""
+
+import math
+from functools import lru_cache
+from typing import Annotated, Any
+
+import pint
+from pydantic import BeforeValidator, Field, ValidationInfo
+
+registry: pint.UnitRegistry = pint.UnitRegistry()
+
+
+@lru_cache(maxsize=4096)
+def to_si(text: str, unit: str) -> float:
+    """Value of ``text`` in ``unit`` (an SI unit). Raises ValueError for a wrong dimension, bad text, or NaN and inf."""
+    try:
+        quantity = registry.Quantity(text)
+    except Exception as error:  # pint raises a wide family of exceptions on malformed text
+        raise ValueError(f"a quantity in {unit}, for example \"1 {unit}\"") from error
+    if not quantity.is_compatible_with(unit):
+        raise ValueError(f"a quantity in {unit} (given dimension {quantity.dimensionality})")
+    value = float(quantity.to(unit).magnitude)
+    if not math.isfinite(value):
+        raise ValueError(f"a finite quantity in {unit}")
+    return value
+
+
+def parse(value: Any, unit: str, bare_numbers_are_si: bool) -> float:
+    """SI value of a field that should carry ``unit``; ``value`` is text with a unit, or a number where that is allowed."""
+    if isinstance(value, bool):
+        raise ValueError(f"a quantity in {unit}")
+    if isinstance(value, str):
+        return to_si(value, unit)
+    if isinstance(value, (int, float)) and (unit == "dimensionless" or bare_numbers_are_si):
+        if not math.isfinite(value):
+            raise ValueError("a finite number")
+        return float(value)
+    if isinstance(value, (int, float)):
+        raise ValueError(f"text with a unit of dimension {unit}, for example \"{value} {unit}\"")
+    raise ValueError(f"a quantity in {unit}")
+
+
+def quantity(unit: str, **bounds: float) -> Any:
+    """Pydantic type of a quantity held in ``unit``, with bounds as in ``pydantic.Field`` (gt, ge, lt, le) in that unit."""
+
+    def convert(value: Any, info: ValidationInfo) -> float:
+        bare = bool(info.context and info.context.get("bare_numbers_are_si"))
+        return parse(value, unit, bare)
+
+    return Annotated[float, BeforeValidator(convert), Field(**bounds, json_schema_extra={"unit": unit})]
+
+
+Number = quantity("dimensionless")
+NonNegativeNumber = quantity("dimensionless", ge=0.0)
+PositiveNumber = quantity("dimensionless", gt=0.0)
+Length = quantity("m")
+NonNegativeLength = quantity("m", ge=0.0)
+PositiveLength = quantity("m", gt=0.0)
+Angle = quantity("rad")
+Time = quantity("s")
+NonNegativeTime = quantity("s", ge=0.0)
+PositiveTime = quantity("s", gt=0.0)
+Mass = quantity("kg", gt=0.0)
+Density = quantity("kg/m**3", gt=0.0)
+Pressure = quantity("Pa", gt=0.0)
+Force = quantity("N")
+Impulse = quantity("N*s", gt=0.0)
+Velocity = quantity("m/s")
+PositiveVelocity = quantity("m/s", gt=0.0)
+Rate = quantity("rad/s")
+Acceleration = quantity("m/s**2")
+Inertia = quantity("kg*m**2")
+PositiveInertia = quantity("kg*m**2", gt=0.0)
+ContactDamping = quantity("N*s/m", ge=0.0)
+PenaltyStiffness = quantity("N/m**3", gt=0.0)
