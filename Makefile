@@ -1,0 +1,69 @@
+# tipoff: `make report` and `make test` do everything from a fresh clone; the rest is for one stage at a time.
+#
+#   make report SCENE=sensitive OUT=/tmp/out      another scene, another place for the results
+#   make test PYTHON=python3.13                   another Python for the environment
+
+SCENE ?= reference
+OUT ?= out
+PYTHON ?= python3
+
+TIPOFF = .venv/bin/tipoff
+ASKED = --scene $(SCENE) --out $(OUT)
+READY = .venv/.ready
+
+.DEFAULT_GOAL := help
+.PHONY: help mesh highfi lowfi calibrate compare cost stability ablation report test test-slow clean
+
+help: ## print this list
+	@awk -F ':.*## ' '/^[a-z-]+:.*## /{printf "  make %-10s %s\n", $$1, $$2}' Makefile
+	@echo "  SCENE=$(SCENE) OUT=$(OUT)"
+
+mesh: $(READY) ## mesh the rails of the scene
+	$(TIPOFF) mesh $(ASKED)
+
+highfi: $(READY) ## run the finite-element reference
+	$(TIPOFF) highfi $(ASKED)
+
+lowfi: $(READY) ## run the rigid surrogate
+	$(TIPOFF) lowfi $(ASKED)
+
+calibrate: $(READY) ## fit the surrogate's contact constants to the reference
+	$(TIPOFF) calibrate $(ASKED)
+
+compare: $(READY) ## agreement of both, fitted and held-out conditions, beside the floor
+	$(TIPOFF) compare $(ASKED)
+
+cost: $(READY) ## what accuracy costs in time
+	$(TIPOFF) cost $(ASKED)
+
+stability: $(READY) ## hard cases, with the weaker methods that fail on them
+	$(TIPOFF) stability $(ASKED)
+
+ablation: $(READY) ## what each effect changes and costs
+	$(TIPOFF) ablation $(ASKED)
+
+report: $(READY) ## all of the above on one page: OUT/SCENE/report.html
+	$(TIPOFF) report $(ASKED)
+
+test: $(READY) ## the tests, without the slow ones
+	.venv/bin/python -m pytest -m "not slow"
+
+test-slow: $(READY) ## every test
+	.venv/bin/python -m pytest
+
+clean: ## remove results and caches; the environment stays
+	rm -rf out build *.egg-info .pytest_cache .hypothesis
+	find . -name __pycache__ -not -path './.venv/*' -prune -exec rm -rf {} +
+
+# The environment. The stamp is written last, so an install that was cut short is taken up again.
+$(READY): requirements.lock pyproject.toml
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
+	  { echo "tipoff needs Python 3.11 or newer, and $(PYTHON) is not: try make PYTHON=python3.12 ..." >&2; exit 1; }
+	@$(PYTHON) -c 'import ensurepip, venv' 2>/dev/null || \
+	  { echo "$(PYTHON) cannot make an environment. On Debian and Ubuntu, as root: apt-get install python3-venv" >&2; exit 1; }
+	@.venv/bin/python -m pip --version >/dev/null 2>&1 || \
+	  { echo "making .venv (about 0.9 GB, a minute or two)"; $(PYTHON) -m venv --clear .venv; }
+	.venv/bin/python -m pip install --quiet --disable-pip-version-check -r requirements.lock
+	.venv/bin/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation --editable .
+	@.venv/bin/python -m studies.doctor
+	@touch $@
