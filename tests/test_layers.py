@@ -1,0 +1,170 @@
+"""The rules of the house that a machine can check: who may import whom, how long a file may be, what a kernel may hold.
+
+Imports are checked twice. A fresh interpreter sees what a package really pulls in, also through others; the sources show
+an import that hides inside a function.
+"""
+
+import ast
+import re
+import statistics
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parent.parent
+PACKAGES = ("scenes", "meshes", "highfi", "lowfi", "calibrate", "studies")
+FORBIDDEN = {
+    "scenes": {"highfi", "lowfi", "calibrate", "studies", "gmsh", "matplotlib", "plotly"},
+    "highfi": {"lowfi", "calibrate", "studies"},
+    "lowfi": {"highfi", "calibrate", "studies", "skfem", "gmsh"},
+    "calibrate": {"studies"},
+}
+SERIALISERS = {"pickle", "cPickle", "dill", "cloudpickle", "joblib", "marshal", "shelve"}
+COMPILERS = {"njit", "jit", "vectorize", "guvectorize", "cfunc", "stencil"}
+IMPORT_EVERYTHING = """
+import importlib, pkgutil, sys
+package = importlib.import_module(sys.argv[1])
+for module in pkgutil.walk_packages(package.__path__, package.__name__ + "."):
+    if not module.name.endswith("__main__"):
+        importlib.import_module(module.name)
+print(*sorted({name.partition(".")[0] for name in sys.modules}))
+"""
+
+
+def sources(*folders: str) -> list[Path]:
+    """Every Python file below the folders."""
+    return [path for folder in folders for path in sorted((ROOT / folder).rglob("*.py"))]
+
+
+def imported(tree: ast.AST) -> set[str]:
+    """Top-level names of everything the source imports, wherever the statement stands."""
+    names = set()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            names |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom) and node.level == 0:
+            names.add(node.module)
+        elif isinstance(node, ast.Call) and _called(node) in ("import_module", "__import__"):
+            names |= {argument.value for argument in node.args if isinstance(argument, ast.Constant)}
+    return {name.partition(".")[0] for name in names if isinstance(name, str)}
+
+
+def breaches(tree: ast.AST) -> list[str]:
+    """What a source may not hold: fast maths, code from data, compilation outside `scenes.jit`, output in a kernel."""
+    found = [f"imports {name}" for name in sorted(imported(tree) & SERIALISERS)]
+    for node in ast.walk(tree):
+        if isinstance(node, ast.keyword) and node.arg in ("fastmath", "allow_pickle") and not _is_false(node.value):
+            found.append(f"{node.arg} on line {node.value.lineno}")
+        elif isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in ("eval", "exec"):
+            found.append(f"{node.func.id} on line {node.lineno}")
+        elif isinstance(node, ast.ImportFrom) and node.module == "numba":
+            found += [f"numba.{alias.name} on line {node.lineno}" for alias in node.names if alias.name in COMPILERS]
+        elif isinstance(node, ast.Attribute) and node.attr in COMPILERS and getattr(node.value, "id", "") in ("numba", "nb"):
+            found.append(f"numba.{node.attr} on line {node.lineno}")
+        elif isinstance(node, ast.FunctionDef) and _is_kernel(node):
+            inner = [inside for inside in ast.walk(node) if isinstance(inside, ast.Call)]
+            found += [f"{_called(call)} in kernel {node.name}" for call in inner if _called(call) in ("print", "open")]
+    return found
+
+
+def _called(call: ast.Call) -> str:
+    return getattr(call.func, "id", getattr(call.func, "attr", ""))
+
+
+def _is_false(value: ast.expr) -> bool:
+    return isinstance(value, ast.Constant) and value.value is False
+
+
+def _is_kernel(function: ast.FunctionDef) -> bool:
+    plain = [decorator.func if isinstance(decorator, ast.Call) else decorator for decorator in function.decorator_list]
+    return any("jit" in getattr(name, "id", getattr(name, "attr", "")) for name in plain)
+
+
+def _parsed(path: Path) -> ast.AST:
+    return ast.parse(path.read_text(encoding="utf-8"), filename=str(path))
+
+
+@pytest.mark.parametrize("package", FORBIDDEN)
+def test_fresh_interpreter_loads_no_higher_layer(package):
+    loaded = subprocess.run(
+        [sys.executable, "-c", IMPORT_EVERYTHING, package], cwd=ROOT, capture_output=True, text=True, timeout=300
+    )
+    assert loaded.returncode == 0, loaded.stderr
+    names = set(loaded.stdout.split())
+    assert package in names
+    assert not names & FORBIDDEN[package]
+
+
+@pytest.mark.parametrize("package", FORBIDDEN)
+def test_sources_name_no_higher_layer(package):
+    paths = sources(package)
+    assert paths
+    wrong = {str(path.relative_to(ROOT)): found for path in paths if (found := imported(_parsed(path)) & FORBIDDEN[package])}
+    assert not wrong
+
+
+def test_doctor_needs_only_the_standard_library():
+    """-S hides every installed package, as on a machine where the install failed: then the doctor must still speak."""
+    run = subprocess.run([sys.executable, "-S", "-m", "studies.doctor"], cwd=ROOT, capture_output=True, text=True, timeout=60)
+    assert run.returncode == 1
+    assert "Traceback" not in run.stderr
+    assert "numpy does not load" in run.stderr
+
+
+def test_files_are_short():
+    lengths = {str(path.relative_to(ROOT)): len(path.read_text().splitlines()) for path in sources(*PACKAGES, "tests")}
+    assert {name: length for name, length in lengths.items() if length > 400} == {}
+    assert statistics.median(lengths.values()) < 150
+
+
+def test_sources_keep_the_house_rules():
+    paths = [path for path in sources(*PACKAGES, "tests") if path != ROOT / "scenes" / "jit.py"]
+    wrong = {str(path.relative_to(ROOT)): found for path in paths if (found := breaches(_parsed(path)))}
+    assert wrong == {}
+
+
+@pytest.mark.parametrize(
+    "source",
+    [
+        "import pickle",
+        "def late():\n    from dill import dumps",
+        "numpy.load(path, allow_pickle=True)",
+        "njit(fastmath=True)",
+        "njit(fastmath={'nnan'})",
+        "eval(text)",
+        "from numba import njit",
+        "@numba.njit(cache=True)\ndef step(x):\n    return x",
+        "@njit\ndef step(x):\n    print(x)",
+    ],
+)
+def test_every_house_rule_can_fail(source):
+    """Control: each rule finds the breach it is there for."""
+    assert breaches(ast.parse(source))
+
+
+@pytest.mark.parametrize(
+    "source", ["def late():\n    import lowfi.step", "from lowfi import run", "importlib.import_module('lowfi.run')"]
+)
+def test_import_check_sees_hidden_imports(source):
+    assert "lowfi" in imported(ast.parse(source))
+
+
+def test_make_targets_are_phony():
+    """Folders are named like targets; without .PHONY `make calibrate` would find the folder and do nothing."""
+    text = (ROOT / "Makefile").read_text()
+    targets = set(re.findall(r"^([a-z][a-z-]*):", text, re.MULTILINE))
+    phony = set(re.search(r"^\.PHONY: (.*)$", text, re.MULTILINE).group(1).split())
+    assert {"report", "test", "calibrate"} <= targets
+    assert targets == phony
+
+
+def test_lock_holds_every_dependency():
+    """The project is installed with --no-deps, so what the lock forgets is missing in a fresh clone."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    asked = project["dependencies"] + project["optional-dependencies"]["test"]
+    pinned = set(re.findall(r"^([A-Za-z0-9_.-]+)==", (ROOT / "requirements.lock").read_text(), re.MULTILINE))
+    normal = {re.sub(r"[-_.]+", "-", name).lower() for name in pinned}
+    assert {re.match(r"[A-Za-z0-9_.-]+", name).group().lower() for name in asked} <= normal
