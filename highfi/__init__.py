@@ -1,0 +1,6 @@
+"""Finite-element reference: explicit dynamics of the flexible rail with the payload and a free platform."""
+
+from highfi.numerics import Numerics
+from highfi.run import prepare, run
+
+__all__ = ["Numerics", "prepare", "run"]
