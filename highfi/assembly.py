@@ -1,0 +1,73 @@
+"""Stiffness and lumped mass of a rail mesh, in the form the explicit kernel reads.
+
+    f(u) = sum over elements of scatter(K_class gather(u)),    m_a = sum over elements of rho * integral of N_a
+
+Elements that are translations of each other have the same matrix, so one matrix is stored per class of them. A structured mesh
+has a handful of classes, which stay in the fastest cache while the kernel streams over the elements.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy.sparse import coo_array, csr_array
+
+from highfi import element
+from highfi.mesh import RailMesh, edge_lengths
+
+_SAME_SHAPE = 1e-9  # of the shortest edge: corner coordinates that differ by less make one class
+_BATCH = 2048  # classes integrated at once; bounds the memory of an unstructured mesh
+
+
+class Operator(NamedTuple):
+    """Linear elastic operator of e hexahedra in c shape classes over n nodes.
+
+    hexes (e,8) node numbers and shape_class (e,), unsigned so that no index needs a test for a negative one; stiffness (c,24,24) N/m, degrees of freedom corner * 3 + component;
+    corner_mass (c,8) kg that one element brings to its corners; mass (n,) kg, their sum at each node; free (n,) False where
+    the node is fixed.
+    """
+
+    hexes: np.ndarray
+    shape_class: np.ndarray
+    stiffness: np.ndarray
+    corner_mass: np.ndarray
+    mass: np.ndarray
+    free: np.ndarray
+
+
+def build(mesh: RailMesh, density: float, youngs_modulus: float, poisson_ratio: float,
+          fixed: tuple[str, ...] = ("mount",)) -> Operator:
+    """Operator of a homogeneous isotropic solid: density kg/m3, Young's modulus Pa, nodes of the `fixed` surfaces held.
+
+    Raises ValueError for constants no stable material has.
+    """
+    if not (density > 0.0 and np.isfinite(density)):
+        raise ValueError(f"density must be positive and finite, got {density!r} kg/m3")
+    law = element.elasticity(youngs_modulus, poisson_ratio)
+    shape_class, representatives = shape_classes(mesh)
+    corners = mesh.points[mesh.hexes[representatives]]
+    batches = [corners[start:start + _BATCH] for start in range(0, len(corners), _BATCH)]
+    stiffness = np.concatenate([element.stiffness(batch, law) for batch in batches])
+    corner_mass = np.concatenate([element.corner_mass(batch, density) for batch in batches])
+    mass = np.bincount(mesh.hexes.ravel(), corner_mass[shape_class].ravel(), minlength=len(mesh.points))
+    free = np.ones(len(mesh.points), dtype=np.bool_)
+    for name in fixed:
+        free[mesh.surfaces[name]] = False
+    return Operator(mesh.hexes.astype(np.uint32), shape_class, stiffness, corner_mass, mass, free)
+
+
+def shape_classes(mesh: RailMesh) -> tuple[np.ndarray, np.ndarray]:
+    """Class (e,) of each element, and the first element (c,) of each class of translations of one another."""
+    corners = mesh.points[mesh.hexes]
+    grid = _SAME_SHAPE * edge_lengths(mesh.points, mesh.hexes).min()
+    shape = np.round((corners - corners[:, :1]) / grid).reshape(len(corners), -1)
+    _, representatives, shape_class = np.unique(shape, axis=0, return_index=True, return_inverse=True)
+    return shape_class.reshape(-1).astype(np.uint32), representatives
+
+
+def sparse(operator: Operator) -> csr_array:
+    """Assembled stiffness (3n,3n) in N/m, degrees of freedom node * 3 + component, for static and modal solutions."""
+    size = 3 * len(operator.mass)
+    freedoms = (3 * operator.hexes[:, :, None] + np.arange(3)).reshape(-1, 24)
+    rows = np.repeat(freedoms, 24, axis=1).ravel()
+    columns = np.tile(freedoms, (1, 24)).ravel()
+    return coo_array((operator.stiffness[operator.shape_class].ravel(), (rows, columns)), shape=(size, size)).tocsr()
