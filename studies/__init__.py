@@ -1,0 +1,1 @@
+"""Questions asked of both fidelities: agreement, cost, stability, ablation; the report and the command line."""
