@@ -1,0 +1,221 @@
+"""Contact of the crowned, rigid pad faces with the Gauss points of the rail's surface facets.
+
+For a point y in payload axes, with local face coordinates xi, eta in [-1, 1] and outward height h over the flat face::
+
+    p = -h - relief (xi^4 + eta^4),      potential k_p p^2 / 2 per area for p > 0
+
+The force on the rail is minus the full gradient of that potential (so it has the small tangential part that the crown's slope
+calls for) and the contact stores energy exactly. The opposite force acts on the payload at the same point. Friction uses the
+shared law with the half-step sliding velocity. A facet is passed over when its four nodes lie outside the uncrowned face
+plane, which no Gauss point between them can then have crossed.
+"""
+
+import numpy as np
+
+from highfi.records import DAMPING_RATIO, FRICTION_FORCE, MOMENT, MOMENT_ON_RAIL, NORMAL_FORCE, RELEASED, STORED
+from scenes import rotation
+from scenes.effects.friction import coefficient_over_speed
+from scenes.jit import njit
+
+
+@njit
+def contact_forces(rail, surface, faces, penalty, friction, state, active, pose, dt):
+    """Add contact to ``state.force`` and fill ``state.load``, ``state.face_force`` and ``active``; released energy to work."""
+    state.load[:] = 0.0
+    state.face_force[:] = 0.0
+    if penalty is not None:
+        release_over_the_edge(rail, surface, faces, state, active, pose)
+        active.count[0] = 0
+        _all_faces(rail, surface, faces, penalty, friction, state, active, pose, dt)
+
+
+@njit
+def _all_faces(rail, surface, faces, penalty, friction, state, active, pose, dt):
+    margin = 1e-3
+    for face in range(faces.axis.size):
+        place = rotation.rotate(pose.turn, (faces.centre[face, 0], faces.centre[face, 1], faces.centre[face, 2]))
+        x = place[0] + pose.centre[0]
+        half = faces.half_length[face] + margin
+        first, last = surface.first[face], surface.first[face + 1]
+        window = surface.start[first:last]
+        low = first + np.searchsorted(window, x - half - surface.longest)
+        high = first + np.searchsorted(window, x + half)
+        for k in range(low, high):
+            facet = surface.reach[k]
+            if _facet_reached(rail, surface, faces, face, facet, state.displacement, pose):
+                _facet_points(rail, surface, faces, face, facet, penalty, friction, state, active, pose, dt)
+
+
+@njit
+def _to_payload(pose, x):
+    return rotation.unrotate(pose.turn, (x[0] - pose.centre[0], x[1] - pose.centre[1], x[2] - pose.centre[2]))
+
+
+@njit
+def _facet_reached(rail, surface, faces, face, facet, displacement, pose):
+    """Whether any corner of the facet is inside the uncrowned plane of the face."""
+    axis, sign = faces.axis[face], faces.sign[face]
+    t = pose.turn
+    # Only the height over the face plane is needed: one row of the rotation.
+    nx, ny, nz = t[axis], t[3 + axis], t[6 + axis]
+    for corner in range(4):
+        node = surface.facets[facet, corner]
+        height = (nx * (rail.points[node, 0] + displacement[node, 0] - pose.centre[0])
+                  + ny * (rail.points[node, 1] + displacement[node, 1] - pose.centre[1])
+                  + nz * (rail.points[node, 2] + displacement[node, 2] - pose.centre[2]))
+        if sign * (height - faces.centre[face, axis]) < 0.0:
+            return True
+    return False
+
+
+@njit
+def interpolate(surface, facet, q, values):
+    """Bilinear value (a tuple) of nodal ``values`` (n,3) at Gauss point ``q`` of ``facet``."""
+    a, b, c = 0.0, 0.0, 0.0
+    for corner in range(4):
+        node, weight = surface.facets[facet, corner], surface.shape[q, corner]
+        a += weight * values[node, 0]
+        b += weight * values[node, 1]
+        c += weight * values[node, 2]
+    return (a, b, c)
+
+
+@njit
+def place_of(rail, surface, facet, q, displacement):
+    """Deformed place (m) of a Gauss point in frame axes."""
+    x = interpolate(surface, facet, q, rail.points)
+    u = interpolate(surface, facet, q, displacement)
+    return (x[0] + u[0], x[1] + u[1], x[2] + u[2])
+
+
+@njit
+def sliding_velocity(surface, facet, q, x, velocity, pose):
+    """Velocity (m/s) of the payload's material at ``x`` relative to the rail's, in frame axes."""
+    arm = (x[0] - pose.centre[0], x[1] - pose.centre[1], x[2] - pose.centre[2])
+    spin = rotation.cross(pose.rate, arm)
+    w = interpolate(surface, facet, q, velocity)
+    return (pose.velocity[0] + spin[0] - w[0], pose.velocity[1] + spin[1] - w[1], pose.velocity[2] + spin[2] - w[2])
+
+
+@njit
+def _local(faces, face, y):
+    """Face coordinates (xi, eta) and outward height (m) of a point in payload axes."""
+    axis = faces.axis[face]
+    across = 3 - axis
+    xi = (y[0] - faces.centre[face, 0]) / faces.half_length[face]
+    eta = (y[across] - faces.centre[face, across]) / faces.half_width[face]
+    return xi, eta, faces.sign[face] * (y[axis] - faces.centre[face, axis])
+
+
+@njit
+def _facet_points(rail, surface, faces, face, facet, penalty, friction, state, active, pose, dt):
+    for q in range(surface.shape.shape[0]):
+        x = place_of(rail, surface, facet, q, state.displacement)
+        xi, eta, height = _local(faces, face, _to_payload(pose, x))
+        if height < 0.0 and abs(xi) <= 1.0 and abs(eta) <= 1.0:
+            penetration = -height - faces.relief[face] * (xi * xi * xi * xi + eta * eta * eta * eta)
+            if penetration > 0.0:
+                _press(rail, surface, faces, face, facet, q, penalty, friction, state, active, pose, x, xi, eta,
+                       penetration, dt)
+
+
+@njit
+def _press(rail, surface, faces, face, facet, q, penalty, friction, state, active, pose, x, xi, eta, penetration, dt):
+    axis = faces.axis[face]
+    weight = penalty * surface.area[facet, q]
+    slope_x = 4.0 * faces.relief[face] * xi * xi * xi / faces.half_length[face]
+    slope_across = 4.0 * faces.relief[face] * eta * eta * eta / faces.half_width[face]
+    if axis == 1:
+        gradient = (slope_x, faces.sign[face], slope_across)
+    else:
+        gradient = (slope_x, slope_across, faces.sign[face])
+    push = weight * penetration
+    g = rotation.rotate(pose.turn, gradient)
+    on_rail = (push * g[0], push * g[1], push * g[2])
+    slide = sliding_velocity(surface, facet, q, x, state.velocity, pose)
+    energy = 0.5 * weight * penetration * penetration
+    if _came_over_the_edge(faces, face, xi, eta, rotation.unrotate(pose.turn, slide), dt):
+        # The point was outside the face a step ago: it meets a pressed face at once, and its energy was never worked in.
+        state.work[RELEASED] -= energy
+    drag = friction_on_payload(friction, rail, surface, facet, q, g, push, slide, active.node_damping, state.load, dt)
+    _apply_pair(surface, facet, q, face, state, pose, x, on_rail, drag)
+    state.load[STORED] += energy
+    k = active.count[0]
+    active.point[k, 0], active.point[k, 1] = facet, q
+    active.face[k] = face
+    active.energy[k] = energy
+    active.friction[k, 0], active.friction[k, 1], active.friction[k, 2] = drag
+    active.count[0] = k + 1
+
+
+@njit
+def friction_on_payload(friction, rail, surface, facet, q, g, push, slide, node_damping, load, dt):
+    """Friction force (N) on the payload in frame axes; zero and not compiled when ``friction`` is None.
+
+    Also sums the damping (N s/m) it brings to each node, and keeps the largest step * damping / mass for the stability check.
+    """
+    drag = (0.0, 0.0, 0.0)
+    if friction is not None:
+        size = np.sqrt(rotation.dot(g, g))
+        along = rotation.dot(slide, g) / (size * size)
+        t = (slide[0] - along * g[0], slide[1] - along * g[1], slide[2] - along * g[2])
+        damping = push * size * coefficient_over_speed(friction, np.sqrt(rotation.dot(t, t)))
+        drag = (-damping * t[0], -damping * t[1], -damping * t[2])
+        for corner in range(4):
+            node = surface.facets[facet, corner]
+            node_damping[node] += damping * surface.shape[q, corner]
+            load[DAMPING_RATIO] = max(load[DAMPING_RATIO], dt * node_damping[node] * rail.inverse_mass[node])
+    return drag
+
+
+@njit
+def _apply_pair(surface, facet, q, face, state, pose, x, on_rail, drag):
+    """One force on the rail and its opposite on the payload, both at the point ``x`` of frame axes."""
+    total = (drag[0] - on_rail[0], drag[1] - on_rail[1], drag[2] - on_rail[2])
+    for corner in range(4):
+        node, weight = surface.facets[facet, corner], surface.shape[q, corner]
+        for i in range(3):
+            state.force[node, i] -= weight * total[i]
+    arm = (x[0] - pose.centre[0], x[1] - pose.centre[1], x[2] - pose.centre[2])
+    moment, about_origin = rotation.cross(arm, total), rotation.cross(x, total)
+    for i in range(3):
+        state.load[NORMAL_FORCE + i] -= on_rail[i]
+        state.load[FRICTION_FORCE + i] += drag[i]
+        state.load[MOMENT + i] += moment[i]
+        state.load[MOMENT_ON_RAIL + i] -= about_origin[i]
+        state.face_force[face, i] += total[i]
+
+
+@njit
+def _came_over_the_edge(faces, face, xi, eta, slide, dt):
+    """Whether the point lay outside the face one step ago; ``slide`` in payload axes, opposite to the point's own motion."""
+    before_xi = xi + dt * slide[0] / faces.half_length[face]
+    before_eta = eta + dt * slide[3 - faces.axis[face]] / faces.half_width[face]
+    return abs(before_xi) > 1.0 or abs(before_eta) > 1.0
+
+
+@njit
+def release_over_the_edge(rail, surface, faces, state, active, pose):
+    """Energy of points that carried load a step ago and are no longer under their face goes to ``released``."""
+    for k in range(active.count[0]):
+        facet, q = active.point[k, 0], active.point[k, 1]
+        x = place_of(rail, surface, facet, q, state.displacement)
+        xi, eta, _ = _local(faces, active.face[k], _to_payload(pose, x))
+        if abs(xi) > 1.0 or abs(eta) > 1.0:
+            state.work[RELEASED] += active.energy[k]
+        for corner in range(4):
+            active.node_damping[surface.facets[facet, corner]] = 0.0
+
+
+@njit
+def friction_power(rail, surface, state, active, pose, friction):
+    """Power (W, <= 0) of the present friction forces at the present velocities."""
+    power = 0.0
+    if friction is not None:
+        for k in range(active.count[0]):
+            facet, q = active.point[k, 0], active.point[k, 1]
+            x = place_of(rail, surface, facet, q, state.displacement)
+            slide = sliding_velocity(surface, facet, q, x, state.velocity, pose)
+            power += (active.friction[k, 0] * slide[0] + active.friction[k, 1] * slide[1]
+                      + active.friction[k, 2] * slide[2])
+    return power

@@ -1,0 +1,41 @@
+"""Numerical choices of the finite-element reference: what may be refined without changing the scene."""
+
+import math
+from dataclasses import asdict, dataclass
+
+
+@dataclass(frozen=True)
+class Numerics:
+    """Mesh, quadrature and step of one run.
+
+    ``element_size`` (m); ``quadrature``: Gauss points per facet edge (None: so many that points lie about 1 mm apart, between 2
+    and 8); ``safety``: fraction of the proven critical step; ``step`` (s): a step asked for, refused above the limit.
+    """
+
+    element_size: float = 0.004
+    quadrature: int | None = None
+    safety: float = 0.9
+    step: float | None = None
+
+    def __post_init__(self):
+        faults = []
+        if not (math.isfinite(self.element_size) and self.element_size > 0.0):
+            faults.append(f"element_size: given {self.element_size!r}, expected a length above zero (m)")
+        if self.quadrature is not None and not 1 <= self.quadrature <= 12:
+            faults.append(f"quadrature: given {self.quadrature!r}, expected 1 to 12 points per edge")
+        if not 0.0 < self.safety <= 1.0:
+            faults.append(f"safety: given {self.safety!r}, expected a fraction above 0 and at most 1")
+        if self.step is not None and not (math.isfinite(self.step) and self.step > 0.0):
+            faults.append(f"step: given {self.step!r}, expected a time above zero (s)")
+        if faults:
+            raise ValueError("; ".join(faults))
+
+    def points_per_edge(self) -> int:
+        """Gauss points along one facet edge."""
+        if self.quadrature is not None:
+            return self.quadrature
+        return min(max(round(self.element_size / 1e-3), 2), 8)
+
+    def as_dict(self) -> dict:
+        """Plain values, as written into results."""
+        return asdict(self)

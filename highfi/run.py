@@ -1,0 +1,156 @@
+"""One run of the reference: set-up, the sampled time loop, and the Trajectory it leaves."""
+
+import threading
+import time as clock
+from typing import Callable
+
+import numpy as np
+
+from highfi import observe, records, samples
+from highfi.loads import thrust_load
+from highfi.mesh import RailMesh
+from highfi.numerics import Numerics
+from highfi.pose import seen_from_frame
+from highfi.step import advance, start
+from highfi.stepping import Stepping, choose
+from highfi.system import System, build, geometry, initial_state, make_mesh
+from scenes import ledger, outcome, rotation
+from scenes.scene import Scene
+from scenes.trajectory import Trajectory
+
+_STOP_RATIO = 0.1  # of the transverse scale: a run that loses so much energy is not a result
+_LOOK_EVERY = 20  # samples between two looks for exit or jam
+_MESHES: dict[tuple, RailMesh] = {}
+_MESH_LOCK = threading.Lock()
+
+
+def prepare(scene: Scene, numerics: Numerics | None = None) -> RailMesh:
+    """Mesh of a scene, made once per process. gmsh must run in the main thread: call this there before runs in other threads.
+
+    Raises SceneError or MeshError.
+    """
+    numerics = numerics or Numerics()
+    key = (geometry(scene), numerics.element_size)
+    with _MESH_LOCK:
+        if key not in _MESHES:
+            _MESHES[key] = make_mesh(scene, numerics)
+        return _MESHES[key]
+
+
+def run(scene: Scene, numerics: Numerics | None = None, progress: Callable[[float], None] | None = None) -> Trajectory:
+    """Solve ``scene`` with flexible rails until the settled window is complete, a jam, or the scene's duration.
+
+    ``progress`` is called with the fraction of the duration done. Raises SceneError, MeshError or StepError before any
+    stepping; what goes wrong later is the status of the result.
+    """
+    numerics = numerics or Numerics()
+    began, cpu = clock.perf_counter(), clock.thread_time()
+    system = build(scene, numerics, prepare(scene, numerics))
+    loop = Loop(scene, system, choose(system, scene, numerics))
+    compiling = clock.perf_counter()
+    loop.begin()
+    marching, compile_cpu = clock.perf_counter(), clock.thread_time()
+    set_up_cpu = compile_cpu - cpu
+    loop.march(progress)
+    ended = clock.perf_counter()
+    elements = int(system.rail.hexes.shape[0])
+    cost = {"wall_s": (compiling - began) + (ended - marching), "compile_s": marching - compiling,
+            "kernel_s": ended - marching, "cpu_s": clock.thread_time() - compile_cpu, "steps": loop.steps,
+            **loop.stepping.as_dict(), "elements": elements,
+            "ns_per_element_step": 1e9 * (ended - marching) / max(loop.steps * elements, 1)}
+    return loop.trajectory(cost, numerics)
+
+
+class Loop:
+    """State of a run in progress and its samples."""
+
+    def __init__(self, scene: Scene, system: System, stepping: Stepping):
+        self.scene, self.system, self.stepping = scene, system, stepping
+        self.state, self.active = initial_state(system)
+        self.marks = outcome.milestones(scene, system.model)
+        self.last = round(scene.duration / scene.output.interval)
+        self.steps, self.damping, self.scale, self.message = 0, 0.0, 0.0, ""
+        self.rows, self.work, self.forces = [], [], []
+
+    def _arguments(self) -> tuple:
+        s, m = self.system, self.system.model
+        return (s.rail, s.surface, s.faces, m.payload, s.frame, s.drive, m.thrust.pulses, m.thrust.curve, m.thrust_offset,
+                m.penalty, m.friction, m.gravity, self.state, self.active)
+
+    def begin(self) -> None:
+        """First forces and the first sample; compiles the kernels."""
+        start(*self._arguments(), self.stepping.dt_s)
+        advance(*self._arguments(), 0, 0, self.stepping.dt_s)
+        self._sample()
+
+    def march(self, progress) -> None:
+        """Advance sample by sample until something ends the run."""
+        end = self.last
+        while len(self.rows) <= end and not self.message:
+            self.damping = max(self.damping, advance(*self._arguments(), self.steps, self.stepping.steps_per_sample,
+                                                     self.stepping.dt_s))
+            self.steps += self.stepping.steps_per_sample
+            self._sample()
+            if len(self.rows) % _LOOK_EVERY == 0:
+                end = min(end, self._end())
+                if progress:
+                    progress(min(1.0, (len(self.rows) - 1) / end))
+
+    def _sample(self) -> None:
+        system, model, state = self.system, self.system.model, self.state
+        row = np.zeros(observe.SAMPLE_SIZE)
+        pose = seen_from_frame(state, model.payload, system.frame)
+        thrust = thrust_load(state, system.drive, model.thrust.pulses, model.thrust.curve, model.thrust_offset,
+                             self.steps * self.stepping.dt_s)
+        observe.observe(system.rail, model.payload, system.frame, system.drive, model.gravity, state, pose, thrust,
+                        self.stepping.dt_s, row)
+        self.message = self._fault(row)
+        if np.isfinite(row).all():
+            self.rows.append(row)
+            self.work.append(state.work.copy())
+            self.forces.append(state.face_force @ rotation.matrices(state.platform.quaternion[None])[0].T)
+
+    def _fault(self, row: np.ndarray) -> str:
+        """Why the run must stop here, or nothing."""
+        now = f"at {self.steps * self.stepping.dt_s:.6g} s"
+        if not (np.isfinite(row).all() and np.isfinite(self.state.work).all()):
+            return f"a value became infinite {now}"
+        _, transverse = samples.ledgers(np.array([*self.rows[:1], row]), np.array([*self.work[:1], self.state.work]))
+        self.scale = max(self.scale, transverse[-1, 2:5].sum())
+        loss, work = abs(ledger.residual(transverse)[-1]), abs(self.state.work[records.THRUST])
+        # Rounding of the large axial work is no fault while nothing has moved sideways yet.
+        if loss > _STOP_RATIO * self.scale + 1e-11 * work:
+            return f"transverse energy is off by {loss:.3g} J, its scale being {self.scale:.3g} J, {now}"
+        limit = (self.stepping.dt_s / self.stepping.dt_limit_s) ** 2 + 0.5 * self.damping
+        if limit > 1.0:
+            return f"friction damps nodes faster than the step of {self.stepping.dt_s:.4g} s can follow, {now}; lower safety"
+        return ""
+
+    def _motion(self) -> samples.Motion:
+        return samples.motion(np.array(self.rows), self.scene.output.interval, self.system.body_offset)
+
+    def _end(self) -> int:
+        """Number of the last sample needed, as far as known now."""
+        moved = self._motion()
+        exit_at = outcome.exit_time(moved, self.marks)
+        if exit_at is None:
+            return len(self.rows) - 1 if outcome.is_jammed(moved, self.marks) else self.last
+        end = outcome.window_start(exit_at, self.marks) + outcome.SETTLE_WINDOW
+        return int(np.ceil(end / self.scene.output.interval)) + 2
+
+    def trajectory(self, cost: dict, numerics: Numerics) -> Trajectory:
+        """The result of the samples taken so far."""
+        rows, moved = np.array(self.rows), self._motion()
+        total, transverse = samples.ledgers(rows, np.array(self.work))
+        status, result = outcome.judge(moved, self.marks)
+        if self.message:
+            status, result = "diverged", outcome.Outcome()
+        linear, angular = samples.momentum_errors(rows, moved, self.system.model.payload.mass)
+        friction = np.diff(total[:, ledger.ENTRIES.index("friction")], prepend=0.0) / self.scene.output.interval
+        checks = {"energy_error": ledger.total_error(total), "transverse_energy_error": ledger.transverse_error(transverse),
+                  "linear_momentum_error": linear, "angular_momentum_error": angular,
+                  "quaternion_error": float(np.abs(np.linalg.norm(moved.quaternion, axis=1) - 1.0).max()),
+                  "friction_power_max": float(-friction.min()), "friction_step_ratio": float(self.damping)}
+        return Trajectory(fidelity="highfi", status=status, message=self.message, **moved._asdict(),
+                          pad_force=np.array(self.forces), energy=total, transverse_energy=transverse, outcome=result,
+                          checks=checks, cost=cost, scene=self.scene.resolved(), numerics=numerics.as_dict())

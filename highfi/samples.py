@@ -1,0 +1,71 @@
+"""From sample vectors to ledgers, momentum checks and the motion a Trajectory holds."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from highfi import observe, records
+from scenes import ledger, rotation
+
+
+class Motion(NamedTuple):
+    """Sampled motion, named as in Trajectory."""
+
+    time: np.ndarray
+    position: np.ndarray
+    velocity: np.ndarray
+    quaternion: np.ndarray
+    rate: np.ndarray
+    platform_position: np.ndarray
+    platform_velocity: np.ndarray
+    platform_quaternion: np.ndarray
+    platform_rate: np.ndarray
+
+
+def motion(samples: np.ndarray, interval: float, body_offset: np.ndarray) -> Motion:
+    """Motion of samples (n, SAMPLE_SIZE); ``body_offset`` (3,) m from the frame's origin to the platform's mass centre."""
+    def part(first, size=3):
+        return samples[:, first:first + size].copy()
+
+    frame = rotation.matrices(part(observe.PLATFORM_QUATERNION, 4))
+    offset = frame @ body_offset
+    spin = np.einsum("nij,nj->ni", frame, part(observe.PLATFORM_RATE))
+    return Motion(np.arange(len(samples)) * interval, part(observe.POSITION), part(observe.VELOCITY),
+                  part(observe.QUATERNION, 4), part(observe.RATE), part(observe.PLATFORM_POSITION) + offset,
+                  part(observe.PLATFORM_VELOCITY) + np.cross(spin, offset), part(observe.PLATFORM_QUATERNION, 4),
+                  part(observe.PLATFORM_RATE))
+
+
+def ledgers(samples: np.ndarray, work: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Total and transverse ledger (n, len(ENTRIES)) J of samples and accumulated work (n, WORK_SIZE)."""
+    zero = np.zeros(len(samples))
+    kinetic, axial = samples[:, observe.KINETIC], samples[:, observe.AXIAL_KINETIC]
+    strain, stored = samples[:, observe.STRAIN], samples[:, observe.CONTACT]
+    w = {name: work[:, getattr(records, name)] for name in ("THRUST", "GRAVITY", "FRICTION", "RELEASED", "THRUST_AXIAL",
+                                                            "GRAVITY_AXIAL", "FRICTION_AXIAL", "CONTACT_AXIAL")}
+    total = {"thrust": w["THRUST"], "gravity": w["GRAVITY"], "kinetic": kinetic, "strain": strain, "contact_stored": stored,
+             "friction": w["FRICTION"], "released": w["RELEASED"]}
+    across = total | {"thrust": w["THRUST"] - w["THRUST_AXIAL"], "gravity": w["GRAVITY"] - w["GRAVITY_AXIAL"],
+                      "kinetic": kinetic - axial, "friction": w["FRICTION"] - w["FRICTION_AXIAL"],
+                      "contact_axial": w["CONTACT_AXIAL"]}
+    return tuple(np.stack([entries.get(name, zero) for name in ledger.ENTRIES], axis=1) for entries in (total, across))
+
+
+def momentum_errors(samples: np.ndarray, moved: Motion, mass: float) -> tuple[float, float]:
+    """Largest change of linear and angular momentum that no external impulse explains, over the payload's own largest.
+
+    The angular scale is the largest moment of momentum of the payload about the scene origin or of the whole, whichever is more.
+    """
+    linear, angular = samples[:, observe.LINEAR:observe.LINEAR + 3], samples[:, observe.ANGULAR:observe.ANGULAR + 3]
+    given = samples[:, observe.IMPULSE:observe.IMPULSE + 6]
+    lost = linear - linear[0] - (given[:, :3] - given[0, :3])
+    turned = angular - angular[0] - (given[:, 3:] - given[0, 3:])
+    own = mass * moved.velocity
+    orbit = np.cross(moved.position, own)
+    return (_relative(lost, own, linear), _relative(turned, orbit, angular))
+
+
+def _relative(error: np.ndarray, *scales: np.ndarray) -> float:
+    size = np.linalg.norm(error, axis=1).max()
+    scale = max(np.linalg.norm(values, axis=1).max() for values in scales)
+    return float(size / scale) if scale > 0.0 else float(size)

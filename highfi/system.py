@@ -1,0 +1,112 @@
+"""From a scene to the arrays of the time loop: mesh, operator, surfaces, the rigid part of a free platform, initial state."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from highfi import assembly, records, surface
+from highfi.mesh import RailMesh, read
+from highfi.numerics import Numerics
+from meshes import l_rail
+from scenes import model as scene_model
+from scenes import rotation
+from scenes.body import tensor
+from scenes.faults import Fault, SceneError
+from scenes.scene import Scene
+
+
+class System(NamedTuple):
+    """Constant records of one run. ``origin`` (3,) m: the frame's origin at ignition in scene axes; ``body_offset`` (3,) m from
+    it to the platform's mass centre."""
+
+    model: scene_model.Model
+    mesh: RailMesh
+    operator: assembly.Operator
+    rail: records.Rail
+    surface: records.Surface
+    faces: scene_model.Faces
+    frame: records.Frame | None
+    drive: records.Drive
+    origin: np.ndarray
+    body_offset: np.ndarray
+
+
+def geometry(scene: Scene) -> l_rail.LRailGeometry:
+    """The built-in L section of a scene, inner corners one clearance off the pads. Raises SceneError where pads do not fit it."""
+    places = {(abs(pad.position[1]), abs(pad.position[2])) for pad in scene.pads}
+    if len(places) != 1:
+        raise SceneError([Fault(scene.name, "pads", f"{len(places)} different distances from the axis",
+                                "pads at four corners (+-y, +-z) of one size, as the built-in L rails need")])
+    (y, z), rail = places.pop(), scene.rail
+    clearance = scene.contact.clearance if scene.contact else 0.0
+    return l_rail.LRailGeometry(rail.leg, rail.thickness, rail.start, rail.end, y + clearance, z + clearance,
+                                tuple((span.start, span.end) for span in rail.mounts), rail.mount_width)
+
+
+def make_mesh(scene: Scene, numerics: Numerics) -> RailMesh:
+    """Rails of ``scene`` in scene axes. Raises SceneError or MeshError."""
+    return read(l_rail.build(geometry(scene), numerics.element_size))
+
+
+def build(scene: Scene, numerics: Numerics, mesh: RailMesh) -> System:
+    """Constant records of a run on ``mesh``. Raises SceneError for a platform that cannot hold its rails."""
+    model = scene_model.build(scene)
+    material = scene.rail.material
+    operator = assembly.build(mesh, material.density, material.youngs_modulus, material.poisson_ratio)
+    moving = np.where(operator.free, operator.mass, 0.0)
+    frame, origin, offset = None, np.zeros(3), np.zeros(3)
+    if model.platform is not None:
+        frame, origin = _rigid_part(scene, model.platform, mesh.points, moving)
+        offset = np.array(model.platform.mass_centre) - origin
+    points = mesh.points - origin
+    # The model counts walls from the platform's mass centre, the loop from the frame's origin.
+    faces = model.faces._replace(wall=model.faces.wall + offset[model.faces.axis])
+    inverse = np.divide(1.0, operator.mass, out=np.zeros_like(operator.mass), where=operator.free)
+    rail = records.Rail(points, operator.mass, inverse, operator.hexes, operator.shape_class, operator.stiffness)
+    gauss = surface.build(mesh, points, faces, numerics.points_per_edge())
+    drive = records.Drive(model.thrust_arm, model.reacts_on_platform)
+    return System(model, mesh, operator, rail, gauss, faces, frame, drive, origin, offset)
+
+
+def _rigid_part(scene, platform, points, moving) -> tuple[records.Frame, np.ndarray]:
+    """Platform without its moving rail nodes: mass, inverse inertia, mass centre (parallel axes)."""
+    mass = platform.mass - moving.sum()
+    centre = (platform.mass * np.array(platform.mass_centre) - moving @ points) / mass
+    arm = points - np.array(platform.mass_centre)
+    nodes = np.einsum("n,nij->ij", moving, _parallel_axis(arm))
+    shift = mass * _parallel_axis((centre - np.array(platform.mass_centre))[None])[0]
+    inertia = tensor(scene.platform.inertia) - nodes - shift
+    if mass <= 0.0 or np.linalg.eigvalsh(inertia)[0] <= 0.0:
+        raise SceneError([Fault(scene.name, "platform.mass, platform.inertia", f"{platform.mass:g} kg",
+                                f"a platform that can hold its rails, whose moving part weighs {moving.sum():.4g} kg")])
+    return records.Frame(mass, np.linalg.inv(inertia), platform.mass), centre
+
+
+def _parallel_axis(arm: np.ndarray) -> np.ndarray:
+    square = (arm**2).sum(axis=1)
+    return square[:, None, None] * np.eye(3) - arm[:, :, None] * arm[:, None, :]
+
+
+def initial_state(system: System) -> tuple[records.State, records.Active]:
+    """State at ignition; velocities are still at t = 0."""
+    model, start = system.model, system.model.initial
+    payload = records.Body(np.add(model.payload.mass_centre, start.position), np.array(start.velocity),
+                           np.array(rotation.exponential(start.attitude)), np.zeros(3))
+    turn = rotation.matrices(payload.quaternion[None])[0]
+    payload.spin[:] = turn @ (model.payload.inertia @ np.array(start.rate))
+    platform = records.Body(system.origin.copy(), np.zeros(3), np.array([1.0, 0.0, 0.0, 0.0]), np.zeros(3))
+    nodes = system.rail.points.shape
+    velocity = np.zeros(nodes)
+    if system.frame is not None:
+        rate = np.array(start.platform_rate)
+        platform.velocity[:] = np.array(start.platform_velocity) - np.cross(rate, system.body_offset)
+        platform.spin[:] = np.linalg.inv(system.frame.inverse_inertia) @ rate
+        velocity = platform.velocity + np.cross(rate, system.rail.points)
+    momentum = (np.where(system.operator.free, system.rail.mass, 0.0)[:, None] * velocity).sum(axis=0)
+    state = records.State(payload, platform, np.zeros(nodes), velocity, np.zeros(nodes), momentum,
+                          np.zeros(records.LOAD_SIZE), np.zeros(records.WORK_SIZE), np.zeros(6),
+                          np.zeros((system.faces.axis.size, 3)))
+    room = surface.capacity(system.surface)
+    active = records.Active(np.zeros(1, dtype=np.int64), np.zeros((room, 2), dtype=np.int64),
+                            np.zeros(room, dtype=np.int64), np.zeros((room, 3)), np.zeros(room), np.zeros(nodes[0]))
+    return state, active
