@@ -1,0 +1,82 @@
+"""Progress of several runs at once: bars with the time left on a terminal, one line per finished run anywhere else."""
+
+import threading
+import time
+from typing import Callable
+
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+
+console = Console(stderr=True, highlight=False)
+_SHOWN_AFTER = 2.0  # s; what is over sooner needs no bar
+
+
+class Interrupted(Exception):
+    """Raised inside a run by its progress callback once the user has asked to stop."""
+
+
+class Board:
+    """Context manager that shows ``total`` runs; ``report`` and ``finished`` may be called from any thread."""
+
+    def __init__(self, title: str, total: int):
+        self._title, self._total, self._done = title, total, 0
+        self._stop, self._lock = threading.Event(), threading.Lock()
+        self._fractions: dict[str, float] = {}
+        self._bars = None
+        self._tasks: dict[str, int] = {}
+        self._started = time.monotonic()
+
+    def __enter__(self) -> "Board":
+        if console.is_terminal:
+            self._bars = Progress(TextColumn("{task.description}", justify="left"), BarColumn(),
+                                  TextColumn("{task.percentage:3.0f} %"), TimeElapsedColumn(), TextColumn("left"),
+                                  TimeRemainingColumn(), console=console, transient=True)
+        return self
+
+    def __exit__(self, *_) -> None:
+        if self._bars is not None:
+            self._bars.stop()
+
+    def stop(self) -> None:
+        """Make every running callback raise Interrupted."""
+        self._stop.set()
+
+    def callback(self, label: str) -> Callable[[float], None]:
+        """Callback for one run: takes the fraction done, 0 to 1."""
+
+        def report(fraction: float) -> None:
+            if self._stop.is_set():
+                raise Interrupted(label)
+            with self._lock:
+                self._fractions[label] = min(max(float(fraction), 0.0), 1.0)
+                self._draw()
+
+        return report
+
+    def finished(self, label: str, note: str) -> None:
+        """Count a run as done and print its line."""
+        with self._lock:
+            self._done += 1
+            self._fractions.pop(label, None)
+            if self._bars is not None and label in self._tasks:
+                self._bars.remove_task(self._tasks.pop(label))
+            console.print(f"  {self._title} {self._done}/{self._total}  {label}: {note}")
+            self._draw()
+
+    def _draw(self) -> None:
+        if self._bars is None or time.monotonic() - self._started < _SHOWN_AFTER:
+            return
+        self._bars.start()
+        if "" not in self._tasks and self._total > 1:
+            self._tasks[""] = self._bars.add_task(self._title, total=self._total)
+        if self._total > 1:
+            self._bars.update(self._tasks[""], completed=self._done + sum(self._fractions.values()))
+        for label, fraction in self._fractions.items():
+            if label not in self._tasks:
+                self._tasks[label] = self._bars.add_task(f"  {label}", total=1.0)
+            self._bars.update(self._tasks[label], completed=fraction)
+
+
+def say(text: str) -> None:
+    """One line to the user on standard error."""
+    console.print(text)

@@ -1,0 +1,36 @@
+"""Numerical choices of the studies: how fine, how many repeats. A scene says nothing about them.
+
+The reference mesh of 4 mm is the finest that keeps `make report` inside 20 minutes on two cores; the agreement study runs
+2 mm on the `refined` conditions and prints how much that still changes.
+"""
+
+import os
+from dataclasses import asdict, dataclass
+
+from scenes.files import content_hash
+
+
+@dataclass(frozen=True)
+class Settings:
+    """``element_size`` (m) of the reference and ``coarse_size`` (m) where many runs are needed; ``tolerances`` of the surrogate in
+    the cost study; repeats of timed runs; ``clearance_change`` (m) that defines the floor; ``workers`` side by side."""
+
+    element_size: float = 0.004
+    coarse_size: float = 0.008
+    tolerances: tuple[float, ...] = (1e-2, 1e-4, 1e-6, 1e-8)
+    highfi_repeats: int = 3
+    lowfi_repeats: int = 20
+    clearance_change: float = 1e-6
+    workers: int = os.cpu_count() or 1
+
+    @property
+    def hash(self) -> str:
+        """Digest of the choices that can change a result; how many runs go side by side is not one of them."""
+        return content_hash({name: value for name, value in asdict(self).items() if name != "workers"})
+
+
+def defaults(scene_name: str) -> Settings:
+    """Settings of a catalogue scene: ``tiny`` is coarse, so that its whole pipeline takes seconds."""
+    if scene_name == "tiny":
+        return Settings(element_size=0.008, coarse_size=0.016, highfi_repeats=2, lowfi_repeats=5)
+    return Settings()

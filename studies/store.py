@@ -1,0 +1,121 @@
+"""Results of runs, kept by content: ``out/<scene>/<fidelity>/<label>-<key>.nc``.
+
+    key = SHA-256(physical inputs of the scene, numerics, calibrated constants, sources of every package below the fidelity)
+
+A run whose file is there is loaded, any other is made and written atomically; so what was interrupted goes on where it
+stopped, and a changed input or source is never answered with an old result. Runs go side by side in threads: the kernels
+release the interpreter, and the mesh generator, which insists on the main thread, has been called before.
+"""
+
+import functools
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any, Callable, Sequence
+
+from scenes.calibration import Calibration
+from scenes.files import content_hash, source_hash
+from scenes.scene import Scene
+from scenes.trajectory import Trajectory
+from studies.progress import Board, say
+
+SOURCES = {"highfi": ("scenes", "meshes", "highfi"), "lowfi": ("scenes", "lowfi")}
+code_hash = functools.lru_cache(source_hash)  # the sources do not change while the program runs
+
+
+@dataclass(frozen=True)
+class Run:
+    """What is asked for: a fidelity, a label that is unique for the scene, the scene of one condition, and numerics."""
+
+    fidelity: str
+    label: str
+    scene: Scene
+    numerics: Any
+    calibration: Calibration | None = None
+
+    @property
+    def key(self) -> str:
+        """Hexadecimal digest of everything the result depends on."""
+        constants = self.calibration.constants if self.calibration else None
+        return content_hash(self.fidelity, self.scene.hash, asdict(self.numerics), constants,
+                            code_hash(*SOURCES[self.fidelity]))
+
+
+def execute(run: Run, progress: Callable[[float], None] | None = None) -> Trajectory:
+    """Run it, without any store."""
+    if run.fidelity == "highfi":
+        import highfi
+
+        return highfi.run(run.scene, numerics=run.numerics, progress=progress)
+    import lowfi
+
+    return lowfi.run(run.scene, calibration=run.calibration, numerics=run.numerics, progress=progress)
+
+
+def prepare(run: Run) -> None:
+    """What must happen in the main thread before ``execute`` may be called in another one."""
+    if run.fidelity == "highfi":
+        import highfi
+
+        highfi.prepare(run.scene, run.numerics)
+
+
+class Store:
+    """Trajectories below one folder."""
+
+    def __init__(self, folder: Path, workers: int = 1):
+        self.folder, self.workers = Path(folder), workers
+
+    def path(self, run: Run) -> Path:
+        """Where the result of ``run`` lies or will lie."""
+        return self.folder / run.fidelity / f"{run.label}-{run.key[:8]}.nc"
+
+    def load(self, run: Run) -> Trajectory | None:
+        """The stored result, or None when there is none that can be read (a damaged file is named on standard error)."""
+        path = self.path(run)
+        if not path.is_file():
+            return None
+        try:
+            return Trajectory.load(path)
+        except Exception as fault:  # whatever the netCDF stack raises on damaged bytes, the remedy is the same
+            say(f"  {path} is damaged ({type(fault).__name__}), so {run.label} is run again")
+            return None
+
+    def get(self, run: Run) -> Trajectory:
+        """The result of one run, from the store or made now."""
+        return self.fill(run.label, [run])[0]
+
+    def fill(self, title: str, runs: Sequence[Run]) -> list[Trajectory]:
+        """Results of ``runs`` in their order; those missing are run, ``workers`` at a time, with progress on standard error.
+
+        On Ctrl-C running kernels are stopped, finished results stay, and KeyboardInterrupt goes on to the caller.
+        """
+        found = {run.key: trajectory for run in runs if (trajectory := self.load(run)) is not None}
+        missing = list({run.key: run for run in runs if run.key not in found}.values())
+        if missing:
+            found |= self._make(title, missing)
+        return [found[run.key] for run in runs]
+
+    def _make(self, title: str, runs: list[Run]) -> dict[str, Trajectory]:
+        for run in runs:
+            prepare(run)
+        made: dict[str, Trajectory] = {}
+        with Board(title, len(runs)) as board, ThreadPoolExecutor(self.workers) as pool:
+            pending = {pool.submit(self._one, run, board): run for run in runs}
+            try:
+                for future in as_completed(pending):
+                    made[pending[future].key] = future.result()
+            except BaseException:
+                board.stop()
+                pool.shutdown(wait=True, cancel_futures=True)
+                raise
+        return made
+
+    def _one(self, run: Run, board: Board) -> Trajectory:
+        progress = board.callback(run.label)
+        progress(0.0)
+        trajectory = execute(run, progress)
+        trajectory.save(self.path(run))
+        message = f" ({trajectory.message})" if trajectory.message else ""
+        board.finished(run.label, f"{trajectory.status}{message} in {trajectory.cost['wall_s']:.3g} s")
+        return trajectory

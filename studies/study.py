@@ -1,0 +1,138 @@
+"""One scene under study: its conditions, its folder, its stored runs, and stages that are skipped when nothing changed.
+
+A stage leaves ``out/<scene>/<stage>.json`` with the ``key`` of everything it depends on and the digests of the ``files`` it
+wrote. It is made again when the key differs, or when one of its files is gone or was altered.
+"""
+
+import hashlib
+import json
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any, Callable, Iterable
+
+from scenes.calibration import Calibration
+from scenes.faults import Fault, SceneError
+from scenes.files import content_hash, write_json
+from scenes.scene import Scene
+from scenes.trajectory import Trajectory
+from studies.progress import say
+from studies.settings import Settings
+from studies.store import Run, Store, code_hash
+
+NOMINAL = "nominal"
+FAILED = ("diverged", "refused")
+
+
+class StudyError(RuntimeError):
+    """A study that cannot go on because runs it needs failed; the message says which and why."""
+
+
+@dataclass(frozen=True)
+class Study:
+    """``folder`` is out/<scene>; ``only`` restricts the conditions that highfi and lowfi run."""
+
+    scene: Scene
+    folder: Path
+    settings: Settings
+    only: tuple[str, ...] = ()
+
+    @cached_property
+    def store(self) -> Store:
+        """Trajectories of this scene."""
+        return Store(self.folder, self.settings.workers)
+
+    @cached_property
+    def conditions(self) -> dict[str, Scene]:
+        """Scene of every condition by name: fitted and held out, else every named one, else the scene itself."""
+        roles = self.scene.agreement
+        names = self.only or tuple(dict.fromkeys([*roles.fitted, *roles.held_out])) or tuple(self.scene.conditions)
+        return {name: self.condition(name) for name in names} or {NOMINAL: self.scene}
+
+    def condition(self, name: str) -> Scene:
+        """The scene of one condition. Raises SceneError for a name the scene does not have."""
+        return self.scene if name == NOMINAL else self.scene.condition(name)
+
+    def fitted(self) -> list[str]:
+        """Names of the fitted conditions. Raises SceneError when the scene names none."""
+        if not self.scene.agreement.fitted:
+            raise SceneError([Fault(self.scene.name, "agreement.fitted", "nothing", "at least one condition to calibrate on")])
+        return list(self.scene.agreement.fitted)
+
+    def highfi(self, name: str, overrides: dict | None = None, tag: str = "", element_size: float | None = None,
+               **numerics: Any) -> Run:
+        """A finite-element run of condition ``name``, changed by ``overrides`` and told apart by ``tag``."""
+        import highfi
+
+        numbers = _numerics(highfi.Numerics, element_size=element_size or self.settings.element_size, **numerics)
+        return Run("highfi", name + tag, self.condition(name).replace(overrides or {}), numbers)
+
+    def lowfi(self, name: str, calibration: Calibration | None = None, overrides: dict | None = None, tag: str = "",
+              **numerics: Any) -> Run:
+        """A surrogate run of condition ``name``, with the scene's own contact constants unless calibrated."""
+        import lowfi
+
+        label = f"{name}{tag}{'-calibrated' if calibration else ''}"
+        numbers = _numerics(lowfi.Numerics, **numerics)
+        return Run("lowfi", label, self.condition(name).replace(overrides or {}), numbers, calibration)
+
+    def path(self, name: str) -> Path:
+        """A file in the folder of this scene."""
+        return self.folder / name
+
+    def relative(self, path: Path) -> str:
+        """A path as result files hold it: relative to the folder of this scene."""
+        return path.relative_to(self.folder).as_posix()
+
+    def key(self, sources: Iterable[str], *inputs: Any) -> str:
+        """Digest of the scene with its conditions and roles, settings, sources and further inputs."""
+        described = self.scene.model_dump(mode="json", include={"name", "conditions", "agreement", "provenance"})
+        return content_hash(self.scene.hash, described, self.settings.hash, list(self.only), code_hash(*sources), inputs)
+
+    def stage(self, name: str, key: str, make: Callable[[], tuple[dict, list[Path]]]) -> dict:
+        """The stage's result: read when it was made under the same key and its files are whole, else made and written.
+
+        ``make`` returns the result and the files it wrote.
+        """
+        path = self.path(f"{name}.json")
+        known = read(path)
+        if known is not None and known.get("key") == key and self._whole(known.get("files", {})):
+            say(f"{name}: nothing changed")
+            return known
+        say(f"{name}: {self.scene.name}")
+        result, files = make()
+        document = {"stage": name, "scene": self.scene.name, "key": key, **result,
+                    "files": {self.relative(file): _digest(file) for file in files}}
+        write_json(path, document)
+        return document
+
+    def _whole(self, files: dict[str, str]) -> bool:
+        return all(self.path(name).is_file() and _digest(self.path(name)) == digest for name, digest in files.items())
+
+
+def read(path: Path) -> dict | None:
+    """A stage's result file, or None when it is missing or damaged."""
+    try:
+        return json.loads(Path(path).read_text())
+    except (OSError, ValueError):
+        return None
+
+
+def require_success(runs: dict[str, Trajectory], purpose: str) -> None:
+    """Raise StudyError naming every run that failed."""
+    failed = [f"{name}: {run.status}{': ' + run.message if run.message else ''}" for name, run in runs.items()
+              if run.status in FAILED]
+    if failed:
+        raise StudyError(f"cannot {purpose}, because these runs failed:\n  " + "\n  ".join(failed))
+
+
+def _numerics(kind: type, **values: Any) -> Any:
+    """A fidelity's numerics; a bad value is bad input, reported like a bad scene."""
+    try:
+        return kind(**values)
+    except ValueError as fault:
+        raise SceneError([Fault("numerics", ", ".join(values), str(values), str(fault))]) from None
+
+
+def _digest(path: Path) -> str:
+    return hashlib.sha256(path.read_bytes()).hexdigest()
