@@ -6,8 +6,10 @@ For a point y in payload axes, with local face coordinates xi, eta in [-1, 1] an
 
 The force on the rail is minus the full gradient of that potential (so it has the small tangential part that the crown's slope
 calls for) and the contact stores energy exactly. The opposite force acts on the payload at the same point. Friction uses the
-shared law with the half-step sliding velocity. A facet is passed over when its four nodes lie outside the uncrowned face
-plane, which no Gauss point between them can then have crossed.
+shared law with the half-step sliding velocity. Only what can touch is computed: a facet whose four corners lie outside the
+uncrowned face plane is passed over (no Gauss point between them can have crossed it), and a face whose nearest facet corner is a
+gap away is not looked at until something approaching at ``FASTEST_APPROACH`` could have closed it. That speed is checked at
+every sample.
 """
 
 import numpy as np
@@ -17,10 +19,13 @@ from scenes import rotation
 from scenes.effects.friction import coefficient_over_speed
 from scenes.jit import njit
 
+FASTEST_APPROACH = 10.0  # m/s across the rail: a face this far from every facet is not looked at before it could arrive
+_MARGIN = 1e-3  # m along the rail by which the searched window is wider than the face
+
 
 @njit
 def contact_forces(rail, surface, faces, penalty, friction, state, active, pose, dt):
-    """Add contact to ``state.force`` and fill ``state.load``, ``state.face_force`` and ``active``; released energy to work."""
+    """Take contact from ``state.resistance`` and fill ``state.load``, ``state.face_force`` and ``active``; released energy to work."""
     state.load[:] = 0.0
     state.face_force[:] = 0.0
     if penalty is not None:
@@ -31,19 +36,25 @@ def contact_forces(rail, surface, faces, penalty, friction, state, active, pose,
 
 @njit
 def _all_faces(rail, surface, faces, penalty, friction, state, active, pose, dt):
-    margin = 1e-3
     for face in range(faces.axis.size):
+        if active.wait[face] > 0:
+            active.wait[face] -= 1
+            continue
         place = rotation.rotate(pose.turn, (faces.centre[face, 0], faces.centre[face, 1], faces.centre[face, 2]))
         x = place[0] + pose.centre[0]
-        half = faces.half_length[face] + margin
+        half = faces.half_length[face] + _MARGIN
         first, last = surface.first[face], surface.first[face + 1]
         window = surface.start[first:last]
         low = first + np.searchsorted(window, x - half - surface.longest)
         high = first + np.searchsorted(window, x + half)
+        gap = _MARGIN
         for k in range(low, high):
             facet = surface.reach[k]
-            if _facet_reached(rail, surface, faces, face, facet, state.displacement, pose):
+            height = _lowest_corner(rail, surface, faces, face, facet, state.displacement, pose)
+            gap = min(gap, height)
+            if height < 0.0:
                 _facet_points(rail, surface, faces, face, facet, penalty, friction, state, active, pose, dt)
+        active.wait[face] = max(0, int(gap / (FASTEST_APPROACH * dt)) - 1)
 
 
 @njit
@@ -52,20 +63,19 @@ def _to_payload(pose, x):
 
 
 @njit
-def _facet_reached(rail, surface, faces, face, facet, displacement, pose):
-    """Whether any corner of the facet is inside the uncrowned plane of the face."""
+def _lowest_corner(rail, surface, faces, face, facet, displacement, pose):
+    """Smallest outward height (m) of the facet's corners over the uncrowned plane of the face; negative inside."""
     axis, sign = faces.axis[face], faces.sign[face]
-    t = pose.turn
-    # Only the height over the face plane is needed: one row of the rotation.
-    nx, ny, nz = t[axis], t[3 + axis], t[6 + axis]
+    # Only one row of the rotation is needed.
+    nx, ny, nz = pose.turn[axis], pose.turn[3 + axis], pose.turn[6 + axis]
+    lowest = np.inf
     for corner in range(4):
         node = surface.facets[facet, corner]
-        height = (nx * (rail.points[node, 0] + displacement[node, 0] - pose.centre[0])
-                  + ny * (rail.points[node, 1] + displacement[node, 1] - pose.centre[1])
-                  + nz * (rail.points[node, 2] + displacement[node, 2] - pose.centre[2]))
-        if sign * (height - faces.centre[face, axis]) < 0.0:
-            return True
-    return False
+        place = (nx * (rail.points[node, 0] + displacement[node, 0] - pose.centre[0])
+                 + ny * (rail.points[node, 1] + displacement[node, 1] - pose.centre[1])
+                 + nz * (rail.points[node, 2] + displacement[node, 2] - pose.centre[2]))
+        lowest = min(lowest, sign * (place - faces.centre[face, axis]))
+    return lowest
 
 
 @njit
@@ -175,7 +185,7 @@ def _apply_pair(surface, facet, q, face, state, pose, x, on_rail, drag):
     for corner in range(4):
         node, weight = surface.facets[facet, corner], surface.shape[q, corner]
         for i in range(3):
-            state.force[node, i] -= weight * total[i]
+            state.resistance[node, i] += weight * total[i]
     arm = (x[0] - pose.centre[0], x[1] - pose.centre[1], x[2] - pose.centre[2])
     moment, about_origin = rotation.cross(arm, total), rotation.cross(x, total)
     for i in range(3):

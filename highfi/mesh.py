@@ -10,7 +10,7 @@ which is stricter than checking it where it is integrated. Arrays count from 0; 
 as mesh editors do.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import meshio
@@ -66,6 +66,19 @@ def read(source) -> RailMesh:
     points = np.ascontiguousarray(mesh.points[used], dtype=float)
     hexes = numbered.reshape(hexes.shape)
     return RailMesh(points, hexes, {name: renumber[facets] for name, facets in surfaces.items()}, _warnings(points, hexes))
+
+
+def along_x(mesh: RailMesh) -> RailMesh:
+    """The same mesh with nodes and elements numbered from one end to the other.
+
+    Neighbours are then near each other in memory, whatever tool numbered the file.
+    """
+    order = _from_end_to_end(mesh.points)
+    renumber = np.empty_like(order)
+    renumber[order] = np.arange(len(order))
+    elements = _from_end_to_end(mesh.points[mesh.hexes].mean(axis=1))
+    surfaces = {name: renumber[facets] for name, facets in mesh.surfaces.items()}
+    return replace(mesh, points=mesh.points[order], hexes=renumber[mesh.hexes[elements]], surfaces=surfaces)
 
 
 def boundary_facets(hexes: np.ndarray) -> np.ndarray:
@@ -178,3 +191,9 @@ def _warnings(points: np.ndarray, hexes: np.ndarray) -> tuple[str, ...]:
 def _numbers(elements: np.ndarray) -> str:
     listed = ", ".join(str(number + 1) for number in elements[:_LISTED])
     return listed if len(elements) <= _LISTED else f"{listed} and {len(elements) - _LISTED} more"
+
+
+def _from_end_to_end(points: np.ndarray) -> np.ndarray:
+    # Rounded, because rounding errors of a mesh generator would shuffle the nodes of one section.
+    x, y, z = np.round(points, 9).T
+    return np.lexsort((z, y, x))

@@ -84,7 +84,7 @@ def _energies(rail, payload, frame, state, pose, before, after, rail_before, sam
     kinetic = 0.5 * payload.mass * (before[0:3] * after[0:3]).sum() + _spin_energy(
         body_matrix(state.payload), payload.inverse_inertia, triple(before[3:6]), triple(after[3:6]))
     axial = 0.5 * payload.mass * before[0] * after[0]
-    strain = np.empty_like(state.force)
+    strain = np.empty_like(state.resistance)
     internal_force(state.displacement, rail.hexes, rail.shape_class, rail.stiffness, strain)
     stored = 0.0
     for node in range(rail.mass.size):

@@ -10,12 +10,14 @@ import numpy as np
 
 
 class Rail(NamedTuple):
-    """Constant: points (n,3) m; mass (n,) kg; inverse_mass (n,) 1/kg, zero where clamped; hexes (e,8); shape_class (e,);
+    """Constant: points (n,3) m; mass (n,) kg; inverse_mass (n,) 1/kg, zero where clamped; clamped (k,)
+    node numbers; hexes (e,8); shape_class (e,);
     stiffness (c,24,24) N/m."""
 
     points: np.ndarray
     mass: np.ndarray
     inverse_mass: np.ndarray
+    clamped: np.ndarray
     hexes: np.ndarray
     shape_class: np.ndarray
     stiffness: np.ndarray
@@ -62,14 +64,14 @@ class Body(NamedTuple):
 
 class State(NamedTuple):
     """Evolving. displacement (n,3) m; velocity (n,3) m/s: *inertial* nodal velocity at the half step, resolved in frame axes;
-    force (n,3) N; rail_momentum (3) = sum of m w over moving nodes; load: see LOAD; work: see WORK; impulse (6) of external
+    resistance (n,3) N: K u minus contact, zero where clamped; rail_momentum (3) = sum of m w over moving nodes; load: see LOAD; work: see WORK; impulse (6) of external
     forces and moments about the scene origin (N s, N m s); face_force (f,3) N on the payload in frame axes."""
 
     payload: Body
     platform: Body
     displacement: np.ndarray
     velocity: np.ndarray
-    force: np.ndarray
+    resistance: np.ndarray
     rail_momentum: np.ndarray
     load: np.ndarray
     work: np.ndarray
@@ -79,7 +81,8 @@ class State(NamedTuple):
 
 class Active(NamedTuple):
     """Evolving: contact points that carry load now. count (1,); point (k,2) facet and Gauss point; face (k,);
-    friction (k,3) N on the payload in frame axes; energy (k,) J stored; node_damping (n,) N s/m that friction brings to a node."""
+    friction (k,3) N on the payload in frame axes; energy (k,) J stored; node_damping (n,) N s/m that friction brings to a node;
+    wait (f,) steps for which a face cannot touch."""
 
     count: np.ndarray
     point: np.ndarray
@@ -87,6 +90,7 @@ class Active(NamedTuple):
     friction: np.ndarray
     energy: np.ndarray
     node_damping: np.ndarray
+    wait: np.ndarray
 
 
 # Slots of State.load: contact on the payload in frame axes.

@@ -7,6 +7,7 @@ from typing import Callable
 import numpy as np
 
 from highfi import observe, records, samples
+from highfi.contact import FASTEST_APPROACH
 from highfi.loads import thrust_load
 from highfi.mesh import RailMesh
 from highfi.numerics import Numerics
@@ -121,10 +122,22 @@ class Loop:
         # Rounding of the large axial work is no fault while nothing has moved sideways yet.
         if loss > _STOP_RATIO * self.scale + 1e-11 * work:
             return f"transverse energy is off by {loss:.3g} J, its scale being {self.scale:.3g} J, {now}"
+        speed = self._approach_speed()
+        if self.system.model.penalty is not None and speed > FASTEST_APPROACH:
+            return f"payload and rails approach at up to {speed:.3g} m/s, contact search allows {FASTEST_APPROACH:g} m/s, {now}"
         limit = (self.stepping.dt_s / self.stepping.dt_limit_s) ** 2 + 0.5 * self.damping
         if limit > 1.0:
             return f"friction damps nodes faster than the step of {self.stepping.dt_s:.4g} s can follow, {now}; lower safety"
         return ""
+
+    def _approach_speed(self) -> float:
+        """Bound (m/s) of the speed across the rail at which any pad and any node can approach each other now."""
+        state, payload = self.state, self.system.model.payload
+        spin = np.linalg.norm(payload.inverse_inertia, 2) * np.linalg.norm(state.payload.spin)
+        reach = np.linalg.norm(self.system.faces.centre, axis=1).max()
+        turn = rotation.matrices(state.platform.quaternion[None])[0]
+        across = (state.payload.velocity @ turn)[1:]
+        return float(np.linalg.norm(state.velocity[:, 1:] - across, axis=1).max() + spin * reach)
 
     def _motion(self) -> samples.Motion:
         return samples.motion(np.array(self.rows), self.scene.output.interval, self.system.body_offset)

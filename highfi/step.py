@@ -13,6 +13,7 @@ clamp forces alone would lose sum u x f. F_c and T_c are contact on all rail nod
 
 from highfi.contact import contact_forces
 from highfi.loads import add_external_impulse, add_work, thrust_load
+from highfi.nodes import drift_nodes, drift_nodes_in_frame, hold_clamped, kick_nodes, weigh_nodes
 from highfi.operator import internal_force
 from highfi.pose import drift_body, seen_from_frame, small_turn, triple
 from highfi.records import DAMPING_RATIO, FRICTION_FORCE, MOMENT, MOMENT_ON_RAIL, NORMAL_FORCE
@@ -24,18 +25,22 @@ from scenes.jit import njit
 def evaluate(rail, surface, faces, payload, frame, penalty, friction, state, active, dt):
     """Forces at the present places; returns the pose of the payload."""
     pose = seen_from_frame(state, payload, frame)
-    internal_force(state.displacement, rail.hexes, rail.shape_class, rail.stiffness, state.force)
-    for node in range(rail.mass.size):
-        for i in range(3):
-            state.force[node, i] = -state.force[node, i]
+    internal_force(state.displacement, rail.hexes, rail.shape_class, rail.stiffness, state.resistance)
     contact_forces(rail, surface, faces, penalty, friction, state, active, pose, dt)
+    for node in rail.clamped:
+        state.resistance[node, 0] = 0.0
+        state.resistance[node, 1] = 0.0
+        state.resistance[node, 2] = 0.0
     return pose
 
 
 @njit
 def kick(rail, payload, frame, drive, gravity, state, pose, thrust, dt):
     """Advance all velocities over ``dt`` by the present forces; counts the external impulse of the step."""
-    total, moment, rail_mass, centre = _kick_nodes(rail, gravity, state, pose, dt)
+    total, moment = kick_nodes(rail.points, rail.inverse_mass, state.displacement, state.velocity, state.resistance, dt)
+    for i in range(3):
+        state.rail_momentum[i] += dt * total[i]
+    rail_mass, centre = weigh_nodes(rail, gravity, state, pose, dt)
     load = state.load
     on_rail = (-load[NORMAL_FORCE] - load[FRICTION_FORCE], -load[NORMAL_FORCE + 1] - load[FRICTION_FORCE + 1],
                -load[NORMAL_FORCE + 2] - load[FRICTION_FORCE + 2])
@@ -46,51 +51,6 @@ def kick(rail, payload, frame, drive, gravity, state, pose, thrust, dt):
     add_external_impulse(payload, frame, drive, gravity, state, thrust, rail_mass, centre, (force, couple), dt)
     _kick_payload(payload, gravity, state, pose, thrust, dt)
     _kick_platform(frame, drive, gravity, state, force, couple, thrust, dt)
-
-
-@njit
-def _kick_nodes(rail, gravity, state, pose, dt):
-    fx, fy, fz, mx, my, mz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-    for node in range(rail.mass.size):
-        scale = dt * rail.inverse_mass[node]
-        if scale > 0.0:
-            a, b, c = state.force[node, 0], state.force[node, 1], state.force[node, 2]
-            x = rail.points[node, 0] + state.displacement[node, 0]
-            y = rail.points[node, 1] + state.displacement[node, 1]
-            z = rail.points[node, 2] + state.displacement[node, 2]
-            fx, fy, fz = fx + a, fy + b, fz + c
-            mx, my, mz = mx + y * c - z * b, my + z * a - x * c, mz + x * b - y * a
-            state.velocity[node, 0] += scale * a
-            state.velocity[node, 1] += scale * b
-            state.velocity[node, 2] += scale * c
-    for i in range(3):
-        state.rail_momentum[i] += dt * (fx, fy, fz)[i]
-    mass, centre = _weigh_nodes(rail, gravity, state, pose, dt)
-    return (fx, fy, fz), (mx, my, mz), mass, centre
-
-
-@njit
-def _weigh_nodes(rail, gravity, state, pose, dt):
-    """Gravity on the moving nodes; returns their mass (kg) and mass centre in inertial axes (m) for the momentum check."""
-    mass, x, y, z = 0.0, 0.0, 0.0, 0.0
-    if gravity is not None:
-        g = rotation.unrotate(pose.frame, (gravity.x, gravity.y, gravity.z))
-        for node in range(rail.mass.size):
-            if rail.inverse_mass[node] > 0.0:
-                m = rail.mass[node]
-                mass += m
-                x += m * (rail.points[node, 0] + state.displacement[node, 0])
-                y += m * (rail.points[node, 1] + state.displacement[node, 1])
-                z += m * (rail.points[node, 2] + state.displacement[node, 2])
-                for i in range(3):
-                    state.velocity[node, i] += dt * g[i]
-        for i in range(3):
-            state.rail_momentum[i] += dt * mass * g[i]
-    place = (0.0, 0.0, 0.0)
-    if mass > 0.0:
-        place = rotation.rotate(pose.frame, (x / mass, y / mass, z / mass))
-    p = state.platform.position
-    return mass, (p[0] + place[0], p[1] + place[1], p[2] + place[2])
 
 
 @njit
@@ -130,46 +90,26 @@ def _kick_platform(frame, drive, gravity, state, force, couple, thrust, dt):
 
 
 @njit
-def _drift_nodes_fixed(rail, state, dt):
-    for node in range(rail.mass.size):
-        for i in range(3):
-            state.displacement[node, i] += dt * state.velocity[node, i]
-
-
-@njit
-def _drift_nodes_with_frame(rail, state, frame, pose, dt):
-    """Nodes and frame together; clamped nodes take the frame's own velocity, which friction needs."""
-    velocity = rotation.unrotate(pose.frame, triple(state.platform.velocity))
-    rate = rotation.unrotate(pose.frame, drift_body(state.platform, frame.inverse_inertia, dt))
-    q = small_turn(rate, dt)
-    for node in range(rail.mass.size):
-        u, w = state.displacement[node], state.velocity[node]
-        x = rail.points[node]
-        if rail.inverse_mass[node] > 0.0:
-            a = u[0] + dt * (w[0] - velocity[0])
-            b = u[1] + dt * (w[1] - velocity[1])
-            c = u[2] + dt * (w[2] - velocity[2])
-            turned = rotation.rotate(q, (x[0] + a, x[1] + b, x[2] + c))
-            u[0], u[1], u[2] = a + turned[0], b + turned[1], c + turned[2]
-            turned = rotation.rotate(q, (w[0], w[1], w[2]))
-            w[0], w[1], w[2] = w[0] + turned[0], w[1] + turned[1], w[2] + turned[2]
-        else:
-            spin = rotation.cross(rate, (x[0], x[1], x[2]))
-            w[0], w[1], w[2] = velocity[0] + spin[0], velocity[1] + spin[1], velocity[2] + spin[2]
-    s = triple(state.rail_momentum)
-    turned = rotation.rotate(q, s)
-    for i in range(3):
-        state.rail_momentum[i] = s[i] + turned[i]
-
-
-@njit
 def drift(rail, payload, frame, state, pose, dt):
     """Advance all places over ``dt`` at the present velocities."""
     drift_body(state.payload, payload.inverse_inertia, dt)
     if frame is None:
-        _drift_nodes_fixed(rail, state, dt)
+        drift_nodes(state.displacement, state.velocity, dt)
     if frame is not None:
-        _drift_nodes_with_frame(rail, state, frame, pose, dt)
+        _drift_with_frame(rail, frame, state, pose, dt)
+
+
+@njit
+def _drift_with_frame(rail, frame, state, pose, dt):
+    velocity = rotation.unrotate(pose.frame, triple(state.platform.velocity))
+    rate = rotation.unrotate(pose.frame, drift_body(state.platform, frame.inverse_inertia, dt))
+    turn = small_turn(rate, dt)
+    drift_nodes_in_frame(rail.points, state.displacement, state.velocity, velocity, turn, dt)
+    hold_clamped(rail, state, velocity, rate)
+    momentum = triple(state.rail_momentum)
+    change = rotation.rotate(turn, momentum)
+    for i in range(3):
+        state.rail_momentum[i] = momentum[i] + change[i]
 
 
 @njit

@@ -62,7 +62,7 @@ def build(scene: Scene, numerics: Numerics, mesh: RailMesh) -> System:
     # The model counts walls from the platform's mass centre, the loop from the frame's origin.
     faces = model.faces._replace(wall=model.faces.wall + offset[model.faces.axis])
     inverse = np.divide(1.0, operator.mass, out=np.zeros_like(operator.mass), where=operator.free)
-    rail = records.Rail(points, operator.mass, inverse, operator.hexes, operator.shape_class, operator.stiffness)
+    rail = records.Rail(points, operator.mass, inverse, np.flatnonzero(~operator.free), operator.hexes, operator.shape_class, operator.stiffness)
     gauss = surface.build(mesh, points, faces, numerics.points_per_edge())
     drive = records.Drive(model.thrust_arm, model.reacts_on_platform)
     return System(model, mesh, operator, rail, gauss, faces, frame, drive, origin, offset)
@@ -108,5 +108,5 @@ def initial_state(system: System) -> tuple[records.State, records.Active]:
                           np.zeros((system.faces.axis.size, 3)))
     room = surface.capacity(system.surface)
     active = records.Active(np.zeros(1, dtype=np.int64), np.zeros((room, 2), dtype=np.int64),
-                            np.zeros(room, dtype=np.int64), np.zeros((room, 3)), np.zeros(room), np.zeros(nodes[0]))
+                            np.zeros(room, dtype=np.int64), np.zeros((room, 3)), np.zeros(room), np.zeros(nodes[0]), np.zeros(system.faces.axis.size, dtype=np.int64))
     return state, active
