@@ -37,8 +37,8 @@ class FrequencyBound(NamedTuple):
 def element_bound(operator: Operator) -> float:
     """Upper bound (rad/s) of every frequency of the mesh: the highest of K_e x = w^2 M_e x over the element classes.
 
-    M_e holds the mass the element itself brings to its corners; nodes and springs shared by more elements, or fixed ones,
-    can only lower the frequencies. Contact springs are not in it.
+    M_e holds the mass the element itself brings to its corners. Assembling elements and fixing nodes can only lower the highest
+    frequency; contact springs, which raise it, are not in it.
     """
     scale = 1.0 / np.sqrt(np.repeat(operator.corner_mass, 3, axis=1))
     eigenvalues = np.linalg.eigvalsh(operator.stiffness * scale[:, :, None] * scale[:, None, :])
