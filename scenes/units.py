@@ -5,7 +5,9 @@ caller says so (overrides made by a program, resolved scenes read back).
 """
 
 import math
+import re
 from functools import lru_cache
+from numbers import Real
 from typing import Annotated, Any
 
 import pint
@@ -13,35 +15,57 @@ from pydantic import BeforeValidator, Field, ValidationInfo
 
 registry: pint.UnitRegistry = pint.UnitRegistry()
 
+# The number is read by float, so that pint never evaluates arithmetic such as "9**9**9 m".
+_QUANTITY = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?|[+-]?(?:nan|inf(?:inity)?)\b)\s*(.*?)\s*", re.I)
+
+
+def named(unit: str) -> str:
+    """What a field in ``unit`` should hold, in words."""
+    return "a number" if unit == "dimensionless" else f"a quantity in {unit}, for example \"1 {unit}\""
+
 
 @lru_cache(maxsize=4096)
 def to_si(text: str, unit: str) -> float:
     """Value of ``text`` in ``unit`` (an SI unit). Raises ValueError for a wrong dimension, bad text, or NaN and inf."""
+    match = _QUANTITY.fullmatch(text)
+    if match is None:
+        raise ValueError(named(unit))
+    number, given_unit = float(match[1]), match[2] or "dimensionless"
+    if not math.isfinite(number):
+        raise ValueError(f"a finite number, {named(unit)}")
     try:
-        quantity = registry.Quantity(text)
+        quantity = registry.Quantity(number, registry.parse_units(given_unit))
     except Exception as error:  # pint raises a wide family of exceptions on malformed text
-        raise ValueError(f"a quantity in {unit}, for example \"1 {unit}\"") from error
+        raise ValueError(f"{named(unit)} ({given_unit!r} is no unit)") from error
     if not quantity.is_compatible_with(unit):
-        raise ValueError(f"a quantity in {unit} (given dimension {quantity.dimensionality})")
+        raise ValueError(f"{named(unit)} (given dimension {quantity.dimensionality})")
+    # An angle has no dimension, so "0.1" would pass for 0.1 rad and "5 Hz" for 5 rad/s: ask for the unit itself.
+    if _radians(quantity) != _radians(registry.Quantity(1.0, unit)):
+        raise ValueError(f"{named(unit)} (given unit {quantity.units})")
     value = float(quantity.to(unit).magnitude)
     if not math.isfinite(value):
-        raise ValueError(f"a finite quantity in {unit}")
+        raise ValueError(f"a finite number, {named(unit)}")
     return value
 
 
+def _radians(quantity: pint.Quantity) -> float:
+    return dict(quantity.to_root_units().unit_items()).get("radian", 0)
+
+
 def parse(value: Any, unit: str, bare_numbers_are_si: bool) -> float:
-    """SI value of a field that should carry ``unit``; ``value`` is text with a unit, or a number where that is allowed."""
-    if isinstance(value, bool):
-        raise ValueError(f"a quantity in {unit}")
+    """SI value of a field that should carry ``unit``; ``value`` is text with a unit, or a number where that is allowed.
+
+    Raises ValueError that says what was expected.
+    """
     if isinstance(value, str):
         return to_si(value, unit)
-    if isinstance(value, (int, float)) and (unit == "dimensionless" or bare_numbers_are_si):
-        if not math.isfinite(value):
-            raise ValueError("a finite number")
-        return float(value)
-    if isinstance(value, (int, float)):
+    if isinstance(value, bool) or not isinstance(value, Real):
+        raise ValueError(named(unit))
+    if not math.isfinite(value):
+        raise ValueError(f"a finite number, {named(unit)}")
+    if unit != "dimensionless" and not bare_numbers_are_si:
         raise ValueError(f"text with a unit of dimension {unit}, for example \"{value} {unit}\"")
-    raise ValueError(f"a quantity in {unit}")
+    return float(value)
 
 
 def quantity(unit: str, **bounds: float) -> Any:
