@@ -88,14 +88,18 @@ class Loop:
         """Advance sample by sample until something ends the run."""
         end = self.last
         while len(self.rows) <= end and not self.message:
-            self.damping = max(self.damping, advance(*self._arguments(), self.steps, self.stepping.steps_per_sample,
-                                                     self.stepping.dt_s))
-            self.steps += self.stepping.steps_per_sample
-            self._sample()
+            self.advance_one_sample()
             if len(self.rows) % _LOOK_EVERY == 0:
                 end = min(end, self._end())
                 if progress:
                     progress(min(1.0, (len(self.rows) - 1) / end))
+
+    def advance_one_sample(self) -> None:
+        """Step to the next sample and take it."""
+        count, step = self.stepping.steps_per_sample, self.stepping.dt_s
+        self.damping = max(self.damping, advance(*self._arguments(), self.steps, count, step))
+        self.steps += count
+        self._sample()
 
     def _sample(self) -> None:
         system, model, state = self.system, self.system.model, self.state

@@ -1,0 +1,96 @@
+"""The promises of every reference run: both ledgers, momenta, step, friction; and that a fault in them would be seen."""
+
+import numpy as np
+import pytest
+
+import highfi
+from highfi import records
+from tests.highfi.support import COARSE, loop_on, tiny
+
+
+@pytest.fixture(scope="module")
+def result():
+    return highfi.run(tiny(), COARSE)
+
+
+def test_run_exits_with_settled_rates(result):
+    assert result.status == "exited"
+    assert 0.0 < result.outcome.exit_time < result.time[-1]
+    assert np.abs(result.outcome.rate).max() > 1e-3
+
+
+def test_both_ledgers_close(result):
+    assert result.checks["energy_error"] <= 1e-5
+    assert result.checks["transverse_energy_error"] <= 1e-3
+
+
+def test_momenta_and_quaternions_are_kept(result):
+    assert result.checks["linear_momentum_error"] <= 1e-12
+    assert result.checks["angular_momentum_error"] <= 1e-8
+    assert result.checks["quaternion_error"] <= 1e-12
+
+
+def test_friction_takes_energy_and_the_step_is_below_the_limit(result):
+    assert result.checks["friction_power_max"] <= 0.0
+    assert result.cost["dt_s"] <= result.cost["dt_limit_s"] * result.cost["safety"]
+
+
+# Each set of effects is a kernel of its own, and compiling one takes longer than all runs here: most sets are slow tests.
+@pytest.mark.parametrize("change", [
+    {"thrust__reaction": "exhaust"},
+    {"platform": None, "gravity__z": "-9.80665 m/s**2"},
+    pytest.param({"platform": None}, marks=pytest.mark.slow),
+    pytest.param({"friction": None}, marks=pytest.mark.slow),
+    pytest.param({"gravity__y": "9.80665 m/s**2"}, marks=pytest.mark.slow),
+    pytest.param({"contact": None, "friction": None}, marks=pytest.mark.slow)])
+def test_promises_hold_with_other_effects(change):
+    found = highfi.run(tiny(duration="12 ms", **change), COARSE)
+    assert found.status == "time_limit"
+    assert found.checks["energy_error"] <= 1e-5
+    assert found.checks["transverse_energy_error"] <= 1e-3
+    assert found.checks["linear_momentum_error"] <= 1e-12
+    assert found.checks["angular_momentum_error"] <= 1e-8
+
+
+def test_spurious_contact_energy_is_seen():
+    """Stiffening pressed contact by 1 % creates 1 % of its stored energy out of nothing; the ledger must show just that."""
+    loop = loop_on(tiny(), highfi.prepare(tiny(), COARSE), COARSE)
+    loop.begin()
+    created = 0.0
+    while created == 0.0:
+        loop.advance_one_sample()
+        stored = loop.state.load[records.STORED]
+        if stored > 1e-7:
+            created = 0.01 * stored
+    loop.system = loop.system._replace(model=loop.system.model._replace(penalty=1.01 * loop.system.model.penalty))
+    loop.march(None)
+    found = loop.trajectory({}, COARSE)
+    lost = found.checks["transverse_energy_error"] * loop.scale
+    assert lost == pytest.approx(created, rel=0.2)
+    assert found.checks["transverse_energy_error"] > 10.0 * highfi.run(tiny(), COARSE).checks["transverse_energy_error"]
+
+
+def test_mirror_image():
+    """Mirroring the scene in y mirrors the motion: rates are axial vectors, so x and z components change sign."""
+    left = highfi.run(tiny(), COARSE)
+    right = highfi.run(tiny(thrust_offset__misalignment__radial="165 deg", payload__inertia__xy="-0.004 kg*m**2"), COARSE)
+    mirrored = np.array(right.outcome.rate) * [-1.0, 1.0, -1.0]
+    assert mirrored == pytest.approx(left.outcome.rate, rel=1e-6, abs=1e-9)
+
+
+def test_same_input_same_bits():
+    short = tiny(duration="6 ms")
+    first, second = (highfi.run(short, COARSE) for _ in range(2))
+    assert (first.velocity == second.velocity).all() and (first.energy == second.energy).all()
+
+
+@pytest.mark.slow
+def test_heavy_platform_is_a_fixed_one():
+    """The recoil falls as 1/M: two masses show the rate at which the fixed platform is approached."""
+    fixed = highfi.run(tiny(duration="12 ms", platform=None), COARSE)
+    def difference(mass):
+        scale = {f"platform__inertia__{axis}": 1e3 * mass for axis in ("xx", "yy", "zz")}
+        free = highfi.run(tiny(duration="12 ms", platform__mass=mass, **scale), COARSE)
+        return np.abs(free.velocity - fixed.velocity).max()
+    near, far = difference(1e6), difference(1e5)
+    assert far / near == pytest.approx(10.0, rel=0.15)
