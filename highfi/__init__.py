@@ -1,6 +1,7 @@
 """Finite-element reference: explicit dynamics of the flexible rail with the payload and a free platform."""
 
+from highfi.compiled import compiled_effects
 from highfi.numerics import Numerics
 from highfi.run import prepare, run
 
-__all__ = ["Numerics", "prepare", "run"]
+__all__ = ["Numerics", "compiled_effects", "prepare", "run"]

@@ -20,8 +20,13 @@ def line_of_action(drive, offset):
     """Thrust direction and arm in body axes; axial through the mass centre when ``offset`` is None."""
     line = ((1.0, 0.0, 0.0), (-drive.arm, 0.0, 0.0))
     if offset is not None:
-        line = (offset.direction, offset.arm)
+        line = _offset_line(offset)
     return line
+
+
+@njit
+def _offset_line(offset):
+    return offset.direction, offset.arm
 
 
 @njit

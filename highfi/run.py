@@ -73,15 +73,16 @@ class Loop:
         self.steps, self.damping, self.scale, self.message = 0, 0.0, 0.0, ""
         self.rows, self.work, self.forces = [], [], []
 
-    def _arguments(self) -> tuple:
+    def arguments(self) -> tuple:
+        """Records the kernels take, in their order."""
         s, m = self.system, self.system.model
         return (s.rail, s.surface, s.faces, m.payload, s.frame, s.drive, m.thrust.pulses, m.thrust.curve, m.thrust_offset,
                 m.penalty, m.friction, m.gravity, self.state, self.active)
 
     def begin(self) -> None:
         """First forces and the first sample; compiles the kernels."""
-        start(*self._arguments(), self.stepping.dt_s)
-        advance(*self._arguments(), 0, 0, self.stepping.dt_s)
+        start(*self.arguments(), self.stepping.dt_s)
+        advance(*self.arguments(), 0, 0, self.stepping.dt_s)
         self._sample()
 
     def march(self, progress) -> None:
@@ -97,7 +98,7 @@ class Loop:
     def advance_one_sample(self) -> None:
         """Step to the next sample and take it."""
         count, step = self.stepping.steps_per_sample, self.stepping.dt_s
-        self.damping = max(self.damping, advance(*self._arguments(), self.steps, count, step))
+        self.damping = max(self.damping, advance(*self.arguments(), self.steps, count, step))
         self.steps += count
         self._sample()
 

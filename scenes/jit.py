@@ -36,3 +36,13 @@ numba.config.CACHE_DIR = str(_cache_directory())
 
 # error_model="numpy": division by zero gives inf, which reaches the status check, instead of an exception inside a kernel.
 njit = functools.partial(numba.njit, cache=True, error_model="numpy", nogil=True)
+
+
+def machine_code(kernel, arguments: tuple) -> str:
+    """Assembly text of ``kernel`` compiled anew for the types of ``arguments``: what is not named in it cannot be called.
+
+    Compiled without the disk cache, because code read back from it cannot be inspected.
+    """
+    fresh = numba.njit(error_model="numpy", nogil=True)(kernel.py_func)
+    fresh.compile(tuple(numba.typeof(argument) for argument in arguments))
+    return fresh.overloads[fresh.signatures[0]].library.get_asm_str()
