@@ -67,7 +67,7 @@ def shape_functions(cells: Basis) -> np.ndarray:
     """Values (8,q) of the corner functions, VTK order."""
     values = np.empty((8, cells.X.shape[1]))
     for local, vtk in enumerate(_SKFEM_TO_VTK):
-        values[vtk] = cells.basis[local][0].value[0]
+        values[vtk] = np.asarray(cells.basis[local][0])[0]
     return values
 
 
