@@ -1,0 +1,50 @@
+"""Meshes and matrices the tests of this folder share."""
+
+import numpy as np
+from scipy.sparse import diags_array
+from scipy.sparse.linalg import eigsh
+
+from highfi import assembly
+from highfi.mesh import RailMesh, boundary_facets
+
+ALUMINIUM = {"density": 2810.0, "youngs_modulus": 72e9, "poisson_ratio": 0.33}
+
+
+def block(divisions, size, stations=None) -> RailMesh:
+    """Brick with one corner at the origin; surface `mount` is the face x = 0. `stations` replaces the grid planes along x."""
+    axes = [np.linspace(0.0, length, count + 1) for length, count in zip(size, divisions)]
+    if stations is not None:
+        axes[0] = np.asarray(stations, dtype=float)
+    points = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
+    number = np.arange(len(points)).reshape([len(axis) for axis in axes])
+    corners = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
+    counts = [len(axis) - 1 for axis in axes]
+    hexes = np.stack([number[tuple(slice(bit, bit + count) for bit, count in zip(corner, counts))].ravel()
+                      for corner in corners], axis=1)
+    facets = boundary_facets(hexes)
+    return RailMesh(points, hexes, {"mount": facets[(points[facets][:, :, 0] == 0.0).all(axis=1)]})
+
+
+def free_stiffness(operator):
+    """Stiffness of the free degrees of freedom, their masses and their mask."""
+    free = np.repeat(operator.free, 3)
+    return assembly.sparse(operator)[free][:, free], np.repeat(operator.mass, 3)[free], free
+
+
+def modes(operator, count):
+    """Lowest `count` frequencies (Hz) and shapes (count,n,3) of the free nodes, unit modal mass."""
+    stiffness, mass, free = free_stiffness(operator)
+    squares, vectors = eigsh(stiffness.tocsc(), count, diags_array(mass).tocsc(), sigma=0.0)
+    shapes = np.zeros((count, free.size))
+    shapes[:, free] = vectors.T
+    return np.sqrt(squares) / (2.0 * np.pi), shapes.reshape(count, -1, 3)
+
+
+def highest_mode(operator):
+    """Highest frequency (rad/s) and its shape (n,3), from a dense solution; small meshes only."""
+    stiffness, mass, free = free_stiffness(operator)
+    scale = 1.0 / np.sqrt(mass)
+    squares, vectors = np.linalg.eigh(stiffness.toarray() * scale[:, None] * scale)
+    shape = np.zeros(free.size)
+    shape[free] = scale * vectors[:, -1]
+    return np.sqrt(squares[-1]), shape.reshape(-1, 3)

@@ -1,0 +1,39 @@
+"""The plain central difference loop, with nothing in it but the operator under test.
+
+    v(n+1/2) = v(n-1/2) - dt M^-1 K u(n),    u(n+1) = u(n) + dt v(n+1/2)
+"""
+
+import numpy as np
+
+from highfi.operator import internal_force
+from scenes.jit import njit
+
+
+def march(operator, displacement, velocity, step, steps, watched=(0, 0)):
+    """Advance displacement and velocity, both (n,3), in place; velocity lags by half a step.
+
+    Returns the displacement (steps+1,) of the watched (node, component), and the invariant (steps,) of case O14,
+    v(n+1/2)' M v(n+1/2) / 2 + u(n)' K u(n+1) / 2.
+    """
+    inverse_mass = np.where(operator.free, 1.0 / operator.mass, 0.0)
+    return _march(displacement, velocity, step, steps, watched[0], watched[1], operator.hexes, operator.shape_class,
+                  operator.stiffness, operator.mass, inverse_mass)
+
+
+@njit
+def _march(displacement, velocity, step, steps, node, component, hexes, shape_class, stiffness, mass, inverse_mass):
+    force = np.empty_like(displacement)
+    trace = np.empty(steps + 1)
+    invariant = np.empty(steps)
+    trace[0] = displacement[node, component]
+    for n in range(steps):
+        internal_force(displacement, hexes, shape_class, stiffness, force)
+        energy = 0.0
+        for a in range(mass.size):
+            for c in range(3):
+                velocity[a, c] -= step * inverse_mass[a] * force[a, c]
+                displacement[a, c] += step * velocity[a, c]
+                energy += 0.5 * (mass[a] * velocity[a, c] ** 2 + force[a, c] * displacement[a, c])
+        invariant[n] = energy
+        trace[n + 1] = displacement[node, component]
+    return trace, invariant

@@ -1,0 +1,137 @@
+"""Rail meshes: what gmsh builds, what reading accepts, and that every fault of a file is named at once."""
+
+import copy
+
+import meshio
+import numpy as np
+import pytest
+
+from highfi.mesh import MeshError, along_x, corner_jacobians, edge_lengths, read
+from meshes import l_rail
+
+GEOMETRY = l_rail.LRailGeometry()
+AREAS = {"contact_y": 4 * 0.220 * 0.020, "contact_z": 4 * 0.220 * 0.020, "mount": 4 * 2 * 3 * 0.020 * 0.004}
+
+
+@pytest.fixture(scope="module")
+def built():
+    return l_rail.build(GEOMETRY, 0.004)
+
+
+def facet_vectors(mesh, name):
+    """Area vectors (m,3) in m2, pointing out of the solid, and centres (m,3) in m."""
+    corners = mesh.points[mesh.surfaces[name]]
+    return 0.5 * np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1]), corners.mean(axis=1)
+
+
+def without(mesh, name):
+    """The same file with one group missing."""
+    tag = mesh.field_data[name][0]
+    keep = [index for index, tags in enumerate(mesh.cell_data["gmsh:physical"]) if tags[0] != tag]
+    return meshio.Mesh(mesh.points, [mesh.cells[index] for index in keep],
+                       field_data={key: value for key, value in mesh.field_data.items() if key != name},
+                       cell_data={key: [blocks[index] for index in keep] for key, blocks in mesh.cell_data.items()})
+
+
+@pytest.mark.parametrize("size, count", [(0.004, 2420), (0.002, 19360), (0.001, 154880), (0.003, None)])
+def test_areas_and_volume_do_not_depend_on_the_mesh(size, count):
+    mesh = read(l_rail.build(GEOMETRY, size))
+    assert mesh.warnings == ()
+    for name, area in AREAS.items():
+        vectors, _ = facet_vectors(mesh, name)
+        assert np.linalg.norm(vectors, axis=1).sum() == pytest.approx(area, rel=1e-12)
+    jacobian, scaled = corner_jacobians(mesh.points, mesh.hexes)
+    assert jacobian.mean(axis=1).sum() == pytest.approx(4 * 176e-6 * 0.220, rel=1e-12)
+    assert scaled.min() == pytest.approx(1.0, rel=1e-9)
+    if count:
+        assert len(mesh.hexes) == count
+        assert np.ptp(edge_lengths(mesh.points, mesh.hexes)) < 1e-12
+
+
+def test_walls_face_the_payload_and_mounts_face_away(built):
+    mesh = read(built)
+    for name, axis in (("contact_y", 1), ("contact_z", 2)):
+        vectors, centres = facet_vectors(mesh, name)
+        assert (vectors[:, axis] * centres[:, axis] < 0.0).all()
+        assert np.abs(centres[:, axis]) == pytest.approx(0.10025, abs=1e-12)
+        other = np.abs(centres[:, 3 - axis])
+        assert other.min() == pytest.approx(0.10025 - 0.018) and other.max() == pytest.approx(0.10025 - 0.002)
+    vectors, centres = facet_vectors(mesh, "mount")
+    assert ((vectors * centres)[:, 1:].sum(axis=1) > 0.0).all()
+    along = centres[:, 0] - GEOMETRY.x_start
+    assert all(any(start < place < end for start, end in GEOMETRY.mount_spans) for place in along)
+
+
+def test_rails_are_mirror_images_to_the_last_bit(built):
+    quarter = len(built.points) // 4
+    rails = built.points.reshape(4, quarter, 3)
+    assert all(np.array_equal(np.abs(rail), np.abs(rails[0])) for rail in rails)
+
+
+def test_build_is_repeatable_and_survives_a_file(built, tmp_path):
+    l_rail.save(built, tmp_path / "first.msh")
+    l_rail.save(l_rail.build(GEOMETRY, 0.004), tmp_path / "second.msh")
+    assert (tmp_path / "first.msh").read_bytes() == (tmp_path / "second.msh").read_bytes()
+    here, there = read(built), read(tmp_path / "first.msh")
+    assert np.array_equal(here.points, there.points) and np.array_equal(here.hexes, there.hexes)
+    assert all(np.array_equal(here.surfaces[name], there.surfaces[name]) for name in AREAS)
+
+
+@pytest.mark.parametrize("change", [{"thickness": 0.024}, {"mount_spans": ((0.02, 0.01),)}, {"mount_spans": ((0.2, 0.3),)}])
+def test_impossible_geometry_is_refused(change):
+    with pytest.raises(ValueError):
+        l_rail.build(GEOMETRY._replace(**change), 0.004)
+
+
+def test_named_sets_of_other_formats_are_read(built):
+    sets = {name: [np.arange(len(block.data)) if index == place else np.array([], dtype=int)
+                   for index, block in enumerate(built.cells)] for place, name in enumerate(l_rail.SURFACES, start=1)}
+    mesh = read(meshio.Mesh(built.points, built.cells, cell_sets=sets))
+    assert {name: len(facets) for name, facets in mesh.surfaces.items()} == {"contact_y": 1100, "contact_z": 1100, "mount": 120}
+
+
+def test_unused_points_are_dropped_and_numbering_follows(built):
+    padded = meshio.Mesh(np.concatenate([[[9.0, 9.0, 9.0]], built.points]),
+                         [(block.type, block.data + 1) for block in built.cells],
+                         field_data=built.field_data, cell_data=built.cell_data)
+    here, there = read(built), read(padded)
+    assert np.array_equal(here.points, there.points) and np.array_equal(here.hexes, there.hexes)
+    ordered = along_x(there)
+    assert (np.diff(np.round(ordered.points[:, 0], 9)) >= 0.0).all()
+    for name in AREAS:
+        assert np.allclose(facet_vectors(ordered, name)[0].sum(axis=0), facet_vectors(here, name)[0].sum(axis=0), atol=1e-15)
+
+
+def test_every_fault_is_reported_at_once(built):
+    faulty = without(copy.deepcopy(built), "mount")
+    hexes = faulty.cells[0].data
+    hexes[[4, 41]] = hexes[[4, 41]][:, [4, 5, 6, 7, 0, 1, 2, 3]]
+    with pytest.raises(MeshError) as error:
+        read(faulty)
+    message = str(error.value)
+    assert "inverted or flat elements: 5, 42" in message
+    assert "no quadrilateral group named 'mount' (groups in the mesh: contact_y, contact_z, rail)" in message
+
+
+def test_solids_without_hexahedra_and_inner_facets_are_faults(built):
+    tetrahedra = meshio.Mesh(np.eye(4, 3), [("tetra", [[0, 1, 2, 3]])])
+    with pytest.raises(MeshError, match="(?s)tetra.*no 8-node hexahedra.*contact.*mount"):
+        read(tetrahedra)
+    inner = meshio.Mesh(built.points, [*built.cells, ("quad", built.cells[0].data[:1, [0, 2, 4, 6]])], field_data=built.field_data,
+                        cell_data={"gmsh:physical": [*built.cell_data["gmsh:physical"], built.cell_data["gmsh:physical"][1][:1]]})
+    with pytest.raises(MeshError, match="'contact_y': 1 of 1101 facets are not on the boundary"):
+        read(inner)
+
+
+@pytest.mark.case("X14")
+def test_slivers_and_skewed_elements_are_warned_about(built):
+    points = built.points.copy()
+    plane = np.isclose(points[:, 0], GEOMETRY.x_start + 0.004)
+    points[plane, 0] = GEOMETRY.x_start + 5e-6
+    sliver, = read(meshio.Mesh(points, built.cells, field_data=built.field_data, cell_data=built.cell_data)).warnings
+    thin = np.flatnonzero(edge_lengths(points, built.cells[0].data).min(axis=1) < 1e-5) + 1
+    assert ", ".join(map(str, thin[:20])) in sliver and "5e-06 m" in sliver and "800" in sliver
+    points = built.points.copy()
+    points[:, 0] += points[:, 1]
+    skewed, = read(meshio.Mesh(points, built.cells, field_data=built.field_data, cell_data=built.cell_data)).warnings
+    assert "skewed" in skewed and "0.707" in skewed
