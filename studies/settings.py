@@ -12,16 +12,25 @@ from scenes.files import content_hash
 
 @dataclass(frozen=True)
 class Settings:
-    """``element_size`` (m) of the reference and ``coarse_size`` (m) where many runs are needed; ``tolerances`` of the surrogate in
-    the cost study; repeats of timed runs; ``clearance_change`` (m) that defines the floor; ``workers`` side by side."""
+    """``element_size`` (m) of the reference; ``tolerances`` of the surrogate in the cost study; repeats of timed runs;
+    ``clearance_change`` (m) that defines the floor; ``workers`` side by side."""
 
     element_size: float = 0.004
-    coarse_size: float = 0.008
     tolerances: tuple[float, ...] = (1e-2, 1e-4, 1e-6, 1e-8)
     highfi_repeats: int = 3
     lowfi_repeats: int = 20
     clearance_change: float = 1e-6
     workers: int = os.cpu_count() or 1
+
+    @property
+    def coarse_size(self) -> float:
+        """Element size (m) where many runs are needed and their differences matter more than their values."""
+        return 2.0 * self.element_size
+
+    @property
+    def fine_size(self) -> float:
+        """Element size (m) that shows what refining still changes."""
+        return 0.5 * self.element_size
 
     @property
     def hash(self) -> str:
@@ -32,5 +41,5 @@ class Settings:
 def defaults(scene_name: str) -> Settings:
     """Settings of a catalogue scene: ``tiny`` is coarse, so that its whole pipeline takes seconds."""
     if scene_name == "tiny":
-        return Settings(element_size=0.008, coarse_size=0.016, highfi_repeats=2, lowfi_repeats=5)
+        return Settings(element_size=0.016, highfi_repeats=2, lowfi_repeats=5)
     return Settings()

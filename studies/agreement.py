@@ -1,0 +1,106 @@
+"""Rows of the agreement table: metrics, gates, and beside them the floor and the uncertainty of the reference itself.
+
+* **Floor**: what +-1 um of clearance changes in a model, by the same two metrics. No agreement finer than that means anything.
+* **Reference uncertainty**: what half the element size, twice the penalty and half the step change in the settled rates of
+  the reference, each alone. Agreement is claimed only where the largest is at most 0.1 deg/s.
+
+Both are measured on a few conditions; the others take the largest of those and say so.
+"""
+
+from dataclasses import dataclass
+
+from scenes.trajectory import Trajectory
+from studies.metrics import Difference, compare, settled_rate_errors
+
+GATES = {"rate_relative_l2": 0.05, "velocity_relative_l2": 0.001, "settled_rate_error_deg_s": 0.1}
+CONVERGED_DEG_S = 0.1
+NOT_CONVERGED = "reference not converged"
+
+
+@dataclass(frozen=True)
+class Spread:
+    """How far one cause moves one model on one condition: the larger of its cases; None where a run did not settle."""
+
+    condition: str
+    model: str
+    cause: str
+    rate_relative_l2: float | None
+    settled_rate_change_deg_s: float | None
+
+
+def spread(condition: str, model: str, cause: str, nominal: Trajectory, changed: list[Trajectory]) -> Spread:
+    """Largest change of both metrics over the ``changed`` runs of one model."""
+    found = [compare(nominal, run) for run in changed]
+    return Spread(condition, model, cause, largest(item.rate_relative_l2 for item in found),
+                  largest(item.settled_rate_error_deg_s for item in found))
+
+
+def settled_change(nominal: Trajectory, changed: Trajectory) -> float | None:
+    """Largest change of a settled rate (deg/s), or None where one of the runs did not settle."""
+    errors = settled_rate_errors(nominal, changed)
+    return None if errors is None else max(abs(error) for error in errors)
+
+
+def largest(values) -> float | None:
+    """Largest of the values that are known, or None."""
+    known = [value for value in values if value is not None]
+    return max(known) if known else None
+
+
+@dataclass(frozen=True)
+class Context:
+    """What stands beside the metrics: spreads under ``clearance`` of both models, and of the reference under refinement."""
+
+    floors: list[Spread]
+    refinements: list[Spread]
+
+    def floor(self, condition: str) -> tuple[float | None, float | None, bool]:
+        """Floor of the settled rates (deg/s) and of the rate L2, and whether it was measured on this very condition."""
+        own, measured = _own(self.floors, condition)
+        return (largest(item.settled_rate_change_deg_s for item in own),
+                largest(item.rate_relative_l2 for item in own), measured)
+
+    def uncertainty(self, condition: str) -> tuple[float | None, dict[str, float | None], bool]:
+        """Reference uncertainty (deg/s), the same by cause, and whether it was measured on this very condition."""
+        own, measured = _own(self.refinements, condition)
+        causes = {cause: largest(item.settled_rate_change_deg_s for item in own if item.cause == cause)
+                  for cause in dict.fromkeys(item.cause for item in own)}
+        return largest(causes.values()), causes, measured
+
+
+def _own(spreads: list[Spread], condition: str) -> tuple[list[Spread], bool]:
+    own = [item for item in spreads if item.condition == condition]
+    return (own, True) if own else (spreads, False)
+
+
+def row(condition: str, role: str, reference: Trajectory, surrogate: Trajectory, context: Context) -> dict:
+    """One line of the agreement table as result files hold it."""
+    difference = compare(reference, surrogate)
+    floor_deg_s, floor_l2, floor_measured = context.floor(condition)
+    uncertainty, causes, uncertainty_measured = context.uncertainty(condition)
+    gates = {name: gate(getattr(difference, name), limit) for name, limit in GATES.items()}
+    converged = uncertainty is not None and uncertainty <= CONVERGED_DEG_S
+    return {"condition": condition, "role": role, "reference_status": reference.status, "surrogate_status": surrogate.status,
+            **difference.as_dict(), "floor_deg_s": floor_deg_s, "floor_l2": floor_l2, "floor_measured_here": floor_measured,
+            "reference_uncertainty_deg_s": uncertainty, "reference_uncertainty_by_cause_deg_s": causes,
+            "reference_uncertainty_measured_here": uncertainty_measured, "reference_converged": converged,
+            "gates": gates, "passes": all(item["passes"] for item in gates.values()),
+            "verdict": verdict(difference, gates, converged)}
+
+
+def gate(value: float | None, limit: float) -> dict:
+    """Whether ``value`` is within ``limit``, and how many times the limit it is."""
+    return {"limit": limit, "passes": value is not None and value <= limit,
+            "times_limit": None if value is None else value / limit}
+
+
+def verdict(difference: Difference, gates: dict[str, dict], converged: bool) -> str:
+    """One phrase: the reference first, for without it the rest means little."""
+    if not converged:
+        return NOT_CONVERGED
+    missed = [f"{_SHORT[name]} {'unknown' if item['times_limit'] is None else format(item['times_limit'], '.3g') + ' x limit'}"
+              for name, item in gates.items() if not item["passes"]]
+    return "misses: " + ", ".join(missed) if missed else "agrees"
+
+
+_SHORT = {"rate_relative_l2": "rate L2", "velocity_relative_l2": "v_x L2", "settled_rate_error_deg_s": "settled rate"}

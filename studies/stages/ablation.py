@@ -1,0 +1,92 @@
+"""Stage ``ablation``: every effect off, one at a time, in both fidelities: what it changes, what it costs, and proof that the
+compiled kernel without it does not contain it.
+
+The baseline has every effect on: those the scene does not have are added with the small values in ``ADDED``. The scene as it
+asks and the scene without any effect close the table.
+"""
+
+import importlib
+import statistics
+from pathlib import Path
+
+import numpy as np
+
+from scenes.scene import EFFECTS, Scene
+from scenes.trajectory import Trajectory
+from studies import machine
+from studies.stages.compare import SOURCES_USED
+from studies.store import Run
+from studies.study import Study
+from studies.timing import timed, warm_up
+
+ADDED = {
+    "thrust_offset": {"thrust_offset.misalignment.axial": "0.1 deg", "thrust_offset.misalignment.radial": "35 deg"},
+    "mass_offset": {"mass_offset.eccentricity.axial": "0.1 mm", "mass_offset.eccentricity.radial": "120 deg"},
+    "initial": {"initial.position.y": "20 um"},
+    "gravity": {"gravity.z": "-9.81 m/s**2"},
+}
+
+
+def variants(scene: Scene) -> dict[str, dict]:
+    """Overrides of ``scene`` for each line of the table, by name."""
+    everything = {key: value for effect in scene.absent_effects() for key, value in ADDED.get(effect, {}).items()}
+    present = [effect for effect in EFFECTS if getattr(scene, effect) is not None or effect in ADDED]
+    lines = {"all effects": everything}
+    for effect in present:
+        kept = {key: value for key, value in everything.items() if key.split(".")[0] != effect}
+        lines[f"without {effect}"] = kept | {effect: None}
+    return lines | {"as the scene asks": {}, "no effect": {effect: None for effect in present}}
+
+
+def run(study: Study) -> dict:
+    """``rows``: per fidelity and variant the processor time, its change, the settled rates' change, the effects compiled."""
+    name = (study.scene.agreement.refined or tuple(study.conditions))[0]
+
+    def make() -> tuple[dict, list[Path]]:
+        lines = variants(study.condition(name))
+        rows = _rows("highfi", lines, *_reference(study, name, lines)) + _rows("lowfi", lines, *_surrogate(study, name, lines))
+        return {"condition": name, "added": ADDED, "element_size_m": study.settings.coarse_size, "rows": rows,
+                "hardware": machine.describe()}, []
+
+    return study.stage("ablation", study.key(SOURCES_USED, name, ADDED), make)
+
+
+def _reference(study: Study, name: str, lines: dict[str, dict]):
+    """Runs on the coarse mesh; their processor time is the thread's own, so runs side by side do not disturb it."""
+    asked = [study.highfi(name, overrides, tag=_tag(line), element_size=study.settings.coarse_size)
+             for line, overrides in lines.items()]
+    runs = study.store.fill("ablation, highfi", asked)
+    return asked, runs, [run.cost.get("cpu_s", run.cost["wall_s"]) for run in runs]
+
+
+def _surrogate(study: Study, name: str, lines: dict[str, dict]):
+    asked = [study.lowfi(name, None, overrides, tag=_tag(line)) for line, overrides in lines.items()]
+    runs, times = [], []
+    for item in asked:
+        warm_up(item)
+        repeats = [timed(item) for _ in range(study.settings.lowfi_repeats)]
+        runs.append(repeats[0][0])
+        times.append(statistics.median(wall for _, wall, _ in repeats))
+    return asked, runs, times
+
+
+def _rows(fidelity: str, lines: dict[str, dict], asked: list[Run], runs: list[Trajectory], times: list[float]) -> list[dict]:
+    rows = []
+    for line, item, run, seconds in zip(lines, asked, runs, times):
+        rate, baseline = run.outcome.rate, runs[0].outcome.rate
+        change = None if rate is None or baseline is None else np.degrees(np.subtract(rate, baseline)).tolist()
+        rows.append({"fidelity": fidelity, "variant": line, "status": run.status, "time_s": seconds,
+                     "ns_per_step": 1e9 * seconds / max(run.cost["steps"], 1), "time_ratio": seconds / times[0],
+                     "settled_rate_deg_s": None if rate is None else np.degrees(rate).tolist(),
+                     "settled_rate_change_deg_s": change, "compiled": compiled(fidelity, item.scene)})
+    return rows
+
+
+def compiled(fidelity: str, scene: Scene) -> list[str] | None:
+    """Effects whose code is in the kernel compiled for ``scene``, as the fidelity itself reports them; None if it does not."""
+    ask = getattr(importlib.import_module(fidelity), "compiled_effects", None)
+    return None if ask is None else sorted(ask(scene))
+
+
+def _tag(line: str) -> str:
+    return "-" + line.replace(" ", "-")

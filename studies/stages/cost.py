@@ -1,0 +1,69 @@
+"""Stage ``cost``: what accuracy costs in time. Error of the settled rates against wall time, both fidelities on one condition.
+
+The yardstick is the finest finite-element mesh; its own uncertainty is the band below which no error can be told from zero.
+The surrogate's time-integration error, against its own tightest tolerance, stands beside its error against the yardstick: what
+remains when it is small is the model, and no tolerance can buy it.
+"""
+
+import statistics
+from pathlib import Path
+
+from scenes.trajectory import Trajectory
+from studies import agreement, machine
+from studies.stages import calibrate
+from studies.stages.compare import SOURCES_USED, refinements
+from studies.study import Study
+from studies.timing import timed, warm_up
+
+
+def run(study: Study) -> dict:
+    """``points``: model, numerics, error_deg_s, wall_s, pareto; ``band_deg_s``: uncertainty of the yardstick."""
+    name = (study.scene.agreement.refined or study.fitted())[0]
+    calibration = calibrate.load(study)
+
+    def make() -> tuple[dict, list[Path]]:
+        finest, band, points = _reference_points(study, name)
+        for model, constants in (("surrogate, uncalibrated", None), ("surrogate, calibrated", calibration)):
+            points += _surrogate_points(study, name, model, constants, finest)
+        return {"condition": name, "band_deg_s": band, "points": marked(points), "hardware": machine.describe()}, []
+
+    return study.stage("cost", study.key(SOURCES_USED, name, calibration.constants), make)
+
+
+def _reference_points(study: Study, name: str) -> tuple[Trajectory, float | None, list[dict]]:
+    settings = study.settings
+    sizes = (settings.coarse_size, settings.element_size, settings.fine_size)
+    # The finest one is the run of the refinement study, not a second one under another name.
+    asked = [study.highfi(name, element_size=settings.coarse_size, tag="-coarse"), study.highfi(name),
+             *(study.highfi(name, **change) for change in refinements(study).values())]
+    coarse, nominal, *refined = study.store.fill("cost, meshes", asked)
+    changes = {cause: agreement.settled_change(nominal, run) for cause, run in zip(refinements(study), refined)}
+    finest = refined[list(changes).index("mesh")]
+    points = [{"model": "finite elements", "numerics": f"{1e3 * size:g} mm, {found.cost['elements']} elements",
+               "error_deg_s": None if found is finest else agreement.settled_change(finest, found),
+               "integration_error_deg_s": None, "wall_s": found.cost["wall_s"], "status": found.status}
+              for size, found in zip(sizes, (coarse, nominal, finest))]
+    return finest, agreement.largest(changes.values()), points
+
+
+def _surrogate_points(study: Study, name: str, model: str, calibration, finest: Trajectory) -> list[dict]:
+    tolerances = sorted(study.settings.tolerances)
+    asked = [study.lowfi(name, calibration, relative_tolerance=tolerance) for tolerance in tolerances]
+    warm_up(asked[0])
+    measured = [[timed(run) for _ in range(study.settings.lowfi_repeats)] for run in asked]
+    runs = [repeats[0][0] for repeats in measured]
+    return [{"model": model, "numerics": f"tolerance {tolerance:g}", "error_deg_s": agreement.settled_change(finest, found),
+             "integration_error_deg_s": agreement.settled_change(runs[0], found) if found is not runs[0] else None,
+             "wall_s": statistics.median(wall for _, wall, _ in repeats), "status": found.status}
+            for tolerance, found, repeats in reversed(list(zip(tolerances, runs, measured)))]
+
+
+def marked(points: list[dict]) -> list[dict]:
+    """The points, each told whether no other one is both as exact and as fast (``pareto``)."""
+    known = [point for point in points if point["error_deg_s"] is not None]
+
+    def beaten(point: dict) -> bool:
+        return any(other is not point and other["error_deg_s"] <= point["error_deg_s"] and other["wall_s"] < point["wall_s"]
+                   for other in known)
+
+    return [point | {"pareto": point["error_deg_s"] is not None and not beaten(point)} for point in points]

@@ -1,0 +1,52 @@
+"""Stage ``mesh``: the rails as the reference will use them, with their size, quality and a picture."""
+
+from pathlib import Path
+
+import numpy as np
+
+from scenes.files import replacing
+from studies.store import SOURCES
+from studies.study import Study
+
+
+def run(study: Study) -> dict:
+    """Elements, nodes, named surfaces with area, quality, and the mesh as ``mesh.vtu``."""
+    name = next(iter(study.conditions))
+    asked = study.highfi(name)
+
+    def make() -> tuple[dict, list[Path]]:
+        import highfi
+        from highfi import mesh as checks
+
+        mesh = highfi.prepare(asked.scene, asked.numerics)
+        path = study.path("mesh.vtu")
+        _save(mesh, path)
+        lengths = checks.edge_lengths(mesh.points, mesh.hexes)
+        _, scaled = checks.corner_jacobians(mesh.points, mesh.hexes)
+        surfaces = {name: {"facets": len(facets), "area_m2": area(mesh.points, facets)}
+                    for name, facets in mesh.surfaces.items()}
+        return {"element_size_m": asked.numerics.element_size, "elements": len(mesh.hexes), "nodes": len(mesh.points),
+                "shortest_edge_m": float(lengths.min()), "longest_edge_m": float(lengths.max()),
+                "smallest_scaled_jacobian": float(scaled.min()), "warnings": list(mesh.warnings),
+                "surfaces": surfaces, "mesh": study.relative(path)}, [path]
+
+    return study.stage("mesh", study.key(SOURCES["highfi"], asked.key), make)
+
+
+def area(points: np.ndarray, facets: np.ndarray) -> float:
+    """Area (m2) of quadrilaterals (m,4): half the length of the cross product of the diagonals, exact for plane ones."""
+    corners = points[facets]
+    normals = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
+    return float(0.5 * np.linalg.norm(normals, axis=1).sum())
+
+
+def _save(mesh, path: Path) -> None:
+    import meshio
+
+    names = list(mesh.surfaces)
+    facets = np.concatenate([mesh.surfaces[name] for name in names])
+    kind = np.concatenate([np.full(len(mesh.surfaces[name]), index + 1) for index, name in enumerate(names)])
+    document = meshio.Mesh(mesh.points, [("hexahedron", mesh.hexes), ("quad", facets)],
+                           cell_data={"surface": [np.zeros(len(mesh.hexes), dtype=int), kind]})
+    with replacing(path) as temporary:
+        document.write(temporary, file_format="vtu")

@@ -1,0 +1,29 @@
+"""Stage ``stability``: hard cases of both fidelities, each beside a simpler method that fails on it."""
+
+from pathlib import Path
+
+from studies import hard_cases
+from studies.progress import Board
+from studies.stages.compare import SOURCES_USED
+from studies.store import code_hash
+from scenes.files import content_hash
+from studies.study import Study
+
+
+def run(study: Study) -> dict:
+    """``cases``: one verdict each; ``failed`` names those not held, or whose control did not fail."""
+
+    def make() -> tuple[dict, list[Path]]:
+        found = []
+        known = hard_cases.cases()
+        with Board("stability", len(known)) as board:
+            for name, case in known.items():
+                board.callback(name)(0.0)
+                found.append(case())
+                board.finished(name, "held" if found[-1].held else "NOT held")
+        failed = [f"{item.name}: {'not held' if not item.held else 'its control did not fail'}"
+                  for item in found if not (item.held and item.control_failed)]
+        return {"cases": [item._asdict() for item in found], "failed": failed}, []
+
+    # The cases bring their own scenes, so the scene under study is not part of the key.
+    return study.stage("stability", content_hash("stability", code_hash(*SOURCES_USED, "studies")), make)

@@ -1,0 +1,58 @@
+"""Timed runs: the same case in both fidelities by turns in one go, compilation apart, scatter shown.
+
+    ratio = median wall time of highfi.run / median wall time of lowfi.run
+
+``low`` and ``high`` are the smallest ratio any pair of repeats gives and the largest, so they are the whole scatter.
+"""
+
+import statistics
+import time
+from dataclasses import replace
+from typing import Callable
+
+from scenes.trajectory import Trajectory
+from studies import machine
+from studies.store import Run, execute, prepare
+
+
+def timed(run: Run) -> tuple[Trajectory, float, float]:
+    """Result, wall seconds and processor seconds of one run, both without compilation."""
+    wall, processor = time.perf_counter(), time.process_time()
+    found = execute(run)
+    compiling = found.cost["compile_s"]
+    return found, time.perf_counter() - wall - compiling, time.process_time() - processor - compiling
+
+
+def warm_up(run: Run) -> None:
+    """Compile or load what ``run`` needs, by running its first milliseconds."""
+    prepare(run)
+    execute(replace(run, scene=run.scene.replace({"duration": min(run.scene.duration, 1e-3)})))
+
+
+def speedup(highfi: Run, lowfi: Run, highfi_repeats: int, lowfi_repeats: int,
+            progress: Callable[[float], None] = lambda fraction: None) -> dict:
+    """Speed of both on one case; ``lowfi_repeats`` surrogate runs follow each of the ``highfi_repeats`` reference runs."""
+    warm_up(highfi)
+    warm_up(lowfi)
+    slow, fast = [], []
+    for repeat in range(highfi_repeats):
+        slow.append(timed(highfi))
+        fast += [timed(lowfi) for _ in range(lowfi_repeats)]
+        progress((repeat + 1) / highfi_repeats)
+    slow_wall, fast_wall = [wall for _, wall, _ in slow], [wall for _, wall, _ in fast]
+    slow_median, fast_median = statistics.median(slow_wall), statistics.median(fast_wall)
+    return {"condition": highfi.label, "ratio": slow_median / fast_median,
+            "low": min(slow_wall) / max(fast_wall), "high": max(slow_wall) / min(fast_wall),
+            "highfi_wall_s": slow_median, "lowfi_wall_s": fast_median,
+            "highfi_wall_range_s": [min(slow_wall), max(slow_wall)], "lowfi_wall_range_s": [min(fast_wall), max(fast_wall)],
+            "elements": slow[0][0].cost["elements"], "highfi_repeats": len(slow), "lowfi_repeats": len(fast),
+            "kernel_ratio": _median_ratio([run.cost.get("kernel_s") for run, _, _ in slow],
+                                          [run.cost.get("kernel_s") for run, _, _ in fast]),
+            "cpu_ratio": _median_ratio([cpu for _, _, cpu in slow], [cpu for _, _, cpu in fast]),
+            "hardware": machine.describe()}
+
+
+def _median_ratio(slow: list, fast: list) -> float | None:
+    if None in slow or None in fast or statistics.median(fast) <= 0.0:
+        return None
+    return statistics.median(slow) / statistics.median(fast)
