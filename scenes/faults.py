@@ -26,34 +26,51 @@ class SceneError(ValueError):
         super().__init__("\n".join([f"{count} in the scene"] + [f"  {fault}" for fault in faults]))
 
 
-_UNION_TAGS = {"impact", "hunt-crossley", "linear", "gaussian", "gaussians", "constant", "measured"}
+# Pydantic puts the chosen variant into the location: ("thrust", "gaussian", "width") is the key thrust.width.
+_VARIANTS = ("thrust", "contact")
+_WORDS = {"extra_forbidden": "no such key", "missing": "this key", "model_type": "a table", "model_attributes_type": "a table",
+          "dict_type": "a table", "tuple_type": "a list", "list_type": "a list", "string_type": "text",
+          "bool_parsing": "true or false", "bool_type": "true or false"}
 
 
-def _key(location: tuple) -> str:
-    return ".".join(str(part) for part in location if part not in _UNION_TAGS) or "scene"
+def _key(error: dict) -> str:
+    location = list(error["loc"])
+    if location and location[0] in _VARIANTS and len(location) > 1:
+        del location[1]
+    if error["type"].startswith("union_tag"):
+        location.append(error["ctx"]["discriminator"].strip("'"))
+    return ".".join(map(str, location)) or "scene"
 
 
 def _shown(value: Any) -> str:
     if isinstance(value, dict):
         return "a table with " + (", ".join(map(str, value)) or "no keys")
-    return repr(value)
+    return repr(value) if len(repr(value)) < 200 else f"{repr(value)[:200]} ..."
+
+
+def _given(error: dict) -> str:
+    if error["type"] in ("missing", "union_tag_not_found"):
+        return "nothing"
+    if error["type"] == "union_tag_invalid":
+        return repr(error["ctx"]["tag"])
+    return _shown(error["input"])
 
 
 def _expected(error: dict) -> str:
     kind, message = error["type"], error["msg"]
-    if kind == "extra_forbidden":
-        return "no such key"
-    if kind == "missing":
-        return "this key"
+    if kind in _WORDS:
+        return _WORDS[kind]
     if kind == "value_error":
         return str(error["ctx"]["error"])
+    if kind == "too_long":
+        return f"at most {error['ctx']['max_length']} of them"
+    if kind == "union_tag_not_found":
+        return f"the key {error['ctx']['discriminator']}"
+    if kind == "union_tag_invalid":
+        return f"one of {error['ctx']['expected_tags']}"
     return message.removeprefix("Input should be ")
 
 
 def faults_of(error: ValidationError, source: str) -> list[Fault]:
     """Every fault in a pydantic error, in the order of the tables."""
-    faults = []
-    for item in error.errors():
-        given = "nothing" if item["type"] == "missing" else _shown(item["input"])
-        faults.append(Fault(source, _key(item["loc"]), given, _expected(item)))
-    return faults
+    return [Fault(source, _key(item), _given(item), _expected(item)) for item in error.errors()]

@@ -28,9 +28,9 @@ def replacing(path: str | Path) -> Iterator[Path]:
 
 
 def write_text(path: str | Path, text: str) -> None:
-    """Write ``text`` atomically."""
+    """Write ``text`` in UTF-8 atomically."""
     with replacing(path) as temporary:
-        temporary.write_text(text)
+        temporary.write_text(text, encoding="utf-8")
 
 
 def write_json(path: str | Path, value: Any) -> None:
@@ -44,7 +44,7 @@ def content_hash(*parts: Any) -> str:
 
 
 def source_hash(*packages: str) -> str:
-    """Hexadecimal SHA-256 of every source and data file of the named top-level packages."""
+    """Hexadecimal SHA-256 of every Python source of the named top-level packages."""
     root = Path(__file__).resolve().parent.parent
     digest = hashlib.sha256()
     for package in sorted(packages):

@@ -11,11 +11,13 @@ from scenes.jit import njit
 
 @njit
 def cross(a, b):
+    """Vector product of two triples."""
     return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
 
 
 @njit
 def dot(a, b):
+    """Scalar product of two triples."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
@@ -64,6 +66,7 @@ def exponential(vector):
 
 @njit
 def normalised(q):
+    """``q`` scaled to unit norm."""
     scale = 1.0 / np.sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3])
     return (q[0] * scale, q[1] * scale, q[2] * scale, q[3] * scale)
 

@@ -4,15 +4,14 @@
 >>> scene.replace({"thrust_offset.misalignment.axial": "0.3 deg"}).condition("phi35")
 """
 
-import copy
-import tomllib
 from functools import cached_property
 from pathlib import Path
-from typing import Any, Mapping
+from typing import Annotated, Any, Mapping
 
-from pydantic import Field, PrivateAttr, ValidationError
+from pydantic import AfterValidator, Field, PrivateAttr, ValidationError
 
-from scenes import plausibility
+from scenes import overrides as keys
+from scenes import plausibility, reading
 from scenes.effects.contact import ContactTable
 from scenes.effects.friction import FrictionTable
 from scenes.effects.gravity import GravityTable
@@ -23,11 +22,11 @@ from scenes.effects.thrust import ThrustTable
 from scenes.effects.thrust_offset import ThrustOffsetTable
 from scenes.faults import Fault, SceneError, faults_of
 from scenes.files import content_hash
-from scenes.table import Table
+from scenes.table import Table, at_least_one
 from scenes.tables import AgreementTable, OutputTable, PadTable, PayloadTable, RailTable
 from scenes.units import PositiveTime
 
-CATALOG = Path(__file__).resolve().parent / "catalog"
+CATALOG = reading.CATALOG
 EFFECTS = ("thrust_offset", "mass_offset", "initial", "contact", "friction", "platform", "gravity")
 _NOT_PHYSICS = {"name", "description", "conditions", "provenance", "agreement"}
 
@@ -39,7 +38,7 @@ class Scene(Table):
     description: str = ""
     duration: PositiveTime
     payload: PayloadTable
-    pads: list[PadTable] = Field(min_length=1)
+    pads: Annotated[tuple[PadTable, ...], AfterValidator(at_least_one)]
     rail: RailTable
     thrust: ThrustTable
     thrust_offset: ThrustOffsetTable | None = None
@@ -61,11 +60,16 @@ class Scene(Table):
 
         Raises SceneError listing every fault.
         """
-        raw = copy.deepcopy(self._raw)
-        unknown = [fault for key, value in overrides.items() if (fault := _set(raw, key, value))]
-        if unknown:
-            raise SceneError([Fault(self._source, *fault) for fault in unknown])
-        return parse(raw, self._source, bare_numbers_are_si=True)
+        raw = keys.plain(self._raw)
+        lost = _set_all(raw, overrides)
+        touches_roles = any(key.split(".")[0] in ("conditions", "agreement", "provenance") for key in overrides)
+        scene, faults = _validated(raw, True)
+        if touches_roles:
+            faults = faults + _role_faults(raw, True, faults)
+        if lost or faults:
+            raise SceneError([Fault(f"override of {self._source}", *fault) for fault in lost + faults])
+        scene._raw, scene._source = raw, self._source
+        return scene
 
     def condition(self, name: str) -> "Scene":
         """The scene of one named condition. Raises SceneError for a name the scene does not have."""
@@ -79,14 +83,17 @@ class Scene(Table):
         return self.model_dump(mode="json", exclude=_NOT_PHYSICS)
 
     def resolved(self) -> dict:
-        """Every input in SI, as written into result files; ``parse`` reads it back."""
+        """Every input in SI, as written into result files; ``parse(..., bare_numbers_are_si=True)`` reads it back."""
         return self.model_dump(mode="json", exclude_none=True)
 
     @cached_property
     def hash(self) -> str:
-        """SHA-256 of the physical inputs."""
-        files = [Path(self.thrust.file).read_text()] if self.thrust.kind == "measured" else []
-        return content_hash(self.physics(), files)
+        """SHA-256 of the physical inputs. A measured thrust counts by its points, not by where its file lies."""
+        physics = self.physics()
+        measured = self.thrust.kind == "measured"
+        if measured:
+            physics["thrust"].pop("file")
+        return content_hash(physics, self.thrust.points() if measured else [])
 
     @cached_property
     def warnings(self) -> list[str]:
@@ -99,83 +106,77 @@ class Scene(Table):
 
 
 def parse(raw: Mapping[str, Any], source: str = "scene", bare_numbers_are_si: bool = False) -> Scene:
-    """Validate a nested mapping. Raises SceneError listing every fault with file, key, given and expected."""
-    try:
-        scene = Scene.model_validate(raw, context={"bare_numbers_are_si": bare_numbers_are_si})
-    except ValidationError as error:
-        raise SceneError(faults_of(error, source)) from None
-    scene._raw, scene._source = copy.deepcopy(dict(raw)), source
-    _check_roles(scene)
+    """Validate a nested mapping, all its conditions included.
+
+    Raises SceneError listing every fault with file, key, given and expected.
+    """
+    raw = keys.plain(raw)
+    scene, faults = _validated(raw, bare_numbers_are_si)
+    if isinstance(raw, dict):
+        faults = faults + _role_faults(raw, bare_numbers_are_si, faults)
+    if faults:
+        raise SceneError([Fault(source, *fault) for fault in faults])
+    scene._raw, scene._source = raw, source
     return scene
 
 
 def load(name_or_path: str | Path) -> Scene:
     """Read a catalogue scene by name (``reference``) or a TOML file by path. Raises SceneError."""
-    return parse(*_read(name_or_path))
+    return parse(*reading.read(name_or_path))
 
 
 def catalog() -> list[str]:
     """Names of the scenes that come with the package."""
-    return sorted(path.stem for path in CATALOG.glob("*.toml"))
+    return reading.names()
 
 
-def _read(name_or_path: str | Path) -> tuple[dict, str]:
-    path = Path(name_or_path)
-    if path.suffix != ".toml":
-        path = CATALOG / f"{name_or_path}.toml"
-        if not path.is_file():
-            raise SceneError([Fault(str(name_or_path), "scene", "an unknown name",
-                                    f"a path to a .toml file or one of {', '.join(catalog())}")])
+_Faults = list[tuple[str, str, str]]
+
+
+def _validated(raw: Any, bare_numbers_are_si: bool) -> tuple[Scene | None, _Faults]:
+    """The scene, or None with its faults as (key, given, expected). Puts conditions and provenance under dotted keys."""
+    if isinstance(raw, dict):
+        if isinstance(raw.get("provenance"), dict):
+            raw["provenance"] = dict(keys.dotted(raw["provenance"]))
+        for name, table in _tables(raw.get("conditions")):
+            raw["conditions"][name] = dict(keys.dotted(table))
     try:
-        with open(path, "rb") as stream:
-            raw = tomllib.load(stream)
-    except OSError as error:
-        raise SceneError([Fault(str(path), "file", error.strerror, "a readable TOML file")]) from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise SceneError([Fault(str(path), "file", str(error), "valid TOML")]) from error
-    thrust = raw.get("thrust")
-    if isinstance(thrust, dict) and isinstance(thrust.get("file"), str):
-        thrust["file"] = str(path.parent / thrust["file"])
-    if base := raw.pop("extends", None):
-        raw = _merge(_read(base)[0], raw)
-    raw.setdefault("name", path.stem)
-    return raw, str(path)
+        return Scene.model_validate(raw, context={"bare_numbers_are_si": bare_numbers_are_si}), []
+    except ValidationError as error:
+        return None, [fault[1:] for fault in faults_of(error, "")]
 
 
-def _merge(base: dict, extra: dict) -> dict:
-    merged = dict(base)
-    for key, value in extra.items():
-        both = isinstance(value, dict) and isinstance(merged.get(key), dict)
-        merged[key] = _merge(merged[key], value) if both else value
-    return merged
+def _tables(raw: Any) -> list[tuple[str, dict]]:
+    return [(name, table) for name, table in raw.items() if isinstance(table, dict)] if isinstance(raw, dict) else []
 
 
-def _set(raw: dict, dotted: str, value: Any) -> tuple[str, str, str] | None:
-    """Set one dotted key in place; returns (key, given, expected) when it leads nowhere."""
-    *parents, last = dotted.split(".")
-    table = raw
-    for part in parents:
-        if isinstance(table, list):
-            if not (part.isdigit() and int(part) < len(table)):
-                return dotted, part, f"an index below {len(table)}"
-            table = table[int(part)]
-        elif isinstance(table, dict):
-            table = table.setdefault(part, {})
-        else:
-            return dotted, part, "a key inside a table"
-    if isinstance(table, list) and last.isdigit() and int(last) < len(table):
-        table[int(last)] = value
-    elif not isinstance(table, dict):
-        return dotted, last, "a key inside a table"
-    elif value is None or value == "absent":
-        table.pop(last, None)
-    else:
-        table[last] = value
-    return None
+def _set_all(raw: dict, overrides: Mapping[str, Any]) -> _Faults:
+    """Apply overrides in place; faults of keys that lead nowhere. (Pydantic finds an unknown key only where one is set.)"""
+    faults = []
+    for key, value in overrides.items():
+        if keys.is_drop(value) and not keys.is_key(Scene, key):
+            faults.append((key, repr(value), "no such key"))
+        elif fault := keys.apply(raw, key, keys.plain(value)):
+            faults.append(fault)
+    return faults
 
 
-def _check_roles(scene: Scene) -> None:
-    faults = [Fault(scene._source, f"agreement.{role}", repr(name), "a name from [conditions]")
-              for role, names in scene.agreement for name in names if name not in scene.conditions]
-    if faults:
-        raise SceneError(faults)
+def _role_faults(raw: dict, bare_numbers_are_si: bool, known: _Faults) -> _Faults:
+    """What is wrong in conditions, agreement and provenance, apart from the ``known`` faults of the scene itself."""
+    conditions = dict(_tables(raw.get("conditions")))
+    found = []
+    for name, table in conditions.items():
+        varied = {key: keys.plain(item) for key, item in raw.items() if key not in ("conditions", "agreement", "provenance")}
+        faults = _set_all(varied, table) + _validated(varied, bare_numbers_are_si)[1]
+        found += [(f"conditions.{name}.{key}", given, expected)
+                  for key, given, expected in faults if (key, given, expected) not in known]
+    roles = raw.get("agreement") if isinstance(raw.get("agreement"), dict) else {}
+    lists = {role: names for role, names in roles.items() if isinstance(names, list)}
+    found += [(f"agreement.{role}", repr(name), "a name from [conditions]")
+              for role, names in lists.items() for name in names if name not in conditions]
+    found += [("agreement.held_out", repr(name), "a condition that is not fitted")
+              for name in lists.get("held_out", []) if name in lists.get("fitted", [])]
+    provenance = raw.get("provenance") if isinstance(raw.get("provenance"), dict) else {}
+    found += [(f"provenance.{key}", repr(text), "the dotted key of a quantity")
+              for key, text in provenance.items() if not keys.is_key(Scene, key)]
+    return found

@@ -1,11 +1,12 @@
 """The tables every scene has: payload, pads, rail, output, and what the agreement study fits and scores."""
 
-from typing import Literal
+import math
+from typing import Annotated, Literal
 
-from pydantic import Field, model_validator
+from pydantic import AfterValidator, ValidationInfo, field_validator
 
 from scenes.body import InertiaTensor
-from scenes.table import Table
+from scenes.table import Table, at_least_one
 from scenes.units import Density, Length, Mass, NonNegativeLength, PositiveLength, PositiveTime, Pressure, quantity
 
 Normal = Literal["+y", "-y", "+z", "-z"]
@@ -27,11 +28,18 @@ class PadTable(Table):
     """
 
     position: tuple[Length, Length, Length]
-    normals: list[Normal] = Field(min_length=1)
+    normals: Annotated[tuple[Normal, ...], AfterValidator(at_least_one)]
     length: PositiveLength = 0.016
     width: PositiveLength = 0.016
     inset: NonNegativeLength = 0.0
     relief: NonNegativeLength = 0.0
+
+    @field_validator("normals")
+    @classmethod
+    def _different(cls, normals):
+        if len(set(normals)) < len(normals):
+            raise ValueError("each normal once")
+        return normals
 
 
 class Span(Table):
@@ -40,11 +48,12 @@ class Span(Table):
     start: NonNegativeLength
     end: PositiveLength
 
-    @model_validator(mode="after")
-    def _forward(self):
-        if self.end <= self.start:
-            raise ValueError("end beyond start")
-        return self
+    @field_validator("end")
+    @classmethod
+    def _forward(cls, end: float, info: ValidationInfo):
+        if end <= info.data.get("start", -math.inf):
+            raise ValueError("an end beyond start")
+        return end
 
 
 class MaterialTable(Table):
@@ -64,18 +73,34 @@ class RailTable(Table):
     leg: PositiveLength = 0.024
     thickness: PositiveLength = 0.004
     mount_width: PositiveLength = 0.004
-    mounts: list[Span] = Field(default_factory=list)
+    mounts: tuple[Span, ...] = ()
     material: MaterialTable
 
-    @model_validator(mode="after")
-    def _consistent(self):
-        if self.end <= self.start:
-            raise ValueError("end beyond start")
-        if self.thickness >= self.leg:
-            raise ValueError("thickness below leg")
-        if any(span.end > self.end - self.start + 1e-12 for span in self.mounts):
-            raise ValueError("mounts that lie on the rail")
-        return self
+    @field_validator("end")
+    @classmethod
+    def _forward(cls, end: float, info: ValidationInfo):
+        if end <= info.data.get("start", -math.inf):
+            raise ValueError("an end beyond start")
+        return end
+
+    @field_validator("thickness", "mount_width")
+    @classmethod
+    def _within_leg(cls, value: float, info: ValidationInfo):
+        leg = info.data.get("leg", math.inf)
+        if value > leg or (info.field_name == "thickness" and value == leg):
+            raise ValueError(f"less than the leg, {leg:g} m")
+        return value
+
+    @field_validator("mounts")
+    @classmethod
+    def _apart_on_the_rail(cls, mounts: tuple[Span, ...], info: ValidationInfo):
+        length = info.data.get("end", math.inf) - info.data.get("start", 0.0)
+        if any(span.end > length + 1e-12 for span in mounts):
+            raise ValueError(f"spans that lie on the rail, which is {length:g} m long")
+        inward = sorted(mounts, key=lambda span: span.start)
+        if any(after.start < before.end for before, after in zip(inward, inward[1:])):
+            raise ValueError("spans that do not overlap")
+        return mounts
 
 
 class OutputTable(Table):
@@ -87,7 +112,7 @@ class OutputTable(Table):
 class AgreementTable(Table):
     """``[agreement]``: conditions that are fitted, those only scored, those that give the floor and the refinement error."""
 
-    fitted: list[str] = Field(default_factory=list)
-    held_out: list[str] = Field(default_factory=list)
-    floor: list[str] = Field(default_factory=list)
-    refined: list[str] = Field(default_factory=list)
+    fitted: tuple[str, ...] = ()
+    held_out: tuple[str, ...] = ()
+    floor: tuple[str, ...] = ()
+    refined: tuple[str, ...] = ()

@@ -32,7 +32,7 @@ def to_si(text: str, unit: str) -> float:
         raise ValueError(named(unit))
     number, given_unit = float(match[1]), match[2] or "dimensionless"
     if not math.isfinite(number):
-        raise ValueError(f"a finite number, {named(unit)}")
+        raise ValueError(f"{named(unit)}, neither NaN nor infinite")
     try:
         quantity = registry.Quantity(number, registry.parse_units(given_unit))
     except Exception as error:  # pint raises a wide family of exceptions on malformed text
@@ -44,7 +44,7 @@ def to_si(text: str, unit: str) -> float:
         raise ValueError(f"{named(unit)} (given unit {quantity.units})")
     value = float(quantity.to(unit).magnitude)
     if not math.isfinite(value):
-        raise ValueError(f"a finite number, {named(unit)}")
+        raise ValueError(f"{named(unit)}, neither NaN nor infinite")
     return value
 
 
@@ -62,7 +62,7 @@ def parse(value: Any, unit: str, bare_numbers_are_si: bool) -> float:
     if isinstance(value, bool) or not isinstance(value, Real):
         raise ValueError(named(unit))
     if not math.isfinite(value):
-        raise ValueError(f"a finite number, {named(unit)}")
+        raise ValueError(f"{named(unit)}, neither NaN nor infinite")
     if unit != "dimensionless" and not bare_numbers_are_si:
         raise ValueError(f"text with a unit of dimension {unit}, for example \"{value} {unit}\"")
     return float(value)

@@ -13,7 +13,7 @@ Stored energy is k p^(e+1) / (e+1) in each law.
 from typing import Annotated, Any, Literal, NamedTuple, Union
 
 import numpy as np
-from pydantic import Field, ValidationInfo, field_validator, model_validator
+from pydantic import Field, ValidationInfo, field_validator
 
 from scenes.jit import njit
 from scenes.table import Table
@@ -29,15 +29,13 @@ class _ContactTable(Table):
     @field_validator("stiffness", mode="before")
     @classmethod
     def _stiffness_matches_exponent(cls, value: Any, info: ValidationInfo) -> float:
-        exponent = info.data.get("exponent", 1.5)
+        if "exponent" not in info.data:
+            return 1.0  # the exponent is refused, so the unit to expect is unknown
         bare = bool(info.context and info.context.get("bare_numbers_are_si"))
-        return parse(value, f"N/m**{exponent:.12g}", bare)
-
-    @model_validator(mode="after")
-    def _positive(self):
-        if self.stiffness <= 0.0:
-            raise ValueError("stiffness above zero")
-        return self
+        stiffness = parse(value, f"N/m**{info.data['exponent']:.12g}", bare)
+        if stiffness <= 0.0:
+            raise ValueError("greater than 0")
+        return stiffness
 
 
 class ImpactTable(_ContactTable):
@@ -48,6 +46,7 @@ class ImpactTable(_ContactTable):
     damping_depth: PositiveLength
 
     def record(self) -> "Impact":
+        """Kernel record."""
         return Impact(self.stiffness, self.exponent, self.damping, self.damping_depth)
 
 
@@ -58,6 +57,7 @@ class HuntCrossleyTable(_ContactTable):
     dissipation: quantity("s/m", ge=0.0)
 
     def record(self) -> "HuntCrossley":
+        """Kernel record."""
         return HuntCrossley(self.stiffness, self.exponent, self.dissipation)
 
 
@@ -69,6 +69,7 @@ class LinearTable(_ContactTable):
     damping: ContactDamping = 0.0
 
     def record(self) -> "Linear":
+        """Kernel record."""
         return Linear(self.stiffness, self.damping)
 
 
@@ -76,6 +77,8 @@ ContactTable = Annotated[Union[ImpactTable, HuntCrossleyTable, LinearTable], Fie
 
 
 class Impact(NamedTuple):
+    """Kernel record: stiffness (N/m^e), exponent e, damping (N s/m) and the depth of its full effect (m)."""
+
     stiffness: float
     exponent: float
     damping: float
@@ -83,12 +86,16 @@ class Impact(NamedTuple):
 
 
 class HuntCrossley(NamedTuple):
+    """Kernel record: stiffness (N/m^e), exponent e, dissipation (s/m)."""
+
     stiffness: float
     exponent: float
     dissipation: float
 
 
 class Linear(NamedTuple):
+    """Kernel record: stiffness (N/m), damping (N s/m)."""
+
     stiffness: float
     damping: float
 

@@ -11,7 +11,7 @@ The first branch is the cubic step from -mu_s at -v_s to mu_s at v_s. The force 
 
 from typing import NamedTuple
 
-from pydantic import model_validator
+from pydantic import ValidationInfo, field_validator
 
 from scenes.jit import njit
 from scenes.table import Table
@@ -26,18 +26,20 @@ class FrictionTable(Table):
     static_speed: PositiveVelocity
     dynamic_speed: PositiveVelocity
 
-    @model_validator(mode="after")
-    def _speeds_in_order(self):
-        if self.dynamic_speed <= self.static_speed:
-            raise ValueError("dynamic_speed above static_speed")
-        return self
+    @field_validator("dynamic_speed")
+    @classmethod
+    def _speeds_in_order(cls, dynamic_speed: float, info: ValidationInfo):
+        if dynamic_speed <= info.data.get("static_speed", 0.0):
+            raise ValueError("a speed above static_speed")
+        return dynamic_speed
 
     def record(self) -> "Friction":
+        """Kernel record."""
         return Friction(self.static, self.dynamic, self.static_speed, self.dynamic_speed)
 
 
 class Friction(NamedTuple):
-    """Kernel record of the two-step Coulomb law."""
+    """Kernel record of the two-step Coulomb law: coefficients, and transition speeds (m/s)."""
 
     static: float
     dynamic: float

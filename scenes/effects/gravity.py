@@ -15,6 +15,7 @@ class GravityTable(Table):
     z: Acceleration = 0.0
 
     def record(self) -> "Gravity":
+        """Kernel record."""
         return Gravity(self.x, self.y, self.z)
 
 

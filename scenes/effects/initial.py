@@ -53,6 +53,7 @@ class InitialTable(Table):
     platform_rate: AngularRate = AngularRate()
 
     def record(self) -> "Initial":
+        """Kernel record."""
         return Initial(*(tuple(part.model_dump().values()) for part in (
             self.position, self.attitude, self.velocity, self.rate, self.platform_velocity, self.platform_rate)))
 

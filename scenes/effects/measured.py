@@ -28,41 +28,53 @@ class GaussianFit(NamedTuple):
 
 
 def read_curve(path: str | Path) -> MeasuredCurve:
-    """Read a CSV with header ``time_s,force_N``. Raises ValueError naming what is wrong with the table."""
+    """Read a CSV with header ``time_s,force_N``. Raises ValueError naming everything that is wrong with the table."""
     try:
-        with open(path, newline="") as stream:
+        # Spreadsheets put a byte-order mark in front of UTF-8, which "utf-8-sig" takes away.
+        with open(path, newline="", encoding="utf-8-sig") as stream:
             rows = list(csv.reader(stream))
     except OSError as error:
-        raise ValueError(f"a readable CSV file ({error.strerror}: {path})") from error
+        raise ValueError(f"a readable CSV file ({error.strerror})") from error
+    except (UnicodeDecodeError, csv.Error) as error:
+        raise ValueError(f"a CSV file of text ({error})") from error
     if not rows or [cell.strip() for cell in rows[0]] != ["time_s", "force_N"]:
         raise ValueError("a CSV whose header is time_s,force_N")
     try:
-        data = np.array([[float(cell) for cell in row] for row in rows[1:] if row], dtype=float)
+        data = [(float(time), float(force)) for time, force in filter(None, rows[1:])]
     except ValueError as error:
         raise ValueError(f"two numbers in every row ({error})") from error
-    if data.ndim != 2 or data.shape[0] < 2 or data.shape[1] != 2:
-        raise ValueError("at least two rows of two columns")
-    if not np.isfinite(data).all():
-        raise ValueError("finite numbers only")
-    if data[0, 0] < 0.0:
-        raise ValueError("times that are not negative")
-    if (np.diff(data[:, 0]) <= 0.0).any():
-        raise ValueError("times in increasing order")
-    return MeasuredCurve(np.ascontiguousarray(data[:, 0]), np.ascontiguousarray(data[:, 1]))
+    time, force = np.array(data, dtype=float).reshape(-1, 2).T
+    wrong = []
+    if time.size < 2:
+        wrong.append("at least two rows")
+    if not (np.isfinite(time).all() and np.isfinite(force).all()):
+        wrong.append("finite numbers only")
+    if (time < 0.0).any():
+        wrong.append("times that are not negative")
+    if (np.diff(time[np.isfinite(time)]) <= 0.0).any():
+        wrong.append("times in increasing order")
+    if wrong:
+        raise ValueError("a curve with " + ", ".join(wrong))
+    return MeasuredCurve(np.ascontiguousarray(time), np.ascontiguousarray(force))
 
 
 def fit_gaussian(curve: MeasuredCurve) -> GaussianFit:
-    """Least-squares Gaussian through a measured curve, started from its moments."""
+    """Least-squares Gaussian through a measured curve, started from its moments. Raises ValueError where none fits."""
     time, force = curve
+    total = np.trapezoid(force, time)
+    if time.size < 3 or total <= 0.0:
+        raise ValueError("a curve of at least three points and positive impulse, for a Gaussian to fit")
 
     def gaussian(t, peak, centre, width):
         return peak * np.exp(-0.5 * ((t - centre) / width) ** 2)
 
-    total = np.trapezoid(force, time)
     centre = np.trapezoid(force * time, time) / total
     width = math.sqrt(max(np.trapezoid(force * (time - centre) ** 2, time) / total, np.diff(time).min() ** 2))
     start = (total / (width * math.sqrt(2.0 * math.pi)), centre, width)
-    (peak, centre, width), _ = curve_fit(gaussian, time, force, p0=start, maxfev=20000)
-    width = abs(width)
+    try:
+        (peak, centre, width), _ = curve_fit(gaussian, time, force, p0=start, maxfev=20000)
+    except RuntimeError as error:
+        raise ValueError("a curve that a Gaussian fits (least squares did not converge)") from error
+    peak, centre, width = float(peak), float(centre), abs(float(width))
     residual = np.linalg.norm(force - gaussian(time, peak, centre, width)) / np.linalg.norm(force)
     return GaussianFit(peak, centre, width, float(residual), peak * width * math.sqrt(2.0 * math.pi), float(total))

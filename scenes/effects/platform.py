@@ -21,6 +21,7 @@ class PlatformTable(Table):
     mass_centre: Displacement = Displacement()
 
     def record(self) -> "Platform":
+        """Kernel record."""
         inertia = tensor(self.inertia)
         centre = self.mass_centre
         return Platform(self.mass, inertia, np.linalg.inv(inertia), (centre.x, centre.y, centre.z))

@@ -3,21 +3,24 @@
     F(t) = sum_i P_i exp(-(t - t_i)^2 / (2 s_i^2))   begin <= t <= end,        impulse of one pulse J = P s sqrt(2 pi)
 
 A pulse cut at ``n`` widths keeps erf(n / sqrt 2) of its impulse; ``rescale`` restores it. A measured curve is used point by
-point, or through its least-squares Gaussian fit; the fit, its residual and its impulse are reported either way.
+point, or through its least-squares Gaussian fit; ``describe`` says which, with the fit, its residual and both impulses.
+The law itself is in ``thrust_law``, whose names are also found here.
 """
 
 import math
-from typing import Annotated, Literal, NamedTuple, Union
+from typing import Annotated, Literal, Union
 
 import numpy as np
-from pydantic import Field, PrivateAttr, model_validator
+from pydantic import AfterValidator, Field, PrivateAttr, ValidationInfo, field_validator, model_validator
 
-from scenes.effects.measured import MeasuredCurve, fit_gaussian, read_curve
-from scenes.jit import njit
-from scenes.table import Table
+from scenes.effects.measured import GaussianFit, MeasuredCurve, fit_gaussian, read_curve
+from scenes.effects.thrust_law import (ROOT_TWO_PI, Curve, Pulses, Thrust, burnout, corners, impulse, kept, magnitude, peak,
+                                       sample, shortest_feature)
+from scenes.table import Table, at_least_one
 from scenes.units import Force, Impulse, NonNegativeTime, PositiveLength, PositiveNumber, PositiveTime, Time
 
-_ROOT_TWO_PI = math.sqrt(2.0 * math.pi)
+__all__ = ["Curve", "Pulse", "Pulses", "Thrust", "ThrustTable", "burnout", "corners", "impulse", "magnitude", "peak", "sample",
+           "shortest_feature"]
 
 
 class Pulse(Table):
@@ -36,47 +39,99 @@ class Pulse(Table):
 
     def height(self) -> float:
         """Peak force (N)."""
-        return self.peak if self.peak is not None else self.impulse / (self.width * _ROOT_TWO_PI)
+        return self.peak if self.peak is not None else self.impulse / (self.width * ROOT_TWO_PI)
+
+    def size(self) -> float:
+        """Impulse (N s) of the whole, uncut pulse."""
+        return self.height() * self.width * ROOT_TWO_PI
 
 
 class _ThrustTable(Table):
+    """What every kind has: ``arm`` (m), distance of the point of application behind the nominal mass centre; ``reaction``."""
+
     arm: PositiveLength = 0.1
     reaction: Literal["platform", "exhaust"] = "platform"
 
+    def describe(self, duration: float) -> dict[str, float | str]:
+        """What pushes, for results and report: numbers in SI by name, and ``text`` that says it in one sentence.
+
+        ``impulse_requested_Ns`` is what the scene asks for, ``impulse_delivered_Ns`` what acts in 0..``duration`` (s).
+        """
+        record = self.record()
+        asked, given = self.requested(), impulse(record, duration)
+        text = f"{self.kind}, {self.usage()}; impulse requested {asked:.7g} N s, delivered in the scene {given:.7g} N s"
+        return {"kind": self.kind, "peak_N": peak(record, duration), "impulse_requested_Ns": asked,
+                "impulse_delivered_Ns": given, **self.details(), "text": text}
+
+    def usage(self) -> str:
+        """How the table is turned into F(t), in words."""
+        return "used as given"
+
+    def details(self) -> dict[str, float | str]:
+        """What ``describe`` adds for this kind."""
+        return {}
+
 
 class _PulsedTable(_ThrustTable):
-    """Gaussians; ``cutoff`` is the number of widths kept each side of a centre (absent: all), ``rescale`` keeps the impulse."""
+    """Gaussians, cut at ``cutoff`` widths before the first begins and after the last ends (absent: not cut).
+
+    ``rescale`` raises each pulse by the share of it that the cut takes away, so that the impulse stays as asked.
+    """
 
     cutoff: PositiveNumber | None = None
     rescale: bool = False
 
-    def record(self) -> "Thrust":
+    @field_validator("rescale")
+    @classmethod
+    def _only_when_cut(cls, rescale: bool, info: ValidationInfo):
+        if rescale and "cutoff" in info.data and info.data["cutoff"] is None:
+            raise ValueError("a cutoff beside it: without one there is nothing to restore")
+        return rescale
+
+    def record(self) -> Thrust:
+        """Kernel record."""
         pulses = self.pulses()
-        factor = 1.0 / math.erf(self.cutoff / math.sqrt(2.0)) if self.cutoff and self.rescale else 1.0
         begin, end = -math.inf, math.inf
         if self.cutoff:
             begin = min(p.centre - self.cutoff * p.width for p in pulses)
             end = max(p.centre + self.cutoff * p.width for p in pulses)
-        array = np.array([(p.height() * factor, p.centre, p.width) for p in pulses])
-        return Thrust(Pulses(*(np.ascontiguousarray(column) for column in array.T), begin, end), None)
+        factors = [1.0 / kept(begin, end, p.centre, p.width) if self.rescale else 1.0 for p in pulses]
+        rows = np.array([(p.height() * factor, p.centre, p.width) for p, factor in zip(pulses, factors)])
+        return Thrust(Pulses(*(np.ascontiguousarray(column) for column in rows.T), begin, end), None)
+
+    def requested(self) -> float:
+        """Impulse (N s) of the uncut pulses."""
+        return float(sum(pulse.size() for pulse in self.pulses()))
+
+    def usage(self) -> str:
+        """Whether the pulses are cut, and whether their impulse is restored."""
+        if not self.cutoff:
+            return "not cut"
+        return f"cut at {self.cutoff:g} widths and {'rescaled' if self.rescale else 'not rescaled'}"
+
+    def details(self) -> dict[str, float | str]:
+        """Where the pulses are cut (widths) and whether they are rescaled."""
+        return {"cutoff_widths": self.cutoff or "none", "rescaled": "yes" if self.rescale else "no"}
 
 
 class GaussianTable(Pulse, _PulsedTable):
-    """``[thrust] kind = "gaussian"``."""
+    """``[thrust] kind = "gaussian"``: the keys of one pulse and those of a pulsed thrust."""
 
     kind: Literal["gaussian"]
 
-    def pulses(self) -> list[Pulse]:
-        return [self]
+    def pulses(self) -> tuple[Pulse, ...]:
+        """The one pulse, which is the table itself."""
+        return (self,)
 
 
 class GaussiansTable(_PulsedTable):
-    """``[thrust] kind = "gaussians"`` with ``[[thrust.pulses]]``."""
+    """``[thrust] kind = "gaussians"`` with ``[[thrust.components]]``, one pulse each."""
 
     kind: Literal["gaussians"]
-    components: list[Pulse] = Field(min_length=1)
+    components: Annotated[tuple[Pulse, ...], AfterValidator(at_least_one)]
 
-    def pulses(self) -> list[Pulse]:
+    def pulses(self) -> tuple[Pulse, ...]:
+        """The components."""
         return self.components
 
 
@@ -88,9 +143,14 @@ class ConstantTable(_ThrustTable):
     start: NonNegativeTime = 0.0
     duration: PositiveTime
 
-    def record(self) -> "Thrust":
+    def record(self) -> Thrust:
+        """Kernel record: a curve that jumps on and off."""
         times = np.array([self.start, self.start, self.start + self.duration, self.start + self.duration])
         return Thrust(None, Curve(times, np.array([0.0, self.force, self.force, 0.0])))
+
+    def requested(self) -> float:
+        """Impulse (N s) of the whole push."""
+        return self.force * self.duration
 
 
 class MeasuredTable(_ThrustTable):
@@ -101,118 +161,59 @@ class MeasuredTable(_ThrustTable):
     use: Literal["curve", "fit"] = "curve"
     _curve: MeasuredCurve = PrivateAttr()
 
+    @field_validator("file")
+    @classmethod
+    def _readable(cls, file: str):
+        read_curve(file)
+        return file
+
     @model_validator(mode="after")
-    def _readable(self):
+    def _usable(self):
         self._curve = read_curve(self.file)
+        if self.use == "fit":
+            self.fit()
         return self
 
-    def fit(self):
-        """Least-squares Gaussian of the curve, with residual and impulses."""
+    def fit(self) -> GaussianFit:
+        """Least-squares Gaussian of the curve, with residual and impulses. Raises ValueError where none fits."""
         return fit_gaussian(self._curve)
 
-    def record(self) -> "Thrust":
+    def points(self) -> list[list[float]]:
+        """Times (s) and forces (N) of the curve."""
+        return [self._curve.time.tolist(), self._curve.force.tolist()]
+
+    def record(self) -> Thrust:
+        """Kernel record: the curve, or one pulse."""
         if self.use == "fit":
             fit = self.fit()
             one = (np.array([value]) for value in (fit.peak, fit.centre, fit.width))
             return Thrust(Pulses(*one, -math.inf, math.inf), None)
         return Thrust(None, Curve(self._curve.time, self._curve.force))
 
+    def requested(self) -> float:
+        """Impulse (N s) of the measured curve."""
+        return float(np.trapezoid(self._curve.force, self._curve.time))
+
+    def usage(self) -> str:
+        """Whether the points or the fit act, and how well the two agree."""
+        acting = "the points act" if self.use == "curve" else "the Gaussian fit acts"
+        try:
+            fit = self.fit()
+        except ValueError:
+            return f"{acting}, no Gaussian fits"
+        return (f"{acting}; fit peak {fit.peak:.6g} N, centre {fit.centre:.6g} s, width {fit.width:.6g} s, relative residual "
+                f"{fit.relative_residual:.3g}, impulse {fit.impulse:.7g} N s against {fit.curve_impulse:.7g} N s of the curve")
+
+    def details(self) -> dict[str, float | str]:
+        """Which of curve and fit is used, and the fit."""
+        used = {"use": self.use}
+        try:
+            fit = self.fit()
+        except ValueError:
+            return used
+        return used | {"fit_peak_N": fit.peak, "fit_centre_s": fit.centre, "fit_width_s": fit.width,
+                       "fit_relative_residual": fit.relative_residual, "fit_impulse_Ns": fit.impulse,
+                       "curve_impulse_Ns": fit.curve_impulse}
+
 
 ThrustTable = Annotated[Union[GaussianTable, GaussiansTable, ConstantTable, MeasuredTable], Field(discriminator="kind")]
-
-
-class Pulses(NamedTuple):
-    """Gaussians: peaks (N), centres (s), widths (s), each (n,), zero outside begin..end (s)."""
-
-    peaks: np.ndarray
-    centres: np.ndarray
-    widths: np.ndarray
-    begin: float
-    end: float
-
-
-class Curve(NamedTuple):
-    """Piecewise linear curve: times (s, not decreasing; a repeated time is a jump) and forces (N)."""
-
-    times: np.ndarray
-    forces: np.ndarray
-
-
-class Thrust(NamedTuple):
-    """Kernel record: exactly one of the two is not None."""
-
-    pulses: Pulses | None
-    curve: Curve | None
-
-
-@njit
-def _pulsed(pulses, time):
-    if not pulses.begin <= time <= pulses.end:
-        return 0.0
-    total = 0.0
-    for i in range(pulses.peaks.size):
-        x = (time - pulses.centres[i]) / pulses.widths[i]
-        total += pulses.peaks[i] * np.exp(-0.5 * x * x)
-    return total
-
-
-@njit
-def _interpolated(curve, time):
-    last = curve.times.size - 1
-    if time < curve.times[0] or time >= curve.times[last]:
-        return 0.0
-    after = np.searchsorted(curve.times, time, side="right")
-    t0, t1 = curve.times[after - 1], curve.times[after]
-    f0, f1 = curve.forces[after - 1], curve.forces[after]
-    return f0 + (f1 - f0) * (time - t0) / (t1 - t0)
-
-
-@njit
-def magnitude(pulses, curve, time):
-    """Thrust (N) at ``time`` (s). At a jump of a curve the value after the jump is taken."""
-    force = 0.0
-    if pulses is not None:
-        force = _pulsed(pulses, time)
-    if curve is not None:
-        force = _interpolated(curve, time)
-    return force
-
-
-def corners(thrust: Thrust, duration: float) -> np.ndarray:
-    """Sorted times (s) inside (0, duration) where F or its slope jumps: an integrator must stop there."""
-    times = thrust.curve.times if thrust.curve is not None else np.array([thrust.pulses.begin, thrust.pulses.end])
-    return np.unique(times[(times > 0.0) & (times < duration)])
-
-
-def shortest_feature(thrust: Thrust) -> float:
-    """Time scale (s) no step may jump over: the narrowest pulse width, or the shortest segment of a curve."""
-    if thrust.pulses is not None:
-        return float(thrust.pulses.widths.min())
-    return float(np.diff(np.unique(thrust.curve.times)).min())
-
-
-def sample(thrust: Thrust, time: np.ndarray) -> np.ndarray:
-    """Thrust (N) at each of ``time`` (s)."""
-    return np.array([magnitude(thrust.pulses, thrust.curve, t) for t in np.asarray(time, dtype=float)])
-
-
-def burnout(thrust: Thrust, fraction: float, duration: float) -> float:
-    """Earliest time (s) after which thrust stays below ``fraction`` of its peak; ``duration`` if that is later."""
-    time = np.linspace(0.0, duration, 20001)
-    force = np.abs(sample(thrust, time))
-    above = np.flatnonzero(force >= fraction * force.max()) if force.max() > 0.0 else np.array([], dtype=int)
-    return 0.0 if above.size == 0 else float(time[min(above[-1] + 1, time.size - 1)])
-
-
-def impulse(thrust: Thrust, duration: float) -> float:
-    """Impulse (N s) delivered in 0..duration: exact for both kinds."""
-    if thrust.pulses is not None:
-        p = thrust.pulses
-        upper, lower = min(duration, p.end), max(0.0, p.begin)
-        def erf(x, i):
-            return math.erf((x - p.centres[i]) / (math.sqrt(2.0) * p.widths[i]))
-        return float(sum(0.5 * p.peaks[i] * p.widths[i] * _ROOT_TWO_PI * (erf(upper, i) - erf(lower, i))
-                         for i in range(p.peaks.size)))
-    t, f = thrust.curve.times, thrust.curve.forces
-    inside = t <= duration
-    return float(np.trapezoid(f[inside], t[inside]))

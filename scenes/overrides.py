@@ -1,0 +1,81 @@
+"""Dotted keys such as ``thrust_offset.misalignment.axial`` or ``pads.0.relief``: set, dropped, and checked against the tables."""
+
+from typing import Any, Iterator, Mapping, get_args, get_origin
+
+from scenes.table import Table
+
+
+def plain(value: Any) -> Any:
+    """A copy that shares no container with ``value``, tuples turned into lists as TOML has them."""
+    if isinstance(value, Mapping):
+        return {key: plain(item) for key, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [plain(item) for item in value]
+    return value
+
+
+def dotted(table: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
+    """(dotted key, value) pairs of a nested mapping, so that ``a.b = 1`` means the same as ``"a.b" = 1`` in a file."""
+    for key, value in table.items():
+        if isinstance(value, Mapping) and value:
+            yield from dotted(value, f"{prefix}{key}.")
+        else:
+            yield f"{prefix}{key}", value
+
+
+def is_key(annotation: Any, key: str) -> bool:
+    """Whether a table of type ``annotation`` can hold the dotted ``key``, present or not."""
+    part, _, rest = key.partition(".")
+    inner = _inside(annotation, part)
+    return bool(inner) and (not rest or any(is_key(item, rest) for item in inner))
+
+
+def _inside(annotation: Any, part: str) -> list:
+    if isinstance(annotation, type) and issubclass(annotation, Table):
+        return [annotation.model_fields[part].annotation] if part in annotation.model_fields else []
+    if get_origin(annotation) in (list, tuple):
+        return list(get_args(annotation)[:1]) if part.isdigit() else []
+    if get_origin(annotation) is dict:
+        return [get_args(annotation)[1]]
+    return [found for item in get_args(annotation) for found in _inside(item, part)]
+
+
+def is_drop(value: Any) -> bool:
+    """Whether ``value`` asks for a table or key to be left out."""
+    return value is None or (isinstance(value, str) and value == "absent")
+
+
+def apply(raw: dict, key: str, value: Any) -> tuple[str, str, str] | None:
+    """Set one dotted key in place, or drop it; returns (key, given, expected) when it leads nowhere.
+
+    A table that loses its last key is dropped with it: an empty table would be present without meaning anything.
+    """
+    head, _, rest = key.partition(".")
+    return _apply_inside(raw, head, rest, key, value)
+
+
+def _apply_inside(table: Any, head: str, rest: str, key: str, value: Any) -> tuple[str, str, str] | None:
+    if isinstance(table, list):
+        if not (head.isdigit() and int(head) < len(table)):
+            return key, repr(head), f"an index below {len(table)}"
+        place = int(head)
+    elif isinstance(table, dict):
+        place = head
+        if is_drop(value) and head not in table:
+            return None
+        if rest:
+            table.setdefault(head, {})
+    else:
+        return key, repr(head), "a key inside a table"
+    if rest:
+        fault = _apply_inside(table[place], *rest.partition(".")[::2], key, value)
+        if is_drop(value) and table[place] == {}:
+            del table[place]
+        return fault
+    if not is_drop(value):
+        table[place] = value
+    elif isinstance(table, list):
+        return key, "nothing", "a value, since a list keeps its length"
+    else:
+        del table[place]
+    return None

@@ -1,0 +1,85 @@
+"""Scene files: TOML on disk to one nested mapping, a file that ``extends`` another merged over it.
+
+In a file that extends another, a table set to ``"absent"`` drops the inherited one, and a ``[thrust]`` of another kind or a
+``[contact]`` of another law replaces the inherited table instead of mixing with it.
+"""
+
+import tomllib
+from pathlib import Path
+
+from scenes.faults import Fault, SceneError
+
+CATALOG = Path(__file__).resolve().parent / "catalog"
+_CHOICE = {"thrust": "kind", "contact": "law"}
+_FREE_TEXT = {"conditions", "provenance"}
+
+
+def names() -> list[str]:
+    """Names of the scenes that come with the package."""
+    return sorted(path.stem for path in CATALOG.glob("*.toml"))
+
+
+def read(name_or_path: str | Path) -> tuple[dict, str]:
+    """Mapping and path of a catalogue scene (by name) or of a TOML file. Raises SceneError."""
+    path = Path(name_or_path)
+    if path.suffix != ".toml":
+        path = CATALOG / f"{name_or_path}.toml"
+        if not path.is_file():
+            raise SceneError([Fault(str(name_or_path), "scene", "an unknown name", _known())])
+    raw = _inherit(path, str(path), ())
+    raw.setdefault("name", path.stem)
+    return raw, str(path)
+
+
+def _known() -> str:
+    return f"a path to a .toml file or one of {', '.join(names())}"
+
+
+def _inherit(path: Path, user_file: str, chain: tuple[Path, ...]) -> dict:
+    """``path`` merged over what it extends. Faults of an inherited file name the file the user gave, and that file."""
+    key = "file" if not chain else "extends"
+    if path.resolve() in chain:
+        raise SceneError([Fault(user_file, key, str(path), "files that do not extend each other in a circle")])
+    raw = _toml(path, user_file, key)
+    thrust = raw.get("thrust")
+    if isinstance(thrust, dict) and isinstance(thrust.get("file"), str):
+        thrust["file"] = str((path.parent / thrust["file"]).resolve())
+    base = raw.pop("extends", None)
+    if base is None:
+        return raw
+    if not isinstance(base, str):
+        raise SceneError([Fault(user_file, "extends", repr(base), _known())])
+    base_path = path.parent / base if base.endswith(".toml") else CATALOG / f"{base}.toml"
+    if not base_path.is_file():
+        raise SceneError([Fault(user_file, "extends", repr(base), _known())])
+    return _merged(_inherit(base_path, user_file, (*chain, path.resolve())), raw)
+
+
+def _toml(path: Path, user_file: str, key: str) -> dict:
+    inherited = "" if key == "file" else f"{path}: "
+    try:
+        with open(path, "rb") as stream:
+            return tomllib.load(stream)
+    except OSError as error:
+        raise SceneError([Fault(user_file, key, f"{inherited}{error.strerror}", "a readable TOML file")]) from error
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise SceneError([Fault(user_file, key, f"{inherited}{error}", "valid TOML")]) from error
+
+
+def _merged(base: dict, extra: dict) -> dict:
+    merged = dict(base)
+    for key, value in extra.items():
+        if value == "absent":
+            merged.pop(key, None)
+        elif key in _FREE_TEXT and isinstance(value, dict):
+            merged[key] = merged.get(key, {}) | value
+        elif isinstance(value, dict) and isinstance(merged.get(key), dict) and not _other_choice(key, merged[key], value):
+            merged[key] = _merged(merged[key], value)
+        else:
+            merged[key] = value
+    return merged
+
+
+def _other_choice(key: str, base: dict, extra: dict) -> bool:
+    choice = _CHOICE.get(key)
+    return choice in extra and extra[choice] != base.get(choice)
