@@ -10,12 +10,12 @@ import numpy as np
 from scenes.jit import njit
 
 
-# contract allows fused multiply-add only. The order of the sums stays as written, so results do not depend on the vector width.
-@njit(fastmath={"contract"})
+@njit
 def internal_force(displacement, hexes, shape_class, stiffness, force_out):
     """Set force_out (n,3) N to K u for displacement (n,3) m; hexes, shape_class, stiffness as in `assembly.Operator`.
 
-    Deterministic: elements are added in their order. force_out must not share memory with displacement.
+    Deterministic: elements are added in their order, and sums keep the order written, whatever the vector width. force_out
+    must not share memory with displacement.
     """
     element_force = np.empty(24)
     force_out[:] = 0.0
@@ -46,7 +46,7 @@ def internal_force(displacement, hexes, shape_class, stiffness, force_out):
             force_out[node, 2] += element_force[3 * corner + 2]
 
 
-@njit(inline="always", fastmath={"contract"})
+@njit(inline="always")
 def _relative(displacement, node, origin):
     return (displacement[node, 0] - displacement[origin, 0],
             displacement[node, 1] - displacement[origin, 1],
