@@ -1,7 +1,10 @@
 """Calibrated surrogate constants: values with their evidence, as a TOML file. Data only; the fit itself is in ``calibrate``."""
 
+import json
+import math
 import tomllib
 from dataclasses import asdict, dataclass, field
+from numbers import Integral, Real
 from pathlib import Path
 
 import numpy as np
@@ -38,10 +41,10 @@ class Calibration:
     def apply(self, scene: Scene) -> Scene:
         """``scene`` with the calibrated constants; constants of an effect the scene lacks are left out."""
         return scene.replace({key: value for key, value in self.constants.items()
-                              if getattr(scene, key.split(".")[0]) is not None})
+                              if getattr(scene, key.split(".")[0], "unknown") is not None})
 
     def save(self, path: str | Path) -> None:
-        """Write TOML atomically."""
+        """Write TOML atomically. Raises ValueError for a NaN (an interval without an end is inf)."""
         tables = asdict(self) | {"information": np.asarray(self.information).tolist()}
         plain = {key: value for key, value in tables.items() if not isinstance(value, dict)}
         nested = {key: value for key, value in tables.items() if isinstance(value, dict)}
@@ -52,19 +55,25 @@ class Calibration:
 
     @classmethod
     def load(cls, path: str | Path) -> "Calibration":
-        """Read what ``save`` wrote."""
-        data = tomllib.loads(Path(path).read_text())
-        return cls(**data | {"information": np.array(data["information"])})
+        """Read what ``save`` wrote. Raises FileNotFoundError, or ValueError for a damaged or foreign file."""
+        try:
+            data = tomllib.loads(Path(path).read_text(encoding="utf-8"))
+            return cls(**data | {"information": np.array(data["information"])})
+        except (ValueError, TypeError, KeyError) as error:
+            raise ValueError(f"{path}: not a calibration file ({error})") from error
 
 
 def _toml(value) -> str:
-    if isinstance(value, bool):
+    if isinstance(value, (bool, np.bool_)):
         return "true" if value else "false"
-    if isinstance(value, (int, float)):
-        return repr(float(value)) if isinstance(value, float) else str(value)
+    if isinstance(value, Integral):
+        return str(int(value))
+    if isinstance(value, Real):
+        if math.isnan(value):
+            raise ValueError("a calibration holds NaN")
+        return repr(float(value))
     if isinstance(value, str):
-        escaped = value.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n")
-        return f'"{escaped}"'
+        return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")  # JSON's escapes are TOML's
     if isinstance(value, (list, tuple)):
         return "[" + ", ".join(_toml(item) for item in value) + "]"
     if isinstance(value, dict):

@@ -5,6 +5,7 @@ quaternions are scalar first, body to inertial.
 """
 
 import json
+import math
 from dataclasses import dataclass, field, fields
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -23,6 +24,7 @@ _DIMENSIONS = {
     "platform_quaternion": ("time", "component"), "platform_rate": ("time", "axis"),
     "pad_force": ("time", "face", "axis"), "energy": ("time", "entry"), "transverse_energy": ("time", "entry"),
 }
+_PLAIN = ("checks", "cost", "scene", "numerics", "versions")
 _UNITS = {
     "position": "m", "velocity": "m/s", "quaternion": "1", "rate": "rad/s", "platform_position": "m",
     "platform_velocity": "m/s", "platform_quaternion": "1", "platform_rate": "rad/s", "pad_force": "N",
@@ -48,6 +50,8 @@ class Trajectory:
     Arrays have the samples first: time (n,) s, vectors (n,3), quaternions (n,4), pad_force (n,f,3) N, ledgers
     (n, len(ledger.ENTRIES)) J. ``checks`` holds the kept promises (dimensionless), ``cost`` wall_s, compile_s, steps, dt_s
     and what a fidelity adds, ``scene`` the resolved inputs. A diverged or refused run has no settled values.
+
+    Raises ValueError for an unknown status, arrays that do not fit each other, and any NaN or inf, naming where it is.
     """
 
     fidelity: str
@@ -75,9 +79,16 @@ class Trajectory:
     def __post_init__(self):
         if self.status not in STATUSES:
             raise ValueError(f"status {self.status!r}, expected one of {STATUSES}")
-        for name in _DIMENSIONS:
+        widths = {"axis": 3, "component": 4, "entry": len(ledger.ENTRIES), "time": np.size(self.time)}
+        for name, dimensions in _DIMENSIONS.items() | {("time", ("time",))}:
+            shape = np.shape(getattr(self, name))
+            if len(shape) != len(dimensions) or any(widths.get(d, n) != n for d, n in zip(dimensions, shape)):
+                raise ValueError(f"{name} has shape {shape}, expected {dimensions} with {widths}")
             if not np.isfinite(getattr(self, name)).all():
                 raise ValueError(f"{name} holds NaN or inf: a run must stop before it reaches a result")
+        plain = {name: getattr(self, name) for name in _PLAIN} | {"outcome": self.outcome._asdict()}
+        if lost := [".".join(path) for path, number in _numbers(plain) if not math.isfinite(number)]:
+            raise ValueError(f"{', '.join(lost)}: NaN or inf, which no result may hold (None says that there is no value)")
 
     def to_xarray(self) -> xarray.Dataset:
         """Labelled copy with units as attributes; motion relative to the platform is added."""
@@ -87,25 +98,43 @@ class Trajectory:
             variables[name] = (("time", "axis"), relative[name], {"units": unit})
         coordinates = {"time": ("time", self.time, {"units": "s"}), "axis": list(_VECTOR),
                        "component": ["w", "x", "y", "z"], "entry": list(ledger.ENTRIES)}
-        plain = {name: json.dumps(getattr(self, name)) for name in ("checks", "cost", "scene", "numerics", "versions")}
+        plain = {name: json.dumps(getattr(self, name), allow_nan=False) for name in _PLAIN}
         return xarray.Dataset(variables, coordinates, attrs={
             "fidelity": self.fidelity, "status": self.status, "message": self.message,
             "outcome": json.dumps(self.outcome._asdict()), **plain})
 
     def save(self, path: str | Path) -> None:
-        """Write netCDF atomically."""
+        """Write netCDF atomically: an interrupted call leaves the file that was there, or none."""
         with replacing(path) as temporary:
             self.to_xarray().to_netcdf(temporary, engine="h5netcdf")
 
     @classmethod
     def load(cls, path: str | Path) -> "Trajectory":
-        """Read what ``save`` wrote. Raises OSError for a missing or damaged file."""
-        with xarray.open_dataset(path, engine="h5netcdf", decode_timedelta=False) as data:
-            arrays = {name: data[name].values for name in _DIMENSIONS}
-            plain = {name: json.loads(data.attrs[name]) for name in ("checks", "cost", "scene", "numerics", "versions")}
-            result = outcome.Outcome(**json.loads(data.attrs["outcome"]))
-            return cls(fidelity=data.attrs["fidelity"], status=data.attrs["status"], message=data.attrs["message"],
-                       time=data["time"].values, outcome=result, **arrays, **plain)
+        """Read what ``save`` wrote. Raises FileNotFoundError, or OSError for a damaged or foreign file."""
+        if not Path(path).is_file():
+            raise FileNotFoundError(f"{path}: no such trajectory file")
+        try:
+            with xarray.open_dataset(path, engine="h5netcdf", decode_timedelta=False) as data:
+                arrays = {name: data[name].values for name in _DIMENSIONS}
+                plain = {name: json.loads(data.attrs[name]) for name in _PLAIN}
+                result = outcome.Outcome(**json.loads(data.attrs["outcome"]))
+                return cls(fidelity=data.attrs["fidelity"], status=data.attrs["status"], message=data.attrs["message"],
+                           time=data["time"].values, outcome=result, **arrays, **plain)
+        except (OSError, KeyError, TypeError, ValueError, RuntimeError) as error:
+            # What HDF5 says of a damaged file depends on where the damage is.
+            raise OSError(f"{path}: not a whole trajectory file ({error})") from error
+
+
+def _numbers(value, path=()):
+    """(path, float) of every float inside nested dicts and lists."""
+    if isinstance(value, dict):
+        for key, item in value.items():
+            yield from _numbers(item, (*path, str(key)))
+    elif isinstance(value, (list, tuple)):
+        for index, item in enumerate(value):
+            yield from _numbers(item, (*path, str(index)))
+    elif isinstance(value, float):
+        yield path, value
 
 
 assert set(_DIMENSIONS) <= {item.name for item in fields(Trajectory)}
