@@ -83,7 +83,7 @@ class Store:
 
     def get(self, run: Run) -> Trajectory:
         """The result of one run, from the store or made now."""
-        return self.fill(run.label, [run])[0]
+        return self.fill(run.fidelity, [run])[0]
 
     def fill(self, title: str, runs: Sequence[Run]) -> list[Trajectory]:
         """Results of ``runs`` in their order; those missing are run, ``workers`` at a time, with progress on standard error.

@@ -1,0 +1,207 @@
+"""The ``tipoff`` command: one sub-command per stage, all of the same shape.
+
+Exit codes: 0 done; 1 a run failed (its status says why); 2 bad input, every fault listed, nothing written. Heavy libraries are
+imported by the command that needs them, so that ``--help`` answers at once.
+"""
+
+import json
+import re
+import sys
+from dataclasses import replace
+from enum import Enum
+from pathlib import Path
+from typing import Annotated, Callable, Optional
+
+import typer
+
+EXAMPLES = """Examples:
+
+  tipoff report                              the whole page, reference scene
+
+  tipoff run --condition phi35               one quick surrogate run
+
+  tipoff run --fidelity highfi --element-size 8 --set thrust.peak="7 kN"
+
+  tipoff compare --scene tiny --json         the agreement table as JSON
+
+  tipoff highfi --scene my_launcher.toml     a scene of your own
+"""
+
+app = typer.Typer(no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False, rich_markup_mode="rich",
+                  help="Which velocity and which angular rates does a payload leave its rail with?\n\n" + EXAMPLES)
+
+SceneName = Annotated[str, typer.Option("--scene", metavar="NAME_OR_FILE", help="Catalogue scene or path of a .toml file.")]
+Out = Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder that receives a folder per scene.")]
+Set = Annotated[Optional[list[str]], typer.Option("--set", metavar="KEY=VALUE",
+                help='Override, repeatable: --set payload.mass="9 kg"; "absent" drops a table.')]
+Conditions = Annotated[Optional[list[str]], typer.Option("--condition", metavar="NAME",
+                       help="Named condition of the scene, repeatable; default: all.")]
+Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON on standard output.")]
+ElementSize = Annotated[Optional[float], typer.Option("--element-size", metavar="MM", min=0.05,
+                        help="Element size of the reference in mm.")]
+Workers = Annotated[Optional[int], typer.Option("--workers", metavar="N", min=1, help="Runs side by side; default: all cores.")]
+
+
+class Fidelity(str, Enum):
+    """The two models."""
+
+    highfi = "highfi"
+    lowfi = "lowfi"
+
+
+def _study(scene: str, out: Path, overrides, conditions=None, element_size=None, workers=None):
+    import scenes
+    from scenes.faults import Fault, SceneError
+    from studies.progress import say
+    from studies.settings import defaults
+    from studies.study import Study
+
+    pairs = [item.partition("=") for item in overrides or []]
+    if wrong := [item for item, (_, equals, _) in zip(overrides or [], pairs) if not equals]:
+        raise SceneError([Fault("--set", item, "no value", "KEY=VALUE") for item in wrong])
+    found = scenes.load(scene).replace({key.strip(): value.strip() for key, _, value in pairs})
+    settings = defaults(found.name)
+    if element_size is not None:
+        settings = replace(settings, element_size=1e-3 * element_size)
+    if workers is not None:
+        settings = replace(settings, workers=workers)
+    study = Study(found, Path(out) / re.sub(r"[^\w.-]+", "-", found.name).strip("."), settings, tuple(conditions or ()))
+    study.conditions  # a bad override or an unknown condition is a fault of the input, found before anything runs
+    for warning in found.warnings:
+        say(f"implausible: {warning}")
+    return study
+
+
+def _guarded(work: Callable[[], dict], as_json: bool = False) -> dict:
+    """Run ``work``; turn bad input and failed runs into messages and exit codes."""
+    from scenes.faults import SceneError
+    from studies.study import StudyError
+
+    try:
+        result = work()
+    except SceneError as fault:
+        _stop(str(fault), 2)
+    except StudyError as fault:
+        _stop(str(fault), 1)
+    except KeyboardInterrupt:
+        _stop("stopped; what was finished is kept, and the same command goes on from there", 130)
+    except ValueError as fault:
+        if type(fault).__name__ not in ("MeshError", "StepError"):
+            raise
+        _stop(f"{type(fault).__name__}: {fault}", 2)
+    if as_json:
+        print(json.dumps(result, indent=1))
+    if failed := result.get("failed"):
+        _stop("failed:\n  " + "\n  ".join(failed), 1)
+    return result
+
+
+def _stop(message: str, code: int) -> None:
+    print(f"tipoff: {message}", file=sys.stderr)
+    raise typer.Exit(code)
+
+
+@app.command()
+def mesh(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = None, element_size: ElementSize = None,
+         json_: Json = False) -> None:
+    """Mesh the rails: elements, nodes, named surfaces, quality; writes mesh.json and mesh.vtu."""
+
+    def work() -> dict:
+        from studies.stages import mesh as stage
+
+        return stage.run(_study(scene, out, set_, element_size=element_size))
+
+    _guarded(work, json_)
+
+
+@app.command()
+def highfi(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = None, condition: Conditions = None,
+           element_size: ElementSize = None, workers: Workers = None, json_: Json = False) -> None:
+    """Run the finite-element reference on every condition; writes highfi.json and a netCDF file each."""
+    _conditions("highfi", scene, out, set_, condition, element_size, workers, json_)
+
+
+@app.command()
+def lowfi(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = None, condition: Conditions = None,
+          workers: Workers = None, json_: Json = False) -> None:
+    """Run the rigid surrogate, uncalibrated, on every condition; writes lowfi.json and a netCDF file each."""
+    _conditions("lowfi", scene, out, set_, condition, None, workers, json_)
+
+
+def _conditions(fidelity, scene, out, set_, condition, element_size, workers, json_) -> None:
+    def work() -> dict:
+        from studies.stages import runs
+
+        return runs.run(_study(scene, out, set_, condition, element_size, workers), fidelity)
+
+    _guarded(work, json_)
+
+
+def _stage(name: str, summary: str) -> None:
+    """Add the command of a stage that takes the common options only."""
+
+    def command(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = None, element_size: ElementSize = None,
+                workers: Workers = None, json_: Json = False) -> None:
+        def work() -> dict:
+            import importlib
+
+            stage = importlib.import_module(f"studies.stages.{name}")
+            return stage.run(_study(scene, out, set_, element_size=element_size, workers=workers))
+
+        _guarded(work, json_)
+
+    app.command(name, help=summary)(command)
+
+
+_stage("calibrate", "Fit the surrogate's contact constants to the reference; writes calibration.toml and calibration.json.")
+_stage("compare", "Agreement on fitted and held-out conditions beside the floor, and the speed-up; writes agreement.json.")
+_stage("cost", "What accuracy costs in time, both models; writes cost.json.")
+_stage("stability", "Hard cases, each with a simpler method that fails on it; writes stability.json.")
+_stage("ablation", "Every effect off, one at a time: time, rates, what is compiled; writes ablation.json.")
+_stage("report", "All of it on one self-contained page; writes report.html and figures/.")
+
+
+@app.command()
+def run(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = None,
+        condition: Annotated[str, typer.Option("--condition", metavar="NAME", help="Named condition.")] = "nominal",
+        fidelity: Annotated[Fidelity, typer.Option(help="Which model.")] = Fidelity.lowfi,
+        calibration: Annotated[Optional[Path], typer.Option(metavar="FILE", help="calibration.toml for the surrogate.")] = None,
+        element_size: ElementSize = None, json_: Json = False) -> None:
+    """Run one condition in one model and print what the payload leaves with."""
+
+    def work() -> dict:
+        from studies import single
+
+        study = _study(scene, out, set_, [condition], element_size)
+        return single.run(study, condition, fidelity.value, calibration, quiet=json_)
+
+    _guarded(work, json_)
+
+
+@app.command("scenes")
+def list_scenes(json_: Json = False) -> None:
+    """List the catalogue: name, conditions, description."""
+
+    def work() -> dict:
+        import scenes
+
+        found = {name: scenes.load(name) for name in scenes.catalog()}
+        if not json_:
+            for name, item in found.items():
+                print(f"{name:12} {len(item.conditions):3} conditions   {item.description}")
+        return {"scenes": {name: {"description": item.description, "conditions": list(item.conditions)}
+                           for name, item in found.items()}}
+
+    _guarded(work, json_)
+
+
+@app.command()
+def doctor() -> None:
+    """Say whether this machine has everything tipoff needs, and what mends it."""
+    from studies import doctor as check
+
+    raise typer.Exit(check.main())
+
+
+if __name__ == "__main__":
+    app()

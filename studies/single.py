@@ -1,0 +1,43 @@
+"""One run of one condition in one model, its outcome printed."""
+
+from pathlib import Path
+
+from scenes.calibration import Calibration
+from scenes.faults import Fault, SceneError
+from studies.stages.runs import row
+from studies.study import FAILED, Study
+
+
+def run(study: Study, condition: str, fidelity: str, calibration: Path | None = None, quiet: bool = False) -> dict:
+    """The run's result as a stage would hold it; prints it unless ``quiet``. Raises SceneError for an unreadable calibration."""
+    asked = study.highfi(condition) if fidelity == "highfi" else study.lowfi(condition, _constants(calibration))
+    found = study.store.get(asked)
+    result = row(condition, found, study.relative(study.store.path(asked)))
+    if not quiet:
+        print("\n".join(lines(result, fidelity, study)))
+    return result | {"failed": [f"{condition}: {found.status}: {found.message}"] if found.status in FAILED else []}
+
+
+def lines(result: dict, fidelity: str, study: Study) -> list[str]:
+    """The outcome in words and units."""
+    said = [f"{study.scene.name} / {result['condition']}, {fidelity}: {result['status']}"
+            + (f" ({result['message']})" if result["message"] else "")]
+    if result["exit_time_s"] is not None:
+        said.append(f"  exit          {1e3 * result['exit_time_s']:.4g} ms after ignition")
+    if settled := result["settled"]:
+        said.append("  velocity      " + ", ".join(f"{value:.5g}" for value in settled["velocity_m_s"]) + " m/s (x, y, z)")
+        said.append("  rate          " + ", ".join(f"{value:.4g}" for value in settled["rate_deg_s"]) + " deg/s (x, y, z)")
+        said.append(f"  direction     {settled['direction_error_deg']:.4g} deg off axis, "
+                    f"{1e3 * settled['lateral_velocity_m_s']:.4g} mm/s across")
+    said.append(f"  took          {result['wall_s']:.3g} s, {result['steps']} steps")
+    said.append(f"  trajectory    {study.path(result['trajectory'])}")
+    return said
+
+
+def _constants(path: Path | None) -> Calibration | None:
+    if path is None:
+        return None
+    try:
+        return Calibration.load(path)
+    except (OSError, ValueError, TypeError, KeyError) as fault:
+        raise SceneError([Fault(str(path), "file", str(fault), "a calibration written by tipoff calibrate")]) from None
