@@ -8,7 +8,7 @@ from scenes import rotation
 from scenes.jit import njit
 
 
-@njit(fastmath={"contract"})
+@njit
 def kick_nodes(points, inverse_mass, displacement, velocity, resistance, dt):
     """w -= dt r / m. Returns sum and moment about the frame's origin of the forces -r on the moving nodes (N, N m)."""
     fx, fy, fz, mx, my, mz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
@@ -30,7 +30,7 @@ def kick_nodes(points, inverse_mass, displacement, velocity, resistance, dt):
     return (fx, fy, fz), (mx, my, mz)
 
 
-@njit(fastmath={"contract"})
+@njit
 def drift_nodes(displacement, velocity, dt):
     """u += dt w, in a frame that rests."""
     for node in range(displacement.shape[0]):
@@ -39,7 +39,7 @@ def drift_nodes(displacement, velocity, dt):
         displacement[node, 2] += dt * velocity[node, 2]
 
 
-@njit(fastmath={"contract"})
+@njit
 def drift_nodes_in_frame(points, displacement, velocity, frame_velocity, turn, dt):
     """Drift seen from a frame that moves at ``frame_velocity`` (m/s) and turns by 1 + ``turn``; see ``pose``."""
     q0, q1, q2, q3, q4, q5, q6, q7, q8 = turn
