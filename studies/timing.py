@@ -10,6 +10,8 @@ import time
 from dataclasses import replace
 from typing import Callable
 
+import numpy as np
+
 from scenes.trajectory import Trajectory
 from studies import machine
 from studies.store import Run, execute, prepare
@@ -49,7 +51,15 @@ def speedup(highfi: Run, lowfi: Run, highfi_repeats: int, lowfi_repeats: int,
             "kernel_ratio": _median_ratio([run.cost.get("kernel_s") for run, _, _ in slow],
                                           [run.cost.get("kernel_s") for run, _, _ in fast]),
             "cpu_ratio": _median_ratio([cpu for _, _, cpu in slow], [cpu for _, _, cpu in fast]),
+            "repeats_identical": _identical([run for run, _, _ in slow]) and _identical([run for run, _, _ in fast]),
             "hardware": machine.describe()}
+
+
+def _identical(runs: list[Trajectory]) -> bool:
+    """Whether all runs agree in every bit of their motion."""
+    first = runs[0]
+    return all(np.array_equal(getattr(run, name), getattr(first, name)) for run in runs[1:]
+               for name in ("velocity", "rate", "quaternion", "pad_force", "transverse_energy"))
 
 
 def _median_ratio(slow: list, fast: list) -> float | None:

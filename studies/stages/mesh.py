@@ -19,8 +19,11 @@ def run(study: Study) -> dict:
         from highfi import mesh as checks
 
         mesh = highfi.prepare(asked.scene, asked.numerics)
-        path = study.path("mesh.vtu")
+        from studies.report.mesh_picture import draw
+
+        path, picture = study.path("mesh.vtu"), study.path("figures") / "mesh.png"
         _save(mesh, path)
+        draw(mesh, picture)
         lengths = checks.edge_lengths(mesh.points, mesh.hexes)
         _, scaled = checks.corner_jacobians(mesh.points, mesh.hexes)
         surfaces = {name: {"facets": len(facets), "area_m2": area(mesh.points, facets)}
@@ -28,7 +31,7 @@ def run(study: Study) -> dict:
         return {"element_size_m": asked.numerics.element_size, "elements": len(mesh.hexes), "nodes": len(mesh.points),
                 "shortest_edge_m": float(lengths.min()), "longest_edge_m": float(lengths.max()),
                 "smallest_scaled_jacobian": float(scaled.min()), "warnings": list(mesh.warnings),
-                "surfaces": surfaces, "mesh": study.relative(path)}, [path]
+                "surfaces": surfaces, "mesh": study.relative(path), "picture": study.relative(picture)}, [path, picture]
 
     return study.stage("mesh", study.key(SOURCES["highfi"], asked.key), make)
 

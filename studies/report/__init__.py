@@ -1,0 +1,1 @@
+"""The report: one self-contained page, and every figure as a PNG beside it."""

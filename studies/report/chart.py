@@ -1,0 +1,153 @@
+"""A figure described once and drawn twice: with plotly for the page, with matplotlib for a PNG.
+
+Colours differ in lightness, and models differ in width and dash, so that figures read in grey and on paper.
+"""
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Sequence
+
+import numpy as np
+
+from scenes.files import replacing
+
+NAVY, VERMILION, AMBER, TEAL, GREY = "#1d3461", "#d1495b", "#e8a33d", "#2e8b7a", "#7a7f87"
+AXIS_COLOURS = {"x": NAVY, "y": VERMILION, "z": AMBER}
+_POINTS = 500  # kept of each line on the page
+_INK, _RULE = "#24292f", "#e3e6ea"
+_PLOTLY_DASH = {"-": "solid", "--": "dash", ":": "dot", "": "solid"}
+
+
+@dataclass(frozen=True)
+class Line:
+    """One curve (x, y); ``dash`` as in matplotlib, "" for markers only; ``marker`` "o", "s", "^" or "". ``group`` shares a
+    legend entry; ``labels`` are texts at the points."""
+
+    x: Sequence[float]
+    y: Sequence[float]
+    name: str
+    colour: str = NAVY
+    width: float = 1.6
+    dash: str = "-"
+    opacity: float = 1.0
+    marker: str = ""
+    legend: bool = True
+    labels: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Panel:
+    """One set of axes; ``band`` shades y below a value, with a text."""
+
+    title: str
+    x_label: str
+    y_label: str
+    lines: list[Line]
+    log: bool = False
+    band: tuple[float, str] | None = None
+
+
+@dataclass(frozen=True)
+class Chart:
+    """Panels in rows of ``columns``; ``name`` is the file name and the id, ``height`` (px) that of one row."""
+
+    name: str
+    panels: list[Panel] = field(default_factory=list)
+    columns: int = 1
+    height: int = 300
+
+    @property
+    def rows(self) -> int:
+        """Rows of panels."""
+        return -(-len(self.panels) // self.columns)
+
+
+def to_html(chart: Chart) -> str:
+    """A ``div`` that draws itself once plotly is on the page."""
+    import plotly.graph_objects as go
+    from plotly.subplots import make_subplots
+
+    figure = make_subplots(rows=chart.rows, cols=chart.columns, subplot_titles=[panel.title for panel in chart.panels],
+                           horizontal_spacing=0.09 if chart.columns > 1 else 0.0, vertical_spacing=0.30 / max(chart.rows, 2))
+    shown: set[str] = set()
+    for index, panel in enumerate(chart.panels):
+        place = {"row": index // chart.columns + 1, "col": index % chart.columns + 1}
+        for line in panel.lines:
+            x, y = _thinned(line)
+            figure.add_trace(go.Scatter(
+                x=x, y=y, name=line.name, legendgroup=line.name, opacity=line.opacity, text=list(line.labels) or None,
+                showlegend=line.legend and line.name not in shown, mode=_mode(line), textposition="top center",
+                line={"color": line.colour, "width": line.width, "dash": _PLOTLY_DASH[line.dash]},
+                marker={"symbol": {"o": "circle", "s": "square", "^": "triangle-up", "": "circle"}[line.marker], "size": 9}),
+                **place)
+            shown |= {line.name} if line.legend else set()
+        kind = {"type": "log", "dtick": 1, "exponentformat": "power"} if panel.log else {}
+        figure.update_xaxes(title_text=panel.x_label, **kind, **place)
+        figure.update_yaxes(title_text=panel.y_label, **kind, **place)
+        if panel.band:
+            figure.add_hrect(y0=0.0 if not panel.log else 1e-9, y1=panel.band[0], fillcolor=GREY, opacity=0.16, line_width=0,
+                             annotation_text=panel.band[1], annotation_position="top right", **place)
+    figure.update_layout(height=chart.height * chart.rows + 90, template="plotly_white", margin={"l": 62, "r": 18, "t": 40, "b": 60},
+                         font={"family": "inherit", "size": 13, "color": _INK}, hovermode="closest",
+                         legend={"orientation": "h", "yanchor": "top", "y": -90.0 / (chart.height * chart.rows), "x": 0.0})
+    figure.update_xaxes(showline=True, linecolor="#9aa1a9", gridcolor=_RULE, zerolinecolor="#c9ced4", ticks="outside")
+    figure.update_yaxes(showline=True, linecolor="#9aa1a9", gridcolor=_RULE, zerolinecolor="#c9ced4", ticks="outside")
+    return figure.to_html(full_html=False, include_plotlyjs=False, div_id=f"chart-{chart.name}",
+                          config={"displaylogo": False, "responsive": True})
+
+
+def to_png(chart: Chart, path: Path) -> None:
+    """Draw the same with matplotlib, atomically."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(4.1 * chart.columns + 1.4 if chart.columns > 1 else 8.0, chart.height / 96.0 * chart.rows + 0.9),
+                    dpi=130, layout="constrained")
+    FigureCanvasAgg(figure)
+    handles = {}
+    for index, panel in enumerate(chart.panels):
+        axes = figure.add_subplot(chart.rows, chart.columns, index + 1)
+        for line in panel.lines:
+            handle, = axes.plot(line.x, line.y, color=line.colour, linewidth=line.width, linestyle=line.dash or "none",
+                                alpha=line.opacity, marker=line.marker or None, markersize=6)
+            if line.legend:
+                handles.setdefault(line.name, handle)
+            for x, y, label in zip(line.x, line.y, line.labels):
+                axes.annotate(label, (x, y), textcoords="offset points", xytext=(4, 6), fontsize=7.5, color=_INK)
+        _dress(axes, panel)
+    if len(handles) > 1:
+        figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=min(len(handles), 4), frameon=False,
+                      fontsize=9)
+    with replacing(path) as temporary:
+        figure.savefig(temporary, format="png")
+
+
+def _dress(axes, panel: Panel) -> None:
+    axes.set_title(panel.title, fontsize=10.5, color=_INK)
+    axes.set_xlabel(panel.x_label, fontsize=9.5, color=_INK)
+    axes.set_ylabel(panel.y_label, fontsize=9.5, color=_INK)
+    if panel.log:
+        axes.set_xscale("log")
+        axes.set_yscale("log")
+        axes.margins(0.12)
+    if panel.band:
+        low = axes.get_ylim()[0]
+        axes.axhspan(min(low, 0.5 * panel.band[0]) if panel.log else 0.0, panel.band[0], color=GREY, alpha=0.16, linewidth=0)
+        axes.annotate(panel.band[1], (0.99, panel.band[0]), xycoords=("axes fraction", "data"), ha="right", va="bottom", fontsize=8)
+    axes.grid(color=_RULE, linewidth=0.8)
+    axes.set_axisbelow(True)
+    axes.spines[["top", "right"]].set_visible(False)
+    axes.tick_params(labelsize=8.5)
+
+
+def _mode(line: Line) -> str:
+    parts = (["lines"] if line.dash else []) + (["markers"] if line.marker else []) + (["text"] if line.labels else [])
+    return "+".join(parts)
+
+
+def _thinned(line: Line) -> tuple[list, list]:
+    """At most about 500 points, and six digits, which no screen can tell from all of them."""
+    x, y = np.asarray(line.x, dtype=float), np.asarray(line.y, dtype=float)
+    every = max(1, x.size // _POINTS)
+    keep = np.unique(np.append(np.arange(0, x.size, every), x.size - 1))
+    return [float(f"{value:.6g}") for value in x[keep]], [float(f"{value:.6g}") for value in y[keep]]

@@ -1,0 +1,108 @@
+"""The figures of the report, from trajectories and result files."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from scenes import ledger
+from scenes.effects import thrust
+from scenes.scene import Scene
+from scenes.trajectory import Trajectory
+from studies.report.chart import AMBER, AXIS_COLOURS, GREY, NAVY, TEAL, VERMILION, Chart, Line, Panel
+
+_MILLISECONDS = "time after ignition (ms)"
+
+
+class Runs(NamedTuple):
+    """Trajectories by condition: the reference, and the surrogate before and after calibration (empty where there are none)."""
+
+    highfi: dict[str, Trajectory]
+    uncalibrated: dict[str, Trajectory]
+    calibrated: dict[str, Trajectory]
+
+
+# Width, dash, opacity: the reference is a broad pale line under the thin ones of the surrogate.
+_STYLES = {"highfi": ("finite elements", 5.0, "-", 0.35), "calibrated": ("surrogate, calibrated", 1.5, "-", 1.0),
+           "uncalibrated": ("surrogate, uncalibrated", 1.1, ":", 0.9)}
+
+
+def thrust_curve(scene: Scene) -> Chart:
+    """Thrust over the duration of the scene."""
+    time = np.linspace(0.0, scene.duration, 600)
+    force = thrust.sample(scene.thrust.record(), time)
+    line = Line(1e3 * time, 1e-3 * force, "thrust", NAVY, 2.0, legend=False)
+    return Chart("thrust", [Panel("", _MILLISECONDS, "thrust (kN)", [line])], height=260)
+
+
+def figure6(runs: Runs, conditions: list[str]) -> Chart:
+    """The paper's Figure 6: v_x, then the three rates of each fitted condition, both models."""
+    shades = dict(zip(conditions, (NAVY, VERMILION, AMBER, TEAL, GREY) * 4))
+    speed = [_line(run.time, run.velocity[:, 0], f"{shades[name]}", kind, legend=False)
+             for kind, found in runs._asdict().items() for name, run in found.items() if name in shades]
+    panels = [Panel("(a) velocity along X, all conditions", _MILLISECONDS, "v_x (m/s)", speed)]
+    for letter, name in zip("bcdefghijk", conditions):
+        lines = [_line(found[name].time, np.degrees(found[name].rate[:, i]), colour, kind, f"rate about {axis.upper()}, ")
+                 for kind, found in runs._asdict().items() if name in found
+                 for i, (axis, colour) in enumerate(AXIS_COLOURS.items())]
+        panels.append(Panel(f"({letter}) {name}", _MILLISECONDS, "rate (deg/s)", lines))
+    return Chart("figure6", panels, columns=3 if len(panels) > 4 else 2, height=290)
+
+
+def _line(time, values, colour: str, kind: str, name: str = "", legend: bool = True) -> Line:
+    model, width, dash, opacity = _STYLES[kind]
+    return Line(1e3 * time, values, f"{name}{model}", colour, width, dash, opacity, legend=legend)
+
+
+def contact_forces(scene: Scene, runs: Runs, condition: str) -> Chart:
+    """Force on every pad that is ever touched, both models, one condition."""
+    pads = np.array([index for index, pad in enumerate(scene.pads) for _ in pad.normals])
+    forces = {kind: (found[condition].time, _by_pad(found[condition].pad_force, pads))
+              for kind, found in runs._asdict().items() if condition in found and kind != "uncalibrated"}
+    loaded = sorted({int(pad) for _, force in forces.values() for pad in np.flatnonzero(force.max(axis=0) > 1.0)})
+    panels = [Panel(_pad_title(scene, pad), _MILLISECONDS, "force (N)", [
+        Line(1e3 * time, force[:, pad], _STYLES[kind][0], NAVY if kind == "highfi" else VERMILION, *_STYLES[kind][1:])
+        for kind, (time, force) in forces.items()]) for pad in loaded]
+    return Chart("contact-forces", panels, columns=2 if len(panels) > 1 else 1, height=250)
+
+
+def _by_pad(force: np.ndarray, pads: np.ndarray) -> np.ndarray:
+    """Magnitude (n,p) N of the force on each pad, from forces (n,f,3) on its faces."""
+    return np.stack([np.linalg.norm(force[:, pads == pad].sum(axis=1), axis=1) for pad in range(pads.max() + 1)], axis=1)
+
+
+def _pad_title(scene: Scene, pad: int) -> str:
+    x, y, z = scene.pads[pad].position
+    return f"pad {pad + 1} ({'front' if x > 0 else 'rear'}, {'+' if y > 0 else '-'}y {'+' if z > 0 else '-'}z)"
+
+
+_LEDGER_COLOURS = dict(zip(ledger.ENTRIES, (NAVY, GREY, VERMILION, AMBER, TEAL, "#7b4b94", "#8c6d46", "#b0b5bb", "#5f9ed1", "#c98bb9")))
+
+
+def energy_ledgers(runs: Runs, condition: str) -> Chart:
+    """Every entry of both ledgers that is not zero, with the residual, both models, one condition."""
+    panels = []
+    for kind in ("highfi", "calibrated"):
+        run = getattr(runs, kind).get(condition)
+        if run is None:
+            continue
+        for title, entries, unit, factor in (("total", run.energy, "J", 1.0), ("transverse", run.transverse_energy, "mJ", 1e3)):
+            largest = np.abs(entries).max()
+            lines = [Line(1e3 * run.time, factor * entries[:, i], name.replace("_", " "), _LEDGER_COLOURS[name])
+                     for i, name in enumerate(ledger.ENTRIES) if np.abs(entries[:, i]).max() > 1e-6 * largest]
+            lines.append(Line(1e3 * run.time, factor * ledger.residual(entries), "residual", "#000000", 1.6, "--"))
+            panels.append(Panel(f"{title} ledger, {_STYLES[kind][0]}", _MILLISECONDS, f"energy ({unit})", lines))
+    return Chart("energy-ledgers", panels, columns=2, height=290)
+
+
+def cost_picture(cost: dict) -> Chart:
+    """Error against wall time, one line per model, with the band of the reference's own uncertainty."""
+    look = {"finite elements": (NAVY, "s", "-"), "surrogate, uncalibrated": (AMBER, "^", ":"),
+            "surrogate, calibrated": (VERMILION, "o", "-")}
+    lines = []
+    for model, (colour, marker, dash) in look.items():
+        points = [p for p in cost["points"] if p["model"] == model and (p["error_deg_s"] or 0.0) > 0.0]
+        if points:
+            lines.append(Line([p["wall_s"] for p in points], [p["error_deg_s"] for p in points], model, colour, 1.6, dash,
+                              marker=marker, labels=tuple(p["numerics"].split(",")[0].removeprefix("tolerance ") for p in points)))
+    band = cost["band_deg_s"] and (cost["band_deg_s"], "the reference's own uncertainty")
+    return Chart("cost", [Panel("", "wall time of one run (s)", "error of the settled rates (deg/s)", lines, True, band)], height=400)

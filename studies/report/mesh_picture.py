@@ -1,0 +1,95 @@
+"""A drawing of the rail mesh: all four rails, and one cross-section at full detail, named surfaces coloured."""
+
+from pathlib import Path
+
+import numpy as np
+
+from scenes.files import replacing
+from studies.report.chart import AMBER, GREY, NAVY, TEAL, VERMILION
+
+_COLOURS = {"contact_y": VERMILION, "contact_z": AMBER, "mount": TEAL}
+_LIGHT = np.array([0.35, 0.5, 0.8])
+
+
+def draw(mesh, path: Path) -> None:
+    """Write a PNG of ``mesh`` (a ``highfi.mesh.RailMesh``)."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+    from matplotlib.patches import Patch
+
+    figure = Figure(figsize=(9.6, 4.2), dpi=140, layout="constrained")
+    FigureCanvasAgg(figure)
+    left, right = figure.subplots(1, 2, width_ratios=[1.9, 1.0])
+    _oblique(left, mesh)
+    _section(right, mesh)
+    figure.legend([Patch(color=GREY, alpha=0.6), *(Patch(color=colour) for colour in _COLOURS.values())],
+                  ["rail", *(name.replace("_", " ") for name in _COLOURS)], loc="outside lower center", ncols=4, frameon=False)
+    with replacing(path) as temporary:
+        figure.savefig(temporary, format="png")
+
+
+def _boundary(mesh) -> tuple[np.ndarray, list[str]]:
+    """Outer facets (m,4) of the solid and the surface each belongs to, ``rail`` where it has no name."""
+    from highfi.mesh import boundary_facets
+
+    facets = boundary_facets(mesh.hexes)
+    names = {tuple(sorted(facet)): name for name, group in mesh.surfaces.items() for facet in group.tolist()}
+    return facets, [names.get(tuple(sorted(facet)), "rail") for facet in facets.tolist()]
+
+
+def _oblique(axes, mesh) -> None:
+    """Painter's algorithm on the facets that face the eye."""
+    from matplotlib.collections import PolyCollection
+    from matplotlib.colors import to_rgb
+
+    facets, names = _boundary(mesh)
+    turn = _view(azimuth=-60.0, elevation=26.0)
+    corners = (mesh.points @ turn.T)[facets]
+    normal = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
+    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+    front = np.flatnonzero(normal[:, 2] > 1e-9)
+    order = front[np.argsort(corners[front, :, 2].mean(axis=1))]
+    shade = 0.62 + 0.38 * np.abs(normal @ (_LIGHT / np.linalg.norm(_LIGHT)))
+    base = np.array([to_rgb(_COLOURS.get(name, "#c6cbd1")) for name in names])
+    axes.add_collection(PolyCollection(1e3 * corners[order][:, :, :2], facecolors=(base * shade[:, None])[order],
+                                       edgecolors="#3b4149", linewidths=0.18))
+    axes.autoscale()
+    axes.set_aspect("equal")
+    axes.set_axis_off()
+    axes.set_title(f"four rails, {len(mesh.hexes):,} elements", fontsize=10.5)
+
+
+def _section(axes, mesh) -> None:
+    """Elements of the middle layer of the rail at +y +z, seen along X, with the named walls drawn thick."""
+    from matplotlib.collections import LineCollection, PolyCollection
+
+    centres = mesh.points[mesh.hexes].mean(axis=1)
+    corner = (centres[:, 1] > 0.0) & (centres[:, 2] > 0.0)
+    inside = centres[corner, 0]
+    layer = np.flatnonzero(corner & (np.abs(centres[:, 0] - inside[np.argmin(np.abs(inside - inside.mean()))]) < 1e-9))
+    low = mesh.points[mesh.hexes[layer]].min(axis=1)[:, 1:]
+    high = mesh.points[mesh.hexes[layer]].max(axis=1)[:, 1:]
+    boxes = [[(a[0], a[1]), (b[0], a[1]), (b[0], b[1]), (a[0], b[1])] for a, b in zip(1e3 * low, 1e3 * high)]
+    axes.add_collection(PolyCollection(boxes, facecolors="#dfe3e7", edgecolors="#3b4149", linewidths=0.7))
+    reach = mesh.points[mesh.hexes[layer]][:, :, 0]
+    for name, colour in _COLOURS.items():
+        facets = mesh.points[mesh.surfaces[name]] if name in mesh.surfaces else np.empty((0, 4, 3))
+        near = facets[(facets[:, :, 1:].min(axis=(1, 2)) > 0.0) & (np.abs(facets[:, :, 0].mean(axis=1) - reach.mean()) < np.ptp(reach))]
+        lines = [(1e3 * facet[:, 1:].min(axis=0), 1e3 * facet[:, 1:].max(axis=0)) for facet in near]
+        axes.add_collection(LineCollection(lines, colors=colour, linewidths=3.0))
+    axes.autoscale()
+    axes.margins(0.08)
+    axes.set_aspect("equal")
+    axes.set_xlabel("y (mm)", fontsize=9)
+    axes.set_ylabel("z (mm)", fontsize=9)
+    axes.tick_params(labelsize=8)
+    axes.spines[["top", "right"]].set_visible(False)
+    axes.set_title("section of one rail", fontsize=10.5, color=NAVY)
+
+
+def _view(azimuth: float, elevation: float) -> np.ndarray:
+    """Rotation (3,3) to eye axes: right, up, towards the eye."""
+    a, e = np.radians([azimuth, elevation])
+    towards = np.array([np.cos(e) * np.cos(a), np.cos(e) * np.sin(a), np.sin(e)])
+    right = np.array([-np.sin(a), np.cos(a), 0.0])
+    return np.stack([right, np.cross(towards, right), towards])

@@ -1,0 +1,96 @@
+"""The promises of the project, each with what was measured over every stored run, kept or broken."""
+
+from typing import Iterable, NamedTuple
+
+from studies.report.markup import Html, number, section, table
+
+
+class Promise(NamedTuple):
+    """A promise: what it says, worst measured value and where, limit, and whether it was kept (None: shown by tests only)."""
+
+    text: str
+    worst: str
+    limit: str
+    kept: bool | None
+
+
+# check, model, limit, words
+_CHECKS = (
+    ("linear_momentum_error", "highfi", 1e-12, "linear momentum of the free system, finite elements"),
+    ("linear_momentum_error", "lowfi", 1e-12, "linear momentum of the free system, surrogate"),
+    ("angular_momentum_error", "highfi", 1e-8, "angular momentum, finite elements"),
+    ("angular_momentum_error", "lowfi", 1e-11, "angular momentum, surrogate"),
+    ("quaternion_error", "highfi", 1e-12, "norm of the quaternions, finite elements"),
+    ("quaternion_error", "lowfi", 1e-12, "norm of the quaternions, surrogate"),
+    ("energy_error", "highfi", 1e-5, "total energy ledger, finite elements"),
+    ("energy_error", "lowfi", 1e-6, "total energy ledger, surrogate"),
+    ("transverse_energy_error", "highfi", 1e-2, "transverse energy ledger, finite elements"),
+    ("transverse_energy_error", "lowfi", 1e-4, "transverse energy ledger, surrogate"),
+)
+_BY_TESTS = ("orders of accuracy are as stated", "mirror image, contact order and turned frames give the same answer",
+             "same bits for any worker count and after a resume")
+
+
+def promises(rows: dict[str, list[dict]], documents: dict[str, dict | None]) -> list[Promise]:
+    """All promises; ``rows`` are the condition rows of every run by fidelity."""
+    found = [_check(name, rows[fidelity], limit, words) for name, fidelity, limit, words in _CHECKS if rows[fidelity]]
+    found += [_step(rows["highfi"]), _friction([*rows["highfi"], *rows["lowfi"]]), _finite(rows)]
+    if documents.get("agreement"):
+        found.append(_same_bits(documents["agreement"]["speedup"]))
+    found.append(_calibration(documents.get("calibration"), documents.get("agreement")))
+    return [item for item in found if item] + [Promise(words, "by tests", "", None) for words in _BY_TESTS]
+
+
+def _check(name: str, rows: list[dict], limit: float, words: str) -> Promise:
+    worst, where = _worst(rows, name)
+    return Promise(words, "not reported" if worst is None else f"{worst:.2e} ({where})", f"{limit:g}",
+                   worst is not None and worst <= limit)
+
+
+def _worst(rows: Iterable[dict], name: str) -> tuple[float | None, str]:
+    known = [(row["checks"][name], row["condition"]) for row in rows if row["checks"].get(name) is not None]
+    return max(known) if known else (None, "")
+
+
+def _step(rows: list[dict]) -> Promise | None:
+    known = [(row["cost"]["dt_s"] / row["cost"]["dt_limit_s"], row) for row in rows if row["cost"].get("dt_limit_s")]
+    if not known:
+        return None
+    ratio, row = max(known, key=lambda pair: pair[0])
+    return Promise("no step above the proven limit, finite elements",
+                   f"{1e9 * row['cost']['dt_s']:.4g} ns of {1e9 * row['cost']['dt_limit_s']:.4g} ns, {ratio:.3f} ({row['condition']})",
+                   f"{row['numerics'].get('safety', 1.0):g} of the limit", ratio <= 1.0)
+
+
+def _friction(rows: list[dict]) -> Promise | None:
+    worst, where = _worst(rows, "friction_power_max")
+    return None if worst is None else Promise("friction never gives energy back", f"{worst:.2e} W ({where})", "0 W", worst <= 0.0)
+
+
+def _finite(rows: dict[str, list[dict]]) -> Promise:
+    every = [row for found in rows.values() for row in found]
+    bad = [row["condition"] for row in every if row["status"] in ("diverged", "refused")]
+    return Promise("no NaN leaves the program; every run asked for is accounted for",
+                   f"{len(every) - len(bad)} runs ended well, {len(bad)} diverged or were refused, of {len(every)}", "all", True)
+
+
+def _same_bits(speedup: dict) -> Promise | None:
+    same = speedup.get("repeats_identical")
+    return None if same is None else Promise("same input, same bits", f"{speedup['highfi_repeats']} reference and "
+                                             f"{speedup['lowfi_repeats']} surrogate repeats compared", "identical", same)
+
+
+def _calibration(calibration: dict | None, agreement: dict | None) -> Promise | None:
+    if not calibration:
+        return None
+    told = bool(calibration["information"]) and agreement is not None and bool(agreement["held_out"])
+    return Promise("calibration reports its information matrix and weak directions; agreement is given on held-out conditions",
+                   f"{len(calibration['weak_directions'])} weak directions named, "
+                   f"{len(agreement['held_out']) if agreement else 0} held-out conditions", "", told)
+
+
+def render(found: list[Promise]) -> Html:
+    """The table of promises."""
+    rows = [(item.text, item.worst, item.limit, {True: "kept", False: "BROKEN", None: "see make test"}[item.kept]) for item in found]
+    kinds = [{True: "good", False: "bad", None: ""}[item.kept] for item in found]
+    return section("promises", "Promises", table(("promise", "worst measured (where)", "limit", ""), rows, kinds=kinds))

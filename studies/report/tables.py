@@ -1,0 +1,146 @@
+"""Tables of the result files: calibration, agreement, cost, stability, ablation, speed-up."""
+
+from html import escape
+
+from studies.report.markup import Html, caption, fold, number, paragraph, percent, section, table
+
+_FLOOR = "Floor: what ±{change:g} µm of clearance changes in either model. "
+
+
+def agreement(document: dict) -> Html:
+    """The agreement table, calibrated rows first, with floor and reference uncertainty beside every claim."""
+    rows, kinds = [], []
+    for group in ("fitted", "held_out"):
+        for row in document[group]:
+            rows.append(_agreement_row(row))
+            kinds.append("doubt" if not row["reference_converged"] else "good" if row["passes"] else "bad")
+    heads = ("condition", "role", "rate L2 (%)", "floor L2 (%)", Html("v<sub>x</sub> L2 (%)"), "settled error (deg/s)",
+             "x, y, z (deg/s)", "floor (deg/s)", "reference ± (deg/s)", "ISO 18571", "S-G magnitude (%)", "S-G phase (%)",
+             "lateral v (mm/s)", "direction (deg)", "verdict")
+    gates = document["gates"]
+    legend = (f"Gates: rate L2 {percent(gates['rate_relative_l2'])} %, v_x L2 {percent(gates['velocity_relative_l2'])} %, settled error "
+              f"{gates['settled_rate_error_deg_s']:g} deg/s. " + _FLOOR.format(change=1e6 * document["clearance_change_m"])
+              + "Reference ±: the largest change of its settled rates under half the element size, half the step or twice the "
+              f"penalty; above {document['converged_deg_s']:g} deg/s no agreement is claimed. A star marks a value measured on other "
+              "conditions, of which the largest is taken. ISO 18571 is the mean rating of the three rates (1 is perfect); Sprague "
+              "and Geers over the three rates together; lateral velocity and direction are surrogate minus reference.")
+    before = [_agreement_row(row) for row in document["uncalibrated"]]
+    return section("agreement-section", "Agreement with the reference", _summary(document),
+                   table(heads, rows, "agreement", kinds), caption(legend),
+                   fold("the same before calibration", table(heads, before)), _evidence(document))
+
+
+def _summary(document: dict) -> Html:
+    sentences = []
+    for group, words in (("fitted", "fitted"), ("held_out", "held-out")):
+        rows = document[group]
+        if not rows:
+            continue
+        passed = sum(row["passes"] for row in rows)
+        doubtful = sum(not row["reference_converged"] for row in rows)
+        sentences.append(f"{passed} of {len(rows)} {words} conditions pass all three gates"
+                         + (f" ({doubtful} of {len(rows)} with a reference that is not converged)" if doubtful else ""))
+    return paragraph("; ".join(sentences) + ".")
+
+
+def _agreement_row(row: dict) -> tuple:
+    star = "" if row["floor_measured_here"] else "*"
+    mark = "" if row["reference_uncertainty_measured_here"] else "*"
+    xyz = row["settled_rate_error_xyz_deg_s"]
+    lateral = row["lateral_velocity_difference_m_s"]
+    return (row["condition"], row["role"].replace("_", " "), percent(row["rate_relative_l2"]), percent(row["floor_l2"]) + star,
+            percent(row["velocity_relative_l2"]), number(row["settled_rate_error_deg_s"]),
+            "–" if xyz is None else ", ".join(f"{value:+.2g}" for value in xyz), number(row["floor_deg_s"]) + star,
+            number(row["reference_uncertainty_deg_s"]) + mark, f"{row['iso18571']:.3f}", percent(row["sprague_geers_magnitude"]),
+            percent(row["sprague_geers_phase"]), "–" if lateral is None else f"{1e3 * lateral:+.3g}",
+            "–" if row["direction_error_difference_deg"] is None else f"{row['direction_error_difference_deg']:+.2g}", row["verdict"])
+
+
+def _evidence(document: dict) -> Html:
+    rows = [(item["condition"], item["model"], item["cause"], percent(item["rate_relative_l2"]),
+             number(item["settled_rate_change_deg_s"])) for item in [*document["floor"], *document["refinement"]]]
+    return fold("floor and reference uncertainty as measured",
+                table(("condition", "model", "what was changed", "rate L2 (%)", "settled rates (deg/s)"), rows))
+
+
+def calibration(document: dict) -> Html:
+    """Fitted constants with bounds and reasons, what the curves cannot tell, residuals."""
+    rows = [(name, number(value, 5), unit, number(low, 4), number(high, 4), why) for name, value, unit, low, high, why in zip(
+        document["parameters"], document["values"], document["units"], document["lower"], document["upper"],
+        document["justification"])]
+    weak = "".join(f"<li>{escape(line)}</li>" for line in document["weak_directions"]) or "<li>none</li>"
+    names = list(dict.fromkeys(key for found in document["residuals"].values() for key in found))
+    residuals = [(condition, *(found.get(name) for name in names)) for condition, found in document["residuals"].items()]
+    information = [(name, *line) for name, line in zip(document["parameters"], document["information"])]
+    return section("calibration", "Calibration",
+                   paragraph(f"Fitted to {', '.join(document['conditions'])} at once; objective {document['objective']:.4g}."),
+                   table(("constant", "value", "unit", "lower bound", "upper bound", "why free, why these bounds"), rows),
+                   Html(f"<h3>What the curves cannot tell</h3><ul>{weak}</ul>"),
+                   fold("residuals per condition", table(("condition", *(name.replace("_", " ") for name in names)), residuals)),
+                   fold("information matrix of the scaled constants", table(("", *document["parameters"]), information)))
+
+
+def speedup(found: dict) -> Html:
+    """The two wall times on one machine, their ratio and its scatter."""
+    machine = found["hardware"]
+    rows = [("wall time of one reference run", f"{found['highfi_wall_s']:.4g} s", f"{found['highfi_repeats']} repeats, "
+             f"{_range(found['highfi_wall_range_s'])} s, {found['elements']:,} elements"),
+            ("wall time of one surrogate run", f"{1e3 * found['lowfi_wall_s']:.4g} ms", f"{found['lowfi_repeats']} repeats, "
+             f"{_range([1e3 * value for value in found['lowfi_wall_range_s']])} ms, warm"),
+            ("ratio of wall times", f"{found['ratio']:,.0f}", f"{found['low']:,.0f} to {found['high']:,.0f} over all pairs of repeats"),
+            ("ratio of kernels alone", _whole(found["kernel_ratio"]), "time loops only, without set-up and output"),
+            ("ratio of processor times", _whole(found["cpu_ratio"]), "of the whole process")]
+    return section("speedup", "Speed", table(("", "value", "how measured"), rows), caption(
+        f"Condition {found['condition']}, both models by turns in one go, all included but compilation, on {machine['processor']}, "
+        f"{machine['cores']} cores, {machine['memory_gib']} GiB, Python {machine['python']}."))
+
+
+def _range(values: list[float]) -> str:
+    return f"{min(values):.3g} to {max(values):.3g}"
+
+
+def _whole(value: float | None) -> str:
+    return "–" if value is None else f"{value:,.0f}"
+
+
+def cost(document: dict) -> Html:
+    """Error against wall time, as numbers."""
+    rows = [(p["model"], p["numerics"], f"{p['wall_s']:.3g}", "the yardstick" if p["error_deg_s"] is None else number(p["error_deg_s"]),
+             number(p["integration_error_deg_s"]), "best at its price" if p["pareto"] else "") for p in document["points"]]
+    return table(("model", "numerics", "wall time (s)", "error (deg/s)", "of which time integration (deg/s)", ""), rows)
+
+
+def stability(document: dict) -> Html:
+    """Hard cases, held or not, each beside a method that fails."""
+    rows = [(c["name"], c["fidelity"], c["measure"], _figure(c["figure"]), number(c["limit"]), c["control"], _figure(c["control_figure"]),
+             c["note"], _held(c)) for c in document["cases"]]
+    kinds = ["good" if c["held"] and c["control_failed"] else "bad" for c in document["cases"]]
+    return section("stability", "Hard cases", paragraph("Each case stands beside a simpler method that must fail on it."), table(
+        ("case", "model", "measure", "measured", "limit", "simpler method", "its figure", "remark", "verdict"), rows, kinds=kinds))
+
+
+def _figure(value: float | None) -> str:
+    return "infinite" if value is None else number(value)
+
+
+def _held(case: dict) -> str:
+    if not case["held"]:
+        return "not held"
+    return "held, and the simpler method fails" if case["control_failed"] else "held, but so does the simpler method"
+
+
+def ablation(document: dict) -> Html:
+    """Every effect off, both fidelities: what it costs and what it changes."""
+    heads = ("model", "variant", "status", "time (s)", "time ratio", "ns per step", "settled x, y, z (deg/s)", "change x, y, z (deg/s)",
+             "effects in the compiled kernel")
+    rows = [(row["fidelity"], row["variant"], row["status"], f"{row['time_s']:.3g}", f"{row['time_ratio']:.2f}", f"{row['ns_per_step']:,.0f}",
+             _three(row["settled_rate_deg_s"], ""), _three(row["settled_rate_change_deg_s"], "+"),
+             "not reported" if row["compiled"] is None else ", ".join(row["compiled"]) or "none") for row in document["rows"]]
+    return section("ablation", "Only what the scene calls for", table(heads, rows), caption(
+        f"Condition {document['condition']}; reference on {1e3 * document['element_size_m']:g} mm elements (processor time of its thread), "
+        "surrogate uncalibrated (median wall time). The first line of each model has every effect on, those the scene lacks with "
+        "small values; each further line takes one away."))
+
+
+def _three(values: list[float] | None, sign: str) -> str:
+    return "–" if values is None else ", ".join(f"{value:{sign}.3g}" for value in values)

@@ -1,0 +1,56 @@
+"""Stage ``report``: every other stage, then one page of their results."""
+
+from pathlib import Path
+from typing import Callable
+
+from scenes.calibration import Calibration
+from scenes.files import content_hash, write_text
+from studies.stages import ablation, calibrate, compare, cost, mesh, runs, stability
+from studies.store import Run, code_hash
+from studies.study import Study, StudyError
+
+STAGES: dict[str, Callable[[Study], dict]] = {
+    "mesh": mesh.run, "highfi": lambda study: runs.run(study, "highfi"), "lowfi": lambda study: runs.run(study, "lowfi"),
+    "calibration": calibrate.run, "agreement": compare.run, "cost": cost.run, "stability": stability.run, "ablation": ablation.run}
+
+
+def run(study: Study) -> dict:
+    """Runs what is missing and writes report.html; ``failed`` repeats what failed in any stage."""
+    documents, problems = {}, {}
+    for name, stage in STAGES.items():
+        try:
+            documents[name] = stage(study)
+        except StudyError as fault:
+            documents[name], problems[name] = None, str(fault)
+
+    def make() -> tuple[dict, list[Path]]:
+        from studies.report.page import Page
+
+        page = Page(study.scene, study.folder, documents, _trajectories(study, documents), problems)
+        path = study.path("report.html")
+        write_text(path, page.render())
+        return {"report": study.relative(path), "failed": _failed(documents, problems)}, [path, *page.pictures]
+
+    keys = {name: found and found["key"] for name, found in documents.items()}
+    made_at = {name: study.path(f"{name}.json").read_text() for name, found in documents.items() if found}
+    key = content_hash(keys, content_hash(made_at), problems, study.key(("scenes", "studies")))
+    return study.stage("report", key, make)
+
+
+def _failed(documents: dict, problems: dict[str, str]) -> list[str]:
+    inside = [f"{name}: {line}" for name, found in documents.items() if found for line in found.get("failed", [])]
+    return inside + [f"{name}: {reason}" for name, reason in problems.items()]
+
+
+def _trajectories(study: Study, documents: dict):
+    from studies.report.figures import Runs
+
+    highfi = {name: study.highfi(name) for name in study.conditions}
+    plain = {name: study.lowfi(name) for name in study.conditions}
+    fitted = compare.calibrated_runs(study, Calibration.load(study.path(calibrate.FILE))) if documents["calibration"] else {}
+    return Runs(*(_stored(study, asked) for asked in (highfi, plain, fitted)))
+
+
+def _stored(study: Study, asked: dict[str, Run]) -> dict:
+    """Only what is there: the page shows results and makes none."""
+    return {name: found for name, run in asked.items() if (found := study.store.load(run)) is not None}
