@@ -1,0 +1,1 @@
+"""Tests of the scene, its effects, and the records that travel."""

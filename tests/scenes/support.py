@@ -1,0 +1,54 @@
+"""A small valid scene as a mapping, and motions with closed forms."""
+
+import copy
+
+import numpy as np
+
+from scenes import ledger
+from scenes.outcome import Milestones, Outcome
+from scenes.trajectory import Trajectory
+
+SMALL = {
+    "name": "small",
+    "duration": "30 ms",
+    "payload": {"mass": "10 kg", "inertia": {"xx": "1 kg*m**2", "yy": "1.1 kg*m**2", "zz": "1.2 kg*m**2"}},
+    "pads": [{"position": ["0 m", "0.1 m", "0.1 m"], "normals": ["+y", "+z"]}],
+    "rail": {"start": "-0.1 m", "end": "0.1 m",
+             "material": {"density": "2810 kg/m**3", "youngs_modulus": "72 GPa", "poisson_ratio": 0.33}},
+    "thrust": {"kind": "gaussian", "peak": "6 kN", "width": "4 ms", "centre": "12 ms"},
+}
+CONTACT = {"law": "impact", "clearance": "0.1 mm", "stiffness": "70000 N/mm**1.5", "damping": "60 N*s/mm", "damping_depth": "0.3 mm"}
+FRICTION = {"static": 0.2, "dynamic": 0.1, "static_speed": "10 mm/s", "dynamic_speed": "20 mm/s"}
+
+
+def small(**tables) -> dict:
+    """The small scene with whole tables or keys replaced; keys with two underscores reach into tables."""
+    raw = copy.deepcopy(SMALL)
+    for key, value in tables.items():
+        *parents, last = key.split("__")
+        table = raw
+        for part in parents:
+            table = table.setdefault(part, {})
+        table[last] = value
+    return raw
+
+
+def motion(position, velocity=None, quaternion=None, rate=None, time=None, platform_rate=(0.0, 0.0, 0.0), platform_quaternion=None,
+           status="time_limit", **parts) -> Trajectory:
+    """A trajectory of given samples; what is not given is zero, aligned, or at rest."""
+    position = np.asarray(position, dtype=float)
+    n = len(position)
+    zeros, aligned = np.zeros((n, 3)), np.tile([1.0, 0.0, 0.0, 0.0], (n, 1))
+    entries = dict(
+        fidelity="lowfi", status=status, time=time, position=position, velocity=zeros if velocity is None else velocity,
+        quaternion=aligned if quaternion is None else quaternion, rate=zeros if rate is None else rate,
+        platform_position=zeros, platform_velocity=zeros, platform_rate=np.tile(platform_rate, (n, 1)),
+        platform_quaternion=aligned if platform_quaternion is None else platform_quaternion, pad_force=np.zeros((n, 2, 3)),
+        energy=np.zeros((n, len(ledger.ENTRIES))), transverse_energy=np.zeros((n, len(ledger.ENTRIES))), outcome=Outcome(),
+        checks={}, cost={}, scene={})
+    return Trajectory(**entries | parts)
+
+
+def marks(settled=0.0, spent=0.0, jam_speed=0.01, constant=False, edges=((-0.05, 0.0, 0.0), (-0.1, 0.1, 0.1)), rail_end=0.1):
+    """Milestones of a payload whose rearmost edge is 0.1 m behind its mass centre."""
+    return Milestones(settled, spent, jam_speed, constant, np.array(edges), rail_end)

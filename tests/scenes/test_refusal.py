@@ -1,0 +1,248 @@
+"""X19: bad input is refused before anything is stepped, in one error that lists every bad field."""
+
+import pytest
+
+from scenes import SceneError, load, parse
+from tests.scenes.support import CONTACT, FRICTION, small
+
+pytestmark = pytest.mark.case("X19")
+
+PLATFORM = {"mass": "80 kg", "inertia": {"xx": "5 kg*m**2", "yy": "5 kg*m**2", "zz": "5 kg*m**2"}}
+
+# key of the fault: (where it is put, what is given, a word of what is expected)
+BAD = {
+    "payload.mass": ("payload__mass", "9.9 m", "quantity in kg"),
+    "payload.inertia": ("payload__inertia", {"xx": "1 kg*m**2", "yy": "1 kg*m**2", "zz": "3 kg*m**2"}, "triangle inequality"),
+    "payload.size.1": ("payload__size", ["1 m", "0 m", "1 m"], "greater than 0"),
+    "payload.colour": ("payload__colour", "red", "no such key"),
+    "pads.0.position.2": ("pads", [{"position": ["0 m", "0 m"], "normals": ["+y"]}], "this key"),
+    "rail.material.density": ("rail__material__density", "-1 kg/m**3", "greater than 0"),
+    "rail.material.youngs_modulus": ("rail__material__youngs_modulus", "inf Pa", "quantity in Pa"),
+    "rail.material.poisson_ratio": ("rail__material__poisson_ratio", 0.5, "less than 0.5"),
+    "rail.mounts": ("rail__mounts", [{"start": "10 mm", "end": "30 mm"}, {"start": "20 mm", "end": "40 mm"}], "do not overlap"),
+    "thrust.peak": ("thrust__peak", float("nan"), "quantity in N"),
+    "thrust.width": ("thrust__width", "0 ms", "greater than 0"),
+    "contact.stiffness": ("contact__stiffness", "-5 N/mm**1.5", "greater than 0"),
+    "contact.clearance": ("contact__clearance", "-0.1 mm", "greater than or equal to 0"),
+    "friction.static": ("friction__static", -0.1, "greater than or equal to 0"),
+    "friction.dynamic_speed": ("friction__dynamic_speed", "5 mm/s", "above static_speed"),
+    "platform.mass": ("platform__mass", "0 kg", "greater than 0"),
+    "gravity": ("gravity", {}, "at least one key"),
+    "initial": ("initial", 3, "a table"),
+    "mass_offset.eccentricity.axial": ("mass_offset__eccentricity__axial", "-1 mm", "greater than or equal to 0"),
+    "output.interval": ("output__interval", 5e-5, "text with a unit"),
+    "thrust_offset.misalignment.axial": ("thrust_offset__misalignment__axial", "0.1", "quantity in rad"),
+    "duration": ("duration", True, "quantity in s"),
+}
+
+
+def refused(raw) -> list:
+    with pytest.raises(SceneError) as caught:
+        parse(raw, "file.toml")
+    return caught.value.faults
+
+
+def whole(**tables) -> dict:
+    return small(**{"contact": dict(CONTACT), "friction": dict(FRICTION), "platform": dict(PLATFORM)} | tables)
+
+
+def test_the_sound_scene_passes():
+    assert parse(whole()).platform.mass == 80.0
+
+
+def test_every_bad_field_is_in_one_error():
+    raw = whole(**{place: value for place, value, _ in BAD.values()})
+    with pytest.raises(SceneError) as caught:
+        parse(raw, "file.toml")
+    faults = {fault.key: fault for fault in caught.value.faults}
+    assert set(faults) == set(BAD)
+    text = str(caught.value)
+    assert text.startswith(f"{len(BAD)} faults in the scene")
+    for key, (_, _, expected) in BAD.items():
+        assert expected in faults[key].expected
+        assert f"file.toml: {key}: given {faults[key].given}, expected " in text
+    for word in ("Traceback", "pydantic", "ValidationError", "Table", "line ", "type=", "0x"):
+        assert word not in text
+
+
+@pytest.mark.parametrize("key", BAD)
+def test_each_bad_field_alone(key):
+    place, value, expected = BAD[key]
+    (fault,) = refused(whole(**{place: value}))
+    assert fault.key == key
+    assert expected in fault.expected
+
+
+POSITIVE = ["payload__mass kg", "payload__inertia__xx kg*m**2", "rail__material__density kg/m**3", "rail__material__youngs_modulus Pa",
+            "contact__stiffness N/m**1.5", "contact__penalty N/m**3", "thrust__width s", "friction__static_speed m/s", "duration s"]
+NOT_NEGATIVE = ["contact__clearance m", "contact__damping N*s/m", "friction__static dimensionless", "pads__0__relief m"]
+
+
+NO_SIZE = [(place, number) for place in POSITIVE + NOT_NEGATIVE for number in ("nan", "inf", "-inf", "-1")]
+
+
+@pytest.mark.parametrize("place, number", NO_SIZE + [(place, "0") for place in POSITIVE])
+def test_numbers_that_are_no_size(place, number):
+    place, unit = place.split()
+    key = place.replace("__", ".")
+    for bad in (float(number), number if unit == "dimensionless" else f"{number} {unit}"):
+        with pytest.raises(SceneError) as caught:
+            parse(whole()).replace({key: bad})
+        assert [fault.key for fault in caught.value.faults] == [key]
+
+
+def test_a_naive_reader_lets_nan_and_a_wrong_unit_through():
+    """Control: float() and a comparison, the usual way to check, pass what is refused above."""
+    mass = float("nan")
+    assert not mass <= 0.0
+    assert float("9.9 m".split()[0]) == 9.9
+
+
+@pytest.mark.parametrize("ratio, sound", [(0.5, False), (0.7, False), (-1.0, False), (0.499, True), (-0.999, True), (0.0, True)])
+def test_poisson_ratio_on_both_sides_of_its_bounds(ratio, sound):
+    raw = small(rail__material__poisson_ratio=ratio)
+    assert parse(raw).rail.material.poisson_ratio == ratio if sound else refused(raw)[0].key == "rail.material.poisson_ratio"
+
+
+@pytest.mark.parametrize("zz, sound", [(2.0, True), (2.0 + 1e-9, False)])
+def test_triangle_inequality_on_both_sides(zz, sound):
+    raw = small(payload__inertia={"xx": "1 kg*m**2", "yy": "1 kg*m**2", "zz": f"{zz!r} kg*m**2"})
+    assert parse(raw) if sound else refused(raw)[0].key == "payload.inertia"
+
+
+def test_products_of_inertia_count():
+    """The diagonal alone satisfies the inequality; the principal moments 0.1, 1, 1.9 do not."""
+    raw = small(payload__inertia={"xx": "1 kg*m**2", "yy": "1 kg*m**2", "zz": "1 kg*m**2", "xy": "0.9 kg*m**2"})
+    assert "triangle" in refused(raw)[0].expected
+
+
+@pytest.mark.parametrize("table, missing", [("payload", {"mass", "inertia"}), ("friction", set(FRICTION)), ("contact", {"law"}),
+                                            ("thrust", {"kind"}), ("rail", {"start", "end", "material"}), ("pads", None)])
+def test_empty_tables(table, missing):
+    faults = refused(small(**{table: [] if table == "pads" else {}}))
+    expected = {"pads"} if missing is None else {f"{table}.{key}" for key in missing}
+    assert {fault.key for fault in faults} == expected
+
+
+@pytest.mark.parametrize("table", ["initial", "gravity", "thrust_offset", "mass_offset", "output"])
+def test_an_empty_effect_would_be_present_and_do_nothing(table):
+    assert [fault.key for fault in refused(small(**{table: {}}))] == [table]
+
+
+@pytest.mark.parametrize("table", ["payload", "rail", "thrust", "pads", "duration"])
+def test_missing_tables(table):
+    raw = small()
+    del raw[table]
+    (fault,) = refused(raw)
+    assert (fault.key, fault.given) == (table, "nothing")
+
+
+@pytest.mark.parametrize("change, key", [
+    ({"thrust__kind": "gauss"}, "thrust.kind"), ({"thrust__impulse": "1 N*s"}, "thrust"), ({"thrust__rescale": True}, "thrust.rescale"),
+    ({"rail__end": "-0.2 m"}, "rail.end"), ({"rail__thickness": "24 mm"}, "rail.thickness"), ({"rail__mount_width": "25 mm"}, "rail.mount_width"),
+    ({"rail__mounts": [{"start": "0 m", "end": "0.3 m"}]}, "rail.mounts"), ({"rail__mounts": [{"start": "2 m", "end": "1 m"}]}, "rail.mounts.0.end"),
+    ({"rail__mounts": "all"}, "rail.mounts"), ({"pads": [{"position": ["0 m"] * 4, "normals": ["+y"]}]}, "pads.0.position"),
+    ({"pads": [{"position": ["0 m"] * 3, "normals": ["+y", "+y"]}]}, "pads.0.normals"),
+    ({"pads": [{"position": ["0 m"] * 3, "normals": ["+x"]}]}, "pads.0.normals.0"), ({"contact": CONTACT | {"law": "hertz"}}, "contact.law"),
+    ({"contact": CONTACT | {"exponent": 2.0}}, "contact.stiffness"), ({"contact": CONTACT | {"exponent": "x"}}, "contact.exponent"),
+    ({"gravity": {"w": "1 m/s**2"}}, "gravity.w"), ({"frictoin": FRICTION}, "frictoin"),
+    ({"provenance": {"payload.mas": "paper"}}, "provenance.payload.mas"), ({"agreement": {"fitted": ["a"]}}, "agreement.fitted"),
+    ({"conditions": {"a": {}}, "agreement": {"fitted": ["a"], "held_out": ["a"]}}, "agreement.held_out"),
+])
+def test_other_faults_name_their_key(change, key):
+    (fault,) = refused(small(**change))
+    assert fault.key == key
+
+
+def test_not_a_mapping():
+    assert [fault.expected for fault in refused([1, 2])] == ["a table"]
+
+
+CONDITION_FAULTS = {"output.interval": 1e-4, "payload.mass": "1 m", "friction.static": 0.1, "thrust.pek": "1 N", "pads.7.relief": "1 um",
+                    "gravty": "absent"}
+
+
+def test_conditions_are_checked_when_the_scene_is_read():
+    """A bare number is refused in a file's conditions as anywhere else in it, and so is a key that does not exist."""
+    raw = small(payload__inertia__xx="1 kg", conditions={"a": CONDITION_FAULTS, "b": {"payload.mass": "11 kg"}})
+    keys = {fault.key for fault in refused(raw)}
+    assert keys == {"payload.inertia.xx", *(f"conditions.a.{key}" for key in CONDITION_FAULTS if key != "friction.static"),
+                    "conditions.a.friction.dynamic", "conditions.a.friction.static_speed", "conditions.a.friction.dynamic_speed"}
+
+
+def test_conditions_given_by_a_program_may_be_numbers():
+    scene = parse(small()).replace({"conditions.a": {"payload.mass": 11.0}})
+    assert scene.condition("a").payload.mass == 11.0
+    with pytest.raises(SceneError, match="conditions.a.payload.mass"):
+        scene.replace({"conditions.a": {"payload.mass": -11.0}})
+
+
+def write(folder, name, text):
+    path = folder / name
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def test_faults_of_files_name_the_file_that_was_asked_for(tmp_path):
+    write(tmp_path, "base.toml", 'extends = "reference"\n[contact]\nclearance = "1 kg"\n')
+    child = write(tmp_path, "child.toml", 'extends = "base.toml"\n[payload]\nmass = "0 kg"\n')
+    with pytest.raises(SceneError) as caught:
+        load(child)
+    assert {(fault.source, fault.key) for fault in caught.value.faults} == {(str(child), "payload.mass"), (str(child), "contact.clearance")}
+
+
+@pytest.mark.parametrize("text, key, given", [
+    ('extends = "nowhere"\n', "extends", "nowhere"), ("extends = 3\n", "extends", "3"), ('extends = "self.toml"\n', "extends", "self.toml"),
+    ("payload = [\n", "file", "Invalid value"), ('extends = "broken.toml"\n', "extends", "broken.toml"),
+])
+def test_files_that_cannot_be_read(tmp_path, text, key, given):
+    write(tmp_path, "broken.toml", "= 1")
+    path = write(tmp_path, "self.toml", text)
+    with pytest.raises(SceneError) as caught:
+        load(path)
+    (fault,) = caught.value.faults
+    assert (fault.source, fault.key) == (str(path), key)
+    assert given in fault.given
+
+
+def test_unknown_names_and_paths(tmp_path):
+    with pytest.raises(SceneError, match="one of .*reference"):
+        load("refrence")
+    with pytest.raises(SceneError, match="No such file"):
+        load(tmp_path / "none.toml")
+    (tmp_path / "bytes.toml").write_bytes(b"\xff\xfe")
+    with pytest.raises(SceneError, match="valid TOML"):
+        load(tmp_path / "bytes.toml")
+
+
+CURVES = {
+    "unsorted": ("time_s,force_N\n0,0\n2,5\n1,0\n", "increasing order"), "repeated": ("time_s,force_N\n0,0\n0,5\n", "increasing order"),
+    "one row": ("time_s,force_N\n0,0\n", "at least two rows"), "no rows": ("time_s,force_N\n", "at least two rows"),
+    "negative times": ("time_s,force_N\n-1,0\n1,5\n", "not negative"), "nan": ("time_s,force_N\n0,nan\n1,5\n", "finite"),
+    "nan time": ("time_s,force_N\n0,1\nnan,5\n2,1\n", "finite"), "text": ("time_s,force_N\n0,a\n1,5\n", "two numbers"),
+    "one column": ("time_s,force_N\n0\n1\n", "two numbers"), "three columns": ("time_s,force_N\n0,1,2\n1,5,2\n", "two numbers"),
+    "no header": ("0,1\n1,5\n", "header"), "empty": ("", "header"), "wrong units": ("time_ms,force_N\n0,1\n1,5\n", "header"),
+}
+
+
+@pytest.mark.parametrize("name", CURVES)
+def test_thrust_curves(tmp_path, name):
+    text, expected = CURVES[name]
+    path = write(tmp_path, "curve.csv", text)
+    (fault,) = refused(small(thrust={"kind": "measured", "file": str(path)}))
+    assert fault.key == "thrust.file"
+    assert expected in fault.expected
+
+
+def test_every_fault_of_a_curve_is_named(tmp_path):
+    path = write(tmp_path, "curve.csv", "time_s,force_N\n1,inf\n-1,5\n")
+    (fault,) = refused(small(thrust={"kind": "measured", "file": str(path)}))
+    assert all(word in fault.expected for word in ("finite", "not negative", "increasing"))
+
+
+def test_curve_files_that_are_no_text(tmp_path):
+    (tmp_path / "curve.csv").write_bytes(b"\xff\xfe\x00")
+    for file in (tmp_path / "curve.csv", tmp_path / "none.csv", tmp_path):
+        (fault,) = refused(small(thrust={"kind": "measured", "file": str(file)}))
+        assert fault.key == "thrust.file"
+        assert "CSV file" in fault.expected
