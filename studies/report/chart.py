@@ -14,6 +14,8 @@ from scenes.files import replacing
 NAVY, VERMILION, AMBER, TEAL, GREY = "#1d3461", "#d1495b", "#e8a33d", "#2e8b7a", "#7a7f87"
 AXIS_COLOURS = {"x": NAVY, "y": VERMILION, "z": AMBER}
 _POINTS = 500  # kept of each line on the page
+_GAP = 94.0  # px between rows: an axis label, and the title below it
+_FONT = 'system-ui, "Segoe UI", Roboto, "Liberation Sans", sans-serif'
 _INK, _RULE = "#24292f", "#e3e6ea"
 _PLOTLY_DASH = {"-": "solid", "--": "dash", ":": "dot", "": "solid"}
 
@@ -68,7 +70,7 @@ def to_html(chart: Chart) -> str:
     from plotly.subplots import make_subplots
 
     figure = make_subplots(rows=chart.rows, cols=chart.columns, subplot_titles=[panel.title for panel in chart.panels],
-                           horizontal_spacing=0.09 if chart.columns > 1 else 0.0, vertical_spacing=0.30 / max(chart.rows, 2))
+                           horizontal_spacing=0.09 if chart.columns > 1 else 0.0, vertical_spacing=_GAP / (chart.height * chart.rows))
     shown: set[str] = set()
     for index, panel in enumerate(chart.panels):
         place = {"row": index // chart.columns + 1, "col": index % chart.columns + 1}
@@ -88,12 +90,13 @@ def to_html(chart: Chart) -> str:
             figure.add_hrect(y0=0.0 if not panel.log else 1e-9, y1=panel.band[0], fillcolor=GREY, opacity=0.16, line_width=0,
                              annotation_text=panel.band[1], annotation_position="top right", **place)
     figure.update_layout(height=chart.height * chart.rows + 90, template="plotly_white", margin={"l": 62, "r": 18, "t": 40, "b": 60},
-                         font={"family": "inherit", "size": 13, "color": _INK}, hovermode="closest",
+                         font={"family": _FONT, "size": 13, "color": _INK}, hovermode="closest",
                          legend={"orientation": "h", "yanchor": "top", "y": -90.0 / (chart.height * chart.rows), "x": 0.0})
-    figure.update_xaxes(showline=True, linecolor="#9aa1a9", gridcolor=_RULE, zerolinecolor="#c9ced4", ticks="outside")
-    figure.update_yaxes(showline=True, linecolor="#9aa1a9", gridcolor=_RULE, zerolinecolor="#c9ced4", ticks="outside")
+    figure.update_annotations(font={"size": 14})
+    figure.update_xaxes(title_font={"size": 13}, showline=True, linecolor="#9aa1a9", gridcolor=_RULE, zerolinecolor="#c9ced4", ticks="outside")
+    figure.update_yaxes(title_font={"size": 13}, showline=True, linecolor="#9aa1a9", gridcolor=_RULE, zerolinecolor="#c9ced4", ticks="outside")
     return figure.to_html(full_html=False, include_plotlyjs=False, div_id=f"chart-{chart.name}",
-                          config={"displaylogo": False, "responsive": True})
+                          config={"displayModeBar": False, "responsive": True})
 
 
 def to_png(chart: Chart, path: Path) -> None:
@@ -108,7 +111,7 @@ def to_png(chart: Chart, path: Path) -> None:
     for index, panel in enumerate(chart.panels):
         axes = figure.add_subplot(chart.rows, chart.columns, index + 1)
         for line in panel.lines:
-            handle, = axes.plot(line.x, line.y, color=line.colour, linewidth=line.width, linestyle=line.dash or "none",
+            handle, = axes.plot(line.x, line.y, color=line.colour, linewidth=0.75 * line.width, linestyle=line.dash or "none",
                                 alpha=line.opacity, marker=line.marker or None, markersize=6)
             if line.legend:
                 handles.setdefault(line.name, handle)

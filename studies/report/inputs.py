@@ -9,7 +9,7 @@ from pydantic import BaseModel
 from scenes.effects import thrust
 from scenes.scene import Scene
 from scenes.units import registry
-from studies.report.markup import Html, code, fold, number, table
+from studies.report.markup import Html, code, fold, number, table, text
 
 _SCALED = ("m", "s", "N", "Pa", "m/s")
 _APART = {"name", "description", "conditions", "provenance", "agreement", "pads"}
@@ -73,7 +73,7 @@ def scene_tables(scene: Scene) -> Html:
     for key, value, unit, stated in values(scene):
         if key == "contact.stiffness":
             unit = f"N/m**{scene.contact.exponent:g}"
-        rows.append((code(key), readable(value, unit), provenance(scene, key, stated)))
+        rows.append((code(key), Html(f"<span>{text(readable(value, unit))}</span>"), provenance(scene, key, stated)))
     pads = [(index + 1, readable(pad.position, "m"), ", ".join(pad.normals), f"{readable(pad.length, 'm')} x {readable(pad.width, 'm')}",
              readable(pad.inset, "m"), readable(pad.relief, "m")) for index, pad in enumerate(scene.pads)]
     conditions = [(name, _role(scene, name), "; ".join(f"{key} = {value}" for key, value in overrides.items()))
@@ -110,4 +110,4 @@ def thrust_facts(scene: Scene) -> Html:
         rows.append(("Gaussian fit of the measured curve", f"peak {fit.peak:.5g} N at {1e3 * fit.centre:.4g} ms, width "
                      f"{1e3 * fit.width:.4g} ms, impulse {fit.impulse:.5g} N s against {fit.curve_impulse:.5g} N s of the curve, "
                      f"residual {100.0 * fit.relative_residual:.3g} %"))
-    return table(("thrust", ""), rows)
+    return table(("thrust", ""), [(name, Html(f"<span>{words}</span>")) for name, words in rows])

@@ -1,0 +1,69 @@
+"""Rows of the agreement table: gates, floor, and a reference that is not converged."""
+
+import numpy as np
+import pytest
+
+from studies import agreement
+from studies.agreement import Context, Spread
+from tests.studies.synthetic import flight
+
+
+def constant(*rate):
+    """A run whose rates are constant (deg/s)."""
+    return flight(lambda t: np.tile(np.radians(rate), (t.size, 1)))
+
+
+CONVERGED = [Spread("phi15", "reference", "mesh", 0.001, 0.02), Spread("phi15", "reference", "penalty", 0.002, 0.05)]
+FLOORS = [Spread("phi15", "reference", "clearance", 0.004, 0.01), Spread("phi15", "surrogate", "clearance", 0.003, 0.03),
+          Spread("phi60", "reference", "clearance", 0.006, 0.02)]
+
+
+def row(other, refinements=CONVERGED, condition="phi15"):
+    return agreement.row(condition, "held_out", constant(3.0, 0.0, 4.0), other, Context(FLOORS, refinements))
+
+
+def test_row_holds_every_key_other_tools_read():
+    keys = {"condition", "velocity_relative_l2", "rate_relative_l2", "iso18571", "settled_rate_error_deg_s",
+            "settled_rate_error_xyz_deg_s", "floor_deg_s", "floor_l2", "reference_uncertainty_deg_s"}
+    assert keys <= set(row(constant(3.0, 0.0, 4.0)))
+
+
+def test_agreement_within_all_gates():
+    found = row(constant(3.0, 0.05, 4.0))
+    assert found["passes"] and found["verdict"] == "agrees"
+    assert found["rate_relative_l2"] == pytest.approx(0.01, rel=1e-9)
+    assert found["settled_rate_error_deg_s"] == pytest.approx(0.05, rel=1e-9)
+
+
+def test_missed_gate_says_by_how_much():
+    found = row(constant(3.0, 0.0, 4.4))
+    assert not found["passes"]
+    assert found["gates"]["settled_rate_error_deg_s"]["times_limit"] == pytest.approx(4.0, rel=1e-9)
+    assert found["verdict"] == "misses: rate L2 1.6 x limit, settled rate 4 x limit"
+
+
+def test_reference_that_is_not_converged_forbids_any_claim():
+    found = row(constant(3.0, 0.0, 4.0), [Spread("phi15", "reference", "mesh", 0.1, 0.18)])
+    assert found["verdict"] == "reference not converged"
+    assert found["reference_uncertainty_deg_s"] == 0.18
+    assert row(constant(3.0, 0.0, 4.0), [])["verdict"] == "reference not converged"
+
+
+def test_floor_is_the_own_one_where_measured_else_the_largest():
+    own, other = row(constant(3.0, 0.0, 4.0)), row(constant(3.0, 0.0, 4.0), condition="h1")
+    assert (own["floor_deg_s"], own["floor_l2"], own["floor_measured_here"]) == (0.03, 0.004, True)
+    assert (other["floor_deg_s"], other["floor_l2"], other["floor_measured_here"]) == (0.03, 0.006, False)
+    assert own["reference_uncertainty_by_cause_deg_s"] == {"mesh": 0.02, "penalty": 0.05}
+
+
+def test_run_that_did_not_settle_never_passes():
+    found = agreement.row("phi15", "fitted", constant(3.0, 0.0, 4.0), flight(status="jammed"), Context(FLOORS, CONVERGED))
+    assert not found["passes"]
+    assert "settled rate unknown" in found["verdict"]
+
+
+def test_spread_takes_the_larger_side():
+    found = agreement.spread("phi15", "reference", "clearance", constant(1.0, 0.0, 0.0),
+                             [constant(1.02, 0.0, 0.0), constant(0.99, 0.0, 0.0)])
+    assert found.settled_rate_change_deg_s == pytest.approx(0.02, rel=1e-9)
+    assert found.rate_relative_l2 == pytest.approx(0.02, rel=1e-9)

@@ -1,0 +1,127 @@
+"""The command line: exit codes and what it says about bad input. Nothing is written when the input is bad."""
+
+import json
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from scenes.trajectory import Trajectory
+from studies import store as store_module
+from studies.cli import app
+from tests.studies.synthetic import flight
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+STAGES = ("mesh", "highfi", "lowfi", "calibrate", "compare", "cost", "stability", "ablation", "report")
+
+
+def call(*arguments):
+    return CliRunner().invoke(app, [str(argument) for argument in arguments])
+
+
+@pytest.mark.parametrize("overrides, words", [
+    (["payload.mass=9.9 m"], ["payload.mass", "9.9 m", "kg"]),
+    (["payload.weight=9.9 kg"], ["payload.weight", "no such key"]),
+    (["payload.mass=-1 kg", "rail.material.density=0 kg/m**3", "rail.material.poisson_ratio=0.5"],
+     ["payload.mass", "rail.material.density", "rail.material.poisson_ratio", "3 faults"]),
+    (["payload.mass"], ["--set", "KEY=VALUE"]),
+    (["contact.clearance=-0.1 mm"], ["contact.clearance"]),
+])
+def test_bad_override_lists_every_fault_and_writes_nothing(tmp_path, overrides, words):
+    options = [part for item in overrides for part in ("--set", item)]
+    result = call("highfi", "--scene", "tiny", "--out", tmp_path / "out", *options)
+    assert result.exit_code == 2
+    assert all(word in result.stderr for word in words)
+    assert "Traceback" not in result.output
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("stage", STAGES)
+def test_every_stage_refuses_an_unknown_scene(tmp_path, stage):
+    result = call(stage, "--scene", "no_such_scene", "--out", tmp_path / "out")
+    assert result.exit_code == 2
+    assert "no_such_scene" in result.stderr and "reference" in result.stderr
+    assert not (tmp_path / "out").exists()
+
+
+def test_unknown_condition_and_bad_options(tmp_path):
+    assert call("highfi", "--scene", "tiny", "--condition", "phi99", "--out", tmp_path).exit_code == 2
+    assert call("run", "--scene", "tiny", "--fidelity", "both").exit_code == 2
+    assert call("mesh", "--element-size", "-4").exit_code == 2
+    assert call("run", "--scene", "tiny", "--calibration", tmp_path / "missing.toml", "--out", tmp_path).exit_code == 2
+    assert not list(tmp_path.iterdir())
+
+
+def test_scene_without_fitted_conditions_cannot_be_calibrated(tmp_path):
+    result = call("calibrate", "--scene", "tiny", "--set", "agreement=absent", "--out", tmp_path / "out")
+    assert result.exit_code == 2
+    assert "agreement.fitted" in result.stderr
+    assert not (tmp_path / "out").exists()
+
+
+def _stub(monkeypatch, **parts):
+    monkeypatch.setattr(store_module, "prepare", lambda run: None)
+    monkeypatch.setattr(store_module, "execute", lambda run, progress=None: flight(
+        fidelity=run.fidelity, cost={"wall_s": 1.0, "compile_s": 0.0, "steps": 10, "dt_s": 1e-4, "elements": 1,
+                                     "ns_per_element_step": 1.0}, **parts))
+
+
+def test_failed_run_is_exit_code_1_with_its_status(tmp_path, monkeypatch):
+    _stub(monkeypatch, status="diverged", message="energy grew")
+    result = call("highfi", "--scene", "tiny", "--condition", "phi15", "--out", tmp_path)
+    assert result.exit_code == 1
+    assert "phi15: diverged: energy grew" in result.stderr
+    assert json.loads((tmp_path / "tiny" / "highfi.json").read_text())["conditions"][0]["settled"] is None
+
+
+def test_json_is_the_stage_file_on_standard_output(tmp_path, monkeypatch):
+    _stub(monkeypatch)
+    result = call("highfi", "--scene", "tiny", "--condition", "phi15", "--condition", "h1", "--json", "--out", tmp_path)
+    assert result.exit_code == 0
+    printed = json.loads(result.stdout)
+    assert printed == json.loads((tmp_path / "tiny" / "highfi.json").read_text())
+    assert [row["condition"] for row in printed["conditions"]] == ["phi15", "h1"]
+    keys = {"condition", "status", "wall_s", "compile_s", "steps", "dt_s", "energy_error", "transverse_energy_error",
+            "linear_momentum_error", "angular_momentum_error", "settled", "trajectory", "elements", "ns_per_element_step"}
+    assert all(keys <= set(row) for row in printed["conditions"])
+    assert set(printed["conditions"][0]["settled"]) >= {"velocity_m_s", "rate_deg_s"}
+    assert Trajectory.load(tmp_path / "tiny" / printed["conditions"][0]["trajectory"]).status == "exited"
+
+
+def test_run_prints_the_outcome_with_units(tmp_path, monkeypatch):
+    _stub(monkeypatch)
+    result = call("run", "--scene", "tiny", "--condition", "phi15", "--fidelity", "highfi", "--out", tmp_path)
+    assert result.exit_code == 0
+    assert "tiny / phi15, highfi: exited" in result.stdout
+    assert "m/s (x, y, z)" in result.stdout and "deg/s (x, y, z)" in result.stdout
+
+
+def test_implausible_value_is_warned_about_and_still_runs(tmp_path, monkeypatch):
+    _stub(monkeypatch)
+    result = call("run", "--scene", "tiny", "--condition", "phi15", "--fidelity", "highfi", "--set", "rail.material.density=2.8 kg/m**3",
+                  "--out", tmp_path)
+    assert result.exit_code == 0
+    assert "rail.material.density" in result.stderr
+
+
+def test_catalogue_is_listed():
+    result = call("scenes", "--json")
+    assert result.exit_code == 0
+    assert {"reference", "sensitive", "tiny"} <= set(json.loads(result.stdout)["scenes"])
+
+
+def test_real_process_has_no_traceback_and_answers_help_at_once(tmp_path):
+    bad = subprocess.run([sys.executable, "-m", "studies.cli", "mesh", "--set", "payload.mass=nan kg", "--out", str(tmp_path / "out")],
+                         cwd=ROOT, capture_output=True, text=True, timeout=60)
+    assert bad.returncode == 2
+    assert "payload.mass" in bad.stderr and "Traceback" not in bad.stderr
+    assert not (tmp_path / "out").exists()
+    started = time.monotonic()
+    answer = subprocess.run([sys.executable, "-m", "studies.cli", "--help"], cwd=ROOT, capture_output=True, text=True, timeout=60)
+    assert answer.returncode == 0
+    assert all(stage in answer.stdout for stage in STAGES)
+    # The heavy libraries alone take more than a second to import, so this fails as soon as one of them creeps in.
+    assert time.monotonic() - started < 1.0
