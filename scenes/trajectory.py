@@ -80,7 +80,7 @@ class Trajectory:
         if self.status not in STATUSES:
             raise ValueError(f"status {self.status!r}, expected one of {STATUSES}")
         widths = {"axis": 3, "component": 4, "entry": len(ledger.ENTRIES), "time": np.size(self.time)}
-        for name, dimensions in _DIMENSIONS.items() | {("time", ("time",))}:
+        for name, dimensions in ({"time": ("time",)} | _DIMENSIONS).items():
             shape = np.shape(getattr(self, name))
             if len(shape) != len(dimensions) or any(widths.get(d, n) != n for d, n in zip(dimensions, shape)):
                 raise ValueError(f"{name} has shape {shape}, expected {dimensions} with {widths}")

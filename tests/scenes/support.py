@@ -33,7 +33,7 @@ def small(**tables) -> dict:
     return raw
 
 
-def motion(position, velocity=None, quaternion=None, rate=None, time=None, platform_rate=(0.0, 0.0, 0.0), platform_quaternion=None,
+def motion(position, velocity=None, quaternion=None, rate=None, time=None, platform_rate=None, platform_quaternion=None,
            status="time_limit", **parts) -> Trajectory:
     """A trajectory of given samples; what is not given is zero, aligned, or at rest."""
     position = np.asarray(position, dtype=float)
@@ -42,7 +42,7 @@ def motion(position, velocity=None, quaternion=None, rate=None, time=None, platf
     entries = dict(
         fidelity="lowfi", status=status, time=time, position=position, velocity=zeros if velocity is None else velocity,
         quaternion=aligned if quaternion is None else quaternion, rate=zeros if rate is None else rate,
-        platform_position=zeros, platform_velocity=zeros, platform_rate=np.tile(platform_rate, (n, 1)),
+        platform_position=zeros, platform_velocity=zeros, platform_rate=np.zeros((n, 3)) if platform_rate is None else platform_rate,
         platform_quaternion=aligned if platform_quaternion is None else platform_quaternion, pad_force=np.zeros((n, 2, 3)),
         energy=np.zeros((n, len(ledger.ENTRIES))), transverse_energy=np.zeros((n, len(ledger.ENTRIES))), outcome=Outcome(),
         checks={}, cost={}, scene={})
