@@ -1,0 +1,166 @@
+"""Equations of motion of payload and platform, with the power of every force beside them.
+
+    r' = v,   m v' = sum F,   q' = w q / 2,   A' = sum X x F   (X the point a force acts at, all about the scene origin)
+
+Every effect adds itself to the derivative in one line of ``derivative``; while it is filled, the velocity slots hold forces (N).
+Axial power is each force's X component times the X velocity of the mass centre of the body it acts on (``scenes.ledger``).
+"""
+
+from lowfi import state as slot
+from lowfi.state import IMPULSE, MOMENT, PAYLOAD, PLACE, PLATFORM, QUATERNION, TURN, VELOCITY
+from lowfi.touch import load, penetration, relative_pose
+from scenes import rotation
+from scenes.effects.thrust_law import magnitude
+from scenes.jit import njit
+
+
+@njit
+def derivative(model, engaged, time, state, out):
+    """Fill ``out`` with the time derivative of ``state`` (both STATE_SIZE,). ``engaged`` (f,) tells which faces are on the rail."""
+    body = slot.motion(model.payload.mass, model.payload.inverse_inertia, state, PAYLOAD)
+    base = slot.frame(model.platform, state)
+    out[:] = 0.0
+    add_thrust(model.thrust, model.thrust_offset, model.platform, model.reacts_on_platform, time, body, base, out)
+    add_gravity(model.gravity, model.payload, model.platform, body, base, out)
+    add_contact(model.contact, model.friction, model.faces, model.platform, engaged, body, base, out)
+    move(PAYLOAD, model.payload.mass, state, body, out)
+    move_platform(model.platform, state, base, out)
+
+
+@njit
+def move(which, mass, state, body, out):
+    """Turn the force in the velocity slots into acceleration and add the kinematics."""
+    turning = rotation.product((0.0, 0.5 * body.rate[0], 0.5 * body.rate[1], 0.5 * body.rate[2]), slot.quaternion(state, which))
+    for i in range(3):
+        out[which + PLACE + i] = body.velocity[i]
+        out[which + VELOCITY + i] /= mass
+    for i in range(4):
+        out[which + QUATERNION + i] = turning[i]
+
+
+@njit
+def move_platform(platform, state, base, out):
+    if platform is not None:
+        move(PLATFORM, platform.mass, state, base, out)
+
+
+@njit
+def push(out, force_slot, moment_slot, force, point, sign):
+    """Add ``sign`` times a force at a point to a body, or to the impulse from outside."""
+    moment = rotation.cross(point, force)
+    for i in range(3):
+        out[force_slot + i] += sign * force[i]
+        out[moment_slot + i] += sign * moment[i]
+
+
+@njit
+def add_thrust(thrust, offset, platform, reacts, time, body, base, out):
+    size = magnitude(thrust.pulses, thrust.curve, time)
+    if size == 0.0:
+        return
+    force, point = line_of_action(offset, size, body)
+    push(out, PAYLOAD + VELOCITY, PAYLOAD + MOMENT, force, point, 1.0)
+    out[slot.THRUST] += rotation.dot(force, slot.velocity_at(body, point))
+    out[slot.THRUST_AXIAL] += force[0] * body.velocity[0]
+    react(platform, reacts, force, point, base, out)
+
+
+@njit
+def line_of_action(offset, size, body):
+    """Thrust (N) and a point of its line (m) in scene axes; without an offset the line passes through the mass centre."""
+    if offset is not None:
+        d = offset.direction
+        arm = rotation.rotate(body.turn, offset.arm)
+        point = (body.place[0] + arm[0], body.place[1] + arm[1], body.place[2] + arm[2])
+        return rotation.rotate(body.turn, (size * d[0], size * d[1], size * d[2])), point
+    return (size * body.turn[0], size * body.turn[3], size * body.turn[6]), body.place
+
+
+@njit
+def react(platform, reacts, force, point, base, out):
+    """Reaction of the thrust: on a free platform, or outside (exhaust, fixed platform)."""
+    if platform is None:
+        push(out, IMPULSE, TURN, force, point, 1.0)
+    if platform is not None:
+        _react_on_free_platform(reacts, force, point, base, out)
+
+
+@njit
+def _react_on_free_platform(reacts, force, point, base, out):
+    if reacts:
+        push(out, PLATFORM + VELOCITY, PLATFORM + MOMENT, force, point, -1.0)
+        out[slot.THRUST] -= rotation.dot(force, slot.velocity_at(base, point))
+        out[slot.THRUST_AXIAL] -= force[0] * base.velocity[0]
+    else:
+        push(out, IMPULSE, TURN, force, point, 1.0)
+
+
+@njit
+def add_gravity(gravity, payload, platform, body, base, out):
+    if gravity is not None:
+        _weigh(gravity, payload.mass, PAYLOAD, body, out)
+        _weigh_platform(gravity, platform, base, out)
+
+
+@njit
+def _weigh_platform(gravity, platform, base, out):
+    if platform is not None:
+        _weigh(gravity, platform.mass, PLATFORM, base, out)
+
+
+@njit
+def _weigh(gravity, mass, which, body, out):
+    weight = (mass * gravity.x, mass * gravity.y, mass * gravity.z)
+    push(out, which + VELOCITY, which + MOMENT, weight, body.place, 1.0)
+    push(out, IMPULSE, TURN, weight, body.place, 1.0)
+    out[slot.GRAVITY] += rotation.dot(weight, body.velocity)
+    out[slot.GRAVITY_AXIAL] += weight[0] * body.velocity[0]
+
+
+@njit
+def add_contact(laws, friction, faces, platform, engaged, body, base, out):
+    if laws is not None:
+        place, turn = relative_pose(platform, body, base)
+        for i in range(engaged.size):
+            if engaged[i]:
+                p = penetration(faces, i, place, turn)
+                if p > 0.0:
+                    _press(load(laws, friction, faces, platform, i, p, body, base), friction, platform, body, base, out)
+
+
+@njit
+def _press(face, friction, platform, body, base, out):
+    """Add the load of one touching face: the pair of forces at one point, and what its energy becomes."""
+    _pair(platform, face.normal, face.point, out)
+    if face.raw >= 0.0:
+        out[slot.DAMPING] += (face.raw - face.elastic) * face.closing
+    else:
+        out[slot.RELEASED] -= face.elastic * face.closing
+    out[slot.CONTACT_AXIAL] += face.normal[0] * _axial_speed(platform, body, base)
+    _rub(friction, face, platform, body, base, out)
+
+
+@njit
+def _rub(friction, face, platform, body, base, out):
+    if friction is not None:
+        _pair(platform, face.drag, face.point, out)
+        out[slot.FRICTION] -= rotation.dot(face.drag, face.slip)
+        out[slot.FRICTION_AXIAL] -= face.drag[0] * _axial_speed(platform, body, base)
+
+
+@njit
+def _pair(platform, force, point, out):
+    """A force on the payload and its opposite at the same point, on the platform or on the ground."""
+    push(out, PAYLOAD + VELOCITY, PAYLOAD + MOMENT, force, point, 1.0)
+    if platform is None:
+        push(out, IMPULSE, TURN, force, point, 1.0)
+    if platform is not None:
+        push(out, PLATFORM + VELOCITY, PLATFORM + MOMENT, force, point, -1.0)
+
+
+@njit
+def _axial_speed(platform, body, base):
+    """X velocity (m/s) of the payload's mass centre, less the platform's."""
+    if platform is not None:
+        return body.velocity[0] - base.velocity[0]
+    return body.velocity[0]

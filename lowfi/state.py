@@ -1,0 +1,106 @@
+"""The state vector: where each quantity stands, and the motion of a body read from it.
+
+Each body has place r, velocity v, quaternion q and the *total* angular momentum about the scene origin::
+
+    A = r x m v + h,      h = R I R' w,      w = R I^-1 R' (A - r x m v)
+
+Explicit Runge-Kutta methods keep linear invariants to rounding. The sums of m v and of A over both bodies, less the impulse and
+its moment from outside, are such invariants when every internal force acts as a pair at one common point; a wrong pair still shows.
+The work entries behind them are quadratures: the same method integrates them, so that both ledgers close to its accuracy.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from scenes import rotation
+from scenes.jit import njit
+from scenes.model import Model
+
+# Offsets inside a body's slots.
+PLACE, VELOCITY, QUATERNION, MOMENT, BODY_SIZE = 0, 3, 6, 10, 13
+# First slots of the parts of the state.
+PAYLOAD, PLATFORM, IMPULSE, TURN, WORK = 0, 13, 26, 29, 32
+DYNAMIC_SIZE = 26  # what the equations of motion depend on
+# Slots of work and loss (J), total and axial part.
+THRUST, THRUST_AXIAL, GRAVITY, GRAVITY_AXIAL, FRICTION, FRICTION_AXIAL, DAMPING, RELEASED, CONTACT_AXIAL = range(WORK, WORK + 9)
+WORK_SIZE = 9
+STATE_SIZE = WORK + WORK_SIZE
+
+
+class Motion(NamedTuple):
+    """A body now: place of its mass centre (m), velocity (m/s), rotation matrix (nine numbers), angular velocity (rad/s), all in
+    scene axes."""
+
+    place: tuple
+    velocity: tuple
+    turn: tuple
+    rate: tuple
+
+
+@njit
+def triple(values, first):
+    return (values[first], values[first + 1], values[first + 2])
+
+
+@njit
+def quaternion(state, body):
+    first = body + QUATERNION
+    return (state[first], state[first + 1], state[first + 2], state[first + 3])
+
+
+@njit
+def motion(mass, inverse_inertia, state, body):
+    """Motion of the body whose slots begin at ``body``."""
+    place, velocity = triple(state, body + PLACE), triple(state, body + VELOCITY)
+    turn = rotation.matrix(quaternion(state, body))
+    moment, orbit = triple(state, body + MOMENT), rotation.cross(place, velocity)
+    spin = (moment[0] - mass * orbit[0], moment[1] - mass * orbit[1], moment[2] - mass * orbit[2])
+    return Motion(place, velocity, turn, rotation.angular_velocity(turn, inverse_inertia, spin))
+
+
+@njit
+def frame(platform, state):
+    """Motion of the frame that carries the rails: the platform, or the scene axes at rest."""
+    if platform is not None:
+        return motion(platform.mass, platform.inverse_inertia, state, PLATFORM)
+    zero = (0.0, 0.0, 0.0)
+    return Motion(zero, zero, (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0), zero)
+
+
+@njit
+def velocity_at(body, point):
+    """Velocity (m/s) of the point of a body that is now at ``point``."""
+    arm = (point[0] - body.place[0], point[1] - body.place[1], point[2] - body.place[2])
+    swing = rotation.cross(body.rate, arm)
+    return (body.velocity[0] + swing[0], body.velocity[1] + swing[1], body.velocity[2] + swing[2])
+
+
+@njit
+def normalise(state):
+    """Bring both quaternions back to length one."""
+    for body in (PAYLOAD, PLATFORM):
+        first = body + QUATERNION
+        q = rotation.normalised(quaternion(state, body))
+        for i in range(4):
+            state[first + i] = q[i]
+
+
+def initial(model: Model) -> np.ndarray:
+    """State (STATE_SIZE,) at ignition."""
+    state, start, payload, platform = np.zeros(STATE_SIZE), model.initial, model.payload, model.platform
+    place = np.add(payload.mass_centre, start.position)
+    _fill(state, PAYLOAD, payload.mass, payload.inertia, place, start.velocity, rotation.exponential(start.attitude), start.rate)
+    state[PLATFORM + QUATERNION] = 1.0
+    if platform is not None:
+        _fill(state, PLATFORM, platform.mass, platform.inertia, platform.mass_centre, start.platform_velocity,
+              (1.0, 0.0, 0.0, 0.0), start.platform_rate)
+    return state
+
+
+def _fill(state, body, mass, inertia, place, velocity, attitude, rate) -> None:
+    turn = rotation.matrices(np.array([attitude]))[0]
+    state[body + PLACE:body + PLACE + 3] = place
+    state[body + VELOCITY:body + VELOCITY + 3] = velocity
+    state[body + QUATERNION:body + QUATERNION + 4] = attitude
+    state[body + MOMENT:body + MOMENT + 3] = mass * np.cross(place, velocity) + turn @ (inertia @ np.array(rate))

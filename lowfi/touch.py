@@ -1,0 +1,115 @@
+"""Contact between pad faces and rail walls, one point per face at its centre.
+
+With x the face's centre in platform axes, n = sign e_axis the outward normal and u the velocity of the pad's point relative to the
+rail's point at the same place (both inertial, so the frame's own turning is in it)::
+
+    p = sign (x_axis - wall),     p_dot = n . u,     F = -N n - mu(s)/s N (u - p_dot n),     N = max(0, raw)
+
+``raw`` is the law in ``scenes.effects.contact``. The rail's reach is not tested here: ``engaged`` says which faces are on the rail.
+"""
+
+from typing import NamedTuple
+
+from lowfi.state import velocity_at
+from scenes import rotation
+from scenes.effects import contact as law
+from scenes.effects.friction import coefficient_over_speed
+from scenes.jit import njit
+
+
+class Load(NamedTuple):
+    """What a touching face feels: its point (m), normal and friction force on the payload (N), slip velocity (m/s), all in scene
+    axes; penetration rate (m/s), elastic part and raw normal force (N)."""
+
+    point: tuple
+    normal: tuple
+    drag: tuple
+    slip: tuple
+    closing: float
+    elastic: float
+    raw: float
+
+
+@njit
+def relative_pose(platform, body, base):
+    """Place (m) and rotation (nine numbers) of the payload in platform axes."""
+    if platform is not None:
+        d = (body.place[0] - base.place[0], body.place[1] - base.place[1], body.place[2] - base.place[2])
+        return rotation.unrotate(base.turn, d), _relative_turn(base.turn, body.turn)
+    return body.place, body.turn
+
+
+@njit
+def _relative_turn(a, b):
+    """A' B of two matrices."""
+    return (a[0] * b[0] + a[3] * b[3] + a[6] * b[6], a[0] * b[1] + a[3] * b[4] + a[6] * b[7], a[0] * b[2] + a[3] * b[5] + a[6] * b[8],
+            a[1] * b[0] + a[4] * b[3] + a[7] * b[6], a[1] * b[1] + a[4] * b[4] + a[7] * b[7], a[1] * b[2] + a[4] * b[5] + a[7] * b[8],
+            a[2] * b[0] + a[5] * b[3] + a[8] * b[6], a[2] * b[1] + a[5] * b[4] + a[8] * b[7], a[2] * b[2] + a[5] * b[5] + a[8] * b[8])
+
+
+@njit
+def along(faces, i, place, turn):
+    """X (m) of the centre of face ``i`` in platform axes."""
+    c = faces.centre
+    return place[0] + turn[0] * c[i, 0] + turn[1] * c[i, 1] + turn[2] * c[i, 2]
+
+
+@njit
+def penetration(faces, i, place, turn):
+    """Penetration (m) of face ``i`` into its wall, negative across the gap."""
+    c = faces.centre
+    if faces.axis[i] == 1:
+        across = place[1] + turn[3] * c[i, 0] + turn[4] * c[i, 1] + turn[5] * c[i, 2]
+    else:
+        across = place[2] + turn[6] * c[i, 0] + turn[7] * c[i, 1] + turn[8] * c[i, 2]
+    return faces.sign[i] * (across - faces.wall[i])
+
+
+@njit
+def outward(faces, i, base):
+    """Outward normal of face ``i`` in scene axes."""
+    sign, t = faces.sign[i], base.turn
+    if faces.axis[i] == 1:
+        return (sign * t[1], sign * t[4], sign * t[7])
+    return (sign * t[2], sign * t[5], sign * t[8])
+
+
+@njit
+def pad_point(faces, i, body):
+    """Centre of face ``i`` in scene axes (m)."""
+    c = faces.centre
+    arm = rotation.rotate(body.turn, (c[i, 0], c[i, 1], c[i, 2]))
+    return (body.place[0] + arm[0], body.place[1] + arm[1], body.place[2] + arm[2])
+
+
+@njit
+def relative_velocity(platform, body, base, point):
+    """Velocity (m/s) of the payload's point against the platform's point at the same place."""
+    u = velocity_at(body, point)
+    if platform is not None:
+        w = velocity_at(base, point)
+        return (u[0] - w[0], u[1] - w[1], u[2] - w[2])
+    return u
+
+
+@njit
+def friction_force(friction, normal_force, slip):
+    """Friction on the payload (N) at slip velocity ``slip`` (m/s); zero where the effect is absent."""
+    if friction is not None:
+        factor = -normal_force * coefficient_over_speed(friction, rotation.dot(slip, slip) ** 0.5)
+        return (factor * slip[0], factor * slip[1], factor * slip[2])
+    return (0.0, 0.0, 0.0)
+
+
+@njit
+def load(laws, friction, faces, platform, i, p, body, base):
+    """Load of face ``i`` at penetration ``p`` > 0."""
+    point, n = pad_point(faces, i, body), outward(faces, i, base)
+    u = relative_velocity(platform, body, base, point)
+    closing = rotation.dot(u, n)
+    elastic, damping = law.parts(laws.impact, laws.hunt_crossley, laws.linear, p, closing)
+    raw = elastic + damping
+    force = max(raw, 0.0)
+    slip = (u[0] - closing * n[0], u[1] - closing * n[1], u[2] - closing * n[2])
+    return Load(point, (-force * n[0], -force * n[1], -force * n[2]), friction_force(friction, force, slip), slip, closing, elastic,
+                raw)
