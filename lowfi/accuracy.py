@@ -1,0 +1,74 @@
+"""Local error of a step, as speeds at the pads, against what is allowed.
+
+With the error e of each slot, the spin error e_w = R I^-1 R' (e_A - e_r x m v - r x m e_v), the distance ``reach`` of the farthest pad
+from the mass centre and the step h, each body's ratio is the largest of::
+
+    |e_v| across, reach |e_w|, |e_r| / h across, 2 reach |e_q| / h      over   rtol (floor + |v| across + reach |w|)
+    |e_v| along X, |e_r| / h along X                                     over   rtol (floor + |v| along X)
+
+so that 6 m/s along the rail do not loosen what is asked of the millimetres per second across it.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from lowfi.dormand_prince import ERROR, STAGES
+from lowfi.state import (DYNAMIC_SIZE, MOMENT, PAYLOAD, PLACE, PLATFORM, QUATERNION, VELOCITY, quaternion, triple)
+from scenes import rotation
+from scenes.jit import njit
+
+
+class Tolerance(NamedTuple):
+    """relative (1), floor (m/s), reach (m)."""
+
+    relative: float
+    floor: float
+    reach: float
+
+
+@njit
+def error_ratio(tolerance, payload, platform, dt, stages, end, error):
+    """Error of the step that led to ``end`` over what is allowed; NaN where anything is. ``error`` (DYNAMIC_SIZE,) is scratch."""
+    for j in range(DYNAMIC_SIZE):
+        error[j] = 0.0
+    for i in range(STAGES):
+        weight = dt * ERROR[i]
+        if weight != 0.0:
+            for j in range(DYNAMIC_SIZE):
+                error[j] += weight * stages[i, j]
+    ratio = _body_ratio(tolerance, payload.mass, payload.inverse_inertia, dt, error, end, PAYLOAD)
+    return worse(ratio, _platform_ratio(tolerance, platform, dt, error, end))
+
+
+@njit
+def worse(a, b):
+    """The larger of two numbers; NaN when either is NaN."""
+    return a if not a <= b else b
+
+
+@njit
+def _platform_ratio(tolerance, platform, dt, error, end):
+    ratio = 0.0
+    if platform is not None:
+        ratio = _body_ratio(tolerance, platform.mass, platform.inverse_inertia, dt, error, end, PLATFORM)
+    return ratio
+
+
+@njit
+def _body_ratio(tolerance, mass, inverse_inertia, dt, error, end, body):
+    place, velocity = triple(end, body + PLACE), triple(end, body + VELOCITY)
+    e_place, e_velocity, e_moment = triple(error, body + PLACE), triple(error, body + VELOCITY), triple(error, body + MOMENT)
+    q, e_q = quaternion(end, body), quaternion(error, body)
+    turn, orbit = rotation.matrix(q), rotation.cross(place, velocity)
+    moment = triple(end, body + MOMENT)
+    spin = (moment[0] - mass * orbit[0], moment[1] - mass * orbit[1], moment[2] - mass * orbit[2])
+    a, b = rotation.cross(e_place, velocity), rotation.cross(place, e_velocity)
+    e_spin = (e_moment[0] - mass * (a[0] + b[0]), e_moment[1] - mass * (a[1] + b[1]), e_moment[2] - mass * (a[2] + b[2]))
+    rate, e_rate = rotation.angular_velocity(turn, inverse_inertia, spin), rotation.angular_velocity(turn, inverse_inertia, e_spin)
+    across = tolerance.floor + np.hypot(velocity[1], velocity[2]) + tolerance.reach * np.sqrt(rotation.dot(rate, rate))
+    lateral = worse(np.hypot(e_velocity[1], e_velocity[2]), np.hypot(e_place[1], e_place[2]) / dt)
+    e_turn = 2.0 * np.sqrt(e_q[0] * e_q[0] + e_q[1] * e_q[1] + e_q[2] * e_q[2] + e_q[3] * e_q[3]) / dt
+    angular = tolerance.reach * worse(np.sqrt(rotation.dot(e_rate, e_rate)), e_turn)
+    axial = worse(abs(e_velocity[0]), abs(e_place[0]) / dt)
+    return worse(worse(lateral, angular) / across, axial / (tolerance.floor + abs(velocity[0]))) / tolerance.relative

@@ -1,0 +1,91 @@
+"""The proven step limit while anything touches.
+
+Linearised, the touching faces are springs and dampers on two rigid bodies: s^2 + C s + K = 0 in the metric of the masses. With the
+slopes k_i = dF/dp and c_i = dF/d(p_dot) of each face and the inverse mass w_i it meets (payload plus platform, turning included),
+the traces bound the spectra of K and C, hence every eigenvalue s::
+
+    |s| <= S = C/2 + sqrt(C^2/4 + K),   K = sum_i |k_i| w_i(n),   C = sum_i |c_i| w_i(n) + N_i |mu'| (w_i(t1) + w_i(t2))
+
+and no step is taken above ``STABLE_RADIUS / S`` (``lowfi.dormand_prince``). |mu'| is the larger of mu/s and |d mu/ds| at the slip now.
+"""
+
+import numpy as np
+
+from lowfi import state as slot
+from lowfi.touch import load, outward, penetration, relative_pose
+from scenes import rotation
+from scenes.effects import contact as law
+from scenes.effects.friction import coefficient_over_speed
+from scenes.jit import njit
+
+_NUDGE = 1e-6  # relative change of p or s in a difference quotient: truncation and rounding are then both below 1e-5
+
+
+@njit
+def fastest_rate(laws, friction, faces, platform, payload, engaged, state):
+    """Bound S (1/s) of the eigenvalues of the touching faces at ``state``; 0 when none touches."""
+    rate = 0.0
+    if laws is not None:
+        body, base = slot.motion(payload.mass, payload.inverse_inertia, state, slot.PAYLOAD), slot.frame(platform, state)
+        place, turn = relative_pose(platform, body, base)
+        stiffness, damping = 0.0, 0.0
+        for i in range(engaged.size):
+            if engaged[i]:
+                p = penetration(faces, i, place, turn)
+                if p > 0.0:
+                    k, c = _face(laws, friction, faces, platform, payload, i, p, body, base)
+                    stiffness += k
+                    damping += c
+        rate = 0.5 * damping + np.sqrt(0.25 * damping * damping + stiffness)
+    return rate
+
+
+@njit
+def _face(laws, friction, faces, platform, payload, i, p, body, base):
+    """Contribution of one face to K (1/s2) and C (1/s)."""
+    face, n = load(laws, friction, faces, platform, i, p, body, base), outward(faces, i, base)
+    more = law.parts(laws.impact, laws.hunt_crossley, laws.linear, p * (1.0 + _NUDGE), face.closing)
+    unit = law.parts(laws.impact, laws.hunt_crossley, laws.linear, p, 1.0)
+    across = inverse_mass(platform, payload, body, base, face.point, n)
+    stiffness = abs(more[0] + more[1] - face.raw) / (_NUDGE * p) * across
+    damping = unit[1] * across + _friction_damping(friction, face, platform, payload, body, base, n)
+    return stiffness, damping
+
+
+@njit
+def _friction_damping(friction, face, platform, payload, body, base, n):
+    damping = 0.0
+    if friction is not None:
+        speed = np.sqrt(rotation.dot(face.slip, face.slip)) + _NUDGE * friction.static_speed
+        here = coefficient_over_speed(friction, speed)
+        there = coefficient_over_speed(friction, speed * (1.0 + _NUDGE)) * (1.0 + _NUDGE)
+        slope = max(here, abs(there - here) / _NUDGE)
+        a = _tangent(n)
+        b = rotation.cross(n, a)
+        damping = max(face.raw, 0.0) * slope * (inverse_mass(platform, payload, body, base, face.point, a)
+                                                + inverse_mass(platform, payload, body, base, face.point, b))
+    return damping
+
+
+@njit
+def _tangent(n):
+    """A unit vector across the unit vector ``n``."""
+    t = rotation.cross(n, (1.0, 0.0, 0.0)) if abs(n[0]) < 0.7 else rotation.cross(n, (0.0, 1.0, 0.0))
+    size = np.sqrt(rotation.dot(t, t))
+    return (t[0] / size, t[1] / size, t[2] / size)
+
+
+@njit
+def inverse_mass(platform, payload, body, base, point, direction):
+    """Inverse mass (1/kg) that a pair of forces along ``direction`` at ``point`` meets."""
+    total = _own(payload.mass, payload.inverse_inertia, body, point, direction)
+    if platform is not None:
+        total += _own(platform.mass, platform.inverse_inertia, base, point, direction)
+    return total
+
+
+@njit
+def _own(mass, inverse_inertia, body, point, direction):
+    p = body.place
+    lever = rotation.cross((point[0] - p[0], point[1] - p[1], point[2] - p[2]), direction)
+    return 1.0 / mass + rotation.dot(lever, rotation.angular_velocity(body.turn, inverse_inertia, lever))

@@ -1,0 +1,35 @@
+"""Numerical choices of the rigid surrogate: what may be refined without changing the scene."""
+
+import math
+from dataclasses import asdict, dataclass
+
+# A step of 0.1 % relative error is no longer a solution; below 1e-13 rounding decides.
+_COARSEST, _FINEST = 1e-2, 1e-13
+
+
+@dataclass(frozen=True)
+class Numerics:
+    """Error control of one run.
+
+    ``relative_tolerance``: local error of a step, relative to the speeds of the body; ``speed_floor`` (m/s): speeds below it count
+    as this much, so it is the absolute tolerance divided by the relative one; ``maximum_steps``: a run that needs more is given up.
+    """
+
+    relative_tolerance: float = 1e-6
+    speed_floor: float = 1e-3
+    maximum_steps: int = 5_000_000
+
+    def __post_init__(self):
+        faults = []
+        if not _FINEST <= self.relative_tolerance <= _COARSEST:
+            faults.append(f"relative_tolerance: given {self.relative_tolerance!r}, expected {_FINEST:g} to {_COARSEST:g}")
+        if not (math.isfinite(self.speed_floor) and self.speed_floor > 0.0):
+            faults.append(f"speed_floor: given {self.speed_floor!r}, expected a speed above zero (m/s)")
+        if not (isinstance(self.maximum_steps, int) and self.maximum_steps > 0):
+            faults.append(f"maximum_steps: given {self.maximum_steps!r}, expected a whole number above zero")
+        if faults:
+            raise ValueError("; ".join(faults))
+
+    def as_dict(self) -> dict:
+        """Plain values, as written into results."""
+        return asdict(self)
