@@ -1,0 +1,180 @@
+"""Where inside a step the right-hand side changes its law: a face closes or opens, its force is cut off, it leaves the rail.
+
+The instant is found on the step's interpolant (regula falsi of the Illinois kind) and the step taken again up to there, so no step
+crosses a kink or a jump. A gap that closes and opens again within one step is found from the cubic through its ends.
+"""
+
+import numpy as np
+
+from lowfi import state as slot
+from lowfi.dormand_prince import interpolate
+from lowfi.touch import along, load, outward, pad_point, penetration, relative_pose, relative_velocity
+from scenes import rotation
+from scenes.effects.contact import stored_energy
+from scenes.jit import njit
+
+# A crossing is aimed this far beyond itself (m), which is above rounding and below anything a force could feel.
+BEYOND = 1e-12
+_SOONEST = 1e-9  # an event in this first part of a step is the one the step began at
+# Modes of a face, and columns of what ``survey`` fills.
+OPEN, PRESSING, CUT_OFF = 0.0, 1.0, 2.0
+MODE, DEPTH, CLOSING, RAW, ALONG, SURVEY_SIZE = 0, 1, 2, 3, 4, 5
+
+
+@njit
+def survey(laws, faces, platform, payload, engaged, state, out):
+    """Fill ``out`` (f, SURVEY_SIZE) with mode, penetration (m), its rate (m/s), raw force (N) and X (m) of every face; True when
+    any face touches."""
+    touching = False
+    if laws is not None:
+        body, base = slot.motion(payload.mass, payload.inverse_inertia, state, slot.PAYLOAD), slot.frame(platform, state)
+        place, turn = relative_pose(platform, body, base)
+        for i in range(engaged.size):
+            p = penetration(faces, i, place, turn)
+            mode, raw = OPEN, 0.0
+            if p > 0.0 and engaged[i]:
+                face = load(laws, None, faces, platform, i, p, body, base)
+                touching, raw, closing = True, face.raw, face.closing
+                mode = PRESSING if raw >= 0.0 else CUT_OFF
+            else:
+                point = pad_point(faces, i, body)
+                closing = rotation.dot(relative_velocity(platform, body, base, point), outward(faces, i, base))
+            out[i, MODE], out[i, DEPTH], out[i, CLOSING], out[i, RAW] = mode, p, closing, raw
+            out[i, ALONG] = along(faces, i, place, turn)
+    return touching
+
+
+@njit
+def first_event(laws, model, engaged, before, after, dt, start, stages, work):
+    """Fraction of the step (0..1] at which it must end; ``before`` and ``after`` are the surveys of its ends.
+
+    ``work`` (DYNAMIC_SIZE,) is scratch.
+    """
+    first = 1.0
+    if laws is not None:
+        first = _first_of_all(model, engaged, before, after, dt, start, stages, work)
+    return first
+
+
+@njit
+def _first_of_all(model, engaged, before, after, dt, start, stages, work):
+    first = 1.0
+    for i in range(engaged.size):
+        for kind in (DEPTH, RAW, ALONG):
+            level = _level(model, engaged, i, kind, before, after)
+            if not np.isnan(level):
+                theta = _locate(model, i, kind, level, before, after, dt, start, stages, work)
+                if _SOONEST < theta < first:
+                    first = theta
+        if engaged[i] and before[i, MODE] == OPEN and after[i, MODE] == OPEN:
+            theta = _grazing(before[i, DEPTH], after[i, DEPTH], dt * before[i, CLOSING], dt * after[i, CLOSING])
+            first = min(first, theta)
+    return first
+
+
+@njit
+def _level(model, engaged, i, kind, before, after):
+    """Value that a face's quantity ``kind`` must reach for its mode to change in this step; NaN when it does not change."""
+    a, b = before[i, kind], after[i, kind]
+    level = np.nan
+    if kind == DEPTH:
+        if engaged[i] and (before[i, MODE] == OPEN) != (after[i, MODE] == OPEN):
+            level = BEYOND
+    elif kind == RAW:
+        if before[i, MODE] * after[i, MODE] == PRESSING * CUT_OFF:
+            level = 1e-9 * b
+    elif max(before[i, DEPTH], after[i, DEPTH]) > BEYOND:
+        level = _edge(model.rail_start, model.rail_end, engaged[i], a, b)
+    return level if (a - level) * (b - level) < 0.0 else np.nan
+
+
+@njit
+def _edge(rail_start, rail_end, engaged, before, after):
+    """X (m) just beyond the end of the rail a face passes; NaN when it passes none."""
+    inside = rail_start <= after <= rail_end
+    if engaged == inside:
+        return np.nan
+    if engaged:
+        return rail_end + BEYOND if after > rail_end else rail_start - BEYOND
+    return rail_end - BEYOND if before > rail_end else rail_start + BEYOND
+
+
+@njit
+def _gauge(model, i, kind, state):
+    """Quantity ``kind`` of face ``i`` at ``state``."""
+    body = slot.motion(model.payload.mass, model.payload.inverse_inertia, state, slot.PAYLOAD)
+    base = slot.frame(model.platform, state)
+    place, turn = relative_pose(model.platform, body, base)
+    if kind == ALONG:
+        return along(model.faces, i, place, turn)
+    p = penetration(model.faces, i, place, turn)
+    return p if kind == DEPTH else _raw(model.contact, model.faces, model.platform, i, p, body, base)
+
+
+@njit
+def _raw(laws, faces, platform, i, p, body, base):
+    raw = 0.0
+    if laws is not None:
+        raw = load(laws, None, faces, platform, i, max(p, 0.0), body, base).raw
+    return raw
+
+
+@njit
+def _locate(model, i, kind, level, before, after, dt, start, stages, work):
+    """Fraction of the step at which the quantity passes ``level``, on its far side."""
+    low, high, side = 0.0, 1.0, 0
+    f_low, f_high = before[i, kind] - level, after[i, kind] - level
+    close = 1e-13 if kind != RAW else 1e-12 * max(abs(before[i, kind]), abs(after[i, kind]))
+    for _ in range(60):
+        theta = (low * f_high - high * f_low) / (f_high - f_low)
+        interpolate(dt, theta, start, stages, slot.DYNAMIC_SIZE, work)
+        f = _gauge(model, i, kind, work) - level
+        if f * f_high > 0.0:
+            high, f_high = theta, f
+            f_low = 0.5 * f_low if side == 1 else f_low
+            side = 1
+        else:
+            low, f_low = theta, f
+            f_high = 0.5 * f_high if side == -1 else f_high
+            side = -1
+        if abs(f) < close or high - low < 1e-14:
+            break
+    return high if abs(f) >= close else theta
+
+
+@njit
+def _grazing(before, after, rise, fall):
+    """Fraction at which an open gap is narrowest, if it closes in between: maximum of the cubic through values and slopes."""
+    if not (rise > 0.0 > fall and max(before, after) + max(rise, -fall) > BEYOND):
+        return 1.0
+    # p(theta) = before + rise theta + b theta^2 + a theta^3
+    step = after - before
+    a, b = rise + fall - 2.0 * step, 3.0 * step - 2.0 * rise - fall
+    # The form without cancellation: the maximum is the root with p'' < 0.
+    theta = rise / (-b + np.sqrt(max(b * b - 3.0 * a * rise, 0.0)))
+    depth = before + theta * (rise + theta * (b + theta * a))
+    return theta if depth > BEYOND and _SOONEST < theta < 1.0 else 1.0
+
+
+@njit
+def on_rail(laws, rail_start, rail_end, surveyed, engaged):
+    """Bring ``engaged`` (f,) up to date; (changed, energy (J) that leaving faces took with them, less what entering ones bring)."""
+    changed, energy = False, 0.0
+    if laws is not None:
+        for i in range(engaged.size):
+            inside = rail_start <= surveyed[i, ALONG] <= rail_end
+            if inside != engaged[i]:
+                changed = True
+                energy += (1.0 if engaged[i] else -1.0) * stored(laws, surveyed[i, DEPTH])
+                engaged[i] = inside
+    return changed, energy
+
+
+@njit
+def stored(laws, depth):
+    """Elastic energy (J) of one face at penetration ``depth`` (m), zero across a gap."""
+    energy = 0.0
+    if laws is not None:
+        if depth > 0.0:
+            energy = stored_energy(laws.impact, laws.hunt_crossley, laws.linear, depth)
+    return energy
