@@ -1,0 +1,25 @@
+"""Where steps must end and how long they may be, so that none jumps over a corner or a short pulse of the thrust."""
+
+import numpy as np
+
+from lowfi.march import Plan
+from lowfi.numerics import Numerics
+from scenes.effects import thrust_law
+from scenes.model import Model
+
+# A Gaussian is below 2e-14 of its peak beyond this many widths, and a step inside sees at least two points of every width.
+_REACH, _SHARE = 8.0, 0.5
+
+
+def make(model: Model, interval: float, end: float, numerics: Numerics) -> Plan:
+    """Plan of a run sampled every ``interval`` (s) up to ``end`` (s)."""
+    stops = np.append(thrust_law.corners(model.thrust, end), end)
+    if model.thrust.pulses is None:
+        return Plan(stops, np.full(stops.size, np.inf), interval, numerics.maximum_steps)
+    _, centres, widths, first, last = model.thrust.pulses
+    begins, ends = np.maximum(centres - _REACH * widths, first), np.minimum(centres + _REACH * widths, last)
+    edges = np.concatenate([begins, ends])
+    stops = np.unique(np.append(stops, edges[(edges > 0.0) & (edges < end)]))
+    middles = 0.5 * (stops + np.append(0.0, stops[:-1]))
+    acting = (begins < middles[:, None]) & (middles[:, None] < ends)
+    return Plan(stops, np.where(acting, _SHARE * widths, np.inf).min(axis=1), interval, numerics.maximum_steps)
