@@ -1,0 +1,121 @@
+"""One run of the surrogate: set-up, the sampled time loop, and the Trajectory it leaves."""
+
+import time as clock
+from typing import Callable
+
+import numpy as np
+
+from lowfi import balance, march, plan, state
+from lowfi.accuracy import Tolerance
+from lowfi.march import EVALUATIONS, EVENTS, LIMIT, LIMIT_USED, NOW, REJECTED, STEPS, TAKEN
+from lowfi.numerics import Numerics
+from lowfi.sample import SAMPLE_SIZE
+from scenes import model as models
+from scenes import outcome
+from scenes.calibration import Calibration
+from scenes.scene import Scene
+from scenes.trajectory import Trajectory
+
+_REASONS = {march.UNDERFLOW: "no step is short enough: the state is no longer finite or its equations too stiff",
+            march.NOT_FINITE: "a value became infinite",
+            march.OUT_OF_STEPS: "the step budget is spent (numerics.maximum_steps)"}
+_LOOK_EVERY = outcome.JAM_DURATION / 2.0  # between two looks for exit or jam (s)
+
+
+def run(scene: Scene, calibration: Calibration | None = None, numerics: Numerics | None = None,
+        progress: Callable[[float], None] | None = None) -> Trajectory:
+    """Solve ``scene`` with rigid rails until the settled window is complete, a jam, or the scene's duration.
+
+    ``calibration`` replaces the scene's contact and friction constants. ``progress`` is called with the fraction of the duration
+    done. Raises SceneError before any stepping; what goes wrong later is the status of the result.
+    """
+    began, cpu = clock.perf_counter(), clock.thread_time()
+    scene = calibration.apply(scene) if calibration else scene
+    run_ = Run(scene, numerics or Numerics())
+    compile_s = run_.begin()
+    compile_cpu = clock.thread_time()
+    marching = clock.perf_counter()
+    run_.march(progress)
+    kernel_s = clock.perf_counter() - marching
+    result = run_.trajectory()
+    result.cost.update(wall_s=clock.perf_counter() - began - compile_s, compile_s=compile_s, kernel_s=kernel_s)
+    result.cost["cpu_s"] = clock.thread_time() - (compile_cpu if compile_s else cpu)
+    return result
+
+
+class Run:
+    """State of a run in progress and its samples."""
+
+    def __init__(self, scene: Scene, numerics: Numerics):
+        self.scene, self.numerics = scene, numerics
+        self.model = model = models.build(scene)
+        self.marks = outcome.milestones(scene, model)
+        self.interval = scene.output.interval
+        self.last = max(1, round(scene.duration / self.interval))
+        self.plan = plan.make(model, self.interval, self.last * self.interval, numerics)
+        reach = float(np.sqrt((model.faces.centre**2).sum(axis=1).max()))
+        self.tolerance = Tolerance(numerics.relative_tolerance, numerics.speed_floor, reach)
+        faces = model.faces.axis.size
+        self.loop = march.ready(state.initial(model), faces, self.interval)
+        self.rows, self.forces = np.zeros((self.last + 1, SAMPLE_SIZE)), np.zeros((self.last + 1, faces, 3))
+        self.taken, self.message = 0, ""
+
+    def begin(self) -> float:
+        """Take the first sample; the time (s) that compiling or loading the kernels took, zero when they were at hand."""
+        known, began = len(march.march.overloads), clock.perf_counter()
+        self._advance(0)
+        return clock.perf_counter() - began if len(march.march.overloads) > known else 0.0
+
+    def march(self, progress) -> None:
+        """Advance look by look until something ends the run."""
+        stride = max(1, round(_LOOK_EVERY / self.interval))
+        end = self.last
+        while self.taken <= end and not self.message:
+            self._advance(min(self.taken - 1 + stride, end))
+            end = min(end, self._end())
+            if progress:
+                progress(min(1.0, (self.taken - 1) / end))
+
+    def _advance(self, number: int) -> None:
+        status = march.march(self.model, self.plan, self.tolerance, self.loop, number, self.rows, self.forces)
+        self.taken = int(self.loop.count[TAKEN])
+        if status != march.SAMPLED:
+            self.message = f"{_REASONS[status]}, at {self.loop.clock[NOW]:.6g} s"
+
+    def _motion(self, first: int = 0) -> balance.Motion:
+        return balance.motion(self.rows[first:self.taken], first, self.interval)
+
+    def _end(self) -> int:
+        """Number of the last sample needed, as far as known now."""
+        recent = self._motion(max(0, self.taken - 2 - round(2.0 * outcome.JAM_DURATION / self.interval)))
+        exit_at = outcome.exit_time(recent, self.marks)
+        if exit_at is None:
+            return self.taken - 1 if outcome.is_jammed(recent, self.marks) else self.last
+        return int(np.ceil((outcome.window_start(exit_at, self.marks) + outcome.SETTLE_WINDOW) / self.interval)) + 2
+
+    def trajectory(self) -> Trajectory:
+        """The result of the samples taken so far."""
+        moved, rows = self._motion(), self.rows[:self.taken]
+        total, across = balance.ledgers(rows)
+        status, result = outcome.judge(moved, self.marks)
+        if self.message:
+            status, result = "diverged", outcome.Outcome()
+        return Trajectory(
+            fidelity="lowfi", status=status, message="; ".join(filter(None, [self.message, self._pressed_at_ignition()])),
+            **moved._asdict(), pad_force=self.forces[:self.taken], energy=total, transverse_energy=across, outcome=result,
+            checks=balance.checks(rows, moved, total, across, self.model.payload.mass, self.loop.clock), cost=self._cost(),
+            scene=self.scene.resolved(), numerics=self.numerics.as_dict())
+
+    def _pressed_at_ignition(self) -> str:
+        """A warning that names the pads that overlap the rail before anything moves, or nothing."""
+        pressed = (self.forces[0] != 0.0).any(axis=1)
+        pads = sorted(set(self.model.faces.pad[pressed].tolist()))
+        return f"initial interference: pads {', '.join(map(str, pads))} press on the rail at ignition" if pads else ""
+
+    def _cost(self) -> dict[str, float]:
+        """Counts; dt_limit_s is the smallest proven limit met while anything touched, limit_used the largest step over its limit."""
+        clock_, count = self.loop.clock, self.loop.count
+        steps, limit = int(count[STEPS]), float(clock_[LIMIT])
+        cost = {"steps": steps, "rhs_evaluations": int(count[EVALUATIONS]), "rejected": int(count[REJECTED]),
+                "events": int(count[EVENTS]), "dt_s": float(clock_[NOW]) / max(steps, 1), "limit_used": float(clock_[LIMIT_USED])}
+        return cost | ({"dt_limit_s": limit} if np.isfinite(limit) else {})
