@@ -1,5 +1,6 @@
 """Calibration files: what is written is read back, to the bit."""
 
+import tomllib
 from dataclasses import replace
 
 import numpy as np
@@ -29,8 +30,6 @@ def test_round_trip(tmp_path):
 
 @given(st.one_of(st.text(alphabet=st.characters(exclude_categories=["Cs"])), st.floats(allow_nan=False), st.integers(-2**63, 2**63 - 1), st.booleans()))
 def test_any_value_survives_toml(value):
-    import tomllib
-
     assert tomllib.loads(f"x = {_toml(value)}")["x"] == value
 
 

@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from scenes import parse
@@ -165,6 +165,7 @@ def test_a_push_jumps_on_and_off():
     assert table(kind="constant", force=500.0, duration=0.02).describe(DURATION)["impulse_requested_Ns"] == pytest.approx(10.0)
 
 
+@settings(deadline=None)
 @given(st.floats(0.001, 0.05))
 def test_impulse_of_a_curve_that_outlasts_the_scene(duration):
     """The scene may end inside a segment: impulse is then the integral up to there, not up to the last whole segment."""

@@ -1,0 +1,67 @@
+"""Scene files that build on others: what is inherited, replaced and dropped."""
+
+import pytest
+
+from scenes import SceneError, load
+
+
+@pytest.fixture
+def scene(tmp_path):
+    def read(text, name="child.toml"):
+        (tmp_path / name).write_text(text, encoding="utf-8")
+        return load(tmp_path / name)
+
+    return read
+
+
+def test_values_are_inherited_and_replaced(scene):
+    found = scene('extends = "reference"\n[thrust]\npeak = "7 kN"\n')
+    assert found.name == "child"
+    assert found.hash == load("reference").replace({"thrust.peak": 7000.0}).hash
+    assert found.description == load("reference").description
+
+
+def test_a_chain_beside_the_file_wherever_it_is_read_from(scene, tmp_path, monkeypatch):
+    scene('extends = "tiny"\nduration = "25 ms"\n', "base.toml")
+    monkeypatch.chdir("/")
+    found = scene('extends = "base.toml"\n[payload]\nmass = "11 kg"\n')
+    assert found.hash == load("tiny").replace({"duration": 0.025, "payload.mass": 11.0}).hash
+
+
+def test_a_table_is_dropped(scene):
+    assert scene('extends = "reference"\nfriction = "absent"\n').hash == load("reference").replace({"friction": None}).hash
+
+
+def test_another_kind_of_thrust_replaces_the_inherited_table(scene):
+    """Mixed, the peak and width of the Gaussian would be keys that a constant push does not have."""
+    found = scene('extends = "reference"\n[thrust]\nkind = "constant"\nforce = "1 kN"\nduration = "20 ms"\narm = "0.1 m"\n')
+    assert (found.thrust.kind, found.thrust.force) == ("constant", 1000.0)
+    law = '[contact]\nlaw = "linear"\nclearance = "0.1 mm"\nstiffness = "1e4 N/mm"\n'
+    assert scene(f'extends = "reference"\n{law}').contact.exponent == 1.0
+
+
+def test_the_same_kind_is_merged(scene):
+    found = scene('extends = "reference"\n[thrust]\nkind = "gaussian"\npeak = "7 kN"\n')
+    assert (found.thrust.peak, found.thrust.width) == (7000.0, 0.004)
+
+
+def test_conditions_are_added_and_replaced_whole(scene):
+    """A condition is one variation: keys of an inherited one with the same name must not leak into it."""
+    found = scene('extends = "reference"\n[conditions.h9]\nthrust_offset = "absent"\n[conditions.own]\nduration = "50 ms"\n')
+    assert found.conditions["h9"] == {"thrust_offset": "absent"}
+    assert found.condition("own").duration == 0.05
+    assert "phi15" in found.conditions
+
+
+def test_a_curve_lies_beside_the_file_that_names_it(scene, tmp_path, monkeypatch):
+    (tmp_path / "curve.csv").write_text("time_s,force_N\n0,0\n0.01,6000\n0.02,0\n")
+    text = 'extends = "reference"\n[thrust]\nkind = "measured"\nfile = "curve.csv"\n'
+    scene(text, "base.toml")
+    monkeypatch.chdir("/")
+    found = scene('extends = "base.toml"\n')
+    assert found.thrust.describe(0.05)["curve_impulse_Ns"] == pytest.approx(60.0)
+
+
+def test_a_misspelt_key_in_a_child_is_found(scene):
+    with pytest.raises(SceneError, match="child.toml: contact.clearence: given '1 mm', expected no such key"):
+        scene('extends = "reference"\n[contact]\nclearence = "1 mm"\n')
