@@ -25,8 +25,8 @@ class Verdict(NamedTuple):
 def verdict(name: str, fidelity: str, measure: str, figure: float, limit: float, control: str, control_figure: float,
             note: str = "", holds: bool = True) -> Verdict:
     """A verdict from the two figures; ``holds`` adds conditions that are not numbers (a refusal, a status)."""
-    return Verdict(name, fidelity, measure, _finite(figure), limit, holds and figure <= limit, control,
-                   _finite(control_figure), not control_figure <= limit, note)
+    return Verdict(name, fidelity, measure, _finite(figure), limit, bool(holds and figure <= limit), control,
+                   _finite(control_figure), not bool(control_figure <= limit), note)
 
 
 def _finite(value: float) -> float | None:

@@ -12,7 +12,7 @@ import math
 
 import numpy as np
 
-from scenes.effects import thrust
+from scenes.effects import thrust_law
 from scenes.scene import Scene, load, parse
 from scenes.trajectory import Trajectory
 from studies import weaker_methods as weaker
@@ -66,14 +66,14 @@ def zero_clearance() -> Verdict:
     scene = load("reference").replace({"contact.clearance": 0.0, "friction": None, "thrust_offset": None, "platform": None})
     run, record, mass = _run(scene, 1e-11), scene.thrust.record(), scene.payload.mass
     end = float(run.time[-1])
-    exact = thrust.impulse(record, end) / mass
+    exact = thrust_law.impulse(record, end) / mass
     stray = max(np.abs(run.velocity[:, 1:]).max(), np.abs(run.rate).max(), np.abs(run.pad_force[0]).max())
 
     def acceleration(t, _, __):
-        return thrust.magnitude(record.pulses, record.curve, t) / mass
+        return thrust_law.magnitude(record.pulses, record.curve, t) / mass
 
     _, control = weaker.semi_implicit_euler(acceleration, 0.0, 0.0, _DEFAULT_STEP, round(end / _DEFAULT_STEP))
-    exact_control = thrust.impulse(record, round(end / _DEFAULT_STEP) * _DEFAULT_STEP) / mass
+    exact_control = thrust_law.impulse(record, round(end / _DEFAULT_STEP) * _DEFAULT_STEP) / mass
     return verdict("zero clearance, eight pads", "lowfi",
                    "exit speed against impulse / mass; lateral speed (m/s), rate (rad/s), force at ignition (N)",
                    float(max(abs(run.velocity[-1, 0] / exact - 1.0), stray)), 1e-9,
@@ -111,7 +111,7 @@ def short_pulse() -> Verdict:
     run, record = _run(scene), scene.thrust.record()
 
     def acceleration(t, _, __):
-        return thrust.magnitude(record.pulses, record.curve, t) / mass
+        return thrust_law.magnitude(record.pulses, record.curve, t) / mass
 
     _, control = weaker.runge_kutta(acceleration, 0.0, 0.0, _DEFAULT_STEP, 20)
     return verdict("short pulse, sigma 10 us", "lowfi", "relative error of the exit speed", abs(run.velocity[-1, 0] / 5.0 - 1.0),

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from scenes import ledger
-from scenes.effects import thrust
+from scenes.effects import thrust_law
 from scenes.scene import Scene
 from scenes.trajectory import Trajectory
 from studies.report.chart import AMBER, AXIS_COLOURS, GREY, NAVY, TEAL, VERMILION, Chart, Line, Panel
@@ -29,7 +29,7 @@ _STYLES = {"highfi": ("finite elements", 5.0, "-", 0.35), "calibrated": ("surrog
 def thrust_curve(scene: Scene) -> Chart:
     """Thrust over the duration of the scene."""
     time = np.linspace(0.0, scene.duration, 600)
-    force = thrust.sample(scene.thrust.record(), time)
+    force = thrust_law.sample(scene.thrust.record(), time)
     line = Line(1e3 * time, 1e-3 * force, "thrust", NAVY, 2.0, legend=False)
     return Chart("thrust", [Panel("", _MILLISECONDS, "thrust (kN)", [line])], height=260)
 

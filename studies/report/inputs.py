@@ -6,7 +6,7 @@ from typing import Any, Iterator
 
 from pydantic import BaseModel
 
-from scenes.effects import thrust
+from scenes.effects import thrust_law
 from scenes.scene import Scene
 from scenes.units import registry
 from studies.report.markup import Html, code, fold, number, table, text
@@ -94,10 +94,10 @@ def _role(scene: Scene, name: str) -> str:
 def thrust_facts(scene: Scene) -> Html:
     """Impulse, what the duration and a cutoff leave out, and the fit of a measured curve."""
     record = scene.thrust.record()
-    delivered = thrust.impulse(record, scene.duration)
+    delivered = thrust_law.impulse(record, scene.duration)
     rows = [("impulse delivered within the scene", f"{delivered:.6g} N s"),
             ("velocity it gives the payload alone", f"{delivered / scene.payload.mass:.5g} m/s"),
-            ("thrust at ignition", f"{thrust.sample(record, [0.0])[0]:.4g} N")]
+            ("thrust at ignition", f"{thrust_law.sample(record, [0.0])[0]:.4g} N")]
     if record.pulses is not None:
         p = record.pulses
         whole = float((p.peaks * p.widths).sum() * math.sqrt(2.0 * math.pi))

@@ -78,14 +78,14 @@ def _rows(fidelity: str, lines: dict[str, dict], asked: list[Run], runs: list[Tr
         rows.append({"fidelity": fidelity, "variant": line, "status": run.status, "time_s": seconds,
                      "ns_per_step": 1e9 * seconds / max(run.cost["steps"], 1), "time_ratio": seconds / times[0],
                      "settled_rate_deg_s": None if rate is None else np.degrees(rate).tolist(),
-                     "settled_rate_change_deg_s": change, "compiled": compiled(fidelity, item.scene)})
+                     "settled_rate_change_deg_s": change, "compiled": compiled(item)})
     return rows
 
 
-def compiled(fidelity: str, scene: Scene) -> list[str] | None:
-    """Effects whose code is in the kernel compiled for ``scene``, as the fidelity itself reports them; None if it does not."""
-    ask = getattr(importlib.import_module(fidelity), "compiled_effects", None)
-    return None if ask is None else sorted(ask(scene))
+def compiled(run: Run) -> list[str] | None:
+    """Effects whose code is in the kernel compiled for ``run``, as the fidelity reads them off it; None if it cannot."""
+    ask = getattr(importlib.import_module(run.fidelity), "compiled_effects", None)
+    return None if ask is None else sorted(effect for effect, present in ask(run.scene, run.numerics).items() if present)
 
 
 def _tag(line: str) -> str:
