@@ -45,6 +45,20 @@ def is_drop(value: Any) -> bool:
     return value is None or (isinstance(value, str) and value == "absent")
 
 
+def apply_all(raw: dict, overrides: Mapping[str, Any], table_type: type) -> list[tuple[str, str, str]]:
+    """Apply overrides in place; faults (key, given, expected) of keys that lead nowhere.
+
+    A misspelt key that is set is found by the validation of ``table_type``; one that is dropped only here.
+    """
+    faults = []
+    for key, value in overrides.items():
+        if is_drop(value) and not is_key(table_type, key):
+            faults.append((key, repr(value), "no such key"))
+        elif fault := apply(raw, key, plain(value)):
+            faults.append(fault)
+    return faults
+
+
 def apply(raw: dict, key: str, value: Any) -> tuple[str, str, str] | None:
     """Set one dotted key in place, or drop it; returns (key, given, expected) when it leads nowhere.
 

@@ -52,7 +52,9 @@ def _inherit(path: Path, user_file: str, chain: tuple[Path, ...]) -> dict:
     base_path = path.parent / base if base.endswith(".toml") else CATALOG / f"{base}.toml"
     if not base_path.is_file():
         raise SceneError([Fault(user_file, "extends", repr(base), _known())])
-    return _merged(_inherit(base_path, user_file, (*chain, path.resolve())), raw)
+    inherited = _inherit(base_path, user_file, (*chain, path.resolve()))
+    inherited.pop("name", None)  # results are filed by name: a variation may not pass for what it varies
+    return _merged(inherited, raw)
 
 
 def _toml(path: Path, user_file: str, key: str) -> dict:
@@ -69,10 +71,10 @@ def _toml(path: Path, user_file: str, key: str) -> dict:
 def _merged(base: dict, extra: dict) -> dict:
     merged = dict(base)
     for key, value in extra.items():
-        if value == "absent":
+        if value == "absent" and key in merged:
             merged.pop(key, None)
-        elif key in _FREE_TEXT and isinstance(value, dict):
-            merged[key] = merged.get(key, {}) | value
+        elif key in _FREE_TEXT and isinstance(value, dict) and isinstance(merged.get(key), dict):
+            merged[key] = merged[key] | value
         elif isinstance(value, dict) and isinstance(merged.get(key), dict) and not _other_choice(key, merged[key], value):
             merged[key] = _merged(merged[key], value)
         else:

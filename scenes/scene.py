@@ -11,7 +11,7 @@ from typing import Annotated, Any, Mapping
 from pydantic import AfterValidator, Field, PrivateAttr, ValidationError
 
 from scenes import overrides as keys
-from scenes import plausibility, reading
+from scenes import plausibility, reading, roles
 from scenes.effects.contact import ContactTable
 from scenes.effects.friction import FrictionTable
 from scenes.effects.gravity import GravityTable
@@ -28,7 +28,8 @@ from scenes.units import PositiveTime
 
 CATALOG = reading.CATALOG
 EFFECTS = ("thrust_offset", "mass_offset", "initial", "contact", "friction", "platform", "gravity")
-_NOT_PHYSICS = {"name", "description", "conditions", "provenance", "agreement"}
+_BESIDE = ("conditions", "agreement", "provenance")
+_NOT_PHYSICS = {"name", "description", *_BESIDE}
 
 
 class Scene(Table):
@@ -61,11 +62,10 @@ class Scene(Table):
         Raises SceneError listing every fault.
         """
         raw = keys.plain(self._raw)
-        lost = _set_all(raw, overrides)
-        touches_roles = any(key.split(".")[0] in ("conditions", "agreement", "provenance") for key in overrides)
+        lost = keys.apply_all(raw, overrides, Scene)
         scene, faults = _validated(raw, True)
-        if touches_roles:
-            faults = faults + _role_faults(raw, True, faults)
+        if any(key.split(".")[0] in _BESIDE for key in overrides):  # else they stay as they were found sound
+            faults = faults + _beside_faults(raw, True, faults)
         if lost or faults:
             raise SceneError([Fault(f"override of {self._source}", *fault) for fault in lost + faults])
         scene._raw, scene._source = raw, self._source
@@ -113,7 +113,7 @@ def parse(raw: Mapping[str, Any], source: str = "scene", bare_numbers_are_si: bo
     raw = keys.plain(raw)
     scene, faults = _validated(raw, bare_numbers_are_si)
     if isinstance(raw, dict):
-        faults = faults + _role_faults(raw, bare_numbers_are_si, faults)
+        faults = faults + _beside_faults(raw, bare_numbers_are_si, faults)
     if faults:
         raise SceneError([Fault(source, *fault) for fault in faults])
     scene._raw, scene._source = raw, source
@@ -150,33 +150,11 @@ def _tables(raw: Any) -> list[tuple[str, dict]]:
     return [(name, table) for name, table in raw.items() if isinstance(table, dict)] if isinstance(raw, dict) else []
 
 
-def _set_all(raw: dict, overrides: Mapping[str, Any]) -> _Faults:
-    """Apply overrides in place; faults of keys that lead nowhere. (Pydantic finds an unknown key only where one is set.)"""
-    faults = []
-    for key, value in overrides.items():
-        if keys.is_drop(value) and not keys.is_key(Scene, key):
-            faults.append((key, repr(value), "no such key"))
-        elif fault := keys.apply(raw, key, keys.plain(value)):
-            faults.append(fault)
-    return faults
-
-
-def _role_faults(raw: dict, bare_numbers_are_si: bool, known: _Faults) -> _Faults:
+def _beside_faults(raw: dict, bare_numbers_are_si: bool, known: _Faults) -> _Faults:
     """What is wrong in conditions, agreement and provenance, apart from the ``known`` faults of the scene itself."""
-    conditions = dict(_tables(raw.get("conditions")))
     found = []
-    for name, table in conditions.items():
-        varied = {key: keys.plain(item) for key, item in raw.items() if key not in ("conditions", "agreement", "provenance")}
-        faults = _set_all(varied, table) + _validated(varied, bare_numbers_are_si)[1]
-        found += [(f"conditions.{name}.{key}", given, expected)
-                  for key, given, expected in faults if (key, given, expected) not in known]
-    roles = raw.get("agreement") if isinstance(raw.get("agreement"), dict) else {}
-    lists = {role: names for role, names in roles.items() if isinstance(names, list)}
-    found += [(f"agreement.{role}", repr(name), "a name from [conditions]")
-              for role, names in lists.items() for name in names if name not in conditions]
-    found += [("agreement.held_out", repr(name), "a condition that is not fitted")
-              for name in lists.get("held_out", []) if name in lists.get("fitted", [])]
-    provenance = raw.get("provenance") if isinstance(raw.get("provenance"), dict) else {}
-    found += [(f"provenance.{key}", repr(text), "the dotted key of a quantity")
-              for key, text in provenance.items() if not keys.is_key(Scene, key)]
-    return found
+    for name, table in _tables(raw.get("conditions")):
+        varied = keys.plain({key: item for key, item in raw.items() if key not in _BESIDE})
+        faults = keys.apply_all(varied, table, Scene) + _validated(varied, bare_numbers_are_si)[1]
+        found += [(f"conditions.{name}.{key}", *rest) for key, *rest in faults if (key, *rest) not in known]
+    return found + roles.faults(raw, Scene)

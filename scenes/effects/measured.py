@@ -62,8 +62,8 @@ def fit_gaussian(curve: MeasuredCurve) -> GaussianFit:
     """Least-squares Gaussian through a measured curve, started from its moments. Raises ValueError where none fits."""
     time, force = curve
     total = np.trapezoid(force, time)
-    if time.size < 3 or total <= 0.0:
-        raise ValueError("a curve of at least three points and positive impulse, for a Gaussian to fit")
+    if time.size < 4 or total <= 0.0:
+        raise ValueError("a curve of at least four points and positive impulse, for a Gaussian to fit")
 
     def gaussian(t, peak, centre, width):
         return peak * np.exp(-0.5 * ((t - centre) / width) ** 2)

@@ -54,7 +54,7 @@ def test_conditions_are_added_and_replaced_whole(scene):
 
 
 def test_a_curve_lies_beside_the_file_that_names_it(scene, tmp_path, monkeypatch):
-    (tmp_path / "curve.csv").write_text("time_s,force_N\n0,0\n0.01,6000\n0.02,0\n")
+    (tmp_path / "curve.csv").write_text("time_s,force_N\n0,0\n0.005,3000\n0.01,6000\n0.015,3000\n0.02,0\n")
     text = 'extends = "reference"\n[thrust]\nkind = "measured"\nfile = "curve.csv"\n'
     scene(text, "base.toml")
     monkeypatch.chdir("/")
@@ -65,3 +65,8 @@ def test_a_curve_lies_beside_the_file_that_names_it(scene, tmp_path, monkeypatch
 def test_a_misspelt_key_in_a_child_is_found(scene):
     with pytest.raises(SceneError, match="child.toml: contact.clearence: given '1 mm', expected no such key"):
         scene('extends = "reference"\n[contact]\nclearence = "1 mm"\n')
+
+
+def test_a_misspelt_table_is_not_dropped_in_silence(scene):
+    with pytest.raises(SceneError, match="frictoin: given 'absent', expected no such key"):
+        scene('extends = "reference"\nfrictoin = "absent"\n')
