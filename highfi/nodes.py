@@ -11,51 +11,67 @@ from scenes.jit import njit
 @njit
 def kick_nodes(points, inverse_mass, displacement, velocity, resistance, dt):
     """w -= dt r / m. Returns sum and moment about the frame's origin of the forces -r on the moving nodes (N, N m)."""
-    fx, fy, fz, mx, my, mz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    x, u, r = points.T, displacement.T, resistance.T
+    for i in range(3):
+        _kick_component(inverse_mass, velocity.T[i], r[i], dt)
+    return _sums(x[0], x[1], x[2], u[0], u[1], u[2], r[0], r[1], r[2])
+
+
+@njit
+def _kick_component(inverse_mass, velocity, resistance, dt):
     for node in range(inverse_mass.size):
-        scale = dt * inverse_mass[node]
-        a, b, c = -resistance[node, 0], -resistance[node, 1], -resistance[node, 2]
-        x = points[node, 0] + displacement[node, 0]
-        y = points[node, 1] + displacement[node, 1]
-        z = points[node, 2] + displacement[node, 2]
-        fx += a
-        fy += b
-        fz += c
-        mx += y * c - z * b
-        my += z * a - x * c
-        mz += x * b - y * a
-        velocity[node, 0] += scale * a
-        velocity[node, 1] += scale * b
-        velocity[node, 2] += scale * c
+        velocity[node] -= dt * inverse_mass[node] * resistance[node]
+
+
+@njit
+def _sums(x, y, z, u, v, w, a, b, c):
+    """Sum of -(a, b, c) and of its moment at (x + u, y + v, z + w)."""
+    fx, fy, fz, mx, my, mz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    for node in range(x.size):
+        px, py, pz = x[node] + u[node], y[node] + v[node], z[node] + w[node]
+        fx -= a[node]
+        fy -= b[node]
+        fz -= c[node]
+        mx += pz * b[node] - py * c[node]
+        my += px * c[node] - pz * a[node]
+        mz += py * a[node] - px * b[node]
     return (fx, fy, fz), (mx, my, mz)
 
 
 @njit
 def drift_nodes(displacement, velocity, dt):
     """u += dt w, in a frame that rests."""
-    for node in range(displacement.shape[0]):
-        displacement[node, 0] += dt * velocity[node, 0]
-        displacement[node, 1] += dt * velocity[node, 1]
-        displacement[node, 2] += dt * velocity[node, 2]
+    for i in range(3):
+        _drift_component(displacement.T[i], velocity.T[i], dt)
+
+
+@njit
+def _drift_component(displacement, velocity, dt):
+    for node in range(displacement.size):
+        displacement[node] += dt * velocity[node]
 
 
 @njit
 def drift_nodes_in_frame(points, displacement, velocity, frame_velocity, turn, dt):
     """Drift seen from a frame that moves at ``frame_velocity`` (m/s) and turns by 1 + ``turn``; see ``pose``."""
-    q0, q1, q2, q3, q4, q5, q6, q7, q8 = turn
-    vx, vy, vz = frame_velocity
-    for node in range(displacement.shape[0]):
-        wx, wy, wz = velocity[node, 0], velocity[node, 1], velocity[node, 2]
-        a = displacement[node, 0] + dt * (wx - vx)
-        b = displacement[node, 1] + dt * (wy - vy)
-        c = displacement[node, 2] + dt * (wz - vz)
-        x, y, z = points[node, 0] + a, points[node, 1] + b, points[node, 2] + c
-        displacement[node, 0] = a + (q0 * x + q1 * y + q2 * z)
-        displacement[node, 1] = b + (q3 * x + q4 * y + q5 * z)
-        displacement[node, 2] = c + (q6 * x + q7 * y + q8 * z)
-        velocity[node, 0] = wx + (q0 * wx + q1 * wy + q2 * wz)
-        velocity[node, 1] = wy + (q3 * wx + q4 * wy + q5 * wz)
-        velocity[node, 2] = wz + (q6 * wx + q7 * wy + q8 * wz)
+    x, u, w = points.T, displacement.T, velocity.T
+    _drift_and_turn(x[0], x[1], x[2], u[0], u[1], u[2], w[0], w[1], w[2], frame_velocity, turn, dt)
+
+
+@njit
+def _drift_and_turn(x, y, z, u, v, w, p, q, r, frame_velocity, turn, dt):
+    t0, t1, t2, t3, t4, t5, t6, t7, t8 = turn
+    fx, fy, fz = frame_velocity
+    for node in range(x.size):
+        px, py, pz = p[node], q[node], r[node]
+        a, b, c = u[node] + dt * (px - fx), v[node] + dt * (py - fy), w[node] + dt * (pz - fz)
+        ax, ay, az = x[node] + a, y[node] + b, z[node] + c
+        u[node] = a + (t0 * ax + t1 * ay + t2 * az)
+        v[node] = b + (t3 * ax + t4 * ay + t5 * az)
+        w[node] = c + (t6 * ax + t7 * ay + t8 * az)
+        p[node] = px + (t0 * px + t1 * py + t2 * pz)
+        q[node] = py + (t3 * px + t4 * py + t5 * pz)
+        r[node] = pz + (t6 * px + t7 * py + t8 * pz)
 
 
 @njit

@@ -7,7 +7,7 @@ The second form makes kinetic plus strain energy an exact invariant of central d
 
 import numpy as np
 
-from highfi.operator import internal_force
+from highfi.elastic import elastic_force
 from highfi.pose import body_matrix, triple
 from highfi.records import STORED
 from highfi.step import kick
@@ -84,8 +84,8 @@ def _energies(rail, payload, frame, state, pose, before, after, rail_before, sam
     kinetic = 0.5 * payload.mass * (before[0:3] * after[0:3]).sum() + _spin_energy(
         body_matrix(state.payload), payload.inverse_inertia, triple(before[3:6]), triple(after[3:6]))
     axial = 0.5 * payload.mass * before[0] * after[0]
-    strain = np.empty_like(state.resistance)
-    internal_force(state.displacement, rail.hexes, rail.shape_class, rail.stiffness, strain)
+    strain = np.zeros_like(state.resistance)
+    elastic_force(rail, state.displacement, strain)
     stored = 0.0
     for node in range(rail.mass.size):
         moving = rail.inverse_mass[node] > 0.0

@@ -1,18 +1,21 @@
 """Arrays the time loop works on: what is constant (Rail, Surface, Frame, Drive) and what evolves (State, Active).
 
 All places and nodal vectors are in the axes of the platform-fixed frame, whose origin is the mass centre of the platform's
-*rigid part* (platform without the moving rail nodes); for a fixed platform it is the scene origin.
+*rigid part* (platform without the moving rail nodes); for a fixed platform it is the scene origin. Nodal arrays are (n,3) with
+contiguous columns: one component of all nodes after the other, as vector instructions want them.
 """
 
 from typing import NamedTuple
 
 import numpy as np
 
+from highfi.pencils import Pencils
+
 
 class Rail(NamedTuple):
     """Constant: points (n,3) m; mass (n,) kg; inverse_mass (n,) 1/kg, zero where clamped; clamped (k,)
     node numbers; hexes (e,8); shape_class (e,);
-    stiffness (c,24,24) N/m."""
+    stiffness (c,24,24) N/m; pencils of an extruded mesh, else None."""
 
     points: np.ndarray
     mass: np.ndarray
@@ -21,6 +24,7 @@ class Rail(NamedTuple):
     hexes: np.ndarray
     shape_class: np.ndarray
     stiffness: np.ndarray
+    pencils: Pencils | None
 
 
 class Surface(NamedTuple):

@@ -12,9 +12,9 @@ clamp forces alone would lose sum u x f. F_c and T_c are contact on all rail nod
 """
 
 from highfi.contact import contact_forces
+from highfi.elastic import elastic_force
 from highfi.loads import add_external_impulse, add_work, thrust_load
 from highfi.nodes import drift_nodes, drift_nodes_in_frame, hold_clamped, kick_nodes, weigh_nodes
-from highfi.operator import internal_force
 from highfi.pose import drift_body, seen_from_frame, small_turn, triple
 from highfi.records import DAMPING_RATIO, FRICTION_FORCE, MOMENT, MOMENT_ON_RAIL, NORMAL_FORCE
 from scenes import rotation
@@ -25,7 +25,7 @@ from scenes.jit import njit
 def evaluate(rail, surface, faces, payload, frame, penalty, friction, state, active, dt):
     """Forces at the present places; returns the pose of the payload."""
     pose = seen_from_frame(state, payload, frame)
-    internal_force(state.displacement, rail.hexes, rail.shape_class, rail.stiffness, state.resistance)
+    elastic_force(rail, state.displacement, state.resistance)
     contact_forces(rail, surface, faces, penalty, friction, state, active, pose, dt)
     for node in rail.clamped:
         state.resistance[node, 0] = 0.0

@@ -2,17 +2,18 @@
 
 import numpy as np
 
-from highfi.mesh import RailMesh
 from highfi.records import Surface
 
 _FACING = -0.9  # cosine between pad normal and facet normal below which the two can touch
 _MARGIN = 2e-3  # m, how far sideways and in depth a facet may lie from the face's own place
 
 
-def build(mesh: RailMesh, points: np.ndarray, faces, quadrature: int) -> Surface:
-    """Surface record of all facets whose group name starts with ``contact``. ``points`` (n,3) m are in frame axes, ``faces``
-    the model's pad faces."""
-    facets = np.concatenate([quads for name, quads in sorted(mesh.surfaces.items()) if name.startswith("contact")])
+def build(surfaces: dict[str, np.ndarray], points: np.ndarray, faces, quadrature: int) -> Surface:
+    """Surface record of all facets (m,4) in ``surfaces`` whose name starts with ``contact``.
+
+    ``points`` (n,3) m are in frame axes, ``faces`` the model's pad faces.
+    """
+    facets = np.concatenate([quads for name, quads in sorted(surfaces.items()) if name.startswith("contact")])
     corners = points[facets]
     shape, area = _gauss(corners, quadrature)
     groups = [_in_reach(corners, faces, face) for face in range(faces.axis.size)]

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from highfi import assembly, records, surface
+from highfi import assembly, pencils, records, surface
 from highfi.mesh import RailMesh, read
 from highfi.numerics import Numerics
 from meshes import l_rail
@@ -16,12 +16,13 @@ from scenes.scene import Scene
 
 
 class System(NamedTuple):
-    """Constant records of one run. ``origin`` (3,) m: the frame's origin at ignition in scene axes; ``body_offset`` (3,) m from
+    """Constant records of one run. ``number`` (n,) of each mesh node in the nodal arrays; ``origin`` (3,) m: the frame's origin at ignition in scene axes; ``body_offset`` (3,) m from
     it to the platform's mass centre."""
 
     model: scene_model.Model
     mesh: RailMesh
     operator: assembly.Operator
+    number: np.ndarray
     rail: records.Rail
     surface: records.Surface
     faces: scene_model.Faces
@@ -58,14 +59,25 @@ def build(scene: Scene, numerics: Numerics, mesh: RailMesh) -> System:
     if model.platform is not None:
         frame, origin = _rigid_part(scene, model.platform, mesh.points, moving)
         offset = np.array(model.platform.mass_centre) - origin
-    points = mesh.points - origin
     # The model counts walls from the platform's mass centre, the loop from the frame's origin.
     faces = model.faces._replace(wall=model.faces.wall + offset[model.faces.axis])
-    inverse = np.divide(1.0, operator.mass, out=np.zeros_like(operator.mass), where=operator.free)
-    rail = records.Rail(points, operator.mass, inverse, np.flatnonzero(~operator.free), operator.hexes, operator.shape_class, operator.stiffness)
-    gauss = surface.build(mesh, points, faces, numerics.points_per_edge())
+    rail, number = _rail(mesh.points - origin, operator)
+    surfaces = {name: number[facets] for name, facets in mesh.surfaces.items()}
+    gauss = surface.build(surfaces, rail.points, faces, numerics.points_per_edge())
     drive = records.Drive(model.thrust_arm, model.reacts_on_platform)
-    return System(model, mesh, operator, rail, gauss, faces, frame, drive, origin, offset)
+    return System(model, mesh, operator, number, rail, gauss, faces, frame, drive, origin, offset)
+
+
+def _rail(points: np.ndarray, operator: assembly.Operator) -> tuple[records.Rail, np.ndarray]:
+    """Nodal arrays in the loop's own numbering, and the number (n,) of each mesh node in it."""
+    found = pencils.find(points, operator)
+    columns, number = found if found else (None, np.arange(len(points)))
+    size = -(-(number.max() + 1) // pencils.LANES) * pencils.LANES
+    place, mass, inverse = np.zeros((size, 3), order="F"), np.zeros(size), np.zeros(size)
+    place[number], mass[number] = points, operator.mass
+    inverse[number[operator.free]] = 1.0 / operator.mass[operator.free]
+    return records.Rail(place, mass, inverse, number[~operator.free], number[operator.hexes].astype(np.uint32),
+                        operator.shape_class, operator.stiffness, columns), number
 
 
 def _rigid_part(scene, platform, points, moving) -> tuple[records.Frame, np.ndarray]:
@@ -96,17 +108,19 @@ def initial_state(system: System) -> tuple[records.State, records.Active]:
     payload.spin[:] = turn @ (model.payload.inertia @ np.array(start.rate))
     platform = records.Body(system.origin.copy(), np.zeros(3), np.array([1.0, 0.0, 0.0, 0.0]), np.zeros(3))
     nodes = system.rail.points.shape
-    velocity = np.zeros(nodes)
+    velocity = np.zeros(nodes, order="F")
     if system.frame is not None:
         rate = np.array(start.platform_rate)
         platform.velocity[:] = np.array(start.platform_velocity) - np.cross(rate, system.body_offset)
         platform.spin[:] = np.linalg.inv(system.frame.inverse_inertia) @ rate
-        velocity = platform.velocity + np.cross(rate, system.rail.points)
-    momentum = (np.where(system.operator.free, system.rail.mass, 0.0)[:, None] * velocity).sum(axis=0)
-    state = records.State(payload, platform, np.zeros(nodes), velocity, np.zeros(nodes), momentum,
-                          np.zeros(records.LOAD_SIZE), np.zeros(records.WORK_SIZE), np.zeros(6),
-                          np.zeros((system.faces.axis.size, 3)))
+        velocity[system.number] = platform.velocity + np.cross(rate, system.rail.points[system.number])
+    moving = np.where(system.rail.inverse_mass > 0.0, system.rail.mass, 0.0)
+    count = system.faces.axis.size
+    state = records.State(payload, platform, np.zeros(nodes, order="F"), velocity, np.zeros(nodes, order="F"),
+                          moving @ velocity, np.zeros(records.LOAD_SIZE), np.zeros(records.WORK_SIZE), np.zeros(6),
+                          np.zeros((count, 3)))
     room = surface.capacity(system.surface)
     active = records.Active(np.zeros(1, dtype=np.int64), np.zeros((room, 2), dtype=np.int64),
-                            np.zeros(room, dtype=np.int64), np.zeros((room, 3)), np.zeros(room), np.zeros(nodes[0]), np.zeros(system.faces.axis.size, dtype=np.int64))
+                            np.zeros(room, dtype=np.int64), np.zeros((room, 3)), np.zeros(room), np.zeros(nodes[0]),
+                            np.zeros(count, dtype=np.int64))
     return state, active
