@@ -179,8 +179,13 @@ def test_burnout(fraction):
     record = table(**O41).record()
     exact = 0.02 + 4e-3 * math.sqrt(-2.0 * math.log(fraction))
     found = thrust.burnout(record, fraction, DURATION)
-    assert 0.0 <= found - exact <= DURATION / 20000
+    assert found == pytest.approx(exact, rel=1e-13)
     assert thrust.burnout(record, fraction, 0.02) == 0.02
+
+
+def test_burnout_of_a_curve_is_its_jump():
+    record = table(kind="constant", force=500.0, start=0.01, duration=0.0123).record()
+    assert thrust.burnout(record, 1e-3, DURATION) == pytest.approx(0.0223, rel=1e-14)
 
 
 def test_a_pulse_shorter_than_the_grid_is_not_missed():
