@@ -60,7 +60,7 @@ class Board:
             self._fractions.pop(label, None)
             if self._bars is not None and label in self._tasks:
                 self._bars.remove_task(self._tasks.pop(label))
-            console.print(f"  {self._title} {self._done}/{self._total}  {label}: {note}")
+            say(f"  {self._title} {self._done}/{self._total}  {label}: {note}")
             self._draw()
 
     def _draw(self) -> None:
@@ -79,4 +79,5 @@ class Board:
 
 def say(text: str) -> None:
     """One line to the user on standard error."""
-    console.print(text)
+    # Markup off: a condition may be called [x]. Soft wrap: a log file has no width.
+    console.print(text, markup=False, soft_wrap=True)

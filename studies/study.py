@@ -6,7 +6,7 @@ wrote. It is made again when the key differs, or when one of its files is gone o
 
 import hashlib
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from typing import Any, Callable, Iterable
@@ -36,6 +36,7 @@ class Study:
     folder: Path
     settings: Settings
     only: tuple[str, ...] = ()
+    _told: set = field(default_factory=set, repr=False, compare=False)  # stages already announced
 
     @cached_property
     def store(self) -> Store:
@@ -97,14 +98,19 @@ class Study:
         path = self.path(f"{name}.json")
         known = read(path)
         if known is not None and known.get("key") == key and self._whole(known.get("files", {})):
-            say(f"{name}: nothing changed")
+            self._tell(name, "nothing changed")
             return known
-        say(f"{name}: {self.scene.name}")
+        self._tell(name, self.scene.name)
         result, files = make()
         document = {"stage": name, "scene": self.scene.name, "key": key, **result,
                     "files": {self.relative(file): _digest(file) for file in files}}
         write_json(path, document)
         return document
+
+    def _tell(self, name: str, words: str) -> None:
+        if name not in self._told:
+            say(f"{name}: {words}")
+        self._told.add(name)
 
     def _whole(self, files: dict[str, str]) -> bool:
         return all(self.path(name).is_file() and _digest(self.path(name)) == digest for name, digest in files.items())

@@ -62,7 +62,7 @@ def _floors(study: Study, calibration: Calibration | None) -> list[Spread]:
     model = "calibrated surrogate" if calibration else "uncalibrated surrogate"
     found = []
     for label, ask in (("reference", study.highfi), (model, _surrogate(study, calibration))):
-        groups = {name: [ask(name)] + [ask(name, overrides={"contact.clearance": clearance}, tag=f"-clearance{sign}")
+        groups = {name: [ask(name)] + [ask(name, overrides={"contact.clearance": clearance}, tag=f"-clearance-{sign}")
                                        for sign, clearance in clearances(study)] for name in study.scene.agreement.floor}
         runs = study.store.fill(f"floor, {label}", [run for group in groups.values() for run in group])
         for name, group in groups.items():
@@ -74,7 +74,7 @@ def _floors(study: Study, calibration: Calibration | None) -> list[Spread]:
 def clearances(study: Study) -> list[tuple[str, float]]:
     """The perturbed clearances (m) that are physical: a closed gap is only opened."""
     nominal, change = study.scene.contact.clearance, study.settings.clearance_change
-    return [(sign, value) for sign, value in (("+", nominal + change), ("-", nominal - change)) if value >= 0.0]
+    return [(sign, value) for sign, value in (("plus", nominal + change), ("minus", nominal - change)) if value >= 0.0]
 
 
 def _surrogate(study: Study, calibration: Calibration | None):
