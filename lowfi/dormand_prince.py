@@ -10,7 +10,7 @@ whole half disc |z| <= STABLE_RADIUS, Re z <= 0: no linear mode, oscillating or 
 import numpy as np
 
 from lowfi.equations import derivative
-from lowfi.state import DYNAMIC_SIZE, STATE_SIZE, normalise
+from lowfi.state import DYNAMIC_SIZE, STATE_SIZE, copy, normalise
 from scenes.jit import njit
 
 STAGES = 7
@@ -37,15 +37,14 @@ DENSE = np.array([
 
 
 @njit
-def attempt(model, engaged, first, last, time, dt, start, stages, end):
-    """From ``start`` (STATE_SIZE,) at ``time`` to ``end`` at ``time + dt``; ``stages`` (7, STATE_SIZE) holds k_1 already.
+def attempt(system, engaged, stretch, time, dt, fresh, start, stages, end):
+    """From ``start`` (STATE_SIZE,) at ``time`` to ``end`` at ``time + dt``; unless ``fresh``, ``stages`` (7, STATE_SIZE) holds k_1.
 
-    Thrust is taken inside ``first`` .. ``last`` (s), the open stretch between two corners, whatever rounding does to stage times.
+    Thrust is taken inside ``stretch`` (s), open between two corners, whatever rounding does to stage times.
     """
-    for stage in range(1, STAGES):
+    for stage in range(0 if fresh else 1, STAGES):
         size = STATE_SIZE if stage == STAGES - 1 else DYNAMIC_SIZE
-        for j in range(size):
-            end[j] = start[j]
+        copy(start, end, size)
         for i in range(stage):
             weight = dt * MATRIX[stage, i]
             if weight != 0.0:
@@ -53,14 +52,13 @@ def attempt(model, engaged, first, last, time, dt, start, stages, end):
                     end[j] += weight * stages[i, j]
         if stage == STAGES - 1:
             normalise(end)
-        derivative(model, engaged, min(max(time + NODES[stage] * dt, first), last), end, stages[stage])
+        derivative(system, engaged, min(max(time + NODES[stage] * dt, stretch[0]), stretch[1]), end, stages[stage])
 
 
 @njit
 def interpolate(dt, theta, start, stages, size, out):
     """The first ``size`` slots of the state at ``theta`` in 0..1 of a step."""
-    for j in range(size):
-        out[j] = start[j]
+    copy(start, out, size)
     for i in range(STAGES):
         weight = dt * theta * (DENSE[i, 0] + theta * (DENSE[i, 1] + theta * (DENSE[i, 2] + theta * DENSE[i, 3])))
         if weight != 0.0:

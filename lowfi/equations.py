@@ -15,16 +15,16 @@ from scenes.jit import njit
 
 
 @njit
-def derivative(model, engaged, time, state, out):
+def derivative(system, engaged, time, state, out):
     """Fill ``out`` with the time derivative of ``state`` (both STATE_SIZE,). ``engaged`` (f,) tells which faces are on the rail."""
-    body = slot.motion(model.payload.mass, model.payload.inverse_inertia, state, PAYLOAD)
-    base = slot.frame(model.platform, state)
+    body = slot.motion(system.payload.mass, system.payload.inverse_inertia, state, PAYLOAD)
+    base = slot.frame(system.platform, state)
     out[:] = 0.0
-    add_thrust(model.thrust, model.thrust_offset, model.platform, model.reacts_on_platform, time, body, base, out)
-    add_gravity(model.gravity, model.payload, model.platform, body, base, out)
-    add_contact(model.contact, model.friction, model.faces, model.platform, engaged, body, base, out)
-    move(PAYLOAD, model.payload.mass, state, body, out)
-    move_platform(model.platform, state, base, out)
+    add_thrust(system.thrust, system.thrust_offset, system.platform, system.reacts_on_platform, time, body, base, out)
+    add_gravity(system.gravity, system.payload, system.platform, body, base, out)
+    add_contact(system.contact, system.friction, system.faces, system.platform, engaged, body, base, out)
+    move(PAYLOAD, system.payload.mass, state, body, out)
+    move_platform(system.platform, state, base, out)
 
 
 @njit
@@ -123,9 +123,9 @@ def add_contact(laws, friction, faces, platform, engaged, body, base, out):
         place, turn = relative_pose(platform, body, base)
         for i in range(engaged.size):
             if engaged[i]:
-                p = penetration(faces, i, place, turn)
+                p = penetration(faces[i], place, turn)
                 if p > 0.0:
-                    _press(load(laws, friction, faces, platform, i, p, body, base), friction, platform, body, base, out)
+                    _press(load(laws, friction, platform, faces[i], p, body, base), friction, platform, body, base, out)
 
 
 @njit

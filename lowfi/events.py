@@ -8,8 +8,7 @@ import numpy as np
 
 from lowfi import state as slot
 from lowfi.dormand_prince import interpolate
-from lowfi.touch import along, load, outward, pad_point, penetration, relative_pose, relative_velocity
-from scenes import rotation
+from lowfi.touch import along, load, penetration, relative_pose
 from scenes.effects.contact import stored_energy
 from scenes.jit import njit
 
@@ -24,67 +23,55 @@ MODE, DEPTH, CLOSING, RAW, ALONG, SURVEY_SIZE = 0, 1, 2, 3, 4, 5
 @njit
 def survey(laws, faces, platform, payload, engaged, state, out):
     """Fill ``out`` (f, SURVEY_SIZE) with mode, penetration (m), its rate (m/s), raw force (N) and X (m) of every face; True when
-    any face touches."""
+    any that is on the rail touches. The mode of a face off the rail is the one it would have there."""
     touching = False
     if laws is not None:
         body, base = slot.motion(payload.mass, payload.inverse_inertia, state, slot.PAYLOAD), slot.frame(platform, state)
         place, turn = relative_pose(platform, body, base)
         for i in range(engaged.size):
-            p = penetration(faces, i, place, turn)
-            mode, raw = OPEN, 0.0
-            if p > 0.0 and engaged[i]:
-                face = load(laws, None, faces, platform, i, p, body, base)
-                touching, raw, closing = True, face.raw, face.closing
-                mode = PRESSING if raw >= 0.0 else CUT_OFF
-            else:
-                point = pad_point(faces, i, body)
-                closing = rotation.dot(relative_velocity(platform, body, base, point), outward(faces, i, base))
-            out[i, MODE], out[i, DEPTH], out[i, CLOSING], out[i, RAW] = mode, p, closing, raw
-            out[i, ALONG] = along(faces, i, place, turn)
+            p = penetration(faces[i], place, turn)
+            face = load(laws, None, platform, faces[i], max(p, 0.0), body, base)
+            out[i, MODE] = OPEN if p <= 0.0 else (PRESSING if face.raw >= 0.0 else CUT_OFF)
+            out[i, DEPTH], out[i, CLOSING], out[i, RAW] = p, face.closing, face.raw
+            out[i, ALONG] = along(faces[i], place, turn)
+            touching = touching or (p > 0.0 and engaged[i])
     return touching
 
 
 @njit
-def first_event(laws, model, engaged, before, after, dt, start, stages, work):
+def first_event(laws, payload, platform, faces, rail, engaged, before, after, dt, start, stages, work):
     """Fraction of the step (0..1] at which it must end; ``before`` and ``after`` are the surveys of its ends.
 
-    ``work`` (DYNAMIC_SIZE,) is scratch.
+    ``rail`` is its start and end (m); ``work`` (DYNAMIC_SIZE,) is scratch.
     """
     first = 1.0
     if laws is not None:
-        first = _first_of_all(model, engaged, before, after, dt, start, stages, work)
+        for i in range(engaged.size):
+            for kind in (DEPTH, RAW, ALONG):
+                level = _level(rail, engaged[i], kind, before[i], after[i])
+                if not np.isnan(level):
+                    theta = _locate(laws, payload, platform, faces[i], kind, before[i, kind] - level, after[i, kind] - level, level,
+                                    dt, start, stages, work)
+                    if _SOONEST < theta < first:
+                        first = theta
+            if engaged[i] and before[i, MODE] == OPEN and after[i, MODE] == OPEN:
+                first = min(first, _grazing(before[i, DEPTH], after[i, DEPTH], dt * before[i, CLOSING], dt * after[i, CLOSING]))
     return first
 
 
 @njit
-def _first_of_all(model, engaged, before, after, dt, start, stages, work):
-    first = 1.0
-    for i in range(engaged.size):
-        for kind in (DEPTH, RAW, ALONG):
-            level = _level(model, engaged, i, kind, before, after)
-            if not np.isnan(level):
-                theta = _locate(model, i, kind, level, before, after, dt, start, stages, work)
-                if _SOONEST < theta < first:
-                    first = theta
-        if engaged[i] and before[i, MODE] == OPEN and after[i, MODE] == OPEN:
-            theta = _grazing(before[i, DEPTH], after[i, DEPTH], dt * before[i, CLOSING], dt * after[i, CLOSING])
-            first = min(first, theta)
-    return first
-
-
-@njit
-def _level(model, engaged, i, kind, before, after):
+def _level(rail, engaged, kind, before, after):
     """Value that a face's quantity ``kind`` must reach for its mode to change in this step; NaN when it does not change."""
-    a, b = before[i, kind], after[i, kind]
+    a, b = before[kind], after[kind]
     level = np.nan
     if kind == DEPTH:
-        if engaged[i] and (before[i, MODE] == OPEN) != (after[i, MODE] == OPEN):
+        if engaged and (before[MODE] == OPEN) != (after[MODE] == OPEN):
             level = BEYOND
     elif kind == RAW:
-        if before[i, MODE] * after[i, MODE] == PRESSING * CUT_OFF:
+        if before[MODE] * after[MODE] == PRESSING * CUT_OFF:
             level = 1e-9 * b
-    elif max(before[i, DEPTH], after[i, DEPTH]) > BEYOND:
-        level = _edge(model.rail_start, model.rail_end, engaged[i], a, b)
+    elif max(before[DEPTH], after[DEPTH]) > BEYOND:
+        level = _edge(rail[0], rail[1], engaged, a, b)
     return level if (a - level) * (b - level) < 0.0 else np.nan
 
 
@@ -100,35 +87,27 @@ def _edge(rail_start, rail_end, engaged, before, after):
 
 
 @njit
-def _gauge(model, i, kind, state):
-    """Quantity ``kind`` of face ``i`` at ``state``."""
-    body = slot.motion(model.payload.mass, model.payload.inverse_inertia, state, slot.PAYLOAD)
-    base = slot.frame(model.platform, state)
-    place, turn = relative_pose(model.platform, body, base)
+def _gauge(laws, payload, platform, face, kind, state):
+    """Quantity ``kind`` of ``face`` at ``state``."""
+    body, base = slot.motion(payload.mass, payload.inverse_inertia, state, slot.PAYLOAD), slot.frame(platform, state)
+    place, turn = relative_pose(platform, body, base)
     if kind == ALONG:
-        return along(model.faces, i, place, turn)
-    p = penetration(model.faces, i, place, turn)
-    return p if kind == DEPTH else _raw(model.contact, model.faces, model.platform, i, p, body, base)
+        return along(face, place, turn)
+    p = penetration(face, place, turn)
+    return p if kind == DEPTH else load(laws, None, platform, face, max(p, 0.0), body, base).raw
 
 
 @njit
-def _raw(laws, faces, platform, i, p, body, base):
-    raw = 0.0
-    if laws is not None:
-        raw = load(laws, None, faces, platform, i, max(p, 0.0), body, base).raw
-    return raw
-
-
-@njit
-def _locate(model, i, kind, level, before, after, dt, start, stages, work):
-    """Fraction of the step at which the quantity passes ``level``, on its far side."""
+def _locate(laws, payload, platform, face, kind, f_low, f_high, level, dt, start, stages, work):
+    """Fraction of the step at which the quantity passes ``level``, on its far side; it is ``f_low`` and ``f_high`` off at the ends."""
     low, high, side = 0.0, 1.0, 0
-    f_low, f_high = before[i, kind] - level, after[i, kind] - level
-    close = 1e-13 if kind != RAW else 1e-12 * max(abs(before[i, kind]), abs(after[i, kind]))
+    close = 1e-13 if kind != RAW else 1e-12 * max(abs(f_low), abs(f_high))
     for _ in range(60):
         theta = (low * f_high - high * f_low) / (f_high - f_low)
         interpolate(dt, theta, start, stages, slot.DYNAMIC_SIZE, work)
-        f = _gauge(model, i, kind, work) - level
+        f = _gauge(laws, payload, platform, face, kind, work) - level
+        if abs(f) < close or high - low < 1e-14:
+            return theta
         if f * f_high > 0.0:
             high, f_high = theta, f
             f_low = 0.5 * f_low if side == 1 else f_low
@@ -137,9 +116,7 @@ def _locate(model, i, kind, level, before, after, dt, start, stages, work):
             low, f_low = theta, f
             f_high = 0.5 * f_high if side == -1 else f_high
             side = -1
-        if abs(f) < close or high - low < 1e-14:
-            break
-    return high if abs(f) >= close else theta
+    return high
 
 
 @njit

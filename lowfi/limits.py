@@ -31,9 +31,9 @@ def fastest_rate(laws, friction, faces, platform, payload, engaged, state):
         stiffness, damping = 0.0, 0.0
         for i in range(engaged.size):
             if engaged[i]:
-                p = penetration(faces, i, place, turn)
+                p = penetration(faces[i], place, turn)
                 if p > 0.0:
-                    k, c = _face(laws, friction, faces, platform, payload, i, p, body, base)
+                    k, c = _face(laws, friction, platform, payload, faces[i], p, body, base)
                     stiffness += k
                     damping += c
         rate = 0.5 * damping + np.sqrt(0.25 * damping * damping + stiffness)
@@ -41,29 +41,29 @@ def fastest_rate(laws, friction, faces, platform, payload, engaged, state):
 
 
 @njit
-def _face(laws, friction, faces, platform, payload, i, p, body, base):
+def _face(laws, friction, platform, payload, face, p, body, base):
     """Contribution of one face to K (1/s2) and C (1/s)."""
-    face, n = load(laws, friction, faces, platform, i, p, body, base), outward(faces, i, base)
-    more = law.parts(laws.impact, laws.hunt_crossley, laws.linear, p * (1.0 + _NUDGE), face.closing)
+    now, n = load(laws, friction, platform, face, p, body, base), outward(face, base)
+    more = law.parts(laws.impact, laws.hunt_crossley, laws.linear, p * (1.0 + _NUDGE), now.closing)
     unit = law.parts(laws.impact, laws.hunt_crossley, laws.linear, p, 1.0)
-    across = inverse_mass(platform, payload, body, base, face.point, n)
-    stiffness = abs(more[0] + more[1] - face.raw) / (_NUDGE * p) * across
-    damping = unit[1] * across + _friction_damping(friction, face, platform, payload, body, base, n)
+    across = inverse_mass(platform, payload, body, base, now.point, n)
+    stiffness = abs(more[0] + more[1] - now.raw) / (_NUDGE * p) * across
+    damping = unit[1] * across + _friction_damping(friction, now, platform, payload, body, base, n)
     return stiffness, damping
 
 
 @njit
-def _friction_damping(friction, face, platform, payload, body, base, n):
+def _friction_damping(friction, now, platform, payload, body, base, n):
     damping = 0.0
     if friction is not None:
-        speed = np.sqrt(rotation.dot(face.slip, face.slip)) + _NUDGE * friction.static_speed
+        speed = np.sqrt(rotation.dot(now.slip, now.slip)) + _NUDGE * friction.static_speed
         here = coefficient_over_speed(friction, speed)
         there = coefficient_over_speed(friction, speed * (1.0 + _NUDGE)) * (1.0 + _NUDGE)
         slope = max(here, abs(there - here) / _NUDGE)
         a = _tangent(n)
         b = rotation.cross(n, a)
-        damping = max(face.raw, 0.0) * slope * (inverse_mass(platform, payload, body, base, face.point, a)
-                                                + inverse_mass(platform, payload, body, base, face.point, b))
+        damping = max(now.raw, 0.0) * slope * (inverse_mass(platform, payload, body, base, now.point, a)
+                                                + inverse_mass(platform, payload, body, base, now.point, b))
     return damping
 
 

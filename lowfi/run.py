@@ -5,7 +5,7 @@ from typing import Callable
 
 import numpy as np
 
-from lowfi import balance, march, plan, state
+from lowfi import balance, march, plan, state, system
 from lowfi.accuracy import Tolerance
 from lowfi.march import EVALUATIONS, EVENTS, LIMIT, LIMIT_USED, NOW, REJECTED, STEPS, TAKEN
 from lowfi.numerics import Numerics
@@ -19,7 +19,7 @@ from scenes.trajectory import Trajectory
 _REASONS = {march.UNDERFLOW: "no step is short enough: the state is no longer finite or its equations too stiff",
             march.NOT_FINITE: "a value became infinite",
             march.OUT_OF_STEPS: "the step budget is spent (numerics.maximum_steps)"}
-_LOOK_EVERY = outcome.JAM_DURATION / 2.0  # between two looks for exit or jam (s)
+_BEYOND_WINDOW = 2  # samples past the settled window, for the spline that averages over it
 
 
 def run(scene: Scene, calibration: Calibration | None = None, numerics: Numerics | None = None,
@@ -31,8 +31,11 @@ def run(scene: Scene, calibration: Calibration | None = None, numerics: Numerics
     """
     began, cpu = clock.perf_counter(), clock.thread_time()
     scene = calibration.apply(scene) if calibration else scene
+    known = len(march.march.overloads)
+    setting_up = clock.perf_counter()
     run_ = Run(scene, numerics or Numerics())
-    compile_s = run_.begin()
+    run_.begin()
+    compile_s = clock.perf_counter() - setting_up if len(march.march.overloads) > known else 0.0
     compile_cpu = clock.thread_time()
     marching = clock.perf_counter()
     run_.march(progress)
@@ -51,47 +54,50 @@ class Run:
         self.model = model = models.build(scene)
         self.marks = outcome.milestones(scene, model)
         self.interval = scene.output.interval
-        self.last = max(1, round(scene.duration / self.interval))
-        self.plan = plan.make(model, self.interval, self.last * self.interval, numerics)
+        self.end = max(1, round(scene.duration / self.interval))
+        self.plan = plan.make(model, self.interval, self.end * self.interval, numerics)
         reach = float(np.sqrt((model.faces.centre**2).sum(axis=1).max()))
         self.tolerance = Tolerance(numerics.relative_tolerance, numerics.speed_floor, reach)
-        faces = model.faces.axis.size
-        self.loop = march.ready(state.initial(model), faces, self.interval)
-        self.rows, self.forces = np.zeros((self.last + 1, SAMPLE_SIZE)), np.zeros((self.last + 1, faces, 3))
-        self.taken, self.message = 0, ""
+        self.system = system.build(model)
+        self.loop = march.ready(self.system, state.initial(model), self.interval)
+        self.rows, self.forces = np.zeros((self.end + 1, SAMPLE_SIZE)), np.zeros((self.end + 1, model.faces.axis.size, 3))
+        self.taken, self.left, self.message = 0, False, ""
 
-    def begin(self) -> float:
-        """Take the first sample; the time (s) that compiling or loading the kernels took, zero when they were at hand."""
-        known, began = len(march.march.overloads), clock.perf_counter()
+    def begin(self) -> None:
+        """Take the first sample; compiles the kernels, or loads them from disk."""
         self._advance(0)
-        return clock.perf_counter() - began if len(march.march.overloads) > known else 0.0
 
     def march(self, progress) -> None:
         """Advance look by look until something ends the run."""
-        stride = max(1, round(_LOOK_EVERY / self.interval))
-        end = self.last
-        while self.taken <= end and not self.message:
-            self._advance(min(self.taken - 1 + stride, end))
-            end = min(end, self._end())
+        stride = max(1, round(outcome.JAM_DURATION / self.interval))
+        while self.taken <= self.end and not self.message:
+            self._advance(min(self.taken - 1 + stride, self.end))
             if progress:
-                progress(min(1.0, (self.taken - 1) / end))
+                progress(min(1.0, (self.taken - 1) / self.end))
 
     def _advance(self, number: int) -> None:
-        status = march.march(self.model, self.plan, self.tolerance, self.loop, number, self.rows, self.forces)
+        """Take samples up to ``number``, fewer where the payload leaves the rail; then look what is known of the end."""
+        watched = not self.left
+        status = march.march(self.system, self.plan, self.tolerance, self.loop, number, watched, self.rows, self.forces)
         self.taken = int(self.loop.count[TAKEN])
-        if status != march.SAMPLED:
+        if status in _REASONS:
             self.message = f"{_REASONS[status]}, at {self.loop.clock[NOW]:.6g} s"
+        elif watched:
+            self._look(status == march.PASSED)
+
+    def _look(self, passed: bool) -> None:
+        recent = self._motion(max(0, self.taken - 2 - round(2.0 * outcome.JAM_DURATION / self.interval)))
+        if passed:
+            exit_at = outcome.exit_time(recent, self.marks)
+            self.left = exit_at is not None
+            if self.left:
+                settled = outcome.window_start(exit_at, self.marks) + outcome.SETTLE_WINDOW
+                self.end = min(self.end, int(np.ceil(settled / self.interval)) + _BEYOND_WINDOW)
+        elif outcome.is_jammed(recent, self.marks):
+            self.end = self.taken - 1
 
     def _motion(self, first: int = 0) -> balance.Motion:
         return balance.motion(self.rows[first:self.taken], first, self.interval)
-
-    def _end(self) -> int:
-        """Number of the last sample needed, as far as known now."""
-        recent = self._motion(max(0, self.taken - 2 - round(2.0 * outcome.JAM_DURATION / self.interval)))
-        exit_at = outcome.exit_time(recent, self.marks)
-        if exit_at is None:
-            return self.taken - 1 if outcome.is_jammed(recent, self.marks) else self.last
-        return int(np.ceil((outcome.window_start(exit_at, self.marks) + outcome.SETTLE_WINDOW) / self.interval)) + 2
 
     def trajectory(self) -> Trajectory:
         """The result of the samples taken so far."""

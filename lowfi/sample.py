@@ -1,9 +1,12 @@
 """One sample of a run: places, velocities, rates, energies and momenta of a state, and the force on every pad face."""
 
+import numpy as np
+
 from lowfi import state as slot
 from lowfi.events import stored
-from lowfi.state import IMPULSE, MOMENT, PAYLOAD, PLATFORM, VELOCITY, WORK, WORK_SIZE
-from lowfi.touch import load, penetration, relative_pose
+from lowfi.state import IMPULSE, MOMENT, PAYLOAD, PLACE, PLATFORM, VELOCITY, WORK, WORK_SIZE, Motion
+from lowfi.system import HALF_LENGTH
+from lowfi.touch import along, load, penetration, relative_pose
 from scenes import rotation
 from scenes.jit import njit
 
@@ -15,23 +18,42 @@ SAMPLE_SIZE = GIVEN + 6
 
 
 @njit
-def observe(model, engaged, state, row, forces):
-    """Fill ``row`` (SAMPLE_SIZE,) and ``forces`` (f,3) N on the payload in scene axes."""
-    payload = model.payload
-    body, base = slot.motion(payload.mass, payload.inverse_inertia, state, PAYLOAD), slot.frame(model.platform, state)
+def observe(system, engaged, state, row, forces):
+    """Fill ``row`` (SAMPLE_SIZE,) and ``forces`` (f,3) N on the payload in scene axes; False where a number is not finite."""
+    payload = system.payload
+    body, base = slot.motion(payload.mass, payload.inverse_inertia, state, PAYLOAD), slot.frame(system.platform, state)
     row[:] = 0.0
     _copy(state, PAYLOAD, body, row)
     _copy(state, PLATFORM, base, row)
     _body(payload.mass, state, PAYLOAD, body, row)
-    _platform(model.platform, state, base, row)
-    row[STORED] = _press(model.contact, model.friction, model.faces, model.platform, engaged, body, base, forces)
-    row[WORKS:WORKS + WORK_SIZE] = state[WORK:WORK + WORK_SIZE]
-    row[GIVEN:GIVEN + 6] = state[IMPULSE:IMPULSE + 6]
+    _platform(system.platform, state, base, row)
+    row[STORED] = _press(system.contact, system.friction, system.faces, system.platform, engaged, body, base, forces)
+    slot.copy(state[WORK:], row[WORKS:], WORK_SIZE)
+    slot.copy(state[IMPULSE:], row[GIVEN:], 6)
+    total = 0.0
+    for value in row:
+        total += abs(value)
+    for i in range(engaged.size):
+        total += abs(forces[i, 0]) + abs(forces[i, 1]) + abs(forces[i, 2])
+    return np.isfinite(total)
+
+
+@njit
+def rearmost_edge(faces, platform, row):
+    """X (m) in platform axes of the rearmost trailing edge of the pads."""
+    place, turn = slot.triple(row, PAYLOAD + PLACE), rotation.matrix(slot.quaternion(row, PAYLOAD))
+    body = Motion(place, place, turn, place)
+    base_place, base_turn = slot.triple(row, PLATFORM + PLACE), rotation.matrix(slot.quaternion(row, PLATFORM))
+    place, turn = relative_pose(platform, body, Motion(base_place, base_place, base_turn, base_place))
+    rearmost = np.inf
+    for i in range(faces.shape[0]):
+        rearmost = min(rearmost, along(faces[i], place, turn) - turn[0] * faces[i, HALF_LENGTH])
+    return rearmost
 
 
 @njit
 def _copy(state, which, body, row):
-    row[which:which + slot.MOMENT] = state[which:which + slot.MOMENT]
+    slot.copy(state[which:], row[which:], slot.MOMENT)
     rate = rotation.unrotate(body.turn, body.rate)
     for i in range(3):
         row[which + RATE + i] = rate[i]
@@ -64,9 +86,9 @@ def _press(laws, friction, faces, platform, engaged, body, base, forces):
         place, turn = relative_pose(platform, body, base)
         for i in range(engaged.size):
             if engaged[i]:
-                p = penetration(faces, i, place, turn)
+                p = penetration(faces[i], place, turn)
                 if p > 0.0:
-                    face = load(laws, friction, faces, platform, i, p, body, base)
+                    face = load(laws, friction, platform, faces[i], p, body, base)
                     energy += stored(laws, p)
                     for j in range(3):
                         forces[i, j] = face.normal[j] + face.drag[j]

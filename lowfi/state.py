@@ -39,6 +39,13 @@ class Motion(NamedTuple):
 
 
 @njit
+def copy(source, target, size):
+    """Copy the first ``size`` numbers. A loop, because a slice brings Numba's broadcasting and its error texts into each kernel."""
+    for j in range(size):
+        target[j] = source[j]
+
+
+@njit
 def triple(values, first):
     return (values[first], values[first + 1], values[first + 2])
 

@@ -1,9 +1,9 @@
 """Contact between pad faces and rail walls, one point per face at its centre.
 
-With x the face's centre in platform axes, n = sign e_axis the outward normal and u the velocity of the pad's point relative to the
+With x the face's centre in platform axes, n its outward normal, along y or z, and u the velocity of the pad's point relative to the
 rail's point at the same place (both inertial, so the frame's own turning is in it)::
 
-    p = sign (x_axis - wall),     p_dot = n . u,     F = -N n - mu(s)/s N (u - p_dot n),     N = max(0, raw)
+    p = n . x - wall,     p_dot = n . u,     F = -N n - mu(s)/s N (u - p_dot n),     N = max(0, raw)
 
 ``raw`` is the law in ``scenes.effects.contact``. The rail's reach is not tested here: ``engaged`` says which faces are on the rail.
 """
@@ -11,6 +11,7 @@ rail's point at the same place (both inertial, so the frame's own turning is in 
 from typing import NamedTuple
 
 from lowfi.state import velocity_at
+from lowfi.system import NORMAL_Y, NORMAL_Z, WALL
 from scenes import rotation
 from scenes.effects import contact as law
 from scenes.effects.friction import coefficient_over_speed
@@ -48,37 +49,29 @@ def _relative_turn(a, b):
 
 
 @njit
-def along(faces, i, place, turn):
-    """X (m) of the centre of face ``i`` in platform axes."""
-    c = faces.centre
-    return place[0] + turn[0] * c[i, 0] + turn[1] * c[i, 1] + turn[2] * c[i, 2]
+def along(face, place, turn):
+    """X (m) of the centre of ``face``, a row of the table of faces, in platform axes."""
+    return place[0] + turn[0] * face[0] + turn[1] * face[1] + turn[2] * face[2]
 
 
 @njit
-def penetration(faces, i, place, turn):
-    """Penetration (m) of face ``i`` into its wall, negative across the gap."""
-    c = faces.centre
-    if faces.axis[i] == 1:
-        across = place[1] + turn[3] * c[i, 0] + turn[4] * c[i, 1] + turn[5] * c[i, 2]
-    else:
-        across = place[2] + turn[6] * c[i, 0] + turn[7] * c[i, 1] + turn[8] * c[i, 2]
-    return faces.sign[i] * (across - faces.wall[i])
+def penetration(face, place, turn):
+    """Penetration (m) of ``face`` into its wall, negative across the gap."""
+    y = place[1] + turn[3] * face[0] + turn[4] * face[1] + turn[5] * face[2]
+    z = place[2] + turn[6] * face[0] + turn[7] * face[1] + turn[8] * face[2]
+    return face[NORMAL_Y] * y + face[NORMAL_Z] * z - face[WALL]
 
 
 @njit
-def outward(faces, i, base):
-    """Outward normal of face ``i`` in scene axes."""
-    sign, t = faces.sign[i], base.turn
-    if faces.axis[i] == 1:
-        return (sign * t[1], sign * t[4], sign * t[7])
-    return (sign * t[2], sign * t[5], sign * t[8])
+def outward(face, base):
+    """Outward normal of ``face`` in scene axes."""
+    return rotation.rotate(base.turn, (0.0, face[NORMAL_Y], face[NORMAL_Z]))
 
 
 @njit
-def pad_point(faces, i, body):
-    """Centre of face ``i`` in scene axes (m)."""
-    c = faces.centre
-    arm = rotation.rotate(body.turn, (c[i, 0], c[i, 1], c[i, 2]))
+def pad_point(face, body):
+    """Centre of ``face`` in scene axes (m)."""
+    arm = rotation.rotate(body.turn, (face[0], face[1], face[2]))
     return (body.place[0] + arm[0], body.place[1] + arm[1], body.place[2] + arm[2])
 
 
@@ -102,9 +95,9 @@ def friction_force(friction, normal_force, slip):
 
 
 @njit
-def load(laws, friction, faces, platform, i, p, body, base):
-    """Load of face ``i`` at penetration ``p`` > 0."""
-    point, n = pad_point(faces, i, body), outward(faces, i, base)
+def load(laws, friction, platform, face, p, body, base):
+    """Load of ``face`` at penetration ``p`` >= 0."""
+    point, n = pad_point(face, body), outward(face, base)
     u = relative_velocity(platform, body, base, point)
     closing = rotation.dot(u, n)
     elastic, damping = law.parts(laws.impact, laws.hunt_crossley, laws.linear, p, closing)

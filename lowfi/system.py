@@ -1,0 +1,62 @@
+"""What the kernels of the surrogate are given: the scene's records, cut down to what a rigid run reads.
+
+Faces are one table, because every array in a record makes each kernel that passes the record on longer to compile.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from scenes.effects.contact import Laws
+from scenes.effects.friction import Friction
+from scenes.effects.gravity import Gravity
+from scenes.effects.thrust_law import Thrust
+from scenes.effects.thrust_offset import ThrustOffset
+from scenes.model import Faces, Model
+
+# Columns of the table of faces: centre in payload body axes (m); outward normal's y and z and the wall's distance along it (m), in
+# platform axes; half the length (m).
+CENTRE, NORMAL_Y, NORMAL_Z, WALL, HALF_LENGTH, FACE_SIZE = 0, 3, 4, 5, 6, 7
+
+
+class Body(NamedTuple):
+    """Mass (kg) and inverse inertia (3,3) about the mass centre (1/(kg m2))."""
+
+    mass: float
+    inverse_inertia: np.ndarray
+
+
+class System(NamedTuple):
+    """All records of one run; None where an effect is absent. faces (f, FACE_SIZE); rail_start and rail_end (m) as in ``Model``."""
+
+    payload: Body
+    platform: Body | None
+    faces: np.ndarray
+    rail_start: float
+    rail_end: float
+    thrust: Thrust
+    reacts_on_platform: bool
+    thrust_offset: ThrustOffset | None
+    contact: Laws | None
+    friction: Friction | None
+    gravity: Gravity | None
+
+
+def build(model: Model) -> System:
+    """Records of ``model`` as the kernels take them."""
+    return System(_body(model.payload), _body(model.platform) if model.platform is not None else None, _table(model.faces),
+                  float(model.rail_start), float(model.rail_end), model.thrust, model.reacts_on_platform, model.thrust_offset,
+                  model.contact, model.friction, model.gravity)
+
+
+def _body(record) -> Body:
+    return Body(record.mass, np.ascontiguousarray(record.inverse_inertia))
+
+
+def _table(faces: Faces) -> np.ndarray:
+    table = np.zeros((faces.axis.size, FACE_SIZE))
+    table[:, CENTRE:CENTRE + 3] = faces.centre
+    table[:, NORMAL_Y] = np.where(faces.axis == 1, faces.sign, 0.0)
+    table[:, NORMAL_Z] = np.where(faces.axis == 2, faces.sign, 0.0)
+    table[:, WALL], table[:, HALF_LENGTH] = faces.sign * faces.wall, faces.half_length
+    return table
