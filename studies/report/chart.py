@@ -14,7 +14,7 @@ from scenes.files import replacing
 NAVY, VERMILION, AMBER, TEAL, GREY = "#1d3461", "#d1495b", "#e8a33d", "#2e8b7a", "#7a7f87"
 AXIS_COLOURS = {"x": NAVY, "y": VERMILION, "z": AMBER}
 _POINTS = 500  # kept of each line on the page
-_GAP = 94.0  # px between rows: an axis label, and the title below it
+_GAP = 106.0  # px between rows: an axis label, and the title below it
 _FONT = 'system-ui, "Segoe UI", Roboto, "Liberation Sans", sans-serif'
 _INK, _RULE = "#24292f", "#e3e6ea"
 _PLOTLY_DASH = {"-": "solid", "--": "dash", ":": "dot", "": "solid"}
@@ -83,11 +83,12 @@ def to_html(chart: Chart) -> str:
                 marker={"symbol": {"o": "circle", "s": "square", "^": "triangle-up", "": "circle"}[line.marker], "size": 9}),
                 **place)
             shown |= {line.name} if line.legend else set()
-        kind = {"type": "log", "dtick": 1, "exponentformat": "power"} if panel.log else {}
-        figure.update_xaxes(title_text=panel.x_label, **kind, **place)
-        figure.update_yaxes(title_text=panel.y_label, **kind, **place)
+        x_kind, y_kind = ({"type": "log", "range": np.log10(limits).tolist(), "exponentformat": "power", "minor_ticks": "outside"}
+                          if panel.log else {} for limits in _limits(panel))
+        figure.update_xaxes(title_text=panel.x_label, **x_kind, **place)
+        figure.update_yaxes(title_text=panel.y_label, **y_kind, **place)
         if panel.band:
-            figure.add_hrect(y0=0.0 if not panel.log else 1e-9, y1=panel.band[0], fillcolor=GREY, opacity=0.16, line_width=0,
+            figure.add_hrect(y0=_limits(panel)[1][0] if panel.log else 0.0, y1=panel.band[0], fillcolor=GREY, opacity=0.16, line_width=0,
                              annotation_text=panel.band[1], annotation_position="top right", **place)
     figure.update_layout(height=chart.height * chart.rows + 90, template="plotly_white", margin={"l": 62, "r": 18, "t": 40, "b": 60},
                          font={"family": _FONT, "size": 13, "color": _INK}, hovermode="closest",
@@ -132,15 +133,22 @@ def _dress(axes, panel: Panel) -> None:
     if panel.log:
         axes.set_xscale("log")
         axes.set_yscale("log")
-        axes.margins(0.12)
+        axes.set_xlim(_limits(panel)[0])
+        axes.set_ylim(_limits(panel)[1])
     if panel.band:
-        low = axes.get_ylim()[0]
-        axes.axhspan(min(low, 0.5 * panel.band[0]) if panel.log else 0.0, panel.band[0], color=GREY, alpha=0.16, linewidth=0)
+        axes.axhspan(_limits(panel)[1][0] if panel.log else 0.0, panel.band[0], color=GREY, alpha=0.16, linewidth=0)
         axes.annotate(panel.band[1], (0.99, panel.band[0]), xycoords=("axes fraction", "data"), ha="right", va="bottom", fontsize=8)
     axes.grid(color=_RULE, linewidth=0.8)
     axes.set_axisbelow(True)
     axes.spines[["top", "right"]].set_visible(False)
     axes.tick_params(labelsize=8.5)
+
+
+def _limits(panel: Panel) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Range of x and y that holds every point and the band with some air, a factor each side, for logarithmic axes."""
+    x = [value for line in panel.lines for value in line.x]
+    y = [value for line in panel.lines for value in line.y] + ([panel.band[0]] if panel.band else [])
+    return (min(x, default=1.0) / 2.0, 2.0 * max(x, default=1.0)), (min(y, default=1.0) / 3.0, 3.0 * max(y, default=1.0))
 
 
 def _mode(line: Line) -> str:

@@ -95,14 +95,24 @@ def energy_ledgers(runs: Runs, condition: str) -> Chart:
 
 
 def cost_picture(cost: dict) -> Chart:
-    """Error against wall time, one line per model, with the band of the reference's own uncertainty."""
+    """Error against wall time, one line per model, with the band of the reference's own uncertainty; and the part of the
+    surrogate's error that a tighter tolerance can buy off."""
     look = {"finite elements": (NAVY, "s", "-"), "surrogate, uncalibrated": (AMBER, "^", ":"),
             "surrogate, calibrated": (VERMILION, "o", "-")}
-    lines = []
-    for model, (colour, marker, dash) in look.items():
-        points = [p for p in cost["points"] if p["model"] == model and (p["error_deg_s"] or 0.0) > 0.0]
-        if points:
-            lines.append(Line([p["wall_s"] for p in points], [p["error_deg_s"] for p in points], model, colour, 1.6, dash,
-                              marker=marker, labels=tuple(p["numerics"].split(",")[0].removeprefix("tolerance ") for p in points)))
-    band = cost["band_deg_s"] and (cost["band_deg_s"], "the reference's own uncertainty")
-    return Chart("cost", [Panel("", "wall time of one run (s)", "error of the settled rates (deg/s)", lines, True, band)], height=400)
+    band = (cost["band_deg_s"], "the reference's own uncertainty") if cost["band_deg_s"] else None
+    panels = []
+    for title, error, shaded in (("against the finest mesh", "error_deg_s", band),
+                                 ("of which time integration, surrogate", "integration_error_deg_s", None)):
+        lines = [_cost_line([p for p in cost["points"] if p["model"] == model and (p[error] or 0.0) > 0.0], error, model, *style)
+                 for model, style in look.items()]
+        panels.append(Panel(title, "wall time of one run (s)", "error of the settled rates (deg/s)",
+                            [line for line in lines if len(line.x)], True, shaded))
+    return Chart("cost", [panel for panel in panels if panel.lines], columns=2, height=380)
+
+
+def _cost_line(points: list[dict], error: str, model: str, colour: str, marker: str, dash: str) -> Line:
+    """One model; tolerances are labelled only where they matter, in the panel of the time integration."""
+    labels = [point["numerics"].split(",")[0].removeprefix("tolerance ") for point in points]
+    if "surrogate" in model and error == "error_deg_s":
+        labels = [""] * len(labels)
+    return Line([p["wall_s"] for p in points], [p[error] for p in points], model, colour, 1.6, dash, marker=marker, labels=tuple(labels))

@@ -1,5 +1,6 @@
 """The little HTML the report needs: escaped text, tables with units in their heads, numbers of a sensible length."""
 
+import re
 from html import escape
 from typing import Iterable, Sequence
 
@@ -37,7 +38,8 @@ def percent(value: float | None, digits: int = 3) -> str:
     return "–" if value is None else f"{100.0 * value:.{digits}g}"
 
 
-def table(heads: Sequence[str], rows: Iterable[Sequence], identity: str = "", kinds: Sequence[str] | None = None) -> Html:
+def table(heads: Sequence[str], rows: Iterable[Sequence], identity: str = "", kinds: Sequence[str] | None = None,
+          dense: bool = False) -> Html:
     """A table; ``kinds`` names a class per row ("good", "bad", "doubt" or ""). Columns after the first are right-aligned
     where they hold numbers."""
     body = []
@@ -47,13 +49,15 @@ def table(heads: Sequence[str], rows: Iterable[Sequence], identity: str = "", ki
         body.append(f'<tr class="{kind}">{cells}</tr>' if kind else f"<tr>{cells}</tr>")
     head = "".join(f"<th>{label if isinstance(label, Html) else escape(label)}</th>" for label in heads)
     name = f' id="{identity}"' if identity else ""
-    return Html(f'<div class="wide"><table{name}><thead><tr>{head}</tr></thead><tbody>{"".join(body)}</tbody></table></div>')
+    look = ' class="dense"' if dense else ""
+    return Html(f'<div class="wide"><table{name}{look}><thead><tr>{head}</tr></thead><tbody>{"".join(body)}</tbody></table></div>')
 
 
 def _side(cell) -> str:
-    numeric = isinstance(cell, (int, float)) and not isinstance(cell, bool)
-    looks = isinstance(cell, str) and cell[:1] in "+-0123456789–" and len(cell) < 60
-    return ' class="number"' if numeric or looks else ""
+    """Right-aligned where a cell is a number with little text, such as a unit, behind it."""
+    plain = re.sub(r"<[^>]*>", "", str(cell))
+    numeric = isinstance(cell, str) and plain[:1] in "+-0123456789–" and len(re.findall("[A-Za-z]", plain)) <= 6
+    return ' class="number"' if numeric or (isinstance(cell, (int, float)) and not isinstance(cell, bool)) else ""
 
 
 def section(identity: str, title: str, *parts: str) -> Html:

@@ -146,7 +146,7 @@ class Page:
     def _cost(self, found: dict) -> Html:
         return section("cost", "What accuracy costs", self._figure(
             figures.cost_picture(found), f"Condition {found['condition']}. Error against the finest finite-element mesh, whose own "
-            "uncertainty is the band: an error inside it cannot be told from zero. Labels: tolerance or element size."), tables.cost(found))
+            "uncertainty is the band: an error inside it cannot be told from zero. Right: what a tighter tolerance can still buy. Labels: element size, tolerance."), tables.cost(found))
 
     def _colophon(self) -> Html:
         here = machine.describe()

@@ -15,19 +15,20 @@ def agreement(document: dict) -> Html:
             rows.append(_agreement_row(row))
             kinds.append("doubt" if not row["reference_converged"] else "good" if row["passes"] else "bad")
     heads = ("condition", "role", "rate L2 (%)", "floor L2 (%)", Html("v<sub>x</sub> L2 (%)"), "settled error (deg/s)",
-             "x, y, z (deg/s)", "floor (deg/s)", "reference ± (deg/s)", "ISO 18571", "S-G magnitude (%)", "S-G phase (%)",
-             "lateral v (mm/s)", "direction (deg)", "verdict")
+             "error x, y, z (deg/s)", "floor (deg/s)", "reference ± (deg/s)", "ISO 18571", "S-G magnitude (%)", "S-G phase (%)",
+             "verdict")
     gates = document["gates"]
     legend = (f"Gates: rate L2 {percent(gates['rate_relative_l2'])} %, v_x L2 {percent(gates['velocity_relative_l2'])} %, settled error "
               f"{gates['settled_rate_error_deg_s']:g} deg/s. " + _FLOOR.format(change=1e6 * document["clearance_change_m"])
               + "Reference ±: the largest change of its settled rates under half the element size, half the step or twice the "
               f"penalty; above {document['converged_deg_s']:g} deg/s no agreement is claimed. A star marks a value measured on other "
               "conditions, of which the largest is taken. ISO 18571 is the mean rating of the three rates (1 is perfect); Sprague "
-              "and Geers over the three rates together; lateral velocity and direction are surrogate minus reference.")
+              "and Geers over the three rates together.")
     before = [_agreement_row(row) for row in document["uncalibrated"]]
+    calibrated = [*document["fitted"], *document["held_out"]]
     return section("agreement-section", "Agreement with the reference", _summary(document),
-                   table(heads, rows, "agreement", kinds), caption(legend),
-                   fold("the same before calibration", table(heads, before)), _evidence(document))
+                   table(heads, rows, "agreement", kinds, dense=True), caption(legend), _further(calibrated),
+                   fold("the same before calibration", table(heads, before, dense=True)), _evidence(document))
 
 
 def _summary(document: dict) -> Html:
@@ -47,13 +48,32 @@ def _agreement_row(row: dict) -> tuple:
     star = "" if row["floor_measured_here"] else "*"
     mark = "" if row["reference_uncertainty_measured_here"] else "*"
     xyz = row["settled_rate_error_xyz_deg_s"]
-    lateral = row["lateral_velocity_difference_m_s"]
     return (row["condition"], row["role"].replace("_", " "), percent(row["rate_relative_l2"]), percent(row["floor_l2"]) + star,
             percent(row["velocity_relative_l2"]), number(row["settled_rate_error_deg_s"]),
             "–" if xyz is None else ", ".join(f"{value:+.2g}" for value in xyz), number(row["floor_deg_s"]) + star,
             number(row["reference_uncertainty_deg_s"]) + mark, f"{row['iso18571']:.3f}", percent(row["sprague_geers_magnitude"]),
-            percent(row["sprague_geers_phase"]), "–" if lateral is None else f"{1e3 * lateral:+.3g}",
-            "–" if row["direction_error_difference_deg"] is None else f"{row['direction_error_difference_deg']:+.2g}", row["verdict"])
+            percent(row["sprague_geers_phase"]), row["verdict"])
+
+
+def _further(rows: list[dict]) -> Html:
+    """Lateral velocity, direction, and the ratings of each channel."""
+    channels = list(rows[0]["iso18571_channels"]) if rows else []
+    lines = [(row["condition"], *(_signed(row[name], factor) for name, factor in (
+        ("lateral_velocity_difference_m_s", 1e3), ("direction_error_difference_deg", 1.0))),
+        *(f"{row['iso18571_channels'][name]:.3f}" for name in channels),
+        *(_pair(row["sprague_geers_channels"][name]) for name in channels)) for row in rows]
+    names = [name.replace("_", " ") for name in channels]
+    return fold("lateral velocity, direction, and each channel by itself", table(
+        ("condition", "lateral velocity (mm/s)", "direction (deg)", *(f"ISO 18571, {name}" for name in names),
+         *(f"S-G M; P (%), {name}" for name in names)), lines, dense=True), caption("Differences are surrogate minus reference."))
+
+
+def _signed(value: float | None, factor: float) -> str:
+    return "–" if value is None else f"{factor * value:+.3g}"
+
+
+def _pair(values: list[float] | None) -> str:
+    return "–" if values is None else "; ".join(f"{100.0 * value:.2g}" for value in values)
 
 
 def _evidence(document: dict) -> Html:
@@ -126,7 +146,7 @@ def _figure(value: float | None) -> str:
 def _held(case: dict) -> str:
     if not case["held"]:
         return "not held"
-    return "held, and the simpler method fails" if case["control_failed"] else "held, but so does the simpler method"
+    return "held; the simpler one fails" if case["control_failed"] else "held, but the simpler one holds too"
 
 
 def ablation(document: dict) -> Html:
@@ -137,8 +157,8 @@ def ablation(document: dict) -> Html:
              _three(row["settled_rate_deg_s"], ""), _three(row["settled_rate_change_deg_s"], "+"),
              "not reported" if row["compiled"] is None else ", ".join(row["compiled"]) or "none") for row in document["rows"]]
     return section("ablation", "Only what the scene calls for", table(heads, rows), caption(
-        f"Condition {document['condition']}; reference on {1e3 * document['element_size_m']:g} mm elements (processor time of its thread), "
-        "surrogate uncalibrated (median wall time). The first line of each model has every effect on, those the scene lacks with "
+        f"Condition {document['condition']}; reference on {1e3 * document['element_size_m']:g} mm elements, surrogate uncalibrated. "
+        "Times are processor times, without compilation. The first line of each model has every effect on, those the scene lacks with "
         "small values; each further line takes one away."))
 
 

@@ -66,7 +66,7 @@ def _surrogate(study: Study, name: str, lines: dict[str, dict]):
         warm_up(item)
         repeats = [timed(item) for _ in range(study.settings.lowfi_repeats)]
         runs.append(repeats[0][0])
-        times.append(statistics.median(wall for _, wall, _ in repeats))
+        times.append(statistics.median(processor for _, _, processor in repeats))
     return asked, runs, times
 
 

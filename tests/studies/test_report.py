@@ -1,0 +1,94 @@
+"""The parts of the report: provenance of every value, honest notices, charts drawn twice, nothing that needs a network."""
+
+import re
+
+import numpy as np
+import pytest
+
+import scenes
+from studies.report import figures, inputs
+from studies.report.chart import Chart, Line, Panel, to_html, to_png
+from studies.report.figures import Runs
+from studies.report.markup import number, table
+from studies.report.page import Page
+from studies.report.promises import promises
+from studies.stages.runs import row
+from tests.studies.synthetic import flight
+
+
+@pytest.mark.parametrize("value, unit, shown", [
+    (2.5e-4, "m", "250 µm"), (7.2e10, "Pa", "72 GPa"), (np.pi / 180, "rad", "1 deg"), (0.0, "m", "0 m"), (0.33, "dimensionless", "0.33"),
+    (9.9, "kg", "9.9 kg"), ((0.35, 0.2), "m", "350 mm, 200 mm")])
+def test_values_are_shown_in_readable_units(value, unit, shown):
+    assert inputs.readable(value, unit) == shown
+
+
+def test_every_number_of_the_scene_is_listed_with_unit_and_provenance():
+    scene = scenes.load("reference")
+    found = {key: (value, unit) for key, value, unit, _ in inputs.values(scene)}
+    assert found["contact.clearance"] == (0.25e-3, "m")
+    assert found["thrust.peak"] == (6000.0, "N")
+    assert found["rail.mounts.1.start"] == (0.1, "m")
+    numbers = [key for key, (value, unit) in found.items() if isinstance(value, float) and not unit]
+    assert numbers == ["contact.stiffness"]  # its unit depends on the exponent
+    assert inputs.provenance(scene, "payload.inertia.xy", True).startswith("assumed: box")
+    assert inputs.provenance(scene, "rail.material.density", True) == "paper"
+    assert inputs.provenance(scene, "output.interval", False) == "default"
+    assert "not stated" not in {inputs.provenance(scene, key, stated) for key, _, _, stated in inputs.values(scene)
+                                if key.split(".")[0] in ("payload", "platform", "rail", "friction", "thrust_offset")}
+
+
+def test_text_from_a_scene_is_escaped():
+    scene = scenes.load("tiny").replace({"description": "<script>alert(1)</script>"})
+    page = Page(scene, None, {}, Runs({}, {}, {}), {})
+    assert "<script>alert" not in page._scene() + table(("a",), [("<b>",)])
+    assert "&lt;b&gt;" in table(("a",), [("<b>",)])
+
+
+def test_numbers():
+    assert number(0.01234) == "0.0123"
+    assert number(1.234e-9) == "1.23·10<sup>-9</sup>"
+    assert number(None) == "–"
+
+
+def test_chart_is_drawn_twice(tmp_path):
+    x = np.linspace(0.0, 1.0, 5000)
+    chart = Chart("twice", [Panel("left", "x", "y", [Line(x, x**2, "square")]),
+                            Panel("right", "x", "y", [Line([1.0, 10.0], [1e-3, 1e-2], "points", marker="o", labels=("a", "b"))], True,
+                                  (2e-3, "band"))], columns=2)
+    html = to_html(chart)
+    assert 'id="chart-twice"' in html and "square" in html and len(html) < 60_000
+    to_png(chart, tmp_path / "twice.png")
+    assert (tmp_path / "twice.png").read_bytes()[:4] == b"\x89PNG"
+
+
+def test_page_of_a_reference_alone_names_the_targets_that_make_the_rest(tmp_path):
+    scene = scenes.load("tiny")
+    runs = {name: flight(lambda t: np.outer(np.sin(100.0 * t), [0.1, 0.2, 0.3])) for name in ("phi15", "phi60")}
+    rows = [row(name, run, f"highfi/{name}.nc") for name, run in runs.items() if run.cost.update(elements=1, ns_per_element_step=1.0) is None]
+    page = Page(scene, tmp_path, {"highfi": {"key": "k", "conditions": rows}}, Runs(runs, {}, {}), {"calibration": "phi15 diverged"}).render()
+    for target in ("mesh", "compare", "cost", "stability", "ablation"):
+        assert f"make {target} SCENE=tiny" in page
+    assert "phi15 diverged" in page
+    assert (tmp_path / "figures" / "figure6.png").is_file()
+    # One page, no network: nothing is fetched from anywhere. The library itself mentions addresses, so only tags count.
+    assert not re.findall(r"<(?:script|link|img)[^>]+(?:src|href)=[\"']?(?:https?:)?//", page)
+
+
+def test_broken_promise_is_called_broken():
+    run = flight(checks={"linear_momentum_error": 1e-9, "angular_momentum_error": 1e-13, "friction_power_max": 0.0},
+                 cost={"wall_s": 1.0, "compile_s": 0.0, "steps": 1, "dt_s": 1e-6, "dt_limit_s": 2e-6, "elements": 1, "ns_per_element_step": 1.0})
+    found = {item.text: item for item in promises({"highfi": [row("phi15", run, "")], "lowfi": []}, {})}
+    assert found["linear momentum of the free system, finite elements"].kept is False
+    assert found["angular momentum, finite elements"].kept is True
+    assert found["no step above the proven limit, finite elements"].kept is True
+    assert found["total energy ledger, finite elements"].kept is False  # not reported is not kept
+
+
+def test_figures_of_one_condition():
+    scene = scenes.load("tiny")
+    force = np.zeros((601, 16, 3))
+    force[100:200, 2, 1] = 50.0
+    runs = Runs({"phi15": flight(pad_force=force)}, {}, {"phi15": flight()})
+    assert [panel.title for panel in figures.contact_forces(scene, runs, "phi15").panels] == ["pad 2 (rear, -y +z)"]
+    assert len(figures.figure6(runs, ["phi15"]).panels) == 2

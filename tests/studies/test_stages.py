@@ -1,0 +1,69 @@
+"""Small parts of the stages that need no run."""
+
+import numpy as np
+import pytest
+
+import scenes
+from studies import machine, weaker_methods
+from studies.agreement import Spread
+from studies.settings import Settings, defaults
+from studies.stages import ablation, compare, cost
+from studies.stages.mesh import area
+from studies.study import Study
+
+
+def test_area_of_quadrilaterals():
+    points = np.array([[0, 0, 0], [2, 0, 0], [2, 3, 0], [0, 3, 0], [0, 0, 5], [2, 0, 5]], dtype=float)
+    assert area(points, np.array([[0, 1, 2, 3], [0, 1, 5, 4]])) == pytest.approx(6.0 + 10.0)
+
+
+def test_ablation_takes_every_effect_away_once():
+    scene = scenes.load("tiny").condition("phi15")
+    lines = ablation.variants(scene)
+    everything = scene.replace(lines["all effects"])
+    assert everything.absent_effects() == []
+    for effect in ("thrust_offset", "mass_offset", "initial", "contact", "friction", "platform", "gravity"):
+        assert scene.replace(lines[f"without {effect}"]).absent_effects() == [effect]
+    assert scene.replace(lines["as the scene asks"]).hash == scene.hash
+    assert len(scene.replace(lines["no effect"]).absent_effects()) == 7
+
+
+def test_pareto_front():
+    points = [{"error_deg_s": error, "wall_s": wall} for error, wall in ((1.0, 1.0), (0.5, 2.0), (0.6, 3.0), (None, 0.1))]
+    assert [point["pareto"] for point in cost.marked(points)] == [True, True, False, False]
+
+
+def test_closed_gap_is_only_opened(tmp_path):
+    study = Study(scenes.load("tiny").replace({"contact.clearance": 0.0}), tmp_path, Settings())
+    assert compare.clearances(study) == [("plus", 1e-6)]
+
+
+def test_refinements_change_one_thing_each(tmp_path):
+    study = Study(scenes.load("tiny"), tmp_path, defaults("tiny"))
+    runs = {cause: study.highfi("phi15", **change) for cause, change in compare.refinements(study).items()}
+    nominal = study.highfi("phi15")
+    assert runs["mesh"].numerics.element_size == 0.5 * nominal.numerics.element_size
+    assert runs["step"].numerics.safety == 0.5 * nominal.numerics.safety
+    assert runs["penalty"].scene.contact.penalty == 2.0 * nominal.scene.contact.penalty
+    assert runs["mesh"].scene.hash == runs["step"].scene.hash == nominal.scene.hash
+
+
+def test_spreads_told_once():
+    spread = Spread("phi15", "reference", "clearance", 0.1, 0.1)
+    assert compare._unique([spread, spread]) == [spread]
+
+
+def test_machine_is_described():
+    found = machine.describe()
+    assert found["cores"] >= 1 and found["processor"]
+
+
+@pytest.mark.parametrize("method, order", [(weaker_methods.runge_kutta, 4), (weaker_methods.semi_implicit_euler, 1),
+                                           (weaker_methods.explicit_euler, 1)])
+def test_weaker_methods_have_their_order(method, order):
+    """x'' = -x from rest at 1 to t = 1: a control that fails because it is wrong would prove nothing."""
+    def error(count):
+        x, v = method(lambda _, x, __: -x, 1.0, 0.0, 1.0 / count, count)
+        return np.hypot(x - np.cos(1.0), v + np.sin(1.0))
+
+    assert np.log2(error(40) / error(80)) == pytest.approx(order, abs=0.1)
