@@ -2,17 +2,17 @@
 
     v(n) = (v(n-1/2) + v(n+1/2)) / 2,     kinetic energy = v(n-1/2) M v(n+1/2) / 2
 
-The second form makes kinetic plus strain energy an exact invariant of central differences for a linear system.
+The second form makes kinetic plus strain energy an exact invariant of central differences for a linear system. Plain NumPy: a sample
+is taken once in a hundred steps, and another kernel would only take time to compile.
 """
+
+from typing import NamedTuple
 
 import numpy as np
 
+from highfi import records
 from highfi.elastic import elastic_force
-from highfi.pose import body_matrix, triple
-from highfi.records import STORED
-from highfi.step import kick
 from scenes import rotation
-from scenes.jit import njit
 
 # Slots of the sample vector.
 POSITION, VELOCITY, QUATERNION, RATE = 0, 3, 6, 10
@@ -21,121 +21,87 @@ KINETIC, AXIAL_KINETIC, STRAIN, CONTACT, LINEAR, ANGULAR, IMPULSE = 26, 27, 28, 
 SAMPLE_SIZE = 42
 
 
-@njit
-def observe(rail, payload, frame, drive, gravity, state, pose, thrust, dt, sample):
-    """Fill ``sample`` (SAMPLE_SIZE,). The state is left as it was."""
-    before = _velocities(state)
-    rail_before = state.velocity.copy()
-    kick(rail, payload, frame, drive, gravity, state, pose, thrust, dt)
-    after = _velocities(state)
-    _places(state, sample)
-    _energies(rail, payload, frame, state, pose, before, after, rail_before, sample)
-    _momenta(rail, payload, frame, state, pose, before, after, rail_before, sample)
-    _rates(payload, frame, state, before, after, sample)
-    state.velocity[:] = rail_before
-    _restore(state, before)
+class Moving(NamedTuple):
+    """Copy of everything a kick changes."""
+
+    velocity: np.ndarray
+    spin: np.ndarray
+    platform_velocity: np.ndarray
+    platform_spin: np.ndarray
+    nodes: np.ndarray
+    rail_momentum: np.ndarray
+    impulse: np.ndarray
 
 
-@njit
-def _velocities(state):
-    """Everything a kick changes except nodal velocities, in one vector (24,)."""
-    values = np.empty(21)
-    values[0:3] = state.payload.velocity
-    values[3:6] = state.payload.spin
-    values[6:9] = state.platform.velocity
-    values[9:12] = state.platform.spin
-    values[12:15] = state.rail_momentum
-    values[15:21] = state.impulse
-    return values
+def moving(state: records.State) -> Moving:
+    """Copy of what a kick changes."""
+    return Moving(*(part.copy() for part in _changed(state)))
 
 
-@njit
-def _restore(state, values):
-    state.payload.velocity[:] = values[0:3]
-    state.payload.spin[:] = values[3:6]
-    state.platform.velocity[:] = values[6:9]
-    state.platform.spin[:] = values[9:12]
-    state.rail_momentum[:] = values[12:15]
-    state.impulse[:] = values[15:21]
+def restore(state: records.State, saved: Moving) -> None:
+    """Put back what ``moving`` copied."""
+    for part, value in zip(_changed(state), saved):
+        part[:] = value
 
 
-@njit
-def _places(state, sample):
-    sample[POSITION:POSITION + 3] = state.payload.position
-    sample[QUATERNION:QUATERNION + 4] = state.payload.quaternion
-    sample[PLATFORM_POSITION:PLATFORM_POSITION + 3] = state.platform.position
-    sample[PLATFORM_QUATERNION:PLATFORM_QUATERNION + 4] = state.platform.quaternion
+def _changed(state):
+    return (state.payload.velocity, state.payload.spin, state.platform.velocity, state.platform.spin, state.velocity,
+            state.rail_momentum, state.impulse)
 
 
-@njit
-def _rates(payload, frame, state, before, after, sample):
-    middle = 0.5 * (before + after)
-    sample[VELOCITY:VELOCITY + 3] = middle[0:3]
-    sample[IMPULSE:IMPULSE + 6] = middle[15:21]
-    sample[RATE:RATE + 3] = payload.inverse_inertia @ np.array(rotation.unrotate(body_matrix(state.payload), triple(middle[3:6])))
-    sample[PLATFORM_VELOCITY:PLATFORM_VELOCITY + 3] = middle[6:9]
+def sample(system, state: records.State, before: Moving, after: Moving) -> np.ndarray:
+    """Sample vector (SAMPLE_SIZE,) of the present places and the velocities half a step before and after them."""
+    row = np.zeros(SAMPLE_SIZE)
+    middle = Moving(*(0.5 * (a + b) for a, b in zip(before, after)))
+    turn, base = (rotation.matrices(body.quaternion[None])[0] for body in (state.payload, state.platform))
+    row[POSITION:POSITION + 3], row[QUATERNION:QUATERNION + 4] = state.payload.position, state.payload.quaternion
+    row[PLATFORM_POSITION:PLATFORM_POSITION + 3] = state.platform.position
+    row[PLATFORM_QUATERNION:PLATFORM_QUATERNION + 4] = state.platform.quaternion
+    row[VELOCITY:VELOCITY + 3], row[PLATFORM_VELOCITY:PLATFORM_VELOCITY + 3] = middle.velocity, middle.platform_velocity
+    row[RATE:RATE + 3] = system.model.payload.inverse_inertia @ (turn.T @ middle.spin)
+    if system.frame is not None:
+        row[PLATFORM_RATE:PLATFORM_RATE + 3] = system.frame.inverse_inertia @ (base.T @ middle.platform_spin)
+    row[IMPULSE:IMPULSE + 6] = middle.impulse
+    row[KINETIC], row[AXIAL_KINETIC] = _kinetic(system, turn, base, before, after)
+    row[STRAIN], row[CONTACT] = _strain(system.rail, state.displacement), state.load[records.STORED]
+    row[LINEAR:LINEAR + 3], row[ANGULAR:ANGULAR + 3] = _momenta(system, state, base, middle)
+    return row
+
+
+def _strain(rail, displacement) -> float:
+    force = np.zeros(displacement.shape, order="F")
+    elastic_force(rail, displacement, force)
+    return 0.5 * float(np.vdot(displacement, force))
+
+
+def _kinetic(system, turn, base, before: Moving, after: Moving) -> tuple[float, float]:
+    """Kinetic energy (J) of everything, and its axial part."""
+    payload, frame = system.model.payload, system.frame
+    nodes = (before.nodes * after.nodes).sum(axis=1)
+    kinetic = 0.5 * (payload.mass * before.velocity @ after.velocity + system.moving_mass @ nodes)
+    kinetic += _spin_energy(turn, payload.inverse_inertia, before.spin, after.spin)
+    axial = 0.5 * payload.mass * before.velocity[0] * after.velocity[0]
     if frame is not None:
-        spin = np.array(rotation.unrotate(body_matrix(state.platform), triple(middle[9:12])))
-        sample[PLATFORM_RATE:PLATFORM_RATE + 3] = frame.inverse_inertia @ spin
+        kinetic += 0.5 * frame.mass * before.platform_velocity @ after.platform_velocity
+        kinetic += _spin_energy(base, frame.inverse_inertia, before.platform_spin, after.platform_spin)
+        first, second = (frame.mass * part.platform_velocity[0] + (base @ part.rail_momentum)[0] for part in (before, after))
+        axial += 0.5 * first * second / frame.total_mass
+    return float(kinetic), float(axial)
 
 
-@njit
-def _energies(rail, payload, frame, state, pose, before, after, rail_before, sample):
-    kinetic = 0.5 * payload.mass * (before[0:3] * after[0:3]).sum() + _spin_energy(
-        body_matrix(state.payload), payload.inverse_inertia, triple(before[3:6]), triple(after[3:6]))
-    axial = 0.5 * payload.mass * before[0] * after[0]
-    strain = np.zeros_like(state.resistance)
-    elastic_force(rail, state.displacement, strain)
-    stored = 0.0
-    for node in range(rail.mass.size):
-        moving = rail.inverse_mass[node] > 0.0
-        for i in range(3):
-            stored += 0.5 * state.displacement[node, i] * strain[node, i]
-            if moving:
-                kinetic += 0.5 * rail.mass[node] * rail_before[node, i] * state.velocity[node, i]
-    if frame is not None:
-        kinetic += 0.5 * frame.mass * (before[6:9] * after[6:9]).sum() + _spin_energy(
-            pose.frame, frame.inverse_inertia, triple(before[9:12]), triple(after[9:12]))
-        axial += 0.5 / frame.total_mass * _axial(frame, pose, before) * _axial(frame, pose, after)
-    sample[KINETIC], sample[AXIAL_KINETIC], sample[STRAIN], sample[CONTACT] = kinetic, axial, stored, state.load[STORED]
+def _spin_energy(turn, inverse_inertia, before, after) -> float:
+    return 0.5 * float((turn.T @ before) @ inverse_inertia @ (turn.T @ after))
 
 
-@njit
-def _axial(frame, pose, values):
-    """X momentum of platform and rails (N s)."""
-    return frame.mass * values[6] + rotation.rotate(pose.frame, triple(values[12:15]))[0]
-
-
-@njit
-def _spin_energy(turn, inverse_inertia, before, after):
-    return 0.5 * rotation.dot(before, rotation.angular_velocity(turn, inverse_inertia, after))
-
-
-@njit
-def _momenta(rail, payload, frame, state, pose, before, after, rail_before, sample):
-    """Linear and angular momentum (about the scene origin) summed anew over every node and body."""
-    linear = np.zeros(3)
-    angular = np.zeros(3)
-    for node in range(rail.mass.size):
-        if rail.inverse_mass[node] > 0.0:
-            half = 0.5 * rail.mass[node]
-            p = (half * (rail_before[node, 0] + state.velocity[node, 0]),
-                 half * (rail_before[node, 1] + state.velocity[node, 1]),
-                 half * (rail_before[node, 2] + state.velocity[node, 2]))
-            place = (rail.points[node, 0] + state.displacement[node, 0], rail.points[node, 1] + state.displacement[node, 1],
-                     rail.points[node, 2] + state.displacement[node, 2])
-            turn = rotation.cross(place, p)
-            for i in range(3):
-                linear[i] += p[i]
-                angular[i] += turn[i]
-    origin = triple(state.platform.position)
-    carried = rotation.rotate(pose.frame, triple(linear))
-    turned = rotation.rotate(pose.frame, triple(angular))
-    orbit = rotation.cross(origin, carried)
-    middle = 0.5 * (before + after)
-    sample[LINEAR:LINEAR + 3] = np.array(carried) + payload.mass * middle[0:3]
-    own = rotation.cross(triple(state.payload.position), triple(payload.mass * middle[0:3]))
-    sample[ANGULAR:ANGULAR + 3] = np.array(turned) + np.array(orbit) + np.array(own) + middle[3:6]
-    if frame is not None:
-        sample[LINEAR:LINEAR + 3] += frame.mass * middle[6:9]
-        sample[ANGULAR:ANGULAR + 3] += np.array(rotation.cross(origin, triple(frame.mass * middle[6:9]))) + middle[9:12]
+def _momenta(system, state, base, middle: Moving) -> tuple[np.ndarray, np.ndarray]:
+    """Linear and angular momentum (about the scene origin), summed anew over every node and body."""
+    nodes = system.moving_mass[:, None] * middle.nodes
+    rails, turning = base @ nodes.sum(axis=0), base @ np.cross(system.rail.points + state.displacement, nodes).sum(axis=0)
+    own = system.model.payload.mass * middle.velocity
+    linear = own + rails
+    angular = (np.cross(state.payload.position, own) + middle.spin + turning + np.cross(state.platform.position, rails))
+    if system.frame is not None:
+        carried = system.frame.mass * middle.platform_velocity
+        linear = linear + carried
+        angular = angular + np.cross(state.platform.position, carried) + middle.platform_spin
+    return linear, angular

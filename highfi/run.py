@@ -12,7 +12,7 @@ from highfi.loads import thrust_load
 from highfi.mesh import RailMesh
 from highfi.numerics import Numerics
 from highfi.pose import seen_from_frame
-from highfi.step import advance, start
+from highfi.step import advance, evaluate, kick
 from highfi.stepping import Stepping, choose
 from highfi.system import System, build, geometry, initial_state, make_mesh
 from scenes import ledger, outcome, rotation
@@ -80,8 +80,14 @@ class Loop:
                 m.penalty, m.friction, m.gravity, self.state, self.active)
 
     def begin(self) -> None:
-        """First forces and the first sample; compiles the kernels."""
-        start(*self.arguments(), self.stepping.dt_s)
+        """First forces, velocities set back to -1/2 so that they pass through the given ones at t = 0, and the first sample.
+
+        Compiles the kernels.
+        """
+        s, m = self.system, self.system.model
+        evaluate(s.rail, s.surface, s.faces, m.payload, s.frame, m.penalty, m.friction, self.state, self.active,
+                 self.stepping.dt_s)
+        self._kick(-0.5 * self.stepping.dt_s)
         advance(*self.arguments(), 0, 0, self.stepping.dt_s)
         self._sample()
 
@@ -103,18 +109,23 @@ class Loop:
         self._sample()
 
     def _sample(self) -> None:
-        system, model, state = self.system, self.system.model, self.state
-        row = np.zeros(observe.SAMPLE_SIZE)
-        pose = seen_from_frame(state, model.payload, system.frame)
-        thrust = thrust_load(state, system.drive, model.thrust.pulses, model.thrust.curve, model.thrust_offset,
-                             self.steps * self.stepping.dt_s)
-        observe.observe(system.rail, model.payload, system.frame, system.drive, model.gravity, state, pose, thrust,
-                        self.stepping.dt_s, row)
+        state, step = self.state, self.stepping.dt_s
+        before = observe.moving(state)
+        self._kick(step)
+        row = observe.sample(self.system, state, before, observe.moving(state))
+        observe.restore(state, before)
         self.message = self._fault(row)
         if np.isfinite(row).all():
             self.rows.append(row)
             self.work.append(state.work.copy())
             self.forces.append(state.face_force @ rotation.matrices(state.platform.quaternion[None])[0].T)
+
+    def _kick(self, step: float) -> None:
+        """Advance the velocities alone, over ``step`` (s), by the present forces."""
+        s, m, state = self.system, self.system.model, self.state
+        pose = seen_from_frame(state, m.payload, s.frame)
+        thrust = thrust_load(state, s.drive, m.thrust.pulses, m.thrust.curve, m.thrust_offset, self.steps * self.stepping.dt_s)
+        kick(s.rail, m.payload, s.frame, s.drive, m.gravity, state, pose, thrust, step)
 
     def _fault(self, row: np.ndarray) -> str:
         """Why the run must stop here, or nothing."""

@@ -113,14 +113,6 @@ def _drift_with_frame(rail, frame, state, pose, dt):
 
 
 @njit
-def start(rail, surface, faces, payload, frame, drive, pulses, curve, offset, penalty, friction, gravity, state, active, dt):
-    """Forces at t = 0, then velocities set back to -1/2 so that they pass through the given ones at t = 0."""
-    pose = evaluate(rail, surface, faces, payload, frame, penalty, friction, state, active, dt)
-    thrust = thrust_load(state, drive, pulses, curve, offset, 0.0)
-    kick(rail, payload, frame, drive, gravity, state, pose, thrust, -0.5 * dt)
-
-
-@njit
 def advance(rail, surface, faces, payload, frame, drive, pulses, curve, offset, penalty, friction, gravity, state, active,
             first_step, steps, dt):
     """Take ``steps`` steps from step number ``first_step``. Returns the largest step * friction damping / mass met.

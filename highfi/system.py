@@ -16,14 +16,18 @@ from scenes.scene import Scene
 
 
 class System(NamedTuple):
-    """Constant records of one run. ``number`` (n,) of each mesh node in the nodal arrays; ``origin`` (3,) m: the frame's origin at ignition in scene axes; ``body_offset`` (3,) m from
-    it to the platform's mass centre."""
+    """Constant records of one run.
+
+    ``number`` (n,) of each mesh node in the nodal arrays; ``moving_mass`` kg of the nodal arrays, zero where clamped;
+    ``origin`` (3,) m: the frame's origin at ignition in scene axes; ``body_offset`` (3,) m from it to the platform's mass centre.
+    """
 
     model: scene_model.Model
     mesh: RailMesh
     operator: assembly.Operator
     number: np.ndarray
     rail: records.Rail
+    moving_mass: np.ndarray
     surface: records.Surface
     faces: scene_model.Faces
     frame: records.Frame | None
@@ -62,10 +66,11 @@ def build(scene: Scene, numerics: Numerics, mesh: RailMesh) -> System:
     # The model counts walls from the platform's mass centre, the loop from the frame's origin.
     faces = model.faces._replace(wall=model.faces.wall + offset[model.faces.axis])
     rail, number = _rail(mesh.points - origin, operator)
+    masses = np.where(rail.inverse_mass > 0.0, rail.mass, 0.0)
     surfaces = {name: number[facets] for name, facets in mesh.surfaces.items()}
     gauss = surface.build(surfaces, rail.points, faces, numerics.points_per_edge())
     drive = records.Drive(model.thrust_arm, model.reacts_on_platform)
-    return System(model, mesh, operator, number, rail, gauss, faces, frame, drive, origin, offset)
+    return System(model, mesh, operator, number, rail, masses, gauss, faces, frame, drive, origin, offset)
 
 
 def _rail(points: np.ndarray, operator: assembly.Operator) -> tuple[records.Rail, np.ndarray]:
@@ -114,10 +119,9 @@ def initial_state(system: System) -> tuple[records.State, records.Active]:
         platform.velocity[:] = np.array(start.platform_velocity) - np.cross(rate, system.body_offset)
         platform.spin[:] = np.linalg.inv(system.frame.inverse_inertia) @ rate
         velocity[system.number] = platform.velocity + np.cross(rate, system.rail.points[system.number])
-    moving = np.where(system.rail.inverse_mass > 0.0, system.rail.mass, 0.0)
     count = system.faces.axis.size
     state = records.State(payload, platform, np.zeros(nodes, order="F"), velocity, np.zeros(nodes, order="F"),
-                          moving @ velocity, np.zeros(records.LOAD_SIZE), np.zeros(records.WORK_SIZE), np.zeros(6),
+                          system.moving_mass @ velocity, np.zeros(records.LOAD_SIZE), np.zeros(records.WORK_SIZE), np.zeros(6),
                           np.zeros((count, 3)))
     room = surface.capacity(system.surface)
     active = records.Active(np.zeros(1, dtype=np.int64), np.zeros((room, 2), dtype=np.int64),
