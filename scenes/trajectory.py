@@ -4,6 +4,7 @@ Positions and velocities are of the payload's mass centre, inertial, in initial 
 quaternions are scalar first, body to inertial.
 """
 
+import functools
 import json
 import math
 from dataclasses import dataclass, field, fields
@@ -32,8 +33,8 @@ _UNITS = {
 }
 
 
-def versions() -> dict[str, str]:
-    """Versions of the libraries a result depends on."""
+@functools.cache
+def _versions() -> dict[str, str]:
     found = {}
     for name in ("tipoff", "numpy", "scipy", "numba", "scikit-fem", "gmsh"):
         try:
@@ -41,6 +42,12 @@ def versions() -> dict[str, str]:
         except PackageNotFoundError:
             found[name] = "not installed"
     return found
+
+
+def versions() -> dict[str, str]:
+    """Versions of the libraries a result depends on."""
+    # Looked up once: reading the metadata anew takes longer than a whole run of the surrogate.
+    return dict(_versions())
 
 
 @dataclass(frozen=True, eq=False)
