@@ -1,0 +1,182 @@
+"""The same physics written a second time, plainly: fixed-step Runge-Kutta of order four on Newton's and Euler's equations.
+
+    m v' = F,    I w' = M - w x I w    (w and M in body axes, M about the body's own mass centre),    q' = q w / 2
+
+It shares only the laws in ``scenes.effects`` and the rotations with the fast path: other state variables, another integrator, no
+events, no error control. Tests hold the fast path against it; benchmarks take it as the baseline.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from lowfi.system import System, build
+from scenes import model as models
+from scenes import rotation
+from scenes.effects import contact as law
+from scenes.effects.friction import coefficient_over_speed
+from scenes.effects.gravity import acceleration
+from scenes.effects.thrust_law import magnitude
+from scenes.jit import njit
+from scenes.scene import Scene
+
+_BODY = 13  # place, velocity, quaternion, body rate
+_SIZE = 2 * _BODY
+
+
+class Samples(NamedTuple):
+    """time (n,) s; position, velocity (n,3) scene axes; quaternion (n,4); rate (n,3) body axes; number of right-hand sides."""
+
+    time: np.ndarray
+    position: np.ndarray
+    velocity: np.ndarray
+    quaternion: np.ndarray
+    rate: np.ndarray
+    evaluations: int
+
+
+def solve(scene: Scene, steps_per_sample: int, samples: int | None = None) -> Samples:
+    """Motion of the payload of ``scene`` with ``steps_per_sample`` equal steps between samples, to the scene's duration."""
+    model = models.build(scene)
+    system, interval = build(model), scene.output.interval
+    inertias = (model.payload.inertia, model.platform.inertia if model.platform is not None else np.eye(3))
+    count = samples if samples is not None else round(scene.duration / interval)
+    rows = np.zeros((count + 1, _SIZE))
+    rows[0] = _start(model)
+    integrate(system, *inertias, interval / steps_per_sample, steps_per_sample, rows)
+    return Samples(np.arange(count + 1) * interval, rows[:, 0:3], rows[:, 3:6], rows[:, 6:10], rows[:, 10:13],
+                   4 * steps_per_sample * count)
+
+
+def _start(model) -> np.ndarray:
+    first = model.initial
+    payload = [*np.add(model.payload.mass_centre, first.position), *first.velocity, *rotation.exponential(first.attitude), *first.rate]
+    if model.platform is None:
+        return np.array(payload + [0.0] * 6 + [1.0] + [0.0] * 6)
+    return np.array(payload + [*model.platform.mass_centre, *first.platform_velocity, 1.0, 0.0, 0.0, 0.0, *first.platform_rate])
+
+
+@njit
+def integrate(system, inertia, platform_inertia, dt, steps_per_sample, rows):
+    """Fill ``rows`` (n, 26) from the first one."""
+    state, trial, k = rows[0].copy(), np.empty(_SIZE), np.zeros((4, _SIZE))
+    for number in range(1, rows.shape[0]):
+        for part in range(steps_per_sample):
+            time = ((number - 1) * steps_per_sample + part) * dt
+            slope(system, inertia, platform_inertia, time, state, k[0])
+            for stage, fraction in ((1, 0.5), (2, 0.5), (3, 1.0)):
+                for j in range(_SIZE):
+                    trial[j] = state[j] + fraction * dt * k[stage - 1, j]
+                slope(system, inertia, platform_inertia, time + fraction * dt, trial, k[stage])
+            for j in range(_SIZE):
+                state[j] += dt / 6.0 * (k[0, j] + 2.0 * k[1, j] + 2.0 * k[2, j] + k[3, j])
+        for j in range(_SIZE):
+            rows[number, j] = state[j]
+
+
+@njit
+def slope(system, inertia, platform_inertia, time, state, out):
+    """Time derivative ``out`` of ``state`` (26,)."""
+    r, v, q, w = _parts(state, 0)
+    R, V, Q, W = _parts(state, _BODY)
+    turn, frame = rotation.matrix(q), rotation.matrix(Q)
+    spin, frame_spin = rotation.rotate(turn, w), rotation.rotate(frame, W)
+    force, moment = thrust(system.thrust, system.thrust_offset, time, turn)
+    # The wrench on the platform about its own mass centre: what acts on the payload, reversed, where it acts.
+    given = system.reacts_on_platform
+    F = (-force[0], -force[1], -force[2]) if given else (0.0, 0.0, 0.0)
+    M = _reversed(force, moment, r, R) if given else (0.0, 0.0, 0.0)
+    for i in range(system.faces.shape[0]):
+        push, arm = touch(system.contact, system.friction, system.faces[i], system.rail_start, system.rail_end,
+                          (r, v, turn, spin), (R, V, frame, frame_spin))
+        twist = rotation.cross(arm, push)
+        force, moment = _sum(force, push), _sum(moment, twist)
+        F, M = _sum(F, (-push[0], -push[1], -push[2])), _sum(M, _reversed(push, twist, r, R))
+    fall = acceleration(system.gravity)
+    _newton_euler(system.payload.mass, inertia, system.payload.inverse_inertia, turn, q, v, w, force, moment, fall, out[:_BODY])
+    _platform(system.platform, platform_inertia, frame, Q, V, W, F, M, fall, out[_BODY:])
+
+
+@njit
+def _platform(platform, inertia, frame, Q, V, W, F, M, fall, out):
+    if platform is None:
+        out[:] = 0.0
+    if platform is not None:
+        _newton_euler(platform.mass, inertia, platform.inverse_inertia, frame, Q, V, W, F, M, fall, out)
+
+
+@njit
+def _newton_euler(mass, inertia, inverse, turn, q, v, w, force, moment, fall, out):
+    h = (inertia[0, 0] * w[0] + inertia[0, 1] * w[1] + inertia[0, 2] * w[2],
+         inertia[1, 0] * w[0] + inertia[1, 1] * w[1] + inertia[1, 2] * w[2],
+         inertia[2, 0] * w[0] + inertia[2, 1] * w[1] + inertia[2, 2] * w[2])
+    gyro, body_moment = rotation.cross(w, h), rotation.unrotate(turn, moment)
+    turning = rotation.product(q, (0.0, 0.5 * w[0], 0.5 * w[1], 0.5 * w[2]))
+    for i in range(3):
+        out[i], out[3 + i], out[10 + i] = v[i], force[i] / mass + fall[i], 0.0
+        for j in range(3):
+            out[10 + i] += inverse[i, j] * (body_moment[j] - gyro[j])
+    for i in range(4):
+        out[6 + i] = turning[i]
+
+
+@njit
+def thrust(record, offset, time, turn):
+    """Force (N) and moment about the payload's mass centre (N m), scene axes."""
+    size = magnitude(record.pulses, record.curve, time)
+    force, moment = (size * turn[0], size * turn[3], size * turn[6]), (0.0, 0.0, 0.0)
+    if offset is not None:
+        d = offset.direction
+        force = rotation.rotate(turn, (size * d[0], size * d[1], size * d[2]))
+        moment = rotation.cross(rotation.rotate(turn, offset.arm), force)
+    return force, moment
+
+
+@njit
+def touch(laws, friction, face, rail_start, rail_end, payload, platform):
+    """Force (N) of one face on the payload and its arm from the payload's mass centre (m), scene axes."""
+    force, arm = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+    if laws is not None:
+        r, v, turn, spin = payload
+        R, V, frame, frame_spin = platform
+        arm = rotation.rotate(turn, (face[0], face[1], face[2]))
+        d = (r[0] + arm[0] - R[0], r[1] + arm[1] - R[1], r[2] + arm[2] - R[2])
+        x = rotation.unrotate(frame, d)
+        p = face[3] * x[1] + face[4] * x[2] - face[5]
+        if p > 0.0 and rail_start <= x[0] <= rail_end:
+            a, b = rotation.cross(spin, arm), rotation.cross(frame_spin, d)
+            u = rotation.unrotate(frame, (v[0] + a[0] - V[0] - b[0], v[1] + a[1] - V[1] - b[1], v[2] + a[2] - V[2] - b[2]))
+            closing = face[3] * u[1] + face[4] * u[2]
+            elastic, damping = law.parts(laws.impact, laws.hunt_crossley, laws.linear, p, closing)
+            normal = max(0.0, elastic + damping)
+            slip = (u[0], u[1] - closing * face[3], u[2] - closing * face[4])
+            c = normal * _drag(friction, slip)
+            force = rotation.rotate(frame, (-c * slip[0], -normal * face[3] - c * slip[1], -normal * face[4] - c * slip[2]))
+    return force, arm
+
+
+@njit
+def _drag(friction, slip):
+    value = 0.0
+    if friction is not None:
+        value = coefficient_over_speed(friction, np.sqrt(rotation.dot(slip, slip)))
+    return value
+
+
+@njit
+def _reversed(force, moment, r, R):
+    """Moment about R of the opposite of ``force``, whose moment about r is ``moment``."""
+    carried = rotation.cross((r[0] - R[0], r[1] - R[1], r[2] - R[2]), force)
+    return (-moment[0] - carried[0], -moment[1] - carried[1], -moment[2] - carried[2])
+
+
+@njit
+def _sum(a, b):
+    return (a[0] + b[0], a[1] + b[1], a[2] + b[2])
+
+
+@njit
+def _parts(state, first):
+    return ((state[first], state[first + 1], state[first + 2]), (state[first + 3], state[first + 4], state[first + 5]),
+            (state[first + 6], state[first + 7], state[first + 8], state[first + 9]),
+            (state[first + 10], state[first + 11], state[first + 12]))
