@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from lowfi.dormand_prince import ERROR, STAGES
-from lowfi.state import (DYNAMIC_SIZE, MOMENT, PAYLOAD, PLACE, PLATFORM, QUATERNION, VELOCITY, quaternion, triple)
+from lowfi.state import BODY_SIZE, DYNAMIC_SIZE, MOMENT, PLACE, PLATFORM, VELOCITY, quaternion, triple
 from scenes import rotation
 from scenes.jit import njit
 
@@ -37,7 +37,7 @@ def error_ratio(tolerance, payload, platform, dt, stages, end, error):
         if weight != 0.0:
             for j in range(DYNAMIC_SIZE):
                 error[j] += weight * stages[i, j]
-    ratio = _body_ratio(tolerance, payload.mass, payload.inverse_inertia, dt, error, end, PAYLOAD)
+    ratio = _body_ratio(tolerance, payload.mass, payload.inverse_inertia, dt, error[:BODY_SIZE], end[:BODY_SIZE])
     return worse(ratio, _platform_ratio(tolerance, platform, dt, error, end))
 
 
@@ -51,17 +51,18 @@ def worse(a, b):
 def _platform_ratio(tolerance, platform, dt, error, end):
     ratio = 0.0
     if platform is not None:
-        ratio = _body_ratio(tolerance, platform.mass, platform.inverse_inertia, dt, error, end, PLATFORM)
+        ratio = _body_ratio(tolerance, platform.mass, platform.inverse_inertia, dt, error[PLATFORM:], end[PLATFORM:])
     return ratio
 
 
 @njit
-def _body_ratio(tolerance, mass, inverse_inertia, dt, error, end, body):
-    place, velocity = triple(end, body + PLACE), triple(end, body + VELOCITY)
-    e_place, e_velocity, e_moment = triple(error, body + PLACE), triple(error, body + VELOCITY), triple(error, body + MOMENT)
-    q, e_q = quaternion(end, body), quaternion(error, body)
+def _body_ratio(tolerance, mass, inverse_inertia, dt, error, end):
+    """Ratio of one body, whose slots stand first in ``error`` and ``end``."""
+    place, velocity = triple(end, PLACE), triple(end, VELOCITY)
+    e_place, e_velocity, e_moment = triple(error, PLACE), triple(error, VELOCITY), triple(error, MOMENT)
+    q, e_q = quaternion(end, 0), quaternion(error, 0)
     turn, orbit = rotation.matrix(q), rotation.cross(place, velocity)
-    moment = triple(end, body + MOMENT)
+    moment = triple(end, MOMENT)
     spin = (moment[0] - mass * orbit[0], moment[1] - mass * orbit[1], moment[2] - mass * orbit[2])
     a, b = rotation.cross(e_place, velocity), rotation.cross(place, e_velocity)
     e_spin = (e_moment[0] - mass * (a[0] + b[0]), e_moment[1] - mass * (a[1] + b[1]), e_moment[2] - mass * (a[2] + b[2]))

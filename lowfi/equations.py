@@ -23,25 +23,25 @@ def derivative(system, engaged, time, state, out):
     add_thrust(system.thrust, system.thrust_offset, system.platform, system.reacts_on_platform, time, body, base, out)
     add_gravity(system.gravity, system.payload, system.platform, body, base, out)
     add_contact(system.contact, system.friction, system.faces, system.platform, engaged, body, base, out)
-    move(PAYLOAD, system.payload.mass, state, body, out)
+    move(system.payload.mass, state[:PLATFORM], body, out[:PLATFORM])
     move_platform(system.platform, state, base, out)
 
 
 @njit
-def move(which, mass, state, body, out):
+def move(mass, state, body, out):
     """Turn the force in the velocity slots into acceleration and add the kinematics."""
-    turning = rotation.product((0.0, 0.5 * body.rate[0], 0.5 * body.rate[1], 0.5 * body.rate[2]), slot.quaternion(state, which))
+    turning = rotation.product((0.0, 0.5 * body.rate[0], 0.5 * body.rate[1], 0.5 * body.rate[2]), slot.quaternion(state, 0))
     for i in range(3):
-        out[which + PLACE + i] = body.velocity[i]
-        out[which + VELOCITY + i] /= mass
+        out[PLACE + i] = body.velocity[i]
+        out[VELOCITY + i] /= mass
     for i in range(4):
-        out[which + QUATERNION + i] = turning[i]
+        out[QUATERNION + i] = turning[i]
 
 
 @njit
 def move_platform(platform, state, base, out):
     if platform is not None:
-        move(PLATFORM, platform.mass, state, base, out)
+        move(platform.mass, state[PLATFORM:], base, out[PLATFORM:])
 
 
 @njit

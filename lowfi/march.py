@@ -122,7 +122,8 @@ def step(system, plan, tolerance, loop):
             landings += 1
             ceiling = theta * dt
             continue
-        _accept(loop.stages[STAGES - 1], clock, count, dt, stop if reaches else start + dt, ratio, limit, landings)
+        _accept(loop.stages[STAGES - 1], clock, count, dt, stop if reaches else start + dt, ratio, limit)
+        count[EVENTS] += landings
         return True
 
 
@@ -144,7 +145,7 @@ def _begin(laws, rail_start, rail_end, plan, loop):
 
 
 @njit
-def _accept(derivative, clock, count, dt, time, ratio, limit, landings):
+def _accept(derivative, clock, count, dt, time, ratio, limit):
     grown = dt * (min(_GROW, _SAFETY * ratio**-0.2) if ratio > 0.0 else _GROW)
     # A step cut short by an event or a corner says little about the next one.
     clock[WANTED] = grown if dt >= clock[WANTED] else max(grown, clock[WANTED])
@@ -153,4 +154,3 @@ def _accept(derivative, clock, count, dt, time, ratio, limit, landings):
     clock[FRICTION_POWER] = max(clock[FRICTION_POWER], -derivative[slot.FRICTION])
     clock[DAMPING_POWER] = max(clock[DAMPING_POWER], -derivative[slot.DAMPING])
     count[STEPS] += 1
-    count[EVENTS] += landings

@@ -15,7 +15,7 @@ class Numerics:
     as this much, so it is the absolute tolerance divided by the relative one; ``maximum_steps``: a run that needs more is given up.
     """
 
-    relative_tolerance: float = 1e-6
+    relative_tolerance: float = 2e-7
     speed_floor: float = 1e-3
     maximum_steps: int = 5_000_000
 

@@ -23,9 +23,9 @@ def observe(system, engaged, state, row, forces):
     payload = system.payload
     body, base = slot.motion(payload.mass, payload.inverse_inertia, state, PAYLOAD), slot.frame(system.platform, state)
     row[:] = 0.0
-    _copy(state, PAYLOAD, body, row)
-    _copy(state, PLATFORM, base, row)
-    _body(payload.mass, state, PAYLOAD, body, row)
+    _copy(state[:PLATFORM], body, row[:PLATFORM])
+    _copy(state[PLATFORM:], base, row[PLATFORM:])
+    _body(payload.mass, state[:PLATFORM], body, row)
     _platform(system.platform, state, base, row)
     row[STORED] = _press(system.contact, system.friction, system.faces, system.platform, engaged, body, base, forces)
     slot.copy(state[WORK:], row[WORKS:], WORK_SIZE)
@@ -52,28 +52,29 @@ def rearmost_edge(faces, platform, row):
 
 
 @njit
-def _copy(state, which, body, row):
-    slot.copy(state[which:], row[which:], slot.MOMENT)
+def _copy(state, body, row):
+    """Places and velocities of one body, whose slots stand first in ``state`` and ``row``."""
+    slot.copy(state, row, slot.MOMENT)
     rate = rotation.unrotate(body.turn, body.rate)
     for i in range(3):
-        row[which + RATE + i] = rate[i]
+        row[RATE + i] = rate[i]
 
 
 @njit
 def _platform(platform, state, base, row):
     if platform is not None:
-        _body(platform.mass, state, PLATFORM, base, row)
+        _body(platform.mass, state[PLATFORM:], base, row)
 
 
 @njit
-def _body(mass, state, which, body, row):
+def _body(mass, state, body, row):
     """Add kinetic energy and momenta of one body."""
-    moment, orbit = slot.triple(state, which + MOMENT), rotation.cross(body.place, body.velocity)
+    moment, orbit = slot.triple(state, MOMENT), rotation.cross(body.place, body.velocity)
     spin = (moment[0] - mass * orbit[0], moment[1] - mass * orbit[1], moment[2] - mass * orbit[2])
     row[KINETIC] += 0.5 * (mass * rotation.dot(body.velocity, body.velocity) + rotation.dot(spin, body.rate))
     row[AXIAL_KINETIC] += 0.5 * mass * body.velocity[0] * body.velocity[0]
     for i in range(3):
-        row[LINEAR + i] += mass * state[which + VELOCITY + i]
+        row[LINEAR + i] += mass * state[VELOCITY + i]
         row[ANGULAR + i] += moment[i]
 
 
