@@ -9,7 +9,7 @@ from tests.highfi.support import loop_on, tiny
 
 
 def test_pencils_and_elements_carry_the_same_run():
-    scene, numerics = tiny(duration="6 ms"), Numerics(element_size=0.004)
+    scene, numerics = tiny(duration="15 ms"), Numerics(element_size=0.004)
     runs = []
     for forget in (False, True):
         loop: Loop = loop_on(scene, highfi.prepare(scene, numerics), numerics)
