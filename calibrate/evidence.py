@@ -1,0 +1,74 @@
+"""What stands beside calibrated constants: residuals per condition, open directions, the range they were found in, and from what."""
+
+import math
+
+import numpy as np
+
+from calibrate.information import left_alone
+from calibrate.information import weak_directions as open_directions
+from calibrate.objective import Parts, Target
+from calibrate.parameters import Parameter
+from calibrate.search import Found, Plan
+from scenes.effects import thrust
+from scenes.files import content_hash
+from scenes.scene import Scene
+from scenes.trajectory import Trajectory
+
+_ON_BOUND = 1e-3  # share of the bounds within which a value counts as lying on one
+
+
+def residuals(part: Parts, wanted: Target) -> dict[str, float]:
+    """Relative L2 of rates and of v_x, and the largest settled error of an axis (deg/s)."""
+    return {"rate_relative_l2": float(np.sqrt((part.rate**2).sum())),
+            "velocity_relative_l2": float(np.sqrt((part.velocity**2).sum())),
+            "settled_rate_error_deg_s": math.degrees(float(np.abs(part.settled).max()) * wanted.amplitudes[2])}
+
+
+def weak_directions(scene: Scene, free: list[Parameter], held: list[Parameter], shares: np.ndarray, matrix: np.ndarray) -> list[str]:
+    """Sentences: what the curves cannot tell, what was held for that reason, and what they pushed to a bound.
+
+    ``matrix`` is the information on free and held parameters together, in this order.
+    """
+    count = len(free)
+    inner, names = matrix[:count, :count], [item.name for item in free]
+    largest = float(np.linalg.eigvalsh(matrix)[-1])
+    sentences = open_directions(inner, names)
+    for index, item in enumerate(held, start=count):
+        left, alone = left_alone(matrix, index), matrix[index, index]
+        sentences.append(f"{item.name} held at {item.read(scene):.4g} {item.unit}: of its information {alone:.2g} only {left:.2g} is left "
+                         f"when the others are fitted again, {left / largest if largest > 0.0 else 0.0:.1e} of the largest eigenvalue")
+    for item, share in zip(free, shares):
+        if not _ON_BOUND < share < 1.0 - _ON_BOUND:
+            side = "lower" if share < 0.5 else "upper"
+            sentences.append(f"{item.name} lies on its {side} bound {item.value(round(float(share))):.4g} {item.unit}: physics, not the "
+                             "curves, sets its value")
+    return sentences
+
+
+def validity(scene: Scene, references: dict[str, Trajectory]) -> dict[str, list[float]]:
+    """Smallest and largest of what the constants were found for, over the conditions used (SI)."""
+    rows = [_ranges(scene.condition(name), reference) for name, reference in references.items()]
+    return {key: [min(row[key] for row in rows), max(row[key] for row in rows)] for key in rows[0]}
+
+
+def _ranges(scene: Scene, reference: Trajectory) -> dict[str, float]:
+    time = np.linspace(0.0, scene.duration, 2001)
+    return {"thrust_peak_n": float(np.abs(thrust.sample(scene.thrust.record(), time)).max()),
+            "clearance_m": scene.contact.clearance,
+            "exit_speed_m_s": float(reference.outcome.velocity[0]),
+            "pad_force_peak_n": float(np.linalg.norm(reference.pad_force, axis=2).max())}
+
+
+def provenance(scene: Scene, references: dict[str, Trajectory], found: Found, plan: Plan, seed: int,
+               evaluations: int) -> dict[str, str]:
+    """Where the constants come from, in words and hashes."""
+    geometry = scene.resolved()
+    others = ", ".join(f"{value:.6g}" for value, _ in found.basins)
+    return {
+        "scene": scene.name, "scene_hash": scene.hash,
+        "geometry_hash": content_hash(geometry["pads"], geometry["rail"]),
+        "contact_law": scene.contact.law,
+        "references": ", ".join(f"{name}: {item.fidelity} {item.numerics}" for name, item in references.items()),
+        "search": f"{plan.points} Sobol' points, {plan.starts} starts of CMA-ES, least squares; {evaluations} evaluations; seed {seed}",
+        "basins": f"CMA-ES ended at objectives {others}; after least squares {found.value:.6g}",
+    }

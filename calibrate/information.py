@@ -1,0 +1,59 @@
+"""What the data know about the parameters: the information matrix J'J, and the directions it leaves open.
+
+J is the Jacobian of the weighted residuals after the parameters' shares (0..1 of their bounds), so an eigenvalue is how much the
+objective grows, to second order, per unit of a direction, and eigenvalues of different parameters can be compared. The smallest
+change of a direction that the objective would notice as a relative ``noise`` is sqrt(noise^2 / eigenvalue).
+"""
+
+from typing import Callable
+
+import numpy as np
+
+# Large against the surrogate's tolerance (1e-6), small against the width of a basin (about 0.1).
+DIFFERENCE_STEP = 1e-3
+# A direction that can move by a tenth of its bounds for 0.5 % of the curves' amplitude is not told by curves fitted to some percent.
+WEAK_EIGENVALUE = (0.005 / 0.1) ** 2
+WEAK_RATIO = 1e-3
+
+
+def jacobian(residuals: Callable[[np.ndarray], np.ndarray], shares: np.ndarray, step: float = DIFFERENCE_STEP) -> np.ndarray:
+    """Central differences (n,p) of ``residuals`` at ``shares`` (p,), one-sided at the bounds of the unit cube."""
+    columns = []
+    for i in range(shares.size):
+        ahead, behind = shares.copy(), shares.copy()
+        ahead[i], behind[i] = min(shares[i] + step, 1.0), max(shares[i] - step, 0.0)
+        columns.append((residuals(ahead) - residuals(behind)) / (ahead[i] - behind[i]))
+    return np.column_stack(columns)
+
+
+def information(matrix: np.ndarray) -> np.ndarray:
+    """J'J (p,p), exactly symmetric."""
+    product = matrix.T @ matrix
+    return 0.5 * (product + product.T)
+
+
+def weak_directions(matrix: np.ndarray, names: list[str]) -> list[str]:
+    """One sentence for every eigenvector of an information matrix the data hardly see, weakest first."""
+    values, vectors = np.linalg.eigh(matrix)
+    largest = values[-1]
+    found = []
+    for value, vector in zip(values, vectors.T):
+        ratio = max(float(value), 0.0) / largest if largest > 0.0 else 0.0
+        if ratio < WEAK_RATIO or value < WEAK_EIGENVALUE:
+            found.append(f"{combination(vector, names)}: eigenvalue {max(value, 0.0):.2g}, {ratio:.1e} of the largest")
+    return found
+
+
+def left_alone(matrix: np.ndarray, index: int) -> float:
+    """Information on parameter ``index`` that is left when all others are fitted again: the Schur complement of the others."""
+    others = np.delete(np.arange(len(matrix)), index)
+    cross = matrix[others, index]
+    return max(0.0, float(matrix[index, index] - cross @ np.linalg.pinv(matrix[np.ix_(others, others)], hermitian=True) @ cross))
+
+
+def combination(vector: np.ndarray, names: list[str]) -> str:
+    """A unit vector in words: shares of the bounds, largest first, without what is below a tenth of it."""
+    vector = vector if vector[np.argmax(np.abs(vector))] > 0.0 else -vector
+    order = np.argsort(-np.abs(vector), kind="stable")
+    terms = [f"{vector[i]:+.2f} {names[i]}" for i in order if abs(vector[i]) >= 0.1]
+    return " ".join(terms)

@@ -1,0 +1,117 @@
+"""How far the surrogate is from the reference on all conditions at once, as one residual vector.
+
+    J = 1/n sum_conditions [ L2(rate)^2 + (50 L2(v_x))^2 + (|dw_s| / |w_s,ref|)^2 ]
+
+    L2(rate)^2 = sum_axes int |w - w_ref|^2 dt / sum_axes int |w_ref|^2 dt,      L2(v_x) likewise,      w_s: settled rates
+
+Every term is relative to the condition's own amplitude, so a condition with small rates counts as much as one with large ones, and
+roll counts by its size instead of by its noise. Rates and v_x are wanted to 5 % and 0.1 %: 50 makes those equally wrong, and lets
+the few mm/s friction takes be seen. The settled rates are what the payload leaves with; a late contact has little time left in the
+integrals. J is rough: where a contact is just missed, everything after it jumps. An amplitude below a hundredth of the largest of
+all conditions is taken as that hundredth: nothing is gained by fitting the rounding of a condition without rates.
+"""
+
+from typing import Callable, NamedTuple
+
+import numpy as np
+
+import lowfi
+from calibrate.faults import CalibrationError
+from calibrate.parameters import Parameter, overrides
+from scenes.outcome import SETTLE_WINDOW
+from scenes.scene import Scene
+from scenes.trajectory import Trajectory
+
+VELOCITY_WEIGHT = 50.0
+SMALLEST_AMPLITUDE = 0.01
+FAILED = 10.0  # relative error of a run that diverged, jammed or did not settle: worse than any that did
+
+
+class Target(NamedTuple):
+    """One condition: its scene, times (n,) s, reference v_x (n,) m/s, rates (n,3) and settled rates (3,) rad/s, and the amplitudes
+    sqrt(int v_x^2 dt), sqrt(int |w|^2 dt), |w_s|."""
+
+    scene: Scene
+    time: np.ndarray
+    velocity: np.ndarray
+    rate: np.ndarray
+    settled: np.ndarray
+    weights: np.ndarray
+    amplitudes: tuple[float, float, float]
+
+
+def target(scene: Scene, reference: Trajectory) -> Target:
+    """What a condition asks for, from ignition to the end of the reference's settled window."""
+    keep = reference.time <= (reference.outcome.window_start + SETTLE_WINDOW) * (1.0 + 1e-12)
+    time, velocity, rate = reference.time[keep], reference.velocity[keep, 0], reference.rate[keep]
+    weights = np.gradient(time)
+    weights[[0, -1]] *= 0.5  # the trapezoidal rule
+    settled = np.array(reference.outcome.rate)
+    amplitudes = np.sqrt(weights @ velocity**2), np.sqrt(weights @ (rate**2).sum(axis=1)), np.linalg.norm(settled)
+    return Target(scene, time, velocity, rate, settled, weights, amplitudes)
+
+
+def targets(scene: Scene, references: dict[str, Trajectory]) -> dict[str, Target]:
+    """Targets by condition, with small amplitudes raised. Raises CalibrationError when nothing moves or nothing turns."""
+    found = {name: target(scene.condition(name), reference) for name, reference in references.items()}
+    largest = np.max([item.amplitudes for item in found.values()], axis=0)
+    if not (largest > 0.0).all():
+        raise CalibrationError(f"cannot calibrate {scene.name}\n  references: all velocities or all rates are zero")
+    return {name: item._replace(amplitudes=tuple(np.maximum(item.amplitudes, SMALLEST_AMPLITUDE * largest)))
+            for name, item in found.items()}
+
+
+class Parts(NamedTuple):
+    """Weighted residuals of one condition: squared sums are L2(v_x)^2, L2(rate)^2 and the relative settled error squared."""
+
+    velocity: np.ndarray
+    rate: np.ndarray
+    settled: np.ndarray
+
+    def vector(self) -> np.ndarray:
+        """Residuals whose squared sum is the condition's share of J times n."""
+        return np.concatenate([VELOCITY_WEIGHT * self.velocity, self.rate.ravel(), self.settled])
+
+
+def compare(target: Target, result: Trajectory) -> Parts:
+    """Residuals of a surrogate's run of the target's condition."""
+    root = np.sqrt(target.weights)
+    moving, turning, leaving = target.amplitudes
+    if result.status != "exited":
+        share = np.full(target.time.size, 1.0 / np.sqrt(target.time.size))
+        return Parts(share * FAILED / VELOCITY_WEIGHT, np.outer(share, np.full(3, FAILED / np.sqrt(3.0))),
+                     np.full(3, FAILED / np.sqrt(3.0)))
+    velocity = np.interp(target.time, result.time, result.velocity[:, 0])
+    rate = np.column_stack([np.interp(target.time, result.time, column) for column in result.rate.T])
+    return Parts(root * (velocity - target.velocity) / moving, root[:, None] * (rate - target.rate) / turning,
+                 (np.array(result.outcome.rate) - target.settled) / leaving)
+
+
+class Objective:
+    """Residuals as a function of the parameters' shares (0..1 of their bounds); counts its evaluations.
+
+    ``over`` applies a function to every condition, in order: ``map``, or that of a pool of threads, since the surrogate's kernels release the
+    interpreter. No bit of the result depends on the choice.
+    """
+
+    def __init__(self, scene: Scene, targets: dict[str, Target], parameters: list[Parameter], numerics=None, over: Callable = map):
+        self.scene, self.targets, self.parameters, self.numerics, self.over = scene, targets, parameters, numerics, over
+        self.evaluations = 0
+
+    def values(self, shares: np.ndarray) -> dict[str, float]:
+        """Values (SI) of the parameters by name."""
+        return {item.name: item.value(float(share)) for item, share in zip(self.parameters, shares, strict=True)}
+
+    def parts(self, shares: np.ndarray) -> dict[str, Parts]:
+        """Residuals by condition."""
+        self.evaluations += 1
+        changed = overrides(self.scene, self.values(shares))
+
+        def one(wanted: Target) -> Parts:
+            return compare(wanted, lowfi.run(wanted.scene.replace(changed), numerics=self.numerics))
+
+        return dict(zip(self.targets, self.over(one, self.targets.values())))
+
+    def __call__(self, shares: np.ndarray) -> np.ndarray:
+        """Residual vector r with J = r'r."""
+        return np.concatenate([part.vector() for part in self.parts(shares).values()]) / np.sqrt(len(self.targets))

@@ -1,0 +1,58 @@
+"""One calibration: what is free, the search, and the record with its evidence."""
+
+from concurrent.futures import ThreadPoolExecutor
+from typing import Callable
+
+import numpy as np
+
+from calibrate import evidence, faults, parameters
+from calibrate.information import information, jacobian
+from calibrate.objective import Objective, targets
+from calibrate.search import Plan, search
+from scenes.calibration import Calibration
+from scenes.scene import Scene
+from scenes.trajectory import Trajectory
+
+WORKERS = 2
+
+
+def run(scene: Scene, references: dict[str, Trajectory], numerics=None, progress: Callable[[float], None] | None = None,
+        seed: int = 0, plan: Plan | None = None) -> Calibration:
+    """Fit the surrogate's contact constants to ``references`` (condition name to reference run) of ``scene``.
+
+    ``numerics`` are the surrogate's (lowfi.Numerics), ``progress`` is called with the fraction done, ``plan`` sizes the search; the
+    same seed gives the same bits. Raises CalibrationError for references that are missing, did not exit or do not turn, SceneError
+    for an unknown condition.
+    """
+    faults.check(scene, references)
+    free, held, plan = parameters.free(scene), parameters.held(scene), plan or Plan()
+    wanted = targets(scene, references)
+    with ThreadPoolExecutor(WORKERS) as pool:
+        objective = Objective(scene, wanted, free, numerics, pool.map)
+        found = search(objective, _shares(free, scene), plan, seed, progress)
+        residuals = objective.parts(found.shares)
+        wide = Objective(scene, wanted, free + held, numerics, pool.map)
+        matrix = information(jacobian(wide, np.append(found.shares, _shares(held, scene))))
+    values = objective.values(found.shares)
+    count = len(free)
+    return Calibration(
+        constants=parameters.overrides(scene, values),
+        parameters=[item.name for item in free],
+        values=list(values.values()),
+        units=[item.unit for item in free],
+        lower=[item.lower for item in free],
+        upper=[item.upper for item in free],
+        justification=[item.justification for item in free],
+        information=matrix[:count, :count],
+        weak_directions=evidence.weak_directions(scene, free, held, found.shares, matrix),
+        residuals={name: evidence.residuals(part, wanted[name]) for name, part in residuals.items()},
+        conditions=list(references),
+        objective=found.value,
+        valid=evidence.validity(scene, references),
+        provenance=evidence.provenance(scene, references, found, plan, seed, objective.evaluations + wide.evaluations),
+    )
+
+
+def _shares(items: list[parameters.Parameter], scene: Scene) -> np.ndarray:
+    """The scene's own values as shares of the bounds."""
+    return np.array([item.share(item.read(scene)) for item in items])

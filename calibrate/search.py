@@ -1,0 +1,99 @@
+"""Search of a rough sum of squares on the unit cube: look everywhere, follow the best basins, polish the winner.
+
+1. Sobol' points (scrambled by the seed) and the scene's own constants: which basins are there.
+2. CMA-ES (Hansen) from the best points that are apart from each other: it steps over jumps at which a gradient would stop.
+3. Trust-region least squares from the best point of all: the digits CMA-ES would take long for. A jump ends it early, without harm.
+"""
+
+from typing import Callable, NamedTuple
+
+import cma
+import numpy as np
+from scipy.optimize import least_squares
+from scipy.stats import qmc
+
+from calibrate.information import jacobian
+
+
+class Plan(NamedTuple):
+    """Size of a search.
+
+    ``points``: Sobol' points, a power of two; ``starts`` of CMA-ES, at least ``apart`` from each other, with first step ``step``
+    and ``evaluations`` each; ``polish``: iterations of least squares.
+    """
+
+    points: int = 128
+    starts: int = 3
+    evaluations: int = 160
+    apart: float = 0.2
+    step: float = 0.1
+    polish: int = 8
+
+
+class Found(NamedTuple):
+    """Best point (p,), its value, and where each start of CMA-ES ended, as (value, point), best first."""
+
+    shares: np.ndarray
+    value: float
+    basins: list[tuple[float, np.ndarray]]
+
+
+def search(residuals: Callable[[np.ndarray], np.ndarray], first: np.ndarray, plan: Plan, seed: int,
+           progress: Callable[[float], None] | None = None) -> Found:
+    """Minimise r'r over the unit cube; ``first`` (p,) is tried too. The same seed gives the same bits.
+
+    ``progress`` is called with the fraction of the evaluations done.
+    """
+    counted = _Counted(residuals, plan.points + 1 + plan.starts * plan.evaluations + plan.polish * (2 * first.size + 1), progress)
+    points = np.vstack([np.clip(first, 0.0, 1.0), qmc.Sobol(first.size, rng=seed).random(plan.points)])
+    values = np.array([counted.square(point) for point in points])
+    generator = np.random.default_rng([seed, 1])
+    basins = sorted((_evolve(counted.square, start, plan, generator) for start in _apart(points, values, plan)),
+                    key=lambda item: item[0])
+    value, shares = basins[0]
+    polished = least_squares(counted, shares, lambda x: jacobian(counted, x), bounds=(0.0, 1.0), max_nfev=plan.polish)
+    if 2.0 * polished.cost < value:
+        value, shares = 2.0 * float(polished.cost), polished.x
+    if progress:
+        progress(1.0)
+    return Found(shares, value, basins)
+
+
+class _Counted:
+    """Residuals that report how many of ``total`` evaluations are done."""
+
+    def __init__(self, residuals, total: int, progress):
+        self.residuals, self.total, self.progress, self.done = residuals, total, progress, 0
+
+    def __call__(self, shares: np.ndarray) -> np.ndarray:
+        vector = self.residuals(shares)
+        self.done += 1
+        if self.progress:
+            self.progress(min(1.0, self.done / self.total))
+        return vector
+
+    def square(self, shares: np.ndarray) -> float:
+        vector = self(shares)
+        return float(vector @ vector)
+
+
+def _apart(points: np.ndarray, values: np.ndarray, plan: Plan) -> list[np.ndarray]:
+    """Best points of which no two are closer than ``plan.apart`` in every coordinate."""
+    chosen: list[np.ndarray] = []
+    for index in np.argsort(values, kind="stable"):
+        if all(np.abs(points[index] - other).max() >= plan.apart for other in chosen):
+            chosen.append(points[index])
+        if len(chosen) == plan.starts:
+            break
+    return chosen
+
+
+def _evolve(objective, start: np.ndarray, plan: Plan, generator: np.random.Generator) -> tuple[float, np.ndarray]:
+    """Value and point CMA-ES reaches from ``start``. It draws from ``generator`` only, never from NumPy's global state."""
+    strategy = cma.CMAEvolutionStrategy(start, plan.step, {
+        "bounds": [0.0, 1.0], "maxfevals": plan.evaluations, "tolfun": 1e-9, "tolx": 1e-6, "verbose": -9, "seed": np.nan,
+        "randn": lambda *shape: generator.standard_normal(shape)})
+    while not strategy.stop():
+        candidates = strategy.ask()
+        strategy.tell(candidates, [objective(np.asarray(candidate)) for candidate in candidates])
+    return float(strategy.result.fbest), np.asarray(strategy.result.xbest)
