@@ -69,9 +69,10 @@ def relative_motion(motion) -> dict[str, np.ndarray]:
 def clearance_to_exit(motion, marks: Milestones) -> np.ndarray:
     """Distance (n,) m by which the rearmost trailing edge is past the rail end (negative while on the rail)."""
     body, frame = rotation.matrices(motion.quaternion), rotation.matrices(motion.platform_quaternion)
-    places = motion.position[:, None, :] + np.einsum("nij,fj->nfi", body, marks.edges)
-    along = np.einsum("ni,nfi->nf", frame[:, :, 0], places - motion.platform_position[:, None, :])
-    return along.min(axis=1) - marks.rail_end
+    axis = frame[:, :, 0]
+    along = np.einsum("ni,nij->nj", axis, body) @ marks.edges.T
+    centre = np.einsum("ni,ni->n", axis, motion.position - motion.platform_position)
+    return along.min(axis=1) + centre - marks.rail_end
 
 
 def exit_time(motion, marks: Milestones) -> float | None:
