@@ -1,6 +1,7 @@
 """Rigid surrogate: payload and platform as rigid bodies, contact laws at the pad faces, adaptive Runge-Kutta."""
 
+from lowfi.ensemble import curves, run_many
 from lowfi.numerics import Numerics
 from lowfi.run import run
 
-__all__ = ["Numerics", "run"]
+__all__ = ["Numerics", "curves", "run", "run_many"]
