@@ -46,10 +46,10 @@ report: $(READY) ## all of the above on one page: OUT/SCENE/report.html
 	$(TIPOFF) report $(ASKED)
 
 test: $(READY) ## the tests, without the slow ones
-	.venv/bin/python -m pytest -m "not slow"
+	.venv/bin/python -m pytest -m "not slow" --numprocesses=auto --dist=loadfile
 
 test-slow: $(READY) ## every test
-	.venv/bin/python -m pytest
+	.venv/bin/python -m pytest --numprocesses=auto --dist=loadfile
 
 clean: ## remove results and caches; the environment stays
 	rm -rf out build *.egg-info .pytest_cache .hypothesis
