@@ -1,0 +1,72 @@
+"""Writes the figures of README.md from the result files of ``make report``, so that no number in it is typed by hand.
+
+    python -m studies.readme [FOLDER]        default out/reference
+"""
+
+import json
+import shutil
+import sys
+from pathlib import Path
+
+from scenes.files import write_text
+
+_ROOT = Path(__file__).resolve().parent.parent
+_BEGIN, _END = "<!-- results: python -m studies.readme -->", "<!-- end of results -->"
+
+
+def main(folder: Path) -> None:
+    """Replace the results section of README.md and the picture beside it."""
+    readme = _ROOT / "README.md"
+    before, rest = readme.read_text().split(_BEGIN)
+    after = rest.split(_END)[1]
+    write_text(readme, f"{before}{_BEGIN}\n{section(folder)}\n{_END}{after}")
+    (_ROOT / "docs").mkdir(exist_ok=True)
+    shutil.copyfile(folder / "figures" / "figure6.png", _ROOT / "docs" / "figure6.png")
+
+
+def section(folder: Path) -> str:
+    """Markdown of the agreement, the speed-up and the kept promises in ``folder``."""
+    agreement, highfi, lowfi = (json.loads((folder / f"{name}.json").read_text()) for name in ("agreement", "highfi", "lowfi"))
+    return "\n\n".join([_agreement(agreement), _speed(agreement["speedup"]), _promises(highfi, lowfi)])
+
+
+def _agreement(found: dict) -> str:
+    before = {row["condition"]: row for row in found["uncalibrated"]}
+    lines = ["Rates of the surrogate against the reference (rate L2 / settled error in deg/s), and what bounds any such claim: the floor is",
+             "the change by 1 um of clearance, the uncertainty that of the reference itself under refinement.", "",
+             "| condition | role | uncalibrated | calibrated | floor, deg/s | reference uncertainty, deg/s | verdict |",
+             "|---|---|---|---|---|---|---|"]
+    for row in found["fitted"] + found["held_out"]:
+        lines.append(f"| {row['condition']} | {row['role'].replace('_', ' ')} | {_pair(before[row['condition']])} | {_pair(row)} | "
+                     f"{_number(row['floor_deg_s'])} | {_number(row['reference_uncertainty_deg_s'])} | {row['verdict']} |")
+    return "\n".join(lines)
+
+
+def _pair(row: dict) -> str:
+    return f"{_number(row['rate_relative_l2'])} / {_number(row['settled_rate_error_deg_s'])}"
+
+
+def _number(value: float | None) -> str:
+    return "-" if value is None else f"{value:.2g}"
+
+
+def _speed(found: dict) -> str:
+    machine = found["hardware"]
+    return (f"Speed: {found['ratio']:,.0f} times ({found['low']:,.0f} to {found['high']:,.0f} over repeats): {found['highfi_wall_s']:.3g} s "
+            f"for the reference with {found['elements']:,} elements against {1e3 * found['lowfi_wall_s']:.3g} ms, the same case, everything "
+            f"but compilation included, on {machine['cores']} cores of {machine['processor']}.")
+
+
+def _promises(highfi: dict, lowfi: dict) -> str:
+    names = {"energy_error": "total energy", "transverse_energy_error": "transverse energy",
+             "linear_momentum_error": "linear momentum", "angular_momentum_error": "angular momentum"}
+    lines = ["Largest errors over all conditions, relative as defined in `scenes/ledger.py`:", "",
+             "| | " + " | ".join(names.values()) + " |", "|---" * (len(names) + 1) + "|"]
+    for title, found in (("reference", highfi), ("surrogate", lowfi)):
+        worst = [max(condition[name] for condition in found["conditions"]) for name in names]
+        lines.append(f"| {title} | " + " | ".join(f"{value:.1e}" for value in worst) + " |")
+    return "\n".join(lines)
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]) if len(sys.argv) > 1 else _ROOT / "out" / "reference")
