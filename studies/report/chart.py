@@ -3,6 +3,7 @@
 Colours differ in lightness, and models differ in width and dash, so that figures read in grey and on paper.
 """
 
+import math
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Sequence
@@ -83,13 +84,12 @@ def to_html(chart: Chart) -> str:
                 marker={"symbol": {"o": "circle", "s": "square", "^": "triangle-up", "": "circle"}[line.marker], "size": 9}),
                 **place)
             shown |= {line.name} if line.legend else set()
-        x_kind, y_kind = ({"type": "log", "range": np.log10(limits).tolist(), "exponentformat": "power", "minor_ticks": "outside"}
-                          if panel.log else {} for limits in _limits(panel))
+        x_kind, y_kind = map(_log_axis, _limits(panel)) if panel.log else ({}, {})
         figure.update_xaxes(title_text=panel.x_label, **x_kind, **place)
         figure.update_yaxes(title_text=panel.y_label, **y_kind, **place)
         if panel.band:
             figure.add_hrect(y0=_limits(panel)[1][0] if panel.log else 0.0, y1=panel.band[0], fillcolor=GREY, opacity=0.16, line_width=0,
-                             annotation_text=panel.band[1], annotation_position="top right", **place)
+                             annotation_text=panel.band[1], annotation_position="bottom right", **place)
     figure.update_layout(height=chart.height * chart.rows + 90, template="plotly_white", margin={"l": 62, "r": 18, "t": 40, "b": 60},
                          font={"family": _FONT, "size": 13, "color": _INK}, hovermode="closest",
                          legend={"orientation": "h", "yanchor": "top", "y": -90.0 / (chart.height * chart.rows), "x": 0.0})
@@ -137,18 +137,28 @@ def _dress(axes, panel: Panel) -> None:
         axes.set_ylim(_limits(panel)[1])
     if panel.band:
         axes.axhspan(_limits(panel)[1][0] if panel.log else 0.0, panel.band[0], color=GREY, alpha=0.16, linewidth=0)
-        axes.annotate(panel.band[1], (0.99, panel.band[0]), xycoords=("axes fraction", "data"), ha="right", va="bottom", fontsize=8)
+        axes.annotate(panel.band[1], (0.98, 0.02), xycoords="axes fraction", ha="right", va="bottom", fontsize=8)
     axes.grid(color=_RULE, linewidth=0.8)
     axes.set_axisbelow(True)
     axes.spines[["top", "right"]].set_visible(False)
     axes.tick_params(labelsize=8.5)
 
 
+def _log_axis(limits: tuple[float, float]) -> dict:
+    return {"type": "log", "range": [math.log10(value) for value in limits], "exponentformat": "power", "dtick": 1,
+            "minor_ticks": "outside"}
+
+
 def _limits(panel: Panel) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Range of x and y that holds every point and the band with some air, a factor each side, for logarithmic axes."""
+    """Whole decades of x and y that hold every point and the band with some air, for logarithmic axes."""
     x = [value for line in panel.lines for value in line.x]
     y = [value for line in panel.lines for value in line.y] + ([panel.band[0]] if panel.band else [])
-    return (min(x, default=1.0) / 2.0, 2.0 * max(x, default=1.0)), (min(y, default=1.0) / 3.0, 3.0 * max(y, default=1.0))
+    return _decades(x), _decades(y)
+
+
+def _decades(values: list[float]) -> tuple[float, float]:
+    low, high = min(values, default=1.0) / 1.5, max(values, default=1.0) * 1.5
+    return 10.0 ** math.floor(math.log10(low)), 10.0 ** math.ceil(math.log10(high))
 
 
 def _mode(line: Line) -> str:

@@ -64,7 +64,7 @@ def _step(rows: list[dict]) -> Promise | None:
 
 def _friction(rows: list[dict]) -> Promise | None:
     worst, where = _worst(rows, "friction_power_max")
-    return None if worst is None else Promise("friction never gives energy back", f"{worst:.2e} W ({where})", "0 W", worst <= 0.0)
+    return None if worst is None else Promise("friction never gives energy back", f"{worst + 0.0:.2e} W ({where})", "0 W", worst <= 0.0)
 
 
 def _finite(rows: dict[str, list[dict]]) -> Promise:

@@ -2,7 +2,7 @@
 
 from html import escape
 
-from studies.report.markup import Html, caption, fold, number, paragraph, percent, section, table
+from studies.report.markup import Html, caption, code, fold, number, paragraph, percent, section, table
 
 _FLOOR = "Floor: what ±{change:g} µm of clearance changes in either model. "
 
@@ -92,10 +92,16 @@ def calibration(document: dict) -> Html:
     names = list(dict.fromkeys(key for found in document["residuals"].values() for key in found))
     residuals = [(condition, *(found.get(name) for name in names)) for condition, found in document["residuals"].items()]
     information = [(name, *line) for name, line in zip(document["parameters"], document["information"])]
+    applied = [(code(key), number(value, 6)) for key, value in document["constants"].items()]
+    valid = [(code(key), *(number(value, 4) for value in span)) for key, span in document["valid"].items()]
     return section("calibration", "Calibration",
                    paragraph(f"Fitted to {', '.join(document['conditions'])} at once; objective {document['objective']:.4g}."),
                    table(("constant", "value", "unit", "lower bound", "upper bound", "why free, why these bounds"), rows),
                    Html(f"<h3>What the curves cannot tell</h3><ul>{weak}</ul>"),
+                   fold("constants the surrogate then uses (SI)", table(("key", "value"), applied)),
+                   fold("range of the conditions used (SI): outside it the constants are extrapolated",
+                        table(("quantity", "from", "to"), valid)),
+                   fold("how they were found", table(("", ""), document["provenance"].items())),
                    fold("residuals per condition", table(("condition", *(name.replace("_", " ") for name in names)), residuals)),
                    fold("information matrix of the scaled constants", table(("", *document["parameters"]), information)))
 
@@ -163,4 +169,4 @@ def ablation(document: dict) -> Html:
 
 
 def _three(values: list[float] | None, sign: str) -> str:
-    return "–" if values is None else ", ".join(f"{value:{sign}.3g}" for value in values)
+    return "–" if values is None else ", ".join(f"{value:{sign}.3g}" if value else "0" for value in values)

@@ -7,7 +7,7 @@ import numpy as np
 from scenes.calibration import Calibration
 from studies.progress import Board
 from studies.store import SOURCES
-from studies.study import Study, require_success
+from studies.study import Study, StudyError, require_success
 
 FILE = "calibration.toml"
 _SOURCES = (*SOURCES["highfi"], *SOURCES["lowfi"], "calibrate")
@@ -24,7 +24,10 @@ def run(study: Study) -> dict:
         references = dict(zip(names, study.store.fill("highfi", asked)))
         require_success(references, "calibrate")
         with Board("calibrate", 1) as board:
-            found = calibrate.run(study.scene, references, progress=board.callback("calibrate"))
+            try:
+                found = calibrate.run(study.scene, references, progress=board.callback("calibrate"))
+            except calibrate.CalibrationError as fault:
+                raise StudyError(f"cannot calibrate: {fault}") from None
             board.finished("calibrate", f"objective {found.objective:.4g}")
         path = study.path(FILE)
         found.save(path)
