@@ -37,7 +37,7 @@ DENSE = np.array([
 
 
 @njit
-def attempt(system, engaged, stretch, time, dt, fresh, start, stages, end):
+def attempt(system, active, stretch, time, dt, fresh, start, stages, end):
     """From ``start`` (STATE_SIZE,) at ``time`` to ``end`` at ``time + dt``; unless ``fresh``, ``stages`` (7, STATE_SIZE) holds k_1.
 
     Thrust is taken inside ``stretch`` (s), open between two corners, whatever rounding does to stage times.
@@ -52,7 +52,7 @@ def attempt(system, engaged, stretch, time, dt, fresh, start, stages, end):
                     end[j] += weight * stages[i, j]
         if stage == STAGES - 1:
             normalise(end)
-        derivative(system, engaged, min(max(time + NODES[stage] * dt, stretch[0]), stretch[1]), end, stages[stage])
+        derivative(system, active, min(max(time + NODES[stage] * dt, stretch[0]), stretch[1]), end, stages[stage])
 
 
 @njit

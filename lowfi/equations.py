@@ -15,14 +15,14 @@ from scenes.jit import njit
 
 
 @njit
-def derivative(system, engaged, time, state, out):
-    """Fill ``out`` with the time derivative of ``state`` (both STATE_SIZE,). ``engaged`` (f,) tells which faces are on the rail."""
+def derivative(system, active, time, state, out):
+    """Fill ``out`` with the time derivative of ``state`` (both STATE_SIZE,). ``active`` (f,) tells which faces are felt."""
     body = slot.motion(system.payload.mass, system.payload.inverse_inertia, state, PAYLOAD)
     base = slot.frame(system.platform, state)
     out[:] = 0.0
     add_thrust(system.thrust, system.thrust_offset, system.platform, system.reacts_on_platform, time, body, base, out)
     add_gravity(system.gravity, system.payload, system.platform, body, base, out)
-    add_contact(system.contact, system.friction, system.faces, system.platform, engaged, body, base, out)
+    add_contact(system.contact, system.friction, system.faces, system.platform, active, body, base, out)
     move(system.payload.mass, state[:PLATFORM], body, out[:PLATFORM])
     move_platform(system.platform, state, base, out)
 
@@ -118,11 +118,11 @@ def _weigh(gravity, mass, which, body, out):
 
 
 @njit
-def add_contact(laws, friction, faces, platform, engaged, body, base, out):
+def add_contact(laws, friction, faces, platform, active, body, base, out):
     if laws is not None:
         place, turn = relative_pose(platform, body, base)
-        for i in range(engaged.size):
-            if engaged[i]:
+        for i in range(active.size):
+            if active[i]:
                 p = penetration(faces[i], place, turn)
                 if p > 0.0:
                     _press(load(laws, friction, platform, faces[i], p, body, base), friction, platform, body, base, out)

@@ -1,7 +1,8 @@
 """Where inside a step the right-hand side changes its law: a face closes or opens, its force is cut off, it leaves the rail.
 
-The instant is found on the step's interpolant (regula falsi of the Illinois kind) and the step taken again up to there, so no step
-crosses a kink or a jump. A gap that closes and opens again within one step is found from the cubic through its ends.
+A face that is open when a step begins is not felt within it: the step passes through the wall, the instant of touching is found on its
+interpolant (regula falsi of the Illinois kind), and the step is taken again up to there. So no step crosses a jump, none is rejected for
+one, and no contact is too short to be seen. A gap that closes and opens again by itself is found from the cubic through its ends.
 """
 
 import numpy as np
@@ -14,15 +15,16 @@ from scenes.jit import njit
 
 # A crossing is aimed this far beyond itself (m), which is above rounding and below anything a force could feel.
 BEYOND = 1e-12
-_SOONEST = 1e-9  # an event in this first part of a step is the one the step began at
+SOONEST = 1e-9  # an event in this first part of a step is the one the step began at
+_NEAR = 1e-7  # pull that counts as zero
 # Modes of a face, and columns of what ``survey`` fills.
 OPEN, PRESSING, CUT_OFF = 0.0, 1.0, 2.0
-MODE, DEPTH, CLOSING, RAW, ALONG, SURVEY_SIZE = 0, 1, 2, 3, 4, 5
+MODE, DEPTH, CLOSING, PULL, ALONG, SURVEY_SIZE = 0, 1, 2, 3, 4, 5
 
 
 @njit
 def survey(laws, faces, platform, payload, engaged, state, out):
-    """Fill ``out`` (f, SURVEY_SIZE) with mode, penetration (m), its rate (m/s), raw force (N) and X (m) of every face; True when
+    """Fill ``out`` (f, SURVEY_SIZE) with mode, penetration (m), its rate (m/s), pull and X (m) of every face; True when
     any that is on the rail touches. The mode of a face off the rail is the one it would have there."""
     touching = False
     if laws is not None:
@@ -32,31 +34,40 @@ def survey(laws, faces, platform, payload, engaged, state, out):
             p = penetration(faces[i], place, turn)
             face = load(laws, None, platform, faces[i], max(p, 0.0), body, base)
             out[i, MODE] = OPEN if p <= 0.0 else (PRESSING if face.raw >= 0.0 else CUT_OFF)
-            out[i, DEPTH], out[i, CLOSING], out[i, RAW] = p, face.closing, face.raw
+            out[i, DEPTH], out[i, CLOSING], out[i, PULL] = p, face.closing, _pull(face)
             out[i, ALONG] = along(faces[i], place, turn)
             touching = touching or (p > 0.0 and engaged[i])
     return touching
 
 
 @njit
+def _pull(face):
+    """Raw force over the sum of the sizes of its elastic and damping parts: -1..1, negative where the law would pull."""
+    size = face.elastic + abs(face.raw - face.elastic)
+    return face.raw / size if size > 0.0 else 1.0
+
+
+@njit
 def first_event(laws, payload, platform, faces, rail, engaged, before, after, dt, start, stages, work):
-    """Fraction of the step (0..1] at which it must end; ``before`` and ``after`` are the surveys of its ends.
+    """Fraction of the step (0..1] at which it must end, and the face to blame; ``before`` and ``after`` survey its ends.
 
     ``rail`` is its start and end (m); ``work`` (DYNAMIC_SIZE,) is scratch.
     """
-    first = 1.0
+    first, blamed = 1.0, -1
     if laws is not None:
         for i in range(engaged.size):
-            for kind in (DEPTH, RAW, ALONG):
+            for kind in (DEPTH, PULL, ALONG):
                 level = _level(rail, engaged[i], kind, before[i], after[i])
                 if not np.isnan(level):
                     theta = _locate(laws, payload, platform, faces[i], kind, before[i, kind] - level, after[i, kind] - level, level,
                                     dt, start, stages, work)
-                    if _SOONEST < theta < first:
-                        first = theta
+                    if theta < first and (theta > SOONEST or (kind == DEPTH and after[i, DEPTH] > 0.0)):
+                        first, blamed = theta, i
             if engaged[i] and before[i, MODE] == OPEN and after[i, MODE] == OPEN:
-                first = min(first, _grazing(before[i, DEPTH], after[i, DEPTH], dt * before[i, CLOSING], dt * after[i, CLOSING]))
-    return first
+                theta = _grazing(before[i, DEPTH], after[i, DEPTH], dt * before[i, CLOSING], dt * after[i, CLOSING])
+                if theta < first:
+                    first, blamed = theta, i
+    return first, blamed
 
 
 @njit
@@ -67,9 +78,10 @@ def _level(rail, engaged, kind, before, after):
     if kind == DEPTH:
         if engaged and (before[MODE] == OPEN) != (after[MODE] == OPEN):
             level = BEYOND
-    elif kind == RAW:
+    elif kind == PULL:
         if before[MODE] * after[MODE] == PRESSING * CUT_OFF:
-            level = 1e-9 * b
+            # The force is continuous there, so what is nearer than rounding is no event.
+            level = 0.0 if min(abs(a), abs(b)) > _NEAR else np.nan
     elif max(before[DEPTH], after[DEPTH]) > BEYOND:
         level = _edge(rail[0], rail[1], engaged, a, b)
     return level if (a - level) * (b - level) < 0.0 else np.nan
@@ -94,14 +106,14 @@ def _gauge(laws, payload, platform, face, kind, state):
     if kind == ALONG:
         return along(face, place, turn)
     p = penetration(face, place, turn)
-    return p if kind == DEPTH else load(laws, None, platform, face, max(p, 0.0), body, base).raw
+    return p if kind == DEPTH else _pull(load(laws, None, platform, face, max(p, 0.0), body, base))
 
 
 @njit
 def _locate(laws, payload, platform, face, kind, f_low, f_high, level, dt, start, stages, work):
     """Fraction of the step at which the quantity passes ``level``, on its far side; it is ``f_low`` and ``f_high`` off at the ends."""
     low, high, side = 0.0, 1.0, 0
-    close = 1e-13 if kind != RAW else 1e-12 * max(abs(f_low), abs(f_high))
+    close = 1e-13 if kind != PULL else 0.1 * _NEAR
     for _ in range(60):
         theta = (low * f_high - high * f_low) / (f_high - f_low)
         interpolate(dt, theta, start, stages, slot.DYNAMIC_SIZE, work)
@@ -130,7 +142,7 @@ def _grazing(before, after, rise, fall):
     # The form without cancellation: the maximum is the root with p'' < 0.
     theta = rise / (-b + np.sqrt(max(b * b - 3.0 * a * rise, 0.0)))
     depth = before + theta * (rise + theta * (b + theta * a))
-    return theta if depth > BEYOND and _SOONEST < theta < 1.0 else 1.0
+    return theta if depth > BEYOND and SOONEST < theta < 1.0 else 1.0
 
 
 @njit
@@ -145,6 +157,17 @@ def on_rail(laws, rail_start, rail_end, surveyed, engaged):
                 energy += (1.0 if engaged[i] else -1.0) * stored(laws, surveyed[i, DEPTH])
                 engaged[i] = inside
     return changed, energy
+
+
+@njit
+def felt(surveyed, engaged, active):
+    """Bring ``active`` (f,) up to date, the faces that touch as a step begins; True when any changed."""
+    changed = False
+    for i in range(engaged.size):
+        touches = engaged[i] and surveyed[i, MODE] != OPEN
+        changed = changed or touches != active[i]
+        active[i] = touches
+    return changed
 
 
 @njit

@@ -7,7 +7,7 @@ import numpy as np
 from lowfi import state as slot
 from lowfi.accuracy import error_ratio
 from lowfi.dormand_prince import STABLE_RADIUS, STAGES, attempt, interpolate
-from lowfi.events import SURVEY_SIZE, first_event, on_rail, survey
+from lowfi.events import SOONEST, SURVEY_SIZE, felt, first_event, on_rail, survey
 from lowfi.limits import fastest_rate
 from lowfi.sample import observe, rearmost_edge
 from scenes.jit import njit
@@ -33,7 +33,8 @@ class Plan(NamedTuple):
 
 
 class Loop(NamedTuple):
-    """What evolves: states at the ends of the last step, its stages, surveys of its ends, faces on the rail, clock and counts."""
+    """What evolves: states at the ends of the last step, its stages, surveys of its ends, faces on the rail and those felt in the last step,
+    clock and counts."""
 
     start: np.ndarray
     end: np.ndarray
@@ -41,6 +42,7 @@ class Loop(NamedTuple):
     before: np.ndarray
     after: np.ndarray
     engaged: np.ndarray
+    active: np.ndarray
     clock: np.ndarray
     count: np.ndarray
     work: np.ndarray
@@ -54,8 +56,8 @@ def ready(system, state: np.ndarray, first_step: float) -> Loop:
     after, engaged = np.zeros((faces, SURVEY_SIZE)), np.zeros(faces, dtype=np.bool_)
     survey(system.contact, system.faces, system.platform, system.payload, engaged, state, after)
     on_rail(system.contact, system.rail_start, system.rail_end, after, engaged)
-    return Loop(state.copy(), state.copy(), np.zeros((STAGES, slot.STATE_SIZE)), np.zeros_like(after), after, engaged, clock, count,
-                np.zeros(slot.STATE_SIZE))
+    return Loop(state.copy(), state.copy(), np.zeros((STAGES, slot.STATE_SIZE)), np.zeros_like(after), after, engaged,
+                np.zeros_like(engaged), clock, count, np.zeros(slot.STATE_SIZE))
 
 
 @njit
@@ -98,7 +100,7 @@ def step(system, plan, tolerance, loop):
         dt = stop - start if reaches else dt
         if start + dt == start or not dt > 0.0:
             return False
-        attempt(system, loop.engaged, stretch, start, dt, fresh, loop.start, loop.stages, loop.end)
+        attempt(system, loop.active, stretch, start, dt, fresh, loop.start, loop.stages, loop.end)
         count[EVALUATIONS] += STAGES if fresh else STAGES - 1
         fresh = False
         ratio = error_ratio(tolerance, system.payload, system.platform, dt, loop.stages, loop.end, loop.work)
@@ -116,12 +118,16 @@ def step(system, plan, tolerance, loop):
             count[REJECTED] += 1
             clock[WANTED] = _SAFETY * limit
             continue
-        theta = first_event(system.contact, system.payload, system.platform, system.faces, (system.rail_start, system.rail_end),
+        theta, face = first_event(system.contact, system.payload, system.platform, system.faces, (system.rail_start, system.rail_end),
                             loop.engaged, loop.before, loop.after, dt, loop.start, loop.stages, loop.work)
         if theta < 1.0 - 1e-9 and landings < _LANDINGS:
             landings += 1
-            ceiling = theta * dt
-            continue
+            if theta > SOONEST and start + 0.01 * theta * dt > start:
+                ceiling = theta * dt
+                continue
+            if not loop.active[face]:  # it touches as the step begins, by rounding on the wrong side
+                loop.active[face] = fresh = True
+                continue
         _accept(loop.stages[STAGES - 1], clock, count, dt, stop if reaches else start + dt, ratio, limit)
         count[EVENTS] += landings
         return True
@@ -141,7 +147,7 @@ def _begin(laws, rail_start, rail_end, plan, loop):
     for i in range(loop.engaged.size):
         slot.copy(loop.after[i], loop.before[i], SURVEY_SIZE)
     slot.copy(loop.stages[STAGES - 1], loop.stages[0], slot.STATE_SIZE)
-    return fresh or changed
+    return felt(loop.after, loop.engaged, loop.active) or fresh or changed
 
 
 @njit

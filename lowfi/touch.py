@@ -5,7 +5,7 @@ rail's point at the same place (both inertial, so the frame's own turning is in 
 
     p = n . x - wall,     p_dot = n . u,     F = -N n - mu(s)/s N (u - p_dot n),     N = max(0, raw)
 
-``raw`` is the law in ``scenes.effects.contact``. The rail's reach is not tested here: ``engaged`` says which faces are on the rail.
+``raw`` is the law in ``scenes.effects.contact``. The rail's reach is not tested here but in ``lowfi.events``.
 """
 
 from typing import NamedTuple
