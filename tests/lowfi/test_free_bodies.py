@@ -1,0 +1,154 @@
+"""A body without contact: free rotation, body-fixed thrust, impulses, recoil. All against closed forms, at two tolerances."""
+
+import math
+
+import numpy as np
+import pytest
+
+import lowfi
+from tests.exact import rigid as exact
+from tests.lowfi.support import numerics, scene
+
+CENTRED = {"eccentricity": {"axial": 0.0}}  # a table without effect, so that all these scenes share one compiled kernel
+
+
+def spin(inertia: tuple, rate: tuple, duration: float, tolerance: float, interval: float = 0.01):
+    """A free body with principal ``inertia`` (kg m2) started at ``rate`` (rad/s, body axes)."""
+    return lowfi.run(scene(duration, interval, inertia=dict(zip(("xx", "yy", "zz"), inertia)), thrust_offset=CENTRED,
+                           initial={"velocity": {"x": 1.0}, "rate": dict(zip("xyz", rate))}), numerics=numerics(tolerance))
+
+
+@pytest.mark.case("O34")
+@pytest.mark.parametrize("tolerance, error", [(1e-9, 1e-6), (1e-12, 1e-8)])
+def test_free_rotation(tolerance, error):
+    """Jacobi's elliptic functions: (w1 cn, w2 sn, w3 dn)."""
+    inertia, start = (0.30, 0.55, 0.80), (0.5, 0.0, 2.0)
+    run = spin(inertia, start, 10.0, tolerance)
+    assert exact.free_period(inertia, start) == pytest.approx(3.630847518, abs=1e-9)
+    assert run.rate == pytest.approx(exact.free_rates(inertia, start, run.time), abs=error)
+    assert run.rate[-1] == pytest.approx([0.0130461144, -0.5220551683, 1.9764396842], abs=error)
+    q = run.quaternion[-1] * -np.sign(run.quaternion[-1, 0])
+    assert q == pytest.approx([-0.7685141217, 0.0384838400, 0.0223194370, -0.6382843266], abs=error)
+    assert abs(np.linalg.norm(run.quaternion, axis=1) - 1.0).max() <= 1e-12
+    if tolerance == 1e-12:
+        momentum = np.linalg.norm(run.rate * inertia, axis=1)
+        energy = 0.5 * (run.rate**2 * inertia).sum(axis=1)
+        assert abs(momentum / momentum[0] - 1.0).max() <= 1e-10
+        assert abs(energy / energy[0] - 1.0).max() <= 1e-10
+
+
+@pytest.mark.case("O35")
+@pytest.mark.parametrize("tolerance", [1e-9, 1e-11])
+def test_flip_about_the_middle_axis(tolerance):
+    """First zero of w2 at K(m) / lambda, then every 2 K(m) / lambda."""
+    inertia, start = (0.30, 0.55, 0.80), (0.0, 5.0, 0.005)
+    run = spin(inertia, start, 16.0, tolerance, 0.002)
+    middle = run.rate[:, 1]
+    first = np.flatnonzero(np.signbit(middle[:-1]) != np.signbit(middle[1:]))
+    zeros = run.time[first] - middle[first] * (run.time[1] - run.time[0]) / (middle[first + 1] - middle[first])
+    quarter, half = exact.flip_times(inertia, start)
+    assert (quarter, half) == pytest.approx((3.041335, 6.082670), abs=1e-6)
+    assert zeros == pytest.approx(quarter + half * np.arange(3), abs=1e-5)
+    # Control: explicit Euler at the sampling step is late by a hundred times the tolerance.
+    w, dt, passed = np.array(start), 0.002, []
+    for step in range(8000):
+        old, w = w, w + dt * np.array([(inertia[1] - inertia[2]) * w[1] * w[2] / inertia[0],
+                                       (inertia[2] - inertia[0]) * w[2] * w[0] / inertia[1],
+                                       (inertia[0] - inertia[1]) * w[0] * w[1] / inertia[2]])
+        passed += [step * dt] if old[1] * w[1] < 0.0 else []
+    assert abs(passed[1] - quarter - half) > 1e-3
+
+
+@pytest.mark.case("O36")
+@pytest.mark.parametrize("tolerance", [1e-10, 1e-12])
+def test_axisymmetric_precession(tolerance):
+    """Body rate (Ia - It) w / It, space rate H / It, cone atan(It w_t / (Ia w))."""
+    body, space, cone = exact.axisymmetric(0.3, 0.6, 4.0, 0.2)
+    run = spin((0.3, 0.6, 0.6), (4.0, 0.2, 0.0), 3.0, tolerance)
+    assert run.rate[:, 1] + 1j * run.rate[:, 2] == pytest.approx(0.2 * np.exp(1j * body * run.time), abs=1e-8)
+    momentum = np.array([1.2, 0.12, 0.0])
+    along = momentum / np.linalg.norm(momentum)
+    w, x, y, z = run.quaternion.T
+    axis = np.stack([1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)], axis=1)
+    assert axis @ along == pytest.approx(math.cos(cone), abs=1e-8)
+    start = axis[0] - (axis[0] @ along) * along
+    across = axis - np.outer(axis @ along, along)
+    turned = np.unwrap(np.arctan2(across @ np.cross(along, start), across @ start))
+    assert turned == pytest.approx(space * run.time, abs=1e-7)
+    assert (body, space, math.degrees(cone)) == pytest.approx((-2.0, 2.009975, 5.710593), abs=1e-6)
+
+
+@pytest.mark.case("O37")
+@pytest.mark.parametrize("tolerance, error", [(1e-8, 1e-5), (1e-11, 1e-7)])
+def test_body_fixed_thrust(tolerance, error):
+    """Fresnel integrals: the thrust turns with the body."""
+    offset = {"eccentricity": {"axial": 0.004, "radial": -math.pi / 2}}
+    run = lowfi.run(scene(1.0, 0.01, thrust_offset=offset, thrust={"kind": "constant", "force": 2000.0, "duration": 2.0}),
+                    numerics=numerics(tolerance))
+    rate, along, across = exact.planar_thrust(2000.0, 0.004, 20.0, 0.6, 1.0)
+    assert run.rate[-1] == pytest.approx([0.0, 0.0, rate], abs=error)
+    assert run.velocity[-1] == pytest.approx([along, across, 0.0], abs=error)
+    # Control: a thrust left in inertial axes would give F t / m = 100 m/s along X.
+    assert abs(2000.0 / 20.0 - along) > 70.0
+
+
+@pytest.mark.case("O38")
+@pytest.mark.parametrize("pulse, error", [(1e-6, 1e-5), (1e-10, 1e-9)])
+@pytest.mark.parametrize("clock, expected", [(0.0, (-0.067341, 0.019414, -2.501026)), (35.0, (-0.107637, 1.581236, -2.059856))])
+def test_short_impulse(pulse, error, clock, expected):
+    """I^-1 (r x J) for an impulse that is short, and in the limit."""
+    inertia = {"xx": 0.30, "yy": 0.55, "zz": 0.60, "xy": 0.010, "xz": -0.008, "yz": 0.004}
+    tilt, phi = math.radians(0.1), math.radians(clock)
+    run = lowfi.run(scene(4.0 * pulse, pulse, inertia=inertia, thrust_offset={"misalignment": {"axial": tilt, "radial": phi}},
+                          thrust={"kind": "constant", "force": 100.0 / pulse, "duration": pulse, "arm": 0.15}))
+    tensor = np.array([[0.30, 0.010, -0.008], [0.010, 0.55, 0.004], [-0.008, 0.004, 0.60]])
+    push = 100.0 * np.array([math.cos(tilt), math.sin(tilt) * math.cos(phi), math.sin(tilt) * math.sin(phi)])
+    limit = exact.impulsive_rate(tensor, np.array([-0.15, 0.0, 0.0]), push)
+    assert np.degrees(limit) == pytest.approx(expected, abs=1e-6)
+    assert abs(run.rate[-1] - limit).max() <= error * abs(limit).max()
+
+
+@pytest.mark.case("O39")
+@pytest.mark.parametrize("tolerance", [1e-7, 1e-10])
+def test_recoil_of_a_free_platform(tolerance):
+    """J/m, -J/M, -J b/I; closing speed on the line; momentum and energy close."""
+    platform = {"mass": 150.0, "inertia": {"xx": 10.0, "yy": 10.0, "zz": 10.0}, "mass_centre": {"y": 0.3}}
+    run = lowfi.run(scene(4e-6, 1e-6, platform=platform, thrust={"kind": "constant", "force": 1e8, "duration": 1e-6}),
+                    numerics=numerics(tolerance))
+    expected = exact.recoil(100.0, 20.0, 150.0, 10.0, 0.3)
+    assert (expected["closing"], expected["energy"]) == pytest.approx((6.566667, 328.3333), abs=1e-4)
+    assert run.velocity[-1] == pytest.approx([expected["payload"], 0.0, 0.0], abs=1e-4)
+    assert run.velocity[-1, 0] == pytest.approx(expected["payload"], rel=1e-6)
+    assert run.platform_velocity[-1, 0] == pytest.approx(expected["platform"], rel=1e-6)
+    assert run.platform_rate[-1] == pytest.approx([0.0, 0.0, expected["rate"]], rel=1e-6, abs=1e-12)
+    closing = run.velocity[-1, 0] - run.platform_velocity[-1, 0] + run.platform_rate[-1, 2] * -0.3
+    assert closing == pytest.approx(expected["closing"], rel=1e-6)
+    kinetic = run.energy[-1, 2]
+    assert kinetic == pytest.approx(expected["energy"], rel=1e-6)
+    assert run.checks["linear_momentum_error"] <= 1e-12 and run.checks["angular_momentum_error"] <= 1e-12
+    assert run.checks["energy_error"] <= 1e-6
+
+
+@pytest.mark.case("X11")
+@pytest.mark.parametrize("width", [1e-5, 0.1])
+def test_no_pulse_is_jumped_over(width):
+    """J/m = 5 m/s, whether the Gaussian lasts 20 us or half a second."""
+    thrust = {"kind": "gaussian", "impulse": 100.0, "width": width, "centre": 0.8}
+    run = lowfi.run(scene(1.6, 0.01, thrust=thrust, thrust_offset=CENTRED))
+    assert run.velocity[-1, 0] == pytest.approx(5.0, rel=1e-5)
+    assert run.cost["steps"] < 400
+    if width < 0.01:  # control: steps of one sample that do not know the pulse find no impulse like it
+        peak = 100.0 / (width * math.sqrt(2.0 * math.pi))
+        force = peak * np.exp(-0.5 * ((run.time - 0.8) / width) ** 2)
+        assert abs(np.trapezoid(force, run.time) / 100.0 - 1.0) > 1.0
+
+
+@pytest.mark.case("X12")
+@pytest.mark.parametrize("tolerance", [1e-6, 1e-9])
+def test_steps_stop_at_the_corners_of_the_thrust(tolerance):
+    """12.5 kN for 8.3 ms, seen every 1 ms: 103.75 N s, 5.1875 m/s."""
+    push = {"kind": "constant", "force": 12500.0, "start": 0.00123, "duration": 0.0083}
+    run = lowfi.run(scene(0.02, 0.001, thrust=push, thrust_offset=CENTRED), numerics=numerics(tolerance))
+    assert run.velocity[-1, 0] == pytest.approx(5.1875, rel=1e-6)
+    # Control: the midpoint rule on steps of 1 ms misses the corners.
+    assert abs(sum(12500.0 * 1e-3 for i in range(20) if 0.00123 <= (i + 0.5) * 1e-3 < 0.00953) / 20.0 - 5.1875) > 0.1
