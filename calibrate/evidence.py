@@ -52,8 +52,7 @@ def validity(scene: Scene, references: dict[str, Trajectory]) -> dict[str, list[
 
 
 def _ranges(scene: Scene, reference: Trajectory) -> dict[str, float]:
-    time = np.linspace(0.0, scene.duration, 2001)
-    return {"thrust_peak_n": float(np.abs(thrust.sample(scene.thrust.record(), time)).max()),
+    return {"thrust_peak_n": float(thrust.peak(scene.thrust.record(), scene.duration)),
             "clearance_m": scene.contact.clearance,
             "exit_speed_m_s": float(reference.outcome.velocity[0]),
             "pad_force_peak_n": float(np.linalg.norm(reference.pad_force, axis=2).max())}
