@@ -88,8 +88,10 @@ def to_html(chart: Chart) -> str:
         figure.update_xaxes(title_text=panel.x_label, **x_kind, **place)
         figure.update_yaxes(title_text=panel.y_label, **y_kind, **place)
         if panel.band:
-            figure.add_hrect(y0=_limits(panel)[1][0] if panel.log else 0.0, y1=panel.band[0], fillcolor=GREY, opacity=0.16, line_width=0,
-                             annotation_text=panel.band[1], annotation_position="bottom right", **place)
+            figure.add_hrect(y0=_limits(panel)[1][0] if panel.log else 0.0, y1=panel.band[0], fillcolor=GREY, opacity=0.16,
+                             line_width=0, **place)
+            figure.add_annotation(text=panel.band[1], xref="x domain", yref="y domain", x=0.98, y=0.02, xanchor="right",
+                                  yanchor="bottom", showarrow=False, **place)
     figure.update_layout(height=chart.height * chart.rows + 90, template="plotly_white", margin={"l": 62, "r": 18, "t": 40, "b": 60},
                          font={"family": _FONT, "size": 13, "color": _INK}, hovermode="closest",
                          legend={"orientation": "h", "yanchor": "top", "y": -90.0 / (chart.height * chart.rows), "x": 0.0})

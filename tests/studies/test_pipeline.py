@@ -1,0 +1,117 @@
+"""The whole pipeline on the scene made for it: one command, every result file, one page; and a second call that does nothing."""
+
+import json
+import time
+
+import pytest
+from typer.testing import CliRunner
+
+from scenes.calibration import Calibration
+from scenes.trajectory import Trajectory
+from studies.cli import app
+from studies.stages import ablation
+
+ROW = {"condition", "velocity_relative_l2", "rate_relative_l2", "iso18571", "settled_rate_error_deg_s", "settled_rate_error_xyz_deg_s",
+       "floor_deg_s", "floor_l2", "reference_uncertainty_deg_s"}
+RUN = {"condition", "status", "wall_s", "compile_s", "steps", "dt_s", "energy_error", "transverse_energy_error", "linear_momentum_error",
+       "angular_momentum_error", "settled", "trajectory"}
+SECTIONS = ("answer", "scene", "mesh", "thrust", "figure6", "contact-forces", "energy", "calibration", "agreement", "speedup", "cost",
+            "stability", "ablation", "promises", "colophon")
+
+
+@pytest.fixture(scope="module")
+def pipeline(tmp_path_factory):
+    """(folder of results, outcome of the first call, outcome of the second, seconds it took)."""
+    out = tmp_path_factory.mktemp("out")
+    arguments = ["report", "--scene", "tiny", "--out", str(out)]
+    with pytest.MonkeyPatch.context() as patch:
+        # Each effect taken away is one more kernel to compile; one of them shows that the stage works.
+        patch.setattr(ablation, "EFFECTS", ("friction",))
+        first = CliRunner().invoke(app, arguments, catch_exceptions=False)
+        started = time.monotonic()
+        second = CliRunner().invoke(app, arguments, catch_exceptions=False)
+        return out / "tiny", first, second, time.monotonic() - started
+
+
+def result(folder, name):
+    return json.loads((folder / f"{name}.json").read_text())
+
+
+def test_first_call_succeeds(pipeline):
+    _, first, _, _ = pipeline
+    assert first.exit_code == 0, first.stderr
+
+
+def test_second_call_does_nothing_and_is_quick(pipeline):
+    _, _, second, seconds = pipeline
+    assert second.exit_code == 0
+    lines = second.stderr.strip().splitlines()
+    assert len(lines) == 9 and all(line.endswith("nothing changed") for line in lines)
+    assert seconds < 5.0
+
+
+@pytest.mark.parametrize("fidelity", ["highfi", "lowfi"])
+def test_runs_hold_the_keys_other_tools_read(pipeline, fidelity):
+    rows = result(pipeline[0], fidelity)["conditions"]
+    assert [row["condition"] for row in rows] == ["phi15", "phi60", "h1", "h2"]
+    extra = {"elements", "ns_per_element_step"} if fidelity == "highfi" else set()
+    for row in rows:
+        assert RUN | extra <= set(row)
+        assert row["status"] == "exited"
+        assert len(row["settled"]["velocity_m_s"]) == len(row["settled"]["rate_deg_s"]) == 3
+        assert Trajectory.load(pipeline[0] / row["trajectory"]).fidelity == fidelity
+
+
+def test_agreement_holds_the_keys_other_tools_read(pipeline):
+    found = result(pipeline[0], "agreement")
+    assert [row["condition"] for row in found["fitted"]] == ["phi15", "phi60"]
+    assert [row["condition"] for row in found["held_out"]] == ["h1", "h2"]
+    assert len(found["uncalibrated"]) == 4
+    assert all(ROW <= set(row) for group in ("uncalibrated", "fitted", "held_out") for row in found[group])
+    assert {"ratio", "low", "high", "highfi_wall_s", "lowfi_wall_s", "elements"} <= set(found["speedup"])
+    assert found["speedup"]["low"] <= found["speedup"]["ratio"] <= found["speedup"]["high"]
+    assert found["speedup"]["repeats_identical"]
+
+
+def test_calibration_brings_the_fitted_conditions_closer(pipeline):
+    """Fitted on these, so anything else would be a fault of the search; the held-out ones promise nothing on so coarse a mesh."""
+    found = result(pipeline[0], "agreement")
+    before = {row["condition"]: row["rate_relative_l2"] for row in found["uncalibrated"]}
+    after = {row["condition"]: row["rate_relative_l2"] for row in found["fitted"]}
+    assert sum(after.values()) < sum(before[name] for name in after)
+    calibration = Calibration.load(pipeline[0] / "calibration.toml")
+    assert calibration.conditions == ["phi15", "phi60"]
+    assert calibration.constants == result(pipeline[0], "calibration")["constants"]
+
+
+def test_hard_cases_hold_and_their_controls_fail(pipeline):
+    cases = result(pipeline[0], "stability")["cases"]
+    assert [case["name"] for case in cases if not case["held"]] == []
+    assert [case["name"] for case in cases if not case["control_failed"]] == []
+    for fidelity in ("highfi", "lowfi"):
+        assert sum(case["fidelity"] == fidelity for case in cases) >= 3
+
+
+def test_cost_has_three_meshes_and_three_tolerances(pipeline):
+    points = result(pipeline[0], "cost")["points"]
+    counts = [sum(point["model"] == model for point in points)
+              for model in ("finite elements", "surrogate, uncalibrated", "surrogate, calibrated")]
+    assert all(count >= 3 for count in counts)
+    assert any(point["pareto"] for point in points)
+
+
+def test_ablation_changes_rates_and_kernel(pipeline):
+    rows = {(row["fidelity"], row["variant"]): row for row in result(pipeline[0], "ablation")["rows"]}
+    for fidelity in ("highfi", "lowfi"):
+        assert max(map(abs, rows[fidelity, "without friction"]["settled_rate_change_deg_s"])) > 0.01
+    assert "friction" in rows["highfi", "all effects"]["compiled"]
+    assert "friction" not in rows["highfi", "without friction"]["compiled"]
+
+
+def test_page_is_whole_and_self_contained(pipeline):
+    page = (pipeline[0] / "report.html").read_text()
+    assert [name for name in SECTIONS if f'id="{name}"' not in page] == []
+    assert "Not made yet" not in page and "BROKEN" not in page
+    assert page.count("/*! For license information") <= 1 and 'src="http' not in page
+    figures = {path.name for path in (pipeline[0] / "figures").glob("*.png")}
+    assert {"mesh.png", "thrust.png", "figure6.png", "contact-forces.png", "energy-ledgers.png", "cost.png"} <= figures
