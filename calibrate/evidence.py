@@ -4,8 +4,7 @@ import math
 
 import numpy as np
 
-from calibrate.information import left_alone
-from calibrate.information import weak_directions as open_directions
+from calibrate import information
 from calibrate.objective import Parts, Target
 from calibrate.parameters import Parameter
 from calibrate.search import Found, Plan
@@ -32,9 +31,9 @@ def weak_directions(scene: Scene, free: list[Parameter], held: list[Parameter], 
     count = len(free)
     inner, names = matrix[:count, :count], [item.name for item in free]
     largest = float(np.linalg.eigvalsh(matrix)[-1])
-    sentences = open_directions(inner, names)
+    sentences = information.weak_directions(inner, names)
     for index, item in enumerate(held, start=count):
-        left, alone = left_alone(matrix, index), matrix[index, index]
+        left, alone = information.left_alone(matrix, index), matrix[index, index]
         sentences.append(f"{item.name} held at {item.read(scene):.4g} {item.unit}: of its information {alone:.2g} only {left:.2g} is left "
                          f"when the others are fitted again, {left / largest if largest > 0.0 else 0.0:.1e} of the largest eigenvalue")
     for item, share in zip(free, shares):
@@ -58,16 +57,17 @@ def _ranges(scene: Scene, reference: Trajectory) -> dict[str, float]:
             "pad_force_peak_n": float(np.linalg.norm(reference.pad_force, axis=2).max())}
 
 
-def provenance(scene: Scene, references: dict[str, Trajectory], found: Found, plan: Plan, seed: int,
+def provenance(scene: Scene, references: dict[str, Trajectory], constants: dict[str, float], found: Found, plan: Plan, seed: int,
                evaluations: int) -> dict[str, str]:
     """Where the constants come from, in words and hashes."""
     geometry = scene.resolved()
-    others = ", ".join(f"{value:.6g}" for value, _ in found.basins)
+    exponent = constants.get("contact.exponent", 1.0)
+    ends = "; ".join(f"{value:.6g} at " + ", ".join(f"{share:.4f}" for share in shares) for value, shares in found.basins)
     return {
         "scene": scene.name, "scene_hash": scene.hash,
         "geometry_hash": content_hash(geometry["pads"], geometry["rail"]),
-        "contact_law": scene.contact.law,
+        "contact_law": f"{scene.contact.law}, k = {constants['contact.stiffness']:.6g} N/m^{exponent:.6g}",
         "references": ", ".join(f"{name}: {item.fidelity} {item.numerics}" for name, item in references.items()),
         "search": f"{plan.points} Sobol' points, {plan.starts} starts of CMA-ES, least squares; {evaluations} evaluations; seed {seed}",
-        "basins": f"CMA-ES ended at objectives {others}; after least squares {found.value:.6g}",
+        "basins": f"each start ended at objective and shares of the bounds: {ends}",
     }

@@ -90,8 +90,8 @@ def compare(target: Target, result: Trajectory) -> Parts:
 class Objective:
     """Residuals as a function of the parameters' shares (0..1 of their bounds); counts its evaluations.
 
-    ``over`` applies a function to every condition, in order: ``map``, or that of a pool of threads, since the surrogate's kernels release the
-    interpreter. No bit of the result depends on the choice.
+    ``over`` applies a function to every condition, in order: ``map``, or that of a pool of threads, since the surrogate's kernels
+    release the interpreter. No bit of the result depends on the choice.
     """
 
     def __init__(self, scene: Scene, targets: dict[str, Target], parameters: list[Parameter], numerics=None, over: Callable = map):

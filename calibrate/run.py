@@ -34,9 +34,10 @@ def run(scene: Scene, references: dict[str, Trajectory], numerics=None, progress
         wide = Objective(scene, wanted, free + held, numerics, pool.map)
         matrix = information(jacobian(wide, np.append(found.shares, _shares(held, scene))))
     values = objective.values(found.shares)
+    constants = parameters.overrides(scene, values)
     count = len(free)
     return Calibration(
-        constants=parameters.overrides(scene, values),
+        constants=constants,
         parameters=[item.name for item in free],
         values=list(values.values()),
         units=[item.unit for item in free],
@@ -49,7 +50,7 @@ def run(scene: Scene, references: dict[str, Trajectory], numerics=None, progress
         conditions=list(references),
         objective=found.value,
         valid=evidence.validity(scene, references),
-        provenance=evidence.provenance(scene, references, found, plan, seed, objective.evaluations + wide.evaluations),
+        provenance=evidence.provenance(scene, references, constants, found, plan, seed, objective.evaluations + wide.evaluations),
     )
 
 

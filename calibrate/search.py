@@ -1,8 +1,9 @@
-"""Search of a rough sum of squares on the unit cube: look everywhere, follow the best basins, polish the winner.
+"""Search of a rough sum of squares on the unit cube: look everywhere, follow the best basins, polish where each ends.
 
 1. Sobol' points (scrambled by the seed) and the scene's own constants: which basins are there.
 2. CMA-ES (Hansen) from the best points that are apart from each other: it steps over jumps at which a gradient would stop.
-3. Trust-region least squares from the best point of all: the digits CMA-ES would take long for. A jump ends it early, without harm.
+3. Trust-region least squares from where each ended: the digits CMA-ES would take long for. A jump ends it early, without harm. Starts
+   that meet in one point are the evidence that there is one basin.
 """
 
 from typing import Callable, NamedTuple
@@ -19,19 +20,19 @@ class Plan(NamedTuple):
     """Size of a search.
 
     ``points``: Sobol' points, a power of two; ``starts`` of CMA-ES, at least ``apart`` from each other, with first step ``step``
-    and ``evaluations`` each; ``polish``: iterations of least squares.
+    and ``evaluations`` each; ``polish``: iterations of least squares from each.
     """
 
     points: int = 128
     starts: int = 3
-    evaluations: int = 160
+    evaluations: int = 100
     apart: float = 0.2
     step: float = 0.1
     polish: int = 8
 
 
 class Found(NamedTuple):
-    """Best point (p,), its value, and where each start of CMA-ES ended, as (value, point), best first."""
+    """Best point (p,), its value, and where each start ended, as (value, point), best first."""
 
     shares: np.ndarray
     value: float
@@ -44,19 +45,16 @@ def search(residuals: Callable[[np.ndarray], np.ndarray], first: np.ndarray, pla
 
     ``progress`` is called with the fraction of the evaluations done.
     """
-    counted = _Counted(residuals, plan.points + 1 + plan.starts * plan.evaluations + plan.polish * (2 * first.size + 1), progress)
+    each = plan.evaluations + plan.polish * (2 * first.size + 1)
+    counted = _Counted(residuals, plan.points + 1 + plan.starts * each, progress)
     points = np.vstack([np.clip(first, 0.0, 1.0), qmc.Sobol(first.size, rng=seed).random(plan.points)])
     values = np.array([counted.square(point) for point in points])
     generator = np.random.default_rng([seed, 1])
-    basins = sorted((_evolve(counted.square, start, plan, generator) for start in _apart(points, values, plan)),
-                    key=lambda item: item[0])
-    value, shares = basins[0]
-    polished = least_squares(counted, shares, lambda x: jacobian(counted, x), bounds=(0.0, 1.0), max_nfev=plan.polish)
-    if 2.0 * polished.cost < value:
-        value, shares = 2.0 * float(polished.cost), polished.x
+    ends = [_polish(counted, *_evolve(counted.square, start, plan, generator), plan) for start in _apart(points, values, plan)]
+    basins = sorted(ends, key=lambda item: item[0])
     if progress:
         progress(1.0)
-    return Found(shares, value, basins)
+    return Found(basins[0][1], basins[0][0], basins)
 
 
 class _Counted:
@@ -97,3 +95,9 @@ def _evolve(objective, start: np.ndarray, plan: Plan, generator: np.random.Gener
         candidates = strategy.ask()
         strategy.tell(candidates, [objective(np.asarray(candidate)) for candidate in candidates])
     return float(strategy.result.fbest), np.asarray(strategy.result.xbest)
+
+
+def _polish(residuals, value: float, shares: np.ndarray, plan: Plan) -> tuple[float, np.ndarray]:
+    """Value and point least squares reaches, or those given where it gains nothing."""
+    found = least_squares(residuals, shares, lambda x: jacobian(residuals, x), bounds=(0.0, 1.0), max_nfev=plan.polish)
+    return (2.0 * float(found.cost), found.x) if 2.0 * found.cost < value else (value, shares)

@@ -1,0 +1,26 @@
+"""Scenes whose constants are known, and a search small enough for a test."""
+
+import functools
+
+import lowfi
+import scenes
+from calibrate.search import Plan
+
+CONDITIONS = ("phi15", "phi60")
+SMALL = Plan(points=32, starts=1, evaluations=80, polish=12)
+# Force at 0.02 mm 300 N, e 1.3, and damping that a few micrometres of penetration can show.
+TRUTH = {"contact.exponent": 1.3, "contact.stiffness": 300.0 / 2e-5**1.3, "contact.damping": 6000.0,
+         "friction.static": 0.13, "friction.dynamic": 0.13}
+
+
+@functools.cache
+def scene() -> scenes.Scene:
+    """The reference scene asked to fit two conditions, its constants wrong by 30 % and more; d is known."""
+    return scenes.load("reference").replace({
+        "agreement.fitted": list(CONDITIONS), "contact.damping_depth": "0.05 mm", "contact.damping": "3 N*s/mm"})
+
+
+@functools.cache
+def own_curves() -> dict[str, scenes.Trajectory]:
+    """The surrogate's own runs with the true constants."""
+    return {name: lowfi.run(scene().replace(TRUTH).condition(name)) for name in CONDITIONS}
