@@ -1,0 +1,142 @@
+"""Whole ejections on eight pads: the symmetric one, edges of the rail, promises, mirror image, and the plain rewrite as oracle."""
+
+import math
+
+import numpy as np
+import pytest
+
+import lowfi
+from lowfi import balance, oracle
+from scenes import ledger, load
+from tests.lowfi.support import ONE_PAD, PAPER_PAD, corners, scene
+
+SHORT = {"start": -0.2, "end": 0.3, "material": {"density": 2810.0, "youngs_modulus": 72e9, "poisson_ratio": 0.33}}
+ROD = {"xx": 0.3, "yy": 0.3, "zz": 0.3}
+CONDITIONS = [(name, condition) for name in ("reference", "sensitive") for condition in ("phi0", "phi35", "phi60", "phi90")]
+
+
+@pytest.mark.case("X2")
+@pytest.mark.parametrize("tolerance", [1e-6, 1e-9])
+def test_zero_clearance_and_centred_thrust(tolerance):
+    """Pads that just touch feel nothing from an axial push through the mass centre: J/m, no rates, no chatter."""
+    push = {"kind": "constant", "force": 2000.0, "duration": 0.05}
+    centred = scene(0.2, 1e-3, pads=corners(), rail=SHORT, contact=PAPER_PAD | {"clearance": 0.0}, thrust=push)
+    numerics = lowfi.Numerics(relative_tolerance=tolerance)
+    run = lowfi.run(centred, numerics=numerics)
+    assert run.status == "exited" and run.cost["events"] == 0
+    assert run.outcome.velocity == pytest.approx([5.0, 0.0, 0.0], rel=1e-9, abs=1e-9)
+    assert np.abs(run.rate).max() <= 1e-9 and np.abs(run.velocity[:, 1:]).max() <= 1e-9
+    assert (run.pad_force[0] == 0.0).all()
+    # Control: the same test sees a sideways speed of a micrometre per second.
+    nudged = lowfi.run(centred.replace({"initial.velocity.y": 1e-6}), numerics=numerics)
+    assert nudged.status == "exited" and np.abs(nudged.velocity[:, 1:]).max() > 1e-7 and nudged.cost["events"] > 0
+
+
+@pytest.mark.case("X3")
+@pytest.mark.parametrize("contact, stored, leaves", [
+    ({"law": "impact", "exponent": 1.0, "stiffness": 7e7, "damping": 0.0, "damping_depth": 3e-4}, 14.0e-3, 37.417e-3),
+    (PAPER_PAD | {"damping": 0.0}, 1.58392e-3, 12.585e-3)])
+def test_initial_interference(contact, stored, leaves):
+    """Pressed in by 20 um: E = k p^(e+1)/(e+1) per pad stands in the ledger from the start and becomes m v^2 / 2."""
+    # The body starts 20 um deeper than centred with no clearance.
+    run = lowfi.run(scene(0.02, 1e-5, contact=contact | {"clearance": 0.0}, initial={"position": {"z": -20e-6}, "velocity": {"x": 1.0}}))
+    assert run.energy[0, ledger.ENTRIES.index("contact_stored")] == pytest.approx(stored, rel=1e-5)
+    assert run.velocity[-1, 2] == pytest.approx(leaves, rel=1e-4)
+    assert "pads 0" in run.message
+    opposed = [{"position": (0.0, 0.0, side * 0.1), "normals": [sign]} for side, sign in ((-1, "-z"), (1, "+z"))]
+    both = lowfi.run(scene(0.004, 1e-4, pads=opposed, contact=contact | {"clearance": 0.0}))
+    assert np.abs(both.velocity).max() <= 1e-12
+
+
+@pytest.mark.case("X4")
+def test_grazing_contact_is_felt():
+    """A wall approached at 1 um/s while passing at 5 m/s, and a contact much shorter than a step."""
+    slow = lowfi.run(scene(0.02, 1e-4, contact=PAPER_PAD | {"clearance": 1e-9},
+                           initial={"velocity": {"x": 5.0, "z": -1e-6}}))
+    assert (slow.pad_force[:, 0, 2] > 0.0).any() and slow.cost["events"] >= 1
+    assert slow.checks["linear_momentum_error"] <= 1e-12
+    # A wall so stiff that the contact lasts 2 us, while the first step of free flight that meets it is a thousand times longer.
+    stiff = PAPER_PAD | {"exponent": 1.0, "stiffness": 7e13, "damping": 0.0, "clearance": 1e-3}
+    short = lowfi.run(scene(0.05, 1e-3, contact=stiff, initial={"velocity": {"x": 5.0, "z": -0.05}}))
+    assert short.velocity[-1, 2] == pytest.approx(0.05, rel=1e-5)
+
+
+@pytest.mark.case("X6")
+@pytest.mark.parametrize("contact, stored", [
+    ({"law": "impact", "exponent": 1.0, "stiffness": 7e7, "damping": 0.0, "damping_depth": 3e-4}, 1.78571e-3),
+    (PAPER_PAD | {"damping": 0.0}, 7.41785e-3)])
+def test_pad_leaves_the_rail_end_under_load(contact, stored):
+    """A pad pressed with 500 N passes the end: its energy is released or has become motion, and no force follows."""
+    depth = (500.0 / contact["stiffness"]) ** (1.0 / contact["exponent"])
+    end = {**SHORT, "end": 1e-9}
+    run = lowfi.run(scene(0.03, 1e-5, pads=ONE_PAD, contact=contact | {"clearance": 0.0}, rail=end,
+                          initial={"position": {"z": -depth}, "velocity": {"x": 5.0}}))
+    entry = {name: run.energy[:, index] for index, name in enumerate(ledger.ENTRIES)}
+    assert entry["contact_stored"][0] == pytest.approx(stored, rel=1e-5)
+    assert entry["released"][-1] == pytest.approx(stored, rel=1e-4) and entry["contact_stored"][-1] == 0.0
+    assert (run.pad_force[1:] == 0.0).all()
+    assert abs(run.velocity[-1, 2]) <= math.sqrt(2.0 * stored / 20.0)
+    assert run.checks["energy_error"] <= 1e-9
+
+
+@pytest.mark.parametrize("name, condition", CONDITIONS)
+def test_promises(name, condition):
+    """What every result file prints, on both catalogue scenes."""
+    run = lowfi.run(load(name).condition(condition))
+    assert run.status == "exited"
+    checks = run.checks
+    assert checks["energy_error"] <= 1e-6 and checks["transverse_energy_error"] <= 1e-4
+    assert checks["linear_momentum_error"] <= 1e-12 and checks["angular_momentum_error"] <= 1e-11
+    assert checks["quaternion_error"] <= 1e-12
+    assert checks["friction_power_max"] <= 0.0 and checks["damping_power_max"] <= 0.0
+    assert 0.0 < run.cost["limit_used"] <= 1.0 + 1e-9
+    assert run.pad_force.shape == (run.time.size, 16, 3) and (run.pad_force != 0.0).any()
+
+
+def test_a_hundredth_of_spurious_contact_energy_is_seen():
+    run = lowfi.run(load("sensitive").condition("phi60"))
+    false = run.transverse_energy.copy()
+    false[:, ledger.ENTRIES.index("contact_stored")] *= 1.01
+    assert ledger.transverse_error(false) > 1e-4 > 10.0 * run.checks["transverse_energy_error"]
+
+
+def test_a_lost_reaction_is_seen():
+    """A force of 1 N for 1 us that has no opposite breaks the momentum balance."""
+    rows = np.zeros((3, 50))
+    rows[:, balance.LINEAR] = (60.0, 60.0, 60.0 + 1e-6)
+    assert balance._unexplained(rows, balance.LINEAR, balance.GIVEN, rows[:, :3]) > 1e-9
+
+
+@pytest.mark.parametrize("name, condition", [("reference", "phi15"), ("reference", "phi35"), ("sensitive", "phi60")])
+def test_agrees_with_the_plain_rewrite(name, condition):
+    """Newton and Euler with fixed steps of 5 us, against the fast path at two tolerances."""
+    asked = load(name).condition(condition)
+    plain = oracle.solve(asked, 10)
+    for tolerance, error in ((2e-7, 1e-4), (1e-9, 5e-6)):
+        run = lowfi.run(asked, numerics=lowfi.Numerics(relative_tolerance=tolerance))
+        same = slice(0, run.time.size)
+        assert np.abs(run.rate - plain.rate[same]).max() <= error * np.abs(run.rate).max()
+        assert np.abs(run.velocity - plain.velocity[same]).max() <= error * np.abs(run.velocity[:, 1:]).max()
+    # Control: at 1 ms per step, which the thrust alone would allow, the same plain method misses the impacts.
+    coarse, count = oracle.solve(asked.replace({"output.interval": 1e-3}), 1).rate, run.time.size // 20
+    assert not np.abs(coarse[:count] - run.rate[::20][:count]).max() <= 1e-2 * np.abs(run.rate).max()
+
+
+def test_settled_rate_is_converged():
+    """At most 0.1 % from a tolerance a thousand times finer, and better by orders in between."""
+    asked, errors = load("sensitive").condition("phi35"), []
+    fine = np.array(lowfi.run(asked, numerics=lowfi.Numerics(relative_tolerance=2e-10)).outcome.rate)
+    for tolerance in (2e-5, 2e-7, 2e-9):
+        found = lowfi.run(asked, numerics=lowfi.Numerics(relative_tolerance=tolerance)).outcome.rate
+        errors.append(np.abs(found - fine).max() / np.abs(fine).max())
+    assert errors[1] <= 1e-3 and errors[2] < 0.1 * errors[1] and errors[1] < 0.1 * errors[0]
+
+
+def test_mirror_image():
+    """y to -y turns roll and yaw round and leaves pitch, whatever order the pads come in."""
+    asked = load("sensitive").condition("phi35")
+    mirror = asked.replace({"thrust_offset.misalignment.radial": "145 deg", "payload.inertia.xy": -asked.payload.inertia.xy})
+    one, other = lowfi.run(asked), lowfi.run(mirror)
+    scale = np.abs(one.outcome.rate).max()
+    assert np.array(other.outcome.rate) * (-1.0, 1.0, -1.0) == pytest.approx(np.array(one.outcome.rate), abs=1e-6 * scale)
+    assert np.array(other.outcome.velocity) * (1.0, -1.0, 1.0) == pytest.approx(np.array(one.outcome.velocity), abs=1e-8)
