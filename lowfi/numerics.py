@@ -17,7 +17,7 @@ class Numerics:
 
     relative_tolerance: float = 2e-7
     speed_floor: float = 1e-3
-    maximum_steps: int = 5_000_000
+    maximum_steps: int = 500_000
 
     def __post_init__(self):
         faults = []

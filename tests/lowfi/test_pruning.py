@@ -1,0 +1,30 @@
+"""An absent effect is not in the compiled kernels."""
+
+import os
+import subprocess
+import sys
+
+COUNT = """
+import numpy as np
+from lowfi import equations, limits, state, system
+from scenes import load, model
+from scenes.effects.friction import coefficient_over_speed
+def evaluate(scene):
+    built = model.build(scene)
+    records, begin = system.build(built), state.initial(built)
+    felt = np.ones(16, dtype=np.bool_)
+    equations.derivative(records, felt, 0.0, begin, np.empty_like(begin))
+    limits.fastest_rate(records.contact, records.friction, records.faces, records.platform, records.payload, felt, begin)
+    return len(coefficient_over_speed.signatures)
+reference = load("reference")
+print(evaluate(reference.replace({"friction": None, "platform": None})), evaluate(reference.replace({"platform": None})))
+"""
+
+
+def test_pruned_kernels_know_no_friction(tmp_path):
+    """In a fresh interpreter and cache: without the table nothing compiles the friction law, with it something does."""
+    ran = subprocess.run([sys.executable, "-c", COUNT], capture_output=True, text=True, timeout=300,
+                         env=os.environ | {"NUMBA_CACHE_DIR": str(tmp_path)})
+    assert ran.returncode == 0, ran.stderr
+    without, with_friction = map(int, ran.stdout.split())
+    assert without == 0 and with_friction > 0
