@@ -14,6 +14,7 @@ from scenes.scene import Scene
 from scenes.trajectory import Trajectory
 
 _ON_BOUND = 1e-3  # share of the bounds within which a value counts as lying on one
+_NOTHING = 1e-12  # rounding of the information matrix, of its largest eigenvalue
 
 
 def residuals(part: Parts, wanted: Target) -> dict[str, float]:
@@ -34,8 +35,10 @@ def weak_directions(scene: Scene, free: list[Parameter], held: list[Parameter], 
     sentences = information.weak_directions(inner, names)
     for index, item in enumerate(held, start=count):
         left, alone = information.left_alone(matrix, index), matrix[index, index]
-        sentences.append(f"{item.name} held at {item.read(scene):.4g} {item.unit}: of its information {alone:.2g} only {left:.2g} is left "
-                         f"when the others are fitted again, {left / largest if largest > 0.0 else 0.0:.1e} of the largest eigenvalue")
+        ratio = left / largest if largest > 0.0 else 0.0
+        told = "at these constants it has no effect" if ratio < _NOTHING else (
+            f"of its information {alone:.2g} only {left:.2g} is left when the others are fitted again, {ratio:.1e} of the largest eigenvalue")
+        sentences.append(f"{item.name} held at {item.read(scene):.4g} {item.unit}: {told}")
     for item, share in zip(free, shares):
         if not _ON_BOUND < share < 1.0 - _ON_BOUND:
             side = "lower" if share < 0.5 else "upper"
