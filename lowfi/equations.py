@@ -69,11 +69,15 @@ def add_thrust(thrust, offset, platform, reacts, time, body, base, out):
 def line_of_action(offset, size, body):
     """Thrust (N) and a point of its line (m) in scene axes; without an offset the line passes through the mass centre."""
     if offset is not None:
-        d = offset.direction
-        arm = rotation.rotate(body.turn, offset.arm)
-        point = (body.place[0] + arm[0], body.place[1] + arm[1], body.place[2] + arm[2])
-        return rotation.rotate(body.turn, (size * d[0], size * d[1], size * d[2])), point
+        return _offset_line(offset, size, body)
     return (size * body.turn[0], size * body.turn[3], size * body.turn[6]), body.place
+
+
+@njit
+def _offset_line(offset, size, body):
+    d, arm = offset.direction, rotation.rotate(body.turn, offset.arm)
+    point = (body.place[0] + arm[0], body.place[1] + arm[1], body.place[2] + arm[2])
+    return rotation.rotate(body.turn, (size * d[0], size * d[1], size * d[2])), point
 
 
 @njit

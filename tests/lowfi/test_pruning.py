@@ -4,6 +4,11 @@ import os
 import subprocess
 import sys
 
+import pytest
+
+import lowfi
+from scenes import load
+
 COUNT = """
 import numpy as np
 from lowfi import equations, limits, state, system
@@ -28,3 +33,10 @@ def test_pruned_kernels_know_no_friction(tmp_path):
     assert ran.returncode == 0, ran.stderr
     without, with_friction = map(int, ran.stdout.split())
     assert without == 0 and with_friction > 0
+
+
+@pytest.mark.parametrize("absent", [(), ("friction", "platform", "contact", "thrust_offset")])
+def test_compiled_effects_are_those_of_the_scene(absent):
+    """Read from the machine code: contact and with it friction, platform and offset are there or not; gravity never."""
+    found = lowfi.compiled_effects(load("reference").replace({name: None for name in absent}))
+    assert found == {name: name not in absent and name != "gravity" for name in found}
