@@ -5,6 +5,7 @@ imported by the command that needs them, so that ``--help`` answers at once.
 """
 
 import json
+import os
 import re
 import sys
 from dataclasses import replace
@@ -84,7 +85,8 @@ def _guarded(work: Callable[[], dict], as_json: bool = False) -> dict:
     except StudyError as fault:
         _stop(str(fault), 1)
     except KeyboardInterrupt:
-        _stop("stopped; what was finished is kept, and the same command goes on from there", 130)
+        print("tipoff: stopped; what was finished is kept, and the same command goes on from there", file=sys.stderr, flush=True)
+        os._exit(130)  # at once: files are complete at any moment, and a thread that compiles would hold the process for seconds
     except ValueError as fault:
         if type(fault).__name__ not in ("MeshError", "StepError"):
             raise

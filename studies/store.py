@@ -88,7 +88,7 @@ class Store:
     def fill(self, title: str, runs: Sequence[Run]) -> list[Trajectory]:
         """Results of ``runs`` in their order; those missing are run, ``workers`` at a time, with progress on standard error.
 
-        On Ctrl-C running kernels are stopped, finished results stay, and KeyboardInterrupt goes on to the caller.
+        On Ctrl-C running kernels are told to stop, finished results stay, and KeyboardInterrupt goes on to the caller.
         """
         found = {run.key: trajectory for run in runs if (trajectory := self.load(run)) is not None}
         missing = list({run.key: run for run in runs if run.key not in found}.values())
@@ -100,15 +100,18 @@ class Store:
         for run in runs:
             prepare(run)
         made: dict[str, Trajectory] = {}
-        with Board(title, len(runs)) as board, ThreadPoolExecutor(self.workers) as pool:
+        pool = ThreadPoolExecutor(self.workers)
+        with Board(title, len(runs)) as board:
             pending = {pool.submit(self._one, run, board): run for run in runs}
             try:
                 for future in as_completed(pending):
                     made[pending[future].key] = future.result()
             except BaseException:
+                # Kernels stop at their next report; nobody waits for one that is still being compiled.
                 board.stop()
-                pool.shutdown(wait=True, cancel_futures=True)
+                pool.shutdown(wait=False, cancel_futures=True)
                 raise
+        pool.shutdown()
         return made
 
     def _one(self, run: Run, board: Board) -> Trajectory:

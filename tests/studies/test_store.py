@@ -114,6 +114,9 @@ def test_ctrl_c_ends_running_kernels(study, monkeypatch):
     monkeypatch.setattr(store_module, "as_completed", _interrupted)
     with pytest.raises(KeyboardInterrupt):
         study.store.fill("highfi", [study.highfi("phi15"), study.highfi("phi60")])
+    deadline = time.monotonic() + 10.0
+    while len(ended) < 2 and time.monotonic() < deadline:
+        time.sleep(0.01)
     assert sorted(ended) == ["phi15", "phi60"]
     assert not list(study.folder.rglob("*.nc"))
 
