@@ -10,7 +10,7 @@ Both are measured on a few conditions; the others take the largest of those and 
 from dataclasses import dataclass
 
 from scenes.trajectory import Trajectory
-from studies.metrics import Difference, compare, settled_rate_errors
+from studies.metrics import compare, settled_rate_errors
 
 GATES = {"rate_relative_l2": 0.05, "velocity_relative_l2": 0.001, "settled_rate_error_deg_s": 0.1}
 CONVERGED_DEG_S = 0.1
@@ -85,7 +85,8 @@ def row(condition: str, role: str, reference: Trajectory, surrogate: Trajectory,
             "reference_uncertainty_deg_s": uncertainty, "reference_uncertainty_by_cause_deg_s": causes,
             "reference_uncertainty_measured_here": uncertainty_measured, "reference_converged": converged,
             "gates": gates, "passes": all(item["passes"] for item in gates.values()),
-            "verdict": verdict(difference, gates, converged)}
+            "touches": bool(reference.pad_force.any()),
+            "verdict": verdict(gates, converged, bool(reference.pad_force.any()))}
 
 
 def gate(value: float | None, limit: float) -> dict:
@@ -94,13 +95,13 @@ def gate(value: float | None, limit: float) -> dict:
             "times_limit": None if value is None else value / limit}
 
 
-def verdict(difference: Difference, gates: dict[str, dict], converged: bool) -> str:
-    """One phrase: the reference first, for without it the rest means little."""
+def verdict(gates: dict[str, dict], converged: bool, touches: bool = True) -> str:
+    """One phrase: the reference first, for without it the rest means little. Free flight tests no contact law, and says so."""
     if not converged:
         return NOT_CONVERGED
     missed = [f"{_SHORT[name]} {'unknown' if item['times_limit'] is None else format(item['times_limit'], '.3g') + ' x limit'}"
               for name, item in gates.items() if not item["passes"]]
-    return "misses: " + ", ".join(missed) if missed else "agrees"
+    return "misses: " + ", ".join(missed) if missed else "agrees" if touches else "agrees (no pad touches)"
 
 
 _SHORT = {"rate_relative_l2": "rate L2", "velocity_relative_l2": "v_x L2", "settled_rate_error_deg_s": "settled rate"}

@@ -137,6 +137,8 @@ def _dress(axes, panel: Panel) -> None:
         axes.set_yscale("log")
         axes.set_xlim(_limits(panel)[0])
         axes.set_ylim(_limits(panel)[1])
+        axes.xaxis.set_minor_formatter("")
+        axes.yaxis.set_minor_formatter("")
     if panel.band:
         axes.axhspan(_limits(panel)[1][0] if panel.log else 0.0, panel.band[0], color=GREY, alpha=0.16, linewidth=0)
         axes.annotate(panel.band[1], (0.98, 0.02), xycoords="axes fraction", ha="right", va="bottom", fontsize=8)

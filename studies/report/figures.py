@@ -21,7 +21,7 @@ class Runs(NamedTuple):
     calibrated: dict[str, Trajectory]
 
 
-# Width, dash, opacity: the reference is a broad pale line under the thin ones of the surrogate.
+# In the order of the legend. Width, dash, opacity: the reference is a broad pale line under the thin ones of the surrogate.
 _STYLES = {"highfi": ("finite elements", 5.0, "-", 0.35), "calibrated": ("surrogate, calibrated", 1.5, "-", 1.0),
            "uncalibrated": ("surrogate, uncalibrated", 1.1, ":", 0.9)}
 
@@ -37,13 +37,13 @@ def thrust_curve(scene: Scene) -> Chart:
 def figure6(runs: Runs, conditions: list[str]) -> Chart:
     """The paper's Figure 6: v_x, then the three rates of each fitted condition, both models."""
     shades = dict(zip(conditions, (NAVY, VERMILION, AMBER, TEAL, GREY) * 4))
-    speed = [_line(run.time, run.velocity[:, 0], f"{shades[name]}", kind, legend=False)
-             for kind, found in runs._asdict().items() for name, run in found.items() if name in shades]
+    speed = [_line(run.time, run.velocity[:, 0], shades[name], kind, legend=False)
+             for kind in _STYLES for name, run in getattr(runs, kind).items() if name in shades]
     panels = [Panel("(a) velocity along X, all conditions", _MILLISECONDS, "v_x (m/s)", speed)]
     for letter, name in zip("bcdefghijk", conditions):
-        lines = [_line(found[name].time, np.degrees(found[name].rate[:, i]), colour, kind, f"rate about {axis.upper()}, ")
-                 for kind, found in runs._asdict().items() if name in found
-                 for i, (axis, colour) in enumerate(AXIS_COLOURS.items())]
+        known = {kind: getattr(runs, kind)[name] for kind in _STYLES if name in getattr(runs, kind)}
+        lines = [_line(run.time, np.degrees(run.rate[:, i]), colour, kind, f"rate about {axis.upper()}, ")
+                 for kind, run in known.items() for i, (axis, colour) in enumerate(AXIS_COLOURS.items())]
         panels.append(Panel(f"({letter}) {name}", _MILLISECONDS, "rate (deg/s)", lines))
     return Chart("figure6", panels, columns=3 if len(panels) > 4 else 2, height=290)
 

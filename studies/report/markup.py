@@ -35,7 +35,7 @@ def number(value: float | None, digits: int = 3) -> str:
 
 def percent(value: float | None, digits: int = 3) -> str:
     """A fraction as a percentage."""
-    return "–" if value is None else f"{100.0 * value:.{digits}g}"
+    return "–" if value is None else number(100.0 * value, digits)
 
 
 def table(heads: Sequence[str], rows: Iterable[Sequence], identity: str = "", kinds: Sequence[str] | None = None,

@@ -21,7 +21,7 @@ table { border-collapse: collapse; font-size: 14px; line-height: 1.4; }
 th { text-align: left; vertical-align: bottom; font-weight: 600; border-bottom: 1.5px solid var(--ink); padding: 5px 12px 5px 6px; }
 td { vertical-align: top; border-bottom: 1px solid var(--rule); padding: 4px 12px 4px 6px; }
 td.number { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
-table.dense { font-size: 13px; } .dense th { padding-right: 8px; } .dense td { padding-right: 8px; }
+table.dense { font-size: 13px; } .dense td:last-child { min-width: 190px; } .dense th { padding-right: 8px; } .dense td { padding-right: 8px; }
 tbody tr:nth-child(even) { background: var(--tint); }
 tr.good td:last-child::before { content: "\\2713\\00a0"; }
 tr.bad td:last-child { font-weight: 600; }

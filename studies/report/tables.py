@@ -40,8 +40,13 @@ def _summary(document: dict) -> Html:
         passed = sum(row["passes"] for row in rows)
         doubtful = sum(not row["reference_converged"] for row in rows)
         sentences.append(f"{passed} of {len(rows)} {words} conditions pass all three gates"
-                         + (f" ({doubtful} of {len(rows)} with a reference that is not converged)" if doubtful else ""))
+                         + _free(rows) + (f" ({doubtful} of {len(rows)} with a reference that is not converged)" if doubtful else ""))
     return paragraph("; ".join(sentences) + ".")
+
+
+def _free(rows: list[dict]) -> str:
+    count = sum(row["passes"] and not row["touches"] for row in rows)
+    return f", {count} of them without touching the rail at all" if count else ""
 
 
 def _agreement_row(row: dict) -> tuple:

@@ -8,9 +8,9 @@ from studies.agreement import Context, Spread
 from tests.studies.synthetic import flight
 
 
-def constant(*rate):
+def constant(*rate, **parts):
     """A run whose rates are constant (deg/s)."""
-    return flight(lambda t: np.tile(np.radians(rate), (t.size, 1)))
+    return flight(lambda t: np.tile(np.radians(rate), (t.size, 1)), **parts)
 
 
 CONVERGED = [Spread("phi15", "reference", "mesh", 0.001, 0.02), Spread("phi15", "reference", "penalty", 0.002, 0.05)]
@@ -19,7 +19,8 @@ FLOORS = [Spread("phi15", "reference", "clearance", 0.004, 0.01), Spread("phi15"
 
 
 def row(other, refinements=CONVERGED, condition="phi15"):
-    return agreement.row(condition, "held_out", constant(3.0, 0.0, 4.0), other, Context(FLOORS, refinements))
+    touched = constant(3.0, 0.0, 4.0, pad_force=np.ones((601, 16, 3)))
+    return agreement.row(condition, "held_out", touched, other, Context(FLOORS, refinements))
 
 
 def test_row_holds_every_key_other_tools_read():
@@ -33,6 +34,11 @@ def test_agreement_within_all_gates():
     assert found["passes"] and found["verdict"] == "agrees"
     assert found["rate_relative_l2"] == pytest.approx(0.01, rel=1e-9)
     assert found["settled_rate_error_deg_s"] == pytest.approx(0.05, rel=1e-9)
+
+
+def test_agreement_in_free_flight_says_that_nothing_was_tested():
+    found = agreement.row("phi15", "fitted", constant(3.0, 0.0, 4.0), constant(3.0, 0.0, 4.0), Context(FLOORS, CONVERGED))
+    assert not found["touches"] and found["verdict"] == "agrees (no pad touches)"
 
 
 def test_missed_gate_says_by_how_much():
