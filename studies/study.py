@@ -86,9 +86,9 @@ class Study:
         return path.relative_to(self.folder).as_posix()
 
     def key(self, sources: Iterable[str], *inputs: Any) -> str:
-        """Digest of the scene with its conditions and roles, settings, sources and further inputs."""
+        """Digest of the scene with its conditions and roles, settings, sources (those of the studies always), further inputs."""
         described = self.scene.model_dump(mode="json", include={"name", "conditions", "agreement", "provenance"})
-        return content_hash(self.scene.hash, described, self.settings.hash, list(self.only), code_hash(*sources), inputs)
+        return content_hash(self.scene.hash, described, self.settings.hash, list(self.only), code_hash(*sorted({*sources, "studies"})), inputs)
 
     def stage(self, name: str, key: str, make: Callable[[], tuple[dict, list[Path]]]) -> dict:
         """The stage's result: read when it was made under the same key and its files are whole, else made and written.
