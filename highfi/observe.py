@@ -71,14 +71,15 @@ def sample(system, state: records.State, before: Moving, after: Moving) -> np.nd
 def _strain(rail, displacement) -> float:
     force = np.zeros(displacement.shape, order="F")
     elastic_force(rail, displacement, force)
-    return 0.5 * float(np.vdot(displacement, force))
+    # Not a BLAS product: its threads would wait for each other where several runs share the processor.
+    return 0.5 * float((displacement * force).sum())
 
 
 def _kinetic(system, turn, base, before: Moving, after: Moving) -> tuple[float, float]:
     """Kinetic energy (J) of everything, and its axial part."""
     payload, frame = system.model.payload, system.frame
     nodes = (before.nodes * after.nodes).sum(axis=1)
-    kinetic = 0.5 * (payload.mass * before.velocity @ after.velocity + system.moving_mass @ nodes)
+    kinetic = 0.5 * (payload.mass * before.velocity @ after.velocity + (system.moving_mass * nodes).sum())
     kinetic += _spin_energy(turn, payload.inverse_inertia, before.spin, after.spin)
     axial = 0.5 * payload.mass * before.velocity[0] * after.velocity[0]
     if frame is not None:
