@@ -11,6 +11,8 @@ from scenes.trajectory import Trajectory
 from studies.cli import app
 from studies.stages import ablation
 
+pytestmark = pytest.mark.timeout(1500)  # nearly all of it compiles kernels, side by side with other test files
+
 ROW = {"condition", "velocity_relative_l2", "rate_relative_l2", "iso18571", "settled_rate_error_deg_s", "settled_rate_error_xyz_deg_s",
        "floor_deg_s", "floor_l2", "reference_uncertainty_deg_s"}
 RUN = {"condition", "status", "wall_s", "compile_s", "steps", "dt_s", "energy_error", "transverse_energy_error", "linear_momentum_error",
