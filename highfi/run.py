@@ -155,7 +155,7 @@ class Loop:
         across = (state.payload.velocity @ turn)[1:]
         return float(np.linalg.norm(state.velocity[:, 1:] - across, axis=1).max() + spin * reach)
 
-    def _motion(self) -> samples.Motion:
+    def _motion(self) -> outcome.Motion:
         return samples.motion(np.array(self.rows), self.scene.output.interval, self.system.body_offset)
 
     def _end(self) -> int:

@@ -1,25 +1,10 @@
 """From sample vectors to ledgers, momentum checks and the motion a Trajectory holds."""
 
-from typing import NamedTuple
-
 import numpy as np
 
 from highfi import observe, records
 from scenes import ledger, rotation
-
-
-class Motion(NamedTuple):
-    """Sampled motion, named as in Trajectory."""
-
-    time: np.ndarray
-    position: np.ndarray
-    velocity: np.ndarray
-    quaternion: np.ndarray
-    rate: np.ndarray
-    platform_position: np.ndarray
-    platform_velocity: np.ndarray
-    platform_quaternion: np.ndarray
-    platform_rate: np.ndarray
+from scenes.outcome import Motion
 
 
 def motion(samples: np.ndarray, interval: float, body_offset: np.ndarray) -> Motion:

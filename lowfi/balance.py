@@ -1,29 +1,14 @@
 """From samples to the motion a Trajectory holds, its ledgers and its checks."""
 
-from typing import NamedTuple
-
 import numpy as np
 
 from lowfi import state
 from lowfi.march import DAMPING_POWER, FRICTION_POWER
 from lowfi.sample import ANGULAR, AXIAL_KINETIC, GIVEN, KINETIC, LINEAR, RATE, STORED, WORKS
 from scenes import ledger
+from scenes.outcome import Motion
 
 _ENTRY = {name: index for index, name in enumerate(ledger.ENTRIES)}
-
-
-class Motion(NamedTuple):
-    """Sampled motion, named as in Trajectory."""
-
-    time: np.ndarray
-    position: np.ndarray
-    velocity: np.ndarray
-    quaternion: np.ndarray
-    rate: np.ndarray
-    platform_position: np.ndarray
-    platform_velocity: np.ndarray
-    platform_quaternion: np.ndarray
-    platform_rate: np.ndarray
 
 
 def motion(rows: np.ndarray, first: int, interval: float) -> Motion:

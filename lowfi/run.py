@@ -96,7 +96,7 @@ class Run:
         elif outcome.is_jammed(recent, self.marks):
             self.end = self.taken - 1
 
-    def _motion(self, first: int = 0) -> balance.Motion:
+    def _motion(self, first: int = 0) -> outcome.Motion:
         return balance.motion(self.rows[first:self.taken], first, self.interval)
 
     def trajectory(self) -> Trajectory:

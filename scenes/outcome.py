@@ -20,6 +20,20 @@ SETTLE_WINDOW = 2e-3
 JAM_DURATION = 5e-3
 
 
+class Motion(NamedTuple):
+    """Sampled motion, named as in Trajectory."""
+
+    time: np.ndarray
+    position: np.ndarray
+    velocity: np.ndarray
+    quaternion: np.ndarray
+    rate: np.ndarray
+    platform_position: np.ndarray
+    platform_velocity: np.ndarray
+    platform_quaternion: np.ndarray
+    platform_rate: np.ndarray
+
+
 class Outcome(NamedTuple):
     """Exit time (s), settled window start (s), means over it: velocity (m/s), rate (rad/s); lateral velocity (m/s), direction
     error of the velocity (rad) and attitude at exit as a rotation vector (rad). All None unless the payload exited and settled."""
