@@ -19,4 +19,4 @@ def compiled_effects(scene: Scene, numerics: Numerics | None = None) -> dict[str
     system = build(scene, numerics, prepare(scene, numerics))
     loop = Loop(scene, system, choose(system, scene, numerics))
     code = machine_code(advance, (*loop.arguments(), 0, 0, 1e-9))
-    return {effect: law in code for effect, law in LAWS.items()}
+    return {effect: law.encode() in code for effect, law in LAWS.items()}

@@ -38,11 +38,16 @@ numba.config.CACHE_DIR = str(_cache_directory())
 njit = functools.partial(numba.njit, cache=True, error_model="numpy", nogil=True)
 
 
-def machine_code(kernel, arguments: tuple) -> str:
-    """Assembly text of ``kernel`` compiled anew for the types of ``arguments``: what is not named in it cannot be called.
+def machine_code(kernel, arguments: tuple) -> bytes:
+    """Object code of ``kernel`` for the types of ``arguments``, the very code that runs: what it does not name, it cannot call.
 
-    Compiled without the disk cache, because code read back from it cannot be inspected.
+    Read from the disk cache, since Numba keeps no copy of code once it is loaded. Raises RuntimeError without a cache.
     """
-    fresh = numba.njit(error_model="numpy", nogil=True)(kernel.py_func)
-    fresh.compile(tuple(numba.typeof(argument) for argument in arguments))
-    return fresh.overloads[fresh.signatures[0]].library.get_asm_str()
+    signature = tuple(numba.typeof(argument) for argument in arguments)
+    kernel.compile(signature)
+    cache = kernel._cache
+    stored = cache._cache_file.load(cache._index_key(signature, kernel.targetctx.codegen()))
+    if stored is None:
+        raise RuntimeError(f"no compiled {kernel.__name__} in {cache.cache_path}")
+    (_, _, (code, _)), *_ = stored
+    return code

@@ -166,7 +166,7 @@ def ablation(document: dict) -> Html:
              "effects in the compiled kernel")
     rows = [(row["fidelity"], row["variant"], row["status"], f"{row['time_s']:.3g}", f"{row['time_ratio']:.2f}", f"{row['ns_per_step']:,.0f}",
              _three(row["settled_rate_deg_s"], ""), _three(row["settled_rate_change_deg_s"], "+"),
-             "not reported" if row["compiled"] is None else ", ".join(row["compiled"]) or "none") for row in document["rows"]]
+             ", ".join(row["compiled"]) or "none") for row in document["rows"]]
     return section("ablation", "Only what the scene calls for", table(heads, rows), caption(
         f"Condition {document['condition']}; reference on {1e3 * document['element_size_m']:g} mm elements, surrogate uncalibrated. "
         "Times are processor times, without compilation. The first line of each model has every effect on, those the scene lacks with "

@@ -71,32 +71,21 @@ def _surrogate(study: Study, name: str, lines: dict[str, dict]):
 
 
 def _rows(fidelity: str, lines: dict[str, dict], asked: list[Run], runs: list[Trajectory], times: list[float]) -> list[dict]:
-    rows, known = [], {}
+    rows = []
     for line, item, run, seconds in zip(lines, asked, runs, times):
         rate, baseline = run.outcome.rate, runs[0].outcome.rate
         change = None if rate is None or baseline is None else np.degrees(np.subtract(rate, baseline)).tolist()
         rows.append({"fidelity": fidelity, "variant": line, "status": run.status, "time_s": seconds,
                      "ns_per_step": 1e9 * seconds / max(run.cost["steps"], 1), "time_ratio": seconds / times[0],
                      "settled_rate_deg_s": None if rate is None else np.degrees(rate).tolist(),
-                     "settled_rate_change_deg_s": change, "compiled": compiled(item, known)})
+                     "settled_rate_change_deg_s": change, "compiled": compiled(item)})
     return rows
 
 
-def compiled(run: Run, known: dict) -> list[str] | None:
-    """Effects whose code is in the kernel compiled for ``run``, as the fidelity reads them off it; None if it cannot.
-
-    Reading takes a compilation, so scenes that differ in values only share one through ``known``.
-    """
-    ask = getattr(importlib.import_module(run.fidelity), "compiled_effects", None)
-    if ask is None:
-        return None
-    scene, absent = run.scene, set(run.scene.absent_effects()) - {"initial"}
-    # One record carries both offsets of the line of thrust.
-    lines = absent - {"thrust_offset", "mass_offset"} | ({"both offsets"} if {"thrust_offset", "mass_offset"} <= absent else set())
-    kind = (scene.thrust.kind, scene.contact and scene.contact.law, *sorted(lines))
-    if kind not in known:
-        known[kind] = sorted(effect for effect, present in ask(scene, run.numerics).items() if present)
-    return known[kind]
+def compiled(run: Run) -> list[str]:
+    """Effects whose code is in the kernel compiled for ``run``, as the fidelity reads them off it."""
+    present = importlib.import_module(run.fidelity).compiled_effects(run.scene, run.numerics)
+    return sorted(effect for effect in present if present[effect])
 
 
 def _tag(line: str) -> str:

@@ -60,7 +60,7 @@ def test_spurious_contact_energy_is_seen():
     while created == 0.0:
         loop.advance_one_sample()
         stored = loop.state.load[records.STORED]
-        if stored > 1e-7:
+        if stored > 3e-6:
             created = 0.01 * stored
     loop.system = loop.system._replace(model=loop.system.model._replace(penalty=1.01 * loop.system.model.penalty))
     loop.march(None)

@@ -67,15 +67,3 @@ def test_weaker_methods_have_their_order(method, order):
         return np.hypot(x - np.cos(1.0), v + np.sin(1.0))
 
     assert np.log2(error(40) / error(80)) == pytest.approx(order, abs=0.1)
-
-
-def test_kernels_are_read_once_per_set_of_effects(tmp_path, monkeypatch):
-    import highfi
-
-    asked = []
-    monkeypatch.setattr(highfi, "compiled_effects", lambda scene, numerics: asked.append(scene) or {"contact": scene.contact is not None})
-    study, known = Study(scenes.load("tiny"), tmp_path, defaults("tiny")), {}
-    lines = {name: ablation.compiled(study.highfi("phi15", overrides), known)
-             for name, overrides in ablation.variants(study.condition("phi15")).items()}
-    assert len(asked) == 6 < len(lines)
-    assert lines["without contact"] == [] and lines["all effects"] == lines["without initial"] == ["contact"]
