@@ -12,11 +12,11 @@ import numpy as np
 from scipy.sparse import coo_array, csr_array
 
 from highfi import element
+from highfi.memory import aligned
 from highfi.mesh import RailMesh, edge_lengths
 
 _SAME_SHAPE = 1e-9  # of the shortest edge: corner coordinates that differ by less make one class
 _BATCH = 2048  # classes integrated at once; bounds the memory of an unstructured mesh
-_CACHE_LINE = 64  # bytes
 
 
 class Operator(NamedTuple):
@@ -53,7 +53,7 @@ def build(mesh: RailMesh, density: float, youngs_modulus: float, poisson_ratio: 
     free = np.ones(len(mesh.points), dtype=np.bool_)
     for name in fixed:
         free[mesh.surfaces[name]] = False
-    return Operator(mesh.hexes.astype(np.uint32), shape_class, _aligned(stiffness), corner_mass, mass, free)
+    return Operator(mesh.hexes.astype(np.uint32), shape_class, aligned(stiffness), corner_mass, mass, free)
 
 
 def shape_classes(mesh: RailMesh) -> tuple[np.ndarray, np.ndarray]:
@@ -63,15 +63,6 @@ def shape_classes(mesh: RailMesh) -> tuple[np.ndarray, np.ndarray]:
     shape = np.round((corners - corners[:, :1]) / grid).reshape(len(corners), -1)
     _, representatives, shape_class = np.unique(shape, axis=0, return_index=True, return_inverse=True)
     return shape_class.reshape(-1).astype(np.uint32), representatives
-
-
-def _aligned(array: np.ndarray) -> np.ndarray:
-    """A copy that starts on a cache line: rows of 24 doubles then never straddle one, 44 instead of 54 ns per element."""
-    room = np.empty(array.nbytes + _CACHE_LINE, dtype=np.uint8)
-    start = -room.ctypes.data % _CACHE_LINE
-    copy = room[start:start + array.nbytes].view(array.dtype).reshape(array.shape)
-    copy[...] = array
-    return copy
 
 
 def sparse(operator: Operator) -> csr_array:

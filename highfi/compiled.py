@@ -10,7 +10,7 @@ from scenes.scene import Scene
 
 # A function that only this effect calls.
 LAWS = {"contact": "_press", "friction": "coefficient_over_speed", "gravity": "_add_weight",
-        "platform": "drift_nodes_in_frame", "thrust_offset": "_offset_line"}
+        "platform": "_move_in_frame", "thrust_offset": "_offset_line"}
 
 
 def compiled_effects(scene: Scene, numerics: Numerics | None = None) -> dict[str, bool]:
@@ -18,5 +18,5 @@ def compiled_effects(scene: Scene, numerics: Numerics | None = None) -> dict[str
     numerics = numerics or Numerics()
     system = build(scene, numerics, prepare(scene, numerics))
     loop = Loop(scene, system, choose(system, scene, numerics))
-    code = machine_code(advance, (*loop.arguments(), 0, 0, 1e-9))
+    code = machine_code(advance, (*loop.arguments(), loop.team, 0, 0, 0, 1e-9))
     return {effect: law.encode() in code for effect, law in LAWS.items()}

@@ -12,6 +12,8 @@ gap away is not looked at until something approaching at ``FASTEST_APPROACH`` co
 every sample.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 
 from highfi.records import DAMPING_RATIO, FRICTION_FORCE, MOMENT, MOMENT_ON_RAIL, NORMAL_FORCE, RELEASED, STORED
@@ -23,19 +25,42 @@ FASTEST_APPROACH = 10.0  # m/s across the rail: a face this far from every facet
 _MARGIN = 1e-3  # m along the rail by which the searched window is wider than the face
 
 
+class Touch(NamedTuple):
+    """The part of Rail and State that contact reads and writes: the whole records would be costly to compile."""
+
+    points: np.ndarray
+    inverse_mass: np.ndarray
+    displacement: np.ndarray
+    velocity: np.ndarray
+    resistance: np.ndarray
+    contact: np.ndarray
+    load: np.ndarray
+    work: np.ndarray
+    face_force: np.ndarray
+    reaction: np.ndarray
+
+
+@njit
+def touched(rail, state):
+    """What contact needs of a rail and its state."""
+    return Touch(rail.points, rail.inverse_mass, state.displacement, state.velocity, state.resistance, state.contact, state.load,
+                 state.work, state.face_force, state.reaction)
+
+
 @njit
 def contact_forces(rail, surface, faces, penalty, friction, state, active, pose, dt):
-    """Take contact from ``state.resistance`` and fill ``state.load``, ``state.face_force`` and ``active``; released energy to work."""
+    """Fill ``state.contact``, ``state.load``, ``state.face_force`` and ``active``; released energy goes to work."""
     state.load[:] = 0.0
     state.face_force[:] = 0.0
     if penalty is not None:
-        release_over_the_edge(rail, surface, faces, state, active, pose)
+        touch = touched(rail, state)
+        release_over_the_edge(touch, surface, faces, active, pose)
         active.count[0] = 0
-        _all_faces(rail, surface, faces, penalty, friction, state, active, pose, dt)
+        _all_faces(touch, surface, faces, penalty, friction, active, pose, dt)
 
 
 @njit
-def _all_faces(rail, surface, faces, penalty, friction, state, active, pose, dt):
+def _all_faces(touch, surface, faces, penalty, friction, active, pose, dt):
     for face in range(faces.axis.size):
         if active.wait[face] > 0:
             active.wait[face] -= 1
@@ -50,10 +75,10 @@ def _all_faces(rail, surface, faces, penalty, friction, state, active, pose, dt)
         gap = _MARGIN
         for k in range(low, high):
             facet = surface.reach[k]
-            height = _lowest_corner(rail, surface, faces, face, facet, state.displacement, pose)
+            height = _lowest_corner(touch, surface, faces, face, facet, touch.displacement, pose)
             gap = min(gap, height)
             if height < 0.0:
-                _facet_points(rail, surface, faces, face, facet, penalty, friction, state, active, pose, dt)
+                _facet_points(touch, surface, faces, face, facet, penalty, friction, active, pose, dt)
         active.wait[face] = max(0, int(gap / (FASTEST_APPROACH * dt)) - 1)
 
 
@@ -63,7 +88,7 @@ def _to_payload(pose, x):
 
 
 @njit
-def _lowest_corner(rail, surface, faces, face, facet, displacement, pose):
+def _lowest_corner(touch, surface, faces, face, facet, displacement, pose):
     """Smallest outward height (m) of the facet's corners over the uncrowned plane of the face; negative inside."""
     axis, sign = faces.axis[face], faces.sign[face]
     # Only one row of the rotation is needed.
@@ -71,9 +96,9 @@ def _lowest_corner(rail, surface, faces, face, facet, displacement, pose):
     lowest = np.inf
     for corner in range(4):
         node = surface.facets[facet, corner]
-        place = (nx * (rail.points[node, 0] + displacement[node, 0] - pose.centre[0])
-                 + ny * (rail.points[node, 1] + displacement[node, 1] - pose.centre[1])
-                 + nz * (rail.points[node, 2] + displacement[node, 2] - pose.centre[2]))
+        place = (nx * (touch.points[node, 0] + displacement[node, 0] - pose.centre[0])
+                 + ny * (touch.points[node, 1] + displacement[node, 1] - pose.centre[1])
+                 + nz * (touch.points[node, 2] + displacement[node, 2] - pose.centre[2]))
         lowest = min(lowest, sign * (place - faces.centre[face, axis]))
     return lowest
 
@@ -91,9 +116,9 @@ def interpolate(surface, facet, q, values):
 
 
 @njit
-def place_of(rail, surface, facet, q, displacement):
+def place_of(touch, surface, facet, q, displacement):
     """Deformed place (m) of a Gauss point in frame axes."""
-    x = interpolate(surface, facet, q, rail.points)
+    x = interpolate(surface, facet, q, touch.points)
     u = interpolate(surface, facet, q, displacement)
     return (x[0] + u[0], x[1] + u[1], x[2] + u[2])
 
@@ -118,19 +143,19 @@ def _local(faces, face, y):
 
 
 @njit
-def _facet_points(rail, surface, faces, face, facet, penalty, friction, state, active, pose, dt):
+def _facet_points(touch, surface, faces, face, facet, penalty, friction, active, pose, dt):
     for q in range(surface.shape.shape[0]):
-        x = place_of(rail, surface, facet, q, state.displacement)
+        x = place_of(touch, surface, facet, q, touch.displacement)
         xi, eta, height = _local(faces, face, _to_payload(pose, x))
         if height < 0.0 and abs(xi) <= 1.0 and abs(eta) <= 1.0:
             penetration = -height - faces.relief[face] * (xi * xi * xi * xi + eta * eta * eta * eta)
             if penetration > 0.0:
-                _press(rail, surface, faces, face, facet, q, penalty, friction, state, active, pose, x, xi, eta,
+                _press(touch, surface, faces, face, facet, q, penalty, friction, active, pose, x, xi, eta,
                        penetration, dt)
 
 
 @njit
-def _press(rail, surface, faces, face, facet, q, penalty, friction, state, active, pose, x, xi, eta, penetration, dt):
+def _press(touch, surface, faces, face, facet, q, penalty, friction, active, pose, x, xi, eta, penetration, dt):
     axis = faces.axis[face]
     weight = penalty * surface.area[facet, q]
     slope_x = 4.0 * faces.relief[face] * xi * xi * xi / faces.half_length[face]
@@ -142,14 +167,14 @@ def _press(rail, surface, faces, face, facet, q, penalty, friction, state, activ
     push = weight * penetration
     g = rotation.rotate(pose.turn, gradient)
     on_rail = (push * g[0], push * g[1], push * g[2])
-    slide = sliding_velocity(surface, facet, q, x, state.velocity, pose)
+    slide = sliding_velocity(surface, facet, q, x, touch.velocity, pose)
     energy = 0.5 * weight * penetration * penetration
     if _came_over_the_edge(faces, face, xi, eta, rotation.unrotate(pose.turn, slide), dt):
         # The point was outside the face a step ago: it meets a pressed face at once, and its energy was never worked in.
-        state.work[RELEASED] -= energy
-    drag = friction_on_payload(friction, rail, surface, facet, q, g, push, slide, active.node_damping, state.load, dt)
-    _apply_pair(surface, facet, q, face, state, pose, x, on_rail, drag)
-    state.load[STORED] += energy
+        touch.work[RELEASED] -= energy
+    drag = friction_on_payload(friction, touch, surface, facet, q, g, push, slide, active.node_damping, touch.load, dt)
+    _apply_pair(surface, facet, q, face, touch, pose, x, on_rail, drag)
+    touch.load[STORED] += energy
     k = active.count[0]
     active.point[k, 0], active.point[k, 1] = facet, q
     active.face[k] = face
@@ -159,7 +184,7 @@ def _press(rail, surface, faces, face, facet, q, penalty, friction, state, activ
 
 
 @njit
-def friction_on_payload(friction, rail, surface, facet, q, g, push, slide, node_damping, load, dt):
+def friction_on_payload(friction, touch, surface, facet, q, g, push, slide, node_damping, load, dt):
     """Friction force (N) on the payload in frame axes; zero and not compiled when ``friction`` is None.
 
     Also sums the damping (N s/m) it brings to each node, and keeps the largest step * damping / mass for the stability check.
@@ -174,26 +199,26 @@ def friction_on_payload(friction, rail, surface, facet, q, g, push, slide, node_
         for corner in range(4):
             node = surface.facets[facet, corner]
             node_damping[node] += damping * surface.shape[q, corner]
-            load[DAMPING_RATIO] = max(load[DAMPING_RATIO], dt * node_damping[node] * rail.inverse_mass[node])
+            load[DAMPING_RATIO] = max(load[DAMPING_RATIO], dt * node_damping[node] * touch.inverse_mass[node])
     return drag
 
 
 @njit
-def _apply_pair(surface, facet, q, face, state, pose, x, on_rail, drag):
+def _apply_pair(surface, facet, q, face, touch, pose, x, on_rail, drag):
     """One force on the rail and its opposite on the payload, both at the point ``x`` of frame axes."""
     total = (drag[0] - on_rail[0], drag[1] - on_rail[1], drag[2] - on_rail[2])
     for corner in range(4):
         node, weight = surface.facets[facet, corner], surface.shape[q, corner]
         for i in range(3):
-            state.resistance[node, i] += weight * total[i]
+            touch.contact[node, i] += weight * total[i]
     arm = (x[0] - pose.centre[0], x[1] - pose.centre[1], x[2] - pose.centre[2])
     moment, about_origin = rotation.cross(arm, total), rotation.cross(x, total)
     for i in range(3):
-        state.load[NORMAL_FORCE + i] -= on_rail[i]
-        state.load[FRICTION_FORCE + i] += drag[i]
-        state.load[MOMENT + i] += moment[i]
-        state.load[MOMENT_ON_RAIL + i] -= about_origin[i]
-        state.face_force[face, i] += total[i]
+        touch.load[NORMAL_FORCE + i] -= on_rail[i]
+        touch.load[FRICTION_FORCE + i] += drag[i]
+        touch.load[MOMENT + i] += moment[i]
+        touch.load[MOMENT_ON_RAIL + i] -= about_origin[i]
+        touch.face_force[face, i] += total[i]
 
 
 @njit
@@ -205,27 +230,63 @@ def _came_over_the_edge(faces, face, xi, eta, slide, dt):
 
 
 @njit
-def release_over_the_edge(rail, surface, faces, state, active, pose):
+def release_over_the_edge(touch, surface, faces, active, pose):
     """Energy of points that carried load a step ago and are no longer under their face goes to ``released``."""
     for k in range(active.count[0]):
         facet, q = active.point[k, 0], active.point[k, 1]
-        x = place_of(rail, surface, facet, q, state.displacement)
+        x = place_of(touch, surface, facet, q, touch.displacement)
         xi, eta, _ = _local(faces, active.face[k], _to_payload(pose, x))
         if abs(xi) > 1.0 or abs(eta) > 1.0:
-            state.work[RELEASED] += active.energy[k]
+            touch.work[RELEASED] += active.energy[k]
         for corner in range(4):
             active.node_damping[surface.facets[facet, corner]] = 0.0
 
 
 @njit
-def friction_power(rail, surface, state, active, pose, friction):
-    """Power (W, <= 0) of the present friction forces at the present velocities."""
+def collect_contact(touch, surface, active):
+    """Move contact forces of nodes into their resistance, and add those on moving nodes to ``touch.reaction``."""
+    for k in range(active.count[0]):
+        for corner in range(4):
+            node = surface.facets[active.point[k, 0], corner]
+            f = (touch.contact[node, 0], touch.contact[node, 1], touch.contact[node, 2])
+            if touch.inverse_mass[node] > 0.0:
+                moment = rotation.cross((touch.points[node, 0] + touch.displacement[node, 0],
+                                         touch.points[node, 1] + touch.displacement[node, 1],
+                                         touch.points[node, 2] + touch.displacement[node, 2]), f)
+                for i in range(3):
+                    touch.resistance[node, i] += f[i]
+                    touch.reaction[i] -= f[i]
+                    touch.reaction[3 + i] -= moment[i]
+            # A node of two points or faces is met again: nothing is left of it then.
+            for i in range(3):
+                touch.contact[node, i] = 0.0
+
+
+@njit
+def _kick_of_point(touch, surface, facet, q, pull, dt):
+    """Change of the rail's velocity (m/s) at a Gauss point over ``dt`` by the present forces."""
+    a, b, c = 0.0, 0.0, 0.0
+    for corner in range(4):
+        node = surface.facets[facet, corner]
+        m, weight = touch.inverse_mass[node], dt * surface.shape[q, corner]
+        if m > 0.0:
+            a += weight * (pull[0] - m * touch.resistance[node, 0])
+            b += weight * (pull[1] - m * touch.resistance[node, 1])
+            c += weight * (pull[2] - m * touch.resistance[node, 2])
+    return (a, b, c)
+
+
+@njit
+def friction_power(touch, surface, active, pose, friction, pull, ahead):
+    """Power (W) of the present friction forces at the velocities of ``pose`` and those of the nodes once kicked over ``ahead`` (s)."""
     power = 0.0
     if friction is not None:
         for k in range(active.count[0]):
             facet, q = active.point[k, 0], active.point[k, 1]
-            x = place_of(rail, surface, facet, q, state.displacement)
-            slide = sliding_velocity(surface, facet, q, x, state.velocity, pose)
+            x = place_of(touch, surface, facet, q, touch.displacement)
+            slide = sliding_velocity(surface, facet, q, x, touch.velocity, pose)
+            kick = _kick_of_point(touch, surface, facet, q, pull, ahead)
+            slide = (slide[0] - kick[0], slide[1] - kick[1], slide[2] - kick[2])
             power += (active.friction[k, 0] * slide[0] + active.friction[k, 1] * slide[1]
                       + active.friction[k, 2] * slide[2])
     return power

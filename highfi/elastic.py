@@ -1,24 +1,115 @@
-"""Internal force of the rails, by whichever kernel their mesh allows."""
+"""Internal force of the rails and the motion of their nodes, by whichever kernel the mesh allows, shared among threads.
 
-from highfi.operator import internal_force
-from highfi.pencil_kernel import pencil_force
+On an extruded mesh each thread sweeps over its own chunks of pencils: a chunk moves, and the force of a chunk follows as soon as all
+it hangs on has moved, while that is still in the cache. Chunks that hang on another thread's wait for the barrier. A general mesh
+is cut into slabs along X: elements of two even slabs share no node, nor do those of two odd ones.
+"""
+
+import numpy as np
+
+from highfi.nodes import move_nodes, turning
+from highfi.operator import add_internal_force, internal_force
+from highfi.pencils import LANES
+from highfi.pencil_kernel import pencil_force, room_for_sums
+from highfi.team import meet
 from scenes.jit import njit
 
+@njit
+def elastic_force(rail, displacement, force, turn):
+    """Set ``force`` (n,3) to K u (N), and ``turn`` (b,3) to each block's part of the sum of u x K u (N m)."""
+    _force_of_pencils(rail.pencils, displacement, force)
+    _force_of_elements(rail.elements, displacement, force)
+    _turn_blocks(rail, displacement, force, turn, 0, 1)
+
 
 @njit
-def elastic_force(rail, displacement, force):
-    """Set ``force`` to K u (N): by pencils where the mesh is extruded, else element by element. Both (n,3), component-major."""
-    _by_pencils(rail.pencils, displacement, force)
-    _by_elements(rail.pencils, rail, displacement, force)
-
-
-@njit
-def _by_pencils(pencils, displacement, force):
+def _force_of_pencils(pencils, displacement, force):
     if pencils is not None:
-        pencil_force(pencils, displacement.T, force.T)
+        pencil_force(pencils, displacement.T, force.T, 0, pencils.first.size - 1, room_for_sums(pencils.stride))
 
 
 @njit
-def _by_elements(pencils, rail, displacement, force):
-    if pencils is None:
-        internal_force(displacement, rail.hexes, rail.shape_class, rail.stiffness, force)
+def _force_of_elements(elements, displacement, force):
+    if elements is not None:
+        internal_force(displacement, elements.hexes, elements.shape_class, elements.stiffness, force)
+
+
+@njit
+def _turn_blocks(rail, displacement, force, turn, first, step):
+    lanes = np.empty((3, LANES))
+    for block in range(first, turn.shape[0], step):
+        turning(displacement, force, rail.blocks[block], rail.blocks[block + 1], lanes, turn[block])
+
+
+@njit
+def move_and_load(rail, frame, state, team, thread, dt):
+    """Kick and drift all nodes, then set the elastic part of the new forces; every thread of ``team`` takes a part of it.
+
+    On return all places are up to date; forces are once ``finish_load`` has been called and the team has met again.
+    """
+    _sweep_pencils(rail.pencils, rail, frame, state, team, thread, dt)
+    _move_blocks(rail.elements, rail, frame, state, team, thread, dt)
+    meet(team)
+
+
+@njit
+def finish_load(rail, state, team, thread):
+    """What could not be computed before all nodes had moved."""
+    _load_borders(rail.pencils, rail, state, team, thread)
+    _load_slabs(rail.elements, rail, state, team, thread)
+
+
+@njit
+def _share(pencils, team, thread):
+    """First and last chunk of a thread."""
+    chunks = pencils.chunks.size - 1
+    return chunks * thread // team.size, chunks * (thread + 1) // team.size
+
+
+@njit
+def _load_chunk(pencils, rail, state, chunk, sums, lanes):
+    pencil_force(pencils, state.displacement.T, state.resistance.T, pencils.chunks[chunk], pencils.chunks[chunk + 1], sums)
+    turning(state.displacement, state.resistance, rail.blocks[chunk], rail.blocks[chunk + 1], lanes, state.turning[chunk])
+
+
+@njit
+def _sweep_pencils(pencils, rail, frame, state, team, thread, dt):
+    if pencils is not None:
+        sums, lanes = room_for_sums(pencils.stride), np.empty((3, LANES))
+        first, last = _share(pencils, team, thread)
+        following = first
+        for chunk in range(first, last):
+            move_nodes(rail, frame, state, dt, rail.blocks[chunk], rail.blocks[chunk + 1])
+            while following < last and pencils.highest[following] <= chunk:
+                if pencils.lowest[following] >= first:
+                    _load_chunk(pencils, rail, state, following, sums, lanes)
+                following += 1
+
+
+@njit
+def _load_borders(pencils, rail, state, team, thread):
+    if pencils is not None:
+        first, last = _share(pencils, team, thread)
+        for chunk in range(first, last):
+            if pencils.lowest[chunk] < first or pencils.highest[chunk] >= last:
+                _load_chunk(pencils, rail, state, chunk, room_for_sums(pencils.stride), np.empty((3, LANES)))
+
+
+@njit
+def _move_blocks(elements, rail, frame, state, team, thread, dt):
+    if elements is not None:
+        for block in range(thread, state.turning.shape[0], team.size):
+            first, last = rail.blocks[block], rail.blocks[block + 1]
+            move_nodes(rail, frame, state, dt, first, last)
+            state.resistance[first:last] = 0.0
+
+
+@njit
+def _load_slabs(elements, rail, state, team, thread):
+    if elements is not None:
+        for parity in range(2):
+            for slab in range(parity + 2 * thread, elements.slabs.size - 1, 2 * team.size):
+                add_internal_force(state.displacement, elements.hexes, elements.shape_class, elements.stiffness, state.resistance,
+                                   elements.slabs[slab], elements.slabs[slab + 1])
+            meet(team)
+        _turn_blocks(rail, state.displacement, state.resistance, state.turning, thread, team.size)

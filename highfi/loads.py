@@ -49,8 +49,8 @@ def axial_velocity_of_platform(state, frame, base):
 
 
 @njit
-def add_work(rail, surface, payload, frame, drive, friction, gravity, state, active, pose, thrust, half):
-    """Add half a step of work, total and axial, at the velocities at hand. ``pose`` must carry those velocities."""
+def add_work(touch, surface, payload, frame, drive, friction, gravity, state, active, pose, thrust, half, ahead):
+    """Add half a step of work, total and axial, at the velocities of ``pose`` and those of the nodes once kicked over ``ahead`` (s)."""
     force, moment, point = thrust
     work, v = state.work, state.payload.velocity
     rate = body_rate(state.payload, payload.inverse_inertia)
@@ -60,9 +60,19 @@ def add_work(rail, surface, payload, frame, drive, friction, gravity, state, act
     drag = rotation.rotate(pose.frame, _slot(state.load, FRICTION_FORCE))[0]
     work[CONTACT_AXIAL] += half * normal * v[0]
     work[FRICTION_AXIAL] -= half * drag * v[0]
-    work[FRICTION] -= half * friction_power(rail, surface, state, active, pose, friction)
+    pull = pull_on_nodes(gravity, pose)
+    work[FRICTION] -= half * friction_power(touch, surface, active, pose, friction, pull, ahead)
     _platform_work(frame, drive, state, pose.frame, thrust, normal, drag, half)
-    _gravity_work(rail, payload, frame, gravity, state, pose.frame, half)
+    _gravity_work(payload, frame, gravity, state, pose.frame, half)
+
+
+@njit
+def pull_on_nodes(gravity, pose):
+    """Gravity in frame axes (m/s2)."""
+    pull = (0.0, 0.0, 0.0)
+    if gravity is not None:
+        pull = rotation.unrotate(pose.frame, (gravity.x, gravity.y, gravity.z))
+    return pull
 
 
 @njit
@@ -92,7 +102,7 @@ def _from_origin(state, point):
 
 
 @njit
-def _gravity_work(rail, payload, frame, gravity, state, base, half):
+def _gravity_work(payload, frame, gravity, state, base, half):
     if gravity is not None:
         v = state.payload.velocity
         g = (gravity.x, gravity.y, gravity.z)
@@ -110,7 +120,7 @@ def _platform_gravity_work(frame, g, state, base, half):
 
 
 @njit
-def add_external_impulse(payload, frame, drive, gravity, state, thrust, rail_mass, rail_centre, reaction, dt):
+def add_external_impulse(payload, frame, drive, gravity, state, pose, thrust, reaction, dt):
     """Impulse and moment of impulse (about the scene origin) of everything outside the counted system.
 
     Thrust counts unless the free platform takes its reaction; the ground's reaction counts when the platform is fixed.
@@ -126,8 +136,16 @@ def add_external_impulse(payload, frame, drive, gravity, state, thrust, rail_mas
     if gravity is not None:
         g = (gravity.x, gravity.y, gravity.z)
         _add_weight(state.impulse, g, payload.mass, triple(state.payload.position), dt)
-        _add_weight(state.impulse, g, rail_mass, rail_centre, dt)
+        _add_weight(state.impulse, g, drive.moving_mass, _centre_of_rails(drive, state, pose), dt)
         _add_platform_weight(frame, state, g, dt)
+
+
+@njit
+def _centre_of_rails(drive, state, pose):
+    """Mass centre of the moving nodes in inertial axes (m)."""
+    turned = rotation.rotate(pose.frame, triple(state.rail_moment))
+    p, m = state.platform.position, drive.moving_mass
+    return (p[0] + turned[0] / m, p[1] + turned[1] / m, p[2] + turned[2] / m)
 
 
 @njit

@@ -1,108 +1,106 @@
-"""Passes over the rail nodes: kick, drift, gravity. Written without branches, so that they run at memory speed.
+"""Passes over the rail nodes: kick and drift. Written without branches, so that they run at memory speed.
 
-Clamped nodes have no inverse mass and no resistance; whatever the drift does to them is put right by ``hold_clamped``.
+A node without inverse mass is clamped or padding: it has no resistance and stays where it is in the frame.
 """
 
+import numpy as np
+
+from highfi.pencils import LANES
 from highfi.pose import triple
+from highfi.records import PULL, RATE
 from scenes import rotation
 from scenes.jit import njit
 
 
 @njit
-def kick_nodes(points, inverse_mass, displacement, velocity, resistance, dt):
-    """w -= dt r / m. Returns sum and moment about the frame's origin of the forces -r on the moving nodes (N, N m)."""
-    x, u, r = points.T, displacement.T, resistance.T
+def kick_nodes(inverse_mass, velocity, resistance, pull, dt):
+    """w += dt (pull - r / m) for all nodes; ``pull`` is gravity in frame axes (m/s2)."""
     for i in range(3):
-        _kick_component(inverse_mass, velocity.T[i], r[i], dt)
-    return _sums(x[0], x[1], x[2], u[0], u[1], u[2], r[0], r[1], r[2])
+        _kick_component(inverse_mass, velocity.T[i], resistance.T[i], pull[i], dt)
 
 
 @njit
-def _kick_component(inverse_mass, velocity, resistance, dt):
+def _kick_component(inverse_mass, velocity, resistance, pull, dt):
     for node in range(inverse_mass.size):
-        velocity[node] -= dt * inverse_mass[node] * resistance[node]
+        velocity[node] = _kicked(velocity[node], resistance[node], inverse_mass[node], pull, dt)
 
 
 @njit
-def _sums(x, y, z, u, v, w, a, b, c):
-    """Sum of -(a, b, c) and of its moment at (x + u, y + v, z + w)."""
-    fx, fy, fz, mx, my, mz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-    for node in range(x.size):
-        px, py, pz = x[node] + u[node], y[node] + v[node], z[node] + w[node]
-        fx -= a[node]
-        fy -= b[node]
-        fz -= c[node]
-        mx += pz * b[node] - py * c[node]
-        my += px * c[node] - pz * a[node]
-        mz += py * a[node] - px * b[node]
-    return (fx, fy, fz), (mx, my, mz)
+def _kicked(velocity, resistance, inverse_mass, pull, dt):
+    return velocity + dt * (pull - inverse_mass * resistance) if inverse_mass > 0.0 else velocity
 
 
 @njit
-def drift_nodes(displacement, velocity, dt):
-    """u += dt w, in a frame that rests."""
-    for i in range(3):
-        _drift_component(displacement.T[i], velocity.T[i], dt)
+def move_nodes(rail, frame, state, dt, first, last):
+    """Kick and drift nodes ``first`` to ``last`` in a frame that moves as ``state.motion`` says; see ``pose``."""
+    x, u, w, f = rail.points.T, state.displacement.T, state.velocity.T, state.resistance.T
+    # Unsigned, because an index that might be negative would keep the loops from being vectorised.
+    first, last, pull = np.uint64(first), np.uint64(last), state.motion[PULL:]
+    if frame is None:
+        for i in range(3):
+            _move_component(rail.inverse_mass, u[i], w[i], f[i], pull[i], dt, first, last)
+    if frame is not None:
+        _move_in_frame(x[0], x[1], x[2], rail.inverse_mass, u[0], u[1], u[2], w[0], w[1], w[2], f[0], f[1], f[2], state.motion, dt,
+                       first, last)
 
 
 @njit
-def _drift_component(displacement, velocity, dt):
-    for node in range(displacement.size):
-        displacement[node] += dt * velocity[node]
+def _move_component(inverse_mass, displacement, velocity, resistance, pull, dt, first, last):
+    for node in range(first, last):
+        velocity[node] = _kicked(velocity[node], resistance[node], inverse_mass[node], pull, dt)
+        displacement[node] = displacement[node] + dt * velocity[node] if inverse_mass[node] > 0.0 else 0.0
 
 
 @njit
-def drift_nodes_in_frame(points, displacement, velocity, frame_velocity, turn, dt):
-    """Drift seen from a frame that moves at ``frame_velocity`` (m/s) and turns by 1 + ``turn``; see ``pose``."""
-    x, u, w = points.T, displacement.T, velocity.T
-    _drift_and_turn(x[0], x[1], x[2], u[0], u[1], u[2], w[0], w[1], w[2], frame_velocity, turn, dt)
-
-
-@njit
-def _drift_and_turn(x, y, z, u, v, w, p, q, r, frame_velocity, turn, dt):
-    t0, t1, t2, t3, t4, t5, t6, t7, t8 = turn
-    fx, fy, fz = frame_velocity
-    for node in range(x.size):
-        px, py, pz = p[node], q[node], r[node]
-        a, b, c = u[node] + dt * (px - fx), v[node] + dt * (py - fy), w[node] + dt * (pz - fz)
-        ax, ay, az = x[node] + a, y[node] + b, z[node] + c
-        u[node] = a + (t0 * ax + t1 * ay + t2 * az)
-        v[node] = b + (t3 * ax + t4 * ay + t5 * az)
-        w[node] = c + (t6 * ax + t7 * ay + t8 * az)
+def _move_in_frame(x, y, z, inverse_mass, u, v, w, p, q, r, a, b, c, motion, dt, first, last):
+    # Read once: the compiler cannot know that the loop leaves them alone.
+    fx, fy, fz, gx, gy, gz = motion[0], motion[1], motion[2], motion[PULL], motion[PULL + 1], motion[PULL + 2]
+    t0, t1, t2, t3, t4, t5, t6, t7, t8 = (motion[3], motion[4], motion[5], motion[6], motion[7], motion[8], motion[9], motion[10],
+                                          motion[11])
+    for node in range(first, last):
+        m = inverse_mass[node]
+        px, py, pz = _kicked(p[node], a[node], m, gx, dt), _kicked(q[node], b[node], m, gy, dt), _kicked(r[node], c[node], m, gz, dt)
+        dx, dy, dz = u[node] + dt * (px - fx), v[node] + dt * (py - fy), w[node] + dt * (pz - fz)
+        ax, ay, az = x[node] + dx, y[node] + dy, z[node] + dz
+        u[node] = dx + (t0 * ax + t1 * ay + t2 * az) if m > 0.0 else 0.0
+        v[node] = dy + (t3 * ax + t4 * ay + t5 * az) if m > 0.0 else 0.0
+        w[node] = dz + (t6 * ax + t7 * ay + t8 * az) if m > 0.0 else 0.0
         p[node] = px + (t0 * px + t1 * py + t2 * pz)
         q[node] = py + (t3 * px + t4 * py + t5 * pz)
         r[node] = pz + (t6 * px + t7 * py + t8 * pz)
 
 
 @njit
-def hold_clamped(rail, state, velocity, rate):
-    """Clamped nodes do not move in the frame; their inertial velocity is the frame's own, which friction needs."""
-    for node in rail.clamped:
-        spin = rotation.cross(rate, (rail.points[node, 0], rail.points[node, 1], rail.points[node, 2]))
-        for i in range(3):
-            state.displacement[node, i] = 0.0
-            state.velocity[node, i] = velocity[i] + spin[i]
+def turning(displacement, resistance, first, last, lanes, total):
+    """Set ``total`` (3,) to the sum of u x r over nodes ``first`` to ``last``, whole vectors of them (N m).
+
+    ``lanes`` (3, LANES) is room for sums taken lane by lane, in an order that does not hang on who computes them.
+    """
+    u, f = displacement.T, resistance.T
+    lanes[:] = 0.0
+    _add_cross(u[0], u[1], u[2], f[0], f[1], f[2], np.uint64(first), np.uint64(last), lanes)
+    for i in range(3):
+        total[i] = 0.0
+        for lane in range(LANES):
+            total[i] += lanes[i, lane]
 
 
 @njit
-def weigh_nodes(rail, gravity, state, pose, dt):
-    """Gravity on the moving nodes; returns their mass (kg) and mass centre in inertial axes (m) for the momentum check."""
-    mass, x, y, z = 0.0, 0.0, 0.0, 0.0
-    if gravity is not None:
-        g = rotation.unrotate(pose.frame, (gravity.x, gravity.y, gravity.z))
-        for node in range(rail.mass.size):
-            if rail.inverse_mass[node] > 0.0:
-                m = rail.mass[node]
-                mass += m
-                x += m * (rail.points[node, 0] + state.displacement[node, 0])
-                y += m * (rail.points[node, 1] + state.displacement[node, 1])
-                z += m * (rail.points[node, 2] + state.displacement[node, 2])
-                for i in range(3):
-                    state.velocity[node, i] += dt * g[i]
-        for i in range(3):
-            state.rail_momentum[i] += dt * mass * g[i]
-    place = (0.0, 0.0, 0.0)
-    if mass > 0.0:
-        place = rotation.rotate(pose.frame, (x / mass, y / mass, z / mass))
-    p = state.platform.position
-    return mass, (p[0] + place[0], p[1] + place[1], p[2] + place[2])
+def _add_cross(u, v, w, a, b, c, first, last, lanes):
+    for start in range(first, last, np.uint64(LANES)):
+        for lane in range(np.uint64(LANES)):
+            node = start + lane
+            lanes[0, lane] += v[node] * c[node] - w[node] * b[node]
+            lanes[1, lane] += w[node] * a[node] - u[node] * c[node]
+            lanes[2, lane] += u[node] * b[node] - v[node] * a[node]
+
+
+@njit
+def follow_frame(rail, state, frame):
+    """Give clamped nodes the frame's own inertial velocity, which friction needs."""
+    if frame is not None:
+        velocity, rate = triple(state.motion), (state.motion[RATE], state.motion[RATE + 1], state.motion[RATE + 2])
+        for node in rail.clamped:
+            spin = rotation.cross(rate, (rail.points[node, 0], rail.points[node, 1], rail.points[node, 2]))
+            for i in range(3):
+                state.velocity[node, i] = velocity[i] + spin[i]

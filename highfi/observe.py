@@ -63,14 +63,14 @@ def sample(system, state: records.State, before: Moving, after: Moving) -> np.nd
         row[PLATFORM_RATE:PLATFORM_RATE + 3] = system.frame.inverse_inertia @ (base.T @ middle.platform_spin)
     row[IMPULSE:IMPULSE + 6] = middle.impulse
     row[KINETIC], row[AXIAL_KINETIC] = _kinetic(system, turn, base, before, after)
-    row[STRAIN], row[CONTACT] = _strain(system.rail, state.displacement), state.load[records.STORED]
+    row[STRAIN], row[CONTACT] = _strain(system.rail, state.displacement, state.turning.shape), state.load[records.STORED]
     row[LINEAR:LINEAR + 3], row[ANGULAR:ANGULAR + 3] = _momenta(system, state, base, middle)
     return row
 
 
-def _strain(rail, displacement) -> float:
+def _strain(rail, displacement, turning) -> float:
     force = np.zeros(displacement.shape, order="F")
-    elastic_force(rail, displacement, force)
+    elastic_force(rail, displacement, force, np.empty(turning))
     # Not a BLAS product: its threads would wait for each other where several runs share the processor.
     return 0.5 * float((displacement * force).sum())
 
@@ -78,8 +78,8 @@ def _strain(rail, displacement) -> float:
 def _kinetic(system, turn, base, before: Moving, after: Moving) -> tuple[float, float]:
     """Kinetic energy (J) of everything, and its axial part."""
     payload, frame = system.model.payload, system.frame
-    nodes = (before.nodes * after.nodes).sum(axis=1)
-    kinetic = 0.5 * (payload.mass * before.velocity @ after.velocity + (system.moving_mass * nodes).sum())
+    nodes = sum((system.moving_mass * (a * b)).sum() for a, b in zip(before.nodes.T, after.nodes.T))
+    kinetic = 0.5 * (payload.mass * before.velocity @ after.velocity + nodes)
     kinetic += _spin_energy(turn, payload.inverse_inertia, before.spin, after.spin)
     axial = 0.5 * payload.mass * before.velocity[0] * after.velocity[0]
     if frame is not None:
@@ -96,8 +96,10 @@ def _spin_energy(turn, inverse_inertia, before, after) -> float:
 
 def _momenta(system, state, base, middle: Moving) -> tuple[np.ndarray, np.ndarray]:
     """Linear and angular momentum (about the scene origin), summed anew over every node and body."""
-    nodes = system.moving_mass[:, None] * middle.nodes
-    rails, turning = base @ nodes.sum(axis=0), base @ np.cross(system.rail.points + state.displacement, nodes).sum(axis=0)
+    px, py, pz = (system.moving_mass * component for component in middle.nodes.T)
+    x, y, z = (system.rail.points + state.displacement).T
+    rails = base @ [px.sum(), py.sum(), pz.sum()]
+    turning = base @ [(y * pz - z * py).sum(), (z * px - x * pz).sum(), (x * py - y * px).sum()]
     own = system.model.payload.mass * middle.velocity
     linear = own + rails
     angular = (np.cross(state.payload.position, own) + middle.spin + turning + np.cross(state.platform.position, rails))

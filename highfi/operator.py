@@ -14,12 +14,20 @@ from scenes.jit import njit
 def internal_force(displacement, hexes, shape_class, stiffness, force_out):
     """Set force_out (n,3) N to K u for displacement (n,3) m; hexes, shape_class, stiffness as in `assembly.Operator`.
 
-    Deterministic: elements are added in their order, and sums keep the order written, whatever the vector width. force_out
-    must not share memory with displacement.
+    force_out must not share memory with displacement.
+    """
+    force_out[:] = 0.0
+    add_internal_force(displacement, hexes, shape_class, stiffness, force_out, 0, hexes.shape[0])
+
+
+@njit
+def add_internal_force(displacement, hexes, shape_class, stiffness, force_out, first, last):
+    """Add the share of elements ``first`` to ``last`` to ``force_out``.
+
+    Deterministic: elements are added in their order, and sums keep the order written, whatever the vector width.
     """
     element_force = np.empty(24)
-    force_out[:] = 0.0
-    for element in range(hexes.shape[0]):
+    for element in range(first, last):
         nodes = hexes[element]
         k = stiffness[shape_class[element]]
         x1, y1, z1 = _relative(displacement, nodes[1], nodes[0])

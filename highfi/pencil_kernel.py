@@ -1,6 +1,6 @@
 """Internal force of an extruded mesh, pencil by pencil: three sums over the neighbouring pencils, then a filter along the layers.
 
-    d = sum D u,  l = sum L u,  o = sum O u,      f(k) = d(k) + l(k-1) + l(k+1) + o(k+1) - o(k-1)
+    d = sum D u,  l = sum L u,  o = sum O u,      f(k) = d(k) + (l - o)(k-1) + (l + o)(k+1)
 
 The nine sums of 16 layers stay in vector registers while the neighbours stream by. Numba does not keep them there from a loop in
 Python, so that one loop is written as LLVM code; a processor with narrower vectors splits them.
@@ -17,15 +17,16 @@ from scenes.jit import njit
 
 _WIDTH = 8
 _HALVES = LANES // _WIDTH
-# (sum, coefficient, component): sums 0-2 are d, 3-5 are l, 6-8 are o.
+# (sum, coefficient, component): sums 0-2 are d, 3-5 are l, 6-8 are o; written out as d, l - o, l + o.
 _PRODUCTS = ((0, 0, 0), (1, 1, 1), (1, 2, 2), (2, 3, 1), (2, 4, 2), (3, 5, 0), (4, 6, 1), (4, 7, 2), (5, 8, 1), (5, 9, 2),
              (6, 10, 1), (6, 11, 2), (7, 12, 0), (8, 13, 0))
 _SUMS = 9
+_GHOSTS = 8  # zeros on either side of a row of sums: what lies beyond the end layers
 
 
 @intrinsic
 def _sum_neighbours(typing, values, neighbour, coefficients, first, last, layer, plane, sums, stride):
-    """sums[i, layer:layer+16] = sum over q in first..last of coefficient * values[component, neighbour[q] + layer : + 16].
+    """Rows ``layer`` to ``layer + 16`` of d, l - o and l + o, summed over the neighbours q in first..last.
 
     All arrays are flat: values (3 * plane), coefficients (q * COEFFICIENTS), sums (9 * stride). No bounds are checked.
     """
@@ -65,56 +66,75 @@ def _sum_neighbours(typing, values, neighbour, coefficients, first, last, layer,
                 for h in range(_HALVES):
                     total = builder.call(multiply_add, [factor, read[component][h], builder.load(held[target][h])])
                     builder.store(total, held[target][h])
-        for target in range(_SUMS):
-            row = builder.add(layer, builder.mul(stride, ir.Constant(integer, target)))
-            for h in range(_HALVES):
-                builder.store(builder.load(held[target][h]), vector_at(data(7), plus(row, _WIDTH * h)), align=8)
+        for h in range(_HALVES):
+            own, even, odd = ([builder.load(held[3 * group + c][h]) for c in range(3)] for group in range(3))
+            below, above = ([combine(l, o) for l, o in zip(even, odd)] for combine in (builder.fsub, builder.fadd))
+            for target, total in enumerate([*own, *below, *above]):
+                row = builder.add(layer, builder.mul(stride, ir.Constant(integer, target)))
+                builder.store(total, vector_at(data(7), plus(row, _WIDTH * h)), align=8)
         return context.get_dummy_value()
 
     return signature, generate
 
 
 @njit
-def pencil_force(pencils, displacement, force):
-    """Set ``force`` (N) to K u of ``displacement`` (m), both (3, s * stride) with contiguous rows."""
-    plane, stride = displacement.shape[1], pencils.stride
+def room_for_sums(stride):
+    """Room (_SUMS, stride + 2 GHOSTS) for the sums of one pencil, rows on cache lines and zero beside the pencil."""
+    # An odd number of cache lines: rows a power of two apart would compete for the same places in the cache.
+    row = stride + 2 * _GHOSTS + (_GHOSTS if (stride // _GHOSTS) % 2 == 0 else 0)
+    room = np.zeros(_SUMS * row + _GHOSTS)
+    start = (-(room.ctypes.data // 8)) % _GHOSTS
+    return room[start:start + _SUMS * row].reshape((_SUMS, row))
+
+
+@njit
+def pencil_force(pencils, displacement, force, first, last, sums):
+    """Set the part of ``force`` (N) at section points ``first`` to ``last`` to that of K u, both (3, s * stride) in rows."""
+    plane, stride, row = displacement.shape[1], pencils.stride, sums.shape[1]
     values, coefficients = displacement.reshape(displacement.size), pencils.coefficients.reshape(pencils.coefficients.size)
-    sums = np.empty((_SUMS, stride))
-    flat = sums.reshape(sums.size)
-    for point in range(pencils.first.size - 1):
-        first, last = pencils.first[point], pencils.first[point + 1]
+    inside = sums.reshape(sums.size)[_GHOSTS:]
+    for point in range(first, last):
         for layer in range(0, stride, LANES):
-            _sum_neighbours(values, pencils.neighbour, coefficients, first, last, layer, plane, flat, stride)
-        for component in range(3):
-            row = force[component, point * stride:point * stride + pencils.layers]
-            _filter(sums[component], sums[3 + component], sums[6 + component], pencils.layers, row)
-        _ends(pencils, point, displacement, force)
+            _sum_neighbours(values, pencils.neighbour, coefficients, pencils.first[point], pencils.first[point + 1], layer, plane,
+                            inside, row)
+        _filter(sums, force, np.uint64(point * stride), np.uint64(stride))
+        _ends(pencils, point, displacement, force, sums)
 
 
 @njit
-def _filter(own, even, odd, layers, out):
-    # Slices instead of k-1 and k+1: an index that might be negative would keep the loop from being vectorised.
-    inner, middle = out[1:layers - 1], own[1:layers - 1]
-    even_below, even_above = even[0:layers - 2], even[2:layers]
-    odd_below, odd_above = odd[0:layers - 2], odd[2:layers]
-    for k in range(layers - 2):
-        inner[k] = middle[k] + (even_below[k] + even_above[k]) + (odd_above[k] - odd_below[k])
-    out[0] = 0.5 * own[0] + even[1] + odd[1]
-    out[layers - 1] = 0.5 * own[layers - 1] + even[layers - 2] - odd[layers - 2]
+def _filter(sums, force, base, stride):
+    # Unsigned, because an index that might be negative would keep the loop from being vectorised.
+    ghosts, one = np.uint64(_GHOSTS), np.uint64(1)
+    for component in range(3):
+        own, below, above = np.uint64(component), np.uint64(3 + component), np.uint64(6 + component)
+        for k in range(stride):
+            here = ghosts + k
+            force[own, base + k] = sums[own, here] + (sums[below, here - one] + sums[above, here + one])
 
 
 @njit
-def _ends(pencils, point, displacement, force):
-    """The odd block E that only the first and the last layer have."""
-    for end in range(2):
-        layer, sign = (0, 1.0) if end == 0 else (pencils.layers - 1, -1.0)
-        x, y, z = 0.0, 0.0, 0.0
-        for q in range(pencils.first[point], pencils.first[point + 1]):
-            node, e = pencils.neighbour[q] + layer, pencils.coefficients[q, 14:18]
-            x += e[0] * displacement[1, node] + e[1] * displacement[2, node]
-            y += e[2] * displacement[0, node]
-            z += e[3] * displacement[0, node]
-        node = point * pencils.stride + layer
-        force[0, node] += sign * x
-        force[1, node] += sign * y
-        force[2, node] += sign * z
+def _ends(pencils, point, displacement, force, sums):
+    """The end layers have half the own block and, with opposite signs, the odd block E; what the filter left beyond is no force."""
+    base, layers = point * pencils.stride, pencils.layers
+    x, y, z, far_x, far_y, far_z = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    for q in range(pencils.first[point], pencils.first[point + 1]):
+        node = pencils.neighbour[q]
+        far = node + layers - 1
+        xy, xz, yx, zx = (pencils.coefficients[q, 14], pencils.coefficients[q, 15], pencils.coefficients[q, 16],
+                          pencils.coefficients[q, 17])
+        x += xy * displacement[1, node] + xz * displacement[2, node]
+        y += yx * displacement[0, node]
+        z += zx * displacement[0, node]
+        far_x += xy * displacement[1, far] + xz * displacement[2, far]
+        far_y += yx * displacement[0, far]
+        far_z += zx * displacement[0, far]
+    first, last = _GHOSTS, _GHOSTS + layers - 1
+    force[0, base] += x - 0.5 * sums[0, first]
+    force[1, base] += y - 0.5 * sums[1, first]
+    force[2, base] += z - 0.5 * sums[2, first]
+    force[0, base + layers - 1] -= far_x + 0.5 * sums[0, last]
+    force[1, base + layers - 1] -= far_y + 0.5 * sums[1, last]
+    force[2, base + layers - 1] -= far_z + 0.5 * sums[2, last]
+    for component in range(3):
+        for node in range(base + layers, base + pencils.stride):
+            force[component, node] = 0.0

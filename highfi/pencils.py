@@ -13,24 +13,31 @@ layers contiguous, each pencil padded to whole vectors; the padding has no mass 
 from typing import NamedTuple
 
 import numpy as np
+from scipy.sparse import csr_array
+from scipy.sparse.csgraph import reverse_cuthill_mckee
 
 from highfi.assembly import Operator
 
 LANES = 16  # layers treated at once: two vectors of eight doubles
 COEFFICIENTS = 18
+CHUNK = 1024  # nodes: enough to be worth a function call, few enough for the second-level cache
 _SAME = 1e-9  # m: two places closer than this are the same
 _ODD = 1e-9  # relative size of the blocks that the mirror symmetry forbids
 
 
 class Pencils(NamedTuple):
     """first (s+1,), neighbour (q,) number of the neighbour's first node; coefficients (q, COEFFICIENTS) N/m in the order D xx yy yz
-    zy zz, L the same, O xy xz yx zx, E the same; layers n and stride, the padded length of a pencil."""
+    zy zz, L the same, O xy xz yx zx, E the same; layers n and stride, the padded length of a pencil; chunks (c+1,) first pencil of each
+    bundle that is worked on at once, with the lowest (c,) chunk that it hangs on, and the highest (c,) that it or one before does."""
 
     first: np.ndarray
     neighbour: np.ndarray
     coefficients: np.ndarray
     layers: int
     stride: int
+    chunks: np.ndarray
+    lowest: np.ndarray
+    highest: np.ndarray
 
 
 def find(points: np.ndarray, operator: Operator) -> tuple[Pencils, np.ndarray] | None:
@@ -45,11 +52,35 @@ def find(points: np.ndarray, operator: Operator) -> tuple[Pencils, np.ndarray] |
     blocks = _blocks(operator, point, layer, layers)
     if blocks is None:
         return None
-    pairs = sorted(blocks)
-    first = np.searchsorted([a for a, _ in pairs], np.arange(sections + 1))
+    rank = _near_together(sections, list(blocks))
+    pairs = sorted(blocks, key=lambda pair: (rank[pair[0]], rank[pair[1]]))
+    own, other = rank[np.array(pairs)].T
+    first = np.searchsorted(own, np.arange(sections + 1))
     coefficients = np.array([_numbers(blocks[pair]) for pair in pairs])
-    neighbour = np.array([b for _, b in pairs], dtype=np.int64) * stride
-    return Pencils(first.astype(np.int64), neighbour, coefficients, layers, stride), point * stride + layer
+    chunks = _chunks(own, other, stride)
+    chunk_of, starts = np.searchsorted(chunks, other, side="right") - 1, first[chunks[:-1]]
+    lowest, highest = np.minimum.reduceat(chunk_of, starts), np.maximum.accumulate(np.maximum.reduceat(chunk_of, starts))
+    return (Pencils(first.astype(np.int64), other.astype(np.int64) * stride, coefficients, layers, stride, chunks, lowest, highest),
+            rank[point] * stride + layer)
+
+
+def _chunks(own: np.ndarray, other: np.ndarray, stride: int) -> np.ndarray:
+    """First pencil (c+1,) of chunks of about CHUNK nodes; none holds pencils of two rails."""
+    sections = own[-1] + 1
+    apart = np.flatnonzero(np.maximum.accumulate(np.maximum.reduceat(other, np.searchsorted(own, np.arange(sections))))[:-1]
+                           == np.arange(sections - 1)) + 1
+    bounds = [0, *apart, sections]
+    parts = [np.linspace(a, b, max(1, round((b - a) * stride / CHUNK)) + 1).round() for a, b in zip(bounds, bounds[1:])]
+    return np.unique(np.concatenate(parts)).astype(np.int64)
+
+
+def _near_together(sections: int, pairs: list[tuple[int, int]]) -> np.ndarray:
+    """New number (s,) of each section point: neighbours close to each other, so that they meet in the cache (Cuthill and McKee)."""
+    rows, columns = np.array(pairs).T
+    graph = csr_array((np.ones(len(pairs)), (rows, columns)), shape=(sections, sections))
+    rank = np.empty(sections, dtype=np.int64)
+    rank[reverse_cuthill_mckee(graph, symmetric_mode=True)] = np.arange(sections)
+    return rank
 
 
 def _blocks(operator, point, layer, layers) -> dict | None:

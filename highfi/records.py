@@ -12,19 +12,28 @@ import numpy as np
 from highfi.pencils import Pencils
 
 
+class Elements(NamedTuple):
+    """Constant: a mesh of any shape. hexes (e,8) and shape_class (e,), stiffness (c,24,24) N/m as in ``assembly.Operator``; slabs (s+1,)
+    first element of each slab along X, of which no two with one between them share a node."""
+
+    hexes: np.ndarray
+    shape_class: np.ndarray
+    stiffness: np.ndarray
+    slabs: np.ndarray
+
+
 class Rail(NamedTuple):
-    """Constant: points (n,3) m; mass (n,) kg; inverse_mass (n,) 1/kg, zero where clamped; clamped (k,)
-    node numbers; hexes (e,8); shape_class (e,);
-    stiffness (c,24,24) N/m; pencils of an extruded mesh, else None."""
+    """Constant: points (n,3) m; mass (n,) kg; inverse_mass (n,) 1/kg, zero where clamped; clamped (k,) node numbers; either
+    pencils, of an extruded mesh, or elements, the other one None; blocks (b+1,) first node of each run of nodes that is worked on at
+    once, the nodes of a chunk of pencils."""
 
     points: np.ndarray
     mass: np.ndarray
     inverse_mass: np.ndarray
     clamped: np.ndarray
-    hexes: np.ndarray
-    shape_class: np.ndarray
-    stiffness: np.ndarray
     pencils: Pencils | None
+    elements: Elements | None
+    blocks: np.ndarray
 
 
 class Surface(NamedTuple):
@@ -50,10 +59,11 @@ class Frame(NamedTuple):
 
 
 class Drive(NamedTuple):
-    """Constant: thrust arm behind the nominal centre (m) and whether the platform takes the reaction."""
+    """Constant: thrust arm behind the nominal centre (m), whether the platform takes the reaction; mass of the moving nodes (kg)."""
 
     arm: float
     reacts_on_platform: bool
+    moving_mass: float
 
 
 class Body(NamedTuple):
@@ -68,15 +78,24 @@ class Body(NamedTuple):
 
 class State(NamedTuple):
     """Evolving. displacement (n,3) m; velocity (n,3) m/s: *inertial* nodal velocity at the half step, resolved in frame axes;
-    resistance (n,3) N: K u minus contact, zero where clamped; rail_momentum (3) = sum of m w over moving nodes; load: see LOAD; work: see WORK; impulse (6) of external
-    forces and moments about the scene origin (N s, N m s); face_force (f,3) N on the payload in frame axes."""
+    resistance (n,3) N: K u minus contact, zero where clamped; contact (n,3) N on its way into it, else zero; turning (b,3) N m:
+    parts of the sum of u x K u; reaction (6): force and moment about the frame's origin of minus the resistance of all moving nodes
+    (N, N m); motion: what nodes need of frame and gravity in the
+    next drift, see MOTION; rail_momentum (3) = sum of m w and rail_moment
+    (3) = sum of m (X + u) over moving nodes (kg m/s, kg m); load: see LOAD; work: see WORK; impulse (6) of external forces and
+    moments about the scene origin (N s, N m s); face_force (f,3) N on the payload in frame axes."""
 
     payload: Body
     platform: Body
     displacement: np.ndarray
     velocity: np.ndarray
     resistance: np.ndarray
+    contact: np.ndarray
+    turning: np.ndarray
+    reaction: np.ndarray
+    motion: np.ndarray
     rail_momentum: np.ndarray
+    rail_moment: np.ndarray
     load: np.ndarray
     work: np.ndarray
     impulse: np.ndarray
@@ -100,6 +119,11 @@ class Active(NamedTuple):
 # Slots of State.load: contact on the payload in frame axes.
 NORMAL_FORCE, FRICTION_FORCE, MOMENT, MOMENT_ON_RAIL, STORED, DAMPING_RATIO = 0, 3, 6, 9, 12, 13
 LOAD_SIZE = 14
+
+# Slots of State.motion, in frame axes: the frame's velocity (m/s), its turn over the step less one (nine numbers), its rate
+# (rad/s), gravity (m/s2).
+FRAME_VELOCITY, TURN, RATE, PULL = 0, 3, 12, 15
+MOTION_SIZE = 18
 
 # Slots of State.work (J).
 THRUST, GRAVITY, FRICTION, RELEASED, THRUST_AXIAL, GRAVITY_AXIAL, FRICTION_AXIAL, CONTACT_AXIAL = range(8)

@@ -2,24 +2,28 @@
 
 import threading
 import time as clock
+from concurrent.futures import ThreadPoolExecutor
 from typing import Callable
 
 import numpy as np
 
 from highfi import observe, records, samples
 from highfi.contact import FASTEST_APPROACH
-from highfi.loads import thrust_load
+from highfi.loads import pull_on_nodes, thrust_load
 from highfi.mesh import RailMesh
+from highfi.nodes import kick_nodes
 from highfi.numerics import Numerics
 from highfi.pose import seen_from_frame
-from highfi.step import advance, evaluate, kick
+from highfi.step import advance, evaluate, kick_bodies
 from highfi.stepping import Stepping, choose
 from highfi.system import System, build, geometry, initial_state, make_mesh
+from highfi.team import gather, processors
 from scenes import ledger, outcome, rotation
 from scenes.scene import Scene
 from scenes.trajectory import Trajectory
 
 _STOP_RATIO = 0.1  # of the transverse scale: a run that loses so much energy is not a result
+_ELEMENTS_PER_THREAD = 4000
 _LOOK_EVERY = 20  # samples between two looks for exit or jam
 _MESHES: dict[tuple, RailMesh] = {}
 _MESH_LOCK = threading.Lock()
@@ -38,39 +42,47 @@ def prepare(scene: Scene, numerics: Numerics | None = None) -> RailMesh:
         return _MESHES[key]
 
 
-def run(scene: Scene, numerics: Numerics | None = None, progress: Callable[[float], None] | None = None) -> Trajectory:
+def run(scene: Scene, numerics: Numerics | None = None, progress: Callable[[float], None] | None = None,
+        threads: int | None = None) -> Trajectory:
     """Solve ``scene`` with flexible rails until the settled window is complete, a jam, or the scene's duration.
 
-    ``progress`` is called with the fraction of the duration done. Raises SceneError, MeshError or StepError before any
-    stepping; what goes wrong later is the status of the result.
+    ``progress`` is called with the fraction of the duration done. ``threads`` share the run, unless said otherwise as
+    many as there are processors and elements enough for; the result does not hang on their number. Raises SceneError, MeshError or StepError before any stepping;
+    what goes wrong later is the status of the result.
     """
     numerics = numerics or Numerics()
     began, cpu = clock.perf_counter(), clock.thread_time()
     system = build(scene, numerics, prepare(scene, numerics))
-    loop = Loop(scene, system, choose(system, scene, numerics))
+    loop = Loop(scene, system, choose(system, scene, numerics), threads or _worth_while(system))
     compiling = clock.perf_counter()
     loop.begin()
     marching, compile_cpu = clock.perf_counter(), clock.thread_time()
     set_up_cpu = compile_cpu - cpu
     loop.march(progress)
     ended = clock.perf_counter()
-    elements = int(system.rail.hexes.shape[0])
+    elements = int(system.operator.hexes.shape[0])
     cost = {"wall_s": (compiling - began) + (ended - marching), "compile_s": marching - compiling,
-            "kernel_s": ended - marching, "cpu_s": clock.thread_time() - compile_cpu, "steps": loop.steps,
+            "kernel_s": ended - marching, "cpu_s": set_up_cpu + clock.thread_time() - compile_cpu + loop.other_cpu, "steps": loop.steps,
             **loop.stepping.as_dict(), "elements": elements,
             "ns_per_element_step": 1e9 * (ended - marching) / max(loop.steps * elements, 1)}
     return loop.trajectory(cost, numerics)
 
 
+def _worth_while(system: System) -> int:
+    """Threads that a mesh can keep busy: with less to do they would mostly wait for each other."""
+    return max(1, min(processors(), len(system.operator.hexes) // _ELEMENTS_PER_THREAD))
+
+
 class Loop:
     """State of a run in progress and its samples."""
 
-    def __init__(self, scene: Scene, system: System, stepping: Stepping):
+    def __init__(self, scene: Scene, system: System, stepping: Stepping, threads: int = 1):
         self.scene, self.system, self.stepping = scene, system, stepping
+        self.team, self.pool = gather(threads), ThreadPoolExecutor(threads)
         self.state, self.active = initial_state(system)
         self.marks = outcome.milestones(scene, system.model)
         self.last = round(scene.duration / scene.output.interval)
-        self.steps, self.damping, self.scale, self.message = 0, 0.0, 0.0, ""
+        self.steps, self.damping, self.scale, self.other_cpu, self.message = 0, 0.0, 0.0, 0.0, ""
         self.rows, self.work, self.forces = [], [], []
 
     def arguments(self) -> tuple:
@@ -88,7 +100,7 @@ class Loop:
         evaluate(s.rail, s.surface, s.faces, m.payload, s.frame, m.penalty, m.friction, self.state, self.active,
                  self.stepping.dt_s)
         self._kick(-0.5 * self.stepping.dt_s)
-        advance(*self.arguments(), 0, 0, self.stepping.dt_s)
+        self._advance(0)
         self._sample()
 
     def march(self, progress) -> None:
@@ -103,10 +115,20 @@ class Loop:
 
     def advance_one_sample(self) -> None:
         """Step to the next sample and take it."""
-        count, step = self.stepping.steps_per_sample, self.stepping.dt_s
-        self.damping = max(self.damping, advance(*self.arguments(), self.steps, count, step))
-        self.steps += count
+        self._advance(self.stepping.steps_per_sample)
         self._sample()
+
+    def _advance(self, count: int) -> None:
+        """``count`` steps, by all threads of the team."""
+        def part(thread):
+            began = clock.thread_time()
+            damping = advance(*self.arguments(), self.team, thread, self.steps, count, self.stepping.dt_s)
+            return damping, clock.thread_time() - began
+
+        others = [self.pool.submit(part, thread) for thread in range(1, self.team.size)]
+        self.damping = max(self.damping, part(0)[0])
+        self.other_cpu += sum(other.result()[1] for other in others)
+        self.steps += count
 
     def _sample(self) -> None:
         state, step = self.state, self.stepping.dt_s
@@ -125,7 +147,8 @@ class Loop:
         s, m, state = self.system, self.system.model, self.state
         pose = seen_from_frame(state, m.payload, s.frame)
         thrust = thrust_load(state, s.drive, m.thrust.pulses, m.thrust.curve, m.thrust_offset, self.steps * self.stepping.dt_s)
-        kick(s.rail, m.payload, s.frame, s.drive, m.gravity, state, pose, thrust, step)
+        kick_bodies(m.payload, s.frame, s.drive, m.gravity, state, pose, thrust, step)
+        kick_nodes(s.rail.inverse_mass, state.velocity, state.resistance, pull_on_nodes(m.gravity, pose), step)
 
     def _fault(self, row: np.ndarray) -> str:
         """Why the run must stop here, or nothing."""

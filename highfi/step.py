@@ -8,47 +8,74 @@ At time n places and forces are known and velocities stand at n - 1/2. One step 
 
 The platform's share is the elastic force at the clamps in its variational form: the force and moment that the strain energy
 u'Ku/2 exerts on the frame when the nodes stay where they are in space. With it linear *and* angular momentum are exact; the sum of
-clamp forces alone would lose sum u x f. F_c and T_c are contact on all rail nodes, clamped or not.
+clamp forces alone would lose sum u x f. F_c and T_c are contact on all rail nodes, clamped or not. As K u has no resultant and no
+moment about the undeformed places, both sums need the dense nodal arrays for u x K u only.
+
+Nodes are moved and loaded by all threads of the team; the first one does the bodies before and contact after.
 """
 
-from highfi.contact import contact_forces
-from highfi.elastic import elastic_force
-from highfi.loads import add_external_impulse, add_work, thrust_load
-from highfi.nodes import drift_nodes, drift_nodes_in_frame, hold_clamped, kick_nodes, weigh_nodes
+from highfi.contact import collect_contact, contact_forces, touched
+from highfi.elastic import elastic_force, finish_load, move_and_load
+from highfi.loads import add_external_impulse, add_work, pull_on_nodes, thrust_load
+from highfi.nodes import follow_frame
 from highfi.pose import drift_body, seen_from_frame, small_turn, triple
-from highfi.records import DAMPING_RATIO, FRICTION_FORCE, MOMENT, MOMENT_ON_RAIL, NORMAL_FORCE
+from highfi.records import (DAMPING_RATIO, FRAME_VELOCITY, FRICTION_FORCE, MOMENT, MOMENT_ON_RAIL, NORMAL_FORCE, PULL, RATE,
+                            TURN)
+from highfi.team import meet
 from scenes import rotation
 from scenes.jit import njit
 
 
 @njit
 def evaluate(rail, surface, faces, payload, frame, penalty, friction, state, active, dt):
-    """Forces at the present places; returns the pose of the payload."""
-    pose = seen_from_frame(state, payload, frame)
-    elastic_force(rail, state.displacement, state.resistance)
-    contact_forces(rail, surface, faces, penalty, friction, state, active, pose, dt)
-    for node in rail.clamped:
-        state.resistance[node, 0] = 0.0
-        state.resistance[node, 1] = 0.0
-        state.resistance[node, 2] = 0.0
-    return pose
+    """All forces at the present places, by one thread."""
+    elastic_force(rail, state.displacement, state.resistance, state.turning)
+    contact_forces(rail, surface, faces, penalty, friction, state, active, seen_from_frame(state, payload, frame), dt)
+    collect(rail, surface, penalty, state, active)
 
 
 @njit
-def kick(rail, payload, frame, drive, gravity, state, pose, thrust, dt):
-    """Advance all velocities over ``dt`` by the present forces; counts the external impulse of the step."""
-    total, moment = kick_nodes(rail.points, rail.inverse_mass, state.displacement, state.velocity, state.resistance, dt)
+def collect(rail, surface, penalty, state, active):
+    """Clamp, then sum up: ``state.reaction``, and contact into the resistance."""
+    force, moment = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+    for part in range(state.turning.shape[0]):
+        moment = _less(moment, triple(state.turning[part]))
+    for node in rail.clamped:
+        f = triple(state.resistance[node])
+        force = _plus(force, f)
+        moment = _plus(moment, rotation.cross(triple(rail.points[node]), f))
+        for i in range(3):
+            state.resistance[node, i] = 0.0
     for i in range(3):
-        state.rail_momentum[i] += dt * total[i]
-    rail_mass, centre = weigh_nodes(rail, gravity, state, pose, dt)
-    load = state.load
+        state.reaction[i], state.reaction[3 + i] = force[i], moment[i]
+    if penalty is not None:
+        collect_contact(touched(rail, state), surface, active)
+
+
+@njit
+def _plus(a, b):
+    return (a[0] + b[0], a[1] + b[1], a[2] + b[2])
+
+
+@njit
+def _less(a, b):
+    return (a[0] - b[0], a[1] - b[1], a[2] - b[2])
+
+
+@njit
+def kick_bodies(payload, frame, drive, gravity, state, pose, thrust, dt):
+    """Advance all velocities but those of the nodes over ``dt`` by the present forces; counts the external impulse."""
+    load, total, moment = state.load, state.reaction[:3], state.reaction[3:]
     on_rail = (-load[NORMAL_FORCE] - load[FRICTION_FORCE], -load[NORMAL_FORCE + 1] - load[FRICTION_FORCE + 1],
                -load[NORMAL_FORCE + 2] - load[FRICTION_FORCE + 2])
     # What the rails pass on to the frame, in inertial axes.
     force = rotation.rotate(pose.frame, (on_rail[0] - total[0], on_rail[1] - total[1], on_rail[2] - total[2]))
     couple = rotation.rotate(pose.frame, (load[MOMENT_ON_RAIL] - moment[0], load[MOMENT_ON_RAIL + 1] - moment[1],
                                           load[MOMENT_ON_RAIL + 2] - moment[2]))
-    add_external_impulse(payload, frame, drive, gravity, state, thrust, rail_mass, centre, (force, couple), dt)
+    add_external_impulse(payload, frame, drive, gravity, state, pose, thrust, (force, couple), dt)
+    pull = pull_on_nodes(gravity, pose)
+    for i in range(3):
+        state.rail_momentum[i] += dt * (total[i] + drive.moving_mass * pull[i])
     _kick_payload(payload, gravity, state, pose, thrust, dt)
     _kick_platform(frame, drive, gravity, state, force, couple, thrust, dt)
 
@@ -63,10 +90,7 @@ def _kick_payload(payload, gravity, state, pose, thrust, dt):
     for i in range(3):
         body.velocity[i] += dt * (contact[i] + thrust[0][i]) / payload.mass
         body.spin[i] += dt * (moment[i] + thrust[1][i])
-    if gravity is not None:
-        body.velocity[0] += dt * gravity.x
-        body.velocity[1] += dt * gravity.y
-        body.velocity[2] += dt * gravity.z
+    _fall(gravity, body, dt)
 
 
 @njit
@@ -78,57 +102,78 @@ def _kick_platform(frame, drive, gravity, state, force, couple, thrust, dt):
         if drive.reacts_on_platform:
             point, push = thrust[2], thrust[0]
             back = (-push[0], -push[1], -push[2])
-            p = body.position
-            turn = rotation.cross((point[0] - p[0], point[1] - p[1], point[2] - p[2]), back)
+            turn = rotation.cross(_less(point, triple(body.position)), back)
         for i in range(3):
             body.velocity[i] += dt * (force[i] + back[i]) / frame.mass
             body.spin[i] += dt * (couple[i] + turn[i])
-        if gravity is not None:
-            body.velocity[0] += dt * gravity.x
-            body.velocity[1] += dt * gravity.y
-            body.velocity[2] += dt * gravity.z
+        _fall(gravity, body, dt)
 
 
 @njit
-def drift(rail, payload, frame, state, pose, dt):
-    """Advance all places over ``dt`` at the present velocities."""
-    drift_body(state.payload, payload.inverse_inertia, dt)
-    if frame is None:
-        drift_nodes(state.displacement, state.velocity, dt)
-    if frame is not None:
-        _drift_with_frame(rail, frame, state, pose, dt)
+def _fall(gravity, body, dt):
+    if gravity is not None:
+        body.velocity[0] += dt * gravity.x
+        body.velocity[1] += dt * gravity.y
+        body.velocity[2] += dt * gravity.z
 
 
 @njit
-def _drift_with_frame(rail, frame, state, pose, dt):
-    velocity = rotation.unrotate(pose.frame, triple(state.platform.velocity))
-    rate = rotation.unrotate(pose.frame, drift_body(state.platform, frame.inverse_inertia, dt))
-    turn = small_turn(rate, dt)
-    drift_nodes_in_frame(rail.points, state.displacement, state.velocity, velocity, turn, dt)
-    hold_clamped(rail, state, velocity, rate)
-    momentum = triple(state.rail_momentum)
-    change = rotation.rotate(turn, momentum)
+def drift_bodies(payload, frame, drive, gravity, state, pose, dt):
+    """Advance the places of the bodies over ``dt``; fills ``state.motion`` for the nodes."""
+    pull = pull_on_nodes(gravity, pose)
     for i in range(3):
-        state.rail_momentum[i] = momentum[i] + change[i]
+        state.motion[PULL + i] = pull[i]
+    drift_body(state.payload, payload.inverse_inertia, dt)
+    for i in range(3):
+        state.rail_moment[i] += dt * state.rail_momentum[i]
+    _drift_frame(drive, frame, state, pose, dt)
+
+
+@njit
+def _drift_frame(drive, frame, state, pose, dt):
+    if frame is not None:
+        velocity = rotation.unrotate(pose.frame, triple(state.platform.velocity))
+        rate = rotation.unrotate(pose.frame, drift_body(state.platform, frame.inverse_inertia, dt))
+        turn = small_turn(rate, dt)
+        for i in range(3):
+            state.motion[FRAME_VELOCITY + i], state.motion[RATE + i] = velocity[i], rate[i]
+            state.rail_moment[i] -= dt * drive.moving_mass * velocity[i]
+        for i in range(9):
+            state.motion[TURN + i] = turn[i]
+        moment, momentum = rotation.rotate(turn, triple(state.rail_moment)), rotation.rotate(turn, triple(state.rail_momentum))
+        for i in range(3):
+            state.rail_moment[i] += moment[i]
+            state.rail_momentum[i] += momentum[i]
 
 
 @njit
 def advance(rail, surface, faces, payload, frame, drive, pulses, curve, offset, penalty, friction, gravity, state, active,
-            first_step, steps, dt):
-    """Take ``steps`` steps from step number ``first_step``. Returns the largest step * friction damping / mass met.
+            team, thread, first_step, steps, dt):
+    """Take ``steps`` steps from step number ``first_step``, as one ``thread`` of ``team``; all its threads must be called.
 
-    On entry and on return forces are those of the present places and work is counted up to the present time.
+    Returns the largest step * friction damping / mass met. On entry and on return forces are those of the present places and work
+    is counted up to the present time.
     """
-    pose = seen_from_frame(state, payload, frame)
-    thrust = thrust_load(state, drive, pulses, curve, offset, first_step * dt)
     damping = 0.0
     for n in range(first_step, first_step + steps):
-        kick(rail, payload, frame, drive, gravity, state, pose, thrust, dt)
-        pose = seen_from_frame(state, payload, frame)
-        add_work(rail, surface, payload, frame, drive, friction, gravity, state, active, pose, thrust, 0.5 * dt)
-        drift(rail, payload, frame, state, pose, dt)
-        pose = evaluate(rail, surface, faces, payload, frame, penalty, friction, state, active, dt)
-        thrust = thrust_load(state, drive, pulses, curve, offset, (n + 1) * dt)
-        add_work(rail, surface, payload, frame, drive, friction, gravity, state, active, pose, thrust, 0.5 * dt)
-        damping = max(damping, state.load[DAMPING_RATIO])
+        if thread == 0:
+            pose = seen_from_frame(state, payload, frame)
+            thrust = thrust_load(state, drive, pulses, curve, offset, n * dt)
+            kick_bodies(payload, frame, drive, gravity, state, pose, thrust, dt)
+            pose = seen_from_frame(state, payload, frame)
+            add_work(touched(rail, state), surface, payload, frame, drive, friction, gravity, state, active, pose, thrust, 0.5 * dt, dt)
+            drift_bodies(payload, frame, drive, gravity, state, pose, dt)
+        meet(team)
+        move_and_load(rail, frame, state, team, thread, dt)
+        if thread == 0:
+            follow_frame(rail, state, frame)
+            pose = seen_from_frame(state, payload, frame)
+            contact_forces(rail, surface, faces, penalty, friction, state, active, pose, dt)
+        finish_load(rail, state, team, thread)
+        meet(team)
+        if thread == 0:
+            collect(rail, surface, penalty, state, active)
+            thrust = thrust_load(state, drive, pulses, curve, offset, (n + 1) * dt)
+            add_work(touched(rail, state), surface, payload, frame, drive, friction, gravity, state, active, pose, thrust, 0.5 * dt, 0.0)
+            damping = max(damping, state.load[DAMPING_RATIO])
     return damping

@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from highfi import assembly, pencils, records, surface
+from highfi.memory import zeros
 from highfi.mesh import RailMesh, read
 from highfi.numerics import Numerics
 from meshes import l_rail
@@ -13,6 +14,8 @@ from scenes import rotation
 from scenes.body import tensor
 from scenes.faults import Fault, SceneError
 from scenes.scene import Scene
+
+_MOST_SLABS = 64
 
 
 class System(NamedTuple):
@@ -69,7 +72,7 @@ def build(scene: Scene, numerics: Numerics, mesh: RailMesh) -> System:
     masses = np.where(rail.inverse_mass > 0.0, rail.mass, 0.0)
     surfaces = {name: number[facets] for name, facets in mesh.surfaces.items()}
     gauss = surface.build(surfaces, rail.points, faces, numerics.points_per_edge())
-    drive = records.Drive(model.thrust_arm, model.reacts_on_platform)
+    drive = records.Drive(model.thrust_arm, model.reacts_on_platform, float(moving.sum()))
     return System(model, mesh, operator, number, rail, masses, gauss, faces, frame, drive, origin, offset)
 
 
@@ -78,11 +81,27 @@ def _rail(points: np.ndarray, operator: assembly.Operator) -> tuple[records.Rail
     found = pencils.find(points, operator)
     columns, number = found if found else (None, np.arange(len(points)))
     size = -(-(number.max() + 1) // pencils.LANES) * pencils.LANES
-    place, mass, inverse = np.zeros((size, 3), order="F"), np.zeros(size), np.zeros(size)
+    place, mass, inverse = zeros((size, 3), order="F"), zeros((size,)), zeros((size,))
     place[number], mass[number] = points, operator.mass
     inverse[number[operator.free]] = 1.0 / operator.mass[operator.free]
-    return records.Rail(place, mass, inverse, number[~operator.free], number[operator.hexes].astype(np.uint32),
-                        operator.shape_class, operator.stiffness, columns), number
+    elements, blocks = None, None
+    if columns is None:
+        elements, blocks = general_elements(points, operator), np.append(np.arange(0, size, pencils.CHUNK), size)
+    else:
+        blocks = columns.chunks * columns.stride
+    return records.Rail(place, mass, inverse, number[~operator.free], columns, elements, blocks), number
+
+
+def general_elements(points: np.ndarray, operator: assembly.Operator) -> records.Elements:
+    """Elements in slabs along X. A slab is at least as thick as the longest element, so that elements of two slabs with one between
+    them share no node."""
+    x = points[operator.hexes][:, :, 0]
+    middle, longest = x.mean(axis=1), np.ptp(x, axis=1).max()
+    width = max(1.001 * longest, np.ptp(middle) / _MOST_SLABS)
+    slab = ((middle - middle.min()) / width).astype(np.int64)
+    order = np.argsort(slab, kind="stable")
+    slabs = np.searchsorted(slab[order], np.arange(slab.max() + 2))
+    return records.Elements(operator.hexes[order], operator.shape_class[order], operator.stiffness, slabs)
 
 
 def _rigid_part(scene, platform, points, moving) -> tuple[records.Frame, np.ndarray]:
@@ -113,16 +132,18 @@ def initial_state(system: System) -> tuple[records.State, records.Active]:
     payload.spin[:] = turn @ (model.payload.inertia @ np.array(start.rate))
     platform = records.Body(system.origin.copy(), np.zeros(3), np.array([1.0, 0.0, 0.0, 0.0]), np.zeros(3))
     nodes = system.rail.points.shape
-    velocity = np.zeros(nodes, order="F")
+    velocity = zeros(nodes, order="F")
     if system.frame is not None:
         rate = np.array(start.platform_rate)
         platform.velocity[:] = np.array(start.platform_velocity) - np.cross(rate, system.body_offset)
         platform.spin[:] = np.linalg.inv(system.frame.inverse_inertia) @ rate
         velocity[system.number] = platform.velocity + np.cross(rate, system.rail.points[system.number])
     count = system.faces.axis.size
-    state = records.State(payload, platform, np.zeros(nodes, order="F"), velocity, np.zeros(nodes, order="F"),
-                          system.moving_mass @ velocity, np.zeros(records.LOAD_SIZE), np.zeros(records.WORK_SIZE), np.zeros(6),
-                          np.zeros((count, 3)))
+    parts = system.rail.blocks.size - 1
+    state = records.State(payload, platform, zeros(nodes, order="F"), velocity, zeros(nodes, order="F"), np.zeros(nodes),
+                          np.zeros((parts, 3)), np.zeros(6), np.zeros(records.MOTION_SIZE), system.moving_mass @ velocity,
+                          system.moving_mass @ system.rail.points, np.zeros(records.LOAD_SIZE), np.zeros(records.WORK_SIZE),
+                          np.zeros(6), np.zeros((count, 3)))
     room = surface.capacity(system.surface)
     active = records.Active(np.zeros(1, dtype=np.int64), np.zeros((room, 2), dtype=np.int64),
                             np.zeros(room, dtype=np.int64), np.zeros((room, 3)), np.zeros(room), np.zeros(nodes[0]),

@@ -41,12 +41,12 @@ class Run:
                             code_hash(*SOURCES[self.fidelity]))
 
 
-def execute(run: Run, progress: Callable[[float], None] | None = None) -> Trajectory:
-    """Run it, without any store."""
+def execute(run: Run, progress: Callable[[float], None] | None = None, threads: int | None = None) -> Trajectory:
+    """Run it, without any store; ``threads`` for a run of the reference, its own choice when None."""
     if run.fidelity == "highfi":
         import highfi
 
-        return highfi.run(run.scene, numerics=run.numerics, progress=progress)
+        return highfi.run(run.scene, numerics=run.numerics, progress=progress, threads=threads)
     import lowfi
 
     return lowfi.run(run.scene, calibration=run.calibration, numerics=run.numerics, progress=progress)
@@ -100,9 +100,11 @@ class Store:
         for run in runs:
             prepare(run)
         made: dict[str, Trajectory] = {}
+        # Side by side each run is best left alone with one processor: threads of one run would wait for each other.
+        threads = None if min(self.workers, len(runs)) == 1 else 1
         pool = ThreadPoolExecutor(self.workers)
         with Board(title, len(runs)) as board:
-            pending = {pool.submit(self._one, run, board): run for run in runs}
+            pending = {pool.submit(self._one, run, board, threads): run for run in runs}
             try:
                 for future in as_completed(pending):
                     made[pending[future].key] = future.result()
@@ -114,10 +116,10 @@ class Store:
         pool.shutdown()
         return made
 
-    def _one(self, run: Run, board: Board) -> Trajectory:
+    def _one(self, run: Run, board: Board, threads: int | None) -> Trajectory:
         progress = board.callback(run.label)
         progress(0.0)
-        trajectory = execute(run, progress)
+        trajectory = execute(run, progress, threads)
         trajectory.save(self.path(run))
         message = f" ({trajectory.message})" if trajectory.message else ""
         board.finished(run.label, f"{trajectory.status}{message} in {trajectory.cost['wall_s']:.3g} s")

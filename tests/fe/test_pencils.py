@@ -8,7 +8,7 @@ import pytest
 from highfi import assembly, pencils
 from highfi.mesh import read
 from highfi.operator import internal_force
-from highfi.pencil_kernel import pencil_force
+from highfi.pencil_kernel import pencil_force, room_for_sums
 from meshes import l_rail
 from tests.fe.blocks import ALUMINIUM, block
 
@@ -23,7 +23,7 @@ def both_forces(mesh):
     size = -(-(number.max() + 1) // pencils.LANES) * pencils.LANES
     padded, force = np.zeros((3, size)), np.zeros((3, size))
     padded[:, number] = displacement.T
-    pencil_force(columns, padded, force)
+    pencil_force(columns, padded, force, 0, columns.first.size - 1, room_for_sums(columns.stride))
     return force, number, expected
 
 

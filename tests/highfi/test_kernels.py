@@ -1,25 +1,47 @@
-"""Both elastic kernels carry the same run: pencils on an extruded mesh, elements when told to forget that it is one."""
+"""Both elastic kernels carry the same run, and any number of threads the same bits."""
 
 import numpy as np
+import pytest
 
 import highfi
 from highfi import Numerics
 from highfi.run import Loop
-from tests.highfi.support import loop_on, tiny
+from highfi.stepping import choose
+from highfi.system import build, general_elements
+from tests.highfi.support import tiny
+
+NUMERICS = Numerics(element_size=0.004)
+
+
+def run(kernel: str, threads: int = 1):
+    """Result on the extruded rails of ``tiny``; "elements" makes the loop forget that they are extruded."""
+    scene = tiny(duration="9 ms", contact__clearance="0.05 mm")
+    system = build(scene, NUMERICS, highfi.prepare(scene, NUMERICS))
+    assert system.rail.pencils is not None
+    if kernel == "elements":
+        elements = general_elements(system.mesh.points, system.operator)
+        elements = elements._replace(hexes=system.number[elements.hexes].astype(np.uint32))
+        system = system._replace(rail=system.rail._replace(pencils=None, elements=elements))
+    loop = Loop(scene, system, choose(system, scene, NUMERICS), threads)
+    loop.begin()
+    loop.march(None)
+    return loop.trajectory({}, NUMERICS)
 
 
 def test_pencils_and_elements_carry_the_same_run():
-    scene, numerics = tiny(duration="15 ms"), Numerics(element_size=0.004)
-    runs = []
-    for forget in (False, True):
-        loop: Loop = loop_on(scene, highfi.prepare(scene, numerics), numerics)
-        assert loop.system.rail.pencils is not None
-        if forget:
-            loop.system = loop.system._replace(rail=loop.system.rail._replace(pencils=None))
-        loop.begin()
-        loop.march(None)
-        runs.append(loop.trajectory({}, numerics))
-    pencils, elements = runs
+    pencils, elements = run("pencils"), run("elements")
     assert np.abs(pencils.pad_force).max() > 1.0
     assert np.abs(pencils.rate - elements.rate).max() <= 1e-9 * np.abs(elements.rate).max()
     assert pencils.checks["transverse_energy_error"] <= 1e-3
+
+
+@pytest.mark.case("X20")
+@pytest.mark.parametrize("kernel", ["pencils", "elements"])
+def test_threads_do_not_change_a_bit(kernel):
+    """Three threads cut the four rails where no rail ends, so that shares hang on each other."""
+    alone = run(kernel)
+    assert np.abs(alone.pad_force).max() > 0.0
+    for threads in (2, 3):
+        shared = run(kernel, threads)
+        for name in ("position", "velocity", "quaternion", "rate", "platform_velocity", "pad_force", "energy", "transverse_energy"):
+            np.testing.assert_array_equal(getattr(shared, name), getattr(alone, name), err_msg=f"{name}, {threads} threads")

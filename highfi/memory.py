@@ -1,0 +1,20 @@
+"""Arrays that start on a cache line: a vector of eight numbers then never straddles two."""
+
+import numpy as np
+
+_CACHE_LINE = 64  # bytes
+
+
+def zeros(shape: tuple[int, ...], order: str = "C") -> np.ndarray:
+    """Zeros (float64) of ``shape``."""
+    size = 8 * int(np.prod(shape))
+    room = np.zeros(size + _CACHE_LINE, dtype=np.uint8)
+    start = -room.ctypes.data % _CACHE_LINE
+    return room[start:start + size].view(np.float64).reshape(shape, order=order)
+
+
+def aligned(array: np.ndarray) -> np.ndarray:
+    """A copy (float64, in rows) that starts on a cache line."""
+    copy = zeros(array.shape)
+    copy[...] = array
+    return copy
