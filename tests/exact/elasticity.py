@@ -42,10 +42,19 @@ def leapfrog_growth(ratio: float) -> float:
 
 
 def timoshenko_cantilever(count, length, width, height, youngs_modulus, poisson_ratio, density, shear_factor=5.0 / 6.0):
-    """First `count` bending frequencies (Hz) of a rectangular cantilever, bending across `height`.
+    """First `count` bending frequencies (Hz) of a rectangular cantilever, bending across `height`; see `_timoshenko`."""
+    return _timoshenko(slice(2, 4), count, length, width, height, youngs_modulus, poisson_ratio, density, shear_factor)
 
-    With y = (w, psi, M, V) the beam obeys y' = A(w^2) y; the clamp leaves M and V free at the root, the free end wants both
-    zero, so frequencies are the roots of the determinant of the 2x2 block of exp(A L). Timoshenko, Phil. Mag. 41 (1921) 744.
+
+def timoshenko_free(count, length, width, height, youngs_modulus, poisson_ratio, density, shear_factor=5.0 / 6.0):
+    """First `count` flexible bending frequencies (Hz) of the same beam with both ends free; see `_timoshenko`."""
+    return _timoshenko(slice(0, 2), count, length, width, height, youngs_modulus, poisson_ratio, density, shear_factor)
+
+
+def _timoshenko(start, count, length, width, height, youngs_modulus, poisson_ratio, density, shear_factor):
+    """With y = (w, psi, M, V) the beam obeys y' = A(w^2) y. The first end leaves the components `start` open (M and V at a clamp, w and
+    psi where it is free), the other end wants M = V = 0, so frequencies are the roots of the determinant of that 2x2 block of
+    exp(A L). Timoshenko, Phil. Mag. 41 (1921) 744.
     """
     area, inertia = width * height, width * height**3 / 12.0
     bending = youngs_modulus * inertia
@@ -58,7 +67,7 @@ def timoshenko_cantilever(count, length, width, height, youngs_modulus, poisson_
                           [0.0, 0.0, 1.0, 0.0],
                           [0.0, -density * inertia * square * length**2 / bending, 0.0, -1.0],
                           [-density * area * square * length**4 / bending, 0.0, 0.0, 0.0]])
-        return np.linalg.det(expm(slope)[2:, 2:])
+        return np.linalg.det(expm(slope)[2:, start])
 
     roots, lower, increment = [], 1.0, 5.0
     while len(roots) < count:
@@ -66,6 +75,15 @@ def timoshenko_cantilever(count, length, width, height, youngs_modulus, poisson_
             roots.append(brentq(determinant, lower, lower + increment, xtol=1e-9))
         lower += increment
     return np.array(roots)
+
+
+def cantilever_deflection(force, length, width, height, youngs_modulus, poisson_ratio, shear_factor=5.0 / 6.0):
+    """Bending and shear part (m) of the tip deflection across `height` under a tip force (N): P L^3 / 3 E I + P L / (kappa G A).
+    Timoshenko, Strength of Materials I, arts. 21 and 39.
+    """
+    bending = force * length**3 / (3.0 * youngs_modulus * width * height**3 / 12.0)
+    shear_modulus = youngs_modulus / (2.0 * (1.0 + poisson_ratio))
+    return bending, force * length / (shear_factor * shear_modulus * width * height)
 
 
 def spinning_bar_stretch(length: float, rate: float, youngs_modulus: float, density: float) -> float:
