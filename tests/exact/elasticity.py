@@ -18,6 +18,28 @@ def confined_speed(youngs_modulus: float, poisson_ratio: float, density: float) 
     return math.sqrt(youngs_modulus * factor / density)
 
 
+def pushed_bar(window: int, force: float, area: float, youngs_modulus: float, density: float) -> float:
+    """Speed (m/s) of the pushed end of a free bar in window `window` (from 1) of 2 L / c, (2 window - 1) F / (rho c A): each return of the
+    wave adds twice the first step. Graff 1975, ch. 2; Goldsmith, Impact, 1960, ch. 3.
+    """
+    return (2 * window - 1) * force / (density * bar_speed(youngs_modulus, density) * area)
+
+
+def largest_shortening(force: float, length: float, area: float, youngs_modulus: float) -> float:
+    """Largest shortening (m) of a free bar pushed at one end, F L / E A at t = L / c; it is a triangle wave, so its mean is half of that,
+    which is also the shortening under F balanced by the bar's own acceleration."""
+    return force * length / (youngs_modulus * area)
+
+
+def rod_impact(length: float, area: float, speed: float, youngs_modulus: float, density: float) -> dict[str, float]:
+    """Duration (s) 2 L / c, stress (Pa) rho c v / 2, force (N) and impulse (N s) m v of a rod striking an equal one at rest; a rod that
+    strikes a rigid wall at v is one that strikes an equal rod at 2 v. Goldsmith, Impact, 1960, section 3.2.
+    """
+    wave = bar_speed(youngs_modulus, density)
+    stress = 0.5 * density * wave * speed
+    return {"duration": 2.0 * length / wave, "stress": stress, "force": stress * area, "impulse": density * area * length * speed}
+
+
 def fixed_free_wavenumber(mode: int, length: float) -> float:
     """Wave number (rad/m) of a bar fixed at one end, (2 mode - 1) pi / 2 L, modes from 1. Graff 1975, ch. 2."""
     return (2 * mode - 1) * math.pi / (2.0 * length)
