@@ -111,3 +111,24 @@ def cantilever_deflection(force, length, width, height, youngs_modulus, poisson_
 def spinning_bar_stretch(length: float, rate: float, youngs_modulus: float, density: float) -> float:
     """Stretch (m) of a bar that turns about its root at `rate` rad/s, rho w^2 L^3 / 3 E. Timoshenko and Goodier, art. 32."""
     return density * rate**2 * length**3 / (3.0 * youngs_modulus)
+
+
+def pressed_cylinder_displacement(radius, inner, outer, pressure, youngs_modulus, poisson_ratio):
+    """Radial displacement (m) at `radius` of a thick cylinder under inner pressure (Pa) in plane strain:
+    (1 + nu) p a^2 ((1 - 2 nu) r + b^2 / r) / E (b^2 - a^2). Lame; Timoshenko and Goodier, art. 28.
+    """
+    scale = (1.0 + poisson_ratio) * pressure * inner**2 / (youngs_modulus * (outer**2 - inner**2))
+    return scale * ((1.0 - 2.0 * poisson_ratio) * radius + outer**2 / radius)
+
+
+def pressed_cylinder_stress(points, inner, outer, pressure, poisson_ratio):
+    """Stress (...,6) in Pa, ordered xx yy zz xy yz zx, at points (...,3) of the same cylinder about the z axis:
+    radial and hoop stress p a^2 (1 -+ b^2 / r^2) / (b^2 - a^2), axial stress nu times their sum.
+    """
+    radius = np.hypot(points[..., 0], points[..., 1])
+    cosine, sine = points[..., 0] / radius, points[..., 1] / radius
+    scale = pressure * inner**2 / (outer**2 - inner**2)
+    radial, hoop = scale * (1.0 - (outer / radius) ** 2), scale * (1.0 + (outer / radius) ** 2)
+    zero = np.zeros_like(radius)
+    return np.stack([radial * cosine**2 + hoop * sine**2, radial * sine**2 + hoop * cosine**2, poisson_ratio * (radial + hoop),
+                     (radial - hoop) * sine * cosine, zero, zero], axis=-1)
