@@ -19,15 +19,15 @@ def confined_speed(youngs_modulus: float, poisson_ratio: float, density: float) 
 
 
 def pushed_bar(window: int, force: float, area: float, youngs_modulus: float, density: float) -> float:
-    """Speed (m/s) of the pushed end of a free bar in window `window` (from 1) of 2 L / c, (2 window - 1) F / (rho c A): each return of the
-    wave adds twice the first step. Graff 1975, ch. 2; Goldsmith, Impact, 1960, ch. 3.
+    """Speed (m/s) of the pushed end of a free bar in window `window` (from 1) of 2 L / c, (2 window - 1) F / (rho c A): each return
+    of the wave adds twice the first step. Graff 1975, ch. 2; Goldsmith, Impact, 1960, ch. 3.
     """
     return (2 * window - 1) * force / (density * bar_speed(youngs_modulus, density) * area)
 
 
 def largest_shortening(force: float, length: float, area: float, youngs_modulus: float) -> float:
-    """Largest shortening (m) of a free bar pushed at one end, F L / E A at t = L / c; it is a triangle wave, so its mean is half of that,
-    which is also the shortening under F balanced by the bar's own acceleration."""
+    """Largest shortening (m) of a free bar pushed at one end, F L / E A at t = L / c. It is a triangle wave, so its mean is half of
+    that, which is also the shortening under F balanced by the bar's own acceleration. Graff 1975, ch. 2."""
     return force * length / (youngs_modulus * area)
 
 
@@ -74,8 +74,8 @@ def timoshenko_free(count, length, width, height, youngs_modulus, poisson_ratio,
 
 
 def _timoshenko(start, count, length, width, height, youngs_modulus, poisson_ratio, density, shear_factor):
-    """With y = (w, psi, M, V) the beam obeys y' = A(w^2) y. The first end leaves the components `start` open (M and V at a clamp, w and
-    psi where it is free), the other end wants M = V = 0, so frequencies are the roots of the determinant of that 2x2 block of
+    """With y = (w, psi, M, V) the beam obeys y' = A(w^2) y. The first end leaves the components `start` open (M and V at a clamp, w
+    and psi where it is free), the other end wants M = V = 0, so frequencies are the roots of the determinant of that 2x2 block of
     exp(A L). Timoshenko, Phil. Mag. 41 (1921) 744.
     """
     area, inertia = width * height, width * height**3 / 12.0

@@ -1,4 +1,4 @@
-"""A quarter of a thick cylinder in plane strain under inner pressure: curved, nearly incompressible where asked, and solved by Lame."""
+"""A quarter of a thick cylinder in plane strain under inner pressure, which Lame solved: curved, and incompressible but for a little."""
 
 from dataclasses import replace
 from typing import NamedTuple

@@ -74,8 +74,8 @@ def test_front_in_a_confined_column(fraction):
 @TWO_STEPS
 @pytest.mark.parametrize("elements", [100, 200])
 def test_free_bar_pushed_at_one_end(elements, fraction):
-    """The pushed end moves at 0.175760, 0.527281, 0.878801 m/s in turn, the bar shortens in a triangle wave up to 17.361 um, and its mass
-    centre accelerates at F / m = 1779.36 m/s2."""
+    """The pushed end moves at 0.175760, 0.527281, 0.878801 m/s in turn, the bar shortens in a triangle wave up to 17.361 um, and its
+    mass centre accelerates at F / m = 1779.36 m/s2."""
     force, window = 1000.0, 2.0 * LENGTH / SPEED
     mesh = block((elements, 1, 1), (LENGTH, WIDTH, WIDTH))
     operator = assembly.build(mesh, DENSITY, MODULUS, 0.0, fixed=())
@@ -168,8 +168,8 @@ def test_equal_rods_swap_their_speeds(elements, fraction):
 
 @pytest.mark.case("O3")
 def test_wrong_penalties_are_seen():
-    """Controls of the collision: a soft penalty makes it last too long. One that is too stiff for the mesh keeps below the limit of linear
-    stability, yet creates energy whenever it switches, and at nine tenths of the limit it does so in plenty."""
+    """Controls of the collision: a soft penalty makes it last too long. One that is too stiff for the mesh keeps below the limit of
+    linear stability, yet creates energy whenever it switches, and at nine tenths of the limit it does so in plenty."""
     soft, stiff = collide(100, 0.9, 0.1), collide(100, 0.9, 3.0)
     assert soft["duration"] > 1.02 * 2.0 * LENGTH / SPEED
     assert stiff["energy"] > 0.1

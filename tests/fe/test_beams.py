@@ -30,8 +30,8 @@ def loaded(mesh, mass, faces):
 def deflection(mesh, operator):
     """Deflection (m) of the tip against the root under FORCE, and the displacement (n,3), on the supports of beam theory.
 
-    The root section stays plane but may contract sideways, and its shear force is given. A solid clamp, which forbids the contraction,
-    bends 0.7 % less: that is elasticity, not the error looked for here.
+    The root section stays plane but may contract sideways, and its shear force is given. A solid clamp, which forbids the
+    contraction, bends 0.7 % less: that is elasticity, not the error looked for here.
     """
     x, y, z = mesh.points.T
     load = loaded(mesh, operator.mass, {BEAM["length"]: FORCE, 0.0: -FORCE})
@@ -73,8 +73,8 @@ def test_clamped_root_without_contraction(divisions):
 @pytest.mark.case("O6")
 @MESHES
 def test_root_stress(divisions):
-    """6 P L / b h^2 = 7.5 MPa in the outer fibre of the root: the stress of the first layer's outer elements, taken from their centres to
-    the root along M(x) and to the fibre along z."""
+    """6 P L / b h^2 = 7.5 MPa in the outer fibre of the root: the stress of the first layer's outer elements, taken from their
+    centres to the root along M(x) and to the fibre along z."""
     assert ROOT_STRESS == pytest.approx(7.5e6, rel=1e-12)
     mesh = beam(divisions)
     operator = assembly.build(mesh, **ALUMINIUM, fixed=())

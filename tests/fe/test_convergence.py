@@ -44,8 +44,8 @@ def test_orders_in_space():
 
 @pytest.mark.case("O13")
 def test_order_in_time():
-    """A cantilever let go in its first mode follows cos(w t); what is missing after nine eighths of a period falls with the square of
-    the step."""
+    """A cantilever let go in its first mode follows cos(w t); the error after nine eighths of a period falls with the square of the
+    step."""
     mesh = block((10, 1, 2), (0.2, 0.02, 0.02))
     operator = assembly.build(mesh, **ALUMINIUM)
     frequencies, shapes = modes(operator, 1)
