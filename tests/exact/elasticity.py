@@ -32,12 +32,27 @@ def largest_shortening(force: float, length: float, area: float, youngs_modulus:
 
 
 def rod_impact(length: float, area: float, speed: float, youngs_modulus: float, density: float) -> dict[str, float]:
-    """Duration (s) 2 L / c, stress (Pa) rho c v / 2, force (N) and impulse (N s) m v of a rod striking an equal one at rest; a rod that
-    strikes a rigid wall at v is one that strikes an equal rod at 2 v. Goldsmith, Impact, 1960, section 3.2.
+    """Duration (s) 2 L / c, stress (Pa) rho c v / 2, force (N) and impulse (N s) m v of a rod striking an equal one at rest; a rod
+    that strikes a rigid wall at v is one that strikes an equal rod at 2 v. Goldsmith, Impact, 1960, section 3.2.
     """
     wave = bar_speed(youngs_modulus, density)
     stress = 0.5 * density * wave * speed
     return {"duration": 2.0 * length / wave, "stress": stress, "force": stress * area, "impulse": density * area * length * speed}
+
+
+def moving_force_deflection(ratio, way, modes=25):
+    """Midspan deflection, over the static one P L^3 / 48 E I, of a simply supported beam when a force moving at `ratio` times the
+    critical speed (pi / L) sqrt(E I / rho A) has done the share `way` of the span:
+
+    (96 / pi^4) sum over odd k of sin(k pi / 2) / (k^4 (1 - (r/k)^2)) (sin k pi s - (r/k) sin(k^2 pi s / r)).
+    Fryba, Vibration of Solids and Structures under Moving Loads, 1972, section 1.1.
+    """
+    total = np.zeros_like(way)
+    for k in range(1, modes + 1, 2):
+        slowness = ratio / k
+        wave = np.sin(k * math.pi * way) - slowness * np.sin(k * k * math.pi * way / ratio)
+        total += math.sin(0.5 * k * math.pi) * wave / (k**4 * (1.0 - slowness**2))
+    return 96.0 / math.pi**4 * total
 
 
 def fixed_free_wavenumber(mode: int, length: float) -> float:
@@ -111,6 +126,15 @@ def cantilever_deflection(force, length, width, height, youngs_modulus, poisson_
 def spinning_bar_stretch(length: float, rate: float, youngs_modulus: float, density: float) -> float:
     """Stretch (m) of a bar that turns about its root at `rate` rad/s, rho w^2 L^3 / 3 E. Timoshenko and Goodier, art. 32."""
     return density * rate**2 * length**3 / (3.0 * youngs_modulus)
+
+
+def twist_of_bar(couple, length, width, thickness, youngs_modulus, poisson_ratio):
+    """Turn (rad) of a rectangular bar, `width` >= `thickness`, under a couple (N m) at its end: M L / G J with Saint-Venant's
+    J = w t^3 (1/3 - 64 t / (pi^5 w) sum over odd k of tanh(k pi w / 2 t) / k^5). Timoshenko and Goodier, art. 109.
+    """
+    series = sum(math.tanh(0.5 * k * math.pi * width / thickness) / k**5 for k in range(1, 30, 2))
+    constant = width * thickness**3 * (1.0 / 3.0 - 64.0 * thickness / (math.pi**5 * width) * series)
+    return couple * length * 2.0 * (1.0 + poisson_ratio) / (youngs_modulus * constant)
 
 
 def pressed_cylinder_displacement(radius, inner, outer, pressure, youngs_modulus, poisson_ratio):

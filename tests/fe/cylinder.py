@@ -1,4 +1,4 @@
-"""A quarter of a thick cylinder in plane strain under inner pressure, which Lame solved: curved, and incompressible but for a little."""
+"""A quarter of a thick cylinder in plane strain under inner pressure, which Lame solved."""
 
 from dataclasses import replace
 from typing import NamedTuple

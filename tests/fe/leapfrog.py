@@ -43,8 +43,8 @@ def _march(displacement, velocity, step, steps, node, component, hexes, shape_cl
 def driven(mesh, operator, step, load, displacement, velocity):
     """Advance displacement and velocity, both (n,3), in place by the product's own passes over the nodes, under nodal forces.
 
-    load(time, displacement) gives them in N, in any shape that broadcasts to (n,3). The velocity given is that at the start; from then on it lags by half a step.
-    Yields the time (s) of the displacement after each step, for as long as it is asked.
+    load(time, displacement) gives them in N, in any shape that broadcasts to (n,3). The velocity given is that at the start; from
+    then on it lags by half a step. Yields the time (s) of the displacement after each step, for as long as it is asked.
     """
     inverse_mass = np.where(operator.free, 1.0 / operator.mass, 0.0)
     resistance = np.empty_like(displacement)

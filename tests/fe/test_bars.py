@@ -74,8 +74,8 @@ def test_front_in_a_confined_column(fraction):
 @TWO_STEPS
 @pytest.mark.parametrize("elements", [100, 200])
 def test_free_bar_pushed_at_one_end(elements, fraction):
-    """The pushed end moves at 0.175760, 0.527281, 0.878801 m/s in turn, the bar shortens in a triangle wave up to 17.361 um, and its
-    mass centre accelerates at F / m = 1779.36 m/s2."""
+    """The pushed end moves at 0.175760, 0.527281, 0.878801 m/s in turn, the bar shortens in a triangle wave up to 17.361 um, and
+    its mass centre accelerates at F / m = 1779.36 m/s2."""
     force, window = 1000.0, 2.0 * LENGTH / SPEED
     mesh = block((elements, 1, 1), (LENGTH, WIDTH, WIDTH))
     operator = assembly.build(mesh, DENSITY, MODULUS, 0.0, fixed=())

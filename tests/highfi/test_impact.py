@@ -27,14 +27,15 @@ def scene(mass, speed, penalty, duration, interval):
         "name": "impact", "duration": duration, "output": {"interval": interval},
         "pads": [{"position": [0.0, -GAP, 0.0], "normals": ["+y"], "length": 2.0 * WIDTH, "width": 2.0 * WIDTH}],
         "payload": {"mass": mass, "inertia": {"xx": mass, "yy": mass, "zz": mass}},
-        "rail": {"start": -0.5 * WIDTH, "end": 0.5 * WIDTH, "material": {"density": DENSITY, "youngs_modulus": MODULUS, "poisson_ratio": 0.0}},
+        "rail": {"start": -0.5 * WIDTH, "end": 0.5 * WIDTH, "material": {
+            "density": DENSITY, "youngs_modulus": MODULUS, "poisson_ratio": 0.0}},
         "thrust": {"kind": "constant", "force": 0.0, "duration": duration},
         "contact": {"law": "linear", "clearance": GAP, "stiffness": 1.0, "penalty": penalty},
         "initial": {"velocity": {"y": speed}}}, bare_numbers_are_si=True)
 
 
 def rail(elements, length, clamped):
-    """Square bar along y in the path of the payload's mass centre: its face y = 0 is touched; its surface is clamped, or nothing is."""
+    """Square bar along y in the path of the payload's mass centre: its face y = 0 is touched; all facets are clamped or none."""
     mesh = block((2, elements, 1), (WIDTH, length, WIDTH))
     facets = boundary_facets(mesh.hexes)
     touched = facets[(mesh.points[facets][:, :, 1] == 0.0).all(axis=1)]
