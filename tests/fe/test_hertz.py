@@ -23,8 +23,7 @@ REACH = 0.4e-3  # m from the axis within which nodes may touch; the contact radi
 
 
 def half_space(size, even, layers, growth=1.8):
-    """Quarter block: `even` elements of `size` (m) outwards and downwards from the axis, then `layers`, each `growth` times the last
-    one."""
+    """Quarter block: `even` elements of `size` (m) outwards and downwards, then `layers` of them that grow by `growth` each."""
     edges = size * np.concatenate([np.ones(even), growth ** np.arange(1, layers + 1)])
     stations = np.concatenate([[0.0], np.cumsum(edges)])
     count = len(edges)

@@ -92,7 +92,7 @@ def test_rod_converges_with_the_penalty(safety):
     """With the penalty at a fixed share of E / h both are refined together; the duration's error falls faster than k^-1/2."""
     errors = np.array([strike(elements, 0.3, safety)["duration"] / EXACT["duration"] - 1.0 for elements in (60, 120, 240)])
     assert (np.log2(errors[1:] / errors[:-1]) <= -0.4).all()
-    # Control: so soft a penalty is too soft for the coarsest mesh, so there is something to converge from.
+    # Control: on the coarsest mesh this penalty fails O4, so there is something to converge from.
     assert errors[0] > 0.02
 
 
@@ -100,7 +100,7 @@ def test_rod_converges_with_the_penalty(safety):
 @TWO_STEPS
 @pytest.mark.parametrize("stiffness, answer", [(7e7, 1.679252e-3), (2.8e8, 0.839626e-3)])
 def test_body_bounces_off_a_linear_pad(stiffness, answer, safety):
-    """20 kg on a clamped surface: T = pi sqrt(m / k), and the force at rest on a penetration p is k p."""
+    """20 kg on a clamped surface: T = pi sqrt(m / k), and at every sample p = N / k."""
     mass, speed, penalty = 20.0, 0.05, stiffness / AREA
     expected = contact.power_law_collision(mass, speed, stiffness, 1.0)
     assert expected["duration"] == pytest.approx(answer, rel=1e-6)
