@@ -41,6 +41,20 @@ def power_law_collision(mass: float, v: float, k: float, n: float) -> dict[str, 
     return {"penetration": p, "force": k * p**n, "duration": duration}
 
 
+def hertz_stiffness(radius: float, ball: tuple[float, float], plane: tuple[float, float]) -> float:
+    """Stiffness k (N/m^1.5) of F = k p^1.5 between a ball and a half-space, each (E in Pa, nu): 4/3 E* sqrt R,
+    1/E* = sum of (1 - nu^2) / E (Johnson, Contact Mechanics, 1985, section 4.2)."""
+    return 4.0 / 3.0 * math.sqrt(radius) / sum((1.0 - nu**2) / modulus for modulus, nu in (ball, plane))
+
+
+def oblique_ball(vn: float, vt: float, mu: float, e: float, radius: float) -> tuple[float, float]:
+    """Tangential speed (m/s) and spin (rad/s) of a solid ball after a bounce without spin before: vt - mu (1+e) vn and
+    2.5 mu (1+e) vn / R while it slips throughout, vt/vn > 3.5 mu (1+e); else it leaves rolling, at 5/7 vt
+    (Goldsmith, Impact, 1960, section 2.5; rigid in the tangential direction)."""
+    loss = min(mu * (1.0 + e) * vn, 2.0 / 7.0 * vt)
+    return vt - loss, 2.5 * loss / radius
+
+
 def hunt_crossley_restitution(av: float) -> float:
     """Restitution on F = k p^n (1 + a p') from a v (1 + e) = ln[(1 + a v)/(1 - a v e)] (Hunt and Crossley, J. Appl. Mech. 42, 1975);
     independent of k, m and n."""

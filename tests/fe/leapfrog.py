@@ -1,10 +1,11 @@
-"""The plain central difference loop, with nothing in it but the operator under test.
+"""The plain central difference loop, with nothing in it but the operator under test and, where asked, nodal forces.
 
     v(n+1/2) = v(n-1/2) - dt M^-1 K u(n),    u(n+1) = u(n) + dt v(n+1/2)
 """
 
 import numpy as np
 
+from highfi.nodes import drift_nodes, kick_nodes
 from highfi.operator import internal_force
 from scenes.jit import njit
 
@@ -37,3 +38,21 @@ def _march(displacement, velocity, step, steps, node, component, hexes, shape_cl
         invariant[n] = energy
         trace[n + 1] = displacement[node, component]
     return trace, invariant
+
+
+def driven(mesh, operator, step, load, displacement, velocity):
+    """Advance displacement and velocity, both (n,3), in place by the product's own passes over the nodes, under nodal forces.
+
+    load(time, displacement) gives them in N, in any shape that broadcasts to (n,3). The velocity given is that at the start; from
+    then on it lags by half a step. Yields the time (s) of the displacement after each step, for as long as it is asked.
+    """
+    inverse_mass = np.where(operator.free, 1.0 / operator.mass, 0.0)
+    resistance = np.empty_like(displacement)
+    number = 0
+    while True:
+        internal_force(displacement, operator.hexes, operator.shape_class, operator.stiffness, resistance)
+        resistance -= load(number * step, displacement)
+        kick_nodes(mesh.points, inverse_mass, displacement, velocity, resistance, step if number else 0.5 * step)
+        drift_nodes(displacement, velocity, step)
+        number += 1
+        yield number * step
