@@ -5,7 +5,7 @@
 
 import numpy as np
 
-from highfi.nodes import drift_nodes, kick_nodes
+from highfi.nodes import kick_nodes
 from highfi.operator import internal_force
 from scenes.jit import njit
 
@@ -40,8 +40,8 @@ def _march(displacement, velocity, step, steps, node, component, hexes, shape_cl
     return trace, invariant
 
 
-def driven(mesh, operator, step, load, displacement, velocity):
-    """Advance displacement and velocity, both (n,3), in place by the product's own passes over the nodes, under nodal forces.
+def driven(operator, step, load, displacement, velocity):
+    """Advance displacement and velocity, both (n,3), in place by the product's own kick, under nodal forces.
 
     load(time, displacement) gives them in N, in any shape that broadcasts to (n,3). The velocity given is that at the start; from
     then on it lags by half a step. Yields the time (s) of the displacement after each step, for as long as it is asked.
@@ -52,7 +52,7 @@ def driven(mesh, operator, step, load, displacement, velocity):
     while True:
         internal_force(displacement, operator.hexes, operator.shape_class, operator.stiffness, resistance)
         resistance -= load(number * step, displacement)
-        kick_nodes(mesh.points, inverse_mass, displacement, velocity, resistance, step if number else 0.5 * step)
-        drift_nodes(displacement, velocity, step)
+        kick_nodes(inverse_mass, velocity, resistance, (0.0, 0.0, 0.0), step if number else 0.5 * step)
+        displacement += step * velocity
         number += 1
         yield number * step

@@ -43,7 +43,7 @@ def arrival(elements, width, poisson_ratio, speed, fraction):
     step = stable_step(operator, fraction)
     load, (displacement, velocity) = end_load(mesh, 0.0, 1e6 * width**2), at_rest(mesh)
     far, half, before = mesh.points[:, 0] == LENGTH, 1e6 / (DENSITY * speed), 0.0
-    for time in driven(mesh, operator, step, lambda *_: load, displacement, velocity):
+    for time in driven(operator, step, lambda *_: load, displacement, velocity):
         now = velocity[far, 0].mean()
         if now >= half:
             return time - 0.5 * step - (now - half) / (now - before) * step
@@ -83,7 +83,7 @@ def test_free_bar_pushed_at_one_end(elements, fraction):
     load, (displacement, velocity) = end_load(mesh, 0.0, force), at_rest(mesh)
     near, far = mesh.points[:, 0] == 0.0, mesh.points[:, 0] == LENGTH
     rows = []
-    for time in driven(mesh, operator, step, lambda *_: load, displacement, velocity):
+    for time in driven(operator, step, lambda *_: load, displacement, velocity):
         if time > 3.0 * window:
             break
         rows.append((time - 0.5 * step, velocity[near, 0].mean(), operator.mass @ velocity[:, 0] / operator.mass.sum(),
@@ -134,7 +134,7 @@ def collide(elements, fraction, stiffness, speed=2.0):
         forces.append(push.sum())
         return load
 
-    for time in driven(mesh, operator, step, contact, displacement, velocity):
+    for time in driven(operator, step, contact, displacement, velocity):
         drift = max(drift, np.abs(operator.mass @ velocity - start).max())
         if time > 3.0 * LENGTH / SPEED:
             break

@@ -57,7 +57,7 @@ def test_order_in_time():
         steps = int(fewest) * 2**halvings
         displacement, velocity = shape.copy(), np.zeros_like(shape)
         if centred:
-            times = driven(mesh, operator, end / steps, lambda *_: 0.0, displacement, velocity)
+            times = driven(operator, end / steps, lambda *_: 0.0, displacement, velocity)
             for _ in range(steps):
                 next(times)
         else:

@@ -38,7 +38,7 @@ def test_loaded_free_rail_keeps_its_momenta(rail, fraction):
     force, moment = load.sum(axis=0), np.cross(rail.points, load).sum(axis=0)
     step = fraction * timestep.critical_step(timestep.element_bound(operator))
     displacement, velocity = np.zeros(rail.points.shape), np.zeros(rail.points.shape)
-    times = driven(rail, operator, step, lambda *_: load, displacement, velocity)
+    times = driven(operator, step, lambda *_: load, displacement, velocity)
     for _ in range(5000):
         time = next(times) - 0.5 * step
     momentum = operator.mass[:, None] * velocity

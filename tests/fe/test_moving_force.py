@@ -35,7 +35,7 @@ def midspan(elements, ratio, fraction, bubbles=True):
         load[line[element + 1], 2] = 0.5 * FORCE * (place - element)
         return load
 
-    times, deflection = driven(mesh, operator, crossing / steps, force, displacement, velocity), np.empty(steps)
+    times, deflection = driven(operator, crossing / steps, force, displacement, velocity), np.empty(steps)
     for step in range(steps):
         next(times)
         deflection[step] = displacement[line[elements // 2], 2].mean()
