@@ -1,4 +1,4 @@
-"""The proven critical step of the coupled system: rail, penalty contact, payload.
+"""The critical step of the coupled system: rail, penalty contact, payload.
 
 Contact adds G k G' to the stiffness, where a column of G is the gap of one Gauss point. In the mass metric
 

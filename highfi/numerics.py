@@ -9,7 +9,7 @@ class Numerics:
     """Mesh, quadrature and step of one run.
 
     ``element_size`` (m); ``quadrature``: Gauss points per facet edge (None: so many that points lie about 1 mm apart, between 2
-    and 8); ``safety``: fraction of the proven critical step; ``step`` (s): a step asked for, refused above the limit.
+    and 8); ``safety``: fraction of the critical step; ``step`` (s): a step asked for, refused above the limit.
     """
 
     element_size: float = 0.004

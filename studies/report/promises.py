@@ -57,7 +57,7 @@ def _step(rows: list[dict]) -> Promise | None:
     if not known:
         return None
     ratio, row = max(known, key=lambda pair: pair[0])
-    return Promise("no step above the proven limit, finite elements",
+    return Promise("no step above the critical one, finite elements",
                    f"{1e9 * row['cost']['dt_s']:.4g} ns of {1e9 * row['cost']['dt_limit_s']:.4g} ns, {ratio:.3f} ({row['condition']})",
                    f"{row['numerics'].get('safety', 1.0):g} of the limit", ratio <= 1.0)
 
@@ -67,7 +67,7 @@ def _surrogate_step(rows: list[dict]) -> Promise | None:
     if not known:
         return None
     used, where = max(known)
-    return Promise("no step above the proven limit, surrogate", f"{used:.3f} of the limit ({where})", "1", used <= 1.0 + 1e-9)
+    return Promise("no step above the critical one, surrogate", f"{used:.3f} of the limit ({where})", "1", used <= 1.0 + 1e-9)
 
 
 def _friction(rows: list[dict]) -> Promise | None:
