@@ -12,7 +12,7 @@ ASKED = --scene $(SCENE) --out $(OUT)
 READY = .venv/.ready
 
 .DEFAULT_GOAL := help
-.PHONY: help mesh highfi lowfi calibrate compare cost stability ablation report test test-slow clean
+.PHONY: help mesh highfi lowfi calibrate compare cost stability ablation bench report test test-slow clean
 
 help: ## print this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## /{printf "  make %-10s %s\n", $$1, $$2}' Makefile
@@ -41,6 +41,9 @@ stability: $(READY) ## hard cases, with the weaker methods that fail on them
 
 ablation: $(READY) ## what each effect changes and costs
 	$(TIPOFF) ablation $(ASKED)
+
+bench: $(READY) ## speed of the solvers against what one would write today: OUT/bench
+	$(TIPOFF) bench --out $(OUT)
 
 report: $(READY) ## all of the above on one page: OUT/SCENE/report.html
 	$(TIPOFF) report $(ASKED)

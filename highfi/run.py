@@ -47,8 +47,8 @@ def run(scene: Scene, numerics: Numerics | None = None, progress: Callable[[floa
     """Solve ``scene`` with flexible rails until the settled window is complete, a jam, or the scene's duration.
 
     ``progress`` is called with the fraction of the duration done. ``threads`` share the run, unless said otherwise as
-    many as there are processors and elements enough for; the result does not hang on their number. Raises SceneError, MeshError or StepError before any stepping;
-    what goes wrong later is the status of the result.
+    many as there are processors and elements enough for; the result does not hang on their number. Raises SceneError, MeshError or
+    StepError before any stepping; what goes wrong later is the status of the result.
     """
     numerics = numerics or Numerics()
     began, cpu = clock.perf_counter(), clock.thread_time()
@@ -99,7 +99,7 @@ class Loop:
         evaluate(s.rail, s.surface, s.faces, m.payload, s.frame, m.penalty, m.friction, self.state, self.active,
                  self.stepping.dt_s)
         self._kick(-0.5 * self.stepping.dt_s)
-        self._advance(0)
+        self.advance_steps(0)
         self._sample()
 
     def march(self, progress) -> None:
@@ -114,10 +114,10 @@ class Loop:
 
     def advance_one_sample(self) -> None:
         """Step to the next sample and take it."""
-        self._advance(self.stepping.steps_per_sample)
+        self.advance_steps(self.stepping.steps_per_sample)
         self._sample()
 
-    def _advance(self, count: int) -> None:
+    def advance_steps(self, count: int) -> None:
         """``count`` steps, by all threads of the team."""
         def part(thread):
             began = clock.thread_time()

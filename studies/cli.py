@@ -180,6 +180,22 @@ def run(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = None
     _guarded(work, json_)
 
 
+@app.command()
+def bench(out: Out = Path("out"),
+          element_size: Annotated[Optional[list[float]], typer.Option("--element-size", metavar="MM", min=0.05,
+                                  help="Element size in mm, repeatable; default: 2, 1 and 0.5.")] = None,
+          repeats: Annotated[int, typer.Option(metavar="N", min=1, help="Timed repeats; the median counts.")] = 5,
+          json_: Json = False) -> None:
+    """Speed of the reference solver against a SciPy matrix and NumPy on the same mesh; writes bench/highfi.json."""
+
+    def work() -> dict:
+        from studies import bench as stage
+
+        return stage.run(out, tuple(1e-3 * size for size in element_size) if element_size else stage.SIZES, repeats)
+
+    _guarded(work, json_)
+
+
 @app.command("scenes")
 def list_scenes(json_: Json = False) -> None:
     """List the catalogue: name, conditions, description."""
