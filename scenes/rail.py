@@ -1,0 +1,147 @@
+"""``[rail]``: the built-in L section, a mesh of the user's own, or a solid of the user's own that is meshed here.
+
+Presence of ``mesh`` or ``geometry`` is the switch. Such a file stands in scene axes (m, origin at the nominal mass centre at
+ignition, +X to the open end), its walls one clearance off the pads. The surrogate sees none of it: ``start`` and ``end`` say where
+the walls begin and end, pads and clearance where they stand; the reference refuses a file that says otherwise (``highfi.rail``).
+"""
+
+import hashlib
+import math
+from pathlib import Path
+from typing import Annotated, Any, ClassVar, Union
+
+from pydantic import AfterValidator, Discriminator, PrivateAttr, Tag, ValidationInfo, field_validator, model_validator
+
+from scenes.table import Table, at_least_one
+from scenes.units import Density, Length, NonNegativeLength, PositiveLength, Pressure, quantity
+
+FILES = ("mesh", "geometry")  # keys that give the rail as a file
+
+
+class Span(Table):
+    """A stretch along the rail measured from its rear end (m)."""
+
+    start: NonNegativeLength
+    end: PositiveLength
+
+    @field_validator("end")
+    @classmethod
+    def _forward(cls, end: float, info: ValidationInfo):
+        if end <= info.data.get("start", -math.inf):
+            raise ValueError("an end beyond start")
+        return end
+
+
+class MaterialTable(Table):
+    """``[rail.material]``: isotropic linear elasticity."""
+
+    density: Density
+    youngs_modulus: Pressure
+    poisson_ratio: quantity("dimensionless", gt=-1.0, lt=0.5)
+    yield_strength: Pressure | None = None
+
+
+class _RailTable(Table):
+    """What every rail has: the stretch of X (m) in which its walls stand, and its material."""
+
+    GIVEN_BY: ClassVar[str]
+    start: Length
+    end: Length
+    material: MaterialTable
+
+    @field_validator("end")
+    @classmethod
+    def _forward(cls, end: float, info: ValidationInfo):
+        if end <= info.data.get("start", -math.inf):
+            raise ValueError("an end beyond start")
+        return end
+
+    def contents(self) -> dict[str, str]:
+        """The keys that name files, each with the digest of what its file holds: what a result depends on."""
+        return {}
+
+
+class SectionTable(_RailTable):
+    """Built-in L sections from ``start`` to ``end`` along X, clamped to the platform at ``mounts``."""
+
+    GIVEN_BY = "section"
+    leg: PositiveLength = 0.024
+    thickness: PositiveLength = 0.004
+    mount_width: PositiveLength = 0.004
+    mounts: tuple[Span, ...] = ()
+
+    @field_validator("thickness", "mount_width")
+    @classmethod
+    def _within_leg(cls, value: float, info: ValidationInfo):
+        leg = info.data.get("leg", math.inf)
+        if value > leg or (info.field_name == "thickness" and value == leg):
+            raise ValueError(f"less than the leg, {leg:g} m")
+        return value
+
+    @field_validator("mounts")
+    @classmethod
+    def _apart_on_the_rail(cls, mounts: tuple[Span, ...], info: ValidationInfo):
+        length = info.data.get("end", math.inf) - info.data.get("start", 0.0)
+        if any(span.end > length + 1e-12 for span in mounts):
+            raise ValueError(f"spans that lie on the rail, which is {length:g} m long")
+        inward = sorted(mounts, key=lambda span: span.start)
+        if any(after.start < before.end for before, after in zip(inward, inward[1:])):
+            raise ValueError("spans that do not overlap")
+        return mounts
+
+
+class _FileTable(_RailTable):
+    """A rail given by a file.
+
+    ``thickness`` (m) of its walls and ``leg`` (m), how far they reach unsupported, are what the bounds of a calibration scale with;
+    nothing else asks for them.
+    """
+
+    leg: PositiveLength | None = None
+    thickness: PositiveLength | None = None
+    _digest: str = PrivateAttr()
+
+    @model_validator(mode="after")
+    def _taken(self):
+        self._digest = self._digest_now()
+        return self
+
+    def _digest_now(self) -> str:
+        return hashlib.sha256(self.path().read_bytes()).hexdigest()
+
+    def is_as_found(self) -> bool:
+        """Whether the file still holds what it held when the scene was read, under which results are filed."""
+        return self._digest_now() == self._digest
+
+    def path(self) -> Path:
+        """Where the file lies."""
+        return Path(getattr(self, self.GIVEN_BY))
+
+    def contents(self) -> dict[str, str]:
+        """The digest of the file, as it was when the scene was read."""
+        return {self.GIVEN_BY: self._digest}
+
+
+def _readable(file: str) -> str:
+    try:
+        with open(file, "rb") as stream:
+            stream.read(1)
+    except OSError as error:
+        raise ValueError(f"a readable file ({error.strerror})") from error
+    return file
+
+
+class MeshTable(_FileTable):
+    """``[rail] mesh``: hexahedra in any format meshio reads, with named surfaces ``contact...`` and ``mount`` (``highfi.mesh``)."""
+
+    GIVEN_BY = "mesh"
+    mesh: Annotated[str, AfterValidator(_readable)]
+
+
+def _given_by(rail: Any) -> str:
+    if isinstance(rail, dict):
+        return next((key for key in FILES if key in rail), "section")
+    return getattr(rail, "GIVEN_BY", "section")
+
+
+RailTable = Annotated[Union[Annotated[SectionTable, Tag("section")], Annotated[MeshTable, Tag("mesh")]], Discriminator(_given_by)]
