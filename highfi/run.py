@@ -12,9 +12,10 @@ from highfi.loads import thrust_load
 from highfi.mesh import RailMesh
 from highfi.numerics import Numerics
 from highfi.pose import seen_from_frame
+from highfi.rail import check_fit, geometry, make_mesh
 from highfi.step import advance, evaluate, kick
 from highfi.stepping import Stepping, choose
-from highfi.system import System, build, geometry, initial_state, make_mesh
+from highfi.system import System, build, initial_state
 from scenes import ledger, outcome, rotation
 from scenes.scene import Scene
 from scenes.trajectory import Trajectory
@@ -34,8 +35,10 @@ def prepare(scene: Scene, numerics: Numerics | None = None) -> RailMesh:
     key = (geometry(scene), numerics.element_size)
     with _MESH_LOCK:
         if key not in _MESHES:
-            _MESHES[key] = make_mesh(scene, numerics)
-        return _MESHES[key]
+            _MESHES[key] = make_mesh(scene, numerics.element_size)
+        mesh = _MESHES[key]
+    check_fit(scene, mesh)
+    return mesh
 
 
 def run(scene: Scene, numerics: Numerics | None = None, progress: Callable[[float], None] | None = None) -> Trajectory:

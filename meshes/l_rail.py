@@ -11,14 +11,14 @@ which restores the orientation that a reflection reverses.
 
 import contextlib
 import itertools
-from pathlib import Path
 from typing import NamedTuple
 
 import meshio
 import numpy as np
 
+from meshes import msh
+
 SURFACES = ("contact_y", "contact_z", "mount")
-VOLUME = "rail"
 
 _CORNERS = [(1, 1), (-1, 1), (-1, -1), (1, -1)]
 # Position in the VTK corner order of the corner with axis bits x + 2 y + 4 z (bit set: on the larger side).
@@ -53,12 +53,7 @@ def build(geometry: LRailGeometry, element_size: float) -> meshio.Mesh:
     with _gmsh_session() as gmsh:
         _draw(gmsh, geometry, element_size)
         points, hexes, surfaces = _extract(gmsh)
-    return _tagged(*_mirrored(points, hexes, surfaces))
-
-
-def save(mesh: meshio.Mesh, path) -> None:
-    """Write `mesh` as a binary gmsh 2.2 file, a format most finite-element tools still read."""
-    meshio.gmsh.write(Path(path), mesh, fmt_version="2.2", binary=True)
+    return msh.tagged(*_mirrored(points, hexes, surfaces))
 
 
 def _check(geometry: LRailGeometry, element_size: float) -> None:
@@ -192,14 +187,3 @@ def _along_axes(points, hexes):
     ordered = np.empty_like(hexes)
     np.put_along_axis(ordered, _VTK_POSITION[upper @ (1, 2, 4)], hexes, axis=1)
     return ordered
-
-
-def _tagged(points, hexes, surfaces) -> meshio.Mesh:
-    """The mesh with the tags a gmsh file carries, so that it reads the same from memory and from disk."""
-    cells = [("hexahedron", hexes), *(("quad", surfaces[name]) for name in SURFACES)]
-    tags = [len(SURFACES) + 1, *range(1, len(SURFACES) + 1)]
-    blocks = [np.full(len(block), tag, dtype=np.int32) for tag, (_, block) in zip(tags, cells)]
-    field_data = {name: np.array([tag, 2], dtype=np.int32) for tag, name in enumerate(SURFACES, start=1)}
-    field_data[VOLUME] = np.array([tags[0], 3], dtype=np.int32)
-    return meshio.Mesh(points, cells, field_data=field_data,
-                       cell_data={"gmsh:physical": blocks, "gmsh:geometrical": [block.copy() for block in blocks]})

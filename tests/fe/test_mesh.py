@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from highfi.mesh import MeshError, along_x, corner_jacobians, edge_lengths, read
-from meshes import l_rail
+from meshes import l_rail, msh
 
 GEOMETRY = l_rail.LRailGeometry()
 AREAS = {"contact_y": 4 * 0.220 * 0.020, "contact_z": 4 * 0.220 * 0.020, "mount": 4 * 2 * 3 * 0.020 * 0.004}
@@ -69,8 +69,8 @@ def test_rails_are_mirror_images_to_the_last_bit(built):
 
 
 def test_build_is_repeatable_and_survives_a_file(built, tmp_path):
-    l_rail.save(built, tmp_path / "first.msh")
-    l_rail.save(l_rail.build(GEOMETRY, 0.004), tmp_path / "second.msh")
+    msh.save(built, tmp_path / "first.msh")
+    msh.save(l_rail.build(GEOMETRY, 0.004), tmp_path / "second.msh")
     assert (tmp_path / "first.msh").read_bytes() == (tmp_path / "second.msh").read_bytes()
     here, there = read(built), read(tmp_path / "first.msh")
     assert np.array_equal(here.points, there.points) and np.array_equal(here.hexes, there.hexes)
