@@ -17,7 +17,7 @@ _CUBE = np.concatenate([np.insert(_SQUARE, 2, level, axis=1) for level in (0, 1)
 
 
 def to_size(mesh: RailMesh, element_size: float) -> RailMesh:
-    """``mesh`` split so that its shortest edges, as a rule those across a wall, come near to ``element_size`` (m); never coarser."""
+    """``mesh`` split so that its shortest edges, as a rule across a wall, come near to ``element_size`` (m); never coarser."""
     shortest = edge_lengths(mesh.points, mesh.hexes).min(axis=1)
     return split(mesh, max(1, round(float(np.median(shortest)) / element_size)))
 

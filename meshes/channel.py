@@ -28,7 +28,7 @@ _MIRRORED = [3, 2, 1, 0, 7, 6, 5, 4]  # VTK corners of a brick whose y has chang
 
 
 def build() -> meshio.Mesh:
-    """Both channels. Surfaces: `contact_web` and `contact_flange`, inner walls beside the holes, and `mount`, outside of the web."""
+    """Both channels. Surfaces: `contact_web` and `contact_flange`, inner walls beside the holes, and `mount`, the web outside."""
     points, hexes, surfaces = _channel()
     count = len(points)
     both = {name: np.concatenate([facets, facets + count]) for name, facets in surfaces.items()}
