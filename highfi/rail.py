@@ -1,23 +1,19 @@
-"""The mesh of a scene's rail: the built-in L section, or a file of the user's own that must agree with what the scene says of it.
-
-A file has the last word in the reference, the scene in the surrogate. So that both speak of one rail, the walls of a file must end
-where the scene says that they do, lie under every pad face, and stand one clearance off it, all to a micrometre.
-"""
+"""The mesh of a scene's rail: the built-in L section, a mesh of the user's own, or a solid of the user's own filled here."""
 
 from dataclasses import replace
 
+import meshio
 import numpy as np
 
-from highfi import assembly, split, surface, timestep
-from highfi.mesh import MeshError, RailMesh, along_x, listed, read, slivers
-from meshes import l_rail
-from scenes import model as scene_model
+from highfi import assembly, split, timestep
+from highfi.mesh import MeshError, RailMesh, along_x, boundary_facets, listed, read, slivers
+from meshes import l_rail, msh, solid
 from scenes.faults import Fault, SceneError
 from scenes.files import content_hash
-from scenes.rail import SectionTable
+from scenes.rail import GeometryTable, SectionTable
 from scenes.scene import Scene
 
-_SAME = 1e-6  # m: below what a rail is made to, above the rounding of any mesh format
+_SAME = 1e-6  # m, how far a corner of a facet may lie outside the box that names it
 
 
 def geometry(scene: Scene) -> l_rail.LRailGeometry | str:
@@ -36,8 +32,28 @@ def make_mesh(scene: Scene, element_size: float) -> RailMesh:
         return read(l_rail.build(_l_section(scene), element_size))
     if not scene.rail.is_as_found():
         raise MeshError(f"{scene.rail.path()} has changed since the scene was read")
+    if isinstance(scene.rail, GeometryTable):
+        return with_steps(along_x(read(_meshed(scene.rail, element_size))), scene.rail.material)
     mesh = with_steps(read(scene.rail.path()), scene.rail.material)  # first, since it speaks of the file's own element numbers
     return along_x(split.to_size(mesh, element_size))
+
+
+def _meshed(rail: GeometryTable, element_size: float) -> meshio.Mesh:
+    """The solid of a CAD file as hexahedra, the facets of its boundary named after the boxes they lie in."""
+    boxes = {name: np.array([(box.low, box.high) for box in given]) for name, given in rail.surfaces.items()}
+    try:
+        points, hexes = solid.build(rail.path(), element_size, np.concatenate(list(boxes.values())).reshape(-1, 3))
+    except ValueError as fault:
+        raise MeshError(f"{rail.path()} cannot be used: {fault}") from fault
+    facets = boundary_facets(hexes)
+    corners = points[facets][:, None]
+    inside = {name: ((corners > box[:, 0, None] - _SAME) & (corners < box[:, 1, None] + _SAME)).all(axis=(2, 3)).any(axis=1)
+              for name, box in boxes.items()}
+    if empty := [name for name, found in inside.items() if not found.any()]:
+        spans = zip("xyz", points.min(axis=0), points.max(axis=0))
+        reach = ", ".join(f"{axis} {low:.6g} to {high:.6g}" for axis, low, high in spans)
+        raise MeshError(f"{rail.path()} cannot be used: no face of the solid ({reach} m) lies in the boxes of {', '.join(empty)}")
+    return msh.tagged(points, hexes, {name: facets[found] for name, found in inside.items()})
 
 
 def with_steps(mesh: RailMesh, material) -> RailMesh:
@@ -53,45 +69,6 @@ def with_steps(mesh: RailMesh, material) -> RailMesh:
     forced, other = largest_step(mesh.hexes[thin]), largest_step(np.delete(mesh.hexes, thin, axis=0))
     words = f"slivers {listed(thin)} force a step of at most {forced:.3g} s, the other elements one of {other:.3g} s"
     return replace(mesh, warnings=(*mesh.warnings, words))
-
-
-def check_fit(scene: Scene, mesh: RailMesh) -> None:
-    """Raise SceneError with every place where a mesh of the user's own and the scene speak of different walls."""
-    if isinstance(scene.rail, SectionTable) or scene.contact is None:
-        return
-    facets = np.concatenate([quads for name, quads in mesh.surfaces.items() if name.startswith("contact")])
-    corners = mesh.points[facets]
-    faults = _end_faults(scene, corners) + _wall_faults(scene, corners)
-    if faults:
-        raise SceneError([Fault(scene.name, *fault) for fault in faults])
-
-
-def _end_faults(scene: Scene, corners: np.ndarray) -> list[tuple[str, str, str]]:
-    ends = {"rail.start": (scene.rail.start, corners[..., 0].min()), "rail.end": (scene.rail.end, corners[..., 0].max())}
-    return [(key, f"{said:.9g} m", f"{found:.9g} m, where the contact surfaces of {scene.rail.path().name} end")
-            for key, (said, found) in ends.items() if abs(said - found) > _SAME]
-
-
-def _wall_faults(scene: Scene, corners: np.ndarray) -> list[tuple[str, str, str]]:
-    """Pad faces over no wall, and walls that do not stand one clearance off them."""
-    model, clearance = scene_model.build(scene), scene.contact.clearance
-    faces, file = model.faces, scene.rail.path().name
-    seen = corners - np.array(model.platform.mass_centre if model.platform else (0.0, 0.0, 0.0))
-    faults, gaps = [], []
-    for face in range(faces.axis.size):
-        axis, sign, pad = faces.axis[face], faces.sign[face], faces.pad[face]
-        name = f"{'+' if sign > 0.0 else '-'}{'xyz'[axis]}"
-        near = seen[surface.in_reach(seen, faces, face)]
-        if len(near):
-            gaps.append(clearance + sign * (np.median(near[..., axis]) - faces.wall[face]))
-            continue
-        wall = scene.pads[pad].position[axis] + sign * clearance
-        faults.append((f"pads.{pad}", f"a face {name} with no wall under its track",
-                       f"a pad whose wall, at {name[1]} = {wall:.9g} m, is among the contact surfaces of {file}"))
-    if any(abs(gap - clearance) > _SAME for gap in gaps):
-        found = " to ".join(f"{gap:.9g}" for gap in sorted({min(gaps), max(gaps)}))
-        faults.append(("contact.clearance", f"{clearance:.9g} m", f"{found} m, at which the walls of {file} stand off the pads"))
-    return faults
 
 
 def _l_section(scene: Scene) -> l_rail.LRailGeometry:

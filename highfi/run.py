@@ -8,11 +8,12 @@ import numpy as np
 
 from highfi import observe, records, samples
 from highfi.contact import FASTEST_APPROACH
+from highfi.fit import check_fit
 from highfi.loads import thrust_load
 from highfi.mesh import RailMesh
 from highfi.numerics import Numerics
 from highfi.pose import seen_from_frame
-from highfi.rail import check_fit, geometry, make_mesh
+from highfi.rail import geometry, make_mesh
 from highfi.step import advance, evaluate, kick
 from highfi.stepping import Stepping, choose
 from highfi.system import System, build, initial_state

@@ -9,14 +9,13 @@ images bit for bit and a symmetric scene has a symmetric answer; their elements 
 which restores the orientation that a reflection reverses.
 """
 
-import contextlib
 import itertools
 from typing import NamedTuple
 
 import meshio
 import numpy as np
 
-from meshes import msh
+from meshes import generator, msh
 
 SURFACES = ("contact_y", "contact_z", "mount")
 
@@ -50,7 +49,7 @@ def build(geometry: LRailGeometry, element_size: float) -> meshio.Mesh:
     Raises ValueError for dimensions that do not make a rail, RuntimeError where a system library of gmsh is missing.
     """
     _check(geometry, element_size)
-    with _gmsh_session() as gmsh:
+    with generator.session("l_rail") as gmsh:
         _draw(gmsh, geometry, element_size)
         points, hexes, surfaces = _extract(gmsh)
     return msh.tagged(*_mirrored(points, hexes, surfaces))
@@ -65,25 +64,6 @@ def _check(geometry: LRailGeometry, element_size: float) -> None:
         raise ValueError(f"need 0 < thickness < leg and 0 < mount_width <= leg, got {geometry}")
     if any(right < left for left, right in itertools.pairwise(borders)) or length <= 0.0:
         raise ValueError(f"mount_spans must be in order and inside the length {length:g} m, got {geometry.mount_spans}")
-
-
-@contextlib.contextmanager
-def _gmsh_session():
-    """gmsh with no signal handler, no user settings, one thread, no output; finalised on the way out."""
-    try:
-        import gmsh  # here and not above: a run that reads a .msh file needs none of gmsh's graphics libraries
-    except OSError as error:
-        raise RuntimeError(
-            f"gmsh cannot be loaded ({error}). Its system libraries come with: apt-get install libgl1 libglu1-mesa "
-            "libxcursor1 libxft2 libxinerama1 libxrender1 libgomp1") from error
-    gmsh.initialize(readConfigFiles=False, interruptible=False)
-    try:
-        gmsh.option.setNumber("General.Terminal", 0)
-        gmsh.option.setNumber("General.NumThreads", 1)
-        gmsh.model.add("l_rail")
-        yield gmsh
-    finally:
-        gmsh.finalize()
 
 
 def _grid_lines(*borders: float) -> list[float]:

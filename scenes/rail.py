@@ -2,7 +2,7 @@
 
 Presence of ``mesh`` or ``geometry`` is the switch. Such a file stands in scene axes (m, origin at the nominal mass centre at
 ignition, +X to the open end), its walls one clearance off the pads. The surrogate sees none of it: ``start`` and ``end`` say where
-the walls begin and end, pads and clearance where they stand; the reference refuses a file that says otherwise (``highfi.rail``).
+the walls begin and end, pads and clearance where they stand; the reference refuses a file that says otherwise (``highfi.fit``).
 """
 
 import hashlib
@@ -16,6 +16,7 @@ from scenes.table import Table, at_least_one
 from scenes.units import Density, Length, NonNegativeLength, PositiveLength, Pressure, quantity
 
 FILES = ("mesh", "geometry")  # keys that give the rail as a file
+SOLIDS = (".step", ".stp", ".iges", ".igs", ".brep")
 
 
 class Span(Table):
@@ -138,10 +139,53 @@ class MeshTable(_FileTable):
     mesh: Annotated[str, AfterValidator(_readable)]
 
 
+class BoxTable(Table):
+    """A box between two corners in scene axes (m), flat where they agree."""
+
+    low: tuple[Length, Length, Length]
+    high: tuple[Length, Length, Length]
+
+    @field_validator("high")
+    @classmethod
+    def _above(cls, high, info: ValidationInfo):
+        if any(above < below for below, above in zip(info.data.get("low", high), high)):
+            raise ValueError("a corner nowhere below low")
+        return high
+
+
+class GeometryTable(_FileTable):
+    """``[rail] geometry``: a solid drawn in CAD, meshed here. ``surfaces`` names the parts of its boundary that lie in boxes."""
+
+    GIVEN_BY = "geometry"
+    geometry: Annotated[str, AfterValidator(_readable)]
+    surfaces: dict[str, Annotated[tuple[BoxTable, ...], AfterValidator(at_least_one)]]
+
+    @field_validator("geometry")
+    @classmethod
+    def _drawn(cls, file: str):
+        if Path(file).suffix.lower() not in SOLIDS:
+            raise ValueError(f"a file that ends in one of {', '.join(SOLIDS)}")
+        return file
+
+    @field_validator("surfaces")
+    @classmethod
+    def _walls_and_mount(cls, surfaces):
+        wrong = [f"a name that starts with 'contact' or is 'mount' instead of {name!r}" for name in surfaces
+                 if not name.startswith("contact") and name != "mount"]
+        if not any(name.startswith("contact") for name in surfaces):
+            wrong.append("a surface whose name starts with 'contact'")
+        if "mount" not in surfaces:
+            wrong.append("a surface 'mount'")
+        if wrong:
+            raise ValueError("; ".join(wrong))
+        return surfaces
+
+
 def _given_by(rail: Any) -> str:
     if isinstance(rail, dict):
         return next((key for key in FILES if key in rail), "section")
     return getattr(rail, "GIVEN_BY", "section")
 
 
-RailTable = Annotated[Union[Annotated[SectionTable, Tag("section")], Annotated[MeshTable, Tag("mesh")]], Discriminator(_given_by)]
+RailTable = Annotated[Union[Annotated[SectionTable, Tag("section")], Annotated[MeshTable, Tag("mesh")],
+                            Annotated[GeometryTable, Tag("geometry")]], Discriminator(_given_by)]

@@ -10,6 +10,7 @@ from highfi.mesh import MeshError
 from highfi.rail import geometry
 from meshes import channel, l_rail, msh
 from scenes import SceneError, load
+from tests.fe.test_solid import drawn, l_sections, l_surfaces, scene_of
 from tests.highfi.support import COARSE, tiny
 
 # The catalogue's channel under the fast pulse of the tiny scene, and aimed so badly that pads press within its first 8 ms.
@@ -146,3 +147,11 @@ def test_slivers_are_warned_about_with_the_step_they_force(tmp_path):
     cost, step = highfi.prepare(from_file(tiny(), saved(mesh, tmp_path / "rails.msh"))).warnings
     assert "slivers: elements 1, " in cost
     assert "force a step of at most 8.1" in step and "e-10 s" in step
+
+
+def test_the_built_in_rails_from_cad_give_the_same_run(tmp_path):
+    built = tiny(duration="8 ms", thrust_offset__misalignment__axial="1 deg", contact__clearance="0.25 mm")
+    drawing = scene_of(drawn(tmp_path / "rails.step", l_sections), l_surfaces()).rail
+    first, second = (highfi.run(scene, COARSE) for scene in (built, built.replace({"rail": drawing.model_dump()})))
+    assert np.abs(first.pad_force).max() > 100.0
+    assert np.abs(second.rate - first.rate).max() <= 1e-9 * np.abs(first.rate).max()
