@@ -1,7 +1,7 @@
 """Whether a rail given as a file and its scene speak of the same walls.
 
 A file has the last word in the reference, the scene in the surrogate, which never reads it. So the walls of a file must end where
-the scene says that they do, lie under every pad face, and stand one clearance off it, all to a micrometre.
+the scene says that they do, lie under every pad face, and stand off it by the clearance they were drawn for, to a micrometre.
 """
 
 import numpy as np
@@ -35,7 +35,7 @@ def _end_faults(scene: Scene, corners: np.ndarray) -> list[tuple[str, str, str]]
 
 def _wall_faults(scene: Scene, corners: np.ndarray) -> list[tuple[str, str, str]]:
     """Pad faces over no wall, and walls that do not stand one clearance off them."""
-    model, clearance = scene_model.build(scene), scene.contact.clearance
+    model, drawn = scene_model.build(scene), scene.rail.gap(scene.contact.clearance)
     faces, file = model.faces, scene.rail.path().name
     seen = corners - np.array(model.platform.mass_centre if model.platform else (0.0, 0.0, 0.0))
     faults, gaps = [], []
@@ -44,12 +44,13 @@ def _wall_faults(scene: Scene, corners: np.ndarray) -> list[tuple[str, str, str]
         name = f"{'+' if sign > 0.0 else '-'}{'xyz'[axis]}"
         near = seen[surface.in_reach(seen, faces, face)]
         if len(near):
-            gaps.append(clearance + sign * (np.median(near[..., axis]) - faces.wall[face]))
+            gaps.append(drawn + sign * (np.median(near[..., axis]) - faces.wall[face]))
             continue
-        wall = scene.pads[pad].position[axis] + sign * clearance
+        wall = scene.pads[pad].position[axis] + sign * drawn
         faults.append((f"pads.{pad}", f"a face {name} with no wall under its track",
                        f"a pad whose wall, at {name[1]} = {wall:.9g} m, is among the contact surfaces of {file}"))
-    if any(abs(gap - clearance) > _SAME for gap in gaps):
+    if any(abs(gap - drawn) > _SAME for gap in gaps):
         found = " to ".join(f"{gap:.9g}" for gap in sorted({min(gaps), max(gaps)}))
-        faults.append(("contact.clearance", f"{clearance:.9g} m", f"{found} m, at which the walls of {file} stand off the pads"))
+        faults.append(("rail.clearance", "nothing, hence that of contact" if scene.rail.clearance is None else f"{drawn:.9g} m",
+                       f"{found} m, at which the walls of {file} stand off the pads"))
     return faults

@@ -1,8 +1,8 @@
 """``[rail]``: the built-in L section, a mesh of the user's own, or a solid of the user's own that is meshed here.
 
 Presence of ``mesh`` or ``geometry`` is the switch. Such a file stands in scene axes (m, origin at the nominal mass centre at
-ignition, +X to the open end), its walls one clearance off the pads. The surrogate sees none of it: ``start`` and ``end`` say where
-the walls begin and end, pads and clearance where they stand; the reference refuses a file that says otherwise (``highfi.fit``).
+ignition, +X to the open end), its walls one ``clearance`` off the pads. The surrogate sees none of it: ``start`` and ``end`` say
+where the walls begin and end, pads and clearance where they stand; the reference refuses a file that says otherwise (``highfi.fit``).
 """
 
 import hashlib
@@ -61,6 +61,10 @@ class _RailTable(Table):
         """The keys that name files, each with the digest of what its file holds: what a result depends on."""
         return {}
 
+    def gap(self, clearance: float) -> float:
+        """Distance (m) of the walls from the pads as drawn, in a scene of that clearance (m): here walls follow the clearance."""
+        return clearance
+
 
 class SectionTable(_RailTable):
     """Built-in L sections from ``start`` to ``end`` along X, clamped to the platform at ``mounts``."""
@@ -94,10 +98,12 @@ class SectionTable(_RailTable):
 class _FileTable(_RailTable):
     """A rail given by a file.
 
+    ``clearance`` (m) is the one the file was drawn for; a scene of another one has shims of the difference under its pads.
     ``thickness`` (m) of its walls and ``leg`` (m), how far they reach unsupported, are what the bounds of a calibration scale with;
     nothing else asks for them.
     """
 
+    clearance: NonNegativeLength | None = None
     leg: PositiveLength | None = None
     thickness: PositiveLength | None = None
     _digest: str = PrivateAttr()
@@ -121,6 +127,10 @@ class _FileTable(_RailTable):
     def contents(self) -> dict[str, str]:
         """The digest of the file, as it was when the scene was read."""
         return {self.GIVEN_BY: self._digest}
+
+    def gap(self, clearance: float) -> float:
+        """Distance (m) of the walls from the pads as drawn: a file does not follow the clearance of the scene."""
+        return clearance if self.clearance is None else self.clearance
 
 
 def _readable(file: str) -> str:

@@ -83,10 +83,20 @@ def test_a_smaller_element_size_splits_the_elements_of_the_file():
 
 def test_walls_that_the_scene_places_elsewhere_are_all_named():
     with pytest.raises(SceneError) as caught:
-        highfi.prepare(channels(rail__start="-90 mm", rail__end="140 mm", contact__clearance="0.3 mm"))
+        highfi.prepare(channels(rail__start="-90 mm", rail__end="140 mm", rail__clearance="0.3 mm"))
     faults = {fault.key: fault.expected for fault in caught.value.faults}
-    assert set(faults) == {"rail.start", "rail.end", "contact.clearance"}
-    assert "-0.088 m" in faults["rail.start"] and "0.00025 m" in faults["contact.clearance"]
+    assert set(faults) == {"rail.start", "rail.end", "rail.clearance"}
+    assert "-0.088 m" in faults["rail.start"] and "0.00025 m" in faults["rail.clearance"]
+
+
+def test_another_clearance_is_a_shim_under_the_pads(tmp_path):
+    """Moving pads out by 0.05 mm does what moving walls in does. Control: left out, the change would be seen twenty times over."""
+    wide = tiny(duration="8 ms", thrust_offset__misalignment__axial="1 deg", contact__clearance="0.25 mm")
+    path = saved(l_rail.build(geometry(wide), COARSE.element_size), tmp_path / "rails.msh")
+    drawn_wide = from_file(wide, path).replace({"rail.clearance": "0.25 mm"})
+    narrow = {"contact.clearance": "0.2 mm"}
+    wall, shim, before = (highfi.run(scene, COARSE).rate for scene in (wide.replace(narrow), drawn_wide.replace(narrow), wide))
+    assert np.abs(shim - wall).max() < 0.05 * np.abs(before - wall).max()
 
 
 def test_a_pad_over_no_wall_is_named():
@@ -107,7 +117,7 @@ def test_a_wall_out_of_place_on_both_sides_of_the_bound(tmp_path, off, refused):
     if not refused:
         assert highfi.prepare(scene).hexes.size
     else:
-        with pytest.raises(SceneError, match="contact.clearance"):
+        with pytest.raises(SceneError, match="rail.clearance"):
             highfi.prepare(scene)
 
 

@@ -3,7 +3,7 @@
 import pytest
 
 import calibrate.parameters
-from scenes import SceneError, load, parse
+from scenes import SceneError, load, model, parse
 from scenes.rail import MeshTable, SectionTable
 from tests.scenes.support import CONTACT, SMALL, small
 
@@ -100,3 +100,14 @@ def test_a_calibration_asks_for_the_lengths_its_bounds_scale_with(file):
         calibrate.parameters.free(bare)
     assert [fault.key for fault in caught.value.faults] == ["rail.leg", "rail.thickness"]
     assert calibrate.parameters.free(bare.replace({"rail.leg": 0.024, "rail.thickness": 0.004}))
+
+
+@pytest.mark.parametrize("clearance", ["0.1 mm", "0.3 mm"])
+def test_walls_of_a_file_stay_and_pads_meet_them_at_the_clearance(file, clearance):
+    """Drawn for 0.2 mm; in the built-in rail the pads stay and the walls move."""
+    contact = {"contact": CONTACT | {"clearance": clearance}}
+    own, built = (parse(raw | contact) for raw in (meshed(file, clearance="0.2 mm"), small()))
+    for scene, wall, pad in ((own, 0.1002, 0.1002 - own.contact.clearance), (built, 0.1 + own.contact.clearance, 0.1)):
+        faces = model.build(scene).faces
+        assert faces.wall == pytest.approx(wall, rel=1e-12)
+        assert faces.centre[[0, 1], faces.axis] == pytest.approx(pad, rel=1e-12)
