@@ -93,8 +93,8 @@ def share_of_damping(depth: float) -> float:
 
 def _stiffness_bounds(scene: Scene) -> tuple[float, float]:
     rail = scene.rail
-    if missing := [key for key in ("leg", "thickness") if getattr(rail, key) is None]:
-        raise SceneError([Fault(scene.name, f"rail.{key}", "nothing", "a length, with which the bounds of a fit scale") for key in missing])
+    if missing := [f"rail.{key}" for key in ("leg", "thickness") if getattr(rail, key) is None]:
+        raise SceneError([Fault(scene.name, key, "nothing", "a length, with which the bounds of a fit scale") for key in missing])
     scale = rail.material.youngs_modulus * rail.thickness**3 / rail.leg**2
     return _SOFT * scale / _MARGIN, _STIFF * scale * _MARGIN
 

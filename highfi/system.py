@@ -1,4 +1,4 @@
-"""From a scene and its mesh to the arrays of the time loop: operator, surfaces, the rigid part of a free platform, initial state."""
+"""From a scene and its mesh to the arrays of the loop: operator, surfaces, the rigid part of a free platform, initial state."""
 
 from typing import NamedTuple
 

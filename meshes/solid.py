@@ -2,8 +2,8 @@
 
 A solid whose faces are all plane and parallel to the axes is a set of bricks: the planes of its faces cut space into cells, each of
 which is metal or not. A solid with the same section from end to end along X is its section in quadrilaterals, drawn out in layers.
-Any other solid is filled with tetrahedra of twice the size asked for, each split into four hexahedra at the centres of its edges and
-faces; such elements are skewed, which costs steps and makes thin walls too stiff.
+Any other solid is filled with tetrahedra of twice the size asked for, each split into four hexahedra at the centres of its edges
+and faces; such elements are skewed, which costs steps and makes thin walls too stiff.
 """
 
 from pathlib import Path

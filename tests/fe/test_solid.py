@@ -89,7 +89,7 @@ def scene_of(path, surfaces, start=START, end=END):
 
 @pytest.mark.parametrize("size", [0.004, 0.008])
 def test_the_built_in_rails_drawn_in_cad_are_the_built_in_mesh(tmp_path, size):
-    """At 8 mm two and a half elements would fit on a mount: the rounding of CAD coordinates must not decide between two and three."""
+    """At 8 mm two and a half elements fit on a mount: the rounding of CAD coordinates must not decide between two and three."""
     found = make_mesh(scene_of(drawn(tmp_path / "rails.step", l_sections), l_surfaces()), size)
     built = read(l_rail.build(l_rail.LRailGeometry(), size))
     assert len(found.points) == len(built.points) and np.array_equal(ordered(found.points), ordered(built.points))
