@@ -68,7 +68,7 @@ def provenance(scene: Scene, references: dict[str, Trajectory], constants: dict[
     ends = "; ".join(f"{value:.6g} at " + ", ".join(f"{share:.4f}" for share in shares) for value, shares in found.basins)
     return {
         "scene": scene.name, "scene_hash": scene.hash,
-        "geometry_hash": content_hash(geometry["pads"], geometry["rail"]),
+        "geometry_hash": content_hash(geometry["pads"], geometry["rail"] | scene.rail.contents()),
         "contact_law": f"{scene.contact.law}, k = {constants['contact.stiffness']:.6g} N/m^{exponent:.6g}",
         "references": ", ".join(f"{name}: {item.fidelity} {item.numerics}" for name, item in references.items()),
         "search": f"{plan.points} Sobol' points, {plan.starts} starts of CMA-ES, least squares; {evaluations} evaluations; seed {seed}",

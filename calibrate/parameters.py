@@ -14,6 +14,7 @@ import math
 from dataclasses import dataclass
 from typing import Callable
 
+from scenes.faults import Fault, SceneError
 from scenes.scene import Scene
 
 REFERENCE_PENETRATION = 2e-5  # m
@@ -92,6 +93,8 @@ def share_of_damping(depth: float) -> float:
 
 def _stiffness_bounds(scene: Scene) -> tuple[float, float]:
     rail = scene.rail
+    if missing := [f"rail.{key}" for key in ("leg", "thickness") if getattr(rail, key) is None]:
+        raise SceneError([Fault(scene.name, key, "nothing", "a length, with which the bounds of a fit scale") for key in missing])
     scale = rail.material.youngs_modulus * rail.thickness**3 / rail.leg**2
     return _SOFT * scale / _MARGIN, _STIFF * scale * _MARGIN
 

@@ -10,6 +10,8 @@ which is stricter than checking it where it is integrated. Arrays count from 0; 
 as mesh editors do.
 """
 
+import contextlib
+import io
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -46,10 +48,11 @@ class RailMesh:
 def read(source) -> RailMesh:
     """Check and convert a meshio mesh, or the path of a file meshio can read.
 
-    Points no hexahedron uses are dropped. Raises MeshError with one line per fault: no hexahedra or other solid elements,
-    missing surfaces, facets that are not on the boundary of the solid or appear twice, inverted elements.
+    Points no hexahedron uses are dropped. Raises MeshError for a file that meshio does not read, and with one line per fault: no
+    hexahedra or other solid elements, missing surfaces, facets that are not on the boundary of the solid or appear twice,
+    inverted elements.
     """
-    mesh = source if isinstance(source, meshio.Mesh) else meshio.read(Path(source))
+    mesh = source if isinstance(source, meshio.Mesh) else _opened(Path(source))
     hexes = _hexahedra(mesh)
     surfaces = _named_quads(mesh)
     faults = _content_faults(mesh, hexes, surfaces)
@@ -59,7 +62,8 @@ def read(source) -> RailMesh:
         surfaces, facet_faults = _matched(surfaces, boundary)
         faults += facet_faults
     if faults:
-        raise MeshError("the mesh cannot be used:\n  " + "\n  ".join(faults))
+        name = "the mesh" if source is mesh else source
+        raise MeshError(f"{name} cannot be used:\n  " + "\n  ".join(faults))
     used, numbered = np.unique(hexes, return_inverse=True)
     renumber = np.full(len(mesh.points), -1)
     renumber[used] = np.arange(len(used))
@@ -106,6 +110,29 @@ def edge_lengths(points: np.ndarray, hexes: np.ndarray) -> np.ndarray:
     return np.linalg.norm(corners[:, end] - corners[:, start], axis=-1)
 
 
+def slivers(points: np.ndarray, hexes: np.ndarray) -> np.ndarray:
+    """Numbers of the elements with an edge so short that it, not the rest of the mesh, sets the time step."""
+    shortest = edge_lengths(points, hexes).min(axis=1)
+    return np.flatnonzero(shortest < _SHORT_EDGE * np.median(shortest))
+
+
+def listed(elements: np.ndarray) -> str:
+    """Numbers of elements as messages print them, counted from 1."""
+    numbers = ", ".join(str(number + 1) for number in elements[:_LISTED])
+    return numbers if len(elements) <= _LISTED else f"{numbers} and {len(elements) - _LISTED} more"
+
+
+def _opened(path: Path) -> meshio.Mesh:
+    said = io.StringIO()
+    try:
+        # meshio prints what is wrong with a file, and then asks the whole program to exit.
+        with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
+            return meshio.read(path)
+    except (Exception, SystemExit) as fault:  # each format's reader fails in its own way on damaged bytes
+        why = " ".join(said.getvalue().split()) or f"{type(fault).__name__}: {fault}"
+        raise MeshError(f"{path} cannot be used: meshio does not read it ({why})") from fault
+
+
 def _hexahedra(mesh: meshio.Mesh) -> np.ndarray:
     blocks = [block.data for block in mesh.cells if block.type == "hexahedron"]
     return np.concatenate(blocks).astype(np.int64) if blocks else np.empty((0, 8), dtype=np.int64)
@@ -150,7 +177,7 @@ def _content_faults(mesh: meshio.Mesh, hexes: np.ndarray, surfaces: dict[str, np
 def _inverted(points: np.ndarray, hexes: np.ndarray) -> list[str]:
     jacobian, _ = corner_jacobians(points, hexes)
     inverted = np.flatnonzero(~(jacobian > 0.0).all(axis=1))
-    return [f"inverted or flat elements: {_numbers(inverted)}"] if len(inverted) else []
+    return [f"inverted or flat elements: {listed(inverted)}"] if len(inverted) else []
 
 
 def _matched(surfaces: dict[str, np.ndarray], boundary: np.ndarray) -> tuple[dict[str, np.ndarray], list[str]]:
@@ -172,26 +199,21 @@ def _matched(surfaces: dict[str, np.ndarray], boundary: np.ndarray) -> tuple[dic
 def _warnings(points: np.ndarray, hexes: np.ndarray) -> tuple[str, ...]:
     lengths = edge_lengths(points, hexes)
     shortest = lengths.min(axis=1)
-    slivers = np.flatnonzero(shortest < _SHORT_EDGE * np.median(shortest))
+    thin = slivers(points, hexes)
     _, scaled = corner_jacobians(points, hexes)
     skewed = np.flatnonzero(scaled.min(axis=1) < _SKEW)
     warnings = []
-    if len(slivers):
-        worst = slivers[np.argmin(shortest[slivers])]
+    if len(thin):
+        worst = thin[np.argmin(shortest[thin])]
         warnings.append(
-            f"slivers: elements {_numbers(slivers)}; shortest edge {shortest[worst]:.3g} m in element {worst + 1} (aspect "
+            f"slivers: elements {listed(thin)}; shortest edge {shortest[worst]:.3g} m in element {worst + 1} (aspect "
             f"ratio {lengths[worst].max() / shortest[worst]:.3g}), so a run takes about "
             f"{np.median(shortest) / shortest[worst]:.3g} times the steps that the rest of the mesh needs")
     if len(skewed):
         warnings.append(
-            f"skewed elements: {_numbers(skewed)}; scaled Jacobian down to {scaled.min():.3g}, where one layer of hexahedra "
+            f"skewed elements: {listed(skewed)}; scaled Jacobian down to {scaled.min():.3g}, where one layer of hexahedra "
             "is far too stiff in bending")
     return tuple(warnings)
-
-
-def _numbers(elements: np.ndarray) -> str:
-    listed = ", ".join(str(number + 1) for number in elements[:_LISTED])
-    return listed if len(elements) <= _LISTED else f"{listed} and {len(elements) - _LISTED} more"
 
 
 def _from_end_to_end(points: np.ndarray) -> np.ndarray:

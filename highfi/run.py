@@ -9,14 +9,16 @@ import numpy as np
 
 from highfi import observe, records, samples
 from highfi.contact import FASTEST_APPROACH
+from highfi.fit import check_fit
 from highfi.loads import pull_on_nodes, thrust_load
 from highfi.mesh import RailMesh
 from highfi.nodes import kick_nodes
 from highfi.numerics import Numerics
 from highfi.pose import seen_from_frame
+from highfi.rail import geometry, make_mesh
 from highfi.step import advance, evaluate, kick_bodies
 from highfi.stepping import Stepping, choose
-from highfi.system import System, build, geometry, initial_state, make_mesh
+from highfi.system import System, build, initial_state
 from highfi.team import gather, processors
 from scenes import ledger, outcome, rotation
 from scenes.scene import Scene
@@ -38,8 +40,10 @@ def prepare(scene: Scene, numerics: Numerics | None = None) -> RailMesh:
     key = (geometry(scene), numerics.element_size)
     with _MESH_LOCK:
         if key not in _MESHES:
-            _MESHES[key] = make_mesh(scene, numerics)
-        return _MESHES[key]
+            _MESHES[key] = make_mesh(scene, numerics.element_size)
+        mesh = _MESHES[key]
+    check_fit(scene, mesh)
+    return mesh
 
 
 def run(scene: Scene, numerics: Numerics | None = None, progress: Callable[[float], None] | None = None,

@@ -16,7 +16,7 @@ def build(surfaces: dict[str, np.ndarray], points: np.ndarray, faces, quadrature
     facets = np.concatenate([quads for name, quads in sorted(surfaces.items()) if name.startswith("contact")])
     corners = points[facets]
     shape, area = _gauss(corners, quadrature)
-    groups = [_in_reach(corners, faces, face) for face in range(faces.axis.size)]
+    groups = [in_reach(corners, faces, face) for face in range(faces.axis.size)]
     smallest = corners[:, :, 0].min(axis=1)
     groups = [group[np.argsort(smallest[group], kind="stable")] for group in groups]
     reach = np.concatenate(groups)
@@ -30,6 +30,18 @@ def capacity(surface: Surface) -> int:
     return surface.reach.size * surface.shape.shape[0]
 
 
+def in_reach(corners: np.ndarray, faces, face: int) -> np.ndarray:
+    """Numbers of the facets (corners (m,4,3) m, axes of ``faces.wall``) that face ``face`` and lie beside the track of its pad."""
+    axis, sign = faces.axis[face], faces.sign[face]
+    across = 3 - axis
+    normal = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
+    facing = sign * normal[:, axis] / np.linalg.norm(normal, axis=1) < _FACING
+    depth = np.abs(corners[:, :, axis].mean(axis=1) - faces.wall[face]) < _MARGIN
+    place, half = faces.centre[face, across], faces.half_width[face] + _MARGIN
+    beside = ((corners[:, :, across].max(axis=1) > place - half) & (corners[:, :, across].min(axis=1) < place + half))
+    return np.flatnonzero(facing & depth & beside)
+
+
 def _gauss(corners: np.ndarray, quadrature: int) -> tuple[np.ndarray, np.ndarray]:
     """Bilinear shape functions (q,4) and areas (m,q) at the tensor Gauss points of the facets (m,4,3)."""
     nodes, weights = np.polynomial.legendre.leggauss(quadrature)
@@ -40,15 +52,3 @@ def _gauss(corners: np.ndarray, quadrature: int) -> tuple[np.ndarray, np.ndarray
     along_r = np.einsum("qa,mai->mqi", 0.25 * ra * (1.0 + np.outer(s, sa)), corners)
     along_s = np.einsum("qa,mai->mqi", 0.25 * sa * (1.0 + np.outer(r, ra)), corners)
     return shape, np.linalg.norm(np.cross(along_r, along_s), axis=2) * weight
-
-
-def _in_reach(corners: np.ndarray, faces, face: int) -> np.ndarray:
-    """Numbers of the facets that face ``face`` and lie beside the track of its pad."""
-    axis, sign = faces.axis[face], faces.sign[face]
-    across = 3 - axis
-    normal = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
-    facing = sign * normal[:, axis] / np.linalg.norm(normal, axis=1) < _FACING
-    depth = np.abs(corners[:, :, axis].mean(axis=1) - faces.wall[face]) < _MARGIN
-    place, half = faces.centre[face, across], faces.half_width[face] + _MARGIN
-    beside = ((corners[:, :, across].max(axis=1) > place - half) & (corners[:, :, across].min(axis=1) < place + half))
-    return np.flatnonzero(facing & depth & beside)

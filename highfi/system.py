@@ -1,4 +1,4 @@
-"""From a scene to the arrays of the time loop: mesh, operator, surfaces, the rigid part of a free platform, initial state."""
+"""From a scene and its mesh to the arrays of the loop: operator, surfaces, the rigid part of a free platform, initial state."""
 
 from typing import NamedTuple
 
@@ -6,9 +6,8 @@ import numpy as np
 
 from highfi import assembly, pencils, records, surface
 from highfi.memory import zeros
-from highfi.mesh import RailMesh, read
+from highfi.mesh import RailMesh
 from highfi.numerics import Numerics
-from meshes import l_rail
 from scenes import model as scene_model
 from scenes import rotation
 from scenes.body import tensor
@@ -37,23 +36,6 @@ class System(NamedTuple):
     drive: records.Drive
     origin: np.ndarray
     body_offset: np.ndarray
-
-
-def geometry(scene: Scene) -> l_rail.LRailGeometry:
-    """The built-in L section of a scene, inner corners one clearance off the pads. Raises SceneError where pads do not fit it."""
-    places = {(abs(pad.position[1]), abs(pad.position[2])) for pad in scene.pads}
-    if len(places) != 1:
-        raise SceneError([Fault(scene.name, "pads", f"{len(places)} different distances from the axis",
-                                "pads at four corners (+-y, +-z) of one size, as the built-in L rails need")])
-    (y, z), rail = places.pop(), scene.rail
-    clearance = scene.contact.clearance if scene.contact else 0.0
-    return l_rail.LRailGeometry(rail.leg, rail.thickness, rail.start, rail.end, y + clearance, z + clearance,
-                                tuple((span.start, span.end) for span in rail.mounts), rail.mount_width)
-
-
-def make_mesh(scene: Scene, numerics: Numerics) -> RailMesh:
-    """Rails of ``scene`` in scene axes. Raises SceneError or MeshError."""
-    return read(l_rail.build(geometry(scene), numerics.element_size))
 
 
 def build(scene: Scene, numerics: Numerics, mesh: RailMesh) -> System:

@@ -9,16 +9,15 @@ images bit for bit and a symmetric scene has a symmetric answer; their elements 
 which restores the orientation that a reflection reverses.
 """
 
-import contextlib
 import itertools
-from pathlib import Path
 from typing import NamedTuple
 
 import meshio
 import numpy as np
 
+from meshes import generator, msh
+
 SURFACES = ("contact_y", "contact_z", "mount")
-VOLUME = "rail"
 
 _CORNERS = [(1, 1), (-1, 1), (-1, -1), (1, -1)]
 # Position in the VTK corner order of the corner with axis bits x + 2 y + 4 z (bit set: on the larger side).
@@ -50,15 +49,10 @@ def build(geometry: LRailGeometry, element_size: float) -> meshio.Mesh:
     Raises ValueError for dimensions that do not make a rail, RuntimeError where a system library of gmsh is missing.
     """
     _check(geometry, element_size)
-    with _gmsh_session() as gmsh:
+    with generator.session("l_rail") as gmsh:
         _draw(gmsh, geometry, element_size)
         points, hexes, surfaces = _extract(gmsh)
-    return _tagged(*_mirrored(points, hexes, surfaces))
-
-
-def save(mesh: meshio.Mesh, path) -> None:
-    """Write `mesh` as a binary gmsh 2.2 file, a format most finite-element tools still read."""
-    meshio.gmsh.write(Path(path), mesh, fmt_version="2.2", binary=True)
+    return msh.tagged(*_mirrored(points, hexes, surfaces))
 
 
 def _check(geometry: LRailGeometry, element_size: float) -> None:
@@ -70,25 +64,6 @@ def _check(geometry: LRailGeometry, element_size: float) -> None:
         raise ValueError(f"need 0 < thickness < leg and 0 < mount_width <= leg, got {geometry}")
     if any(right < left for left, right in itertools.pairwise(borders)) or length <= 0.0:
         raise ValueError(f"mount_spans must be in order and inside the length {length:g} m, got {geometry.mount_spans}")
-
-
-@contextlib.contextmanager
-def _gmsh_session():
-    """gmsh with no signal handler, no user settings, one thread, no output; finalised on the way out."""
-    try:
-        import gmsh  # here and not above: a run that reads a .msh file needs none of gmsh's graphics libraries
-    except OSError as error:
-        raise RuntimeError(
-            f"gmsh cannot be loaded ({error}). Its system libraries come with: apt-get install libgl1 libglu1-mesa "
-            "libxcursor1 libxft2 libxinerama1 libxrender1 libgomp1") from error
-    gmsh.initialize(readConfigFiles=False, interruptible=False)
-    try:
-        gmsh.option.setNumber("General.Terminal", 0)
-        gmsh.option.setNumber("General.NumThreads", 1)
-        gmsh.model.add("l_rail")
-        yield gmsh
-    finally:
-        gmsh.finalize()
 
 
 def _grid_lines(*borders: float) -> list[float]:
@@ -192,14 +167,3 @@ def _along_axes(points, hexes):
     ordered = np.empty_like(hexes)
     np.put_along_axis(ordered, _VTK_POSITION[upper @ (1, 2, 4)], hexes, axis=1)
     return ordered
-
-
-def _tagged(points, hexes, surfaces) -> meshio.Mesh:
-    """The mesh with the tags a gmsh file carries, so that it reads the same from memory and from disk."""
-    cells = [("hexahedron", hexes), *(("quad", surfaces[name]) for name in SURFACES)]
-    tags = [len(SURFACES) + 1, *range(1, len(SURFACES) + 1)]
-    blocks = [np.full(len(block), tag, dtype=np.int32) for tag, (_, block) in zip(tags, cells)]
-    field_data = {name: np.array([tag, 2], dtype=np.int32) for tag, name in enumerate(SURFACES, start=1)}
-    field_data[VOLUME] = np.array([tags[0], 3], dtype=np.int32)
-    return meshio.Mesh(points, cells, field_data=field_data,
-                       cell_data={"gmsh:physical": blocks, "gmsh:geometrical": [block.copy() for block in blocks]})

@@ -27,7 +27,8 @@ class SceneError(ValueError):
 
 
 # Pydantic puts the chosen variant into the location: ("thrust", "gaussian", "width") is the key thrust.width.
-_VARIANTS = ("thrust", "contact")
+_VARIANTS = ("thrust", "contact", "rail")
+_FILED = (("rail", "mesh"), ("rail", "geometry"))  # variants chosen by the presence of a key, which the user may not have meant
 _WORDS = {"extra_forbidden": "no such key", "missing": "this key", "model_type": "a table", "model_attributes_type": "a table",
           "dict_type": "a table", "tuple_type": "a list", "list_type": "a list", "string_type": "text",
           "bool_parsing": "true or false", "bool_type": "true or false"}
@@ -58,6 +59,8 @@ def _given(error: dict) -> str:
 
 def _expected(error: dict) -> str:
     kind, message = error["type"], error["msg"]
+    if kind == "extra_forbidden" and error["loc"][:2] in _FILED:
+        return f"no such key beside {error['loc'][1]}"
     if kind in _WORDS:
         return _WORDS[kind]
     if kind == "value_error":

@@ -90,6 +90,7 @@ def build(scene: Scene) -> Model:
 
 def _faces(scene: Scene, offset: np.ndarray, origin: np.ndarray) -> Faces:
     clearance = scene.contact.clearance if scene.contact else 0.0
+    gap = scene.rail.gap(clearance)
     rows = []
     for index, pad in enumerate(scene.pads):
         corner = np.array(pad.position)
@@ -98,7 +99,8 @@ def _faces(scene: Scene, offset: np.ndarray, origin: np.ndarray) -> Faces:
             across = 3 - axis
             centre = corner.copy()
             centre[across] -= np.sign(corner[across]) * pad.inset
-            wall = corner[axis] + sign * clearance - origin[axis]
+            centre[axis] += sign * (gap - clearance)  # a shim, where the walls of a file stand off the pads by another clearance
+            wall = corner[axis] + sign * gap - origin[axis]
             rows.append((centre - offset, axis, sign, pad.length / 2, pad.width / 2, pad.relief, wall, index))
     columns = list(zip(*rows))
     return Faces(np.array(columns[0]), np.array(columns[1], dtype=np.int64), *map(np.array, columns[2:7]),

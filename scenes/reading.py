@@ -1,16 +1,18 @@
 """Scene files: TOML on disk to one nested mapping, a file that ``extends`` another merged over it.
 
-In a file that extends another, a table set to ``"absent"`` drops the inherited one, and a ``[thrust]`` of another kind or a
-``[contact]`` of another law replaces the inherited table instead of mixing with it.
+In a file that extends another, a table set to ``"absent"`` drops the inherited one, and a ``[thrust]`` of another kind, a
+``[contact]`` of another law or a ``[rail]`` given by a file replaces the inherited table instead of mixing with it.
 """
 
 import tomllib
 from pathlib import Path
 
+from scenes import rail
 from scenes.faults import Fault, SceneError
 
 CATALOG = Path(__file__).resolve().parent / "catalog"
 _CHOICE = {"thrust": "kind", "contact": "law"}
+_FILES = (("thrust", "file"), *(("rail", key) for key in rail.FILES))  # written relative to the scene file
 _FREE_TEXT = {"conditions", "provenance"}
 
 
@@ -41,9 +43,10 @@ def _inherit(path: Path, user_file: str, chain: tuple[Path, ...]) -> dict:
     if path.resolve() in chain:
         raise SceneError([Fault(user_file, key, str(path), "files that do not extend each other in a circle")])
     raw = _toml(path, user_file, key)
-    thrust = raw.get("thrust")
-    if isinstance(thrust, dict) and isinstance(thrust.get("file"), str):
-        thrust["file"] = str((path.parent / thrust["file"]).resolve())
+    for name, entry in _FILES:
+        table = raw.get(name)
+        if isinstance(table, dict) and isinstance(table.get(entry), str) and table[entry] != "absent":
+            table[entry] = str((path.parent / table[entry]).resolve())
     base = raw.pop("extends", None)
     if base is None:
         return raw
@@ -83,5 +86,7 @@ def _merged(base: dict, extra: dict) -> dict:
 
 
 def _other_choice(key: str, base: dict, extra: dict) -> bool:
+    if key == "rail":
+        return any(file in extra and file not in base for file in rail.FILES)
     choice = _CHOICE.get(key)
     return choice in extra and extra[choice] != base.get(choice)

@@ -22,8 +22,9 @@ from scenes.effects.thrust import ThrustTable
 from scenes.effects.thrust_offset import ThrustOffsetTable
 from scenes.faults import Fault, SceneError, faults_of
 from scenes.files import content_hash
+from scenes.rail import RailTable
 from scenes.table import Table, at_least_one
-from scenes.tables import AgreementTable, OutputTable, PadTable, PayloadTable, RailTable
+from scenes.tables import AgreementTable, OutputTable, PadTable, PayloadTable
 from scenes.units import PositiveTime
 
 CATALOG = reading.CATALOG
@@ -88,8 +89,9 @@ class Scene(Table):
 
     @cached_property
     def hash(self) -> str:
-        """SHA-256 of the physical inputs. A measured thrust counts by its points, not by where its file lies."""
+        """SHA-256 of the physical inputs. A file counts by what it holds, a measured thrust by its points, not by where it lies."""
         physics = self.physics()
+        physics["rail"] |= self.rail.contents()
         measured = self.thrust.kind == "measured"
         if measured:
             physics["thrust"].pop("file")

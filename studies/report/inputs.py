@@ -26,6 +26,10 @@ def values(table_: BaseModel, prefix: str = "") -> Iterator[tuple[str, Any, str,
         elif isinstance(value, (list, tuple)) and value and isinstance(value[0], BaseModel):
             for index, item in enumerate(value):
                 yield from values(item, f"{key}.{index}.")
+        elif isinstance(value, dict):
+            for name_, items in value.items():
+                for index, item in enumerate(items):
+                    yield from values(item, f"{key}.{name_}.{index}.")
         else:
             yield key, value, _unit(field), name in table_.model_fields_set
 

@@ -1,4 +1,4 @@
-"""A drawing of the rail mesh: all four rails, and one cross-section at full detail, named surfaces coloured."""
+"""A drawing of the rail mesh: all rails, and one cross-section at full detail, named surfaces coloured."""
 
 from pathlib import Path
 
@@ -7,7 +7,7 @@ import numpy as np
 from scenes.files import replacing
 from studies.report.chart import AMBER, GREY, NAVY, TEAL, VERMILION
 
-_COLOURS = {"contact_y": VERMILION, "contact_z": AMBER, "mount": TEAL}
+_WALLS = (VERMILION, AMBER, NAVY)  # taken in turn by surfaces that pads touch
 _LIGHT = np.array([0.35, 0.5, 0.8])
 
 
@@ -20,12 +20,19 @@ def draw(mesh, path: Path) -> None:
     figure = Figure(figsize=(9.6, 4.2), dpi=140, layout="constrained")
     FigureCanvasAgg(figure)
     left, right = figure.subplots(1, 2, width_ratios=[1.9, 1.0])
-    _oblique(left, mesh)
-    _section(right, mesh)
-    figure.legend([Patch(color=GREY, alpha=0.6), *(Patch(color=colour) for colour in _COLOURS.values())],
-                  ["rail", *(name.replace("_", " ") for name in _COLOURS)], loc="outside lower center", ncols=4, frameon=False)
+    colours = _colours(mesh)
+    _oblique(left, mesh, colours)
+    _section(right, mesh, colours)
+    figure.legend([Patch(color=GREY, alpha=0.6), *(Patch(color=colour) for colour in colours.values())],
+                  ["rail", *(name.replace("_", " ") for name in colours)], loc="outside lower center", ncols=4, frameon=False)
     with replacing(path) as temporary:
         figure.savefig(temporary, format="png")
+
+
+def _colours(mesh) -> dict[str, str]:
+    """Colour of each named surface, walls first."""
+    walls = sorted(name for name in mesh.surfaces if name != "mount")
+    return {name: _WALLS[place % len(_WALLS)] for place, name in enumerate(walls)} | {"mount": TEAL}
 
 
 def _boundary(mesh) -> tuple[np.ndarray, list[str]]:
@@ -37,7 +44,7 @@ def _boundary(mesh) -> tuple[np.ndarray, list[str]]:
     return facets, [names.get(tuple(sorted(facet)), "rail") for facet in facets.tolist()]
 
 
-def _oblique(axes, mesh) -> None:
+def _oblique(axes, mesh, colours: dict[str, str]) -> None:
     """Painter's algorithm on the facets that face the eye."""
     from matplotlib.collections import PolyCollection
     from matplotlib.colors import to_rgb
@@ -50,21 +57,22 @@ def _oblique(axes, mesh) -> None:
     front = np.flatnonzero(normal[:, 2] > 1e-9)
     order = front[np.argsort(corners[front, :, 2].mean(axis=1))]
     shade = 0.62 + 0.38 * np.abs(normal @ (_LIGHT / np.linalg.norm(_LIGHT)))
-    base = np.array([to_rgb(_COLOURS.get(name, "#c6cbd1")) for name in names])
+    base = np.array([to_rgb(colours.get(name, "#c6cbd1")) for name in names])
     axes.add_collection(PolyCollection(1e3 * corners[order][:, :, :2], facecolors=(base * shade[:, None])[order],
                                        edgecolors="#3b4149", linewidths=0.18))
     axes.autoscale()
     axes.set_aspect("equal")
     axes.set_axis_off()
-    axes.set_title(f"four rails, {len(mesh.hexes):,} elements", fontsize=10.5)
+    axes.set_title(f"all rails, {len(mesh.hexes):,} elements", fontsize=10.5)
 
 
-def _section(axes, mesh) -> None:
-    """Elements of the middle layer of the rail at +y +z, seen along X, with the named walls drawn thick."""
+def _section(axes, mesh, colours: dict[str, str]) -> None:
+    """Elements of the middle layer of the rail at +y +z (of all, where none is there), seen along X, named walls drawn thick."""
     from matplotlib.collections import LineCollection, PolyCollection
 
     centres = mesh.points[mesh.hexes].mean(axis=1)
     corner = (centres[:, 1] > 0.0) & (centres[:, 2] > 0.0)
+    corner |= not corner.any()  # a launcher of one's own may have no rail there
     inside = centres[corner, 0]
     layer = np.flatnonzero(corner & (np.abs(centres[:, 0] - inside[np.argmin(np.abs(inside - inside.mean()))]) < 1e-9))
     low = mesh.points[mesh.hexes[layer]].min(axis=1)[:, 1:]
@@ -72,8 +80,8 @@ def _section(axes, mesh) -> None:
     boxes = [[(a[0], a[1]), (b[0], a[1]), (b[0], b[1]), (a[0], b[1])] for a, b in zip(1e3 * low, 1e3 * high)]
     axes.add_collection(PolyCollection(boxes, facecolors="#dfe3e7", edgecolors="#3b4149", linewidths=0.7))
     reach = mesh.points[mesh.hexes[layer]][:, :, 0]
-    for name, colour in _COLOURS.items():
-        facets = mesh.points[mesh.surfaces[name]] if name in mesh.surfaces else np.empty((0, 4, 3))
+    for name, colour in colours.items():
+        facets = mesh.points[mesh.surfaces[name]]
         near = facets[(facets[:, :, 1:].min(axis=(1, 2)) > 0.0) & (np.abs(facets[:, :, 0].mean(axis=1) - reach.mean()) < np.ptp(reach))]
         lines = [(1e3 * facet[:, 1:].min(axis=0), 1e3 * facet[:, 1:].max(axis=0)) for facet in near]
         axes.add_collection(LineCollection(lines, colors=colour, linewidths=3.0))

@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from scenes.files import replacing
+from studies.progress import say
 from studies.store import SOURCES
 from studies.study import Study
 
@@ -19,6 +20,8 @@ def run(study: Study) -> dict:
         from highfi import mesh as checks
 
         mesh = highfi.prepare(asked.scene, asked.numerics)
+        for warning in mesh.warnings:
+            say(f"mesh: {warning}")
         from studies.report.mesh_picture import draw
 
         path, picture = study.path("mesh.vtu"), study.path("figures") / "mesh.png"

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from highfi.mesh import MeshError, along_x, corner_jacobians, edge_lengths, read
-from meshes import l_rail
+from meshes import generator, l_rail, msh
 
 GEOMETRY = l_rail.LRailGeometry()
 AREAS = {"contact_y": 4 * 0.220 * 0.020, "contact_z": 4 * 0.220 * 0.020, "mount": 4 * 2 * 3 * 0.020 * 0.004}
@@ -69,8 +69,8 @@ def test_rails_are_mirror_images_to_the_last_bit(built):
 
 
 def test_build_is_repeatable_and_survives_a_file(built, tmp_path):
-    l_rail.save(built, tmp_path / "first.msh")
-    l_rail.save(l_rail.build(GEOMETRY, 0.004), tmp_path / "second.msh")
+    msh.save(built, tmp_path / "first.msh")
+    msh.save(l_rail.build(GEOMETRY, 0.004), tmp_path / "second.msh")
     assert (tmp_path / "first.msh").read_bytes() == (tmp_path / "second.msh").read_bytes()
     here, there = read(built), read(tmp_path / "first.msh")
     assert np.array_equal(here.points, there.points) and np.array_equal(here.hexes, there.hexes)
@@ -135,3 +135,33 @@ def test_slivers_and_skewed_elements_are_warned_about(built):
     points[:, 0] += points[:, 1]
     skewed, = read(meshio.Mesh(points, built.cells, field_data=built.field_data, cell_data=built.cell_data)).warnings
     assert "skewed" in skewed and "0.707" in skewed
+
+
+@pytest.mark.parametrize("version, binary", [(2.2, 0), (4.1, 0), (4.1, 1)])
+def test_files_of_gmsh_are_read_in_its_own_formats(tmp_path, version, binary):
+    """A brick of 20 x 10 x 5 mm meshed and named in gmsh itself, as a user would."""
+    with generator.session("brick") as gmsh:
+        gmsh.model.occ.addBox(0.0, 0.0, 0.0, 0.020, 0.010, 0.005)
+        gmsh.model.occ.synchronize()
+        gmsh.model.mesh.setTransfiniteAutomatic()
+        sides = {tuple(np.round(gmsh.model.occ.getCenterOfMass(2, tag), 6)): tag for _, tag in gmsh.model.getEntities(2)}
+        gmsh.model.addPhysicalGroup(2, [sides[0.01, 0.005, 0.005]], name="contact_top")
+        gmsh.model.addPhysicalGroup(2, [sides[0.0, 0.005, 0.0025], sides[0.02, 0.005, 0.0025]], name="mount")
+        gmsh.model.addPhysicalGroup(3, [1], name="rail")
+        gmsh.model.mesh.generate(3)
+        gmsh.option.setNumber("Mesh.MshFileVersion", version)
+        gmsh.option.setNumber("Mesh.Binary", binary)
+        gmsh.write(str(tmp_path / "brick.msh"))
+    mesh = read(tmp_path / "brick.msh")
+    assert set(mesh.surfaces) == {"contact_top", "mount"}
+    assert facet_vectors(mesh, "contact_top")[0].sum(axis=0) == pytest.approx([0.0, 0.0, 2e-4], abs=1e-15)
+    assert np.abs(facet_vectors(mesh, "mount")[0]).sum(axis=0) == pytest.approx([1e-4, 0.0, 0.0], abs=1e-15)
+    assert corner_jacobians(mesh.points, mesh.hexes)[0].mean(axis=1).sum() == pytest.approx(1e-6)
+
+
+def test_a_file_of_abaqus_is_read(built, tmp_path):
+    sets = {name: [np.arange(len(block.data)) if index == place else np.array([], dtype=int)
+                   for index, block in enumerate(built.cells)] for place, name in enumerate(l_rail.SURFACES, start=1)}
+    meshio.Mesh(built.points, built.cells, cell_sets=sets).write(tmp_path / "rails.inp")
+    assert {name: len(facets) for name, facets in read(tmp_path / "rails.inp").surfaces.items()} == {
+        "contact_y": 1100, "contact_z": 1100, "mount": 120}

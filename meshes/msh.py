@@ -1,0 +1,24 @@
+"""Hexahedra with named surfaces as meshio holds them, tagged so that they read the same from memory and from a gmsh file."""
+
+from pathlib import Path
+
+import meshio
+import numpy as np
+
+VOLUME = "rail"
+
+
+def tagged(points: np.ndarray, hexes: np.ndarray, surfaces: dict[str, np.ndarray]) -> meshio.Mesh:
+    """One `hexahedron` block (volume `rail`) of (e,8) corners and one `quad` block per named surface (m,4), numbered from 0."""
+    cells = [("hexahedron", hexes), *(("quad", facets) for facets in surfaces.values())]
+    tags = [len(surfaces) + 1, *range(1, len(surfaces) + 1)]
+    blocks = [np.full(len(block), tag, dtype=np.int32) for tag, (_, block) in zip(tags, cells)]
+    field_data = {name: np.array([tag, 2], dtype=np.int32) for tag, name in enumerate(surfaces, start=1)}
+    field_data[VOLUME] = np.array([tags[0], 3], dtype=np.int32)
+    return meshio.Mesh(points, cells, field_data=field_data,
+                       cell_data={"gmsh:physical": blocks, "gmsh:geometrical": [block.copy() for block in blocks]})
+
+
+def save(mesh: meshio.Mesh, path) -> None:
+    """Write `mesh` as a binary gmsh 2.2 file, a format most finite-element tools still read."""
+    meshio.gmsh.write(Path(path), mesh, fmt_version="2.2", binary=True)
