@@ -3,6 +3,7 @@
 The limit comes from the assembled rail, whose highest frequency lies well below that of its worst element.
 """
 
+import math
 from dataclasses import asdict, dataclass
 
 from highfi import timestep
@@ -30,7 +31,9 @@ class Stepping:
 def choose(system: System, scene: Scene, numerics: Numerics) -> Stepping:
     """Step of a run. Raises StepError when ``numerics.step`` is above the limit."""
     contact = contact_frequency_squared(system)
-    limit, by_elements = (float(timestep.critical_step((rail**2 + contact) ** 0.5)) for rail in (
-        timestep.operator_bound(system.operator).upper, timestep.element_bound(system.operator)))
+    by_elements = timestep.element_bound(system.operator)
+    # A rail held everywhere has no frequency of its own.
+    assembled = timestep.operator_bound(system.operator).upper if system.operator.free.any() else by_elements
+    limit, by_elements = (timestep.critical_step(math.sqrt(rail**2 + contact)) for rail in (assembled, by_elements))
     step = timestep.choose_step(limit, numerics.safety, scene.output.interval, numerics.step)
     return Stepping(step, limit, by_elements, numerics.safety, round(scene.output.interval / step))
