@@ -13,9 +13,9 @@ from scenes.files import content_hash
 @dataclass(frozen=True)
 class Settings:
     """``element_size`` (m) of the reference; ``tolerances`` of the surrogate in the cost study; repeats of timed runs;
-    ``clearance_change`` (m) that defines the floor; ``workers`` side by side. What the convergence study compares: meshes by
-    their ``mesh_ratios`` to ``element_size``, ``safeties`` of the step and ``quadratures``, coarsest first, and factors
-    of the scene's penalty stiffness."""
+    ``clearance_change`` (m) that defines the floor; ``workers`` side by side. What the convergence study compares, coarsest first:
+    meshes by ``mesh_ratios`` to ``element_size``, one of them 1; ``safeties`` of the step, from that of every other stage down;
+    ``quadratures``; and factors of the scene's penalty stiffness."""
 
     element_size: float = 0.004
     tolerances: tuple[float, ...] = (1e-2, 1e-4, 1e-6, 1e-8)

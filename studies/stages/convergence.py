@@ -2,8 +2,8 @@
 
 Meshes and steps are refined one after the other, and every quantity is judged by its observed order (``studies.convergence``);
 penalty and quadrature, which choose a model rather than approach a limit, are changed and compared. A finer mesh brings a
-smaller step with it. Meshes coarser than the wall of the rail all have one element through it, so between those only length and
-width are refined; ``meshes`` holds the numbers of elements.
+smaller step with it. A wall of the rail has one element through it at least, so coarse meshes differ in length and width only;
+``meshes`` holds the numbers of elements.
 """
 
 import math
@@ -138,7 +138,7 @@ def _compared(study: Study, title: str, name: str, heads: list[dict], asked: lis
 def summary(condition: str, quantities: list[dict], penalty: list[dict], quadrature: list[dict]) -> list[str]:
     """What each table says of the settled rates, one line each."""
     lines = []
-    for parameter, symbol, factor in (("element size", "mm", 1e3), ("time step", "us", 1e6)):
+    for parameter, symbol, factor in (("element size", "mm", 1e3), ("time step", "ns", 1e9)):
         rows = [row for row in quantities if row["parameter"] == parameter and row["quantity"].startswith(RATE)]
         worst = max(rows, key=lambda row: row["nominal_uncertainty"] or 0.0)
         if worst["uncertainty"] is None:
