@@ -10,8 +10,8 @@ WORDS = ("Condition {condition}. Settled rates over element size; between the do
 def picture(document: dict) -> Chart:
     """Settled rates over element size, one panel an axis, with the band of the finest mesh's uncertainty."""
     rows = [row for row in document["quantities"] if row["parameter"] == "element size" and row["unit"] == "deg/s"]
-    return Chart("convergence", [_panel(row, colour) for row, colour in zip(rows, AXIS_COLOURS.values()) if None not in row["values"]],
-                 columns=3, height=300)
+    panels = [_panel(row, colour) for row, colour in zip(rows, AXIS_COLOURS.values()) if None not in row["values"]]
+    return Chart("convergence", panels, columns=3, height=300)
 
 
 def _panel(row: dict, colour: str) -> Panel:
@@ -24,7 +24,8 @@ def _panel(row: dict, colour: str) -> Panel:
 
 def tables(document: dict) -> Html:
     """What each table says in words, then the orders and indices, the penalty and the quadrature."""
-    heads = ("quantity", "unit", "values, coarsest first", "order", "± at the finest", "the same (%)", "± as other stages run", "by")
+    heads = ("quantity", "unit", "values, coarsest first", "order", "± at the finest", "the same (%)",
+             "± as other stages run", "by")
     said = "".join(f"<li>{line[0].upper()}{line[1:]}.</li>" for line in document["summary"])
     parts = [Html(f"<ul>{said}</ul>")]
     for parameter, factor, unit in (("element size", 1e3, "mm"), ("time step", 1e9, "ns")):
@@ -39,13 +40,13 @@ def tables(document: dict) -> Html:
 
 def _row(row: dict) -> tuple:
     values = ", ".join("–" if value is None else f"{value:.5g}" for value in row["values"])
-    return (row["quantity"], row["unit"], values, number(row["order"]), number(row["uncertainty"], 2), number(row["gci_percent"], 2),
-            number(row["nominal_uncertainty"], 2), row["method"])
+    return (row["quantity"], row["unit"], values, number(row["order"]), number(row["uncertainty"], 2),
+            number(row["gci_percent"], 2), number(row["nominal_uncertainty"], 2), row["method"])
 
 
 def _meshes(document: dict) -> str:
     counts = ", ".join(f"{mesh['elements']:,}" for mesh in document["meshes"])
-    return f"Elements of the meshes: {counts}. A wall has one element through it at least, so coarse meshes differ in length and width only."
+    return f"Elements of the meshes: {counts}. A wall has one element through it at least, so coarse meshes differ along it only."
 
 
 def _changes(document: dict) -> Html:
