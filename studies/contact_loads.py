@@ -1,8 +1,9 @@
 """Contact loads of a run as numbers that refinement can be judged by: impulse of each pad, and the filtered peak force.
 
-A sampled contact force rings with the modes of the elements, so its plain maximum converges to nothing. The impulse is a mean and
-does; the peak does below a frequency that is said beside it (Butterworth, second order, forwards and backwards: no shift, and
-half the amplitude at the cut-off).
+A contact force rings with the modes of the elements, so its plain maximum converges to nothing. The impulse is a mean and does, as
+far as the samples tell: those of ``reference`` leave 0.06 % of it open, those of ``tiny`` 2.6 %, against samples eight times as
+dense. The peak does below a frequency that is said beside it (Butterworth, second order, forwards and backwards: no shift, and half
+the amplitude at the cut-off).
 """
 
 import numpy as np
