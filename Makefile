@@ -12,10 +12,10 @@ ASKED = --scene $(SCENE) --out $(OUT)
 READY = .venv/.ready
 
 .DEFAULT_GOAL := help
-.PHONY: help mesh highfi lowfi calibrate compare cost stability ablation bench report test test-slow clean
+.PHONY: help mesh highfi lowfi calibrate compare cost stability ablation report convergence full-report bench test test-slow clean
 
 help: ## print this list
-	@awk -F ':.*## ' '/^[a-z-]+:.*## /{printf "  make %-10s %s\n", $$1, $$2}' Makefile
+	@awk -F ':.*## ' '/^[a-z-]+:.*## /{printf "  make %-12s %s\n", $$1, $$2}' Makefile
 	@echo "  SCENE=$(SCENE) OUT=$(OUT)"
 
 mesh: $(READY) ## mesh the rails of the scene
@@ -46,6 +46,12 @@ bench: $(READY) ## speed of the solvers against what one would write today: OUT/
 	$(TIPOFF) bench --out $(OUT)
 
 report: $(READY) ## all of the above on one page: OUT/SCENE/report.html
+	$(TIPOFF) report $(ASKED)
+
+convergence: $(READY) ## the error of the reference itself: meshes, steps, penalty, quadrature (minutes)
+	$(TIPOFF) convergence $(ASKED)
+
+full-report: convergence ## the report with the convergence study on it
 	$(TIPOFF) report $(ASKED)
 
 test: $(READY) ## the tests, without the slow ones

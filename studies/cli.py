@@ -160,6 +160,25 @@ _stage("compare", "Agreement on fitted and held-out conditions beside the floor,
 _stage("cost", "What accuracy costs in time, both models; writes cost.json.")
 _stage("stability", "Hard cases, each with a simpler method that fails on it; writes stability.json.")
 _stage("ablation", "Every effect off, one at a time: time, rates, what is compiled; writes ablation.json.")
+
+
+@app.command()
+def convergence(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = None,
+                condition: Annotated[Optional[str], typer.Option("--condition", metavar="NAME",
+                                     help="Named condition; default: the first refined one.")] = None,
+                element_size: ElementSize = None, workers: Workers = None, json_: Json = False) -> None:
+    """Error of the reference itself: meshes, steps, penalty, quadrature; takes minutes; writes convergence.json."""
+
+    def work() -> dict:
+        from studies.stages import convergence as stage
+
+        return stage.run(_study(scene, out, set_, element_size=element_size, workers=workers), condition)
+
+    found = _guarded(work, json_)
+    if not json_:
+        print("\n".join(found["summary"]))
+
+
 _stage("report", "All of it on one self-contained page; writes report.html and figures/.")
 
 

@@ -13,13 +13,19 @@ from scenes.files import content_hash
 @dataclass(frozen=True)
 class Settings:
     """``element_size`` (m) of the reference; ``tolerances`` of the surrogate in the cost study; repeats of timed runs;
-    ``clearance_change`` (m) that defines the floor; ``workers`` side by side."""
+    ``clearance_change`` (m) that defines the floor; ``workers`` side by side. What the convergence study compares, coarsest first:
+    meshes by ``mesh_ratios`` to ``element_size``, one of them 1; ``safeties`` of the step, from that of every other stage down;
+    ``quadratures``; and factors of the scene's penalty stiffness."""
 
     element_size: float = 0.004
     tolerances: tuple[float, ...] = (1e-2, 1e-4, 1e-6, 1e-8)
     highfi_repeats: int = 3
     lowfi_repeats: int = 20
     clearance_change: float = 1e-6
+    mesh_ratios: tuple[float, ...] = (2.0, 1.0, 0.5)
+    safeties: tuple[float, ...] = (0.9, 0.45, 0.225)
+    quadratures: tuple[int, ...] = (2, 4, 8)
+    penalty_factors: tuple[float, ...] = (0.25, 1.0, 4.0, 16.0)
     workers: int = os.cpu_count() or 1
 
     @property
@@ -33,6 +39,11 @@ class Settings:
         return 0.5 * self.element_size
 
     @property
+    def mesh_sizes(self) -> tuple[float, ...]:
+        """Element sizes (m) of the convergence study, coarsest first."""
+        return tuple(ratio * self.element_size for ratio in self.mesh_ratios)
+
+    @property
     def hash(self) -> str:
         """Digest of the choices that can change a result; how many runs go side by side is not one of them."""
         return content_hash({name: value for name, value in asdict(self).items() if name != "workers"})
@@ -41,5 +52,5 @@ class Settings:
 def defaults(scene_name: str) -> Settings:
     """Settings of a catalogue scene: ``tiny`` is coarse, so that its whole pipeline takes seconds."""
     if scene_name == "tiny":
-        return Settings(element_size=0.016, highfi_repeats=2, lowfi_repeats=5)
+        return Settings(element_size=0.016, mesh_ratios=(1.0, 0.5, 0.25), highfi_repeats=2, lowfi_repeats=5)
     return Settings()

@@ -8,6 +8,7 @@ from scenes import ledger
 from scenes.effects import thrust_law
 from scenes.scene import Scene
 from scenes.trajectory import Trajectory
+from studies.contact_loads import by_pad
 from studies.report.chart import AMBER, AXIS_COLOURS, GREY, NAVY, TEAL, VERMILION, Chart, Line, Panel
 
 _MILLISECONDS = "time after ignition (ms)"
@@ -55,19 +56,13 @@ def _line(time, values, colour: str, kind: str, name: str = "", legend: bool = T
 
 def contact_forces(scene: Scene, runs: Runs, condition: str) -> Chart:
     """Force on every pad that is ever touched, both models, one condition."""
-    pads = np.array([index for index, pad in enumerate(scene.pads) for _ in pad.normals])
-    forces = {kind: (found[condition].time, _by_pad(found[condition].pad_force, pads))
+    forces = {kind: (found[condition].time, np.linalg.norm(by_pad(scene, found[condition].pad_force), axis=2))
               for kind, found in runs._asdict().items() if condition in found and kind != "uncalibrated"}
     loaded = sorted({int(pad) for _, force in forces.values() for pad in np.flatnonzero(force.max(axis=0) > 1.0)})
     panels = [Panel(_pad_title(scene, pad), _MILLISECONDS, "force (N)", [
         Line(1e3 * time, force[:, pad], _STYLES[kind][0], NAVY if kind == "highfi" else VERMILION, *_STYLES[kind][1:])
         for kind, (time, force) in forces.items()]) for pad in loaded]
     return Chart("contact-forces", panels, columns=2 if len(panels) > 1 else 1, height=250)
-
-
-def _by_pad(force: np.ndarray, pads: np.ndarray) -> np.ndarray:
-    """Magnitude (n,p) N of the force on each pad, from forces (n,f,3) on its faces."""
-    return np.stack([np.linalg.norm(force[:, pads == pad].sum(axis=1), axis=1) for pad in range(pads.max() + 1)], axis=1)
 
 
 def _pad_title(scene: Scene, pad: int) -> str:

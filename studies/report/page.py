@@ -8,7 +8,7 @@ from pathlib import Path
 from scenes.scene import Scene
 from scenes.trajectory import versions
 from studies import machine
-from studies.report import figures, inputs, tables
+from studies.report import convergence, figures, inputs, tables
 from studies.report.chart import Chart, to_html, to_png
 from studies.report.figures import Runs
 from studies.report.markup import Html, caption, code, number, paragraph, section, table
@@ -17,7 +17,7 @@ from studies.report.style import CSS
 
 _CONTENTS = (("answer", "Answer"), ("scene", "Scene"), ("mesh", "Mesh"), ("thrust", "Thrust"), ("figure6", "Curves"),
              ("contact-forces", "Contact"), ("energy", "Energy"), ("calibration", "Calibration"),
-             ("agreement-section", "Agreement"), ("speedup", "Speed"), ("cost", "Cost"), ("stability", "Hard cases"),
+             ("agreement-section", "Agreement"), ("speedup", "Speed"), ("cost", "Cost"), ("convergence", "Convergence"), ("stability", "Hard cases"),
              ("ablation", "Ablation"), ("promises", "Promises"), ("colophon", "Origin"))
 
 
@@ -36,7 +36,7 @@ class Page:
                         self._of("calibration", "calibration", "Calibration", tables.calibration, "calibrate"),
                         self._of("agreement", "agreement-section", "Agreement with the reference", tables.agreement, "compare"),
                         self._of("agreement", "speedup", "Speed", lambda found: tables.speedup(found["speedup"]), "compare"),
-                        self._of("cost", "cost", "What accuracy costs", self._cost, "cost"),
+                        self._of("cost", "cost", "What accuracy costs", self._cost, "cost"), self._convergence(),
                         self._of("stability", "stability", "Hard cases", tables.stability, "stability"),
                         self._of("ablation", "ablation", "Only what the scene calls for", tables.ablation, "ablation"),
                         render(promises(self._rows(), self.documents)), self._colophon()])
@@ -147,6 +147,15 @@ class Page:
         return section("cost", "What accuracy costs", self._figure(
             figures.cost_picture(found), f"Condition {found['condition']}. Error against the finest finite-element mesh, whose own "
             "uncertainty is the band: an error inside it cannot be told from zero. Right: what a tighter tolerance can still buy. Labels: element size, tolerance."), tables.cost(found))
+
+    def _convergence(self) -> Html:
+        """Nothing without its result, and no reminder either: only `make full-report` spends the minutes it takes."""
+        found = self.documents.get("convergence")
+        if not found:
+            return Html("")
+        chart = convergence.picture(found)
+        drawn = self._figure(chart, convergence.WORDS.format(condition=found["condition"])) if chart.panels else ""
+        return section("convergence", "Error of the reference itself", drawn, convergence.tables(found))
 
     def _colophon(self) -> Html:
         here = machine.describe()

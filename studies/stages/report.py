@@ -1,11 +1,12 @@
-"""Stage ``report``: every other stage, then one page of their results."""
+"""Stage ``report``: every stage but ``convergence``, which takes minutes, then one page of their results and of a convergence study
+that is there already."""
 
 from pathlib import Path
 from typing import Callable
 
 from scenes.calibration import Calibration
 from scenes.files import content_hash, write_text
-from studies.stages import ablation, calibrate, compare, cost, mesh, runs, stability
+from studies.stages import ablation, calibrate, compare, convergence, cost, mesh, runs, stability
 from studies.store import Run, code_hash
 from studies.study import Study, StudyError
 
@@ -22,6 +23,8 @@ def run(study: Study) -> dict:
             documents[name] = stage(study)
         except StudyError as fault:
             documents[name], problems[name] = None, str(fault)
+    if (found := convergence.stored(study)) is not None:
+        documents[convergence.NAME] = found
 
     def make() -> tuple[dict, list[Path]]:
         from studies.report.page import Page

@@ -1,0 +1,30 @@
+"""What a refinement of the reference is judged by: the state the payload leaves with, and the loads of the pads that touch."""
+
+import math
+from typing import Iterator, Sequence
+
+from scenes.scene import Scene
+from scenes.trajectory import Trajectory
+from studies import contact_loads
+from studies.metrics import AXES
+
+RATE = "settled rate"
+
+
+def quantities(scene: Scene, runs: Sequence[Trajectory]) -> Iterator[tuple[str, str, list[float | None]]]:
+    """(quantity, unit, value of each run, None where it did not settle); a pad that touches in no run is left out."""
+    for index, axis in enumerate(AXES):
+        yield f"{RATE} {axis}", "deg/s", [settled_rate(found)[index] for found in runs]
+    yield "settled axial velocity", "m/s", [found.outcome.velocity and found.outcome.velocity[0] for found in runs]
+    impulses = [contact_loads.impulses(scene, found) for found in runs]
+    for pad in range(len(scene.pads)):
+        if any(found[pad] for found in impulses):
+            yield f"contact impulse, pad {pad + 1}", "N s", [float(found[pad]) for found in impulses]
+    if any(found.any() for found in impulses):
+        peaks = [contact_loads.filtered_peak(scene, found) for found in runs]
+        yield f"peak contact force below {1e-3 * contact_loads.cutoff(scene):g} kHz", "N", peaks
+
+
+def settled_rate(run: Trajectory) -> list[float | None]:
+    """Settled rate (deg/s) about x, y, z."""
+    return [None] * len(AXES) if run.outcome.rate is None else [math.degrees(rate) for rate in run.outcome.rate]

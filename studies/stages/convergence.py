@@ -1,0 +1,139 @@
+"""Stage ``convergence``: the error of the finite-element reference itself, on one condition.
+
+Meshes and steps are refined one after the other, and every quantity is judged by its observed order (``studies.convergence``);
+penalty and quadrature are changed and compared. What a finer mesh brings with it: a smaller step, and fewer Gauss points per facet,
+so that they stay about 1 mm apart and their own error shows in the quadrature alone. What it may not bring: a wall of the rail has
+one element through it at least, so coarse meshes differ in length and width only; ``meshes`` holds the numbers of elements.
+"""
+
+from dataclasses import asdict
+from pathlib import Path
+
+from highfi.numerics import Numerics
+from scenes.scene import Scene
+from scenes.trajectory import Trajectory
+from studies import agreement, contact_loads
+from studies.convergence import estimate
+from studies.quantities import RATE, quantities, settled_rate
+from studies.stages.compare import refinements
+from studies.store import SOURCES, Run
+from studies.study import Study, read, require_success
+
+NAME = "convergence"
+
+
+def run(study: Study, condition: str | None = None) -> dict:
+    """``quantities`` over element size and time step with order and uncertainty, ``penalty``, ``quadrature``, and ``summary`` in
+    words. Raises SceneError for an unknown condition, StudyError where a mesh or a step fails."""
+    name = condition or (study.scene.agreement.refined or tuple(study.conditions))[0]
+    scene = study.condition(name)
+
+    def make() -> tuple[dict, list[Path]]:
+        meshes = _finished(study, "convergence, meshes", _meshes(study, name))
+        steps = _finished(study, "convergence, steps", _steps(study, name))
+        judged = [*_judged(scene, "element size", "m", list(study.settings.mesh_sizes), meshes, study.settings.element_size),
+                  *_judged(scene, "time step", "s", [found.cost["dt_s"] for found in steps], steps, steps[0].cost["dt_s"])]
+        penalty, quadrature = _penalties(study, name), _quadratures(study, name)
+        return {"condition": name, "element_size_m": study.settings.element_size,
+                "force_cutoff_hz": contact_loads.cutoff(scene),
+                "meshes": [{"element_size_m": size, "elements": found.cost["elements"], "dt_s": found.cost["dt_s"],
+                            "wall_s": found.cost["wall_s"]} for size, found in zip(study.settings.mesh_sizes, meshes)],
+                "quantities": judged, "penalty": penalty, "quadrature": quadrature,
+                "summary": summary(name, judged, penalty, quadrature)}, []
+
+    return study.stage(NAME, _key(study, name), make)
+
+
+def stored(study: Study) -> dict | None:
+    """The result, if it was made from the present scene, code and settings: the report shows it and makes none."""
+    found = read(study.path(f"{NAME}.json"))
+    return found if found and found["key"] == _key(study, found["condition"]) else None
+
+
+def _key(study: Study, name: str) -> str:
+    return study.key(SOURCES["highfi"], NAME, name)
+
+
+def _finished(study: Study, title: str, asked: list[Run]) -> list[Trajectory]:
+    runs = study.store.fill(title, asked)
+    require_success({item.label: found for item, found in zip(asked, runs)}, "judge the convergence")
+    return runs
+
+
+def _meshes(study: Study, name: str) -> list[Run]:
+    """One run a mesh; those that other stages make too keep their name, so that the store has them once."""
+    settings = study.settings
+    known = {settings.coarse_size: "-coarse", settings.element_size: "", settings.fine_size: refinements(study)["mesh"]["tag"]}
+    return [study.highfi(name, element_size=size, tag=known.get(size, f"-{1e3 * size:g}mm")) for size in settings.mesh_sizes]
+
+
+def _steps(study: Study, name: str) -> list[Run]:
+    shared = refinements(study)["step"]
+    known = {Numerics().safety: "", shared["safety"]: shared["tag"]}
+    return [study.highfi(name, safety=safety, tag=known.get(safety, f"-safety-{safety:g}")) for safety in study.settings.safeties]
+
+
+def _judged(scene: Scene, parameter: str, unit: str, sizes: list[float], runs: list[Trajectory], nominal: float) -> list[dict]:
+    """One row a quantity. ``nominal_uncertainty`` is that at the ``nominal`` size, with which every other stage runs."""
+    rows = []
+    for quantity, its_unit, values in quantities(scene, runs):
+        found, at_nominal = estimate(sizes, values), values[sizes.index(nominal)]
+        unknown = None in (found.uncertainty, at_nominal)
+        rows.append({"quantity": quantity, "unit": its_unit, "parameter": parameter, "sizes": sizes, "size_unit": unit,
+                     "values": values, **asdict(found), "nominal_size": nominal,
+                     "nominal_uncertainty": None if unknown else found.uncertainty + abs(at_nominal - values[-1])})
+    return rows
+
+
+def _penalties(study: Study, name: str) -> list[dict]:
+    """Rows by penalty stiffness; none without contact."""
+    contact = study.condition(name).contact
+    if contact is None:
+        return []
+    stiffness = contact.penalty
+    heads = [{"factor": factor, "penalty_n_m3": factor * stiffness} for factor in study.settings.penalty_factors]
+    asked = [study.highfi(name) if factor == 1.0 else
+             study.highfi(name, {"contact.penalty": factor * stiffness}, tag=f"-penalty-{factor:g}")
+             for factor in study.settings.penalty_factors]
+    return _compared(study, "convergence, penalty", name, heads, asked)
+
+
+def _quadratures(study: Study, name: str) -> list[dict]:
+    """Rows by Gauss points per facet edge; none without contact."""
+    if study.condition(name).contact is None:
+        return []
+    # The rule that a run takes of its own accord needs no second run.
+    own = Numerics(element_size=study.settings.element_size).points_per_edge()
+    asked = [study.highfi(name) if points == own else study.highfi(name, tag=f"-quadrature-{points}", quadrature=points)
+             for points in study.settings.quadratures]
+    heads = [{"points_per_edge": points} for points in study.settings.quadratures]
+    return _compared(study, "convergence, quadrature", name, heads, asked)
+
+
+def _compared(study: Study, title: str, name: str, heads: list[dict], asked: list[Run]) -> list[dict]:
+    """The rows with the settled rates of their runs and the largest change of one (deg/s) against the nominal run."""
+    nominal, *runs = study.store.fill(title, [study.highfi(name), *asked])
+    return [head | {"status": found.status, "settled_rate_deg_s": settled_rate(found),
+                    "settled_rate_change_deg_s": agreement.settled_change(nominal, found)} for head, found in zip(heads, runs)]
+
+
+def summary(condition: str, judged: list[dict], penalty: list[dict], quadrature: list[dict]) -> list[str]:
+    """What each table says of the settled rates, one line each."""
+    lines = []
+    for parameter, symbol, factor in (("element size", "mm", 1e3), ("time step", "ns", 1e9)):
+        rows = [row for row in judged if row["parameter"] == parameter and row["quantity"].startswith(RATE)]
+        worst = max(rows, key=lambda row: row["nominal_uncertainty"] or 0.0)
+        if worst["uncertainty"] is None:
+            lines.append(f"{parameter} on {condition}: a run did not settle, so nothing is known of its error")
+            continue
+        lines.append(f"{parameter} on {condition}: settled rates within {worst['nominal_uncertainty']:.2g} deg/s at the "
+                     f"{factor * worst['nominal_size']:.3g} {symbol} of every other stage, within "
+                     f"{max(row['uncertainty'] for row in rows):.2g} deg/s at {factor * worst['sizes'][-1]:.3g} {symbol}")
+    for title, key, rows in (("penalty stiffness, times", "factor", penalty),
+                             ("Gauss points per facet edge,", "points_per_edge", quadrature)):
+        if rows:
+            change = agreement.largest(row["settled_rate_change_deg_s"] for row in rows)
+            odd = "".join(f"; {row[key]:g} {row['status']}" for row in rows if row["settled_rate_change_deg_s"] is None)
+            lines.append(f"{title} {rows[0][key]:g} to {rows[-1][key]:g}: "
+                         + ("no run settled" if change is None else f"a settled rate changes by up to {change:.2g} deg/s") + odd)
+    return lines

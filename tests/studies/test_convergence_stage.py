@@ -1,0 +1,210 @@
+"""The stage ``convergence`` on stubbed runs whose rates follow a law: what it asks for, what it finds, and what it says."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+import scenes
+from scenes.faults import SceneError
+from studies import store as store_module
+from studies.cli import app
+from studies.report.figures import Runs
+from studies.report.page import Page
+from studies.settings import Settings, defaults
+from studies.stages import convergence, report
+from studies.study import Study, StudyError
+from tests.studies.synthetic import flight
+
+NOMINAL_PENALTY = scenes.load("tiny").contact.penalty
+
+
+def settled(run):
+    """Rates (deg/s): x errs with the square of the element size (mm) and of the step, y jumps to and fro, z never changes."""
+    size, dt = 1e3 * run.numerics.element_size, step(run)
+    penalty = run.scene.contact.penalty / NOMINAL_PENALTY if run.scene.contact else 1.0
+    return 3.0 + 1e-3 * size**2 + 0.1 * dt**2 + 0.01 * math.log2(penalty), {8.0: 1.3}.get(size, 1.0), 2.0
+
+
+def step(run):
+    """The step (s), as if the limit were 1 s."""
+    return run.numerics.safety
+
+
+def motion(run, **parts):
+    force = np.zeros((601, 16, 3))
+    if run.scene.contact:
+        force[:, 2, 1] = 20.0
+    cost = {"wall_s": 1.0, "compile_s": 0.0, "steps": 10, "dt_s": step(run), "elements": 8, "ns_per_element_step": 1.0}
+    return flight(lambda t: np.tile(np.radians(settled(run)), (t.size, 1)), pad_force=force, cost=cost, **parts)
+
+
+@pytest.fixture
+def asked(monkeypatch):
+    """Labels of the runs that were made, in order; ``asked.failing`` maps a label to what became of it instead."""
+    class Labels(list):
+        failing: dict[str, str] = {}
+
+    made = Labels()
+
+    def execute(run, progress=None, threads=None):
+        made.append(run.label)
+        return motion(run, status=made.failing.get(run.label, "exited"))
+
+    monkeypatch.setattr(store_module, "execute", execute)
+    monkeypatch.setattr(store_module, "prepare", lambda run: None)
+    return made
+
+
+@pytest.fixture
+def study(tmp_path, asked):
+    return Study(scenes.load("tiny"), tmp_path / "tiny", defaults("tiny"))
+
+
+def row(found, parameter, quantity):
+    matching, = [item for item in found["quantities"] if (item["parameter"], item["quantity"]) == (parameter, quantity)]
+    return matching
+
+
+def test_order_and_uncertainty_of_a_law_of_second_order(study):
+    found = convergence.run(study)
+    x = row(found, "element size", "settled rate x")
+    assert (x["unit"], x["size_unit"], x["sizes"]) == ("deg/s", "m", [0.016, 0.008, 0.004])
+    assert x["order"] == pytest.approx(2.0, abs=1e-9)
+    assert x["uncertainty"] == pytest.approx(1.25 * 0.016)
+    assert x["gci_percent"] == pytest.approx(125.0 * 0.016 / x["values"][-1])
+    # At 16 mm, as other stages run, the error is 0.256: what lies between the values, and the uncertainty of the finest.
+    assert x["nominal_uncertainty"] == pytest.approx(0.256 - 0.016 + 1.25 * 0.016)
+    in_time = row(found, "time step", "settled rate x")
+    assert in_time["sizes"] == [0.9, 0.45, 0.225]
+    assert in_time["order"] == pytest.approx(2.0, abs=1e-9)
+    assert in_time["uncertainty"] == pytest.approx(1.25 * 0.1 * 0.225**2)
+
+
+def test_values_without_order_are_told_apart(study):
+    found = convergence.run(study)
+    y = row(found, "element size", "settled rate y")
+    assert y["order"] is None and "not monotone" in y["method"]
+    assert y["uncertainty"] == pytest.approx(1.5 * 0.3)
+    assert row(found, "element size", "settled rate z")["method"] == "no change at all"
+    assert found["summary"][0] == ("element size on phi15: settled rates within 0.45 deg/s at the 16 mm of every other stage, "
+                                   "within 0.45 deg/s at 4 mm")
+
+
+def test_loads_of_the_one_pad_that_touches(study):
+    found = convergence.run(study)
+    names = [item["quantity"] for item in found["quantities"] if item["parameter"] == "element size"]
+    assert names == ["settled rate x", "settled rate y", "settled rate z", "settled axial velocity", "contact impulse, pad 2",
+                     "peak contact force below 1 kHz"]
+    assert row(found, "element size", "contact impulse, pad 2")["values"] == pytest.approx([0.6] * 3)
+    assert row(found, "time step", "peak contact force below 1 kHz")["values"] == pytest.approx([20.0] * 3)
+    assert found["force_cutoff_hz"] == 1000.0
+
+
+def test_penalty_and_quadrature_are_compared_with_the_nominal_run(study):
+    found = convergence.run(study)
+    assert [item["factor"] for item in found["penalty"]] == [0.25, 1.0, 4.0, 16.0]
+    assert [item["settled_rate_change_deg_s"] for item in found["penalty"]] == pytest.approx([0.02, 0.0, 0.02, 0.04])
+    assert found["penalty"][3]["penalty_n_m3"] == 16.0 * NOMINAL_PENALTY
+    changes = {item["points_per_edge"]: item["settled_rate_change_deg_s"] for item in found["quadrature"]}
+    assert changes == {2: 0.0, 4: 0.0, 8: 0.0}
+    assert found["summary"][2:] == ["penalty stiffness, times 0.25 to 16: a settled rate changes by up to 0.04 deg/s",
+                                    "Gauss points per facet edge, 2 to 8: a settled rate changes by up to 0 deg/s"]
+
+
+def test_no_run_is_made_twice_and_none_again(study, asked):
+    """The nominal run serves all four tables: it is one mesh, one step, one penalty, and eight points are its own rule."""
+    convergence.run(study)
+    assert sorted(asked) == sorted(["phi15" + tag for tag in (
+        "", "-mesh", "-4mm", "-step", "-safety-0.225", "-penalty-0.25", "-penalty-4", "-penalty-16", "-quadrature-2",
+        "-quadrature-4")])
+    del asked[:]
+    convergence.run(study)
+    assert asked == []
+    assert convergence.run(study, "phi60")["condition"] == "phi60" and len(asked) == 10
+
+
+def test_three_meshes_of_the_reference():
+    assert defaults("reference").mesh_sizes == (0.008, 0.004, 0.002)
+    assert Settings(element_size=0.006).mesh_sizes == pytest.approx((0.012, 0.006, 0.003))
+
+
+def test_run_that_did_not_settle_leaves_its_error_unknown(study, asked):
+    asked.failing = {"phi15-4mm": "jammed", "phi15-penalty-16": "diverged"}
+    found = convergence.run(study)
+    x = row(found, "element size", "settled rate x")
+    assert (x["uncertainty"], x["nominal_uncertainty"], x["method"]) == (None, None, "a run did not settle")
+    assert "nothing is known of its error" in found["summary"][0]
+    assert row(found, "element size", "contact impulse, pad 2")["uncertainty"] == 0.0
+    assert found["penalty"][3]["settled_rate_deg_s"] == [None] * 3
+    assert found["summary"][2].endswith("up to 0.02 deg/s; 16 diverged")
+
+
+def test_mesh_that_diverges_stops_the_stage(study, asked):
+    asked.failing = {"phi15-4mm": "diverged"}
+    with pytest.raises(StudyError, match="phi15-4mm: diverged"):
+        convergence.run(study)
+    assert not study.path("convergence.json").exists()
+
+
+def test_scene_without_contact_has_no_loads_and_no_penalty(tmp_path, asked):
+    scene = scenes.load("tiny").replace({"contact": None, "friction": None})
+    found = convergence.run(Study(scene, tmp_path, defaults("tiny")))
+    assert found["penalty"] == found["quadrature"] == [] and len(found["summary"]) == 2
+    assert {item["unit"] for item in found["quantities"]} == {"deg/s", "m/s"}
+
+
+def test_unknown_condition_is_refused_before_anything_runs(study, asked):
+    with pytest.raises(SceneError, match="phi99"):
+        convergence.run(study, "phi99")
+    assert asked == []
+
+
+def test_stored_result_counts_only_while_nothing_changed(study):
+    assert convergence.stored(study) is None
+    found = convergence.run(study, "phi60")
+    assert convergence.stored(study) == found
+    assert convergence.stored(Study(study.scene, study.folder, Settings())) is None
+
+
+def test_page_shows_the_study_only_where_there_is_one(study):
+    found = convergence.run(study)
+    page = Page(study.scene, study.folder, {"convergence": found}, Runs({}, {}, {}), {})
+    shown = page._convergence()
+    assert 'id="convergence"' in shown and 'id="chart-convergence"' in shown
+    assert all(f"{line[1:]}." in shown for line in found["summary"])
+    assert study.path("figures/convergence.png").is_file()
+    assert Page(study.scene, study.folder, {}, Runs({}, {}, {}), {})._convergence() == ""
+
+
+def test_page_without_a_settled_run_has_no_figure(study, asked):
+    asked.failing = {"phi15-4mm": "jammed"}
+    page = Page(study.scene, study.folder, {"convergence": convergence.run(study)}, Runs({}, {}, {}), {})
+    assert "chart-convergence" not in page._convergence() and page.pictures == []
+
+
+def test_command_prints_the_summary_or_the_result(tmp_path, asked):
+    arguments = ["convergence", "--scene", "tiny", "--condition", "phi60", "--workers", "1", "--out", str(tmp_path)]
+    said = CliRunner().invoke(app, arguments, catch_exceptions=False)
+    written = json.loads((tmp_path / "tiny" / "convergence.json").read_text())
+    assert said.exit_code == 0 and said.stdout.splitlines() == written["summary"]
+    told = CliRunner().invoke(app, [*arguments, "--json"], catch_exceptions=False)
+    assert json.loads(told.stdout) == written
+
+
+def test_command_refuses_an_unknown_condition(tmp_path, asked):
+    refused = CliRunner().invoke(app, ["convergence", "--scene", "tiny", "--condition", "phi99", "--out", str(tmp_path)])
+    assert refused.exit_code == 2 and "phi99" in refused.stderr
+    assert not list(tmp_path.iterdir())
+
+
+def test_report_takes_up_a_study_that_is_there(study, monkeypatch):
+    monkeypatch.setattr(report, "STAGES", {name: lambda _: None for name in report.STAGES})
+    page = study.path("report.html")
+    report.run(study)
+    assert 'id="convergence"' not in page.read_text()
+    convergence.run(study)
+    report.run(study)
+    assert 'id="convergence"' in page.read_text() and 'href="#convergence"' in page.read_text()
