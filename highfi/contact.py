@@ -20,7 +20,7 @@ from highfi.records import (BORDER, DAMPING_RATIO, FRICTION_FORCE, FRICTION_MOME
                             RELEASED, STORED)
 from scenes import rotation
 from scenes.effects.friction import coefficient_over_speed
-from scenes.jit import njit
+from scenes.jit import inlined, kernel
 
 FASTEST_APPROACH = 10.0  # m/s across the rail: a face this far from every facet is not looked at before it could arrive
 _MARGIN = 1e-3  # m along the rail by which the searched window is wider than the face
@@ -42,14 +42,14 @@ class Touch(NamedTuple):
     reaction: np.ndarray
 
 
-@njit
+@kernel
 def touched(rail, state):
     """What contact needs of a rail and its state."""
     return Touch(rail.points, rail.inverse_mass, state.displacement, state.velocity, state.resistance, state.contact, state.load,
                  state.work, state.face_force, state.reaction)
 
 
-@njit
+@kernel
 def contact_forces(rail, surface, faces, penalty, friction, state, active, pose, dt):
     """Fill ``state.contact``, ``state.load``, ``state.face_force`` and ``active``; released energy goes to work."""
     state.load[:] = 0.0
@@ -62,7 +62,7 @@ def contact_forces(rail, surface, faces, penalty, friction, state, active, pose,
         _rate_damping(touch, friction, active, dt)
 
 
-@njit
+@kernel
 def _forget(active):
     for k in range(active.count[NODES]):
         node = active.node[k]
@@ -74,7 +74,7 @@ def _forget(active):
     active.count[NODES] = 0
 
 
-@njit
+@inlined
 def _all_faces(touch, surface, faces, penalty, friction, active, pose, dt):
     for face in range(faces.axis.size):
         if active.wait[face] > 0:
@@ -97,7 +97,7 @@ def _all_faces(touch, surface, faces, penalty, friction, active, pose, dt):
         active.wait[face] = max(0, int(gap / (FASTEST_APPROACH * dt)) - 1)
 
 
-@njit
+@inlined
 def _from_centre(touch, node, pose):
     """Deformed place (m) of a node from the payload's mass centre, in frame axes."""
     return (touch.points[node, 0] + touch.displacement[node, 0] - pose.centre[0],
@@ -105,7 +105,7 @@ def _from_centre(touch, node, pose):
             touch.points[node, 2] + touch.displacement[node, 2] - pose.centre[2])
 
 
-@njit
+@inlined
 def _lowest_corner(touch, surface, faces, face, facet, pose):
     """Smallest outward height (m) of the facet's corners over the uncrowned plane of the face; negative inside."""
     axis, sign = faces.axis[face], faces.sign[face]
@@ -118,12 +118,12 @@ def _lowest_corner(touch, surface, faces, face, facet, pose):
     return lowest
 
 
-@njit
+@inlined
 def _in_payload(touch, surface, facet, corner, pose):
     return rotation.unrotate(pose.turn, _from_centre(touch, surface.facets[facet, corner], pose))
 
 
-@njit
+@inlined
 def _blend(surface, q, a, b, c, d):
     """Bilinear value at Gauss point ``q`` of what the four corners have."""
     i, j, k, l = surface.shape[q, 0], surface.shape[q, 1], surface.shape[q, 2], surface.shape[q, 3]
@@ -131,7 +131,7 @@ def _blend(surface, q, a, b, c, d):
             i * a[2] + j * b[2] + k * c[2] + l * d[2])
 
 
-@njit
+@inlined
 def _local(faces, face, y):
     """Face coordinates (xi, eta) and outward height (m) of a point in payload axes."""
     axis = faces.axis[face]
@@ -141,7 +141,7 @@ def _local(faces, face, y):
     return xi, eta, faces.sign[face] * (y[axis] - faces.centre[face, axis])
 
 
-@njit
+@inlined
 def _facet_points(touch, surface, faces, face, facet, penalty, friction, active, pose, dt):
     a, b, c, d = (_in_payload(touch, surface, facet, 0, pose), _in_payload(touch, surface, facet, 1, pose),
                   _in_payload(touch, surface, facet, 2, pose), _in_payload(touch, surface, facet, 3, pose))
@@ -154,7 +154,7 @@ def _facet_points(touch, surface, faces, face, facet, penalty, friction, active,
                 _press(touch, surface, faces, face, facet, q, penalty, friction, active, pose, y, xi, eta, penetration, dt)
 
 
-@njit
+@inlined
 def _press(touch, surface, faces, face, facet, q, penalty, friction, active, pose, y, xi, eta, penetration, dt):
     axis = faces.axis[face]
     weight = penalty * surface.area[facet, q]
@@ -179,7 +179,7 @@ def _press(touch, surface, faces, face, facet, q, penalty, friction, active, pos
     _apply_pair(touch, surface, facet, q, face, pose, arm, (push * g[0], push * g[1], push * g[2]), drag)
 
 
-@njit
+@inlined
 def _sliding_velocity(touch, surface, facet, q, arm, pose):
     """Velocity (m/s) of the payload's material at ``arm`` from its mass centre relative to the rail's, in frame axes."""
     spin = rotation.cross(pose.rate, arm)
@@ -192,7 +192,7 @@ def _sliding_velocity(touch, surface, facet, q, arm, pose):
     return (a, b, c)
 
 
-@njit
+@inlined
 def _remember(active, facet, q, face, energy):
     k = active.count[BORDER]
     active.point[k, 0], active.point[k, 1] = facet, q
@@ -201,7 +201,7 @@ def _remember(active, facet, q, face, energy):
     active.count[BORDER] = k + 1
 
 
-@njit
+@inlined
 def _note_nodes(surface, facet, active):
     for corner in range(4):
         node = surface.facets[facet, corner]
@@ -211,7 +211,7 @@ def _note_nodes(surface, facet, active):
             active.count[NODES] += 1
 
 
-@njit
+@inlined
 def _friction_on_payload(friction, touch, surface, facet, q, g, arm, push, slide, active):
     """Friction force (N) on the payload in frame axes; zero and not compiled when ``friction`` is None.
 
@@ -236,7 +236,7 @@ def _friction_on_payload(friction, touch, surface, facet, q, g, arm, push, slide
     return drag
 
 
-@njit
+@kernel
 def _rate_damping(touch, friction, active, dt):
     """Largest step * damping / mass of a node, for the stability check."""
     if friction is not None:
@@ -245,7 +245,7 @@ def _rate_damping(touch, friction, active, dt):
             touch.load[DAMPING_RATIO] = max(touch.load[DAMPING_RATIO], dt * active.node_damping[node] * touch.inverse_mass[node])
 
 
-@njit
+@inlined
 def _apply_pair(touch, surface, facet, q, face, pose, arm, on_rail, drag):
     """One force on the rail and its opposite on the payload, both at ``arm`` from the payload's mass centre."""
     total = (drag[0] - on_rail[0], drag[1] - on_rail[1], drag[2] - on_rail[2])
@@ -262,7 +262,7 @@ def _apply_pair(touch, surface, facet, q, face, pose, arm, on_rail, drag):
         touch.face_force[face, i] += total[i]
 
 
-@njit
+@inlined
 def _came_over_the_edge(faces, face, xi, eta, slide, dt):
     """Whether the point lay outside the face one step ago; ``slide`` in payload axes, opposite to the point's own motion."""
     before_xi = xi + dt * slide[0] / faces.half_length[face]
@@ -270,7 +270,7 @@ def _came_over_the_edge(faces, face, xi, eta, slide, dt):
     return abs(before_xi) > 1.0 or abs(before_eta) > 1.0
 
 
-@njit
+@kernel
 def _release_over_the_edge(touch, surface, faces, active, pose):
     """Energy of points that carried load a step ago and are no longer under their face goes to ``released``."""
     for k in range(active.count[BORDER]):
@@ -282,7 +282,7 @@ def _release_over_the_edge(touch, surface, faces, active, pose):
             touch.work[RELEASED] += active.energy[k]
 
 
-@njit
+@kernel
 def collect_contact(touch, active):
     """Move contact forces of nodes into their resistance, and add those on moving nodes to ``touch.reaction``."""
     for k in range(active.count[NODES]):
@@ -300,7 +300,7 @@ def collect_contact(touch, active):
             touch.contact[node, i] = 0.0
 
 
-@njit
+@kernel
 def friction_power(touch, active, pose, friction, pull, ahead):
     """Power (W) of the present friction forces at the velocities of ``pose`` and those of the nodes once kicked over ``ahead`` (s)."""
     power = 0.0

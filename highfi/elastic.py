@@ -5,43 +5,41 @@ it hangs on has moved, while that is still in the cache. Chunks that hang on ano
 is cut into slabs along X: elements of two even slabs share no node, nor do those of two odd ones.
 """
 
-import numpy as np
-
 from highfi.nodes import move_nodes, turning
-from highfi.operator import add_internal_force, internal_force
-from highfi.pencils import LANES
-from highfi.pencil_kernel import pencil_force, room_for_sums
+from highfi.operator import add_internal_force
+from highfi.pencil_kernel import pencil_force
 from highfi.team import meet
-from scenes.jit import njit
+from scenes.jit import kernel
 
-@njit
-def elastic_force(rail, displacement, force, turn):
-    """Set ``force`` (n,3) to K u (N), and ``turn`` (b,3) to each block's part of the sum of u x K u (N m)."""
-    _force_of_pencils(rail.pencils, displacement, force)
-    _force_of_elements(rail.elements, displacement, force)
-    _turn_blocks(rail, displacement, force, turn, 0, 1)
+@kernel
+def elastic_force(rail, displacement, force, turn, team):
+    """Set ``force`` (n,3) to K u (N), and ``turn`` (b,3) to each block's part of the sum of u x K u (N m); one thread's work."""
+    _force_of_pencils(rail.pencils, displacement, force, team.sums[0])
+    _force_of_elements(rail.elements, displacement, force, team.lanes[0])
+    _turn_blocks(rail, displacement, force, turn, 0, 1, team.lanes[0])
 
 
-@njit
-def _force_of_pencils(pencils, displacement, force):
+@kernel
+def _force_of_pencils(pencils, displacement, force, sums):
     if pencils is not None:
-        pencil_force(pencils, displacement.T, force.T, 0, pencils.first.size - 1, room_for_sums(pencils.stride))
+        pencil_force(pencils, displacement.T, force.T, 0, pencils.first.size - 1, sums)
 
 
-@njit
-def _force_of_elements(elements, displacement, force):
+@kernel
+def _force_of_elements(elements, displacement, force, lanes):
     if elements is not None:
-        internal_force(displacement, elements.hexes, elements.shape_class, elements.stiffness, force)
+        force[:] = 0.0
+        add_internal_force(displacement, elements.hexes, elements.shape_class, elements.stiffness, force, 0, elements.hexes.shape[0],
+                           lanes.reshape(lanes.size)[:24])
 
 
-@njit
-def _turn_blocks(rail, displacement, force, turn, first, step):
-    lanes = np.empty((3, LANES))
+@kernel
+def _turn_blocks(rail, displacement, force, turn, first, step, lanes):
     for block in range(first, turn.shape[0], step):
         turning(displacement, force, rail.blocks[block], rail.blocks[block + 1], lanes, turn[block])
 
 
-@njit
+@kernel
 def move_and_load(rail, frame, state, team, thread, dt):
     """Kick and drift all nodes, then set the elastic part of the new forces; every thread of ``team`` takes a part of it.
 
@@ -52,30 +50,30 @@ def move_and_load(rail, frame, state, team, thread, dt):
     meet(team)
 
 
-@njit
+@kernel
 def finish_load(rail, state, team, thread):
     """What could not be computed before all nodes had moved."""
     _load_borders(rail.pencils, rail, state, team, thread)
     _load_slabs(rail.elements, rail, state, team, thread)
 
 
-@njit
+@kernel
 def _share(pencils, team, thread):
     """First and last chunk of a thread."""
     chunks = pencils.chunks.size - 1
     return chunks * thread // team.size, chunks * (thread + 1) // team.size
 
 
-@njit
+@kernel
 def _load_chunk(pencils, rail, state, chunk, sums, lanes):
     pencil_force(pencils, state.displacement.T, state.resistance.T, pencils.chunks[chunk], pencils.chunks[chunk + 1], sums)
     turning(state.displacement, state.resistance, rail.blocks[chunk], rail.blocks[chunk + 1], lanes, state.turning[chunk])
 
 
-@njit
+@kernel
 def _sweep_pencils(pencils, rail, frame, state, team, thread, dt):
     if pencils is not None:
-        sums, lanes = room_for_sums(pencils.stride), np.empty((3, LANES))
+        sums, lanes = team.sums[thread], team.lanes[thread]
         first, last = _share(pencils, team, thread)
         following = first
         for chunk in range(first, last):
@@ -86,16 +84,16 @@ def _sweep_pencils(pencils, rail, frame, state, team, thread, dt):
                 following += 1
 
 
-@njit
+@kernel
 def _load_borders(pencils, rail, state, team, thread):
     if pencils is not None:
         first, last = _share(pencils, team, thread)
         for chunk in range(first, last):
             if pencils.lowest[chunk] < first or pencils.highest[chunk] >= last:
-                _load_chunk(pencils, rail, state, chunk, room_for_sums(pencils.stride), np.empty((3, LANES)))
+                _load_chunk(pencils, rail, state, chunk, team.sums[thread], team.lanes[thread])
 
 
-@njit
+@kernel
 def _move_blocks(elements, rail, frame, state, team, thread, dt):
     if elements is not None:
         for block in range(thread, state.turning.shape[0], team.size):
@@ -104,12 +102,13 @@ def _move_blocks(elements, rail, frame, state, team, thread, dt):
             state.resistance[first:last] = 0.0
 
 
-@njit
+@kernel
 def _load_slabs(elements, rail, state, team, thread):
     if elements is not None:
+        lanes = team.lanes[thread]
         for parity in range(2):
             for slab in range(parity + 2 * thread, elements.slabs.size - 1, 2 * team.size):
                 add_internal_force(state.displacement, elements.hexes, elements.shape_class, elements.stiffness, state.resistance,
-                                   elements.slabs[slab], elements.slabs[slab + 1])
+                                   elements.slabs[slab], elements.slabs[slab + 1], lanes.reshape(lanes.size)[:24])
             meet(team)
-        _turn_blocks(rail, state.displacement, state.resistance, state.turning, thread, team.size)
+        _turn_blocks(rail, state.displacement, state.resistance, state.turning, thread, team.size, lanes)

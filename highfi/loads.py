@@ -12,10 +12,10 @@ from highfi.records import (CONTACT_AXIAL, FRICTION, FRICTION_AXIAL, FRICTION_FO
                             THRUST_AXIAL)
 from scenes import rotation
 from scenes.effects.thrust import magnitude
-from scenes.jit import njit
+from scenes.jit import kernel
 
 
-@njit
+@kernel
 def line_of_action(drive, offset):
     """Thrust direction and arm in body axes; axial through the mass centre when ``offset`` is None."""
     line = ((1.0, 0.0, 0.0), (-drive.arm, 0.0, 0.0))
@@ -24,12 +24,12 @@ def line_of_action(drive, offset):
     return line
 
 
-@njit
+@kernel
 def _offset_line(offset):
     return offset.direction, offset.arm
 
 
-@njit
+@kernel
 def thrust_load(state, drive, pulses, curve, offset, time):
     """Thrust force (N), moment about the payload's mass centre (N m) and point of application (m), in inertial axes."""
     direction, arm = line_of_action(drive, offset)
@@ -41,14 +41,14 @@ def thrust_load(state, drive, pulses, curve, offset, time):
     return force, rotation.cross(lever, force), (p[0] + lever[0], p[1] + lever[1], p[2] + lever[2])
 
 
-@njit
+@kernel
 def axial_velocity_of_platform(state, frame, base):
     """Inertial X velocity (m/s) of the mass centre of platform and rails."""
     momentum = rotation.rotate(base, triple(state.rail_momentum))
     return (frame.mass * state.platform.velocity[0] + momentum[0]) / frame.total_mass
 
 
-@njit
+@kernel
 def add_work(touch, payload, frame, drive, friction, gravity, state, active, pose, thrust, half, ahead):
     """Add half a step of work, total and axial, at the velocities of ``pose`` and those of the nodes once kicked over ``ahead`` (s)."""
     force, moment, point = thrust
@@ -66,7 +66,7 @@ def add_work(touch, payload, frame, drive, friction, gravity, state, active, pos
     _gravity_work(payload, frame, gravity, state, pose.frame, half)
 
 
-@njit
+@kernel
 def pull_on_nodes(gravity, pose):
     """Gravity in frame axes (m/s2)."""
     pull = (0.0, 0.0, 0.0)
@@ -75,12 +75,12 @@ def pull_on_nodes(gravity, pose):
     return pull
 
 
-@njit
+@kernel
 def _slot(values, first):
     return (values[first], values[first + 1], values[first + 2])
 
 
-@njit
+@kernel
 def _platform_work(frame, drive, state, base, thrust, normal, drag, half):
     if frame is not None:
         axial = axial_velocity_of_platform(state, frame, base)
@@ -95,13 +95,13 @@ def _platform_work(frame, drive, state, base, thrust, normal, drag, half):
             state.work[THRUST_AXIAL] -= half * force[0] * axial
 
 
-@njit
+@kernel
 def _from_origin(state, point):
     p = state.platform.position
     return (point[0] - p[0], point[1] - p[1], point[2] - p[2])
 
 
-@njit
+@kernel
 def _gravity_work(payload, frame, gravity, state, base, half):
     if gravity is not None:
         v = state.payload.velocity
@@ -112,14 +112,14 @@ def _gravity_work(payload, frame, gravity, state, base, half):
         _platform_gravity_work(frame, g, state, base, half)
 
 
-@njit
+@kernel
 def _platform_gravity_work(frame, g, state, base, half):
     if frame is not None:
         state.work[GRAVITY] += half * frame.mass * rotation.dot(g, state.platform.velocity)
         state.work[GRAVITY_AXIAL] += half * frame.total_mass * g[0] * axial_velocity_of_platform(state, frame, base)
 
 
-@njit
+@kernel
 def add_external_impulse(payload, frame, drive, gravity, state, pose, thrust, reaction, dt):
     """Impulse and moment of impulse (about the scene origin) of everything outside the counted system.
 
@@ -140,7 +140,7 @@ def add_external_impulse(payload, frame, drive, gravity, state, pose, thrust, re
         _add_platform_weight(frame, state, g, dt)
 
 
-@njit
+@kernel
 def _centre_of_rails(drive, state, pose):
     """Mass centre of the moving nodes in inertial axes (m)."""
     turned = rotation.rotate(pose.frame, triple(state.rail_moment))
@@ -148,19 +148,19 @@ def _centre_of_rails(drive, state, pose):
     return (p[0] + turned[0] / m, p[1] + turned[1] / m, p[2] + turned[2] / m)
 
 
-@njit
+@kernel
 def _add_platform_weight(frame, state, g, dt):
     if frame is not None:
         _add_weight(state.impulse, g, frame.mass, triple(state.platform.position), dt)
 
 
-@njit
+@kernel
 def _add_weight(impulse, g, mass, centre, dt):
     weight = (mass * g[0], mass * g[1], mass * g[2])
     _add(impulse, weight, rotation.cross(centre, weight), dt)
 
 
-@njit
+@kernel
 def _add(impulse, force, moment, dt):
     for i in range(3):
         impulse[i] += dt * force[i]

@@ -9,28 +9,28 @@ from highfi.pencils import LANES
 from highfi.pose import triple
 from highfi.records import PULL, RATE
 from scenes import rotation
-from scenes.jit import njit
+from scenes.jit import kernel
 
 
-@njit
+@kernel
 def kick_nodes(inverse_mass, velocity, resistance, pull, dt):
     """w += dt (pull - r / m) for all nodes; ``pull`` is gravity in frame axes (m/s2)."""
     for i in range(3):
         _kick_component(inverse_mass, velocity.T[i], resistance.T[i], pull[i], dt)
 
 
-@njit
+@kernel
 def _kick_component(inverse_mass, velocity, resistance, pull, dt):
     for node in range(inverse_mass.size):
         velocity[node] = _kicked(velocity[node], resistance[node], inverse_mass[node], pull, dt)
 
 
-@njit
+@kernel
 def _kicked(velocity, resistance, inverse_mass, pull, dt):
     return velocity + dt * (pull - inverse_mass * resistance) if inverse_mass > 0.0 else velocity
 
 
-@njit
+@kernel
 def move_nodes(rail, frame, state, dt, first, last):
     """Kick and drift nodes ``first`` to ``last`` in a frame that moves as ``state.motion`` says; see ``pose``."""
     x, u, w, f = rail.points.T, state.displacement.T, state.velocity.T, state.resistance.T
@@ -44,14 +44,14 @@ def move_nodes(rail, frame, state, dt, first, last):
                        first, last)
 
 
-@njit
+@kernel
 def _move_component(inverse_mass, displacement, velocity, resistance, pull, dt, first, last):
     for node in range(first, last):
         velocity[node] = _kicked(velocity[node], resistance[node], inverse_mass[node], pull, dt)
         displacement[node] = displacement[node] + dt * velocity[node] if inverse_mass[node] > 0.0 else 0.0
 
 
-@njit
+@kernel
 def _move_in_frame(x, y, z, inverse_mass, u, v, w, p, q, r, a, b, c, motion, dt, first, last):
     # Read once: the compiler cannot know that the loop leaves them alone.
     fx, fy, fz, gx, gy, gz = motion[0], motion[1], motion[2], motion[PULL], motion[PULL + 1], motion[PULL + 2]
@@ -70,7 +70,7 @@ def _move_in_frame(x, y, z, inverse_mass, u, v, w, p, q, r, a, b, c, motion, dt,
         r[node] = pz + (t6 * px + t7 * py + t8 * pz)
 
 
-@njit
+@kernel
 def turning(displacement, resistance, first, last, lanes, total):
     """Set ``total`` (3,) to the sum of u x r over nodes ``first`` to ``last``, whole vectors of them (N m).
 
@@ -85,7 +85,7 @@ def turning(displacement, resistance, first, last, lanes, total):
             total[i] += lanes[i, lane]
 
 
-@njit
+@kernel
 def _add_cross(u, v, w, a, b, c, first, last, lanes):
     for start in range(first, last, np.uint64(LANES)):
         for lane in range(np.uint64(LANES)):
@@ -95,7 +95,7 @@ def _add_cross(u, v, w, a, b, c, first, last, lanes):
             lanes[2, lane] += u[node] * b[node] - v[node] * a[node]
 
 
-@njit
+@kernel
 def follow_frame(rail, state, frame):
     """Give clamped nodes the frame's own inertial velocity, which friction needs."""
     if frame is not None:

@@ -49,7 +49,7 @@ def _changed(state):
             state.rail_momentum, state.impulse)
 
 
-def sample(system, state: records.State, before: Moving, after: Moving) -> np.ndarray:
+def sample(system, team, state: records.State, before: Moving, after: Moving) -> np.ndarray:
     """Sample vector (SAMPLE_SIZE,) of the present places and the velocities half a step before and after them."""
     row = np.zeros(SAMPLE_SIZE)
     middle = Moving(*(0.5 * (a + b) for a, b in zip(before, after)))
@@ -63,14 +63,14 @@ def sample(system, state: records.State, before: Moving, after: Moving) -> np.nd
         row[PLATFORM_RATE:PLATFORM_RATE + 3] = system.frame.inverse_inertia @ (base.T @ middle.platform_spin)
     row[IMPULSE:IMPULSE + 6] = middle.impulse
     row[KINETIC], row[AXIAL_KINETIC] = _kinetic(system, turn, base, before, after)
-    row[STRAIN], row[CONTACT] = _strain(system.rail, state.displacement, state.turning.shape), state.load[records.STORED]
+    row[STRAIN], row[CONTACT] = _strain(system.rail, state.displacement, state.turning.shape, team), state.load[records.STORED]
     row[LINEAR:LINEAR + 3], row[ANGULAR:ANGULAR + 3] = _momenta(system, state, base, middle)
     return row
 
 
-def _strain(rail, displacement, turning) -> float:
+def _strain(rail, displacement, turning, team) -> float:
     force = np.zeros(displacement.shape, order="F")
-    elastic_force(rail, displacement, force, np.empty(turning))
+    elastic_force(rail, displacement, force, np.empty(turning), team)
     # Not a BLAS product: its threads would wait for each other where several runs share the processor.
     return 0.5 * float((displacement * force).sum())
 

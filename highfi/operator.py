@@ -17,16 +17,15 @@ def internal_force(displacement, hexes, shape_class, stiffness, force_out):
     force_out must not share memory with displacement.
     """
     force_out[:] = 0.0
-    add_internal_force(displacement, hexes, shape_class, stiffness, force_out, 0, hexes.shape[0])
+    add_internal_force(displacement, hexes, shape_class, stiffness, force_out, 0, hexes.shape[0], np.empty(24))
 
 
 @njit
-def add_internal_force(displacement, hexes, shape_class, stiffness, force_out, first, last):
-    """Add the share of elements ``first`` to ``last`` to ``force_out``.
+def add_internal_force(displacement, hexes, shape_class, stiffness, force_out, first, last, element_force):
+    """Add the share of elements ``first`` to ``last`` to ``force_out``; ``element_force`` (24,) is room for one of them.
 
     Deterministic: elements are added in their order, and sums keep the order written, whatever the vector width.
     """
-    element_force = np.empty(24)
     for element in range(first, last):
         nodes = hexes[element]
         k = stiffness[shape_class[element]]

@@ -12,8 +12,9 @@ from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
+from highfi.memory import zeros
 from highfi.pencils import COEFFICIENTS, LANES
-from scenes.jit import njit
+from scenes.jit import kernel
 
 _WIDTH = 8
 _HALVES = LANES // _WIDTH
@@ -77,17 +78,13 @@ def _sum_neighbours(typing, values, neighbour, coefficients, first, last, layer,
     return signature, generate
 
 
-@njit
-def room_for_sums(stride):
-    """Room (_SUMS, stride + 2 GHOSTS) for the sums of one pencil, rows on cache lines and zero beside the pencil."""
+def room_for_sums(stride: int, threads: int = 1) -> np.ndarray:
+    """Room (threads, _SUMS, stride + 2 _GHOSTS) for the sums of one pencil, rows on cache lines and zero beside the pencil."""
     # An odd number of cache lines: rows a power of two apart would compete for the same places in the cache.
-    row = stride + 2 * _GHOSTS + (_GHOSTS if (stride // _GHOSTS) % 2 == 0 else 0)
-    room = np.zeros(_SUMS * row + _GHOSTS)
-    start = (-(room.ctypes.data // 8)) % _GHOSTS
-    return room[start:start + _SUMS * row].reshape((_SUMS, row))
+    return zeros((threads, _SUMS, stride + 2 * _GHOSTS + (_GHOSTS if (stride // _GHOSTS) % 2 == 0 else 0)))
 
 
-@njit
+@kernel
 def pencil_force(pencils, displacement, force, first, last, sums):
     """Set the part of ``force`` (N) at section points ``first`` to ``last`` to that of K u, both (3, s * stride) in rows."""
     plane, stride, row = displacement.shape[1], pencils.stride, sums.shape[1]
@@ -101,7 +98,7 @@ def pencil_force(pencils, displacement, force, first, last, sums):
         _ends(pencils, point, displacement, force, sums)
 
 
-@njit
+@kernel
 def _filter(sums, force, base, stride):
     # Unsigned, because an index that might be negative would keep the loop from being vectorised.
     ghosts, one = np.uint64(_GHOSTS), np.uint64(1)
@@ -112,7 +109,7 @@ def _filter(sums, force, base, stride):
             force[own, base + k] = sums[own, here] + (sums[below, here - one] + sums[above, here + one])
 
 
-@njit
+@kernel
 def _ends(pencils, point, displacement, force, sums):
     """The end layers have half the own block and, with opposite signs, the odd block E; what the filter left beyond is no force."""
     base, layers = point * pencils.stride, pencils.layers

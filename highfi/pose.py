@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from scenes import rotation
-from scenes.jit import njit
+from scenes.jit import kernel
 
 
 class Pose(NamedTuple):
@@ -28,29 +28,29 @@ class Pose(NamedTuple):
     frame: tuple
 
 
-@njit
+@kernel
 def triple(a):
     return (a[0], a[1], a[2])
 
 
-@njit
+@kernel
 def body_matrix(body):
     q = body.quaternion
     return rotation.matrix((q[0], q[1], q[2], q[3]))
 
 
-@njit
+@kernel
 def body_rate(body, inverse_inertia):
     """Angular velocity in inertial axes (rad/s)."""
     return rotation.angular_velocity(body_matrix(body), inverse_inertia, triple(body.spin))
 
 
-@njit
+@kernel
 def _identity():
     return (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
 
 
-@njit
+@kernel
 def frame_matrix(platform_state, frame):
     """Rotation of the frame; the identity, without any work, when the platform is fixed."""
     turn = _identity()
@@ -59,7 +59,7 @@ def frame_matrix(platform_state, frame):
     return turn
 
 
-@njit
+@kernel
 def seen_from_frame(state, payload, frame):
     """Pose of the payload in frame axes at this instant, with the half-step velocities at hand."""
     base = frame_matrix(state.platform, frame)
@@ -73,7 +73,7 @@ def seen_from_frame(state, payload, frame):
                 rotation.unrotate(base, triple(state.payload.velocity)), rotation.unrotate(base, rate), base)
 
 
-@njit
+@kernel
 def _transpose_product(a, b):
     """A' B of two rotation matrices."""
     c0 = rotation.unrotate(a, (b[0], b[3], b[6]))
@@ -82,7 +82,7 @@ def _transpose_product(a, b):
     return (c0[0], c1[0], c2[0], c0[1], c1[1], c2[1], c0[2], c1[2], c2[2])
 
 
-@njit
+@kernel
 def drift_body(body, inverse_inertia, dt):
     """Free motion of a rigid body over ``dt``: spin constant, orientation by the midpoint rule (second order)."""
     q = (body.quaternion[0], body.quaternion[1], body.quaternion[2], body.quaternion[3])
@@ -98,7 +98,7 @@ def drift_body(body, inverse_inertia, dt):
     return rate
 
 
-@njit
+@kernel
 def small_turn(rate, dt):
     """Q - 1 (nine numbers) for the frame turning at ``rate`` (rad/s, frame axes) over ``dt``, without cancellation."""
     x, y, z = -dt * rate[0], -dt * rate[1], -dt * rate[2]

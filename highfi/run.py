@@ -81,7 +81,7 @@ class Loop:
 
     def __init__(self, scene: Scene, system: System, stepping: Stepping, threads: int = 1):
         self.scene, self.system, self.stepping = scene, system, stepping
-        self.team, self.pool = gather(threads), ThreadPoolExecutor(threads)
+        self.team, self.pool = gather(threads, system.rail.pencils.stride if system.rail.pencils else 0), ThreadPoolExecutor(threads)
         self.state, self.active = initial_state(system)
         self.marks = outcome.milestones(scene, system.model)
         self.last = round(scene.duration / scene.output.interval)
@@ -101,7 +101,7 @@ class Loop:
         """
         s, m = self.system, self.system.model
         evaluate(s.rail, s.surface, s.faces, m.payload, s.frame, m.penalty, m.friction, self.state, self.active,
-                 self.stepping.dt_s)
+                 self.team, self.stepping.dt_s)
         self._kick(-0.5 * self.stepping.dt_s)
         self.advance_steps(0)
         self._sample()
@@ -137,7 +137,7 @@ class Loop:
         state, step = self.state, self.stepping.dt_s
         before = observe.moving(state)
         self._kick(step)
-        row = observe.sample(self.system, state, before, observe.moving(state))
+        row = observe.sample(self.system, self.team, state, before, observe.moving(state))
         observe.restore(state, before)
         self.message = self._fault(row)
         if np.isfinite(row).all():

@@ -23,18 +23,18 @@ from highfi.records import (DAMPING_RATIO, FRAME_VELOCITY, FRICTION_FORCE, MOMEN
                             TURN)
 from highfi.team import meet
 from scenes import rotation
-from scenes.jit import njit
+from scenes.jit import kernel
 
 
-@njit
-def evaluate(rail, surface, faces, payload, frame, penalty, friction, state, active, dt):
+@kernel
+def evaluate(rail, surface, faces, payload, frame, penalty, friction, state, active, team, dt):
     """All forces at the present places, by one thread."""
-    elastic_force(rail, state.displacement, state.resistance, state.turning)
+    elastic_force(rail, state.displacement, state.resistance, state.turning, team)
     contact_forces(rail, surface, faces, penalty, friction, state, active, seen_from_frame(state, payload, frame), dt)
     collect(rail, penalty, state, active)
 
 
-@njit
+@kernel
 def collect(rail, penalty, state, active):
     """Clamp, then sum up: ``state.reaction``, and contact into the resistance."""
     force, moment = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
@@ -52,17 +52,17 @@ def collect(rail, penalty, state, active):
         collect_contact(touched(rail, state), active)
 
 
-@njit
+@kernel
 def _plus(a, b):
     return (a[0] + b[0], a[1] + b[1], a[2] + b[2])
 
 
-@njit
+@kernel
 def _less(a, b):
     return (a[0] - b[0], a[1] - b[1], a[2] - b[2])
 
 
-@njit
+@kernel
 def kick_bodies(payload, frame, drive, gravity, state, pose, thrust, dt):
     """Advance all velocities but those of the nodes over ``dt`` by the present forces; counts the external impulse."""
     load, total, moment = state.load, state.reaction[:3], state.reaction[3:]
@@ -80,7 +80,7 @@ def kick_bodies(payload, frame, drive, gravity, state, pose, thrust, dt):
     _kick_platform(frame, drive, gravity, state, force, couple, thrust, dt)
 
 
-@njit
+@kernel
 def _kick_payload(payload, gravity, state, pose, thrust, dt):
     load, body = state.load, state.payload
     contact = rotation.rotate(pose.frame, (load[NORMAL_FORCE] + load[FRICTION_FORCE],
@@ -93,7 +93,7 @@ def _kick_payload(payload, gravity, state, pose, thrust, dt):
     _fall(gravity, body, dt)
 
 
-@njit
+@kernel
 def _kick_platform(frame, drive, gravity, state, force, couple, thrust, dt):
     if frame is not None:
         body = state.platform
@@ -109,7 +109,7 @@ def _kick_platform(frame, drive, gravity, state, force, couple, thrust, dt):
         _fall(gravity, body, dt)
 
 
-@njit
+@kernel
 def _fall(gravity, body, dt):
     if gravity is not None:
         body.velocity[0] += dt * gravity.x
@@ -117,7 +117,7 @@ def _fall(gravity, body, dt):
         body.velocity[2] += dt * gravity.z
 
 
-@njit
+@kernel
 def drift_bodies(payload, frame, drive, gravity, state, pose, dt):
     """Advance the places of the bodies over ``dt``; fills ``state.motion`` for the nodes."""
     pull = pull_on_nodes(gravity, pose)
@@ -129,7 +129,7 @@ def drift_bodies(payload, frame, drive, gravity, state, pose, dt):
     _drift_frame(drive, frame, state, pose, dt)
 
 
-@njit
+@kernel
 def _drift_frame(drive, frame, state, pose, dt):
     if frame is not None:
         velocity = rotation.unrotate(pose.frame, triple(state.platform.velocity))
@@ -146,7 +146,7 @@ def _drift_frame(drive, frame, state, pose, dt):
             state.rail_momentum[i] += momentum[i]
 
 
-@njit
+@kernel
 def advance(rail, surface, faces, payload, frame, drive, pulses, curve, offset, penalty, friction, gravity, state, active,
             team, thread, first_step, steps, dt):
     """Take ``steps`` steps from step number ``first_step``, as one ``thread`` of ``team``; all its threads must be called.

@@ -12,22 +12,27 @@ from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
-from scenes.jit import njit
+from highfi.memory import zeros
+from highfi.pencil_kernel import room_for_sums
+from highfi.pencils import LANES
+from scenes.jit import kernel
 
 _ROUND, _ARRIVED = 0, 8  # a cache line apart
 _PATIENCE = 4000  # looks at the barrier before the processor is offered to others
 
 
 class Team(NamedTuple):
-    """``size`` threads, and the ``counters`` of their barrier."""
+    """``size`` threads, the ``counters`` of their barrier, and room of its own for each: ``sums`` of a pencil, (3, LANES) ``lanes``."""
 
     size: int
     counters: np.ndarray
+    sums: np.ndarray
+    lanes: np.ndarray
 
 
-def gather(size: int) -> Team:
-    """A team of ``size`` threads, none of them at work yet."""
-    return Team(size, np.zeros(16, dtype=np.int64))
+def gather(size: int, stride: int = 0) -> Team:
+    """A team of ``size`` threads for pencils of ``stride`` nodes, none of them at work yet."""
+    return Team(size, np.zeros(16, dtype=np.int64), room_for_sums(stride, size), zeros((size, 3, LANES)))
 
 
 def processors() -> int:
@@ -80,7 +85,7 @@ def _let_others_run(typing):
     return types.void(), generate
 
 
-@njit
+@kernel
 def meet(team):
     """Wait until every thread of the team is here."""
     if team.size > 1:

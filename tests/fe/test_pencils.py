@@ -23,7 +23,7 @@ def both_forces(mesh):
     size = -(-(number.max() + 1) // pencils.LANES) * pencils.LANES
     padded, force = np.zeros((3, size)), np.zeros((3, size))
     padded[:, number] = displacement.T
-    pencil_force(columns, padded, force, 0, columns.first.size - 1, room_for_sums(columns.stride))
+    pencil_force(columns, padded, force, 0, columns.first.size - 1, room_for_sums(columns.stride)[0])
     return force, number, expected
 
 
