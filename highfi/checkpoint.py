@@ -67,7 +67,7 @@ class Checkpoint:
             stream.write(content)
 
     def read(self) -> dict[str, np.ndarray] | None:
-        """Saved arrays by name, or None where there is no file. Raises CheckpointError for one that is damaged or of another run."""
+        """Saved arrays by name, or None without a file. Raises CheckpointError for one that is damaged or of another run."""
         try:
             line, _, content = self.path.read_bytes().partition(b"\n")
         except FileNotFoundError:
@@ -91,7 +91,7 @@ class Checkpoint:
 
 
 def restore(loop, saved: dict[str, np.ndarray]) -> None:
-    """Put ``saved`` into a loop that has begun; arrays are filled where they lie, as kernels want them aligned and in their order."""
+    """Put ``saved`` into a loop that has begun; arrays are filled where they lie, because kernels want them aligned."""
     for name, value in evolving(loop).items():
         if isinstance(value, list):
             setattr(loop, name, list(saved[name]))
@@ -100,14 +100,6 @@ def restore(loop, saved: dict[str, np.ndarray]) -> None:
                 array[...] = saved[key]
         else:
             setattr(loop, name, type(value)(saved[name].item()))
-
-
-def discard(path: str | Path) -> None:
-    """Remove a checkpoint that is not needed any more, and what a kill in the middle of a write left beside it."""
-    path = Path(path)
-    path.unlink(missing_ok=True)
-    for leftover in path.parent.glob(f".{path.name}.*"):
-        leftover.unlink(missing_ok=True)
 
 
 def evolving(loop) -> dict[str, Any]:

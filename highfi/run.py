@@ -54,10 +54,10 @@ def run(scene: Scene, numerics: Numerics | None = None, progress: Callable[[floa
     """Solve ``scene`` with flexible rails until the settled window is complete, a jam, or the scene's duration.
 
     ``progress`` is called with the fraction of the duration done. ``threads`` share the run, unless said otherwise as
-    many as there are processors and elements enough for; the result does not hang on their number. With a path
-    ``checkpoint`` the run is kept there every ``checkpoint_every`` seconds (wall clock), and the file stays; with ``resume`` it goes
-    on from that file if there is one, to the same bits, its cost that of both parts. Raises SceneError, MeshError, StepError or
-    CheckpointError before any stepping; what goes wrong later is the status of the result.
+    many as there are processors and elements enough for; the result does not hang on their number. With the path of a
+    ``checkpoint`` the run is kept there every ``checkpoint_every`` seconds (wall clock), and the file stays; with ``resume`` it
+    goes on from that file if there is one, to the same bits, and its cost is that of all parts. Raises SceneError, MeshError,
+    StepError or CheckpointError before any stepping; what goes wrong later is the status of the result.
     """
     if resume and checkpoint is None:
         raise ValueError("resume: given True without checkpoint, expected the path of the file to go on from")
