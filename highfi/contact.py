@@ -16,13 +16,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from highfi.records import DAMPING_RATIO, FRICTION_FORCE, MOMENT, MOMENT_ON_RAIL, NORMAL_FORCE, RELEASED, STORED
+from highfi.records import (BORDER, DAMPING_RATIO, FRICTION_FORCE, FRICTION_MOMENT, MOMENT, MOMENT_ON_RAIL, NODES, NORMAL_FORCE,
+                            RELEASED, STORED)
 from scenes import rotation
 from scenes.effects.friction import coefficient_over_speed
 from scenes.jit import njit
 
 FASTEST_APPROACH = 10.0  # m/s across the rail: a face this far from every facet is not looked at before it could arrive
 _MARGIN = 1e-3  # m along the rail by which the searched window is wider than the face
+_BORDER = 0.95  # of the half face: nearer its middle no point can have left or entered over the edge within a step
 
 
 class Touch(NamedTuple):
@@ -54,9 +56,22 @@ def contact_forces(rail, surface, faces, penalty, friction, state, active, pose,
     state.face_force[:] = 0.0
     if penalty is not None:
         touch = touched(rail, state)
-        release_over_the_edge(touch, surface, faces, active, pose)
-        active.count[0] = 0
+        _release_over_the_edge(touch, surface, faces, active, pose)
+        _forget(active)
         _all_faces(touch, surface, faces, penalty, friction, active, pose, dt)
+        _rate_damping(touch, friction, active, dt)
+
+
+@njit
+def _forget(active):
+    for k in range(active.count[NODES]):
+        node = active.node[k]
+        active.seen[node] = False
+        active.node_damping[node] = 0.0
+        for i in range(3):
+            active.drag[node, i] = 0.0
+    active.count[BORDER] = 0
+    active.count[NODES] = 0
 
 
 @njit
@@ -75,7 +90,7 @@ def _all_faces(touch, surface, faces, penalty, friction, active, pose, dt):
         gap = _MARGIN
         for k in range(low, high):
             facet = surface.reach[k]
-            height = _lowest_corner(touch, surface, faces, face, facet, touch.displacement, pose)
+            height = _lowest_corner(touch, surface, faces, face, facet, pose)
             gap = min(gap, height)
             if height < 0.0:
                 _facet_points(touch, surface, faces, face, facet, penalty, friction, active, pose, dt)
@@ -83,53 +98,37 @@ def _all_faces(touch, surface, faces, penalty, friction, active, pose, dt):
 
 
 @njit
-def _to_payload(pose, x):
-    return rotation.unrotate(pose.turn, (x[0] - pose.centre[0], x[1] - pose.centre[1], x[2] - pose.centre[2]))
+def _from_centre(touch, node, pose):
+    """Deformed place (m) of a node from the payload's mass centre, in frame axes."""
+    return (touch.points[node, 0] + touch.displacement[node, 0] - pose.centre[0],
+            touch.points[node, 1] + touch.displacement[node, 1] - pose.centre[1],
+            touch.points[node, 2] + touch.displacement[node, 2] - pose.centre[2])
 
 
 @njit
-def _lowest_corner(touch, surface, faces, face, facet, displacement, pose):
+def _lowest_corner(touch, surface, faces, face, facet, pose):
     """Smallest outward height (m) of the facet's corners over the uncrowned plane of the face; negative inside."""
     axis, sign = faces.axis[face], faces.sign[face]
     # Only one row of the rotation is needed.
-    nx, ny, nz = pose.turn[axis], pose.turn[3 + axis], pose.turn[6 + axis]
+    row = (pose.turn[axis], pose.turn[3 + axis], pose.turn[6 + axis])
     lowest = np.inf
     for corner in range(4):
-        node = surface.facets[facet, corner]
-        place = (nx * (touch.points[node, 0] + displacement[node, 0] - pose.centre[0])
-                 + ny * (touch.points[node, 1] + displacement[node, 1] - pose.centre[1])
-                 + nz * (touch.points[node, 2] + displacement[node, 2] - pose.centre[2]))
+        place = rotation.dot(row, _from_centre(touch, surface.facets[facet, corner], pose))
         lowest = min(lowest, sign * (place - faces.centre[face, axis]))
     return lowest
 
 
 @njit
-def interpolate(surface, facet, q, values):
-    """Bilinear value (a tuple) of nodal ``values`` (n,3) at Gauss point ``q`` of ``facet``."""
-    a, b, c = 0.0, 0.0, 0.0
-    for corner in range(4):
-        node, weight = surface.facets[facet, corner], surface.shape[q, corner]
-        a += weight * values[node, 0]
-        b += weight * values[node, 1]
-        c += weight * values[node, 2]
-    return (a, b, c)
+def _in_payload(touch, surface, facet, corner, pose):
+    return rotation.unrotate(pose.turn, _from_centre(touch, surface.facets[facet, corner], pose))
 
 
 @njit
-def place_of(touch, surface, facet, q, displacement):
-    """Deformed place (m) of a Gauss point in frame axes."""
-    x = interpolate(surface, facet, q, touch.points)
-    u = interpolate(surface, facet, q, displacement)
-    return (x[0] + u[0], x[1] + u[1], x[2] + u[2])
-
-
-@njit
-def sliding_velocity(surface, facet, q, x, velocity, pose):
-    """Velocity (m/s) of the payload's material at ``x`` relative to the rail's, in frame axes."""
-    arm = (x[0] - pose.centre[0], x[1] - pose.centre[1], x[2] - pose.centre[2])
-    spin = rotation.cross(pose.rate, arm)
-    w = interpolate(surface, facet, q, velocity)
-    return (pose.velocity[0] + spin[0] - w[0], pose.velocity[1] + spin[1] - w[1], pose.velocity[2] + spin[2] - w[2])
+def _blend(surface, q, a, b, c, d):
+    """Bilinear value at Gauss point ``q`` of what the four corners have."""
+    i, j, k, l = surface.shape[q, 0], surface.shape[q, 1], surface.shape[q, 2], surface.shape[q, 3]
+    return (i * a[0] + j * b[0] + k * c[0] + l * d[0], i * a[1] + j * b[1] + k * c[1] + l * d[1],
+            i * a[2] + j * b[2] + k * c[2] + l * d[2])
 
 
 @njit
@@ -144,18 +143,19 @@ def _local(faces, face, y):
 
 @njit
 def _facet_points(touch, surface, faces, face, facet, penalty, friction, active, pose, dt):
+    a, b, c, d = (_in_payload(touch, surface, facet, 0, pose), _in_payload(touch, surface, facet, 1, pose),
+                  _in_payload(touch, surface, facet, 2, pose), _in_payload(touch, surface, facet, 3, pose))
     for q in range(surface.shape.shape[0]):
-        x = place_of(touch, surface, facet, q, touch.displacement)
-        xi, eta, height = _local(faces, face, _to_payload(pose, x))
+        y = _blend(surface, q, a, b, c, d)
+        xi, eta, height = _local(faces, face, y)
         if height < 0.0 and abs(xi) <= 1.0 and abs(eta) <= 1.0:
             penetration = -height - faces.relief[face] * (xi * xi * xi * xi + eta * eta * eta * eta)
             if penetration > 0.0:
-                _press(touch, surface, faces, face, facet, q, penalty, friction, active, pose, x, xi, eta,
-                       penetration, dt)
+                _press(touch, surface, faces, face, facet, q, penalty, friction, active, pose, y, xi, eta, penetration, dt)
 
 
 @njit
-def _press(touch, surface, faces, face, facet, q, penalty, friction, active, pose, x, xi, eta, penetration, dt):
+def _press(touch, surface, faces, face, facet, q, penalty, friction, active, pose, y, xi, eta, penetration, dt):
     axis = faces.axis[face]
     weight = penalty * surface.area[facet, q]
     slope_x = 4.0 * faces.relief[face] * xi * xi * xi / faces.half_length[face]
@@ -165,29 +165,57 @@ def _press(touch, surface, faces, face, facet, q, penalty, friction, active, pos
     else:
         gradient = (slope_x, slope_across, faces.sign[face])
     push = weight * penetration
-    g = rotation.rotate(pose.turn, gradient)
-    on_rail = (push * g[0], push * g[1], push * g[2])
-    slide = sliding_velocity(surface, facet, q, x, touch.velocity, pose)
+    g, arm = rotation.rotate(pose.turn, gradient), rotation.rotate(pose.turn, y)
+    slide = _sliding_velocity(touch, surface, facet, q, arm, pose)
     energy = 0.5 * weight * penetration * penetration
-    if _came_over_the_edge(faces, face, xi, eta, rotation.unrotate(pose.turn, slide), dt):
-        # The point was outside the face a step ago: it meets a pressed face at once, and its energy was never worked in.
-        touch.work[RELEASED] -= energy
-    drag = friction_on_payload(friction, touch, surface, facet, q, g, push, slide, active.node_damping, touch.load, dt)
-    _apply_pair(surface, facet, q, face, touch, pose, x, on_rail, drag)
     touch.load[STORED] += energy
-    k = active.count[0]
-    active.point[k, 0], active.point[k, 1] = facet, q
-    active.face[k] = face
-    active.energy[k] = energy
-    active.friction[k, 0], active.friction[k, 1], active.friction[k, 2] = drag
-    active.count[0] = k + 1
+    if max(abs(xi), abs(eta)) > _BORDER:
+        if _came_over_the_edge(faces, face, xi, eta, rotation.unrotate(pose.turn, slide), dt):
+            # The point was outside the face a step ago: it meets a pressed face at once, and its energy was never worked in.
+            touch.work[RELEASED] -= energy
+        _remember(active, facet, q, face, energy)
+    _note_nodes(surface, facet, active)
+    drag = _friction_on_payload(friction, touch, surface, facet, q, g, arm, push, slide, active)
+    _apply_pair(touch, surface, facet, q, face, pose, arm, (push * g[0], push * g[1], push * g[2]), drag)
 
 
 @njit
-def friction_on_payload(friction, touch, surface, facet, q, g, push, slide, node_damping, load, dt):
+def _sliding_velocity(touch, surface, facet, q, arm, pose):
+    """Velocity (m/s) of the payload's material at ``arm`` from its mass centre relative to the rail's, in frame axes."""
+    spin = rotation.cross(pose.rate, arm)
+    a, b, c = pose.velocity[0] + spin[0], pose.velocity[1] + spin[1], pose.velocity[2] + spin[2]
+    for corner in range(4):
+        node, weight = surface.facets[facet, corner], surface.shape[q, corner]
+        a -= weight * touch.velocity[node, 0]
+        b -= weight * touch.velocity[node, 1]
+        c -= weight * touch.velocity[node, 2]
+    return (a, b, c)
+
+
+@njit
+def _remember(active, facet, q, face, energy):
+    k = active.count[BORDER]
+    active.point[k, 0], active.point[k, 1] = facet, q
+    active.face[k] = face
+    active.energy[k] = energy
+    active.count[BORDER] = k + 1
+
+
+@njit
+def _note_nodes(surface, facet, active):
+    for corner in range(4):
+        node = surface.facets[facet, corner]
+        if not active.seen[node]:
+            active.seen[node] = True
+            active.node[active.count[NODES]] = node
+            active.count[NODES] += 1
+
+
+@njit
+def _friction_on_payload(friction, touch, surface, facet, q, g, arm, push, slide, active):
     """Friction force (N) on the payload in frame axes; zero and not compiled when ``friction`` is None.
 
-    Also sums the damping (N s/m) it brings to each node, and keeps the largest step * damping / mass for the stability check.
+    Also sums its moment and, at each node, its share and the damping (N s/m) it brings.
     """
     drag = (0.0, 0.0, 0.0)
     if friction is not None:
@@ -196,26 +224,39 @@ def friction_on_payload(friction, touch, surface, facet, q, g, push, slide, node
         t = (slide[0] - along * g[0], slide[1] - along * g[1], slide[2] - along * g[2])
         damping = push * size * coefficient_over_speed(friction, np.sqrt(rotation.dot(t, t)))
         drag = (-damping * t[0], -damping * t[1], -damping * t[2])
+        moment = rotation.cross(arm, drag)
+        for i in range(3):
+            touch.load[FRICTION_FORCE + i] += drag[i]
+            touch.load[FRICTION_MOMENT + i] += moment[i]
         for corner in range(4):
-            node = surface.facets[facet, corner]
-            node_damping[node] += damping * surface.shape[q, corner]
-            load[DAMPING_RATIO] = max(load[DAMPING_RATIO], dt * node_damping[node] * touch.inverse_mass[node])
+            node, weight = surface.facets[facet, corner], surface.shape[q, corner]
+            active.node_damping[node] += weight * damping
+            for i in range(3):
+                active.drag[node, i] += weight * drag[i]
     return drag
 
 
 @njit
-def _apply_pair(surface, facet, q, face, touch, pose, x, on_rail, drag):
-    """One force on the rail and its opposite on the payload, both at the point ``x`` of frame axes."""
+def _rate_damping(touch, friction, active, dt):
+    """Largest step * damping / mass of a node, for the stability check."""
+    if friction is not None:
+        for k in range(active.count[NODES]):
+            node = active.node[k]
+            touch.load[DAMPING_RATIO] = max(touch.load[DAMPING_RATIO], dt * active.node_damping[node] * touch.inverse_mass[node])
+
+
+@njit
+def _apply_pair(touch, surface, facet, q, face, pose, arm, on_rail, drag):
+    """One force on the rail and its opposite on the payload, both at ``arm`` from the payload's mass centre."""
     total = (drag[0] - on_rail[0], drag[1] - on_rail[1], drag[2] - on_rail[2])
     for corner in range(4):
         node, weight = surface.facets[facet, corner], surface.shape[q, corner]
         for i in range(3):
             touch.contact[node, i] += weight * total[i]
-    arm = (x[0] - pose.centre[0], x[1] - pose.centre[1], x[2] - pose.centre[2])
-    moment, about_origin = rotation.cross(arm, total), rotation.cross(x, total)
+    moment = rotation.cross(arm, total)
+    about_origin = rotation.cross((arm[0] + pose.centre[0], arm[1] + pose.centre[1], arm[2] + pose.centre[2]), total)
     for i in range(3):
         touch.load[NORMAL_FORCE + i] -= on_rail[i]
-        touch.load[FRICTION_FORCE + i] += drag[i]
         touch.load[MOMENT + i] += moment[i]
         touch.load[MOMENT_ON_RAIL + i] -= about_origin[i]
         touch.face_force[face, i] += total[i]
@@ -230,63 +271,46 @@ def _came_over_the_edge(faces, face, xi, eta, slide, dt):
 
 
 @njit
-def release_over_the_edge(touch, surface, faces, active, pose):
+def _release_over_the_edge(touch, surface, faces, active, pose):
     """Energy of points that carried load a step ago and are no longer under their face goes to ``released``."""
-    for k in range(active.count[0]):
-        facet, q = active.point[k, 0], active.point[k, 1]
-        x = place_of(touch, surface, facet, q, touch.displacement)
-        xi, eta, _ = _local(faces, active.face[k], _to_payload(pose, x))
+    for k in range(active.count[BORDER]):
+        facet = active.point[k, 0]
+        a, b, c, d = (_in_payload(touch, surface, facet, 0, pose), _in_payload(touch, surface, facet, 1, pose),
+                      _in_payload(touch, surface, facet, 2, pose), _in_payload(touch, surface, facet, 3, pose))
+        xi, eta, _ = _local(faces, active.face[k], _blend(surface, active.point[k, 1], a, b, c, d))
         if abs(xi) > 1.0 or abs(eta) > 1.0:
             touch.work[RELEASED] += active.energy[k]
-        for corner in range(4):
-            active.node_damping[surface.facets[facet, corner]] = 0.0
 
 
 @njit
-def collect_contact(touch, surface, active):
+def collect_contact(touch, active):
     """Move contact forces of nodes into their resistance, and add those on moving nodes to ``touch.reaction``."""
-    for k in range(active.count[0]):
-        for corner in range(4):
-            node = surface.facets[active.point[k, 0], corner]
-            f = (touch.contact[node, 0], touch.contact[node, 1], touch.contact[node, 2])
-            if touch.inverse_mass[node] > 0.0:
-                moment = rotation.cross((touch.points[node, 0] + touch.displacement[node, 0],
-                                         touch.points[node, 1] + touch.displacement[node, 1],
-                                         touch.points[node, 2] + touch.displacement[node, 2]), f)
-                for i in range(3):
-                    touch.resistance[node, i] += f[i]
-                    touch.reaction[i] -= f[i]
-                    touch.reaction[3 + i] -= moment[i]
-            # A node of two points or faces is met again: nothing is left of it then.
+    for k in range(active.count[NODES]):
+        node = active.node[k]
+        f = (touch.contact[node, 0], touch.contact[node, 1], touch.contact[node, 2])
+        if touch.inverse_mass[node] > 0.0:
+            moment = rotation.cross((touch.points[node, 0] + touch.displacement[node, 0],
+                                     touch.points[node, 1] + touch.displacement[node, 1],
+                                     touch.points[node, 2] + touch.displacement[node, 2]), f)
             for i in range(3):
-                touch.contact[node, i] = 0.0
+                touch.resistance[node, i] += f[i]
+                touch.reaction[i] -= f[i]
+                touch.reaction[3 + i] -= moment[i]
+        for i in range(3):
+            touch.contact[node, i] = 0.0
 
 
 @njit
-def _kick_of_point(touch, surface, facet, q, pull, dt):
-    """Change of the rail's velocity (m/s) at a Gauss point over ``dt`` by the present forces."""
-    a, b, c = 0.0, 0.0, 0.0
-    for corner in range(4):
-        node = surface.facets[facet, corner]
-        m, weight = touch.inverse_mass[node], dt * surface.shape[q, corner]
-        if m > 0.0:
-            a += weight * (pull[0] - m * touch.resistance[node, 0])
-            b += weight * (pull[1] - m * touch.resistance[node, 1])
-            c += weight * (pull[2] - m * touch.resistance[node, 2])
-    return (a, b, c)
-
-
-@njit
-def friction_power(touch, surface, active, pose, friction, pull, ahead):
+def friction_power(touch, active, pose, friction, pull, ahead):
     """Power (W) of the present friction forces at the velocities of ``pose`` and those of the nodes once kicked over ``ahead`` (s)."""
     power = 0.0
     if friction is not None:
-        for k in range(active.count[0]):
-            facet, q = active.point[k, 0], active.point[k, 1]
-            x = place_of(touch, surface, facet, q, touch.displacement)
-            slide = sliding_velocity(surface, facet, q, x, touch.velocity, pose)
-            kick = _kick_of_point(touch, surface, facet, q, pull, ahead)
-            slide = (slide[0] - kick[0], slide[1] - kick[1], slide[2] - kick[2])
-            power += (active.friction[k, 0] * slide[0] + active.friction[k, 1] * slide[1]
-                      + active.friction[k, 2] * slide[2])
+        for i in range(3):
+            power += touch.load[FRICTION_FORCE + i] * pose.velocity[i] + touch.load[FRICTION_MOMENT + i] * pose.rate[i]
+        for k in range(active.count[NODES]):
+            node = active.node[k]
+            m = touch.inverse_mass[node]
+            for i in range(3):
+                kick = ahead * (pull[i] - m * touch.resistance[node, i]) if m > 0.0 else 0.0
+                power -= active.drag[node, i] * (touch.velocity[node, i] + kick)
     return power

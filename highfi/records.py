@@ -103,22 +103,28 @@ class State(NamedTuple):
 
 
 class Active(NamedTuple):
-    """Evolving: contact points that carry load now. count (1,); point (k,2) facet and Gauss point; face (k,);
-    friction (k,3) N on the payload in frame axes; energy (k,) J stored; node_damping (n,) N s/m that friction brings to a node;
-    wait (f,) steps for which a face cannot touch."""
+    """Evolving: where contact is now. count (2,): border points and nodes in use; point (k,2) facet and Gauss point, face (k,) and
+    energy (k,) J stored of loaded points near the border of their face; node (m,) numbers of the nodes that carry load; seen (n,)
+    whether a node is among them; drag (n,3) N: their shares of the friction on the payload in frame axes; node_damping (n,) N s/m that
+    friction brings to them; wait (f,) steps for which a face cannot touch."""
 
     count: np.ndarray
     point: np.ndarray
     face: np.ndarray
-    friction: np.ndarray
     energy: np.ndarray
+    node: np.ndarray
+    seen: np.ndarray
+    drag: np.ndarray
     node_damping: np.ndarray
     wait: np.ndarray
 
 
+# Slots of Active.count.
+BORDER, NODES = 0, 1
+
 # Slots of State.load: contact on the payload in frame axes.
-NORMAL_FORCE, FRICTION_FORCE, MOMENT, MOMENT_ON_RAIL, STORED, DAMPING_RATIO = 0, 3, 6, 9, 12, 13
-LOAD_SIZE = 14
+NORMAL_FORCE, FRICTION_FORCE, MOMENT, MOMENT_ON_RAIL, FRICTION_MOMENT, STORED, DAMPING_RATIO = 0, 3, 6, 9, 12, 15, 16
+LOAD_SIZE = 17
 
 # Slots of State.motion, in frame axes: the frame's velocity (m/s), its turn over the step less one (nine numbers), its rate
 # (rad/s), gravity (m/s2).

@@ -31,11 +31,11 @@ def evaluate(rail, surface, faces, payload, frame, penalty, friction, state, act
     """All forces at the present places, by one thread."""
     elastic_force(rail, state.displacement, state.resistance, state.turning)
     contact_forces(rail, surface, faces, penalty, friction, state, active, seen_from_frame(state, payload, frame), dt)
-    collect(rail, surface, penalty, state, active)
+    collect(rail, penalty, state, active)
 
 
 @njit
-def collect(rail, surface, penalty, state, active):
+def collect(rail, penalty, state, active):
     """Clamp, then sum up: ``state.reaction``, and contact into the resistance."""
     force, moment = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
     for part in range(state.turning.shape[0]):
@@ -49,7 +49,7 @@ def collect(rail, surface, penalty, state, active):
     for i in range(3):
         state.reaction[i], state.reaction[3 + i] = force[i], moment[i]
     if penalty is not None:
-        collect_contact(touched(rail, state), surface, active)
+        collect_contact(touched(rail, state), active)
 
 
 @njit
@@ -161,7 +161,7 @@ def advance(rail, surface, faces, payload, frame, drive, pulses, curve, offset, 
             thrust = thrust_load(state, drive, pulses, curve, offset, n * dt)
             kick_bodies(payload, frame, drive, gravity, state, pose, thrust, dt)
             pose = seen_from_frame(state, payload, frame)
-            add_work(touched(rail, state), surface, payload, frame, drive, friction, gravity, state, active, pose, thrust, 0.5 * dt, dt)
+            add_work(touched(rail, state), payload, frame, drive, friction, gravity, state, active, pose, thrust, 0.5 * dt, dt)
             drift_bodies(payload, frame, drive, gravity, state, pose, dt)
         meet(team)
         move_and_load(rail, frame, state, team, thread, dt)
@@ -172,8 +172,8 @@ def advance(rail, surface, faces, payload, frame, drive, pulses, curve, offset, 
         finish_load(rail, state, team, thread)
         meet(team)
         if thread == 0:
-            collect(rail, surface, penalty, state, active)
+            collect(rail, penalty, state, active)
             thrust = thrust_load(state, drive, pulses, curve, offset, (n + 1) * dt)
-            add_work(touched(rail, state), surface, payload, frame, drive, friction, gravity, state, active, pose, thrust, 0.5 * dt, 0.0)
+            add_work(touched(rail, state), payload, frame, drive, friction, gravity, state, active, pose, thrust, 0.5 * dt, 0.0)
             damping = max(damping, state.load[DAMPING_RATIO])
     return damping

@@ -126,8 +126,8 @@ def initial_state(system: System) -> tuple[records.State, records.Active]:
                           np.zeros((parts, 3)), np.zeros(6), np.zeros(records.MOTION_SIZE), system.moving_mass @ velocity,
                           system.moving_mass @ system.rail.points, np.zeros(records.LOAD_SIZE), np.zeros(records.WORK_SIZE),
                           np.zeros(6), np.zeros((count, 3)))
-    room = surface.capacity(system.surface)
-    active = records.Active(np.zeros(1, dtype=np.int64), np.zeros((room, 2), dtype=np.int64),
-                            np.zeros(room, dtype=np.int64), np.zeros((room, 3)), np.zeros(room), np.zeros(nodes[0]),
-                            np.zeros(count, dtype=np.int64))
+    room, size = surface.capacity(system.surface), nodes[0]
+    active = records.Active(np.zeros(2, dtype=np.int64), np.zeros((room, 2), dtype=np.int64), np.zeros(room, dtype=np.int64),
+                            np.zeros(room), np.zeros(np.unique(system.surface.facets).size, dtype=np.int64),
+                            np.zeros(size, dtype=np.bool_), np.zeros(nodes), np.zeros(size), np.zeros(count, dtype=np.int64))
     return state, active

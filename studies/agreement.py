@@ -1,8 +1,8 @@
 """Rows of the agreement table: metrics, gates, and beside them the floor and the uncertainty of the reference itself.
 
 * **Floor**: what +-1 um of clearance changes in a model, by the same two metrics. No agreement finer than that means anything.
-* **Reference uncertainty**: what half the element size, twice the penalty and half the step change in the settled rates of
-  the reference, each alone. Agreement is claimed only where the largest is at most 0.1 deg/s.
+* **Reference uncertainty**: what coming from twice the element size, and there four times the penalty and half the step, change
+  in the settled rates of the reference, each alone. Agreement is claimed only where the largest is at most 0.1 deg/s.
 
 Both are measured on a few conditions; the others take the largest of those and say so.
 """

@@ -4,6 +4,7 @@ Times are wall times of whole steps with contact on: the payload starts one micr
 pads, so that contact is computed and not only searched. Compilation and set-up are apart; the median of the repeats counts.
 """
 
+import resource
 import statistics
 import time
 from pathlib import Path
@@ -27,12 +28,12 @@ def pressed(scene: Scene) -> Scene:
     return scene.replace({"initial.position.y": depth, "initial.position.z": depth})
 
 
-def run(out: Path, sizes: tuple[float, ...] = SIZES, repeats: int = 5) -> dict:
-    """``rows``, one per size; also written to ``out``/bench/highfi.json."""
-    scene = pressed(load("reference").condition("phi35"))
+def run(out: Path, sizes: tuple[float, ...] = SIZES, repeats: int = 5, steps: int | None = None) -> dict:
+    """``rows``, one per size, of pieces of ``steps`` steps; also written to ``out``/bench/highfi.json."""
+    scene = load("reference").condition("phi35")
     rows = []
     for size in sizes:
-        rows.append(_measured(scene, size, repeats))
+        rows.append(_measured(scene, size, repeats, steps))
         say(line(rows[-1]))
         write_json(Path(out) / "bench" / "highfi.json", rows)
     return {"rows": rows}
@@ -40,12 +41,13 @@ def run(out: Path, sizes: tuple[float, ...] = SIZES, repeats: int = 5) -> dict:
 
 def line(row: dict) -> str:
     """One row in words."""
-    return (f"  {row['elements']:>9,} elements: {row['ns_per_element_step']:.2f} ns per element and step on {row['threads']} threads, "
-            f"{row['ns_one_thread']:.2f} on one; SciPy and NumPy {row['baseline_ns_per_element_step']:.0f}, "
-            f"{row['ratio']:.0f} times as much; set-up {row['set_up_s']:.1f} s; {row['bytes_per_element']:.0f} bytes per element")
+    return (f"  {row['elements']:>9,} elements: {row['ns_per_element_step']:.2f} ns per element and step on {row['threads']} threads with "
+            f"{row['faces_in_contact']} faces pressed, {row['ns_free']:.2f} without; {row['ns_one_thread']:.2f} on one thread; SciPy and "
+            f"NumPy {row['baseline_ns_per_element_step']:.0f}, {row['ratio']:.0f} times as much; set-up {row['set_up_s']:.1f} s; "
+            f"{row['bytes_per_element']:.0f} bytes per element; 40 ms would take {row['projected_40_ms_s'] / 3600.0:.2g} h")
 
 
-def _measured(scene: Scene, size: float, repeats: int) -> dict:
+def _measured(scene: Scene, size: float, repeats: int, steps: int | None) -> dict:
     from highfi import Numerics, prepare
     from highfi.run import Loop
     from highfi.stepping import choose
@@ -54,30 +56,34 @@ def _measured(scene: Scene, size: float, repeats: int) -> dict:
     from studies.csr_loop import CsrLoop
 
     numerics, began = Numerics(element_size=size), time.perf_counter()
-    system = build(scene, numerics, prepare(scene, numerics))
-    stepping = choose(system, scene, numerics)
+    touching, mesh = pressed(scene), prepare(scene, numerics)
+    system = build(touching, numerics, mesh)
+    stepping = choose(system, touching, numerics)
+    loops = {"pressed": Loop(touching, system, stepping, processors()), "alone": Loop(touching, system, stepping, 1),
+             "free": Loop(scene, build(scene, numerics, mesh), stepping, processors())}
     set_up = time.perf_counter() - began
-    alone, together = (Loop(scene, system, stepping, threads) for threads in (1, processors()))
-    for loop in (alone, together):
+    for loop in loops.values():
         loop.begin()
-    elements = len(system.operator.hexes)
-    baseline = CsrLoop(system.mesh, scene.rail.material, stepping.dt_s, _BASELINE_MOST)
-    count = max(20, round(_WORK / elements))
-    times = {"alone": [], "together": [], "baseline": []}
-    for _ in range(repeats + 1):
-        times["together"].append(_timed(together.advance_steps, count) / elements)
-        times["alone"].append(_timed(alone.advance_steps, max(10, count // 2)) / elements)
-        times["baseline"].append(_timed(baseline.advance, max(3, count // 50)) / baseline.elements)
-    # The first of each warms the caches.
-    together_ns, alone_ns, baseline_ns = (1e9 * statistics.median(values[1:]) for values in (
-        times["together"], times["alone"], times["baseline"]))
-    faces = int((np.abs(together.state.face_force).max(axis=1) > 0.0).sum())
-    return {"elements": elements, "element_size_m": size, "threads": together.team.size, "ns_per_element_step": together_ns,
-            "ns_one_thread": alone_ns, "baseline_ns_per_element_step": baseline_ns, "ratio": baseline_ns / together_ns,
-            "baseline_elements": baseline.elements, "bytes_per_element": memory(system, together.state) / elements,
-            "range_ns": [1e9 * min(times["together"][1:]), 1e9 * max(times["together"][1:])], "steps_timed": count,
-            "repeats": repeats, "faces_in_contact": faces, "set_up_s": set_up, "dt_s": stepping.dt_s,
-            "dt_element_s": stepping.dt_element_s, "hardware": machine.describe()}
+    baseline = CsrLoop(mesh, scene.rail.material, stepping.dt_s, _BASELINE_MOST)
+    elements, count = len(mesh.hexes), steps or max(20, round(_WORK / len(mesh.hexes)))
+    pieces = {name: (loop.advance_steps, count, elements) for name, loop in loops.items()}
+    pieces["baseline"] = (baseline.advance, max(3, count // 50), baseline.elements)
+    times = {name: [] for name in pieces}
+    for advance, number, _ in pieces.values():  # warms the caches
+        advance(max(1, number // 10))
+    for _ in range(repeats):
+        for name, (advance, number, size_of_it) in pieces.items():
+            times[name].append(1e9 * _timed(advance, number) / size_of_it)
+    median = {name: statistics.median(values) for name, values in times.items()}
+    state, threads = loops["pressed"].state, loops["pressed"].team.size
+    return {"elements": elements, "element_size_m": size, "threads": threads, "ns_per_element_step": median["pressed"],
+            "ns_free": median["free"], "ns_one_thread": median["alone"], "baseline_ns_per_element_step": median["baseline"],
+            "ratio": median["baseline"] / median["pressed"], "baseline_elements": baseline.elements,
+            "bytes_per_element": memory(system, state) / elements, "range_ns": [min(times["pressed"]), max(times["pressed"])],
+            "steps_timed": count, "repeats": repeats, "faces_in_contact": int((np.abs(state.face_force).max(axis=1) > 0.0).sum()),
+            "set_up_s": set_up, "peak_memory_bytes": 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss, "dt_s": stepping.dt_s,
+            "dt_element_s": stepping.dt_element_s, "projected_40_ms_s": 0.04 / stepping.dt_s * 1e-9 * median["pressed"] * elements,
+            "hardware": machine.describe()}
 
 
 def _timed(advance: Callable[[int], None], count: int) -> float:

@@ -229,13 +229,14 @@ def bench(out: Out = Path("out"),
           element_size: Annotated[Optional[list[float]], typer.Option("--element-size", metavar="MM", min=0.05,
                                   help="Element size in mm, repeatable; default: 2, 1 and 0.5.")] = None,
           repeats: Annotated[int, typer.Option(metavar="N", min=1, help="Timed repeats; the median counts.")] = 5,
+          steps: Annotated[Optional[int], typer.Option(metavar="N", min=1, help="Steps of a timed piece; default: by size.")] = None,
           json_: Json = False) -> None:
     """Speed of the reference solver against a SciPy matrix and NumPy on the same mesh; writes bench/highfi.json."""
 
     def work() -> dict:
         from studies import bench as stage
 
-        return stage.run(out, tuple(1e-3 * size for size in element_size) if element_size else stage.SIZES, repeats)
+        return stage.run(out, tuple(1e-3 * size for size in element_size) if element_size else stage.SIZES, repeats, steps)
 
     _guarded(work, json_)
 

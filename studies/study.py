@@ -68,6 +68,10 @@ class Study:
         numbers = _numerics(highfi.Numerics, element_size=element_size or self.settings.element_size, **numerics)
         return Run("highfi", name + tag, self.condition(name).replace(overrides or {}), numbers)
 
+    def coarse(self, name: str, overrides: dict | None = None, tag: str = "", **numerics: Any) -> Run:
+        """The same on the coarse mesh, where differences of runs are measured."""
+        return self.highfi(name, overrides, f"{tag}-coarse", self.settings.coarse_size, **numerics)
+
     def lowfi(self, name: str, calibration: Calibration | None = None, overrides: dict | None = None, tag: str = "",
               **numerics: Any) -> Run:
         """A surrogate run of condition ``name``, with the scene's own contact constants unless calibrated."""

@@ -53,7 +53,7 @@ def run(study: Study) -> dict:
 
 def _reference(study: Study, name: str, lines: dict[str, dict]):
     """Runs on the coarse mesh; their processor time is the thread's own, so runs side by side do not disturb it."""
-    asked = [study.highfi(name, overrides, tag=_tag(line), element_size=study.settings.coarse_size)
+    asked = [study.coarse(name, overrides, _tag(line))
              for line, overrides in lines.items()]
     runs = study.store.fill("ablation, highfi", asked)
     return asked, runs, [run.cost.get("cpu_s", run.cost["wall_s"]) for run in runs]

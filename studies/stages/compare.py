@@ -61,7 +61,7 @@ def _floors(study: Study, calibration: Calibration | None) -> list[Spread]:
         return []
     model = "calibrated surrogate" if calibration else "uncalibrated surrogate"
     found = []
-    for label, ask in (("reference", study.highfi), (model, _surrogate(study, calibration))):
+    for label, ask in (("reference", study.coarse), (model, _surrogate(study, calibration))):
         groups = {name: [ask(name)] + [ask(name, overrides={"contact.clearance": clearance}, tag=f"-clearance-{sign}")
                                        for sign, clearance in clearances(study)] for name in study.scene.agreement.floor}
         runs = study.store.fill(f"floor, {label}", [run for group in groups.values() for run in group])
@@ -85,24 +85,23 @@ def _surrogate(study: Study, calibration: Calibration | None):
 
 
 def _refinements(study: Study) -> list[Spread]:
-    """Spread of the reference under each refinement alone."""
-    names = study.scene.agreement.refined
-    kinds = refinements(study)
-    asked = [study.highfi(name, **change) for name in names for change in ({}, *kinds.values())]
-    runs, found = study.store.fill("refinement", asked), []
-    for name in names:
-        nominal, *refined = [runs.pop(0) for _ in range(1 + len(kinds))]
-        found += [spread(name, "reference", cause, nominal, [one]) for cause, one in zip(kinds, refined)]
+    """Spread of the reference under each refinement alone: the mesh from the coarse one to its own, the others on the coarse one."""
+    names, found = study.scene.agreement.refined, []
+    groups = {name: {"coarse": study.coarse(name), "mesh": study.highfi(name)} | refined(study, name) for name in names}
+    runs = study.store.fill("refinement", [run for group in groups.values() for run in group.values()])
+    for name, group in groups.items():
+        _, *causes = group
+        coarse, *changed = [runs.pop(0) for _ in group]
+        found += [spread(name, "reference", cause, coarse, [one]) for cause, one in zip(causes, changed)]
     return found
 
 
-def refinements(study: Study) -> dict[str, dict]:
-    """Arguments of ``Study.highfi`` for each refinement of the reference."""
-    kinds = {"mesh": {"element_size": study.settings.fine_size, "tag": "-mesh"},
-             "step": {"safety": 0.45, "tag": "-step"}}
+def refined(study: Study, name: str) -> dict[str, Run]:
+    """Runs on the coarse mesh with half the step and with four times the penalty."""
+    runs = {"step": study.coarse(name, tag="-step", safety=0.45)}
     if study.scene.contact is not None:
-        kinds["penalty"] = {"overrides": {"contact.penalty": 2.0 * study.scene.contact.penalty}, "tag": "-penalty"}
-    return kinds
+        runs["penalty"] = study.coarse(name, {"contact.penalty": 4.0 * study.scene.contact.penalty}, "-penalty")
+    return runs
 
 
 def _speedup(study: Study, calibration: Calibration) -> dict:

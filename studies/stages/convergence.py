@@ -15,7 +15,7 @@ from scenes.trajectory import Trajectory
 from studies import agreement, contact_loads
 from studies.convergence import estimate
 from studies.quantities import RATE, quantities, settled_rate
-from studies.stages.compare import refinements
+from studies.stages.compare import refined
 from studies.store import SOURCES, Run
 from studies.study import Study, read, require_success
 
@@ -34,7 +34,7 @@ def run(study: Study, condition: str | None = None) -> dict:
         judged = [*_judged(scene, "element size", "m", list(study.settings.mesh_sizes), meshes, study.settings.element_size),
                   *_judged(scene, "time step", "s", [found.cost["dt_s"] for found in steps], steps, steps[0].cost["dt_s"])]
         penalty, quadrature = _penalties(study, name), _quadratures(study, name)
-        return {"condition": name, "element_size_m": study.settings.element_size,
+        return {"condition": name, "element_size_m": study.settings.element_size, "coarse_size_m": study.settings.coarse_size,
                 "force_cutoff_hz": contact_loads.cutoff(scene),
                 "meshes": [{"element_size_m": size, "elements": found.cost["elements"], "dt_s": found.cost["dt_s"],
                             "wall_s": found.cost["wall_s"]} for size, found in zip(study.settings.mesh_sizes, meshes)],
@@ -63,14 +63,13 @@ def _finished(study: Study, title: str, asked: list[Run]) -> list[Trajectory]:
 def _meshes(study: Study, name: str) -> list[Run]:
     """One run a mesh; those that other stages make too keep their name, so that the store has them once."""
     settings = study.settings
-    known = {settings.coarse_size: "-coarse", settings.element_size: "", settings.fine_size: refinements(study)["mesh"]["tag"]}
+    known = {2.0 * settings.coarse_size: "-coarsest", settings.coarse_size: "-coarse", settings.element_size: ""}
     return [study.highfi(name, element_size=size, tag=known.get(size, f"-{1e3 * size:g}mm")) for size in settings.mesh_sizes]
 
 
 def _steps(study: Study, name: str) -> list[Run]:
-    shared = refinements(study)["step"]
-    known = {Numerics().safety: "", shared["safety"]: shared["tag"]}
-    return [study.highfi(name, safety=safety, tag=known.get(safety, f"-safety-{safety:g}")) for safety in study.settings.safeties]
+    known = {Numerics().safety: study.coarse(name), 0.45: refined(study, name)["step"]}
+    return [known.get(safety) or study.coarse(name, tag=f"-safety-{safety:g}", safety=safety) for safety in study.settings.safeties]
 
 
 def _judged(scene: Scene, parameter: str, unit: str, sizes: list[float], runs: list[Trajectory], nominal: float) -> list[dict]:
@@ -92,8 +91,8 @@ def _penalties(study: Study, name: str) -> list[dict]:
         return []
     stiffness = contact.penalty
     heads = [{"factor": factor, "penalty_n_m3": factor * stiffness} for factor in study.settings.penalty_factors]
-    asked = [study.highfi(name) if factor == 1.0 else
-             study.highfi(name, {"contact.penalty": factor * stiffness}, tag=f"-penalty-{factor:g}")
+    known = {1.0: study.coarse(name), 4.0: refined(study, name)["penalty"]}
+    asked = [known.get(factor) or study.coarse(name, {"contact.penalty": factor * stiffness}, f"-penalty-{factor:g}")
              for factor in study.settings.penalty_factors]
     return _compared(study, "convergence, penalty", name, heads, asked)
 
@@ -103,16 +102,16 @@ def _quadratures(study: Study, name: str) -> list[dict]:
     if study.condition(name).contact is None:
         return []
     # The rule that a run takes of its own accord needs no second run.
-    own = Numerics(element_size=study.settings.element_size).points_per_edge()
-    asked = [study.highfi(name) if points == own else study.highfi(name, tag=f"-quadrature-{points}", quadrature=points)
+    own = Numerics(element_size=study.settings.coarse_size).points_per_edge()
+    asked = [study.coarse(name) if points == own else study.coarse(name, tag=f"-quadrature-{points}", quadrature=points)
              for points in study.settings.quadratures]
     heads = [{"points_per_edge": points} for points in study.settings.quadratures]
     return _compared(study, "convergence, quadrature", name, heads, asked)
 
 
 def _compared(study: Study, title: str, name: str, heads: list[dict], asked: list[Run]) -> list[dict]:
-    """The rows with the settled rates of their runs and the largest change of one (deg/s) against the nominal run."""
-    nominal, *runs = study.store.fill(title, [study.highfi(name), *asked])
+    """The rows with the settled rates of their runs and the largest change of one (deg/s) against the nominal run of the coarse mesh."""
+    nominal, *runs = study.store.fill(title, [study.coarse(name), *asked])
     return [head | {"status": found.status, "settled_rate_deg_s": settled_rate(found),
                     "settled_rate_change_deg_s": agreement.settled_change(nominal, found)} for head, found in zip(heads, runs)]
 

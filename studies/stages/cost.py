@@ -11,7 +11,7 @@ from pathlib import Path
 from scenes.trajectory import Trajectory
 from studies import agreement, machine
 from studies.stages import calibrate
-from studies.stages.compare import SOURCES_USED, refinements
+from studies.stages.compare import SOURCES_USED, refined
 from studies.study import Study
 from studies.timing import timed, warm_up
 
@@ -32,18 +32,17 @@ def run(study: Study) -> dict:
 
 def _reference_points(study: Study, name: str) -> tuple[Trajectory, float | None, list[dict]]:
     settings = study.settings
-    sizes = (settings.coarse_size, settings.element_size, settings.fine_size)
-    # The finest one is the run of the refinement study, not a second one under another name.
-    asked = [study.highfi(name, element_size=settings.coarse_size, tag="-coarse"), study.highfi(name),
-             *(study.highfi(name, **change) for change in refinements(study).values())]
-    coarse, nominal, *refined = study.store.fill("cost, meshes", asked)
-    changes = {cause: agreement.settled_change(nominal, run) for cause, run in zip(refinements(study), refined)}
-    finest = refined[list(changes).index("mesh")]
+    sizes = (2.0 * settings.coarse_size, settings.coarse_size, settings.element_size)
+    # The last two are runs of the agreement study, not others under another name.
+    asked = [study.highfi(name, element_size=sizes[0], tag="-coarsest"), study.coarse(name), study.highfi(name),
+             *refined(study, name).values()]
+    coarsest, coarse, finest, *changed = study.store.fill("cost, meshes", asked)
+    band = agreement.largest(agreement.settled_change(coarse, run) for run in (finest, *changed))
     points = [{"model": "finite elements", "numerics": f"{1e3 * size:g} mm, {found.cost['elements']} elements",
                "error_deg_s": None if found is finest else agreement.settled_change(finest, found),
                "integration_error_deg_s": None, "wall_s": found.cost["wall_s"], "status": found.status}
-              for size, found in zip(sizes, (coarse, nominal, finest))]
-    return finest, agreement.largest(changes.values()), points
+              for size, found in zip(sizes, (coarsest, coarse, finest))]
+    return finest, band, points
 
 
 def _surrogate_points(study: Study, name: str, model: str, calibration, finest: Trajectory) -> list[dict]:

@@ -75,8 +75,8 @@ def test_order_and_uncertainty_of_a_law_of_second_order(study):
     assert x["order"] == pytest.approx(2.0, abs=1e-9)
     assert x["uncertainty"] == pytest.approx(1.25 * 0.016)
     assert x["gci_percent"] == pytest.approx(125.0 * 0.016 / x["values"][-1])
-    # At 16 mm, as other stages run, the error is 0.256: what lies between the values, and the uncertainty of the finest.
-    assert x["nominal_uncertainty"] == pytest.approx(0.256 - 0.016 + 1.25 * 0.016)
+    # At 8 mm, as other stages run, the error is 0.064: what lies between the values, and the uncertainty of the finest.
+    assert x["nominal_uncertainty"] == pytest.approx(0.064 - 0.016 + 1.25 * 0.016)
     in_time = row(found, "time step", "settled rate x")
     assert in_time["sizes"] == [0.9, 0.45, 0.225]
     assert in_time["order"] == pytest.approx(2.0, abs=1e-9)
@@ -89,7 +89,7 @@ def test_values_without_order_are_told_apart(study):
     assert y["order"] is None and "not monotone" in y["method"]
     assert y["uncertainty"] == pytest.approx(1.5 * 0.3)
     assert row(found, "element size", "settled rate z")["method"] == "no change at all"
-    assert found["summary"][0] == ("element size on phi15: settled rates within 0.45 deg/s at the 16 mm of every other stage, "
+    assert found["summary"][0] == ("element size on phi15: settled rates within 0.75 deg/s at the 8 mm of every other stage, "
                                    "within 0.45 deg/s at 4 mm")
 
 
@@ -115,24 +115,24 @@ def test_penalty_and_quadrature_are_compared_with_the_nominal_run(study):
 
 
 def test_no_run_is_made_twice_and_none_again(study, asked):
-    """The nominal run serves all four tables: it is one mesh, one step, one penalty, and eight points are its own rule."""
+    """The run on the coarse mesh serves all four tables: it is one mesh, one step, one penalty, and eight points are its own rule."""
     convergence.run(study)
     assert sorted(asked) == sorted(["phi15" + tag for tag in (
-        "", "-mesh", "-4mm", "-step", "-safety-0.225", "-penalty-0.25", "-penalty-4", "-penalty-16", "-quadrature-2",
-        "-quadrature-4")])
+        "", "-coarse", "-4mm", "-step-coarse", "-safety-0.225-coarse", "-penalty-0.25-coarse", "-penalty-coarse",
+        "-penalty-16-coarse", "-quadrature-2-coarse", "-quadrature-4-coarse")])
     del asked[:]
     convergence.run(study)
     assert asked == []
     assert convergence.run(study, "phi60")["condition"] == "phi60" and len(asked) == 10
 
 
-def test_three_meshes_of_the_reference():
-    assert defaults("reference").mesh_sizes == (0.008, 0.004, 0.002)
-    assert Settings(element_size=0.006).mesh_sizes == pytest.approx((0.012, 0.006, 0.003))
+def test_four_meshes_of_the_reference():
+    assert defaults("reference").mesh_sizes == (0.008, 0.004, 0.002, 0.001)
+    assert Settings(element_size=0.006).mesh_sizes == pytest.approx((0.024, 0.012, 0.006, 0.003))
 
 
 def test_run_that_did_not_settle_leaves_its_error_unknown(study, asked):
-    asked.failing = {"phi15-4mm": "jammed", "phi15-penalty-16": "diverged"}
+    asked.failing = {"phi15-4mm": "jammed", "phi15-penalty-16-coarse": "diverged"}
     found = convergence.run(study)
     x = row(found, "element size", "settled rate x")
     assert (x["uncertainty"], x["nominal_uncertainty"], x["method"]) == (None, None, "a run did not settle")

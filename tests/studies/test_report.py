@@ -81,7 +81,7 @@ def test_broken_promise_is_called_broken():
     found = {item.text: item for item in promises({"highfi": [row("phi15", run, "")], "lowfi": []}, {})}
     assert found["linear momentum of the free system, finite elements"].kept is False
     assert found["angular momentum, finite elements"].kept is True
-    assert found["no step above the proven limit, finite elements"].kept is True
+    assert found["no step above the critical one, finite elements"].kept is True
     assert found["total energy ledger, finite elements"].kept is False  # not reported is not kept
 
 

@@ -1,5 +1,7 @@
 """Small parts of the stages that need no run."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -40,12 +42,12 @@ def test_closed_gap_is_only_opened(tmp_path):
 
 def test_refinements_change_one_thing_each(tmp_path):
     study = Study(scenes.load("tiny"), tmp_path, defaults("tiny"))
-    runs = {cause: study.highfi("phi15", **change) for cause, change in compare.refinements(study).items()}
-    nominal = study.highfi("phi15")
-    assert runs["mesh"].numerics.element_size == 0.5 * nominal.numerics.element_size
-    assert runs["step"].numerics.safety == 0.5 * nominal.numerics.safety
-    assert runs["penalty"].scene.contact.penalty == 2.0 * nominal.scene.contact.penalty
-    assert runs["mesh"].scene.hash == runs["step"].scene.hash == nominal.scene.hash
+    runs, coarse, nominal = compare.refined(study, "phi15"), study.coarse("phi15"), study.highfi("phi15")
+    assert coarse.numerics.element_size == 2.0 * nominal.numerics.element_size
+    assert runs["step"].numerics == replace(coarse.numerics, safety=0.5 * coarse.numerics.safety)
+    assert runs["penalty"].scene.contact.penalty == 4.0 * coarse.scene.contact.penalty
+    assert runs["penalty"].numerics == coarse.numerics
+    assert runs["step"].scene.hash == coarse.scene.hash == nominal.scene.hash
 
 
 def test_spreads_told_once():

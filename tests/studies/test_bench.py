@@ -1,0 +1,39 @@
+"""The benchmark: the yardstick does the same work as the solver, and what is written is what was measured."""
+
+import json
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+import highfi
+from highfi import Numerics, assembly
+from scenes import load
+from studies import bench
+from studies.cli import app
+from studies.csr_loop import CsrLoop
+
+
+def test_yardstick_is_central_differences_on_the_assembled_matrix():
+    scene = load("tiny")
+    mesh = highfi.prepare(scene, Numerics(element_size=0.016))
+    loop = CsrLoop(mesh, scene.rail.material, 1e-8, most=10**6)
+    material = scene.rail.material
+    operator = assembly.build(mesh, material.density, material.youngs_modulus, material.poisson_ratio, fixed=())
+    displacement, velocity = loop.displacement.copy(), loop.velocity.copy()
+    for _ in range(3):
+        velocity = velocity - 1e-8 * (assembly.sparse(operator) @ displacement) / np.repeat(operator.mass, 3)
+        displacement = displacement + 1e-8 * velocity
+    loop.advance(3)
+    assert loop.elements == len(mesh.hexes) and loop.displacement == pytest.approx(displacement, rel=1e-12)
+
+
+def test_bench_writes_one_row_per_size(tmp_path):
+    arguments = ["bench", "--element-size", "8", "--repeats", "1", "--steps", "50", "--out", str(tmp_path)]
+    said = CliRunner().invoke(app, arguments, catch_exceptions=False)
+    assert said.exit_code == 0
+    row, = json.loads((tmp_path / "bench" / "highfi.json").read_text())
+    assert row["elements"] > 500 and row["faces_in_contact"] >= 4
+    assert row["ratio"] == pytest.approx(row["baseline_ns_per_element_step"] / row["ns_per_element_step"])
+    assert row["bytes_per_element"] > 24 * 8 and row["dt_s"] > row["dt_element_s"] * 0.9
+    assert f"{row['elements']:,} elements" in bench.line(row)
