@@ -58,7 +58,7 @@ class Checkpoint:
             self.due = time.monotonic() + self.every
 
     def write(self, loop) -> None:
-        """Write ``loop`` as it stands, atomically."""
+        """Write ``loop`` as it stands, atomically. Raises OSError on a full disk, which could not take the result either."""
         archive = io.BytesIO()
         np.savez(archive, allow_pickle=False, header=json.dumps(self.header), **dict(arrays(evolving(loop))))
         content = archive.getbuffer()
