@@ -3,11 +3,13 @@
 import threading
 import time as clock
 from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 from typing import Callable
 
 import numpy as np
 
 from highfi import observe, records, samples
+from highfi.checkpoint import Checkpoint, restore
 from highfi.contact import FASTEST_APPROACH
 from highfi.fit import check_fit
 from highfi.loads import pull_on_nodes, thrust_load
@@ -47,27 +49,35 @@ def prepare(scene: Scene, numerics: Numerics | None = None) -> RailMesh:
 
 
 def run(scene: Scene, numerics: Numerics | None = None, progress: Callable[[float], None] | None = None,
-        threads: int | None = None) -> Trajectory:
+        threads: int | None = None, checkpoint: str | Path | None = None, checkpoint_every: float = 60.0,
+        resume: bool = False) -> Trajectory:
     """Solve ``scene`` with flexible rails until the settled window is complete, a jam, or the scene's duration.
 
     ``progress`` is called with the fraction of the duration done. ``threads`` share the run, unless said otherwise as
-    many as there are processors and elements enough for; the result does not hang on their number. Raises SceneError, MeshError or
-    StepError before any stepping; what goes wrong later is the status of the result.
+    many as there are processors and elements enough for; the result does not hang on their number. With the path of a
+    ``checkpoint`` the run is kept there every ``checkpoint_every`` seconds (wall clock), and the file stays; with ``resume`` it
+    goes on from that file if there is one, to the same bits, and its cost is that of all parts. Raises SceneError, MeshError,
+    StepError or CheckpointError before any stepping; what goes wrong later is the status of the result.
     """
+    if resume and checkpoint is None:
+        raise ValueError("resume: given True without checkpoint, expected the path of the file to go on from")
     numerics = numerics or Numerics()
     began, cpu = clock.perf_counter(), clock.thread_time()
     system = build(scene, numerics, prepare(scene, numerics))
     loop = Loop(scene, system, choose(system, scene, numerics), threads or _worth_while(system))
+    kept = Checkpoint(checkpoint, checkpoint_every, loop, numerics) if checkpoint is not None else None
+    saved = kept.read() if resume else None
     compiling, set_up_cpu = clock.perf_counter(), clock.thread_time() - cpu
     loop.begin()
-    marching, marching_cpu = clock.perf_counter(), clock.thread_time()
-    loop.march(progress)
-    ended = clock.perf_counter()
+    compiled = clock.perf_counter()
+    if saved is not None:
+        restore(loop, saved)
+    loop.march(progress, kept)
     elements = int(system.operator.hexes.shape[0])
-    cost = {"wall_s": (compiling - began) + (ended - marching), "compile_s": marching - compiling,
-            "kernel_s": ended - marching, "cpu_s": set_up_cpu + clock.thread_time() - marching_cpu + loop.other_cpu,
+    cost = {"wall_s": (compiling - began) + loop.wall, "compile_s": compiled - compiling, "kernel_s": loop.wall,
+            "cpu_s": set_up_cpu + loop.cpu + loop.other_cpu,
             "steps": loop.steps, **loop.stepping.as_dict(), "elements": elements,
-            "ns_per_element_step": 1e9 * (ended - marching) / max(loop.steps * elements, 1)}
+            "ns_per_element_step": 1e9 * loop.wall / max(loop.steps * elements, 1)}
     return loop.trajectory(cost, numerics)
 
 
@@ -85,6 +95,7 @@ class Loop:
         self.state, self.active = initial_state(system)
         self.marks = outcome.milestones(scene, system.model)
         self.last = round(scene.duration / scene.output.interval)
+        self.end, self.wall, self.cpu = self.last, 0.0, 0.0
         self.steps, self.damping, self.scale, self.other_cpu, self.message = 0, 0.0, 0.0, 0.0, ""
         self.rows, self.work, self.forces = [], [], []
 
@@ -106,15 +117,18 @@ class Loop:
         self.advance_steps(0)
         self._sample()
 
-    def march(self, progress) -> None:
+    def march(self, progress, kept: Checkpoint | None = None) -> None:
         """Advance sample by sample until something ends the run."""
-        end = self.last
-        while len(self.rows) <= end and not self.message:
+        began, cpu = clock.perf_counter() - self.wall, clock.thread_time() - self.cpu
+        while len(self.rows) <= self.end and not self.message:
             self.advance_one_sample()
             if len(self.rows) % _LOOK_EVERY == 0:
-                end = min(end, self._end())
+                self.end = min(self.end, self._end())
                 if progress:
-                    progress(min(1.0, (len(self.rows) - 1) / end))
+                    progress(min(1.0, (len(self.rows) - 1) / self.end))
+            self.wall, self.cpu = clock.perf_counter() - began, clock.thread_time() - cpu
+            if kept:
+                kept.keep(self)
 
     def advance_one_sample(self) -> None:
         """Step to the next sample and take it."""

@@ -1,5 +1,6 @@
 """Files that are never half written: written beside their final name, flushed to disk, then renamed."""
 
+import glob
 import hashlib
 import json
 import os
@@ -25,6 +26,14 @@ def replacing(path: str | Path) -> Iterator[Path]:
         temporary.replace(path)
     finally:
         temporary.unlink(missing_ok=True)
+
+
+def discard(path: str | Path) -> None:
+    """Remove ``path`` if it is there, and what a kill in the middle of ``replacing`` left beside it."""
+    path = Path(path)
+    path.unlink(missing_ok=True)
+    for leftover in path.parent.glob(f".{glob.escape(path.name)}.*{glob.escape(path.suffix)}"):
+        leftover.unlink(missing_ok=True)
 
 
 def write_text(path: str | Path, text: str) -> None:

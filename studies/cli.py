@@ -42,6 +42,11 @@ ElementSize = Annotated[Optional[float], typer.Option("--element-size", metavar=
                         help="Element size of the reference in mm.")]
 Workers = Annotated[Optional[int], typer.Option("--workers", metavar="N", min=1, help="Runs side by side; default: all cores.")]
 
+CheckpointEvery = Annotated[Optional[str], typer.Option("--checkpoint-every", metavar="TIME",
+                            help='How often a run of the reference is kept beside its result-to-be: 30s, "5 min"; default: 60 s.')]
+Resume = Annotated[bool, typer.Option("--resume/--no-resume",
+                   help="Let a run of the reference that was interrupted go on from where it was kept last, to the same result.")]
+
 
 class Fidelity(str, Enum):
     """The two models."""
@@ -50,7 +55,8 @@ class Fidelity(str, Enum):
     lowfi = "lowfi"
 
 
-def _study(scene: str, out: Path, overrides, conditions=None, element_size=None, workers=None):
+def _study(scene: str, out: Path, overrides, conditions=None, element_size=None, workers=None, checkpoint_every=None,
+           resume=True):
     import scenes
     from scenes.faults import Fault, SceneError
     from studies.progress import say
@@ -61,16 +67,31 @@ def _study(scene: str, out: Path, overrides, conditions=None, element_size=None,
     if wrong := [item for item, (_, equals, _) in zip(overrides or [], pairs) if not equals]:
         raise SceneError([Fault("--set", item, "no value", "KEY=VALUE") for item in wrong])
     found = scenes.load(scene).replace({key.strip(): value.strip() for key, _, value in pairs})
-    settings = defaults(found.name)
+    settings = replace(defaults(found.name), resume=resume)
     if element_size is not None:
         settings = replace(settings, element_size=1e-3 * element_size)
     if workers is not None:
         settings = replace(settings, workers=workers)
+    if checkpoint_every is not None:
+        settings = replace(settings, checkpoint_every=_seconds("--checkpoint-every", checkpoint_every))
     study = Study(found, Path(out) / re.sub(r"[^\w.-]+", "-", found.name).strip("."), settings, tuple(conditions or ()))
     study.conditions  # a bad override or an unknown condition is a fault of the input, found before anything runs
     for warning in found.warnings:
         say(f"implausible: {warning}")
     return study
+
+
+def _seconds(option: str, text: str) -> float:
+    from scenes.faults import Fault, SceneError
+    from scenes.units import to_si
+
+    try:
+        time = to_si(text, "s")
+    except ValueError as fault:
+        raise SceneError([Fault(option, "time", text, str(fault))]) from None
+    if time < 0.0:
+        raise SceneError([Fault(option, "time", text, "zero or more")])
+    return time
 
 
 def _guarded(work: Callable[[], dict], as_json: bool = False) -> dict:
@@ -118,23 +139,26 @@ def mesh(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = Non
 
 @app.command()
 def highfi(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = None, condition: Conditions = None,
-           element_size: ElementSize = None, workers: Workers = None, json_: Json = False) -> None:
+           element_size: ElementSize = None, workers: Workers = None, checkpoint_every: CheckpointEvery = None,
+           resume: Resume = True, json_: Json = False) -> None:
     """Run the finite-element reference on every condition; writes highfi.json and a netCDF file each."""
-    _conditions("highfi", scene, out, set_, condition, element_size, workers, json_)
+    _conditions("highfi", json_, scene, out, set_, condition, element_size, workers, checkpoint_every, resume)
 
 
 @app.command()
 def lowfi(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = None, condition: Conditions = None,
           workers: Workers = None, json_: Json = False) -> None:
     """Run the rigid surrogate, uncalibrated, on every condition; writes lowfi.json and a netCDF file each."""
-    _conditions("lowfi", scene, out, set_, condition, None, workers, json_)
+    _conditions("lowfi", json_, scene, out, set_, condition, None, workers)
 
 
-def _conditions(fidelity, scene, out, set_, condition, element_size, workers, json_) -> None:
+def _conditions(fidelity, json_, *asked) -> None:
+    """Run every condition of the study that is ``asked`` for, the arguments of ``_study``."""
+
     def work() -> dict:
         from studies.stages import runs
 
-        return runs.run(_study(scene, out, set_, condition, element_size, workers), fidelity)
+        return runs.run(_study(*asked), fidelity)
 
     _guarded(work, json_)
 
@@ -187,13 +211,14 @@ def run(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = None
         condition: Annotated[str, typer.Option("--condition", metavar="NAME", help="Named condition.")] = "nominal",
         fidelity: Annotated[Fidelity, typer.Option(help="Which model.")] = Fidelity.lowfi,
         calibration: Annotated[Optional[Path], typer.Option(metavar="FILE", help="calibration.toml for the surrogate.")] = None,
-        element_size: ElementSize = None, json_: Json = False) -> None:
+        element_size: ElementSize = None, checkpoint_every: CheckpointEvery = None, resume: Resume = True,
+        json_: Json = False) -> None:
     """Run one condition in one model and print what the payload leaves with."""
 
     def work() -> dict:
         from studies import single
 
-        study = _study(scene, out, set_, [condition], element_size)
+        study = _study(scene, out, set_, [condition], element_size, checkpoint_every=checkpoint_every, resume=resume)
         return single.run(study, condition, fidelity.value, calibration, quiet=json_)
 
     _guarded(work, json_)

@@ -10,11 +10,14 @@ from dataclasses import asdict, dataclass
 
 from scenes.files import content_hash
 
+_BESIDE_RESULTS = ("workers", "checkpoint_every", "resume")  # how a run is made, not what comes out
+
 
 @dataclass(frozen=True)
 class Settings:
     """``element_size`` (m) of the reference; ``tolerances`` of the surrogate in the cost study; repeats of timed runs;
-    ``clearance_change`` (m) that defines the floor; ``workers`` side by side. What the convergence study compares, coarsest first:
+    ``clearance_change`` (m) that defines the floor; ``workers`` side by side; ``checkpoint_every`` seconds (wall clock) of a run
+    of the reference, and whether one that was interrupted may ``resume``. What the convergence study compares, coarsest first:
     meshes by ``mesh_ratios`` to ``element_size``, one of them 1; ``safeties`` of the step, from that of every other stage down;
     ``quadratures``; and factors of the scene's penalty stiffness."""
 
@@ -28,6 +31,8 @@ class Settings:
     quadratures: tuple[int, ...] = (2, 4, 8)
     penalty_factors: tuple[float, ...] = (0.25, 1.0, 4.0, 16.0)
     workers: int = os.cpu_count() or 1
+    checkpoint_every: float = 60.0
+    resume: bool = True
 
     @property
     def coarse_size(self) -> float:
@@ -41,8 +46,8 @@ class Settings:
 
     @property
     def hash(self) -> str:
-        """Digest of the choices that can change a result; how many runs go side by side is not one of them."""
-        return content_hash({name: value for name, value in asdict(self).items() if name != "workers"})
+        """Digest of the choices that can change a result; how many runs go side by side, and from where, is not one of them."""
+        return content_hash({name: value for name, value in asdict(self).items() if name not in _BESIDE_RESULTS})
 
 
 def defaults(scene_name: str) -> Settings:

@@ -3,7 +3,8 @@
     key = SHA-256(physical inputs of the scene, numerics, calibrated constants, sources of every package below the fidelity)
 
 A run whose file is there is loaded, any other is made and written atomically; so what was interrupted goes on where it
-stopped, and a changed input or source is never answered with an old result. Runs go side by side in threads: the kernels
+stopped, and a changed input or source is never answered with an old result. A run of the reference in progress is kept beside it as
+``<label>-<key>.checkpoint``, which is removed once the result is written. Runs go side by side in threads: the kernels
 release the interpreter, and the mesh generator, which insists on the main thread, has been called before.
 """
 
@@ -14,7 +15,7 @@ from pathlib import Path
 from typing import Any, Callable, Sequence
 
 from scenes.calibration import Calibration
-from scenes.files import content_hash, source_hash
+from scenes.files import content_hash, discard, source_hash
 from scenes.scene import Scene
 from scenes.trajectory import Trajectory
 from studies.progress import Board, say
@@ -41,12 +42,13 @@ class Run:
                             code_hash(*SOURCES[self.fidelity]))
 
 
-def execute(run: Run, progress: Callable[[float], None] | None = None, threads: int | None = None) -> Trajectory:
-    """Run it, without any store; ``threads`` for a run of the reference, its own choice when None."""
+def execute(run: Run, progress: Callable[[float], None] | None = None, threads: int | None = None, **kept: Any) -> Trajectory:
+    """Run it, without any store; for a run of the reference ``threads``, its own choice when None, and where it is ``kept``, the
+    arguments of ``highfi.run`` on checkpoints."""
     if run.fidelity == "highfi":
         import highfi
 
-        return highfi.run(run.scene, numerics=run.numerics, progress=progress, threads=threads)
+        return highfi.run(run.scene, numerics=run.numerics, progress=progress, threads=threads, **kept)
     import lowfi
 
     return lowfi.run(run.scene, calibration=run.calibration, numerics=run.numerics, progress=progress)
@@ -63,12 +65,17 @@ def prepare(run: Run) -> None:
 class Store:
     """Trajectories below one folder."""
 
-    def __init__(self, folder: Path, workers: int = 1):
+    def __init__(self, folder: Path, workers: int = 1, checkpoint_every: float = 60.0, resume: bool = True):
         self.folder, self.workers = Path(folder), workers
+        self.checkpoint_every, self.resume = checkpoint_every, resume
 
     def path(self, run: Run) -> Path:
         """Where the result of ``run`` lies or will lie."""
         return self.folder / run.fidelity / f"{run.label}-{run.key[:8]}.nc"
+
+    def checkpoint(self, run: Run) -> Path:
+        """Where ``run`` is kept while it is made."""
+        return self.path(run).with_suffix(".checkpoint")
 
     def load(self, run: Run) -> Trajectory | None:
         """The stored result, or None when there is none that can be read (a damaged file is named on standard error)."""
@@ -119,8 +126,28 @@ class Store:
     def _one(self, run: Run, board: Board, threads: int | None) -> Trajectory:
         progress = board.callback(run.label)
         progress(0.0)
-        trajectory = execute(run, progress, threads)
+        make = self._kept if run.fidelity == "highfi" else execute
+        trajectory = make(run, progress, threads)
         trajectory.save(self.path(run))
+        discard(self.checkpoint(run))
         message = f" ({trajectory.message})" if trajectory.message else ""
         board.finished(run.label, f"{trajectory.status}{message} in {trajectory.cost['wall_s']:.3g} s")
         return trajectory
+
+    def _kept(self, run: Run, progress: Callable[[float], None], threads: int | None) -> Trajectory:
+        """Run the reference from its checkpoint if there is one that can be used, else from the beginning."""
+        import highfi
+
+        path = self.checkpoint(run)
+        if not self.resume:
+            discard(path)
+        make = functools.partial(execute, run, progress, threads, checkpoint=path, checkpoint_every=self.checkpoint_every,
+                                 resume=True)
+        if path.is_file():
+            say(f"  {run.label} goes on from {path}")
+        try:
+            return make()
+        except highfi.CheckpointError as fault:
+            say(f"  {path} {fault.reason}, so {run.label} starts from the beginning")
+        discard(path)
+        return make()

@@ -41,7 +41,7 @@ class Study:
     @cached_property
     def store(self) -> Store:
         """Trajectories of this scene."""
-        return Store(self.folder, self.settings.workers)
+        return Store(self.folder, self.settings.workers, self.settings.checkpoint_every, self.settings.resume)
 
     @cached_property
     def conditions(self) -> dict[str, Scene]:

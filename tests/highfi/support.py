@@ -1,10 +1,12 @@
 """Scenes and meshes shared by the tests of the coupled solver."""
 
 import math
+from contextlib import suppress
 
 import meshio
 import numpy as np
 
+import highfi
 from highfi.mesh import RailMesh, read
 from highfi.run import Loop
 from highfi.numerics import Numerics
@@ -47,6 +49,39 @@ def loop_on(scene, mesh: RailMesh, numerics: Numerics = Numerics()) -> Loop:
     """A run in progress on a mesh of the test's own."""
     system = build(scene, numerics, mesh)
     return Loop(scene, system, choose(system, scene, numerics))
+
+
+class Stopped(Exception):
+    """The end of the part of a run that a test lets happen."""
+
+
+class _StopAt:
+    """In the place of a run's checkpoint: ends the run after ``samples`` samples."""
+
+    def __init__(self, samples: int):
+        self.samples = samples
+
+    def keep(self, loop: Loop) -> None:
+        """End the run there."""
+        if len(loop.rows) > self.samples:
+            raise Stopped
+
+
+def begun(scene=None, numerics: Numerics = COARSE, threads: int = 1) -> Loop:
+    """A loop at its first sample."""
+    scene = scene or tiny()
+    system = build(scene, numerics, highfi.prepare(scene, numerics))
+    loop = Loop(scene, system, choose(system, scene, numerics), threads)
+    loop.begin()
+    return loop
+
+
+def stopped(samples: int, scene=None, numerics: Numerics = COARSE) -> Loop:
+    """A loop that has marched for ``samples`` samples after the first one."""
+    loop = begun(scene, numerics)
+    with suppress(Stopped):
+        loop.march(None, _StopAt(samples))
+    return loop
 
 
 def spinning_bar_stretch(density: float, rate: float, length: float, youngs_modulus: float) -> float:

@@ -64,7 +64,7 @@ def test_scene_without_fitted_conditions_cannot_be_calibrated(tmp_path):
 
 def _stub(monkeypatch, **parts):
     monkeypatch.setattr(store_module, "prepare", lambda run: None)
-    monkeypatch.setattr(store_module, "execute", lambda run, progress=None, threads=None: flight(
+    monkeypatch.setattr(store_module, "execute", lambda run, progress=None, threads=None, **kept: flight(
         fidelity=run.fidelity, cost={"wall_s": 1.0, "compile_s": 0.0, "steps": 10, "dt_s": 1e-4, "elements": 1,
                                      "ns_per_element_step": 1.0}, **parts))
 

@@ -49,7 +49,7 @@ def asked(monkeypatch):
 
     made = Labels()
 
-    def execute(run, progress=None, threads=None):
+    def execute(run, progress=None, threads=None, **kept):
         made.append(run.label)
         return motion(run, status=made.failing.get(run.label, "exited"))
 

@@ -25,7 +25,7 @@ def engine(monkeypatch):
     """A reference that needs no time: counts its calls and settles at 0.1 rad/s."""
     calls = []
 
-    def execute(run, progress=None, threads=None):
+    def execute(run, progress=None, threads=None, **kept):
         calls.append(run.label)
         if progress:
             progress(0.5)
@@ -83,7 +83,7 @@ def test_damaged_file_is_named_and_made_again(engine, study, capsys, damage):
 
 
 def test_one_failing_run_stops_the_rest_and_keeps_what_is_finished(study, monkeypatch):
-    def execute(run, progress=None, threads=None):
+    def execute(run, progress=None, threads=None, **kept):
         if run.label == "h2":
             raise RuntimeError("out of memory")
         return flight()
@@ -101,7 +101,7 @@ def test_ctrl_c_ends_running_kernels(study, monkeypatch):
     """The callback of a running kernel raises, so that no run goes on for minutes after the user has stopped."""
     ended = []
 
-    def execute(run, progress=None, threads=None):
+    def execute(run, progress=None, threads=None, **kept):
         try:
             while True:
                 progress(0.1)

@@ -1,0 +1,133 @@
+"""X20: only a whole checkpoint of the very same run is taken up, and none is ever half written."""
+
+import os
+import random
+import threading
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import highfi
+from highfi import CheckpointError, Numerics, checkpoint
+from highfi.checkpoint import FORMAT, Checkpoint
+from scenes.files import discard
+from tests.highfi.support import COARSE, begun, stopped, tiny
+
+pytestmark = pytest.mark.case("X20")
+
+
+@pytest.fixture
+def kept(tmp_path) -> Checkpoint:
+    """The checkpoint of a run that has just begun."""
+    loop = begun()
+    kept = Checkpoint(tmp_path / "run.checkpoint", 0.0, loop, COARSE)
+    kept.write(loop)
+    return kept
+
+
+def test_one_flipped_bit_anywhere_is_refused(kept):
+    content = kept.path.read_bytes()
+    places = [*range(90), *random.Random(7).sample(range(90, len(content)), 60), len(content) - 1]
+    for place in places:
+        damaged = bytearray(content)
+        damaged[place] ^= 1 << place % 8
+        kept.path.write_bytes(damaged)
+        with pytest.raises(CheckpointError, match="damaged|no checkpoint|has format"):
+            kept.read()
+    kept.path.write_bytes(content)
+    assert kept.read() is not None
+
+
+@pytest.mark.parametrize("length", [0, 1, 40, 85, 86, 4000, -1])
+def test_cut_file_is_refused(kept, length):
+    kept.path.write_bytes(kept.path.read_bytes()[:length])
+    with pytest.raises(CheckpointError, match="cut short|no checkpoint"):
+        kept.read()
+
+
+@pytest.mark.parametrize("change, words", [
+    ({"scene": tiny(payload__mass="9 kg")}, "belongs to another scene;"),
+    ({"numerics": Numerics(element_size=0.008, safety=0.8)}, r"belongs to a run with other numerics \(safety 0.9, not 0.8\);"),
+])
+def test_checkpoint_of_another_run_is_refused(kept, change, words):
+    """By the run itself, and before it has stepped: no progress is reported."""
+    asked = {"scene": tiny(), "numerics": COARSE} | change
+    with pytest.raises(CheckpointError, match=words) as fault:
+        highfi.run(**asked, progress=lambda fraction: pytest.fail("stepped"), checkpoint=kept.path, resume=True)
+    assert str(fault.value).startswith(str(kept.path))
+    assert str(fault.value).endswith("; remove it, or run without resuming, to start from the beginning")
+
+
+def test_checkpoint_of_another_program_mesh_or_format_is_refused(kept, monkeypatch):
+    loop = begun()
+    loop.stepping = replace(loop.stepping, dt_s=np.nextafter(loop.stepping.dt_s, 0.0))
+    with pytest.raises(CheckpointError, match="another mesh or with another step"):
+        Checkpoint(kept.path, 0.0, loop, COARSE).read()
+    monkeypatch.setattr(checkpoint, "source_hash", lambda *packages: "another program")
+    with pytest.raises(CheckpointError, match="another version of the program"):
+        Checkpoint(kept.path, 0.0, begun(), COARSE).read()
+    line = f"tipoff checkpoint {FORMAT} ".encode()
+    kept.path.write_bytes(kept.path.read_bytes().replace(line, b"tipoff checkpoint 99 ", 1))
+    with pytest.raises(CheckpointError, match=f"has format 99, this program reads {FORMAT};"):
+        kept.read()
+
+
+def test_no_file_is_a_run_from_the_beginning_and_a_folder_is_none(tmp_path):
+    loop = begun()
+    assert Checkpoint(tmp_path / "none", 0.0, loop, COARSE).read() is None
+    with pytest.raises(CheckpointError, match="cannot be read"):
+        Checkpoint(tmp_path, 0.0, loop, COARSE).read()
+
+
+def test_bad_arguments_are_refused(tmp_path):
+    with pytest.raises(ValueError, match="resume"):
+        highfi.run(tiny(), COARSE, resume=True)
+    for every in (-1.0, float("nan")):
+        with pytest.raises(ValueError, match="checkpoint_every"):
+            highfi.run(tiny(), COARSE, checkpoint=tmp_path / "run", checkpoint_every=every)
+
+
+def test_nothing_is_written_before_it_is_time(tmp_path):
+    loop = begun()
+    loop.march(None, Checkpoint(tmp_path / "run", 3600.0, loop, COARSE))
+    assert not list(tmp_path.iterdir())
+
+
+def test_reader_never_sees_half_a_file(kept):
+    """A thread reads as fast as it can what another writes as fast as it can: every look finds a whole file."""
+    loop, ended, seen = begun(), threading.Event(), []
+
+    def read():
+        while not ended.is_set():
+            seen.append(len(kept.read()["rows"]))
+
+    reader = threading.Thread(target=read)
+    reader.start()
+    for _ in range(60):
+        loop.advance_one_sample()
+        kept.write(loop)
+    ended.set()
+    reader.join()
+    assert seen == sorted(seen) and len(set(seen)) > 10
+
+
+def test_write_that_fails_leaves_the_file_before(kept, monkeypatch):
+    before, loop = kept.path.read_bytes(), stopped(3)
+    monkeypatch.setattr(os, "fsync", _no_space)
+    with pytest.raises(OSError, match="no space"):
+        kept.write(loop)
+    assert kept.path.read_bytes() == before
+    assert list(kept.path.parent.iterdir()) == [kept.path]
+
+
+def _no_space(descriptor):
+    raise OSError("no space")
+
+
+def test_discarding_takes_leftovers_of_a_kill_along(kept):
+    (kept.path.parent / f".{kept.path.name}.abcd.checkpoint").write_bytes(b"half")
+    (kept.path.parent / "other.checkpoint").write_bytes(b"another run")
+    discard(kept.path)
+    assert [path.name for path in kept.path.parent.iterdir()] == ["other.checkpoint"]
+    discard(kept.path)
