@@ -160,7 +160,7 @@ def test_slivers_are_warned_about_with_the_step_they_force(tmp_path):
 
 
 def test_the_built_in_rails_from_cad_give_the_same_run(tmp_path):
-    built = tiny(duration="8 ms", thrust_offset__misalignment__axial="1 deg", contact__clearance="0.25 mm")
+    built = tiny(duration="8 ms", thrust_offset__misalignment__axial="1 deg", rail=load("reference").rail.model_dump())
     drawing = scene_of(drawn(tmp_path / "rails.step", l_sections), l_surfaces()).rail
     first, second = (highfi.run(scene, COARSE) for scene in (built, built.replace({"rail": drawing.model_dump()})))
     assert np.abs(first.pad_force).max() > 100.0
