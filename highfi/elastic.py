@@ -11,6 +11,7 @@ from highfi.pencil_kernel import pencil_force
 from highfi.team import meet
 from scenes.jit import kernel
 
+
 @kernel
 def elastic_force(rail, displacement, force, turn, team):
     """Set ``force`` (n,3) to K u (N), and ``turn`` (b,3) to each block's part of the sum of u x K u (N m); one thread's work."""

@@ -9,6 +9,8 @@ import sys
 from pathlib import Path
 
 from scenes.files import write_text
+from studies import bench
+from studies.study import read
 
 _ROOT = Path(__file__).resolve().parent.parent
 _BEGIN, _END = "<!-- results: python -m studies.readme -->", "<!-- end of results -->"
@@ -27,7 +29,12 @@ def main(folder: Path) -> None:
 def section(folder: Path) -> str:
     """Markdown of the agreement, the speed-up and the kept promises in ``folder``."""
     agreement, highfi, lowfi = (json.loads((folder / f"{name}.json").read_text()) for name in ("agreement", "highfi", "lowfi"))
-    return "\n\n".join([_agreement(agreement), _speed(agreement["speedup"]), _promises(highfi, lowfi)])
+    parts = [_agreement(agreement), _speed(agreement["speedup"]), _promises(highfi, lowfi)]
+    if (found := read(folder / "convergence.json")) is not None:
+        parts.append(_convergence(found))
+    if (rows := bench.stored(folder.parent)) is not None:
+        parts.append(_bench(rows))
+    return "\n\n".join(parts)
 
 
 def _agreement(found: dict) -> str:
@@ -55,6 +62,24 @@ def _speed(found: dict) -> str:
     return (f"Speed: {found['ratio']:,.0f} times ({found['low']:,.0f} to {found['high']:,.0f} over repeats): {found['highfi_wall_s']:.3g} s "
             f"for the reference with {found['elements']:,} elements against {1e3 * found['lowfi_wall_s']:.3g} ms, the same case, everything "
             f"but compilation included, on {machine['cores']} cores of {machine['processor']}.")
+
+
+def _convergence(found: dict) -> str:
+    lines = [f"Error of the reference itself (`make convergence`, {found['condition']}):", ""]
+    return "\n".join([*lines, *(f"- {line}" for line in found["summary"])])
+
+
+def _bench(rows: list[dict]) -> str:
+    first = rows[0]
+    lines = [f"Speed of the reference solver (`make bench`, {first['threads']} threads on {first['hardware']['processor']}), wall ns per "
+             f"element and step with {first['faces_in_contact']} pad faces pressed:", "",
+             "| elements | this solver | without contact | one thread | SciPy matrix and NumPy | ratio | bytes per element | 40 ms would take |",
+             "|---|---|---|---|---|---|---|---|"]
+    for row in rows:
+        lines.append(f"| {row['elements']:,} | {row['ns_per_element_step']:.2f} | {row['ns_free']:.2f} | {row['ns_one_thread']:.2f} | "
+                     f"{row['baseline_ns_per_element_step']:.0f} | {row['ratio']:.0f} | {row['bytes_per_element']:.0f} | "
+                     f"{row['projected_40_ms_s'] / 3600.0:.2g} h |")
+    return "\n".join(lines)
 
 
 def _promises(highfi: dict, lowfi: dict) -> str:

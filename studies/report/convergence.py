@@ -51,7 +51,7 @@ def _meshes(document: dict) -> str:
 
 def _changes(document: dict) -> Html:
     heads = ("settled x, y, z (deg/s)", "largest change (deg/s)", "status")
-    size = f"{1e3 * document['element_size_m']:g} mm"
+    size = f"{1e3 * document['coarse_size_m']:g} mm"
     stiffness = [(f"{row['factor']:g}", number(row["penalty_n_m3"]), *_changed(row)) for row in document["penalty"]]
     points = [(str(row["points_per_edge"]), *_changed(row)) for row in document["quadrature"]]
     if not stiffness:

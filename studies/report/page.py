@@ -17,7 +17,7 @@ from studies.report.style import CSS
 
 _CONTENTS = (("answer", "Answer"), ("scene", "Scene"), ("mesh", "Mesh"), ("thrust", "Thrust"), ("figure6", "Curves"),
              ("contact-forces", "Contact"), ("energy", "Energy"), ("calibration", "Calibration"),
-             ("agreement-section", "Agreement"), ("speedup", "Speed"), ("cost", "Cost"), ("convergence", "Convergence"), ("stability", "Hard cases"),
+             ("agreement-section", "Agreement"), ("speedup", "Speed"), ("cost", "Cost"), ("convergence", "Convergence"), ("bench", "Solver"), ("stability", "Hard cases"),
              ("ablation", "Ablation"), ("promises", "Promises"), ("colophon", "Origin"))
 
 
@@ -36,7 +36,7 @@ class Page:
                         self._of("calibration", "calibration", "Calibration", tables.calibration, "calibrate"),
                         self._of("agreement", "agreement-section", "Agreement with the reference", tables.agreement, "compare"),
                         self._of("agreement", "speedup", "Speed", lambda found: tables.speedup(found["speedup"]), "compare"),
-                        self._of("cost", "cost", "What accuracy costs", self._cost, "cost"), self._convergence(),
+                        self._of("cost", "cost", "What accuracy costs", self._cost, "cost"), self._convergence(), self._bench(),
                         self._of("stability", "stability", "Hard cases", tables.stability, "stability"),
                         self._of("ablation", "ablation", "Only what the scene calls for", tables.ablation, "ablation"),
                         render(promises(self._rows(), self.documents)), self._colophon()])
@@ -147,6 +147,11 @@ class Page:
         return section("cost", "What accuracy costs", self._figure(
             figures.cost_picture(found), f"Condition {found['condition']}. Error against the finest finite-element mesh, whose own "
             "uncertainty is the band: an error inside it cannot be told from zero. Right: what a tighter tolerance can still buy. Labels: element size, tolerance."), tables.cost(found))
+
+    def _bench(self) -> Html:
+        """The solver against the loop one would write today, where a benchmark was run."""
+        found = self.documents.get("bench")
+        return tables.bench(found) if found else Html("")
 
     def _convergence(self) -> Html:
         """Nothing without its result, and no reminder either: only `make full-report` spends the minutes it takes."""

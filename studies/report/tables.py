@@ -160,6 +160,20 @@ def _held(case: dict) -> str:
     return "held; the simpler one fails" if case["control_failed"] else "held, but the simpler one holds too"
 
 
+def bench(rows: list[dict]) -> Html:
+    """Speed of the reference solver by mesh."""
+    heads = ("elements", "pads pressed (ns)", "free (ns)", "one thread (ns)", "SciPy and NumPy (ns)", "ratio", "bytes per element",
+             "set-up (s)", "40 ms would take (h)")
+    lines = [(f"{row['elements']:,}", f"{row['ns_per_element_step']:.2f}", f"{row['ns_free']:.2f}", f"{row['ns_one_thread']:.2f}",
+              f"{row['baseline_ns_per_element_step']:.0f}", f"{row['ratio']:.1f}", f"{row['bytes_per_element']:.0f}",
+              f"{row['set_up_s']:.1f}", f"{row['projected_40_ms_s'] / 3600.0:.2g}") for row in rows]
+    first = rows[0]
+    return section("bench", "Speed of the reference solver", table(heads, lines), caption(
+        f"Wall time per element and step on {first['threads']} threads, {first['faces_in_contact']} pad faces pressed or none; medians of "
+        f"{first['repeats']} repeats by turns, compilation apart. Beside it central differences with an assembled SciPy matrix and NumPy, "
+        f"without contact. {first['hardware']['cores']} cores of {first['hardware']['processor']}."))
+
+
 def ablation(document: dict) -> Html:
     """Every effect off, both fidelities: what it costs and what it changes."""
     heads = ("model", "variant", "status", "time (s)", "time ratio", "ns per step", "settled x, y, z (deg/s)", "change x, y, z (deg/s)",

@@ -1,11 +1,12 @@
-"""Stage ``report``: every stage but ``convergence``, which takes minutes, then one page of their results and of a convergence study
-that is there already."""
+"""Stage ``report``: every stage but ``convergence``, which takes minutes, then one page of their results, of a convergence study and
+of a benchmark that are there already."""
 
 from pathlib import Path
 from typing import Callable
 
 from scenes.calibration import Calibration
 from scenes.files import content_hash, write_text
+from studies import bench
 from studies.stages import ablation, calibrate, compare, convergence, cost, mesh, runs, stability
 from studies.store import Run, code_hash
 from studies.study import Study, StudyError
@@ -23,20 +24,19 @@ def run(study: Study) -> dict:
             documents[name] = stage(study)
         except StudyError as fault:
             documents[name], problems[name] = None, str(fault)
-    if (found := convergence.stored(study)) is not None:
-        documents[convergence.NAME] = found
+    there = {convergence.NAME: convergence.stored(study), "bench": bench.stored(study.folder.parent)}
 
     def make() -> tuple[dict, list[Path]]:
         from studies.report.page import Page
 
-        page = Page(study.scene, study.folder, documents, _trajectories(study, documents), problems)
+        page = Page(study.scene, study.folder, documents | there, _trajectories(study, documents), problems)
         path = study.path("report.html")
         write_text(path, page.render())
         return {"report": study.relative(path), "failed": _failed(documents, problems)}, [path, *page.pictures]
 
     keys = {name: found and found["key"] for name, found in documents.items()}
     made_at = {name: study.path(f"{name}.json").read_text() for name, found in documents.items() if found}
-    key = content_hash(keys, content_hash(made_at), problems, study.key(("scenes", "studies")))
+    key = content_hash(keys, content_hash(made_at), content_hash(there), problems, study.key(("scenes", "studies")))
     return study.stage("report", key, make)
 
 
