@@ -4,7 +4,8 @@
 * **Reference uncertainty**: what coming from twice the element size, and there four times the penalty and half the step, change
   in the settled rates of the reference, each alone. Agreement is claimed only where the largest is at most 0.1 deg/s.
 
-Both are measured on a few conditions; the others take the largest of those and say so.
+What the mesh changes is measured on every condition. The rest is measured on a few; the others take the largest of those and say
+so.
 """
 
 from dataclasses import dataclass
@@ -61,11 +62,15 @@ class Context:
                 largest(item.rate_relative_l2 for item in own), measured)
 
     def uncertainty(self, condition: str) -> tuple[float | None, dict[str, float | None], bool]:
-        """Reference uncertainty (deg/s), the same by cause, and whether it was measured on this very condition."""
-        own, measured = _own(self.refinements, condition)
-        causes = {cause: largest(item.settled_rate_change_deg_s for item in own if item.cause == cause)
-                  for cause in dict.fromkeys(item.cause for item in own)}
-        return largest(causes.values()), causes, measured
+        """Reference uncertainty (deg/s), the same by cause, and whether all of it was measured on this very condition."""
+        causes, here = {}, []
+        for cause in dict.fromkeys(item.cause for item in self.refinements):
+            own, measured = _own([item for item in self.refinements if item.cause == cause], condition)
+            causes[cause] = largest(item.settled_rate_change_deg_s for item in own)
+            here.append(measured)
+        # A refinement after which the payload did not settle leaves nothing known.
+        unknown = not causes or any(item.settled_rate_change_deg_s is None for item in self.refinements if item.condition == condition)
+        return None if unknown else largest(causes.values()), causes, all(here)
 
 
 def _own(spreads: list[Spread], condition: str) -> tuple[list[Spread], bool]:

@@ -14,7 +14,7 @@ from typing import Callable
 import numpy as np
 
 from highfi.checkpoint import arrays
-from scenes.files import write_json
+from scenes.files import content_hash, write_json
 from scenes.scene import Scene, load
 from studies import machine
 from studies.progress import say
@@ -42,10 +42,13 @@ def run(out: Path, sizes: tuple[float, ...] = SIZES, repeats: int = 5, steps: in
     return {"rows": rows}
 
 
-def stored(out: Path) -> list[dict] | None:
-    """The rows of an earlier run, if there was one."""
+def stored(out: Path) -> dict | None:
+    """The ``rows`` of an earlier run and their digest, ``key``, if there was one."""
     path = Path(out) / "bench" / "highfi.json"
-    return json.loads(path.read_text()) if path.is_file() else None
+    if not path.is_file():
+        return None
+    rows = json.loads(path.read_text())
+    return {"rows": rows, "key": content_hash(rows)}
 
 
 def line(row: dict) -> str:

@@ -32,8 +32,8 @@ def section(folder: Path) -> str:
     parts = [_agreement(agreement), _speed(agreement["speedup"]), _promises(highfi, lowfi)]
     if (found := read(folder / "convergence.json")) is not None:
         parts.append(_convergence(found))
-    if (rows := bench.stored(folder.parent)) is not None:
-        parts.append(_bench(rows))
+    if (found := bench.stored(folder.parent)) is not None:
+        parts.append(_bench(found["rows"]))
     return "\n\n".join(parts)
 
 

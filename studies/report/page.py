@@ -151,7 +151,7 @@ class Page:
     def _bench(self) -> Html:
         """The solver against the loop one would write today, where a benchmark was run."""
         found = self.documents.get("bench")
-        return tables.bench(found) if found else Html("")
+        return tables.bench(found["rows"]) if found else Html("")
 
     def _convergence(self) -> Html:
         """Nothing without its result, and no reminder either: only `make full-report` spends the minutes it takes."""

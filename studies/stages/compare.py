@@ -85,9 +85,11 @@ def _surrogate(study: Study, calibration: Calibration | None):
 
 
 def _refinements(study: Study) -> list[Spread]:
-    """Spread of the reference under each refinement alone: the mesh from the coarse one to its own, the others on the coarse one."""
-    names, found = study.scene.agreement.refined, []
-    groups = {name: {"coarse": study.coarse(name), "mesh": study.highfi(name)} | refined(study, name) for name in names}
+    """Spread of the reference under each refinement alone: the mesh from the coarse one to its own, on every condition, for one that
+    is chaotic shows itself there; the others on the coarse one, where the scene asks for it."""
+    found = []
+    groups = {name: {"coarse": study.coarse(name), "mesh": study.highfi(name)}
+              | (refined(study, name) if name in study.scene.agreement.refined else {}) for name in study.conditions}
     runs = study.store.fill("refinement", [run for group in groups.values() for run in group.values()])
     for name, group in groups.items():
         _, *causes = group

@@ -12,6 +12,8 @@ from scenes import load
 from studies import bench
 from studies.cli import app
 from studies.csr_loop import CsrLoop
+from studies.report.figures import Runs
+from studies.report.page import Page
 
 
 def test_yardstick_is_central_differences_on_the_assembled_matrix():
@@ -37,3 +39,6 @@ def test_bench_writes_one_row_per_size(tmp_path):
     assert row["ratio"] == pytest.approx(row["baseline_ns_per_element_step"] / row["ns_per_element_step"])
     assert row["bytes_per_element"] > 24 * 8 and row["dt_s"] > row["dt_element_s"] * 0.9
     assert f"{row['elements']:,} elements" in bench.line(row)
+    page = Page(load("tiny"), tmp_path, {"bench": bench.stored(tmp_path)}, Runs({}, {}, {}), {}).render()
+    assert 'id="bench"' in page and f"{row['elements']:,}" in page
+    assert bench.stored(tmp_path / "elsewhere") is None
