@@ -80,7 +80,8 @@ def _is_false(value: ast.expr) -> bool:
 
 def _is_kernel(function: ast.FunctionDef) -> bool:
     plain = [decorator.func if isinstance(decorator, ast.Call) else decorator for decorator in function.decorator_list]
-    return any("jit" in getattr(name, "id", getattr(name, "attr", "")) for name in plain)
+    names = [getattr(name, "id", getattr(name, "attr", "")) for name in plain]
+    return any("jit" in name or name in ("kernel", "inlined") for name in names)
 
 
 def _parsed(path: Path) -> ast.AST:
@@ -138,6 +139,8 @@ def test_sources_keep_the_house_rules():
         "from numba import njit",
         "@numba.njit(cache=True)\ndef step(x):\n    return x",
         "@njit\ndef step(x):\n    print(x)",
+        "@kernel\ndef step(x):\n    print(x)",
+        "@inlined\ndef step(x):\n    open(x)",
     ],
 )
 def test_every_house_rule_can_fail(source):
