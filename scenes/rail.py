@@ -20,18 +20,19 @@ FILES = ("mesh", "geometry")  # keys that give the rail as a file
 SOLIDS = (".step", ".stp", ".iges", ".igs", ".brep")
 
 
+def _beyond_start(end: float, info: ValidationInfo) -> float:
+    if end <= info.data.get("start", -math.inf):
+        raise ValueError("an end beyond start")
+    return end
+
+
 class Span(Table):
     """A stretch along the rail measured from its rear end (m)."""
 
     start: NonNegativeLength
     end: PositiveLength
 
-    @field_validator("end")
-    @classmethod
-    def _forward(cls, end: float, info: ValidationInfo):
-        if end <= info.data.get("start", -math.inf):
-            raise ValueError("an end beyond start")
-        return end
+    _forward = field_validator("end")(_beyond_start)
 
 
 class MaterialTable(Table):
@@ -51,12 +52,7 @@ class _RailTable(Table):
     end: Length
     material: MaterialTable
 
-    @field_validator("end")
-    @classmethod
-    def _forward(cls, end: float, info: ValidationInfo):
-        if end <= info.data.get("start", -math.inf):
-            raise ValueError("an end beyond start")
-        return end
+    _forward = field_validator("end")(_beyond_start)
 
     def contents(self) -> dict[str, str]:
         """The keys that name files, each with the digest of what its file holds: what a result depends on."""
