@@ -15,15 +15,15 @@ from scenes.jit import kernel
 @kernel
 def elastic_force(rail, displacement, force, turn, team):
     """Set ``force`` (n,3) to K u (N), and ``turn`` (b,3) to each block's part of the sum of u x K u (N m); one thread's work."""
-    _force_of_pencils(rail.pencils, displacement, force, team.sums[0])
+    _force_of_pencils(rail.pencils, displacement, force)
     _force_of_elements(rail.elements, displacement, force, team.lanes[0])
     _turn_blocks(rail, displacement, force, turn, 0, 1, team.lanes[0])
 
 
 @kernel
-def _force_of_pencils(pencils, displacement, force, sums):
+def _force_of_pencils(pencils, displacement, force):
     if pencils is not None:
-        pencil_force(pencils, displacement.T, force.T, 0, pencils.first.size - 1, sums)
+        pencil_force(pencils, displacement.T, force.T, 0, pencils.first.size - 1)
 
 
 @kernel
@@ -66,22 +66,21 @@ def _share(pencils, team, thread):
 
 
 @kernel
-def _load_chunk(pencils, rail, state, chunk, sums, lanes):
-    pencil_force(pencils, state.displacement.T, state.resistance.T, pencils.chunks[chunk], pencils.chunks[chunk + 1], sums)
+def _load_chunk(pencils, rail, state, chunk, lanes):
+    pencil_force(pencils, state.displacement.T, state.resistance.T, pencils.chunks[chunk], pencils.chunks[chunk + 1])
     turning(state.displacement, state.resistance, rail.blocks[chunk], rail.blocks[chunk + 1], lanes, state.turning[chunk])
 
 
 @kernel
 def _sweep_pencils(pencils, rail, frame, state, team, thread, dt):
     if pencils is not None:
-        sums, lanes = team.sums[thread], team.lanes[thread]
         first, last = _share(pencils, team, thread)
         following = first
         for chunk in range(first, last):
             move_nodes(rail, frame, state, dt, rail.blocks[chunk], rail.blocks[chunk + 1])
             while following < last and pencils.highest[following] <= chunk:
                 if pencils.lowest[following] >= first:
-                    _load_chunk(pencils, rail, state, following, sums, lanes)
+                    _load_chunk(pencils, rail, state, following, team.lanes[thread])
                 following += 1
 
 
@@ -91,7 +90,7 @@ def _load_borders(pencils, rail, state, team, thread):
         first, last = _share(pencils, team, thread)
         for chunk in range(first, last):
             if pencils.lowest[chunk] < first or pencils.highest[chunk] >= last:
-                _load_chunk(pencils, rail, state, chunk, team.sums[thread], team.lanes[thread])
+                _load_chunk(pencils, rail, state, chunk, team.lanes[thread])
 
 
 @kernel

@@ -2,136 +2,179 @@
 
     d = sum D u,  l = sum L u,  o = sum O u,      f(k) = d(k) + (l - o)(k-1) + (l + o)(k+1)
 
-The nine sums of 16 layers stay in vector registers while the neighbours stream by. Numba does not keep them there from a loop in
-Python, so that one loop is written as LLVM code; a processor with narrower vectors splits them.
+The nine sums of 16 layers stay in vector registers while the neighbours stream by, folded where they mirror each other (see
+``folding``), and so does what the filter needs of the 16 layers before. Numba does not keep them there from a loop in Python, so
+that this one is written as LLVM code; a processor with narrower vectors splits them.
 """
 
-import numpy as np
 from llvmlite import ir
 from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
-from highfi.memory import zeros
-from highfi.pencils import COEFFICIENTS, LANES
+from highfi.folding import KINDS, PATTERNS, PLACES, odd
+from highfi.pencils import LANES
+from highfi.vectors import INTEGER, WIDTH, ZERO, Vectors
 from scenes.jit import kernel
 
-_WIDTH = 8
-_HALVES = LANES // _WIDTH
-# (sum, coefficient, component): sums 0-2 are d, 3-5 are l, 6-8 are o; written out as d, l - o, l + o.
-_PRODUCTS = ((0, 0, 0), (1, 1, 1), (1, 2, 2), (2, 3, 1), (2, 4, 2), (3, 5, 0), (4, 6, 1), (4, 7, 2), (5, 8, 1), (5, 9, 2),
-             (6, 10, 1), (6, 11, 2), (7, 12, 0), (8, 13, 0))
+_HALVES = LANES // WIDTH
 _SUMS = 9
-_GHOSTS = 8  # zeros on either side of a row of sums: what lies beyond the end layers
+# The sum each number goes to: sums 0-2 are d, 3-5 are l, 6-8 are o.
+_TARGETS = tuple(3 * (0 if n < 5 else 1 if n < 10 else 2) + row for n, (row, _) in enumerate(PLACES))
+
+
+class _Sweep:
+    """Code that sets the force of one pencil. Pointers and indices are LLVM values; see ``_pencil``."""
+
+    def __init__(self, builder, pointers, indices):
+        self.builder, self.code = builder, Vectors(builder)
+        self.values, self.members, self.numbers, self.counts, self.weights, self.force = pointers
+        self.kind, self.first_member, self.first_number, self.base, self.layers, self.plane = indices
+        self.held = [[self.code.variable() for _ in range(_HALVES)] for _ in range(_SUMS)]
+        self.below, self.pending = ([self.code.variable() for _ in range(3)] for _ in range(2))
+
+    def write(self, pattern):
+        """All layers; the numbers of groups are known beforehand where there is a ``pattern``."""
+        self._clear(self.below, self.pending)
+        start, step = ir.Constant(INTEGER, 0), ir.Constant(INTEGER, LANES)
+        with cgutils.for_range_slice(self.builder, start, self.layers, step, INTEGER) as (layer, _):
+            self._clear(*self.held)
+            self._add_groups(layer, pattern)
+            for component in range(3):
+                self._filter(layer, component)
+        for component in range(3):
+            self._store(self.builder.load(self.pending[component]), component, self.code.plus(self.layers, -WIDTH))
+
+    def _clear(self, *variables):
+        for parts in variables:
+            for part in parts:
+                self.builder.store(ZERO, part)
+
+    def _add_groups(self, layer, pattern):
+        code, member, number = self.code, self.first_member, self.first_number
+        for k, group in enumerate(KINDS):
+            count = ir.Constant(INTEGER, pattern[k]) if pattern else code.number(self.counts, code.plus(self.kind, k))
+            if pattern:
+                for index in range(pattern[k]):
+                    self._add_group(group, layer, member, number, ir.Constant(INTEGER, index))
+            else:
+                with cgutils.for_range(self.builder, count, intp=INTEGER) as loop:
+                    self._add_group(group, layer, member, number, loop.index)
+            member = self.builder.add(member, code.times(count, group.members))
+            number = self.builder.add(number, code.times(count, len(group.numbers)))
+
+    def _add_group(self, group, layer, member, number, index):
+        """Add the products of the group with that ``index`` among those whose members and numbers start there."""
+        code, builder = self.code, self.builder
+        at = builder.add(member, code.times(index, group.members))
+        starts = [builder.add(code.number(self.members, code.plus(at, m)), layer) for m in range(group.members)]
+        own = builder.add(number, code.times(index, len(group.numbers)))
+        for component in range(3):
+            rows = [builder.add(start, code.times(self.plane, component)) for start in starts]
+            factors = {n: code.spread(code.number(self.numbers, code.plus(own, k))) for k, n in enumerate(group.numbers)
+                       if PLACES[n][1] == component}
+            for half in range(_HALVES):
+                folded = self._fold(group, [code.read(self.values, code.plus(row, WIDTH * half)) for row in rows])
+                for n, factor in factors.items():
+                    total, value = self.held[_TARGETS[n]][half], folded[tuple(odd(n, axis) for axis in group.folded)]
+                    builder.store(code.multiply_add(factor, value, builder.load(total)), total)
+
+    def _fold(self, group, parts):
+        """Sums and differences of the members' values, by whether they are odd in each folded axis."""
+        folded = {(): parts}
+        for _ in group.folded:
+            # Members of + and - take turns: those of the first axis are next to each other.
+            folded = {(*key, sign): [combine(a, b) for a, b in zip(values[0::2], values[1::2])] for key, values in folded.items()
+                      for sign, combine in ((False, self.builder.fadd), (True, self.builder.fsub))}
+        return {key: value for key, (value,) in folded.items()}
+
+    def _filter(self, layer, component):
+        """Forces of 16 layers but the last eight, which wait for the layer above them, and of the eight that waited before."""
+        code, add = self.code, self.builder.fadd
+        weights = [code.read(self.weights, code.plus(layer, WIDTH * half)) for half in range(_HALVES)]
+        own, even, odds = ([self.builder.load(part) for part in self.held[3 * k + component]] for k in range(3))
+        below, above = ([combine(l, o) for l, o in zip(even, odds)] for combine in (self.builder.fsub, add))
+        before, pending = self.below[component], self.pending[component]
+        # Before the first layer nothing waits: what is stored there is overwritten at once.
+        first = self.builder.icmp_signed("==", layer, ir.Constant(INTEGER, 0))
+        waiting = self.builder.select(first, layer, code.plus(layer, -WIDTH))
+        self._store(add(self.builder.load(pending), code.slide(ZERO, above[0], 1)), component, waiting)
+        around = add(code.slide(self.builder.load(before), below[0], WIDTH - 1), code.slide(above[0], above[1], 1))
+        self._store(code.multiply_add(weights[0], own[0], around), component, layer)
+        around = add(code.slide(below[0], below[1], WIDTH - 1), code.slide(above[1], ZERO, 1))
+        self.builder.store(code.multiply_add(weights[1], own[1], around), pending)
+        self.builder.store(below[1], before)
+
+    def _store(self, vector, component, layer):
+        index = self.builder.add(self.builder.add(self.base, layer), self.code.times(self.plane, component))
+        self.code.write(vector, self.force, index)
 
 
 @intrinsic
-def _sum_neighbours(typing, values, neighbour, coefficients, first, last, layer, plane, sums, stride):
-    """Rows ``layer`` to ``layer + 16`` of d, l - o and l + o, summed over the neighbours q in first..last.
+def _pencil(typing, values, members, numbers, counts, weights, force, pattern, kind, member, number, base, layers, plane):
+    """Force of a pencil of ``layers`` nodes from number ``base`` on, without what the end layers alone have.
 
-    All arrays are flat: values (3 * plane), coefficients (q * COEFFICIENTS), sums (9 * stride). No bounds are checked.
+    It has ``counts[kind + k]`` groups of each kind, their members from ``member`` and their numbers from ``number`` on; ``weights``
+    are the layers' parts of d. Arrays are flat: values and force (3 * plane). No bounds are checked. The commonest patterns of groups
+    have code of their own, without loops over them.
     """
     size = types.intp
-    signature = types.void(values, neighbour, coefficients, size, size, size, size, sums, size)
+    signature = types.void(values, members, numbers, counts, weights, force, size, size, size, size, size, size, size)
 
     def generate(context, builder, signature, arguments):
-        def data(position):
-            return context.make_array(signature.args[position])(context, builder, value=arguments[position]).data
-
-        integer = ir.IntType(64)
-        vector = ir.VectorType(ir.DoubleType(), _WIDTH)
-        multiply_add = cgutils.get_or_insert_function(
-            builder.module, ir.FunctionType(vector, [vector] * 3), f"llvm.fmuladd.v{_WIDTH}f64")
-
-        def plus(value, offset):
-            return builder.add(value, ir.Constant(integer, offset))
-
-        def vector_at(pointer, index):
-            return builder.bitcast(builder.gep(pointer, [index]), vector.as_pointer())
-
-        def spread(scalar):
-            one = builder.insert_element(ir.Constant(vector, ir.Undefined), scalar, ir.Constant(ir.IntType(32), 0))
-            return builder.shuffle_vector(one, ir.Constant(vector, ir.Undefined),
-                                          ir.Constant(ir.VectorType(ir.IntType(32), _WIDTH), [0] * _WIDTH))
-
-        zero = ir.Constant(vector, [0.0] * _WIDTH)
-        held = [[cgutils.alloca_once_value(builder, zero) for _ in range(_HALVES)] for _ in range(_SUMS)]
-        _, _, _, first, last, layer, plane, _, stride = arguments
-        with cgutils.for_range_slice(builder, first, last, ir.Constant(integer, 1), integer) as (q, _):
-            start = builder.add(builder.load(builder.gep(data(1), [q])), layer)
-            rows = [builder.add(start, builder.mul(plane, ir.Constant(integer, c))) for c in range(3)]
-            read = [[builder.load(vector_at(data(0), plus(row, _WIDTH * h)), align=8) for h in range(_HALVES)] for row in rows]
-            own = builder.mul(q, ir.Constant(integer, COEFFICIENTS))
-            for target, coefficient, component in _PRODUCTS:
-                factor = spread(builder.load(builder.gep(data(2), [plus(own, coefficient)])))
-                for h in range(_HALVES):
-                    total = builder.call(multiply_add, [factor, read[component][h], builder.load(held[target][h])])
-                    builder.store(total, held[target][h])
-        for h in range(_HALVES):
-            own, even, odd = ([builder.load(held[3 * group + c][h]) for c in range(3)] for group in range(3))
-            below, above = ([combine(l, o) for l, o in zip(even, odd)] for combine in (builder.fsub, builder.fadd))
-            for target, total in enumerate([*own, *below, *above]):
-                row = builder.add(layer, builder.mul(stride, ir.Constant(integer, target)))
-                builder.store(total, vector_at(data(7), plus(row, _WIDTH * h)), align=8)
+        arrays = (context.make_array(kind)(context, builder, value=value) for kind, value in zip(signature.args, arguments[:6]))
+        pointers = [array.data for array in arrays]
+        sweep = _Sweep(builder, pointers, arguments[7:])
+        anything, after = builder.append_basic_block("anything"), builder.append_basic_block("after")
+        switch = builder.switch(arguments[6], anything)
+        for place, pattern in enumerate(PATTERNS):
+            block = builder.append_basic_block("pattern")
+            switch.add_case(ir.Constant(INTEGER, place), block)
+            builder.position_at_end(block)
+            sweep.write(pattern)
+            builder.branch(after)
+        builder.position_at_end(anything)
+        sweep.write(None)
+        builder.branch(after)
+        builder.position_at_end(after)
         return context.get_dummy_value()
 
     return signature, generate
 
 
-def room_for_sums(stride: int, threads: int = 1) -> np.ndarray:
-    """Room (threads, _SUMS, stride + 2 _GHOSTS) for the sums of one pencil, rows on cache lines and zero beside the pencil."""
-    # An odd number of cache lines: rows a power of two apart would compete for the same places in the cache.
-    return zeros((threads, _SUMS, stride + 2 * _GHOSTS + (_GHOSTS if (stride // _GHOSTS) % 2 == 0 else 0)))
-
-
 @kernel
-def pencil_force(pencils, displacement, force, first, last, sums):
+def pencil_force(pencils, displacement, force, first, last):
     """Set the part of ``force`` (N) at section points ``first`` to ``last`` to that of K u, both (3, s * stride) in rows."""
-    plane, stride, row = displacement.shape[1], pencils.stride, sums.shape[1]
-    values, coefficients = displacement.reshape(displacement.size), pencils.coefficients.reshape(pencils.coefficients.size)
-    inside = sums.reshape(sums.size)[_GHOSTS:]
+    groups, plane = pencils.groups, displacement.shape[1]
+    kinds, counts = groups.counts.shape[1], groups.counts.reshape(groups.counts.size)
+    values, forces = displacement.reshape(displacement.size), force.reshape(force.size)
     for point in range(first, last):
-        for layer in range(0, stride, LANES):
-            _sum_neighbours(values, pencils.neighbour, coefficients, pencils.first[point], pencils.first[point + 1], layer, plane,
-                            inside, row)
-        _filter(sums, force, np.uint64(point * stride), np.uint64(stride))
-        _ends(pencils, point, displacement, force, sums)
+        _pencil(values, groups.members, groups.numbers, counts, pencils.weights, forces, groups.pattern[point], point * kinds,
+                groups.first_member[point], groups.first_number[point], point * pencils.stride, pencils.stride, plane)
+        _add_ends(pencils, point, displacement, force)
 
 
 @kernel
-def _filter(sums, force, base, stride):
-    # Unsigned, because an index that might be negative would keep the loop from being vectorised.
-    ghosts, one = np.uint64(_GHOSTS), np.uint64(1)
-    for component in range(3):
-        own, below, above = np.uint64(component), np.uint64(3 + component), np.uint64(6 + component)
-        for k in range(stride):
-            here = ghosts + k
-            force[own, base + k] = sums[own, here] + (sums[below, here - one] + sums[above, here + one])
-
-
-@kernel
-def _ends(pencils, point, displacement, force, sums):
-    """The end layers have half the own block and, with opposite signs, the odd block E; what the filter left beyond is no force."""
+def _add_ends(pencils, point, displacement, force):
+    """The end layers have, with opposite signs, the odd block E as well; what the filter left beyond them is no force."""
     base, layers = point * pencils.stride, pencils.layers
     x, y, z, far_x, far_y, far_z = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for q in range(pencils.first[point], pencils.first[point + 1]):
         node = pencils.neighbour[q]
         far = node + layers - 1
-        xy, xz, yx, zx = (pencils.coefficients[q, 14], pencils.coefficients[q, 15], pencils.coefficients[q, 16],
-                          pencils.coefficients[q, 17])
+        xy, xz, yx, zx = pencils.ends[q, 0], pencils.ends[q, 1], pencils.ends[q, 2], pencils.ends[q, 3]
         x += xy * displacement[1, node] + xz * displacement[2, node]
         y += yx * displacement[0, node]
         z += zx * displacement[0, node]
         far_x += xy * displacement[1, far] + xz * displacement[2, far]
         far_y += yx * displacement[0, far]
         far_z += zx * displacement[0, far]
-    first, last = _GHOSTS, _GHOSTS + layers - 1
-    force[0, base] += x - 0.5 * sums[0, first]
-    force[1, base] += y - 0.5 * sums[1, first]
-    force[2, base] += z - 0.5 * sums[2, first]
-    force[0, base + layers - 1] -= far_x + 0.5 * sums[0, last]
-    force[1, base + layers - 1] -= far_y + 0.5 * sums[1, last]
-    force[2, base + layers - 1] -= far_z + 0.5 * sums[2, last]
+    force[0, base] += x
+    force[1, base] += y
+    force[2, base] += z
+    force[0, base + layers - 1] -= far_x
+    force[1, base + layers - 1] -= far_y
+    force[2, base + layers - 1] -= far_z
     for component in range(3):
         for node in range(base + layers, base + pencils.stride):
             force[component, node] = 0.0

@@ -6,8 +6,9 @@ two section points are the same in every layer, and the mirror symmetry of a lay
     f(k) = D u(k) + L [u(k-1) + u(k+1)] + O [u(k+1) - u(k-1)]      D, L even and O odd under the mirror x -> -x
     f(0) = (D/2 + E) u(0) + (L + O) u(1),    f(n-1) = (D/2 - E) u(n-1) + (L - O) u(n-2)
 
-The element matrix enters through these numbers alone, so a better element costs nothing. Nodes are numbered point by point with the
-layers contiguous, each pencil padded to whole vectors; the padding has no mass and no force.
+The element matrix enters through these numbers alone, so a better element costs nothing. Neighbours that mirror each other share
+them, see ``folding``. Nodes are numbered point by point with the layers contiguous, each pencil padded to whole vectors; the
+padding has no mass and no force.
 """
 
 from typing import NamedTuple
@@ -17,22 +18,26 @@ from scipy.sparse import csr_array
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
 from highfi.assembly import Operator
+from highfi.folding import Groups, fold
+from highfi.memory import zeros
 
 LANES = 16  # layers treated at once: two vectors of eight doubles
-COEFFICIENTS = 18
 CHUNK = 1024  # nodes: enough to be worth a function call, few enough for the second-level cache
 _SAME = 1e-9  # m: two places closer than this are the same
 _ODD = 1e-9  # relative size of the blocks that the mirror symmetry forbids
 
 
 class Pencils(NamedTuple):
-    """first (s+1,), neighbour (q,) number of the neighbour's first node; coefficients (q, COEFFICIENTS) N/m in the order D xx yy yz
-    zy zz, L the same, O xy xz yx zx, E the same; layers n and stride, the padded length of a pencil; chunks (c+1,) first pencil of each
-    bundle that is worked on at once, with the lowest (c,) chunk that it hangs on, and the highest (c,) that it or one before does."""
+    """groups of neighbours, members by the number of their first node, with D, L and O; for the end layers first (s+1,), neighbour
+    (q,) number of the first node and ends (q,4) N/m, E xy xz yx zx; weights (stride,) of D in each layer; layers n and stride, the
+    padded length of a pencil; chunks (c+1,) first pencil of each bundle that is worked on at once, with the lowest (c,) chunk that it
+    hangs on, and the highest (c,) that it or one before does."""
 
+    groups: Groups
     first: np.ndarray
     neighbour: np.ndarray
-    coefficients: np.ndarray
+    ends: np.ndarray
+    weights: np.ndarray
     layers: int
     stride: int
     chunks: np.ndarray
@@ -42,7 +47,7 @@ class Pencils(NamedTuple):
 
 def find(points: np.ndarray, operator: Operator) -> tuple[Pencils, np.ndarray] | None:
     """Pencils of a mesh (points (n,3) m) and the new number (n,) of each node, or None where it is not an even extrusion."""
-    _, point = np.unique(np.round(points[:, 1:] / _SAME), axis=0, return_inverse=True)
+    places, point = np.unique(np.round(points[:, 1:] / _SAME), axis=0, return_inverse=True)
     stations, layer = np.unique(np.round(points[:, 0] / _SAME), return_inverse=True)
     point, layer = point.reshape(-1), layer.reshape(-1)
     sections, layers = point.max() + 1, stations.size
@@ -56,12 +61,23 @@ def find(points: np.ndarray, operator: Operator) -> tuple[Pencils, np.ndarray] |
     pairs = sorted(blocks, key=lambda pair: (rank[pair[0]], rank[pair[1]]))
     own, other = rank[np.array(pairs)].T
     first = np.searchsorted(own, np.arange(sections + 1))
-    coefficients = np.array([_numbers(blocks[pair]) for pair in pairs])
+    numbers = np.array([_numbers(blocks[pair]) for pair in pairs])
+    offsets = np.array([places[b] - places[a] for a, b in pairs]) * _SAME
+    groups = fold(first, other * stride, offsets, numbers[:, :-4])
     chunks = _chunks(own, other, stride)
     chunk_of, starts = np.searchsorted(chunks, other, side="right") - 1, first[chunks[:-1]]
     lowest, highest = np.minimum.reduceat(chunk_of, starts), np.maximum.accumulate(np.maximum.reduceat(chunk_of, starts))
-    return (Pencils(first.astype(np.int64), other.astype(np.int64) * stride, coefficients, layers, stride, chunks, lowest, highest),
-            rank[point] * stride + layer)
+    columns = Pencils(groups, first.astype(np.int64), other.astype(np.int64) * stride, numbers[:, -4:].copy(),
+                      _weights(layers, stride), layers, stride, chunks, lowest, highest)
+    return columns, rank[point] * stride + layer
+
+
+def _weights(layers: int, stride: int) -> np.ndarray:
+    """Part (stride,) of D that each layer has: the end layers have elements on one side only."""
+    weights = zeros((stride,))
+    weights[:layers] = 1.0
+    weights[[0, layers - 1]] = 0.5
+    return weights
 
 
 def _chunks(own: np.ndarray, other: np.ndarray, stride: int) -> np.ndarray:
@@ -124,6 +140,7 @@ def _forbidden(block) -> float:
 
 
 def _numbers(block) -> list[float]:
+    """D, L and O in the order of ``folding.PLACES``, then E xy xz yx zx."""
     d, l, o, e = _parts(block)
     even = [even[i, j] for even in (d, l) for i, j in ((0, 0), (1, 1), (1, 2), (2, 1), (2, 2))]
     return even + [odd[i, j] for odd in (o, e) for i, j in ((0, 1), (0, 2), (1, 0), (2, 0))]

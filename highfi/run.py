@@ -91,7 +91,7 @@ class Loop:
 
     def __init__(self, scene: Scene, system: System, stepping: Stepping, threads: int = 1):
         self.scene, self.system, self.stepping = scene, system, stepping
-        self.team, self.pool = gather(threads, system.rail.pencils.stride if system.rail.pencils else 0), ThreadPoolExecutor(threads)
+        self.team, self.pool = gather(threads), ThreadPoolExecutor(threads)
         self.state, self.active = initial_state(system)
         self.marks = outcome.milestones(scene, system.model)
         self.last = round(scene.duration / scene.output.interval)

@@ -13,7 +13,6 @@ from numba.core import cgutils
 from numba.extending import intrinsic
 
 from highfi.memory import zeros
-from highfi.pencil_kernel import room_for_sums
 from highfi.pencils import LANES
 from scenes.jit import kernel
 
@@ -22,17 +21,16 @@ _PATIENCE = 4000  # looks at the barrier before the processor is offered to othe
 
 
 class Team(NamedTuple):
-    """``size`` threads, the ``counters`` of their barrier, and room of its own for each: ``sums`` of a pencil, (3, LANES) ``lanes``."""
+    """``size`` threads, the ``counters`` of their barrier, and room of its own for each, (3, LANES) ``lanes``."""
 
     size: int
     counters: np.ndarray
-    sums: np.ndarray
     lanes: np.ndarray
 
 
-def gather(size: int, stride: int = 0) -> Team:
-    """A team of ``size`` threads for pencils of ``stride`` nodes, none of them at work yet."""
-    return Team(size, np.zeros(16, dtype=np.int64), room_for_sums(stride, size), zeros((size, 3, LANES)))
+def gather(size: int) -> Team:
+    """A team of ``size`` threads, none of them at work yet."""
+    return Team(size, np.zeros(16, dtype=np.int64), zeros((size, 3, LANES)))
 
 
 def processors() -> int:
