@@ -5,7 +5,7 @@ it hangs on has moved, while that is still in the cache. Chunks that hang on ano
 is cut into slabs along X: elements of two even slabs share no node, nor do those of two odd ones.
 """
 
-from highfi.nodes import move_nodes, turning
+from highfi.nodes import hold, move_nodes, turning
 from highfi.operator import add_internal_force
 from highfi.pencil_kernel import pencil_force
 from highfi.team import meet
@@ -13,11 +13,12 @@ from scenes.jit import kernel
 
 
 @kernel
-def elastic_force(rail, displacement, force, turn, team):
-    """Set ``force`` (n,3) to K u (N), and ``turn`` (b,3) to each block's part of the sum of u x K u (N m); one thread's work."""
+def elastic_force(rail, displacement, force, turn, clamp, team):
+    """Set ``force`` (n,3) to K u (N), zero where clamped, ``turn`` (b,3) and ``clamp`` (b,6) to the parts of each block as in State; one
+    thread's work."""
     _force_of_pencils(rail.pencils, displacement, force)
     _force_of_elements(rail.elements, displacement, force, team.lanes[0])
-    _turn_blocks(rail, displacement, force, turn, 0, 1, team.lanes[0])
+    _sum_blocks(rail, displacement, force, turn, clamp, 0, 1, team.lanes[0])
 
 
 @kernel
@@ -35,9 +36,15 @@ def _force_of_elements(elements, displacement, force, lanes):
 
 
 @kernel
-def _turn_blocks(rail, displacement, force, turn, first, step, lanes):
+def _sum_blocks(rail, displacement, force, turn, clamp, first, step, lanes):
     for block in range(first, turn.shape[0], step):
-        turning(displacement, force, rail.blocks[block], rail.blocks[block + 1], lanes, turn[block])
+        _sum_block(rail, displacement, force, turn, clamp, block, lanes)
+
+
+@kernel
+def _sum_block(rail, displacement, force, turn, clamp, block, lanes):
+    turning(displacement, force, rail.blocks[block], rail.blocks[block + 1], lanes, turn[block])
+    hold(rail, force, rail.held[block], rail.held[block + 1], clamp[block])
 
 
 @kernel
@@ -68,7 +75,7 @@ def _share(pencils, team, thread):
 @kernel
 def _load_chunk(pencils, rail, state, chunk, lanes):
     pencil_force(pencils, state.displacement.T, state.resistance.T, pencils.chunks[chunk], pencils.chunks[chunk + 1])
-    turning(state.displacement, state.resistance, rail.blocks[chunk], rail.blocks[chunk + 1], lanes, state.turning[chunk])
+    _sum_block(rail, state.displacement, state.resistance, state.turning, state.clamping, chunk, lanes)
 
 
 @kernel
@@ -111,4 +118,4 @@ def _load_slabs(elements, rail, state, team, thread):
                 add_internal_force(state.displacement, elements.hexes, elements.shape_class, elements.stiffness, state.resistance,
                                    elements.slabs[slab], elements.slabs[slab + 1], lanes.reshape(lanes.size)[:24])
             meet(team)
-        _turn_blocks(rail, state.displacement, state.resistance, state.turning, thread, team.size, lanes)
+        _sum_blocks(rail, state.displacement, state.resistance, state.turning, state.clamping, thread, team.size, lanes)

@@ -96,11 +96,26 @@ def _add_cross(u, v, w, a, b, c, first, last, lanes):
 
 
 @kernel
+def hold(rail, resistance, first, last, total):
+    """Set ``total`` (6,) to force (N) and moment about the frame's origin (N m) of clamped nodes ``first`` to ``last``, then their
+    resistance to zero."""
+    total[:] = 0.0
+    for k in range(first, last):
+        node = rail.clamped[k]
+        f = triple(resistance[node])
+        moment = rotation.cross(triple(rail.points[node]), f)
+        for i in range(3):
+            total[i] += f[i]
+            total[3 + i] += moment[i]
+            resistance[node, i] = 0.0
+
+
+@kernel
 def follow_frame(rail, state, frame):
-    """Give clamped nodes the frame's own inertial velocity, which friction needs."""
+    """Give clamped nodes of the walls the frame's own inertial velocity, which friction needs."""
     if frame is not None:
         velocity, rate = triple(state.motion), (state.motion[RATE], state.motion[RATE + 1], state.motion[RATE + 2])
-        for node in rail.clamped:
+        for node in rail.walls:
             spin = rotation.cross(rate, (rail.points[node, 0], rail.points[node, 1], rail.points[node, 2]))
             for i in range(3):
                 state.velocity[node, i] = velocity[i] + spin[i]

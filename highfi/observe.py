@@ -12,6 +12,7 @@ import numpy as np
 
 from highfi import records
 from highfi.elastic import elastic_force
+from highfi.memory import zeros
 from scenes import rotation
 
 # Slots of the sample vector.
@@ -63,16 +64,16 @@ def sample(system, team, state: records.State, before: Moving, after: Moving) ->
         row[PLATFORM_RATE:PLATFORM_RATE + 3] = system.frame.inverse_inertia @ (base.T @ middle.platform_spin)
     row[IMPULSE:IMPULSE + 6] = middle.impulse
     row[KINETIC], row[AXIAL_KINETIC] = _kinetic(system, turn, base, before, after)
-    row[STRAIN], row[CONTACT] = _strain(system.rail, state.displacement, state.turning.shape, team), state.load[records.STORED]
+    row[STRAIN], row[CONTACT] = _strain(system.rail, state, team), state.load[records.STORED]
     row[LINEAR:LINEAR + 3], row[ANGULAR:ANGULAR + 3] = _momenta(system, state, base, middle)
     return row
 
 
-def _strain(rail, displacement, turning, team) -> float:
-    force = np.zeros(displacement.shape, order="F")
-    elastic_force(rail, displacement, force, np.empty(turning), team)
+def _strain(rail, state, team) -> float:
+    force = zeros(state.displacement.shape, order="F")
+    elastic_force(rail, state.displacement, force, np.empty_like(state.turning), np.empty_like(state.clamping), team)
     # Not a BLAS product: its threads would wait for each other where several runs share the processor.
-    return 0.5 * float((displacement * force).sum())
+    return 0.5 * float((state.displacement * force).sum())
 
 
 def _kinetic(system, turn, base, before: Moving, after: Moving) -> tuple[float, float]:

@@ -23,7 +23,8 @@ class Elements(NamedTuple):
 
 
 class Rail(NamedTuple):
-    """Constant: points (n,3) m; mass (n,) kg; inverse_mass (n,) 1/kg, zero where clamped; clamped (k,) node numbers; either
+    """Constant: points (n,3) m; mass (n,) kg; inverse_mass (n,) 1/kg, zero where clamped; clamped (k,) node numbers in
+    ascending order, held (b+1,) the first of them in each block, walls (w,) those of them that pads can meet; either
     pencils, of an extruded mesh, or elements, the other one None; blocks (b+1,) first node of each run of nodes that is worked on at
     once, the nodes of a chunk of pencils."""
 
@@ -31,6 +32,8 @@ class Rail(NamedTuple):
     mass: np.ndarray
     inverse_mass: np.ndarray
     clamped: np.ndarray
+    held: np.ndarray
+    walls: np.ndarray
     pencils: Pencils | None
     elements: Elements | None
     blocks: np.ndarray
@@ -79,7 +82,8 @@ class Body(NamedTuple):
 class State(NamedTuple):
     """Evolving. displacement (n,3) m; velocity (n,3) m/s: *inertial* nodal velocity at the half step, resolved in frame axes;
     resistance (n,3) N: K u minus contact, zero where clamped; contact (n,3) N on its way into it, else zero; turning (b,3) N m:
-    parts of the sum of u x K u; reaction (6): force and moment about the frame's origin of minus the resistance of all moving nodes
+    parts of the sum of u x K u; clamping (b,6) parts of force (N) and moment about the frame's origin (N m) of K u on the clamped
+    nodes; reaction (6): force and moment about the frame's origin of minus the resistance of all moving nodes
     (N, N m); motion: what nodes need of frame and gravity in the
     next drift, see MOTION; rail_momentum (3) = sum of m w and rail_moment
     (3) = sum of m (X + u) over moving nodes (kg m/s, kg m); load: see LOAD; work: see WORK; impulse (6) of external forces and
@@ -92,6 +96,7 @@ class State(NamedTuple):
     resistance: np.ndarray
     contact: np.ndarray
     turning: np.ndarray
+    clamping: np.ndarray
     reaction: np.ndarray
     motion: np.ndarray
     rail_momentum: np.ndarray

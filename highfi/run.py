@@ -93,6 +93,7 @@ class Loop:
         self.scene, self.system, self.stepping = scene, system, stepping
         self.team, self.pool = gather(threads), ThreadPoolExecutor(threads)
         self.state, self.active = initial_state(system)
+        self.walls = np.unique(system.surface.facets)
         self.marks = outcome.milestones(scene, system.model)
         self.last = round(scene.duration / scene.output.interval)
         self.end, self.wall, self.cpu = self.last, 0.0, 0.0
@@ -178,8 +179,7 @@ class Loop:
         # Rounding of the large axial work is no fault while nothing has moved sideways yet.
         if loss > _STOP_RATIO * self.scale + 1e-11 * work:
             return f"transverse energy is off by {loss:.3g} J, its scale being {self.scale:.3g} J, {now}"
-        speed = self._approach_speed()
-        if self.system.model.penalty is not None and speed > FASTEST_APPROACH:
+        if self.system.model.penalty is not None and (speed := self._approach_speed()) > FASTEST_APPROACH:
             return f"payload and rails approach at up to {speed:.3g} m/s, contact search allows {FASTEST_APPROACH:g} m/s, {now}"
         limit = (self.stepping.dt_s / self.stepping.dt_limit_s) ** 2 + 0.5 * self.damping
         if limit > 1.0:
@@ -187,13 +187,13 @@ class Loop:
         return ""
 
     def _approach_speed(self) -> float:
-        """Bound (m/s) of the speed across the rail at which any pad and any node can approach each other now."""
+        """Bound (m/s) of the speed across the rail at which any pad and any node of the walls can approach each other now."""
         state, payload = self.state, self.system.model.payload
         spin = np.linalg.norm(payload.inverse_inertia, 2) * np.linalg.norm(state.payload.spin)
         reach = np.linalg.norm(self.system.faces.centre, axis=1).max()
         turn = rotation.matrices(state.platform.quaternion[None])[0]
         across = (state.payload.velocity @ turn)[1:]
-        return float(np.linalg.norm(state.velocity[:, 1:] - across, axis=1).max() + spin * reach)
+        return float(np.linalg.norm(state.velocity[self.walls, 1:] - across, axis=1).max() + spin * reach)
 
     def _motion(self) -> outcome.Motion:
         return samples.motion(np.array(self.rows), self.scene.output.interval, self.system.body_offset)

@@ -29,32 +29,21 @@ from scenes.jit import kernel
 @kernel
 def evaluate(rail, surface, faces, payload, frame, penalty, friction, state, active, team, dt):
     """All forces at the present places, by one thread."""
-    elastic_force(rail, state.displacement, state.resistance, state.turning, team)
+    elastic_force(rail, state.displacement, state.resistance, state.turning, state.clamping, team)
     contact_forces(rail, surface, faces, penalty, friction, state, active, seen_from_frame(state, payload, frame), dt)
     collect(rail, penalty, state, active)
 
 
 @kernel
 def collect(rail, penalty, state, active):
-    """Clamp, then sum up: ``state.reaction``, and contact into the resistance."""
-    force, moment = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+    """Sum up: ``state.reaction``, and contact into the resistance."""
+    state.reaction[:] = 0.0
     for part in range(state.turning.shape[0]):
-        moment = _less(moment, triple(state.turning[part]))
-    for node in rail.clamped:
-        f = triple(state.resistance[node])
-        force = _plus(force, f)
-        moment = _plus(moment, rotation.cross(triple(rail.points[node]), f))
         for i in range(3):
-            state.resistance[node, i] = 0.0
-    for i in range(3):
-        state.reaction[i], state.reaction[3 + i] = force[i], moment[i]
+            state.reaction[i] += state.clamping[part, i]
+            state.reaction[3 + i] += state.clamping[part, 3 + i] - state.turning[part, i]
     if penalty is not None:
         collect_contact(touched(rail, state), active)
-
-
-@kernel
-def _plus(a, b):
-    return (a[0] + b[0], a[1] + b[1], a[2] + b[2])
 
 
 @kernel

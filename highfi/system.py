@@ -54,6 +54,7 @@ def build(scene: Scene, numerics: Numerics, mesh: RailMesh) -> System:
     masses = np.where(rail.inverse_mass > 0.0, rail.mass, 0.0)
     surfaces = {name: number[facets] for name, facets in mesh.surfaces.items()}
     gauss = surface.build(surfaces, rail.points, faces, numerics.points_per_edge())
+    rail = rail._replace(walls=np.intersect1d(rail.clamped, gauss.facets))
     drive = records.Drive(model.thrust_arm, model.reacts_on_platform, float(moving.sum()))
     return System(model, mesh, operator, number, rail, masses, gauss, faces, frame, drive, origin, offset)
 
@@ -71,7 +72,9 @@ def _rail(points: np.ndarray, operator: assembly.Operator) -> tuple[records.Rail
         elements, blocks = general_elements(points, operator), np.append(np.arange(0, size, pencils.CHUNK), size)
     else:
         blocks = columns.chunks * columns.stride
-    return records.Rail(place, mass, inverse, number[~operator.free], columns, elements, blocks), number
+    clamped = np.sort(number[~operator.free])
+    held = np.searchsorted(clamped, blocks)
+    return records.Rail(place, mass, inverse, clamped, held, clamped[:0], columns, elements, blocks), number
 
 
 def general_elements(points: np.ndarray, operator: assembly.Operator) -> records.Elements:
@@ -123,7 +126,7 @@ def initial_state(system: System) -> tuple[records.State, records.Active]:
     count = system.faces.axis.size
     parts = system.rail.blocks.size - 1
     state = records.State(payload, platform, zeros(nodes, order="F"), velocity, zeros(nodes, order="F"), np.zeros(nodes),
-                          np.zeros((parts, 3)), np.zeros(6), np.zeros(records.MOTION_SIZE), system.moving_mass @ velocity,
+                          np.zeros((parts, 3)), np.zeros((parts, 6)), np.zeros(6), np.zeros(records.MOTION_SIZE), system.moving_mass @ velocity,
                           system.moving_mass @ system.rail.points, np.zeros(records.LOAD_SIZE), np.zeros(records.WORK_SIZE),
                           np.zeros(6), np.zeros((count, 3)))
     room, size = surface.capacity(system.surface), nodes[0]
