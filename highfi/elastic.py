@@ -16,35 +16,37 @@ from scenes.jit import kernel
 def elastic_force(rail, displacement, force, turn, clamp, team):
     """Set ``force`` (n,3) to K u (N), zero where clamped, ``turn`` (b,3) and ``clamp`` (b,6) to the parts of each block as in State; one
     thread's work."""
-    _force_of_pencils(rail.pencils, displacement, force)
-    _force_of_elements(rail.elements, displacement, force, team.lanes[0])
-    _sum_blocks(rail, displacement, force, turn, clamp, 0, 1, team.lanes[0])
+    for chunk in range(turn.shape[0]):
+        _force_of_chunk(rail.pencils, displacement, force, chunk, turn, team.lanes[0])
+    _force_of_elements(rail.elements, rail, displacement, force, turn, team.lanes[0])
+    _hold_blocks(rail, force, clamp, 0, 1)
 
 
 @kernel
-def _force_of_pencils(pencils, displacement, force):
+def _force_of_chunk(pencils, displacement, force, chunk, turn, lanes):
     if pencils is not None:
-        pencil_force(pencils, displacement.T, force.T, 0, pencils.first.size - 1)
+        pencil_force(pencils, displacement.T, force.T, pencils.chunks[chunk], pencils.chunks[chunk + 1], lanes, turn[chunk])
 
 
 @kernel
-def _force_of_elements(elements, displacement, force, lanes):
+def _force_of_elements(elements, rail, displacement, force, turn, lanes):
     if elements is not None:
         force[:] = 0.0
         add_internal_force(displacement, elements.hexes, elements.shape_class, elements.stiffness, force, 0, elements.hexes.shape[0],
                            lanes.reshape(lanes.size)[:24])
+        _turn_blocks(rail, displacement, force, turn, 0, 1, lanes)
 
 
 @kernel
-def _sum_blocks(rail, displacement, force, turn, clamp, first, step, lanes):
+def _turn_blocks(rail, displacement, force, turn, first, step, lanes):
     for block in range(first, turn.shape[0], step):
-        _sum_block(rail, displacement, force, turn, clamp, block, lanes)
+        turning(displacement, force, rail.blocks[block], rail.blocks[block + 1], lanes, turn[block])
 
 
 @kernel
-def _sum_block(rail, displacement, force, turn, clamp, block, lanes):
-    turning(displacement, force, rail.blocks[block], rail.blocks[block + 1], lanes, turn[block])
-    hold(rail, force, rail.held[block], rail.held[block + 1], clamp[block])
+def _hold_blocks(rail, force, clamp, first, step):
+    for block in range(first, clamp.shape[0], step):
+        hold(rail, force, rail.held[block], rail.held[block + 1], clamp[block])
 
 
 @kernel
@@ -74,8 +76,8 @@ def _share(pencils, team, thread):
 
 @kernel
 def _load_chunk(pencils, rail, state, chunk, lanes):
-    pencil_force(pencils, state.displacement.T, state.resistance.T, pencils.chunks[chunk], pencils.chunks[chunk + 1])
-    _sum_block(rail, state.displacement, state.resistance, state.turning, state.clamping, chunk, lanes)
+    _force_of_chunk(pencils, state.displacement, state.resistance, chunk, state.turning, lanes)
+    hold(rail, state.resistance, rail.held[chunk], rail.held[chunk + 1], state.clamping[chunk])
 
 
 @kernel
@@ -118,4 +120,5 @@ def _load_slabs(elements, rail, state, team, thread):
                 add_internal_force(state.displacement, elements.hexes, elements.shape_class, elements.stiffness, state.resistance,
                                    elements.slabs[slab], elements.slabs[slab + 1], lanes.reshape(lanes.size)[:24])
             meet(team)
-        _sum_blocks(rail, state.displacement, state.resistance, state.turning, state.clamping, thread, team.size, lanes)
+        _turn_blocks(rail, state.displacement, state.resistance, state.turning, thread, team.size, lanes)
+        _hold_blocks(rail, state.resistance, state.clamping, thread, team.size)

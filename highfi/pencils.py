@@ -29,7 +29,7 @@ _ODD = 1e-9  # relative size of the blocks that the mirror symmetry forbids
 
 class Pencils(NamedTuple):
     """groups of neighbours, members by the number of their first node, with D, L and O; for the end layers first (s+1,), neighbour
-    (q,) number of the first node and ends (q,4) N/m, E xy xz yx zx; weights (stride,) of D in each layer; layers n and stride, the
+    (q,) number of the first node and ends (q,4) N/m, E xy xz yx zx; weights (stride + LANES,) of D in each layer; layers n and stride, the
     padded length of a pencil; chunks (c+1,) first pencil of each bundle that is worked on at once, with the lowest (c,) chunk that it
     hangs on, and the highest (c,) that it or one before does."""
 
@@ -73,8 +73,8 @@ def find(points: np.ndarray, operator: Operator) -> tuple[Pencils, np.ndarray] |
 
 
 def _weights(layers: int, stride: int) -> np.ndarray:
-    """Part (stride,) of D that each layer has: the end layers have elements on one side only."""
-    weights = zeros((stride,))
+    """Part (stride + LANES,) of D that each layer has: the end layers have elements on one side only. Zeros beyond."""
+    weights = zeros((stride + LANES,))
     weights[:layers] = 1.0
     weights[[0, layers - 1]] = 0.5
     return weights

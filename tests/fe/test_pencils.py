@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from highfi import assembly, folding, pencils
+from highfi.memory import zeros
 from highfi.mesh import read
 from highfi.operator import internal_force
 from highfi.pencil_kernel import pencil_force
@@ -42,7 +43,9 @@ def both_forces(mesh):
     size = -(-(number.max() + 1) // pencils.LANES) * pencils.LANES
     padded, force = np.zeros((3, size)), np.zeros((3, size))
     padded[:, number] = displacement.T
-    pencil_force(columns, padded, force, 0, columns.first.size - 1)
+    turn = np.zeros(3)
+    pencil_force(columns, padded, force, 0, columns.first.size - 1, zeros((3, pencils.LANES)), turn)
+    assert np.abs(turn - np.cross(displacement, expected).sum(axis=0)).max() <= 1e-12 * np.abs(displacement * expected).sum()
     return force, number, expected
 
 
