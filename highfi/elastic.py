@@ -5,6 +5,7 @@ it hangs on has moved, while that is still in the cache. Chunks that hang on ano
 is cut into slabs along X: elements of two even slabs share no node, nor do those of two odd ones.
 """
 
+from highfi.damping import add_damping
 from highfi.nodes import move_nodes, turning
 from highfi.operator import add_internal_force
 from highfi.pencil_kernel import pencil_force
@@ -52,10 +53,10 @@ def move_and_load(rail, frame, state, team, thread, dt):
 
 
 @kernel
-def finish_load(rail, state, team, thread):
+def finish_load(rail, state, team, thread, dt):
     """What could not be computed before all nodes had moved."""
-    _load_borders(rail.pencils, rail, state, team, thread)
-    _load_slabs(rail.elements, rail, state, team, thread)
+    _load_borders(rail.pencils, rail, state, team, thread, dt)
+    _load_slabs(rail.elements, rail, state, team, thread, dt)
 
 
 @kernel
@@ -66,8 +67,9 @@ def _share(pencils, team, thread):
 
 
 @kernel
-def _load_chunk(pencils, rail, state, chunk, sums, lanes):
+def _load_chunk(pencils, rail, state, chunk, sums, lanes, dt):
     pencil_force(pencils, state.displacement.T, state.resistance.T, pencils.chunks[chunk], pencils.chunks[chunk + 1], sums)
+    add_damping(rail.damping, state.history, rail, state, chunk, dt, lanes)
     turning(state.displacement, state.resistance, rail.blocks[chunk], rail.blocks[chunk + 1], lanes, state.turning[chunk])
 
 
@@ -81,17 +83,17 @@ def _sweep_pencils(pencils, rail, frame, state, team, thread, dt):
             move_nodes(rail, frame, state, dt, rail.blocks[chunk], rail.blocks[chunk + 1])
             while following < last and pencils.highest[following] <= chunk:
                 if pencils.lowest[following] >= first:
-                    _load_chunk(pencils, rail, state, following, sums, lanes)
+                    _load_chunk(pencils, rail, state, following, sums, lanes, dt)
                 following += 1
 
 
 @kernel
-def _load_borders(pencils, rail, state, team, thread):
+def _load_borders(pencils, rail, state, team, thread, dt):
     if pencils is not None:
         first, last = _share(pencils, team, thread)
         for chunk in range(first, last):
             if pencils.lowest[chunk] < first or pencils.highest[chunk] >= last:
-                _load_chunk(pencils, rail, state, chunk, team.sums[thread], team.lanes[thread])
+                _load_chunk(pencils, rail, state, chunk, team.sums[thread], team.lanes[thread], dt)
 
 
 @kernel
@@ -104,7 +106,7 @@ def _move_blocks(elements, rail, frame, state, team, thread, dt):
 
 
 @kernel
-def _load_slabs(elements, rail, state, team, thread):
+def _load_slabs(elements, rail, state, team, thread, dt):
     if elements is not None:
         lanes = team.lanes[thread]
         for parity in range(2):
@@ -112,4 +114,6 @@ def _load_slabs(elements, rail, state, team, thread):
                 add_internal_force(state.displacement, elements.hexes, elements.shape_class, elements.stiffness, state.resistance,
                                    elements.slabs[slab], elements.slabs[slab + 1], lanes.reshape(lanes.size)[:24])
             meet(team)
+        for block in range(thread, state.turning.shape[0], team.size):
+            add_damping(rail.damping, state.history, rail, state, block, dt, lanes)
         _turn_blocks(rail, state.displacement, state.resistance, state.turning, thread, team.size, lanes)

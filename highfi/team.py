@@ -22,7 +22,7 @@ _PATIENCE = 4000  # looks at the barrier before the processor is offered to othe
 
 
 class Team(NamedTuple):
-    """``size`` threads, the ``counters`` of their barrier, and room of its own for each: ``sums`` of a pencil, (3, LANES) ``lanes``."""
+    """``size`` threads, the ``counters`` of their barrier, and room of its own for each: ``sums`` of a pencil, (4, LANES) ``lanes``."""
 
     size: int
     counters: np.ndarray
@@ -32,7 +32,7 @@ class Team(NamedTuple):
 
 def gather(size: int, stride: int = 0) -> Team:
     """A team of ``size`` threads for pencils of ``stride`` nodes, none of them at work yet."""
-    return Team(size, np.zeros(16, dtype=np.int64), room_for_sums(stride, size), zeros((size, 3, LANES)))
+    return Team(size, np.zeros(16, dtype=np.int64), room_for_sums(stride, size), zeros((size, 4, LANES)))
 
 
 def processors() -> int:
