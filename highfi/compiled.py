@@ -10,7 +10,7 @@ from scenes.scene import Scene
 
 # A function that only this effect calls.
 LAWS = {"contact": "_press", "friction": "coefficient_over_speed", "gravity": "_add_weight",
-        "platform": "_move_in_frame", "thrust_offset": "_offset_line"}
+        "platform": "_move_in_frame", "rail.damping": "_damp_component", "thrust_offset": "_offset_line"}
 
 
 def compiled_effects(scene: Scene, numerics: Numerics | None = None) -> dict[str, bool]:

@@ -5,6 +5,7 @@ it hangs on has moved, while that is still in the cache. Chunks that hang on ano
 is cut into slabs along X: elements of two even slabs share no node, nor do those of two odd ones.
 """
 
+from highfi.damping import add_damping
 from highfi.nodes import hold, move_nodes, turning
 from highfi.operator import add_internal_force
 from highfi.pencil_kernel import pencil_force
@@ -13,13 +14,11 @@ from scenes.jit import kernel
 
 
 @kernel
-def elastic_force(rail, displacement, force, turn, clamp, team):
-    """Set ``force`` (n,3) to K u (N), zero where clamped, ``turn`` (b,3) and ``clamp`` (b,6) to the parts of each block as in State; one
-    thread's work."""
+def elastic_force(rail, displacement, force, turn, team):
+    """Set ``force`` (n,3) to K u (N), and ``turn`` (b,3) to each block's part of the sum of u x K u (N m); one thread's work."""
     for chunk in range(turn.shape[0]):
         _force_of_chunk(rail.pencils, displacement, force, chunk, turn, team.lanes[0])
     _force_of_elements(rail.elements, rail, displacement, force, turn, team.lanes[0])
-    _hold_blocks(rail, force, clamp, 0, 1)
 
 
 @kernel
@@ -44,9 +43,10 @@ def _turn_blocks(rail, displacement, force, turn, first, step, lanes):
 
 
 @kernel
-def _hold_blocks(rail, force, clamp, first, step):
-    for block in range(first, clamp.shape[0], step):
-        hold(rail, force, rail.held[block], rail.held[block + 1], clamp[block])
+def hold_blocks(rail, state, first, step):
+    """Move the resistance of clamped nodes into ``state.clamping``, every ``step`` blocks from ``first`` on."""
+    for block in range(first, state.clamping.shape[0], step):
+        hold(rail, state.resistance, rail.held[block], rail.held[block + 1], state.clamping[block])
 
 
 @kernel
@@ -61,10 +61,10 @@ def move_and_load(rail, frame, state, team, thread, dt):
 
 
 @kernel
-def finish_load(rail, state, team, thread):
+def finish_load(rail, state, team, thread, dt):
     """What could not be computed before all nodes had moved."""
-    _load_borders(rail.pencils, rail, state, team, thread)
-    _load_slabs(rail.elements, rail, state, team, thread)
+    _load_borders(rail.pencils, rail, state, team, thread, dt)
+    _load_slabs(rail.elements, rail, state, team, thread, dt)
 
 
 @kernel
@@ -75,9 +75,17 @@ def _share(pencils, team, thread):
 
 
 @kernel
-def _load_chunk(pencils, rail, state, chunk, lanes):
+def _load_chunk(pencils, rail, state, chunk, lanes, dt):
     _force_of_chunk(pencils, state.displacement, state.resistance, chunk, state.turning, lanes)
+    _damp(rail.damping, rail, state, chunk, dt, lanes)
     hold(rail, state.resistance, rail.held[chunk], rail.held[chunk + 1], state.clamping[chunk])
+
+
+@kernel
+def _damp(damping, rail, state, block, dt, lanes):
+    if damping is not None:
+        add_damping(damping, state.history, rail, state, block, dt, lanes)
+        turning(state.displacement, state.resistance, rail.blocks[block], rail.blocks[block + 1], lanes, state.turning[block])
 
 
 @kernel
@@ -89,17 +97,17 @@ def _sweep_pencils(pencils, rail, frame, state, team, thread, dt):
             move_nodes(rail, frame, state, dt, rail.blocks[chunk], rail.blocks[chunk + 1])
             while following < last and pencils.highest[following] <= chunk:
                 if pencils.lowest[following] >= first:
-                    _load_chunk(pencils, rail, state, following, team.lanes[thread])
+                    _load_chunk(pencils, rail, state, following, team.lanes[thread], dt)
                 following += 1
 
 
 @kernel
-def _load_borders(pencils, rail, state, team, thread):
+def _load_borders(pencils, rail, state, team, thread, dt):
     if pencils is not None:
         first, last = _share(pencils, team, thread)
         for chunk in range(first, last):
             if pencils.lowest[chunk] < first or pencils.highest[chunk] >= last:
-                _load_chunk(pencils, rail, state, chunk, team.lanes[thread])
+                _load_chunk(pencils, rail, state, chunk, team.lanes[thread], dt)
 
 
 @kernel
@@ -112,7 +120,7 @@ def _move_blocks(elements, rail, frame, state, team, thread, dt):
 
 
 @kernel
-def _load_slabs(elements, rail, state, team, thread):
+def _load_slabs(elements, rail, state, team, thread, dt):
     if elements is not None:
         lanes = team.lanes[thread]
         for parity in range(2):
@@ -121,4 +129,6 @@ def _load_slabs(elements, rail, state, team, thread):
                                    elements.slabs[slab], elements.slabs[slab + 1], lanes.reshape(lanes.size)[:24])
             meet(team)
         _turn_blocks(rail, state.displacement, state.resistance, state.turning, thread, team.size, lanes)
-        _hold_blocks(rail, state.resistance, state.clamping, thread, team.size)
+        for block in range(thread, state.turning.shape[0], team.size):
+            _damp(rail.damping, rail, state, block, dt, lanes)
+        hold_blocks(rail, state, thread, team.size)

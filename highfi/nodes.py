@@ -74,7 +74,7 @@ def _move_in_frame(x, y, z, inverse_mass, u, v, w, p, q, r, a, b, c, motion, dt,
 def turning(displacement, resistance, first, last, lanes, total):
     """Set ``total`` (3,) to the sum of u x r over nodes ``first`` to ``last``, whole vectors of them (N m).
 
-    ``lanes`` (3, LANES) is room for sums taken lane by lane, in an order that does not hang on who computes them.
+    ``lanes`` (3 or more, LANES) is room for sums taken lane by lane, in an order that does not hang on who computes them.
     """
     u, f = displacement.T, resistance.T
     lanes[:] = 0.0

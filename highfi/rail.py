@@ -23,7 +23,7 @@ def geometry(scene: Scene) -> l_rail.LRailGeometry | str:
     """
     if isinstance(scene.rail, SectionTable):
         return _l_section(scene)
-    return content_hash(scene.rail.model_dump(mode="json") | scene.rail.contents())
+    return content_hash(scene.rail.model_dump(mode="json", exclude={"damping"}) | scene.rail.contents())
 
 
 def make_mesh(scene: Scene, element_size: float) -> RailMesh:

@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from highfi.pencils import Pencils
+from scenes.effects.structural_damping import Damping
 
 
 class Elements(NamedTuple):
@@ -26,7 +27,7 @@ class Rail(NamedTuple):
     """Constant: points (n,3) m; mass (n,) kg; inverse_mass (n,) 1/kg, zero where clamped; clamped (k,) node numbers in
     ascending order, held (b+1,) the first of them in each block, walls (w,) those of them that pads can meet; either
     pencils, of an extruded mesh, or elements, the other one None; blocks (b+1,) first node of each run of nodes that is worked on at
-    once, the nodes of a chunk of pencils."""
+    once, the nodes of a chunk of pencils; damping, None where the scene has none."""
 
     points: np.ndarray
     mass: np.ndarray
@@ -37,6 +38,7 @@ class Rail(NamedTuple):
     pencils: Pencils | None
     elements: Elements | None
     blocks: np.ndarray
+    damping: Damping | None
 
 
 class Surface(NamedTuple):
@@ -79,15 +81,27 @@ class Body(NamedTuple):
     spin: np.ndarray
 
 
+class History(NamedTuple):
+    """Evolving, with structural damping only: what one step leaves to the next. elastic (n,3) N: K u; displacement (n,3) m; force
+    (n,3) N: what damping adds to the resistance; and of each block drag (b,6): force and moment, about the frame's origin and at the
+    undeformed places, of the part proportional to mass (N, N m); loss (b,) J: energy taken over the step."""
+
+    elastic: np.ndarray
+    displacement: np.ndarray
+    force: np.ndarray
+    drag: np.ndarray
+    loss: np.ndarray
+
+
 class State(NamedTuple):
     """Evolving. displacement (n,3) m; velocity (n,3) m/s: *inertial* nodal velocity at the half step, resolved in frame axes;
-    resistance (n,3) N: K u minus contact, zero where clamped; contact (n,3) N on its way into it, else zero; turning (b,3) N m:
-    parts of the sum of u x K u; clamping (b,6) parts of force (N) and moment about the frame's origin (N m) of K u on the clamped
-    nodes; reaction (6): force and moment about the frame's origin of minus the resistance of all moving nodes
+    resistance (n,3) N: K u and damping minus contact, zero where clamped; contact (n,3) N on its way into it, else zero; turning
+    (b,3) N m: parts of the sum of u x resistance before contact; clamping (b,6) parts of its force (N) and moment about the frame's
+    origin (N m) on the clamped nodes; reaction (6): force and moment about the frame's origin of minus the resistance of all moving nodes
     (N, N m); motion: what nodes need of frame and gravity in the
     next drift, see MOTION; rail_momentum (3) = sum of m w and rail_moment
     (3) = sum of m (X + u) over moving nodes (kg m/s, kg m); load: see LOAD; work: see WORK; impulse (6) of external forces and
-    moments about the scene origin (N s, N m s); face_force (f,3) N on the payload in frame axes."""
+    moments about the scene origin (N s, N m s); face_force (f,3) N on the payload in frame axes; history, None without damping."""
 
     payload: Body
     platform: Body
@@ -105,6 +119,7 @@ class State(NamedTuple):
     work: np.ndarray
     impulse: np.ndarray
     face_force: np.ndarray
+    history: History | None
 
 
 class Active(NamedTuple):
@@ -137,5 +152,6 @@ FRAME_VELOCITY, TURN, RATE, PULL = 0, 3, 12, 15
 MOTION_SIZE = 18
 
 # Slots of State.work (J).
-THRUST, GRAVITY, FRICTION, RELEASED, THRUST_AXIAL, GRAVITY_AXIAL, FRICTION_AXIAL, CONTACT_AXIAL = range(8)
-WORK_SIZE = 8
+(THRUST, GRAVITY, FRICTION, RELEASED, THRUST_AXIAL, GRAVITY_AXIAL, FRICTION_AXIAL, CONTACT_AXIAL,
+ STRUCTURAL_DAMPING) = range(9)
+WORK_SIZE = 9

@@ -181,8 +181,7 @@ class Loop:
             return f"transverse energy is off by {loss:.3g} J, its scale being {self.scale:.3g} J, {now}"
         if self.system.model.penalty is not None and (speed := self._approach_speed()) > FASTEST_APPROACH:
             return f"payload and rails approach at up to {speed:.3g} m/s, contact search allows {FASTEST_APPROACH:g} m/s, {now}"
-        limit = (self.stepping.dt_s / self.stepping.dt_limit_s) ** 2 + 0.5 * self.damping
-        if limit > 1.0:
+        if self.stepping.used() + 0.5 * self.damping > 1.0:
             return f"friction damps nodes faster than the step of {self.stepping.dt_s:.4g} s can follow, {now}; lower safety"
         return ""
 

@@ -26,10 +26,11 @@ def ledgers(samples: np.ndarray, work: np.ndarray) -> tuple[np.ndarray, np.ndarr
     zero = np.zeros(len(samples))
     kinetic, axial = samples[:, observe.KINETIC], samples[:, observe.AXIAL_KINETIC]
     strain, stored = samples[:, observe.STRAIN], samples[:, observe.CONTACT]
-    w = {name: work[:, getattr(records, name)] for name in ("THRUST", "GRAVITY", "FRICTION", "RELEASED", "THRUST_AXIAL",
-                                                            "GRAVITY_AXIAL", "FRICTION_AXIAL", "CONTACT_AXIAL")}
+    w = {name: work[:, getattr(records, name)] for name in ("THRUST", "GRAVITY", "FRICTION", "STRUCTURAL_DAMPING", "RELEASED",
+                                                            "THRUST_AXIAL", "GRAVITY_AXIAL", "FRICTION_AXIAL", "CONTACT_AXIAL")}
     total = {"thrust": w["THRUST"], "gravity": w["GRAVITY"], "kinetic": kinetic, "strain": strain, "contact_stored": stored,
-             "friction": w["FRICTION"], "released": w["RELEASED"]}
+             "friction": w["FRICTION"], "structural_damping": w["STRUCTURAL_DAMPING"], "released": w["RELEASED"]}
+    # Structural damping acts between parts of one body, platform with rails: it has no resultant, and so no axial part.
     across = total | {"thrust": w["THRUST"] - w["THRUST_AXIAL"], "gravity": w["GRAVITY"] - w["GRAVITY_AXIAL"],
                       "kinetic": kinetic - axial, "friction": w["FRICTION"] - w["FRICTION_AXIAL"],
                       "contact_axial": w["CONTACT_AXIAL"]}

@@ -2,20 +2,22 @@
 
 At time n places and forces are known and velocities stand at n - 1/2. One step is: kick ``v += dt f/m``, drift (``pose``), forces::
 
-    rail node   w += dt f / m                    f = -K u + contact
+    rail node   w += dt f / m                    f = -K u - damping + contact
     payload     v += dt F / m,  h += dt M
     platform    P += dt (F_c - sum f),  spin += dt (T_c - sum (X + u) x f)      sums over the moving nodes
 
 The platform's share is the elastic force at the clamps in its variational form: the force and moment that the strain energy
 u'Ku/2 exerts on the frame when the nodes stay where they are in space. With it linear *and* angular momentum are exact; the sum of
 clamp forces alone would lose sum u x f. F_c and T_c are contact on all rail nodes, clamped or not. As K u has no resultant and no
-moment about the undeformed places, both sums need the dense nodal arrays for u x K u only.
+moment about the undeformed places, both sums need the dense nodal arrays for u x K u only. The same holds for the part
+of structural damping (``damping``) that is proportional to K; the part proportional to mass is summed node by node.
 
 Nodes are moved and loaded by all threads of the team; the first one does the bodies before and contact after.
 """
 
 from highfi.contact import collect_contact, contact_forces, touched
-from highfi.elastic import elastic_force, finish_load, move_and_load
+from highfi.damping import begin_damping, collect_damping
+from highfi.elastic import elastic_force, finish_load, hold_blocks, move_and_load
 from highfi.loads import add_external_impulse, add_work, pull_on_nodes, thrust_load
 from highfi.nodes import follow_frame
 from highfi.pose import drift_body, seen_from_frame, small_turn, triple
@@ -28,8 +30,10 @@ from scenes.jit import kernel
 
 @kernel
 def evaluate(rail, surface, faces, payload, frame, penalty, friction, state, active, team, dt):
-    """All forces at the present places, by one thread."""
-    elastic_force(rail, state.displacement, state.resistance, state.turning, state.clamping, team)
+    """All forces at the present places of rails at rest in their frame, by one thread."""
+    elastic_force(rail, state.displacement, state.resistance, state.turning, team)
+    begin_damping(state.history, state)
+    hold_blocks(rail, state, 0, 1)
     contact_forces(rail, surface, faces, penalty, friction, state, active, seen_from_frame(state, payload, frame), dt)
     collect(rail, penalty, state, active)
 
@@ -42,6 +46,7 @@ def collect(rail, penalty, state, active):
         for i in range(3):
             state.reaction[i] += state.clamping[part, i]
             state.reaction[3 + i] += state.clamping[part, 3 + i] - state.turning[part, i]
+    collect_damping(state.history, state)
     if penalty is not None:
         collect_contact(touched(rail, state), active)
 
@@ -158,7 +163,7 @@ def advance(rail, surface, faces, payload, frame, drive, pulses, curve, offset, 
             follow_frame(rail, state, frame)
             pose = seen_from_frame(state, payload, frame)
             contact_forces(rail, surface, faces, penalty, friction, state, active, pose, dt)
-        finish_load(rail, state, team, thread)
+        finish_load(rail, state, team, thread, dt)
         meet(team)
         if thread == 0:
             collect(rail, penalty, state, active)

@@ -3,11 +3,10 @@
 The limit comes from the assembled rail, whose highest frequency lies well below that of its worst element.
 """
 
-import math
 from dataclasses import asdict, dataclass
 
 from highfi import timestep
-from highfi.limits import contact_frequency_squared
+from highfi.limits import contact_frequency_squared, damping_ratio, step_limit, used
 from highfi.numerics import Numerics
 from highfi.system import System
 from scenes.scene import Scene
@@ -15,17 +14,22 @@ from scenes.scene import Scene
 
 @dataclass(frozen=True)
 class Stepping:
-    """``dt_s`` the step, ``dt_limit_s`` the critical step with contact, ``dt_element_s`` what it would be by the elements' own
-    frequencies, ``safety`` asked for, ``steps_per_sample``."""
+    """``dt_s`` the step, ``dt_limit_s`` the critical step with contact and damping, ``dt_element_s`` what it would be by the
+    elements' own frequencies, ``safety`` asked for, ``steps_per_sample``, ``damping_ratio`` at the highest frequency."""
 
     dt_s: float
     dt_limit_s: float
     dt_element_s: float
     safety: float
     steps_per_sample: int
+    damping_ratio: float
 
     def as_dict(self) -> dict:
         return asdict(self)
+
+    def used(self) -> float:
+        """What the step takes of the stability condition in ``limits``, where the critical step takes 1."""
+        return used(self.dt_s, self.dt_limit_s, self.damping_ratio)
 
 
 def choose(system: System, scene: Scene, numerics: Numerics) -> Stepping:
@@ -34,6 +38,8 @@ def choose(system: System, scene: Scene, numerics: Numerics) -> Stepping:
     by_elements = timestep.element_bound(system.operator)
     # A rail held everywhere has no frequency of its own.
     assembled = timestep.operator_bound(system.operator).upper if system.operator.free.any() else by_elements
-    limit, by_elements = (timestep.critical_step(math.sqrt(rail**2 + contact)) for rail in (assembled, by_elements))
+    damping = system.rail.damping
+    limit, by_elements = (step_limit(damping, rail, contact) for rail in (assembled, by_elements))
     step = timestep.choose_step(limit, numerics.safety, scene.output.interval, numerics.step)
-    return Stepping(step, limit, by_elements, numerics.safety, round(scene.output.interval / step))
+    return Stepping(step, limit, by_elements, numerics.safety, round(scene.output.interval / step),
+                    damping_ratio(damping, assembled, contact))

@@ -11,6 +11,7 @@ from highfi.numerics import Numerics
 from scenes import model as scene_model
 from scenes import rotation
 from scenes.body import tensor
+from scenes.effects.structural_damping import Damping
 from scenes.faults import Fault, SceneError
 from scenes.scene import Scene
 
@@ -50,7 +51,8 @@ def build(scene: Scene, numerics: Numerics, mesh: RailMesh) -> System:
         offset = np.array(model.platform.mass_centre) - origin
     # The model counts walls from the platform's mass centre, the loop from the frame's origin.
     faces = model.faces._replace(wall=model.faces.wall + offset[model.faces.axis])
-    rail, number = _rail(mesh.points - origin, operator)
+    damping = scene.rail.damping.record() if scene.rail.damping else None
+    rail, number = _rail(mesh.points - origin, operator, damping)
     masses = np.where(rail.inverse_mass > 0.0, rail.mass, 0.0)
     surfaces = {name: number[facets] for name, facets in mesh.surfaces.items()}
     gauss = surface.build(surfaces, rail.points, faces, numerics.points_per_edge())
@@ -59,7 +61,7 @@ def build(scene: Scene, numerics: Numerics, mesh: RailMesh) -> System:
     return System(model, mesh, operator, number, rail, masses, gauss, faces, frame, drive, origin, offset)
 
 
-def _rail(points: np.ndarray, operator: assembly.Operator) -> tuple[records.Rail, np.ndarray]:
+def _rail(points: np.ndarray, operator: assembly.Operator, damping: Damping | None) -> tuple[records.Rail, np.ndarray]:
     """Nodal arrays in the loop's own numbering, and the number (n,) of each mesh node in it."""
     found = pencils.find(points, operator)
     columns, number = found if found else (None, np.arange(len(points)))
@@ -74,7 +76,7 @@ def _rail(points: np.ndarray, operator: assembly.Operator) -> tuple[records.Rail
         blocks = columns.chunks * columns.stride
     clamped = np.sort(number[~operator.free])
     held = np.searchsorted(clamped, blocks)
-    return records.Rail(place, mass, inverse, clamped, held, clamped[:0], columns, elements, blocks), number
+    return records.Rail(place, mass, inverse, clamped, held, clamped[:0], columns, elements, blocks, damping), number
 
 
 def general_elements(points: np.ndarray, operator: assembly.Operator) -> records.Elements:
@@ -126,11 +128,17 @@ def initial_state(system: System) -> tuple[records.State, records.Active]:
     count = system.faces.axis.size
     parts = system.rail.blocks.size - 1
     state = records.State(payload, platform, zeros(nodes, order="F"), velocity, zeros(nodes, order="F"), np.zeros(nodes),
-                          np.zeros((parts, 3)), np.zeros((parts, 6)), np.zeros(6), np.zeros(records.MOTION_SIZE), system.moving_mass @ velocity,
-                          system.moving_mass @ system.rail.points, np.zeros(records.LOAD_SIZE), np.zeros(records.WORK_SIZE),
-                          np.zeros(6), np.zeros((count, 3)))
+                          np.zeros((parts, 3)), np.zeros((parts, 6)), np.zeros(6), np.zeros(records.MOTION_SIZE),
+                          system.moving_mass @ velocity, system.moving_mass @ system.rail.points, np.zeros(records.LOAD_SIZE), np.zeros(records.WORK_SIZE),
+                          np.zeros(6), np.zeros((count, 3)), _history(system.rail, nodes, parts))
     room, size = surface.capacity(system.surface), nodes[0]
     active = records.Active(np.zeros(2, dtype=np.int64), np.zeros((room, 2), dtype=np.int64), np.zeros(room, dtype=np.int64),
                             np.zeros(room), np.zeros(np.unique(system.surface.facets).size, dtype=np.int64),
                             np.zeros(size, dtype=np.bool_), np.zeros(nodes), np.zeros(size), np.zeros(count, dtype=np.int64))
     return state, active
+
+
+def _history(rail: records.Rail, nodes: tuple[int, ...], parts: int) -> records.History | None:
+    if rail.damping is None:
+        return None
+    return records.History(*(zeros(nodes, order="F") for _ in range(3)), np.zeros((parts, 6)), np.zeros(parts))

@@ -21,7 +21,7 @@ _PATIENCE = 4000  # looks at the barrier before the processor is offered to othe
 
 
 class Team(NamedTuple):
-    """``size`` threads, the ``counters`` of their barrier, and room of its own for each, (3, LANES) ``lanes``."""
+    """``size`` threads, the ``counters`` of their barrier, and room of its own for each, (4, LANES) ``lanes``."""
 
     size: int
     counters: np.ndarray
@@ -30,7 +30,7 @@ class Team(NamedTuple):
 
 def gather(size: int) -> Team:
     """A team of ``size`` threads, none of them at work yet."""
-    return Team(size, np.zeros(16, dtype=np.int64), zeros((size, 3, LANES)))
+    return Team(size, np.zeros(16, dtype=np.int64), zeros((size, 4, LANES)))
 
 
 def processors() -> int:

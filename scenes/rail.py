@@ -3,7 +3,7 @@
 Presence of ``mesh`` or ``geometry`` is the switch. Such a file stands in scene axes (m, origin at the nominal mass centre at
 ignition, +X to the open end), its walls one ``clearance`` off the pads. The surrogate sees none of it: ``start`` and ``end`` say
 where the walls begin and end, pads and clearance where they stand; the reference refuses a file that says otherwise
-(``highfi.fit``).
+(``highfi.fit``). Only the reference feels ``damping`` (``scenes.effects.structural_damping``), which any kind of rail may have.
 """
 
 import hashlib
@@ -13,6 +13,7 @@ from typing import Annotated, Any, ClassVar, Union
 
 from pydantic import AfterValidator, Discriminator, PrivateAttr, Tag, ValidationInfo, field_validator, model_validator
 
+from scenes.effects.structural_damping import DampingTable
 from scenes.table import Table, at_least_one
 from scenes.units import Density, Length, NonNegativeLength, PositiveLength, Pressure, quantity
 
@@ -45,12 +46,13 @@ class MaterialTable(Table):
 
 
 class _RailTable(Table):
-    """What every rail has: the stretch of X (m) in which its walls stand, and its material."""
+    """What every rail has: the stretch of X (m) in which its walls stand, its material, and its damping, if it has any."""
 
     GIVEN_BY: ClassVar[str]
     start: Length
     end: Length
     material: MaterialTable
+    damping: DampingTable | None = None
 
     _forward = field_validator("end")(_beyond_start)
 

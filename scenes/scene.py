@@ -5,6 +5,7 @@
 """
 
 from functools import cached_property
+from operator import attrgetter
 from pathlib import Path
 from typing import Annotated, Any, Mapping
 
@@ -28,7 +29,7 @@ from scenes.tables import AgreementTable, OutputTable, PadTable, PayloadTable
 from scenes.units import PositiveTime
 
 CATALOG = reading.CATALOG
-EFFECTS = ("thrust_offset", "mass_offset", "initial", "contact", "friction", "platform", "gravity")
+EFFECTS = ("thrust_offset", "mass_offset", "initial", "contact", "friction", "platform", "gravity", "rail.damping")
 _BESIDE = ("conditions", "agreement", "provenance")
 _NOT_PHYSICS = {"name", "description", *_BESIDE}
 
@@ -103,8 +104,8 @@ class Scene(Table):
         return plausibility.warnings(self)
 
     def absent_effects(self) -> list[str]:
-        """Names of the effect tables this scene does not have."""
-        return [name for name in EFFECTS if getattr(self, name) is None]
+        """Dotted keys of the effect tables this scene does not have."""
+        return [key for key in EFFECTS if attrgetter(key)(self) is None]
 
 
 def parse(raw: Mapping[str, Any], source: str = "scene", bare_numbers_are_si: bool = False) -> Scene:

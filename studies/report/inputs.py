@@ -11,7 +11,7 @@ from scenes.scene import Scene
 from scenes.units import registry
 from studies.report.markup import Html, code, fold, number, table, text
 
-_SCALED = ("m", "s", "N", "Pa", "m/s")
+_SCALED = ("m", "s", "N", "Pa", "m/s", "Hz")
 _APART = {"name", "description", "conditions", "provenance", "agreement", "pads"}
 
 

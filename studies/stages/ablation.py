@@ -1,8 +1,9 @@
 """Stage ``ablation``: every effect off, one at a time, in both fidelities: what it changes, what it costs, and proof that the
 compiled kernel without it does not contain it.
 
-The baseline has every effect on: those the scene does not have are added with the small values in ``ADDED``. The scene as it
-asks and the scene without any effect close the table.
+The baseline has every effect on: those the scene does not have are added with the small values in ``ADDED``, except those that
+need values of the scene's own (contact, friction, platform, damping of the rail), which count where the scene has them. The scene as
+it asks and the scene without any effect close the table.
 """
 
 import importlib
@@ -29,11 +30,12 @@ ADDED = {
 
 def variants(scene: Scene) -> dict[str, dict]:
     """Overrides of ``scene`` for each line of the table, by name."""
-    everything = {key: value for effect in scene.absent_effects() for key, value in ADDED.get(effect, {}).items()}
-    present = [effect for effect in EFFECTS if getattr(scene, effect) is not None or effect in ADDED]
+    absent = scene.absent_effects()
+    everything = {key: value for effect in absent for key, value in ADDED.get(effect, {}).items()}
+    present = [effect for effect in EFFECTS if effect not in absent or effect in ADDED]
     lines = {"all effects": everything}
     for effect in present:
-        kept = {key: value for key, value in everything.items() if key.split(".")[0] != effect}
+        kept = {key: value for key, value in everything.items() if not key.startswith(f"{effect}.")}
         lines[f"without {effect}"] = kept | {effect: None}
     return lines | {"as the scene asks": {}, "no effect": {effect: None for effect in present}}
 

@@ -70,6 +70,13 @@ def discrete_frequency(wavenumber: float, spacing: float, speed: float, step: fl
     return math.asin(0.5 * semidiscrete * step) / (math.pi * step)
 
 
+def modal_decay(ratio: float, cycles: float) -> float:
+    """Amplitude left of a mode with damping `ratio` after so many damped cycles, exp(-2 pi z n / sqrt(1 - z^2)). Clough and
+    Penzien, Dynamics of Structures, section 2-6.
+    """
+    return math.exp(-2.0 * math.pi * ratio * cycles / math.sqrt(1.0 - ratio**2))
+
+
 def leapfrog_growth(ratio: float) -> float:
     """Growth per step of the highest mode at `ratio` >= 1 times the critical step: the larger root of
     g^2 - 2 (2 ratio^2 - 1) g + 1 = 0 in magnitude. Hughes, The Finite Element Method, 1987, section 9.1.

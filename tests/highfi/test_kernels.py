@@ -13,9 +13,9 @@ from tests.highfi.support import tiny
 NUMERICS = Numerics(element_size=0.004)
 
 
-def run(kernel: str, threads: int = 1):
-    """Result on the extruded rails of ``tiny``; "elements" makes the loop forget that they are extruded."""
-    scene = tiny(duration="9 ms", contact__clearance="0.05 mm")
+def begun(kernel: str, threads: int = 1, **overrides) -> Loop:
+    """A run on the extruded rails of ``tiny`` at its first sample; "elements" makes the loop forget that they are extruded."""
+    scene = tiny(duration="9 ms", contact__clearance="0.05 mm", **overrides)
     system = build(scene, NUMERICS, highfi.prepare(scene, NUMERICS))
     assert system.rail.pencils is not None
     if kernel == "elements":
@@ -24,6 +24,12 @@ def run(kernel: str, threads: int = 1):
         system = system._replace(rail=system.rail._replace(pencils=None, elements=elements))
     loop = Loop(scene, system, choose(system, scene, NUMERICS), threads)
     loop.begin()
+    return loop
+
+
+def run(kernel: str, threads: int = 1):
+    """The result of such a run."""
+    loop = begun(kernel, threads)
     loop.march(None)
     return loop.trajectory({}, NUMERICS)
 

@@ -20,6 +20,8 @@ BAD = {
     "rail.material.youngs_modulus": ("rail__material__youngs_modulus", "inf Pa", "quantity in Pa"),
     "rail.material.poisson_ratio": ("rail__material__poisson_ratio", 0.5, "less than 0.5"),
     "rail.mounts": ("rail__mounts", [{"start": "10 mm", "end": "30 mm"}, {"start": "20 mm", "end": "40 mm"}], "do not overlap"),
+    "rail.damping.frequencies": ("rail__damping__frequencies", ["5 kHz", "5 kHz"], "the lower one first"),
+    "rail.damping.ratios.1": ("rail__damping__ratios", [0.01, 1.0], "less than 1"),
     "thrust.peak": ("thrust__peak", float("nan"), "quantity in N"),
     "thrust.width": ("thrust__width", "0 ms", "greater than 0"),
     "contact.stiffness": ("contact__stiffness", "-5 N/mm**1.5", "greater than 0"),
@@ -43,7 +45,8 @@ def refused(raw) -> list:
 
 
 def whole(**tables) -> dict:
-    return small(**{"contact": dict(CONTACT), "friction": dict(FRICTION), "platform": dict(PLATFORM)} | tables)
+    return small(**{"contact": dict(CONTACT), "friction": dict(FRICTION), "platform": dict(PLATFORM),
+                    "rail__damping": {"frequencies": ["500 Hz", "5 kHz"], "ratios": [0.01, 0.01]}} | tables)
 
 
 def test_the_sound_scene_passes():

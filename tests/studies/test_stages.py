@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import scenes
+from scenes.scene import EFFECTS
 from studies import machine, weaker_methods
 from studies.agreement import Spread
 from studies.settings import Settings, defaults
@@ -20,14 +21,16 @@ def test_area_of_quadrilaterals():
 
 
 def test_ablation_takes_every_effect_away_once():
-    scene = scenes.load("tiny").condition("phi15")
+    plain = scenes.load("tiny").condition("phi15")
+    scene = plain.replace({"rail.damping.ratios": [0.01, 0.01], "rail.damping.frequencies": ["500 Hz", "5 kHz"]})
     lines = ablation.variants(scene)
     everything = scene.replace(lines["all effects"])
     assert everything.absent_effects() == []
-    for effect in ("thrust_offset", "mass_offset", "initial", "contact", "friction", "platform", "gravity"):
+    for effect in EFFECTS:
         assert scene.replace(lines[f"without {effect}"]).absent_effects() == [effect]
     assert scene.replace(lines["as the scene asks"]).hash == scene.hash
-    assert len(scene.replace(lines["no effect"]).absent_effects()) == 7
+    assert len(scene.replace(lines["no effect"]).absent_effects()) == len(EFFECTS) == 8
+    assert "without rail.damping" not in ablation.variants(plain)
 
 
 def test_pareto_front():
