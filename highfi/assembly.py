@@ -22,12 +22,12 @@ _BATCH = 2048  # classes integrated at once; bounds the memory of an unstructure
 class Operator(NamedTuple):
     """Linear elastic operator of e hexahedra in c shape classes over n nodes.
 
-    hexes (e,8) node numbers and shape_class (e,), unsigned so that no index needs a test for a negative one; stiffness (c,24,24) N/m, degrees of freedom corner * 3 + component;
+    cells (e,8) node numbers and shape_class (e,), unsigned so that no index needs a test for a negative one; stiffness (c,24,24) N/m, degrees of freedom corner * 3 + component;
     corner_mass (c,8) kg that one element brings to its corners; mass (n,) kg, their sum at each node; free (n,) False where
     the node is fixed.
     """
 
-    hexes: np.ndarray
+    cells: np.ndarray
     shape_class: np.ndarray
     stiffness: np.ndarray
     corner_mass: np.ndarray
@@ -45,21 +45,21 @@ def build(mesh: RailMesh, density: float, youngs_modulus: float, poisson_ratio: 
         raise ValueError(f"density must be positive and finite, got {density!r} kg/m3")
     law = element.elasticity(youngs_modulus, poisson_ratio)
     shape_class, representatives = shape_classes(mesh)
-    corners = mesh.points[mesh.hexes[representatives]]
+    corners = mesh.points[mesh.cells[representatives]]
     batches = [corners[start:start + _BATCH] for start in range(0, len(corners), _BATCH)]
     stiffness = np.concatenate([element.stiffness(batch, law) for batch in batches])
     corner_mass = np.concatenate([element.corner_mass(batch, density) for batch in batches])
-    mass = np.bincount(mesh.hexes.ravel(), corner_mass[shape_class].ravel(), minlength=len(mesh.points))
+    mass = np.bincount(mesh.cells.ravel(), corner_mass[shape_class].ravel(), minlength=len(mesh.points))
     free = np.ones(len(mesh.points), dtype=np.bool_)
     for name in fixed:
         free[mesh.surfaces[name]] = False
-    return Operator(mesh.hexes.astype(np.uint32), shape_class, aligned(stiffness), corner_mass, mass, free)
+    return Operator(mesh.cells.astype(np.uint32), shape_class, aligned(stiffness), corner_mass, mass, free)
 
 
 def shape_classes(mesh: RailMesh) -> tuple[np.ndarray, np.ndarray]:
     """Class (e,) of each element, and the first element (c,) of each class of translations of one another."""
-    corners = mesh.points[mesh.hexes]
-    grid = _SAME_SHAPE * edge_lengths(mesh.points, mesh.hexes).min()
+    corners = mesh.points[mesh.cells]
+    grid = _SAME_SHAPE * edge_lengths(mesh.points, mesh.cells).min()
     shape = np.round((corners - corners[:, :1]) / grid).reshape(len(corners), -1)
     _, representatives, shape_class = np.unique(shape, axis=0, return_index=True, return_inverse=True)
     return shape_class.reshape(-1).astype(np.uint32), representatives
@@ -68,7 +68,7 @@ def shape_classes(mesh: RailMesh) -> tuple[np.ndarray, np.ndarray]:
 def sparse(operator: Operator) -> csr_array:
     """Assembled stiffness (3n,3n) in N/m, degrees of freedom node * 3 + component, for static and modal solutions."""
     size = 3 * len(operator.mass)
-    freedoms = (3 * operator.hexes[:, :, None] + np.arange(3)).reshape(-1, 24)
+    freedoms = (3 * operator.cells[:, :, None] + np.arange(3)).reshape(-1, 24)
     rows = np.repeat(freedoms, 24, axis=1).ravel()
     columns = np.tile(freedoms, (1, 24)).ravel()
     return coo_array((operator.stiffness[operator.shape_class].ravel(), (rows, columns)), shape=(size, size)).tocsr()

@@ -35,12 +35,12 @@ class MeshError(ValueError):
 class RailMesh:
     """Hexahedra and named boundary surfaces.
 
-    points (n,3) m; hexes (e,8) point numbers, VTK order, positive Jacobian; surfaces: name -> (m,4) point numbers of facets,
+    points (n,3) m; cells (e,8) point numbers, VTK order, positive Jacobian; surfaces: name -> (m,4) point numbers of facets,
     counter-clockwise seen from outside the solid; warnings: what costs time or accuracy without being wrong.
     """
 
     points: np.ndarray
-    hexes: np.ndarray
+    cells: np.ndarray
     surfaces: dict[str, np.ndarray]
     warnings: tuple[str, ...] = field(default=())
 
@@ -81,9 +81,9 @@ def along_x(mesh: RailMesh) -> RailMesh:
     order = _from_end_to_end(mesh.points)
     renumber = np.empty_like(order)
     renumber[order] = np.arange(len(order))
-    elements = _from_end_to_end(mesh.points[mesh.hexes].mean(axis=1))
+    elements = _from_end_to_end(mesh.points[mesh.cells].mean(axis=1))
     surfaces = {name: renumber[facets] for name, facets in mesh.surfaces.items()}
-    return replace(mesh, points=mesh.points[order], hexes=renumber[mesh.hexes[elements]], surfaces=surfaces)
+    return replace(mesh, points=mesh.points[order], cells=renumber[mesh.cells[elements]], surfaces=surfaces)
 
 
 def boundary_facets(hexes: np.ndarray) -> np.ndarray:

@@ -11,23 +11,23 @@ from scenes.jit import njit
 
 
 @njit
-def internal_force(displacement, hexes, shape_class, stiffness, force_out):
-    """Set force_out (n,3) N to K u for displacement (n,3) m; hexes, shape_class, stiffness as in `assembly.Operator`.
+def internal_force(displacement, cells, shape_class, stiffness, force_out):
+    """Set force_out (n,3) N to K u for displacement (n,3) m; cells, shape_class, stiffness as in `assembly.Operator`.
 
     force_out must not share memory with displacement.
     """
     force_out[:] = 0.0
-    add_internal_force(displacement, hexes, shape_class, stiffness, force_out, 0, hexes.shape[0], np.empty(24))
+    add_internal_force(displacement, cells, shape_class, stiffness, force_out, 0, cells.shape[0], np.empty(24))
 
 
 @njit
-def add_internal_force(displacement, hexes, shape_class, stiffness, force_out, first, last, element_force):
+def add_internal_force(displacement, cells, shape_class, stiffness, force_out, first, last, element_force):
     """Add the share of elements ``first`` to ``last`` to ``force_out``; ``element_force`` (24,) is room for one of them.
 
     Deterministic: elements are added in their order, and sums keep the order written, whatever the vector width.
     """
     for element in range(first, last):
-        nodes = hexes[element]
+        nodes = cells[element]
         k = stiffness[shape_class[element]]
         x1, y1, z1 = _relative(displacement, nodes[1], nodes[0])
         x2, y2, z2 = _relative(displacement, nodes[2], nodes[0])

@@ -58,15 +58,15 @@ def _meshed(rail: GeometryTable, element_size: float) -> meshio.Mesh:
 
 def with_steps(mesh: RailMesh, material) -> RailMesh:
     """``mesh`` with a warning, where it has slivers, that says which step (s) they force on all other elements."""
-    thin = slivers(mesh.points, mesh.hexes)
+    thin = slivers(mesh.points, mesh.cells)
     if not len(thin):
         return mesh
 
     def largest_step(hexes):
-        part = assembly.build(replace(mesh, hexes=hexes), material.density, material.youngs_modulus, material.poisson_ratio)
+        part = assembly.build(replace(mesh, cells=hexes), material.density, material.youngs_modulus, material.poisson_ratio)
         return timestep.critical_step(timestep.element_bound(part))
 
-    forced, other = largest_step(mesh.hexes[thin]), largest_step(np.delete(mesh.hexes, thin, axis=0))
+    forced, other = largest_step(mesh.cells[thin]), largest_step(np.delete(mesh.cells, thin, axis=0))
     words = f"slivers {listed(thin)} force a step of at most {forced:.3g} s, the other elements one of {other:.3g} s"
     return replace(mesh, warnings=(*mesh.warnings, words))
 

@@ -13,10 +13,10 @@ from highfi.pencils import Pencils
 
 
 class Elements(NamedTuple):
-    """Constant: a mesh of any shape. hexes (e,8) and shape_class (e,), stiffness (c,24,24) N/m as in ``assembly.Operator``; slabs (s+1,)
+    """Constant: a mesh of any shape. cells (e,8) and shape_class (e,), stiffness (c,24,24) N/m as in ``assembly.Operator``; slabs (s+1,)
     first element of each slab along X, of which no two with one between them share a node."""
 
-    hexes: np.ndarray
+    cells: np.ndarray
     shape_class: np.ndarray
     stiffness: np.ndarray
     slabs: np.ndarray

@@ -73,7 +73,7 @@ def run(scene: Scene, numerics: Numerics | None = None, progress: Callable[[floa
     if saved is not None:
         restore(loop, saved)
     loop.march(progress, kept)
-    elements = int(system.operator.hexes.shape[0])
+    elements = int(system.operator.cells.shape[0])
     cost = {"wall_s": (compiling - began) + loop.wall, "compile_s": compiled - compiling, "kernel_s": loop.wall,
             "cpu_s": set_up_cpu + loop.cpu + loop.other_cpu,
             "steps": loop.steps, **loop.stepping.as_dict(), "elements": elements,
@@ -83,7 +83,7 @@ def run(scene: Scene, numerics: Numerics | None = None, progress: Callable[[floa
 
 def _worth_while(system: System) -> int:
     """Threads that a mesh can keep busy: with less to do they would mostly wait for each other."""
-    return max(1, min(processors(), len(system.operator.hexes) // _ELEMENTS_PER_THREAD))
+    return max(1, min(processors(), len(system.operator.cells) // _ELEMENTS_PER_THREAD))
 
 
 class Loop:

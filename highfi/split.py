@@ -18,7 +18,7 @@ _CUBE = np.concatenate([np.insert(_SQUARE, 2, level, axis=1) for level in (0, 1)
 
 def to_size(mesh: RailMesh, element_size: float) -> RailMesh:
     """``mesh`` split so that its shortest edges, as a rule across a wall, come near to ``element_size`` (m); never coarser."""
-    shortest = edge_lengths(mesh.points, mesh.hexes).min(axis=1)
+    shortest = edge_lengths(mesh.points, mesh.cells).min(axis=1)
     return split(mesh, max(1, round(float(np.median(shortest)) / element_size)))
 
 
@@ -29,13 +29,13 @@ def split(mesh: RailMesh, parts: int) -> RailMesh:
     # One random number per node makes a sum of weights a name of the point, whichever element it is seen from.
     names = np.random.default_rng(0).integers(1, 2**63, len(mesh.points), dtype=np.uint64)
     cells, weights = _lattice(_CUBE, parts)
-    found, first, number = np.unique(names[mesh.hexes] @ weights.T, return_index=True, return_inverse=True)
-    places = np.einsum("pc,eci->epi", weights / float(parts**3), mesh.points[mesh.hexes]).reshape(-1, 3)
-    hexes = number.reshape(len(mesh.hexes), -1)[:, cells].reshape(-1, 8)
+    found, first, number = np.unique(names[mesh.cells] @ weights.T, return_index=True, return_inverse=True)
+    places = np.einsum("pc,eci->epi", weights / float(parts**3), mesh.points[mesh.cells]).reshape(-1, 3)
+    hexes = number.reshape(len(mesh.cells), -1)[:, cells].reshape(-1, 8)
     quads, shares = _lattice(_SQUARE, parts)
     surfaces = {name: np.searchsorted(found, names[facets] @ (shares * np.uint64(parts)).T)[:, quads].reshape(-1, 4)
                 for name, facets in mesh.surfaces.items()}
-    return replace(mesh, points=places[first], hexes=hexes, surfaces=surfaces)
+    return replace(mesh, points=places[first], cells=hexes, surfaces=surfaces)
 
 
 def _lattice(corners: np.ndarray, parts: int) -> tuple[np.ndarray, np.ndarray]:

@@ -63,7 +63,7 @@ def operator_bound(operator: Operator, added_stiffness: np.ndarray | None = None
 
     def apply(vector):
         displacement = vector * inverse_root_mass
-        internal_force(displacement, operator.hexes, operator.shape_class, operator.stiffness, force)
+        internal_force(displacement, operator.cells, operator.shape_class, operator.stiffness, force)
         return (force + springs * displacement) * inverse_root_mass
 
     cap = element_bound(operator) ** 2 + (springs * inverse_root_mass ** 2).max()

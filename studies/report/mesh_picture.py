@@ -39,7 +39,7 @@ def _boundary(mesh) -> tuple[np.ndarray, list[str]]:
     """Outer facets (m,4) of the solid and the surface each belongs to, ``rail`` where it has no name."""
     from highfi.mesh import boundary_facets
 
-    facets = boundary_facets(mesh.hexes)
+    facets = boundary_facets(mesh.cells)
     names = {tuple(sorted(facet)): name for name, group in mesh.surfaces.items() for facet in group.tolist()}
     return facets, [names.get(tuple(sorted(facet)), "rail") for facet in facets.tolist()]
 
@@ -63,23 +63,23 @@ def _oblique(axes, mesh, colours: dict[str, str]) -> None:
     axes.autoscale()
     axes.set_aspect("equal")
     axes.set_axis_off()
-    axes.set_title(f"all rails, {len(mesh.hexes):,} elements", fontsize=10.5)
+    axes.set_title(f"all rails, {len(mesh.cells):,} elements", fontsize=10.5)
 
 
 def _section(axes, mesh, colours: dict[str, str]) -> None:
     """Elements of the middle layer of the rail at +y +z (of all, where none is there), seen along X, named walls drawn thick."""
     from matplotlib.collections import LineCollection, PolyCollection
 
-    centres = mesh.points[mesh.hexes].mean(axis=1)
+    centres = mesh.points[mesh.cells].mean(axis=1)
     corner = (centres[:, 1] > 0.0) & (centres[:, 2] > 0.0)
     corner |= not corner.any()  # a launcher of one's own may have no rail there
     inside = centres[corner, 0]
     layer = np.flatnonzero(corner & (np.abs(centres[:, 0] - inside[np.argmin(np.abs(inside - inside.mean()))]) < 1e-9))
-    low = mesh.points[mesh.hexes[layer]].min(axis=1)[:, 1:]
-    high = mesh.points[mesh.hexes[layer]].max(axis=1)[:, 1:]
+    low = mesh.points[mesh.cells[layer]].min(axis=1)[:, 1:]
+    high = mesh.points[mesh.cells[layer]].max(axis=1)[:, 1:]
     boxes = [[(a[0], a[1]), (b[0], a[1]), (b[0], b[1]), (a[0], b[1])] for a, b in zip(1e3 * low, 1e3 * high)]
     axes.add_collection(PolyCollection(boxes, facecolors="#dfe3e7", edgecolors="#3b4149", linewidths=0.7))
-    reach = mesh.points[mesh.hexes[layer]][:, :, 0]
+    reach = mesh.points[mesh.cells[layer]][:, :, 0]
     for name, colour in colours.items():
         facets = mesh.points[mesh.surfaces[name]]
         near = facets[(facets[:, :, 1:].min(axis=(1, 2)) > 0.0) & (np.abs(facets[:, :, 0].mean(axis=1) - reach.mean()) < np.ptp(reach))]

@@ -27,11 +27,11 @@ def run(study: Study) -> dict:
         path, picture = study.path("mesh.vtu"), study.path("figures") / "mesh.png"
         _save(mesh, path)
         draw(mesh, picture)
-        lengths = checks.edge_lengths(mesh.points, mesh.hexes)
-        _, scaled = checks.corner_jacobians(mesh.points, mesh.hexes)
+        lengths = checks.edge_lengths(mesh.points, mesh.cells)
+        _, scaled = checks.corner_jacobians(mesh.points, mesh.cells)
         surfaces = {name: {"facets": len(facets), "area_m2": area(mesh.points, facets)}
                     for name, facets in mesh.surfaces.items()}
-        return {"element_size_m": asked.numerics.element_size, "elements": len(mesh.hexes), "nodes": len(mesh.points),
+        return {"element_size_m": asked.numerics.element_size, "elements": len(mesh.cells), "nodes": len(mesh.points),
                 "shortest_edge_m": float(lengths.min()), "longest_edge_m": float(lengths.max()),
                 "smallest_scaled_jacobian": float(scaled.min()), "warnings": list(mesh.warnings),
                 "surfaces": surfaces, "mesh": study.relative(path), "picture": study.relative(picture)}, [path, picture]
@@ -52,7 +52,7 @@ def _save(mesh, path: Path) -> None:
     names = list(mesh.surfaces)
     facets = np.concatenate([mesh.surfaces[name] for name in names])
     kind = np.concatenate([np.full(len(mesh.surfaces[name]), index + 1) for index, name in enumerate(names)])
-    document = meshio.Mesh(mesh.points, [("hexahedron", mesh.hexes), ("quad", facets)],
-                           cell_data={"surface": [np.zeros(len(mesh.hexes), dtype=int), kind]})
+    document = meshio.Mesh(mesh.points, [("hexahedron", mesh.cells), ("quad", facets)],
+                           cell_data={"surface": [np.zeros(len(mesh.cells), dtype=int), kind]})
     with replacing(path) as temporary:
         document.write(temporary, file_format="vtu")

@@ -93,7 +93,7 @@ def test_the_built_in_rails_drawn_in_cad_are_the_built_in_mesh(tmp_path, size):
     found = make_mesh(scene_of(drawn(tmp_path / "rails.step", l_sections), l_surfaces()), size)
     built = read(l_rail.build(l_rail.LRailGeometry(), size))
     assert len(found.points) == len(built.points) and np.array_equal(ordered(found.points), ordered(built.points))
-    assert len(found.hexes) == len(built.hexes) and found.warnings == ()
+    assert len(found.cells) == len(built.cells) and found.warnings == ()
     for name in built.surfaces:
         assert np.array_equal(ordered(facet_vectors(found, name)[1]), ordered(facet_vectors(built, name)[1])), name
 
