@@ -31,7 +31,7 @@ def _force_of_elements(elements, displacement, force, lanes):
     if elements is not None:
         force[:] = 0.0
         add_internal_force(displacement, elements.cells, elements.shape_class, elements.stiffness, force, 0, elements.cells.shape[0],
-                           lanes.reshape(lanes.size)[:24])
+                           lanes.reshape(lanes.size))
 
 
 @kernel
@@ -110,6 +110,6 @@ def _load_slabs(elements, rail, state, team, thread):
         for parity in range(2):
             for slab in range(parity + 2 * thread, elements.slabs.size - 1, 2 * team.size):
                 add_internal_force(state.displacement, elements.cells, elements.shape_class, elements.stiffness, state.resistance,
-                                   elements.slabs[slab], elements.slabs[slab + 1], lanes.reshape(lanes.size)[:24])
+                                   elements.slabs[slab], elements.slabs[slab + 1], lanes.reshape(lanes.size))
             meet(team)
         _turn_blocks(rail, state.displacement, state.resistance, state.turning, thread, team.size, lanes)

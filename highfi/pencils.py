@@ -42,6 +42,8 @@ class Pencils(NamedTuple):
 
 def find(points: np.ndarray, operator: Operator) -> tuple[Pencils, np.ndarray] | None:
     """Pencils of a mesh (points (n,3) m) and the new number (n,) of each node, or None where it is not an even extrusion."""
+    if operator.cells.shape[1] != 8:
+        return None
     _, point = np.unique(np.round(points[:, 1:] / _SAME), axis=0, return_inverse=True)
     stations, layer = np.unique(np.round(points[:, 0] / _SAME), return_inverse=True)
     point, layer = point.reshape(-1), layer.reshape(-1)

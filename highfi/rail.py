@@ -62,8 +62,8 @@ def with_steps(mesh: RailMesh, material) -> RailMesh:
     if not len(thin):
         return mesh
 
-    def largest_step(hexes):
-        part = assembly.build(replace(mesh, cells=hexes), material.density, material.youngs_modulus, material.poisson_ratio)
+    def largest_step(cells):
+        part = assembly.build(replace(mesh, cells=cells), material.density, material.youngs_modulus, material.poisson_ratio)
         return timestep.critical_step(timestep.element_bound(part))
 
     forced, other = largest_step(mesh.cells[thin]), largest_step(np.delete(mesh.cells, thin, axis=0))

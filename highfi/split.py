@@ -9,7 +9,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from highfi.mesh import RailMesh, edge_lengths
+from highfi.cells import edge_lengths
+from highfi.mesh import RailMesh
 
 # Corners of the unit square and cube in VTK order.
 _SQUARE = np.array([[0, 0], [1, 0], [1, 1], [0, 1]])

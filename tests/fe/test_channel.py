@@ -5,7 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from highfi.mesh import corner_jacobians, read
+from highfi.cells import corner_jacobians
+from highfi.mesh import read
 from meshes import channel, msh
 from scenes import load
 from tests.fe.test_mesh import facet_vectors

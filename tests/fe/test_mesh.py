@@ -6,7 +6,8 @@ import meshio
 import numpy as np
 import pytest
 
-from highfi.mesh import MeshError, along_x, corner_jacobians, edge_lengths, read
+from highfi.cells import corner_jacobians, edge_lengths
+from highfi.mesh import MeshError, along_x, read
 from meshes import generator, l_rail, msh
 
 GEOMETRY = l_rail.LRailGeometry()

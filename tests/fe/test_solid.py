@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from highfi import assembly, element
-from highfi.mesh import MeshError, RailMesh, boundary_facets, corner_jacobians, read
+from highfi.cells import corner_jacobians
+from highfi.mesh import MeshError, RailMesh, boundary_facets, read
 from highfi.rail import make_mesh
 from meshes import generator, l_rail, solid
 from scenes import SceneError, parse

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from highfi.mesh import boundary_facets, corner_jacobians, read
+from highfi.cells import corner_jacobians
+from highfi.mesh import boundary_facets, read
 from highfi.split import split, to_size
 from meshes import channel, l_rail
 from tests.fe.test_mesh import AREAS, facet_vectors
