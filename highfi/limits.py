@@ -4,8 +4,15 @@ Contact adds G k G' to the stiffness, where a column of G is the gap of one Gaus
 
     lambda_max(rail + contact) <= lambda_max(rail) + k_p [max over nodes (area_a / m_a) + sum over faces A (1/m + r'I^-1 r)]
 
-because the largest eigenvalue of a sum is at most the sum, and that of G k G' is that of its Gram matrix. A step is stable for
-dt^2 lambda/4 + (dt/2) max(c/m) <= 1 with velocity-dependent friction lagged half a step; the second term is watched during the run.
+because the largest eigenvalue of a sum is at most the sum, and that of G k G' on the nodes alone is at most the largest sum of
+magnitudes in a row of M^-1 G k G' (Gershgorin):
+
+    sum over b of |sum over points of A N_a N_b| / m_a <= area_a / m_a,    area_a = sum over points of A |N_a| sum over b of |N_b|
+
+On bilinear facets no N is negative and their sum is one, so area_a is the node's own share of the area; on quadratic triangles the
+corners' N may be negative and the last sum reaches 5/3. A step is stable for dt^2 lambda/4 + (dt/2) max(c/m) <= 1 with
+velocity-dependent friction lagged half a step, where c of a node is bounded by the same sum with each point's damping in place of
+its area; that term is watched during the run.
 """
 
 import numpy as np
@@ -19,8 +26,8 @@ def contact_frequency_squared(system: System) -> float:
         return 0.0
     surface, rail, payload = system.surface, system.rail, system.model.payload
     area = np.zeros(rail.mass.size)
-    for corner in range(4):
-        np.add.at(area, surface.facets[:, corner], surface.area @ surface.shape[:, corner])
+    for node in range(surface.facets.shape[1]):
+        np.add.at(area, surface.facets[:, node], surface.area @ surface.spread[:, node])
     faces = system.faces
     size = 4.0 * faces.half_length * faces.half_width
     reach = (faces.centre**2).sum(axis=1) * np.linalg.eigvalsh(payload.inverse_inertia)[-1]
