@@ -150,25 +150,19 @@ def _in_payload(touch, surface, facet, node, pose):
 
 @inlined
 def _places(touch, surface, control, facet, pose):
-    """Places (m) of all nodes of a facet in payload axes."""
-    places = (_in_payload(touch, surface, facet, 0, pose), _in_payload(touch, surface, facet, 1, pose),
-              _in_payload(touch, surface, facet, 2, pose), _in_payload(touch, surface, facet, 3, pose))
-    return _with_middles(touch, surface, control, facet, pose, places)
-
-
-@inlined
-def _with_middles(touch, surface, control, facet, pose, places):
-    if control is None:
-        return places
-    return (places[0], places[1], places[2], places[3], _in_payload(touch, surface, facet, 4, pose),
-            _in_payload(touch, surface, facet, 5, pose))
+    """Places (m) of the nodes of a facet in payload axes, followed by zeros where it has only four."""
+    fifth, sixth = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+    if control is not None:
+        fifth, sixth = _in_payload(touch, surface, facet, 4, pose), _in_payload(touch, surface, facet, 5, pose)
+    return (_in_payload(touch, surface, facet, 0, pose), _in_payload(touch, surface, facet, 1, pose),
+            _in_payload(touch, surface, facet, 2, pose), _in_payload(touch, surface, facet, 3, pose), fifth, sixth)
 
 
 @inlined
 def _blend(surface, q, places):
     """Value at Gauss point ``q`` of what the nodes of a facet have."""
     x, y, z = 0.0, 0.0, 0.0
-    for node in range(len(places)):
+    for node in range(_size(surface.control)):
         weight, place = surface.shape[q, node], places[node]
         x += weight * place[0]
         y += weight * place[1]
