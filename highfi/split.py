@@ -1,15 +1,17 @@
-"""Hexahedra split evenly, so that the mesh of a file can be refined like one that is made here.
+"""Elements split evenly, so that the mesh of a file can be refined like one that is made here.
 
-Each element becomes n x n x n of them at equal distances of its own coordinates: points lie at the trilinear map of the corners,
+Tetrahedra are halved (``highfi.halve``) as often as it takes. Each hexahedron becomes n x n x n of them at equal distances of its own coordinates: points lie at the trilinear map of the corners,
 and curved walls keep the facets the file gave them. A point is known by its integer weights on the corners (in units of 1/n^3),
 which are the same from every element that shares it, so neighbours are joined without comparing places.
 """
 
+import math
 from dataclasses import replace
 
 import numpy as np
 
-from highfi.cells import edge_lengths
+from highfi.cells import HEXAHEDRON, edge_lengths, kind
+from highfi.halve import halved
 from highfi.mesh import RailMesh
 
 # Corners of the unit square and cube in VTK order.
@@ -19,12 +21,16 @@ _CUBE = np.concatenate([np.insert(_SQUARE, 2, level, axis=1) for level in (0, 1)
 
 def to_size(mesh: RailMesh, element_size: float) -> RailMesh:
     """``mesh`` split so that its shortest edges, as a rule across a wall, come near to ``element_size`` (m); never coarser."""
-    shortest = edge_lengths(mesh.points, mesh.cells).min(axis=1)
-    return split(mesh, max(1, round(float(np.median(shortest)) / element_size)))
+    size = float(np.median(edge_lengths(mesh.points, mesh.cells).min(axis=1)))
+    if kind(mesh.cells) is HEXAHEDRON:
+        return split(mesh, max(1, round(size / element_size)))
+    for _ in range(round(math.log2(size / element_size))):
+        mesh = halved(mesh)
+    return mesh
 
 
 def split(mesh: RailMesh, parts: int) -> RailMesh:
-    """``mesh`` with ``parts`` elements along every edge of each; warnings speak of the elements of the file and stay."""
+    """``mesh`` of hexahedra with ``parts`` elements along every edge of each; warnings speak of the elements of the file and stay."""
     if parts == 1:
         return mesh
     # One random number per node makes a sum of weights a name of the point, whichever element it is seen from.

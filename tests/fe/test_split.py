@@ -1,12 +1,17 @@
-"""Hexahedra split evenly: the mesh that would have been made at the smaller size, whatever the corners' numbering."""
+"""Elements split evenly: the mesh that would have been made at the smaller size, whatever the corners' numbering."""
 
 import numpy as np
 import pytest
 
-from highfi.cells import corner_jacobians
+from highfi import tetrahedron
+from highfi.cells import corner_jacobians, jacobians
+from highfi.facets import gauss
+from highfi.halve import halved
 from highfi.mesh import boundary_facets, read
 from highfi.split import split, to_size
 from meshes import channel, l_rail
+from tests.fe import tets
+from tests.fe.blocks import block
 from tests.fe.test_mesh import AREAS, facet_vectors
 
 
@@ -57,3 +62,32 @@ def test_numbering_of_corners_does_not_matter(rails):
 def test_element_size_says_how_finely(rails, size, parts):
     """The L rails made at 8 mm have one element across their wall of 4 mm."""
     assert len(to_size(rails, size).cells) == len(rails.cells) * parts**3
+
+
+@pytest.mark.parametrize("bend", [0.0, 3.0])
+def test_halved_tetrahedra_keep_volume_areas_and_neighbours(bend):
+    """Straight and, along a parabola, curved: the halves of a quadratic edge are the quadratic edges of its halves."""
+    mesh = tets.split(block((3, 1, 2), (0.03, 0.01, 0.02)))
+    mesh = tets.bent(mesh, lambda x: x + np.outer(bend * x[:, 0] ** 2, [0.0, 1.0, 0.5]))
+    found = halved(mesh)
+    assert len(found.cells) == 8 * len(mesh.cells) and jacobians(found.points, found.cells)[0].min() > 0.0
+    before, after = (tetrahedron.kinematics(each.points[each.cells]).volume.sum() for each in (mesh, found))
+    assert after == pytest.approx(before, rel=1e-12)
+    # Neighbours that were not joined would show as faces inside the solid.
+    assert len(boundary_facets(found.cells)) == 4 * len(boundary_facets(mesh.cells))
+    outside = {tuple(sorted(facet)) for facet in boundary_facets(found.cells).tolist()}
+    assert {tuple(sorted(facet)) for facet in found.surfaces["mount"].tolist()} <= outside
+    before, after = (gauss(each.points[each.surfaces["mount"]], 6)[1].sum() for each in (mesh, found))
+    assert after == pytest.approx(before, rel=1e-12)
+
+
+def test_a_smaller_element_size_halves_tetrahedra_again_and_again():
+    mesh = tets.split(block((2, 1, 1), (0.02, 0.01, 0.01)))
+    assert [len(to_size(mesh, size).cells) // len(mesh.cells) for size in (0.02, 0.01, 0.005, 0.0026)] == [1, 1, 8, 64]
+
+
+def test_halves_become_no_flatter():
+    mesh = tets.split(block((1, 1, 1), (0.01, 0.01, 0.01)))
+    once, twice = halved(mesh), halved(halved(mesh))
+    quality = [jacobians(each.points, each.cells)[1].min() for each in (mesh, once, twice)]
+    assert quality[2] == pytest.approx(quality[1], rel=1e-9) and quality[1] > 0.5 * quality[0]
