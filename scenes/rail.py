@@ -140,7 +140,8 @@ def _readable(file: str) -> str:
 
 
 class MeshTable(_FileTable):
-    """``[rail] mesh``: hexahedra in any format meshio reads, with named surfaces ``contact...`` and ``mount`` (``highfi.mesh``)."""
+    """``[rail] mesh``: 8-node hexahedra or 10-node tetrahedra in any format meshio reads, with named surfaces ``contact...`` and
+    ``mount`` (``highfi.mesh``)."""
 
     GIVEN_BY = "mesh"
     mesh: Annotated[str, AfterValidator(_readable)]
