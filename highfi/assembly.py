@@ -25,8 +25,8 @@ class Operator(NamedTuple):
     """Linear elastic operator of e elements with k nodes each in c shape classes over n nodes.
 
     cells (e,k) node numbers and shape_class (e,), unsigned so that no index needs a test for a negative one; stiffness (c,3k,3k)
-    N/m, degrees of freedom node * 3 + component; node_mass (c,k) kg that one element brings to its nodes; mass (n,) kg, their sum at
-    each node; free (n,) False where the node is fixed.
+    N/m, degrees of freedom node * 3 + component; node_mass (c,k) kg that one element brings to its nodes; mass (n,) kg, their sum
+    at each node; free (n,) False where the node is fixed.
     """
 
     cells: np.ndarray

@@ -1,7 +1,7 @@
 """The two kinds of element a rail may be made of, 8-node hexahedra and 10-node tetrahedra: their numbering and their quality.
 
-A hexahedron is checked at its corners, where J = e1 . (e2 x e3) with e the three edges that leave a corner. In a tetrahedron det J is
-a cubic polynomial, which lies between the smallest and the largest of its 20 Bernstein coefficients: where all of them are positive
+A hexahedron is checked at its corners, where J = e1 . (e2 x e3) with e the three edges that leave a corner. In a tetrahedron det J
+is a cubic polynomial, which lies between the smallest and the largest of its 20 Bernstein coefficients: where all of them are positive
 it is positive everywhere, also between curved edges. Both orders of nodes are those of VTK, in which meshio hands them over.
 """
 
@@ -15,8 +15,8 @@ from highfi import tetrahedron
 
 
 class Kind(NamedTuple):
-    """``name`` of the elements and ``facets`` of their faces in messages; their names ``cell`` and ``facet`` in meshio; ``faces`` (f,k)
-    nodes of each face, corners first and counter-clockwise seen from outside; ``edges`` (b,2) corners; ``thickness``: what sets the
+    """``name`` of the elements and ``facets`` of their faces in messages; their names ``cell`` and ``facet`` in meshio; ``faces``
+    (f,k) nodes of each face, corners first and counter-clockwise seen from outside; ``edges`` (b,2) corners; ``thickness``: what sets the
     step."""
 
     name: str
@@ -70,7 +70,7 @@ def edge_lengths(points: np.ndarray, cells: np.ndarray) -> np.ndarray:
 
 
 def thickness(points: np.ndarray, cells: np.ndarray) -> np.ndarray:
-    """Shortest way (e,) in m across each element, which sets its time step: an edge of a hexahedron, an altitude of a tetrahedron."""
+    """Shortest way (e,) in m across each element, which sets its step: an edge of a hexahedron, an altitude of a tetrahedron."""
     if kind(cells) is HEXAHEDRON:
         return edge_lengths(points, cells).min(axis=1)
     corners = points[cells[:, :4]]

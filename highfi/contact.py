@@ -7,8 +7,8 @@ For a point y in payload axes, with local face coordinates xi, eta in [-1, 1] an
 The force on the rail is minus the full gradient of that potential (so it has the small tangential part that the crown's slope
 calls for) and the contact stores energy exactly. The opposite force acts on the payload at the same point. Friction uses the
 shared law with the half-step sliding velocity. Only what can touch is computed: a facet whose control points (``facets``; its four
-corners, or those of a curved triangle) lie outside the uncrowned face plane is passed over, since no Gauss point in their convex hull
-can have crossed it, and a face whose nearest control point is a gap away is not looked at until something approaching at
+corners, or those of a curved triangle) lie outside the uncrowned face plane is passed over, since no Gauss point in their hull can
+have crossed it, and a face whose nearest control point is a gap away is not looked at until something approaching at
 ``FASTEST_APPROACH`` could have closed it. That speed is checked at every sample.
 """
 
@@ -116,7 +116,7 @@ def _size(control):
 
 @inlined
 def _height(touch, surface, faces, face, row, facet, node, pose):
-    """Outward height (m) of a facet's node over the uncrowned plane of the face; negative inside. ``row`` of the pose's rotation."""
+    """Outward height (m) of a facet's node over the uncrowned plane of the face; ``row`` of the pose's rotation."""
     place = rotation.dot(row, _from_centre(touch, surface.facets[facet, node], pose))
     return faces.sign[face] * (place - faces.centre[face, faces.axis[face]])
 
@@ -132,9 +132,12 @@ def _lowest(touch, surface, control, faces, face, facet, pose):
         for node in range(4):
             lowest = min(lowest, _height(touch, surface, faces, face, row, facet, node, pose))
     if control is not None:
-        heights = (_height(touch, surface, faces, face, row, facet, 0, pose), _height(touch, surface, faces, face, row, facet, 1, pose),
-                   _height(touch, surface, faces, face, row, facet, 2, pose), _height(touch, surface, faces, face, row, facet, 3, pose),
-                   _height(touch, surface, faces, face, row, facet, 4, pose), _height(touch, surface, faces, face, row, facet, 5, pose))
+        heights = (_height(touch, surface, faces, face, row, facet, 0, pose),
+                   _height(touch, surface, faces, face, row, facet, 1, pose),
+                   _height(touch, surface, faces, face, row, facet, 2, pose),
+                   _height(touch, surface, faces, face, row, facet, 3, pose),
+                   _height(touch, surface, faces, face, row, facet, 4, pose),
+                   _height(touch, surface, faces, face, row, facet, 5, pose))
         for point in range(6):
             height = 0.0
             for node in range(6):

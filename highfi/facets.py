@@ -1,7 +1,7 @@
 """Facets of the rail's surfaces, bilinear ones of four corners and quadratic ones of six nodes: places, normals, Gauss points.
 
-A quadratic triangle may bulge beyond its nodes. It lies in the convex hull of its six Bernstein control points: the corners and, for
-each edge, 2 m - (a + b) / 2 with m the node between a and b (Farin, Curves and Surfaces for CAGD, 5th ed. 2002, chapter 17). A
+A quadratic triangle may bulge beyond its nodes. It lies in the convex hull of its six Bernstein control points: the corners and,
+for each edge, 2 m - (a + b) / 2 with m the node between a and b (Farin, Curves and Surfaces for CAGD, 5th ed. 2002, chapter 17). A
 bilinear facet lies in the hull of its corners, which are its own control points.
 """
 

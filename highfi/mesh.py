@@ -1,8 +1,8 @@
 """The rail mesh as plain arrays, read from any file meshio knows and checked before anything is computed with it.
 
 A mesh needs 8-node hexahedra or 10-node tetrahedra, at least one named group of their faces that starts with `contact` (the walls
-pads touch) and one named `mount` (fixed to the platform). Nodes follow the VTK order. The Jacobian must be positive at the corners of
-a hexahedron,
+pads touch) and one named `mount` (fixed to the platform). Nodes follow the VTK order. The Jacobian must be positive at the corners
+of a hexahedron,
 
     J = e1 . (e2 x e3) > 0    with e the three edges that leave a corner,
 
@@ -34,8 +34,8 @@ class RailMesh:
     """Elements of one kind and named boundary surfaces.
 
     points (n,3) m; cells (e,k) point numbers, k = 8 or 10, VTK order, positive Jacobian; surfaces: name -> (m,f) point numbers of
-    facets, four corners or three and three middles, corners counter-clockwise seen from outside the solid; warnings: what costs time
-    or accuracy without being wrong.
+    facets, four corners or three and three middles, corners counter-clockwise seen from outside the solid; warnings: what costs
+    time or accuracy without being wrong.
     """
 
     points: np.ndarray
@@ -200,8 +200,8 @@ def _warnings(points: np.ndarray, cells: np.ndarray) -> tuple[str, ...]:
         worst = thin[np.argmin(across[thin])]
         longest = edge_lengths(points, cells[worst:worst + 1]).max()
         warnings.append(
-            f"slivers: elements {listed(thin)}; shortest {kind(cells).thickness} {across[worst]:.3g} m in element {worst + 1} (aspect "
-            f"ratio {longest / across[worst]:.3g}), so a run takes about "
+            f"slivers: elements {listed(thin)}; shortest {kind(cells).thickness} {across[worst]:.3g} m in element {worst + 1} "
+            f"(aspect ratio {longest / across[worst]:.3g}), so a run takes about "
             f"{np.median(across) / across[worst]:.3g} times the steps that the rest of the mesh needs")
     return (*warnings, *_skewed(points, cells))
 

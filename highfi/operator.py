@@ -22,7 +22,7 @@ def internal_force(displacement, cells, shape_class, stiffness, force_out):
 
 @njit
 def add_internal_force(displacement, cells, shape_class, stiffness, force_out, first, last, element_force):
-    """Add the share of elements ``first`` to ``last`` to ``force_out``; ``element_force`` has room for one of them, 24 or 30 numbers.
+    """Add the share of elements ``first`` to ``last`` to ``force_out``; ``element_force`` is room for one, 24 or 30 numbers.
 
     Deterministic: elements are added in their order, and sums keep the order written, whatever the vector width.
     """

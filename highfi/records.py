@@ -13,8 +13,8 @@ from highfi.pencils import Pencils
 
 
 class Elements(NamedTuple):
-    """Constant: a mesh of any shape. cells (e,k) and shape_class (e,), stiffness (c,3k,3k) N/m as in ``assembly.Operator``; slabs (s+1,)
-    first element of each slab along X, of which no two with one between them share a node."""
+    """Constant: a mesh of any shape. cells (e,k) and shape_class (e,), stiffness (c,3k,3k) N/m as in ``assembly.Operator``; slabs
+    (s+1,) first element of each slab along X, of which no two with one between them share a node."""
 
     cells: np.ndarray
     shape_class: np.ndarray
@@ -37,8 +37,8 @@ class Rail(NamedTuple):
 
 
 class Surface(NamedTuple):
-    """Constant: facets (m,k) node numbers, four corners or the six nodes of a triangle; shape (q,k) functions at the Gauss points, and
-    what bounds their products, ``spread`` (q,k), see ``limits``; area (m,q) m2 per point; for face f the facets it can meet are
+    """Constant: facets (m,k) node numbers, four corners or the six nodes of a triangle; shape (q,k) functions at the Gauss points,
+    and what bounds their products, ``spread`` (q,k), see ``limits``; area (m,q) m2 per point; for face f the facets it can meet are
     ``reach[first[f]:first[f+1]]``, sorted by their smallest X ``start`` (m); ``longest`` facet extent along X (m); control (6,6):
     control points of a triangle from its nodes, None for facets of four corners, which need none."""
 

@@ -33,7 +33,7 @@ def capacity(surface: Surface) -> int:
 
 
 def magnification(surface: Surface) -> float:
-    """How much faster than its fastest node a Gauss point can move: 1 where shape functions are nowhere negative, else up to 5/3."""
+    """How much faster than its fastest node a Gauss point can move: 1 where no shape function is negative, else up to 5/3."""
     return float(np.abs(surface.shape).sum(axis=1).max()) if (surface.shape < 0.0).any() else 1.0
 
 
@@ -49,5 +49,5 @@ def in_reach(nodes: np.ndarray, faces, face: int) -> np.ndarray:
 
 
 def _spread(shape: np.ndarray) -> np.ndarray:
-    """|N_a| sum over b of |N_b| (q,k), see ``limits``; the shape functions themselves where none is negative, as they sum to one."""
+    """|N_a| sum over b of |N_b| (q,k), see ``limits``; the shape functions themselves where none is negative."""
     return np.abs(shape) * np.abs(shape).sum(axis=1, keepdims=True) if (shape < 0.0).any() else shape

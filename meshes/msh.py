@@ -10,7 +10,7 @@ _TYPES = {8: ("hexahedron", "quad"), 10: ("tetra10", "triangle6")}  # of element
 
 
 def tagged(points: np.ndarray, elements: np.ndarray, surfaces: dict[str, np.ndarray]) -> meshio.Mesh:
-    """One block (volume `rail`) of elements (e,k), hexahedra of 8 nodes or tetrahedra of 10, and one per named surface, numbered from 0."""
+    """One block (volume `rail`) of elements (e,8) or (e,10) and one per named surface (m,4) or (m,6), numbered from 0."""
     solid, face = _TYPES[elements.shape[1]]
     cells = [(solid, elements), *((face, facets) for facets in surfaces.values())]
     tags = [len(surfaces) + 1, *range(1, len(surfaces) + 1)]

@@ -162,8 +162,8 @@ class BoxTable(Table):
 
 
 class GeometryTable(_FileTable):
-    """``[rail] geometry``: a solid drawn in CAD, meshed here with ``elements`` of 8-node hexahedra or 10-node tetrahedra. ``surfaces``
-    names the parts of its boundary that lie in boxes."""
+    """``[rail] geometry``: a solid drawn in CAD, meshed here with ``elements`` of 8-node hexahedra or 10-node tetrahedra.
+    ``surfaces`` names the parts of its boundary that lie in boxes."""
 
     GIVEN_BY = "geometry"
     geometry: Annotated[str, AfterValidator(_readable)]

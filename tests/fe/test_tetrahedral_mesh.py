@@ -1,14 +1,17 @@
 """Meshes of ten-node tetrahedra: read as gmsh writes them, and every fault named by element number."""
 
+from types import SimpleNamespace
+
 import meshio
 import numpy as np
 import pytest
 
 from highfi import cells, facets, tetrahedron
 from highfi.mesh import MeshError, along_x, boundary_facets, read
+from highfi.rail import with_steps
 from meshes import generator, msh
 from tests.fe import tets
-from tests.fe.blocks import block
+from tests.fe.blocks import ALUMINIUM, block
 
 
 def write_drilled(path, version=2.2, order=2):
@@ -84,7 +87,7 @@ def test_inverted_elements_and_missing_surfaces_are_all_named():
 
 @pytest.mark.parametrize("share, sound", [(0.4, True), (0.8, False)])
 def test_a_face_that_bulges_through_its_element_is_refused(share, sound):
-    """The middles of the edges of one face drawn a share of the way to the centre of the solid: at 0.8 a plane inside is squeezed flat.
+    """The middles of the edges of one face drawn a share of the way to the centre of the solid: at 0.8 a plane inside is flat.
     Control: at all four corners the Jacobian is positive in both cases."""
     points, element = tets.quadratic(np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]), np.array([[0, 1, 2, 3]]))
     points[4:7] += share * (np.full(3, 0.25) - points[4:7])
@@ -95,16 +98,19 @@ def test_a_face_that_bulges_through_its_element_is_refused(share, sound):
     assert (cells.jacobians(points, element)[0].min() > 0.0) == sound
 
 
-def test_a_sliver_is_named_with_its_altitude():
+@pytest.mark.case("X14")
+def test_a_sliver_is_named_with_its_altitude_and_the_step_it_forces():
     mesh = rail()
     inner = np.flatnonzero((np.abs(mesh.points - [0.02, 0.01, 0.01]) < 1e-9).all(axis=1))[0]
     mesh.points[inner, 0] = 0.03 - 1e-5
     data = mesh.cells[0].data
     edges = data[:, cells.TETRAHEDRON.edges]
     mesh.points[data[:, 4:].ravel()] = mesh.points[edges].mean(axis=2).reshape(-1, 3)
-    sliver, = read(mesh).warnings
-    thin = np.flatnonzero(cells.thickness(mesh.points, data) < 2e-5) + 1
-    assert len(thin) and ", ".join(map(str, thin)) in sliver and "shortest altitude" in sliver and "times the steps" in sliver
+    sliver, step = with_steps(read(mesh), SimpleNamespace(**ALUMINIUM)).warnings
+    thin = ", ".join(map(str, np.flatnonzero(cells.thickness(mesh.points, data) < 2e-5) + 1))
+    assert thin and f"slivers: elements {thin};" in sliver and "shortest altitude" in sliver and "times the steps" in sliver
+    forced, other = (float(words.split(" s")[0]) for words in step.split("step of at most ")[1].split("one of "))
+    assert f"slivers {thin} force" in step and forced < 0.01 * other
 
 
 @pytest.mark.parametrize("kinds, words", [

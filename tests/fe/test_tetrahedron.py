@@ -21,7 +21,7 @@ def beam(divisions=COARSE) -> RailMesh:
 
 
 def patch(curved: bool) -> tuple[RailMesh, np.ndarray]:
-    """A cube of 48 tetrahedra with its inner corner out of place, its inner edges curved where asked, and which nodes are inside."""
+    """A cube of 48 tetrahedra, its inner corner out of place, its inner edges curved where asked; and which nodes are inside."""
     mesh = tets.split(block((2, 2, 2), (1.0, 1.0, 1.0)))
     inside = np.setdiff1d(np.arange(len(mesh.points)), boundary_facets(mesh.cells))
     random, points = np.random.default_rng(5), mesh.points.copy()

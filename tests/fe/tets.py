@@ -6,8 +6,8 @@ from highfi.cells import TETRAHEDRON
 from highfi.mesh import RailMesh, boundary_facets
 from highfi.tetrahedron import EDGES
 
-# Tetrahedra around the diagonal from corner 0 to corner 6, one for each way along the three axes (Kuhn). Neighbours whose corners are
-# numbered along the same axes meet in the same triangles.
+# Tetrahedra around the diagonal from corner 0 to corner 6, one for each way along the three axes (Kuhn). Neighbours whose corners
+# are numbered along the same axes meet in the same triangles.
 _AROUND = np.array([[0, 1, 2, 6], [0, 5, 1, 6], [0, 2, 3, 6], [0, 3, 7, 6], [0, 4, 5, 6], [0, 7, 4, 6]])
 
 

@@ -89,8 +89,8 @@ def contact_share(system) -> np.ndarray:
     root = np.where(system.rail.inverse_mass > 0.0, np.sqrt(system.rail.inverse_mass), 0.0)
     matrix = np.zeros((mass.size, mass.size))
     for nodes, area in zip(surface.facets, surface.area):
-        np.add.at(matrix, (nodes[:, None], nodes), system.model.penalty * np.einsum("q,qa,qb->ab", area, surface.shape, surface.shape))
-    return root[:, None] * matrix * root
+        np.add.at(matrix, (nodes[:, None], nodes), np.einsum("q,qa,qb->ab", area, surface.shape, surface.shape))
+    return system.model.penalty * root[:, None] * matrix * root
 
 
 @pytest.mark.parametrize("divisions", [(1, 1, 1), (2, 1, 2), (3, 4, 3)])
