@@ -1,8 +1,8 @@
 """The two kinds of element a rail may be made of, 8-node hexahedra and 10-node tetrahedra: their numbering and their quality.
 
 A hexahedron is checked at its corners, where J = e1 . (e2 x e3) with e the three edges that leave a corner. In a tetrahedron det J
-is a cubic polynomial, which lies between the smallest and the largest of its 20 Bernstein coefficients: where all of them are positive
-it is positive everywhere, also between curved edges. Both orders of nodes are those of VTK, in which meshio hands them over.
+is a cubic polynomial, which lies between the smallest and the largest of its 20 Bernstein coefficients: where all of them are
+positive it is positive everywhere, also between curved edges. Both orders of nodes are those of VTK, in which meshio hands them over.
 """
 
 from itertools import product
@@ -16,8 +16,8 @@ from highfi import tetrahedron
 
 class Kind(NamedTuple):
     """``name`` of the elements and ``facets`` of their faces in messages; their names ``cell`` and ``facet`` in meshio; ``faces``
-    (f,k) nodes of each face, corners first and counter-clockwise seen from outside; ``edges`` (b,2) corners; ``thickness``: what sets the
-    step."""
+    (f,k) nodes of each face, corners first and counter-clockwise seen from outside; ``edges`` (b,2) corners; ``thickness``: what
+    sets the step."""
 
     name: str
     facets: str

@@ -30,8 +30,8 @@ def _force_of_pencils(pencils, displacement, force, sums):
 def _force_of_elements(elements, displacement, force, lanes):
     if elements is not None:
         force[:] = 0.0
-        add_internal_force(displacement, elements.cells, elements.shape_class, elements.stiffness, force, 0, elements.cells.shape[0],
-                           lanes.reshape(lanes.size))
+        add_internal_force(displacement, elements.cells, elements.shape_class, elements.stiffness, force, 0,
+                           elements.cells.shape[0], lanes.reshape(lanes.size))
 
 
 @kernel

@@ -1,6 +1,7 @@
 """Ten-node tetrahedra cut into eight by halving their edges, and the triangles on them into four.
 
-New nodes lie at the quadratic map of quarters of the barycentric coordinates, so curved walls keep the shape the file gave them. A node is known by its integer weights on those of its element (in units of 1/8, i (i - 2) for a corner and 2 i j for a middle with
+New nodes lie at the quadratic map of quarters of the barycentric coordinates, so curved walls keep the shape the file gave them. A
+node is known by its integer weights on those of its element (in units of 1/8, i (i - 2) for a corner and 2 i j for a middle with
 coordinates i/4, j/4), which are the same from every element that shares it. The octahedron left in the middle is cut along its
 shortest diagonal, which keeps elements from becoming flatter with every cut (Bey, Computing 55 (1995) 355-378).
 """

@@ -1,8 +1,8 @@
 """Elements split evenly, so that the mesh of a file can be refined like one that is made here.
 
 Tetrahedra are halved (``highfi.halve``) as often as it takes. Each hexahedron becomes n x n x n of them at equal distances of its
-own coordinates: points lie at the trilinear map of the corners, and curved walls keep the facets the file gave them. A point is known by its integer weights on the corners (in units of 1/n^3),
-which are the same from every element that shares it, so neighbours are joined without comparing places.
+own coordinates: points lie at the trilinear map of the corners, and curved walls keep the facets the file gave them. A point is
+known by its integer weights on the corners (in units of 1/n^3), which are the same from every element that shares it, so neighbours are joined without comparing places.
 """
 
 import math

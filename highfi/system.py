@@ -76,7 +76,7 @@ def _rail(points: np.ndarray, operator: assembly.Operator) -> tuple[records.Rail
 
 def general_elements(points: np.ndarray, operator: assembly.Operator) -> records.Elements:
     """Elements in slabs along X. A slab is at least as thick as the longest element, and an element belongs to the one that holds
-    the middle of its extent (the mean of its nodes may lie elsewhere): elements of two slabs with one between them share no node."""
+    the middle of its extent (the mean of its nodes may lie elsewhere): so elements of slabs with one between share no node."""
     x = points[operator.cells][:, :, 0]
     middle, longest = 0.5 * (x.min(axis=1) + x.max(axis=1)), np.ptp(x, axis=1).max()
     width = max(1.001 * longest, np.ptp(middle) / _MOST_SLABS)
