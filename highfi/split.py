@@ -2,7 +2,8 @@
 
 Tetrahedra are halved (``highfi.halve``) as often as it takes. Each hexahedron becomes n x n x n of them at equal distances of its
 own coordinates: points lie at the trilinear map of the corners, and curved walls keep the facets the file gave them. A point is
-known by its integer weights on the corners (in units of 1/n^3), which are the same from every element that shares it, so neighbours are joined without comparing places.
+known by its integer weights on the corners (in units of 1/n^3), which are the same from every element that shares it, so neighbours
+are joined without comparing places.
 """
 
 import math
