@@ -6,10 +6,10 @@ For a point y in payload axes, with local face coordinates xi, eta in [-1, 1] an
 
 The force on the rail is minus the full gradient of that potential (so it has the small tangential part that the crown's slope
 calls for) and the contact stores energy exactly. The opposite force acts on the payload at the same point. Friction uses the
-shared law with the half-step sliding velocity. Only what can touch is computed: a facet whose four corners lie outside the
-uncrowned face plane is passed over (no Gauss point between them can have crossed it), and a face whose nearest facet corner is a
-gap away is not looked at until something approaching at ``FASTEST_APPROACH`` could have closed it. That speed is checked at
-every sample.
+shared law with the half-step sliding velocity. Only what can touch is computed: a facet whose control points (``facets``; its four
+corners, or those of a curved triangle) lie outside the uncrowned face plane is passed over, since no Gauss point in their hull can
+have crossed it, and a face whose nearest control point is a gap away is not looked at until something approaching at
+``FASTEST_APPROACH`` could have closed it. That speed is checked at every sample.
 """
 
 from typing import NamedTuple
@@ -90,7 +90,7 @@ def _all_faces(touch, surface, faces, penalty, friction, active, pose, dt):
         gap = _MARGIN
         for k in range(low, high):
             facet = surface.reach[k]
-            height = _lowest_corner(touch, surface, faces, face, facet, pose)
+            height = _lowest(touch, surface, surface.control, faces, face, facet, pose)
             gap = min(gap, height)
             if height < 0.0:
                 _facet_points(touch, surface, faces, face, facet, penalty, friction, active, pose, dt)
@@ -106,29 +106,71 @@ def _from_centre(touch, node, pose):
 
 
 @inlined
-def _lowest_corner(touch, surface, faces, face, facet, pose):
-    """Smallest outward height (m) of the facet's corners over the uncrowned plane of the face; negative inside."""
-    axis, sign = faces.axis[face], faces.sign[face]
+def _size(control):
+    """Nodes of a facet: a constant of the compiled code, so that loops over them have a known length."""
+    size = 4
+    if control is not None:
+        size = 6
+    return size
+
+
+@inlined
+def _height(touch, surface, faces, face, row, facet, node, pose):
+    """Outward height (m) of a facet's node over the uncrowned plane of the face; ``row`` of the pose's rotation."""
+    place = rotation.dot(row, _from_centre(touch, surface.facets[facet, node], pose))
+    return faces.sign[face] * (place - faces.centre[face, faces.axis[face]])
+
+
+@inlined
+def _lowest(touch, surface, control, faces, face, facet, pose):
+    """Smallest outward height (m) of the facet's control points over the uncrowned plane of the face; negative inside."""
+    axis = faces.axis[face]
     # Only one row of the rotation is needed.
     row = (pose.turn[axis], pose.turn[3 + axis], pose.turn[6 + axis])
     lowest = np.inf
-    for corner in range(4):
-        place = rotation.dot(row, _from_centre(touch, surface.facets[facet, corner], pose))
-        lowest = min(lowest, sign * (place - faces.centre[face, axis]))
+    if control is None:
+        for node in range(4):
+            lowest = min(lowest, _height(touch, surface, faces, face, row, facet, node, pose))
+    if control is not None:
+        heights = (_height(touch, surface, faces, face, row, facet, 0, pose),
+                   _height(touch, surface, faces, face, row, facet, 1, pose),
+                   _height(touch, surface, faces, face, row, facet, 2, pose),
+                   _height(touch, surface, faces, face, row, facet, 3, pose),
+                   _height(touch, surface, faces, face, row, facet, 4, pose),
+                   _height(touch, surface, faces, face, row, facet, 5, pose))
+        for point in range(6):
+            height = 0.0
+            for node in range(6):
+                height += control[point, node] * heights[node]
+            lowest = min(lowest, height)
     return lowest
 
 
 @inlined
-def _in_payload(touch, surface, facet, corner, pose):
-    return rotation.unrotate(pose.turn, _from_centre(touch, surface.facets[facet, corner], pose))
+def _in_payload(touch, surface, facet, node, pose):
+    return rotation.unrotate(pose.turn, _from_centre(touch, surface.facets[facet, node], pose))
 
 
 @inlined
-def _blend(surface, q, a, b, c, d):
-    """Bilinear value at Gauss point ``q`` of what the four corners have."""
-    i, j, k, l = surface.shape[q, 0], surface.shape[q, 1], surface.shape[q, 2], surface.shape[q, 3]
-    return (i * a[0] + j * b[0] + k * c[0] + l * d[0], i * a[1] + j * b[1] + k * c[1] + l * d[1],
-            i * a[2] + j * b[2] + k * c[2] + l * d[2])
+def _places(touch, surface, control, facet, pose):
+    """Places (m) of the nodes of a facet in payload axes, followed by zeros where it has only four."""
+    fifth, sixth = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+    if control is not None:
+        fifth, sixth = _in_payload(touch, surface, facet, 4, pose), _in_payload(touch, surface, facet, 5, pose)
+    return (_in_payload(touch, surface, facet, 0, pose), _in_payload(touch, surface, facet, 1, pose),
+            _in_payload(touch, surface, facet, 2, pose), _in_payload(touch, surface, facet, 3, pose), fifth, sixth)
+
+
+@inlined
+def _blend(surface, q, places):
+    """Value at Gauss point ``q`` of what the nodes of a facet have."""
+    x, y, z = 0.0, 0.0, 0.0
+    for node in range(_size(surface.control)):
+        weight, place = surface.shape[q, node], places[node]
+        x += weight * place[0]
+        y += weight * place[1]
+        z += weight * place[2]
+    return x, y, z
 
 
 @inlined
@@ -143,10 +185,9 @@ def _local(faces, face, y):
 
 @inlined
 def _facet_points(touch, surface, faces, face, facet, penalty, friction, active, pose, dt):
-    a, b, c, d = (_in_payload(touch, surface, facet, 0, pose), _in_payload(touch, surface, facet, 1, pose),
-                  _in_payload(touch, surface, facet, 2, pose), _in_payload(touch, surface, facet, 3, pose))
+    places = _places(touch, surface, surface.control, facet, pose)
     for q in range(surface.shape.shape[0]):
-        y = _blend(surface, q, a, b, c, d)
+        y = _blend(surface, q, places)
         xi, eta, height = _local(faces, face, y)
         if height < 0.0 and abs(xi) <= 1.0 and abs(eta) <= 1.0:
             penetration = -height - faces.relief[face] * (xi * xi * xi * xi + eta * eta * eta * eta)
@@ -184,7 +225,7 @@ def _sliding_velocity(touch, surface, facet, q, arm, pose):
     """Velocity (m/s) of the payload's material at ``arm`` from its mass centre relative to the rail's, in frame axes."""
     spin = rotation.cross(pose.rate, arm)
     a, b, c = pose.velocity[0] + spin[0], pose.velocity[1] + spin[1], pose.velocity[2] + spin[2]
-    for corner in range(4):
+    for corner in range(_size(surface.control)):
         node, weight = surface.facets[facet, corner], surface.shape[q, corner]
         a -= weight * touch.velocity[node, 0]
         b -= weight * touch.velocity[node, 1]
@@ -203,7 +244,7 @@ def _remember(active, facet, q, face, energy):
 
 @inlined
 def _note_nodes(surface, facet, active):
-    for corner in range(4):
+    for corner in range(_size(surface.control)):
         node = surface.facets[facet, corner]
         if not active.seen[node]:
             active.seen[node] = True
@@ -228,9 +269,9 @@ def _friction_on_payload(friction, touch, surface, facet, q, g, arm, push, slide
         for i in range(3):
             touch.load[FRICTION_FORCE + i] += drag[i]
             touch.load[FRICTION_MOMENT + i] += moment[i]
-        for corner in range(4):
+        for corner in range(_size(surface.control)):
             node, weight = surface.facets[facet, corner], surface.shape[q, corner]
-            active.node_damping[node] += weight * damping
+            active.node_damping[node] += surface.spread[q, corner] * damping
             for i in range(3):
                 active.drag[node, i] += weight * drag[i]
     return drag
@@ -249,7 +290,7 @@ def _rate_damping(touch, friction, active, dt):
 def _apply_pair(touch, surface, facet, q, face, pose, arm, on_rail, drag):
     """One force on the rail and its opposite on the payload, both at ``arm`` from the payload's mass centre."""
     total = (drag[0] - on_rail[0], drag[1] - on_rail[1], drag[2] - on_rail[2])
-    for corner in range(4):
+    for corner in range(_size(surface.control)):
         node, weight = surface.facets[facet, corner], surface.shape[q, corner]
         for i in range(3):
             touch.contact[node, i] += weight * total[i]
@@ -275,9 +316,8 @@ def _release_over_the_edge(touch, surface, faces, active, pose):
     """Energy of points that carried load a step ago and are no longer under their face goes to ``released``."""
     for k in range(active.count[BORDER]):
         facet = active.point[k, 0]
-        a, b, c, d = (_in_payload(touch, surface, facet, 0, pose), _in_payload(touch, surface, facet, 1, pose),
-                      _in_payload(touch, surface, facet, 2, pose), _in_payload(touch, surface, facet, 3, pose))
-        xi, eta, _ = _local(faces, active.face[k], _blend(surface, active.point[k, 1], a, b, c, d))
+        places = _places(touch, surface, surface.control, facet, pose)
+        xi, eta, _ = _local(faces, active.face[k], _blend(surface, active.point[k, 1], places))
         if abs(xi) > 1.0 or abs(eta) > 1.0:
             touch.work[RELEASED] += active.energy[k]
 

@@ -31,8 +31,8 @@ def _force_of_chunk(pencils, displacement, force, chunk, turn, lanes):
 def _force_of_elements(elements, rail, displacement, force, turn, lanes):
     if elements is not None:
         force[:] = 0.0
-        add_internal_force(displacement, elements.hexes, elements.shape_class, elements.stiffness, force, 0, elements.hexes.shape[0],
-                           lanes.reshape(lanes.size)[:24])
+        add_internal_force(displacement, elements.cells, elements.shape_class, elements.stiffness, force, 0,
+                           elements.cells.shape[0], lanes.reshape(lanes.size))
         _turn_blocks(rail, displacement, force, turn, 0, 1, lanes)
 
 
@@ -125,8 +125,8 @@ def _load_slabs(elements, rail, state, team, thread, dt):
         lanes = team.lanes[thread]
         for parity in range(2):
             for slab in range(parity + 2 * thread, elements.slabs.size - 1, 2 * team.size):
-                add_internal_force(state.displacement, elements.hexes, elements.shape_class, elements.stiffness, state.resistance,
-                                   elements.slabs[slab], elements.slabs[slab + 1], lanes.reshape(lanes.size)[:24])
+                add_internal_force(state.displacement, elements.cells, elements.shape_class, elements.stiffness, state.resistance,
+                                   elements.slabs[slab], elements.slabs[slab + 1], lanes.reshape(lanes.size))
             meet(team)
         _turn_blocks(rail, state.displacement, state.resistance, state.turning, thread, team.size, lanes)
         for block in range(thread, state.turning.shape[0], team.size):

@@ -79,7 +79,7 @@ def kinematics(cells: Basis) -> Kinematics:
     mapping, points = cells.mapping, cells.X
     scale = mapping.detDF(_CENTRE) / mapping.detDF(points)
     bubble = np.einsum("cq,iq,ijc->cqij", scale, 4.0 * (1.0 - 2.0 * points), mapping.invDF(_CENTRE)[..., 0])
-    return Kinematics(_strain_matrix(gradient), _strain_matrix(bubble), cells.dx)
+    return Kinematics(strain_matrix(gradient), strain_matrix(bubble), cells.dx)
 
 
 def stiffness(corners: np.ndarray, law: np.ndarray) -> np.ndarray:
@@ -88,13 +88,13 @@ def stiffness(corners: np.ndarray, law: np.ndarray) -> np.ndarray:
     corners (c,8,3) m in VTK order; law (6,6) Pa from `elasticity`.
     """
     strain = kinematics(basis(corners))
-    full = _integral(strain.nodal, law, strain.nodal, strain.volume)
+    full = integral(strain.nodal, law, strain.nodal, strain.volume)
     coupling, own = _bubble_blocks(strain, law)
     condensed = full - np.swapaxes(coupling, 1, 2) @ np.linalg.solve(own, coupling)
     return 0.5 * (condensed + np.swapaxes(condensed, 1, 2))  # symmetric to the last bit, so that energy is exact
 
 
-def corner_mass(corners: np.ndarray, density: float) -> np.ndarray:
+def node_mass(corners: np.ndarray, density: float) -> np.ndarray:
     """Row sums (c,8) in kg of the consistent mass: density times the integral of each corner function."""
     cells = basis(corners)
     return density * np.einsum("aq,cq->ca", shape_functions(cells), cells.dx)
@@ -117,17 +117,17 @@ def gauss_strain(corners: np.ndarray, law: np.ndarray, displacement: np.ndarray)
 
 def _bubble_blocks(strain: Kinematics, law: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """L (c,9,24) and H (c,9,9) of the module docstring."""
-    return (_integral(strain.bubble, law, strain.nodal, strain.volume),
-            _integral(strain.bubble, law, strain.bubble, strain.volume))
+    return (integral(strain.bubble, law, strain.nodal, strain.volume),
+            integral(strain.bubble, law, strain.bubble, strain.volume))
 
 
-def _integral(left, law, right, volume):
-    """Integral of left^T law right over each element."""
+def integral(left: np.ndarray, law: np.ndarray, right: np.ndarray, volume: np.ndarray) -> np.ndarray:
+    """Integral (c,a,b) of left^T law right over each element, from strain matrices (c,q,6,a) and (c,q,6,b) and volume (c,q)."""
     weighted = volume[..., None, None] * (law @ right)
     return (np.swapaxes(left, 2, 3) @ weighted).sum(axis=1)
 
 
-def _strain_matrix(gradient: np.ndarray) -> np.ndarray:
+def strain_matrix(gradient: np.ndarray) -> np.ndarray:
     """Strain (...,6,3a) from the gradients (...,a,3) of a functions, each multiplying a displacement vector."""
     matrix = np.zeros((*gradient.shape[:-2], 6, gradient.shape[-2], 3))
     for axis in range(3):

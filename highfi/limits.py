@@ -4,9 +4,16 @@ Contact adds G k G' to the stiffness, where a column of G is the gap of one Gaus
 
     lambda_max(rail + contact) <= lambda_max(rail) + k_p [max over nodes (area_a / m_a) + sum over faces A (1/m + r'I^-1 r)]
 
-because the largest eigenvalue of a sum is at most the sum, and that of G k G' is that of its Gram matrix. Damping C whose velocity
-lags by half a step is damping at the velocity of the instant, [u(n+1) - u(n-1)] / 2dt, in a system with the mass M - dt C/2. Such a
-system keeps or loses v'(M - dt C/2)v + u(n)'K u(n+1), and this is positive, so nothing grows, while
+because the largest eigenvalue of a sum is at most the sum, and that of G k G' on the nodes alone is at most the largest sum of
+magnitudes in a row of M^-1 G k G' (Gershgorin):
+
+    sum over b of |sum over points of A N_a N_b| / m_a <= area_a / m_a,    area_a = sum over points of A |N_a| sum over b of |N_b|
+
+On bilinear facets no N is negative and their sum is one, so area_a is the node's own share of the area; on quadratic triangles the
+corners' N may be negative and the last sum reaches 5/3.
+
+Damping C whose velocity lags by half a step is damping at the velocity of the instant, [u(n+1) - u(n-1)] / 2dt, in a system with
+the mass M - dt C/2. Such a system keeps or loses v'(M - dt C/2)v + u(n)'K u(n+1), and this is positive, so nothing grows, while
 
     dt^2/4 lambda(M^-1 K) + dt/2 lambda(M^-1 C) <= 1
 
@@ -14,10 +21,11 @@ With C = alpha M + beta K of the rail, and friction c at the nodes, a step is st
 
     dt^2/4 (lambda_rail + lambda_contact) + dt/2 (alpha + beta lambda_rail) + dt/2 max(c/m) <= 1
 
-Every term grows with lambda_rail, so its upper bound alone decides, however the damping ratio runs below it. The first two make the
-limit of a run: that of w^2 = lambda_rail + lambda_contact with the ratio (alpha + beta lambda_rail) / 2w. The third is watched
-during the run. Rail frequencies are those of a rail whose mounts stand still: a free platform may raise them by the
-share m_rail / m_platform, which is left to the safety factor.
+where c of a node is bounded by the same sum with each point's damping in place of its area. Every term grows with lambda_rail, so
+its upper bound alone decides, however the damping ratio runs below it. The first two make the limit of a run: that of
+w^2 = lambda_rail + lambda_contact with the ratio (alpha + beta lambda_rail) / 2w. The third is watched during the run. Rail
+frequencies are those of a rail whose mounts stand still: a free platform may raise them by the share m_rail / m_platform, which is
+left to the safety factor.
 """
 
 import numpy as np
@@ -33,8 +41,8 @@ def contact_frequency_squared(system: System) -> float:
         return 0.0
     surface, rail, payload = system.surface, system.rail, system.model.payload
     area = np.zeros(rail.mass.size)
-    for corner in range(4):
-        np.add.at(area, surface.facets[:, corner], surface.area @ surface.shape[:, corner])
+    for node in range(surface.facets.shape[1]):
+        np.add.at(area, surface.facets[:, node], surface.area @ surface.spread[:, node])
     faces = system.faces
     size = 4.0 * faces.half_length * faces.half_width
     reach = (faces.centre**2).sum(axis=1) * np.linalg.eigvalsh(payload.inverse_inertia)[-1]

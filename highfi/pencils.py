@@ -47,6 +47,8 @@ class Pencils(NamedTuple):
 
 def find(points: np.ndarray, operator: Operator) -> tuple[Pencils, np.ndarray] | None:
     """Pencils of a mesh (points (n,3) m) and the new number (n,) of each node, or None where it is not an even extrusion."""
+    if operator.cells.shape[1] != 8:
+        return None
     places, point = np.unique(np.round(points[:, 1:] / _SAME), axis=0, return_inverse=True)
     stations, layer = np.unique(np.round(points[:, 0] / _SAME), return_inverse=True)
     point, layer = point.reshape(-1), layer.reshape(-1)
@@ -101,9 +103,9 @@ def _near_together(sections: int, pairs: list[tuple[int, int]]) -> np.ndarray:
 
 def _blocks(operator, point, layer, layers) -> dict | None:
     """Blocks (2,2,3,3) over (own layer, other's layer) for each pair of section points; None if layers differ or lack symmetry."""
-    lowest = layer[operator.hexes].min(axis=1)
+    lowest = layer[operator.cells].min(axis=1)
     per_layer = np.bincount(lowest, minlength=layers - 1)
-    if len(operator.hexes) % (layers - 1) or np.ptp(per_layer[:layers - 1]) != 0 or len(operator.stiffness) > per_layer[0]:
+    if len(operator.cells) % (layers - 1) or np.ptp(per_layer[:layers - 1]) != 0 or len(operator.stiffness) > per_layer[0]:
         return None
     found = [_layer(operator, point, layer, np.flatnonzero(lowest == k)) for k in sorted({0, (layers - 1) // 2, layers - 2})]
     scale = max(np.abs(block).max() for block in found[0].values())
@@ -116,7 +118,7 @@ def _blocks(operator, point, layer, layers) -> dict | None:
 def _layer(operator, point, layer, elements) -> dict:
     blocks = {}
     for element in elements:
-        nodes = operator.hexes[element]
+        nodes = operator.cells[element]
         stiffness = operator.stiffness[operator.shape_class[element]].reshape(8, 3, 8, 3)
         upper = layer[nodes] - layer[nodes].min()
         for i in range(8):

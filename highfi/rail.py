@@ -13,7 +13,7 @@ from scenes.files import content_hash
 from scenes.rail import GeometryTable, SectionTable
 from scenes.scene import Scene
 
-_SAME = 1e-6  # m, how far a corner of a facet may lie outside the box that names it
+_SAME = 1e-6  # m, how far a node of a facet may lie outside the box that names it
 
 
 def geometry(scene: Scene) -> l_rail.LRailGeometry | str:
@@ -39,34 +39,35 @@ def make_mesh(scene: Scene, element_size: float) -> RailMesh:
 
 
 def _meshed(rail: GeometryTable, element_size: float) -> meshio.Mesh:
-    """The solid of a CAD file as hexahedra, the facets of its boundary named after the boxes they lie in."""
+    """The solid of a CAD file as elements, the facets of its boundary named after the boxes they lie in."""
     boxes = {name: np.array([(box.low, box.high) for box in given]) for name, given in rail.surfaces.items()}
     try:
-        points, hexes = solid.build(rail.path(), element_size, np.concatenate(list(boxes.values())).reshape(-1, 3))
+        planes = np.concatenate(list(boxes.values())).reshape(-1, 3)
+        points, cells = solid.build(rail.path(), element_size, planes, tetrahedra=rail.elements == "tet10")
     except ValueError as fault:
         raise MeshError(f"{rail.path()} cannot be used: {fault}") from fault
-    facets = boundary_facets(hexes)
-    corners = points[facets][:, None]
-    inside = {name: ((corners > box[:, 0, None] - _SAME) & (corners < box[:, 1, None] + _SAME)).all(axis=(2, 3)).any(axis=1)
+    facets = boundary_facets(cells)
+    nodes = points[facets][:, None]
+    inside = {name: ((nodes > box[:, 0, None] - _SAME) & (nodes < box[:, 1, None] + _SAME)).all(axis=(2, 3)).any(axis=1)
               for name, box in boxes.items()}
     if empty := [name for name, found in inside.items() if not found.any()]:
         spans = zip("xyz", points.min(axis=0), points.max(axis=0))
         reach = ", ".join(f"{axis} {low:.6g} to {high:.6g}" for axis, low, high in spans)
         raise MeshError(f"{rail.path()} cannot be used: no face of the solid ({reach} m) lies in the boxes of {', '.join(empty)}")
-    return msh.tagged(points, hexes, {name: facets[found] for name, found in inside.items()})
+    return msh.tagged(points, cells, {name: facets[found] for name, found in inside.items()})
 
 
 def with_steps(mesh: RailMesh, material) -> RailMesh:
     """``mesh`` with a warning, where it has slivers, that says which step (s) they force on all other elements."""
-    thin = slivers(mesh.points, mesh.hexes)
+    thin = slivers(mesh.points, mesh.cells)
     if not len(thin):
         return mesh
 
-    def largest_step(hexes):
-        part = assembly.build(replace(mesh, hexes=hexes), material.density, material.youngs_modulus, material.poisson_ratio)
+    def largest_step(cells):
+        part = assembly.build(replace(mesh, cells=cells), material.density, material.youngs_modulus, material.poisson_ratio)
         return timestep.critical_step(timestep.element_bound(part))
 
-    forced, other = largest_step(mesh.hexes[thin]), largest_step(np.delete(mesh.hexes, thin, axis=0))
+    forced, other = largest_step(mesh.cells[thin]), largest_step(np.delete(mesh.cells, thin, axis=0))
     words = f"slivers {listed(thin)} force a step of at most {forced:.3g} s, the other elements one of {other:.3g} s"
     return replace(mesh, warnings=(*mesh.warnings, words))
 

@@ -14,10 +14,10 @@ from scenes.effects.structural_damping import Damping
 
 
 class Elements(NamedTuple):
-    """Constant: a mesh of any shape. hexes (e,8) and shape_class (e,), stiffness (c,24,24) N/m as in ``assembly.Operator``; slabs (s+1,)
-    first element of each slab along X, of which no two with one between them share a node."""
+    """Constant: a mesh of any shape. cells (e,k) and shape_class (e,), stiffness (c,3k,3k) N/m as in ``assembly.Operator``; slabs
+    (s+1,) first element of each slab along X, of which no two with one between them share a node."""
 
-    hexes: np.ndarray
+    cells: np.ndarray
     shape_class: np.ndarray
     stiffness: np.ndarray
     slabs: np.ndarray
@@ -42,17 +42,20 @@ class Rail(NamedTuple):
 
 
 class Surface(NamedTuple):
-    """Constant: facets (m,4) node numbers; shape (q,4) bilinear functions at the Gauss points; area (m,q) m2 per point;
-    for face f the facets it can meet are ``reach[first[f]:first[f+1]]``, sorted by their smallest X ``start`` (m);
-    ``longest`` facet extent along X (m)."""
+    """Constant: facets (m,k) node numbers, four corners or the six nodes of a triangle; shape (q,k) functions at the Gauss points,
+    and what bounds their products, ``spread`` (q,k), see ``limits``; area (m,q) m2 per point; for face f the facets it can meet are
+    ``reach[first[f]:first[f+1]]``, sorted by their smallest X ``start`` (m); ``longest`` facet extent along X (m); control (6,6):
+    control points of a triangle from its nodes, None for facets of four corners, which need none."""
 
     facets: np.ndarray
     shape: np.ndarray
+    spread: np.ndarray
     area: np.ndarray
     first: np.ndarray
     reach: np.ndarray
     start: np.ndarray
     longest: float
+    control: np.ndarray | None
 
 
 class Frame(NamedTuple):

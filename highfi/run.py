@@ -20,6 +20,7 @@ from highfi.pose import seen_from_frame
 from highfi.rail import geometry, make_mesh
 from highfi.step import advance, evaluate, kick_bodies
 from highfi.stepping import Stepping, choose
+from highfi.surface import magnification
 from highfi.system import System, build, initial_state
 from highfi.team import gather, processors
 from scenes import ledger, outcome, rotation
@@ -73,7 +74,7 @@ def run(scene: Scene, numerics: Numerics | None = None, progress: Callable[[floa
     if saved is not None:
         restore(loop, saved)
     loop.march(progress, kept)
-    elements = int(system.operator.hexes.shape[0])
+    elements = int(system.operator.cells.shape[0])
     cost = {"wall_s": (compiling - began) + loop.wall, "compile_s": compiled - compiling, "kernel_s": loop.wall,
             "cpu_s": set_up_cpu + loop.cpu + loop.other_cpu,
             "steps": loop.steps, **loop.stepping.as_dict(), "elements": elements,
@@ -83,7 +84,7 @@ def run(scene: Scene, numerics: Numerics | None = None, progress: Callable[[floa
 
 def _worth_while(system: System) -> int:
     """Threads that a mesh can keep busy: with less to do they would mostly wait for each other."""
-    return max(1, min(processors(), len(system.operator.hexes) // _ELEMENTS_PER_THREAD))
+    return max(1, min(processors(), len(system.operator.cells) // _ELEMENTS_PER_THREAD))
 
 
 class Loop:
@@ -186,13 +187,14 @@ class Loop:
         return ""
 
     def _approach_speed(self) -> float:
-        """Bound (m/s) of the speed across the rail at which any pad and any node of the walls can approach each other now."""
+        """Bound (m/s) of the speed across the rail at which any pad and any point of a wall can approach each other now."""
         state, payload = self.state, self.system.model.payload
         spin = np.linalg.norm(payload.inverse_inertia, 2) * np.linalg.norm(state.payload.spin)
         reach = np.linalg.norm(self.system.faces.centre, axis=1).max()
         turn = rotation.matrices(state.platform.quaternion[None])[0]
         across = (state.payload.velocity @ turn)[1:]
-        return float(np.linalg.norm(state.velocity[self.walls, 1:] - across, axis=1).max() + spin * reach)
+        nodes = np.linalg.norm(state.velocity[self.walls, 1:] - across, axis=1).max()
+        return float(magnification(self.system.surface) * nodes + spin * reach)
 
     def _motion(self) -> outcome.Motion:
         return samples.motion(np.array(self.rows), self.scene.output.interval, self.system.body_offset)

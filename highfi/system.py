@@ -80,15 +80,15 @@ def _rail(points: np.ndarray, operator: assembly.Operator, damping: Damping | No
 
 
 def general_elements(points: np.ndarray, operator: assembly.Operator) -> records.Elements:
-    """Elements in slabs along X. A slab is at least as thick as the longest element, so that elements of two slabs with one between
-    them share no node."""
-    x = points[operator.hexes][:, :, 0]
-    middle, longest = x.mean(axis=1), np.ptp(x, axis=1).max()
+    """Elements in slabs along X. A slab is at least as thick as the longest element, and an element belongs to the one that holds
+    the middle of its extent (the mean of its nodes may lie elsewhere): so elements of slabs with one between share no node."""
+    x = points[operator.cells][:, :, 0]
+    middle, longest = 0.5 * (x.min(axis=1) + x.max(axis=1)), np.ptp(x, axis=1).max()
     width = max(1.001 * longest, np.ptp(middle) / _MOST_SLABS)
     slab = ((middle - middle.min()) / width).astype(np.int64)
     order = np.argsort(slab, kind="stable")
     slabs = np.searchsorted(slab[order], np.arange(slab.max() + 2))
-    return records.Elements(operator.hexes[order], operator.shape_class[order], operator.stiffness, slabs)
+    return records.Elements(operator.cells[order], operator.shape_class[order], operator.stiffness, slabs)
 
 
 def _rigid_part(scene, platform, points, moving) -> tuple[records.Frame, np.ndarray]:

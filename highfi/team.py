@@ -21,7 +21,8 @@ _PATIENCE = 4000  # looks at the barrier before the processor is offered to othe
 
 
 class Team(NamedTuple):
-    """``size`` threads, the ``counters`` of their barrier, and room of its own for each, (4, LANES) ``lanes``."""
+    """``size`` threads, the ``counters`` of their barrier, and room of its own for each: (4, LANES) ``lanes``, which also hold the forces
+    of one element."""
 
     size: int
     counters: np.ndarray

@@ -19,6 +19,7 @@ from scipy.linalg import eigh_tridiagonal
 from highfi.assembly import Operator
 from highfi.operator import internal_force
 
+_BATCH = 2048  # classes of elements looked at at once; bounds the memory of an unstructured mesh
 _DIVIDES = 1e-9  # relative error allowed to a requested step that should divide the sample interval
 
 
@@ -37,12 +38,15 @@ class FrequencyBound(NamedTuple):
 def element_bound(operator: Operator) -> float:
     """Upper bound (rad/s) of every frequency of the mesh: the highest of K_e x = w^2 M_e x over the element classes.
 
-    M_e holds the mass the element itself brings to its corners. Assembling elements and fixing nodes can only lower the highest
+    M_e holds the mass the element itself brings to its nodes. Assembling elements and fixing nodes can only lower the highest
     frequency; contact springs, which raise it, are not in it.
     """
-    scale = 1.0 / np.sqrt(np.repeat(operator.corner_mass, 3, axis=1))
-    eigenvalues = np.linalg.eigvalsh(operator.stiffness * scale[:, :, None] * scale[:, None, :])
-    return math.sqrt(eigenvalues.max())
+    scale, highest = 1.0 / np.sqrt(np.repeat(operator.node_mass, 3, axis=1)), 0.0
+    for start in range(0, len(scale), _BATCH):
+        part = scale[start:start + _BATCH]
+        matrices = operator.stiffness[start:start + _BATCH] * part[:, :, None] * part[:, None, :]
+        highest = max(highest, np.linalg.eigvalsh(matrices).max())
+    return math.sqrt(highest)
 
 
 def operator_bound(operator: Operator, added_stiffness: np.ndarray | None = None, *, tolerance: float = 1e-3,
@@ -63,7 +67,7 @@ def operator_bound(operator: Operator, added_stiffness: np.ndarray | None = None
 
     def apply(vector):
         displacement = vector * inverse_root_mass
-        internal_force(displacement, operator.hexes, operator.shape_class, operator.stiffness, force)
+        internal_force(displacement, operator.cells, operator.shape_class, operator.stiffness, force)
         return (force + springs * displacement) * inverse_root_mass
 
     cap = element_bound(operator) ** 2 + (springs * inverse_root_mass ** 2).max()

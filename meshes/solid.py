@@ -1,9 +1,10 @@
-"""A solid from a CAD file (STEP, IGES, BREP) as hexahedra, made with gmsh.
+"""A solid from a CAD file (STEP, IGES, BREP) as hexahedra or as quadratic tetrahedra, made with gmsh.
 
 A solid whose faces are all plane and parallel to the axes is a set of bricks: the planes of its faces cut space into cells, each of
 which is metal or not. A solid with the same section from end to end along X is its section in quadrilaterals, drawn out in layers.
 Any other solid is filled with tetrahedra of twice the size asked for, each split into four hexahedra at the centres of its edges
-and faces; such elements are skewed, which costs steps and makes thin walls too stiff.
+and faces; such elements are skewed, which costs steps and makes thin walls too stiff. Where tetrahedra are asked for they have ten
+nodes, about ``element_size`` apart, and edges that follow curved faces.
 """
 
 from pathlib import Path
@@ -16,10 +17,11 @@ _SAME = 1e-9  # m: two planes closer than this are one
 _TIE = 1e-6  # divisions
 _PROBES = 9  # points of an edge looked at to see whether it bends
 _CUBE = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]])  # VTK order
+_TETRAHEDRON = [0, 1, 2, 3, 4, 5, 6, 7, 9, 8]  # nodes of gmsh's quadratic tetrahedron in VTK order
 
 
-def build(path: Path, element_size: float, planes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Points (n,3) m and hexahedra (e,8), VTK order, of every solid in a file, whatever length unit the file is written in.
+def build(path: Path, element_size: float, planes: np.ndarray, tetrahedra: bool = False) -> tuple[np.ndarray, np.ndarray]:
+    """Points (n,3) m and hexahedra (e,8), or tetrahedra (e,10), VTK order, of every solid in a file, whatever its length unit.
 
     ``planes`` (p,3) m: places along x, y and z at which elements should have borders. Bricks have them at all of these, a section
     drawn out at those along x, tetrahedra at none.
@@ -36,9 +38,11 @@ def build(path: Path, element_size: float, planes: np.ndarray) -> tuple[np.ndarr
         volumes = [tag for _, tag in gmsh.model.getEntities(3)]
         if not volumes:
             raise ValueError("it holds no solid")
-        if _is_bricks(gmsh):
+        if not tetrahedra and _is_bricks(gmsh):
             return _bricks(gmsh, volumes, element_size, planes)
         try:
+            if tetrahedra:
+                return _tetrahedra(gmsh, element_size)
             return _drawn_out(gmsh, element_size, planes) if _is_drawn_out(gmsh) else _split_tetrahedra(gmsh, element_size)
         except Exception as fault:  # gmsh knows no other class
             raise ValueError(f"gmsh cannot fill it with elements of {element_size:g} m ({fault})") from fault
@@ -131,17 +135,26 @@ def _split_tetrahedra(gmsh, element_size: float) -> tuple[np.ndarray, np.ndarray
     return _elements(gmsh, "Hexahedron", [tag for _, tag in gmsh.model.getEntities(3)])
 
 
+def _tetrahedra(gmsh, element_size: float) -> tuple[np.ndarray, np.ndarray]:
+    _set_size(gmsh, 2.0 * element_size)
+    gmsh.option.setNumber("Mesh.HighOrderOptimize", 1)  # edges bent around a hole must not fold the elements behind them
+    gmsh.model.mesh.generate(3)
+    gmsh.model.mesh.setOrder(2)
+    points, nodes = _elements(gmsh, "Tetrahedron", [tag for _, tag in gmsh.model.getEntities(3)], order=2)
+    return points, nodes[:, _TETRAHEDRON]
+
+
 def _set_size(gmsh, size: float) -> None:
     gmsh.option.setNumber("Mesh.MeshSizeMin", size)
     gmsh.option.setNumber("Mesh.MeshSizeMax", size)
 
 
-def _elements(gmsh, family: str, entities: list[int]) -> tuple[np.ndarray, np.ndarray]:
-    """All points (n,3) m of the mesh and the corners (e,k) of the elements of one family in some entities."""
+def _elements(gmsh, family: str, entities: list[int], order: int = 1) -> tuple[np.ndarray, np.ndarray]:
+    """All points (n,3) m of the mesh and the nodes (e,k) of the elements of one family in some entities."""
     tags, places, _ = gmsh.model.mesh.getNodes()
     number = np.zeros(int(tags.max()) + 1, dtype=np.int64)
     number[tags.astype(np.int64)] = np.arange(len(tags))
-    kind = gmsh.model.mesh.getElementType(family, 1)
+    kind = gmsh.model.mesh.getElementType(family, order)
     nodes = [gmsh.model.mesh.getElementsByType(kind, entity)[1] for entity in entities]
-    corners = gmsh.model.mesh.getElementProperties(kind)[3]
-    return places.reshape(-1, 3), number[np.concatenate(nodes).astype(np.int64)].reshape(-1, corners)
+    count = gmsh.model.mesh.getElementProperties(kind)[3]
+    return places.reshape(-1, 3), number[np.concatenate(nodes).astype(np.int64)].reshape(-1, count)

@@ -9,7 +9,7 @@ where the walls begin and end, pads and clearance where they stand; the referenc
 import hashlib
 import math
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Union
+from typing import Annotated, Any, ClassVar, Literal, Union
 
 from pydantic import AfterValidator, Discriminator, PrivateAttr, Tag, ValidationInfo, field_validator, model_validator
 
@@ -142,7 +142,8 @@ def _readable(file: str) -> str:
 
 
 class MeshTable(_FileTable):
-    """``[rail] mesh``: hexahedra in any format meshio reads, with named surfaces ``contact...`` and ``mount`` (``highfi.mesh``)."""
+    """``[rail] mesh``: 8-node hexahedra or 10-node tetrahedra in any format meshio reads, with named surfaces ``contact...`` and
+    ``mount`` (``highfi.mesh``)."""
 
     GIVEN_BY = "mesh"
     mesh: Annotated[str, AfterValidator(_readable)]
@@ -163,10 +164,12 @@ class BoxTable(Table):
 
 
 class GeometryTable(_FileTable):
-    """``[rail] geometry``: a solid drawn in CAD, meshed here. ``surfaces`` names the parts of its boundary that lie in boxes."""
+    """``[rail] geometry``: a solid drawn in CAD, meshed here with ``elements`` of 8-node hexahedra or 10-node tetrahedra.
+    ``surfaces`` names the parts of its boundary that lie in boxes."""
 
     GIVEN_BY = "geometry"
     geometry: Annotated[str, AfterValidator(_readable)]
+    elements: Literal["hex8", "tet10"] = "hex8"
     surfaces: dict[str, Annotated[tuple[BoxTable, ...], AfterValidator(at_least_one)]]
 
     @field_validator("geometry")

@@ -77,7 +77,7 @@ def _measured(scene: Scene, size: float, repeats: int, steps: int | None) -> dic
     for loop in loops.values():
         loop.begin()
     baseline = CsrLoop(mesh, scene.rail.material, stepping.dt_s, _BASELINE_MOST)
-    elements = len(mesh.hexes)
+    elements = len(mesh.cells)
     count = steps or max(20, min(round(_WORK / elements), int(_PRESSED / stepping.dt_s)))
     pieces = {name: (_Again(loop), count, elements) for name, loop in loops.items()}
     pieces["baseline"] = (baseline.advance, max(3, count // 50), baseline.elements)

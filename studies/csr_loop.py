@@ -13,10 +13,10 @@ class CsrLoop:
     """State of that loop on the first ``most`` elements of a mesh, set in motion."""
 
     def __init__(self, mesh: RailMesh, material, step: float, most: int):
-        used, local = np.unique(mesh.hexes[:most], return_inverse=True)
+        used, local = np.unique(mesh.cells[:most], return_inverse=True)
         part = RailMesh(mesh.points[used], local.reshape(-1, 8), {})
         operator = assembly.build(part, material.density, material.youngs_modulus, material.poisson_ratio, fixed=())
-        self.elements, self.step, self.stiffness = len(part.hexes), step, assembly.sparse(operator)
+        self.elements, self.step, self.stiffness = len(part.cells), step, assembly.sparse(operator)
         self.inverse_mass = np.repeat(1.0 / operator.mass, 3)
         self.displacement, self.velocity = np.zeros(3 * len(used)), 1e-3 * np.sin(np.arange(3.0 * len(used)))
 

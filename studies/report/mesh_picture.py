@@ -39,7 +39,7 @@ def _boundary(mesh) -> tuple[np.ndarray, list[str]]:
     """Outer facets (m,4) of the solid and the surface each belongs to, ``rail`` where it has no name."""
     from highfi.mesh import boundary_facets
 
-    facets = boundary_facets(mesh.hexes)
+    facets = boundary_facets(mesh.cells)
     names = {tuple(sorted(facet)): name for name, group in mesh.surfaces.items() for facet in group.tolist()}
     return facets, [names.get(tuple(sorted(facet)), "rail") for facet in facets.tolist()]
 
@@ -49,11 +49,13 @@ def _oblique(axes, mesh, colours: dict[str, str]) -> None:
     from matplotlib.collections import PolyCollection
     from matplotlib.colors import to_rgb
 
+    from highfi.facets import normals
+
     facets, names = _boundary(mesh)
     turn = _view(azimuth=-60.0, elevation=26.0)
-    corners = (mesh.points @ turn.T)[facets]
-    normal = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
-    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+    nodes = (mesh.points @ turn.T)[facets]
+    normal = normals(nodes)
+    corners = nodes[:, :4] if nodes.shape[1] == 4 else nodes[:, :3]
     front = np.flatnonzero(normal[:, 2] > 1e-9)
     order = front[np.argsort(corners[front, :, 2].mean(axis=1))]
     shade = 0.62 + 0.38 * np.abs(normal @ (_LIGHT / np.linalg.norm(_LIGHT)))
@@ -63,23 +65,20 @@ def _oblique(axes, mesh, colours: dict[str, str]) -> None:
     axes.autoscale()
     axes.set_aspect("equal")
     axes.set_axis_off()
-    axes.set_title(f"all rails, {len(mesh.hexes):,} elements", fontsize=10.5)
+    axes.set_title(f"all rails, {len(mesh.cells):,} elements", fontsize=10.5)
 
 
 def _section(axes, mesh, colours: dict[str, str]) -> None:
     """Elements of the middle layer of the rail at +y +z (of all, where none is there), seen along X, named walls drawn thick."""
     from matplotlib.collections import LineCollection, PolyCollection
 
-    centres = mesh.points[mesh.hexes].mean(axis=1)
+    centres = mesh.points[mesh.cells].mean(axis=1)
     corner = (centres[:, 1] > 0.0) & (centres[:, 2] > 0.0)
     corner |= not corner.any()  # a launcher of one's own may have no rail there
     inside = centres[corner, 0]
-    layer = np.flatnonzero(corner & (np.abs(centres[:, 0] - inside[np.argmin(np.abs(inside - inside.mean()))]) < 1e-9))
-    low = mesh.points[mesh.hexes[layer]].min(axis=1)[:, 1:]
-    high = mesh.points[mesh.hexes[layer]].max(axis=1)[:, 1:]
-    boxes = [[(a[0], a[1]), (b[0], a[1]), (b[0], b[1]), (a[0], b[1])] for a, b in zip(1e3 * low, 1e3 * high)]
-    axes.add_collection(PolyCollection(boxes, facecolors="#dfe3e7", edgecolors="#3b4149", linewidths=0.7))
-    reach = mesh.points[mesh.hexes[layer]][:, :, 0]
+    layer = _cut(mesh, corner, inside[np.argmin(np.abs(inside - inside.mean()))])
+    axes.add_collection(PolyCollection(_outlines(mesh, layer), facecolors="#dfe3e7", edgecolors="#3b4149", linewidths=0.7))
+    reach = mesh.points[mesh.cells[layer]][:, :, 0]
     for name, colour in colours.items():
         facets = mesh.points[mesh.surfaces[name]]
         near = facets[(facets[:, :, 1:].min(axis=(1, 2)) > 0.0) & (np.abs(facets[:, :, 0].mean(axis=1) - reach.mean()) < np.ptp(reach))]
@@ -93,6 +92,23 @@ def _section(axes, mesh, colours: dict[str, str]) -> None:
     axes.tick_params(labelsize=8)
     axes.spines[["top", "right"]].set_visible(False)
     axes.set_title("section of one rail", fontsize=10.5, color=NAVY)
+
+
+def _cut(mesh, among, x: float) -> np.ndarray:
+    """Numbers of the elements ``among`` those marked that the plane at ``x`` (m) cuts."""
+    along = mesh.points[mesh.cells][:, :, 0]
+    return np.flatnonzero(among & (along.min(axis=1) < x) & (along.max(axis=1) > x))
+
+
+def _outlines(mesh, layer) -> list[np.ndarray]:
+    """Outlines (mm) of elements seen along X: the box around a hexahedron, the four faces of a tetrahedron."""
+    from highfi.cells import HEXAHEDRON, TETRAHEDRON, kind
+
+    nodes = 1e3 * mesh.points[mesh.cells[layer]][:, :, 1:]
+    if kind(mesh.cells) is not HEXAHEDRON:
+        return list(nodes[:, TETRAHEDRON.faces[:, :3]].reshape(-1, 3, 2))
+    low, high = nodes.min(axis=1), nodes.max(axis=1)
+    return [np.array([(a[0], a[1]), (b[0], a[1]), (b[0], b[1]), (a[0], b[1])]) for a, b in zip(low, high)]
 
 
 def _view(azimuth: float, elevation: float) -> np.ndarray:

@@ -101,9 +101,9 @@ class Page:
         path = self.folder / found["picture"]
         image = base64.b64encode(path.read_bytes()).decode()
         areas = [(name.replace("_", " "), item["facets"], f"{1e6 * item['area_m2']:.5g}") for name, item in found["surfaces"].items()]
-        words = (f"{found['elements']:,} hexahedra with incompatible modes, {found['nodes']:,} nodes, elements of about "
+        words = (f"{found['elements']:,} {found['kind']}, {found['nodes']:,} nodes, elements of about "
                  f"{1e3 * found['element_size_m']:g} mm; edges {1e3 * found['shortest_edge_m']:.3g} to {1e3 * found['longest_edge_m']:.3g} mm, "
-                 f"smallest scaled Jacobian {found['smallest_scaled_jacobian']:.3f} (1 for a brick).")
+                 f"smallest scaled Jacobian {found['smallest_scaled_jacobian']:.3f} (1 for a brick and for a regular tetrahedron).")
         warned = "".join(f'<div class="notice">{escape(line)}</div>' for line in found["warnings"])
         return section("mesh", "Mesh", Html(f'<img alt="mesh of the rails" src="data:image/png;base64,{image}">'), caption(words),
                        table(("surface", "facets", "area (mm²)"), areas), warned)

@@ -17,7 +17,7 @@ def run(study: Study) -> dict:
 
     def make() -> tuple[dict, list[Path]]:
         import highfi
-        from highfi import mesh as checks
+        from highfi import cells as checks
 
         mesh = highfi.prepare(asked.scene, asked.numerics)
         for warning in mesh.warnings:
@@ -27,11 +27,12 @@ def run(study: Study) -> dict:
         path, picture = study.path("mesh.vtu"), study.path("figures") / "mesh.png"
         _save(mesh, path)
         draw(mesh, picture)
-        lengths = checks.edge_lengths(mesh.points, mesh.hexes)
-        _, scaled = checks.corner_jacobians(mesh.points, mesh.hexes)
+        lengths = checks.edge_lengths(mesh.points, mesh.cells)
+        _, scaled = checks.jacobians(mesh.points, mesh.cells)
         surfaces = {name: {"facets": len(facets), "area_m2": area(mesh.points, facets)}
                     for name, facets in mesh.surfaces.items()}
-        return {"element_size_m": asked.numerics.element_size, "elements": len(mesh.hexes), "nodes": len(mesh.points),
+        return {"element_size_m": asked.numerics.element_size, "elements": len(mesh.cells), "kind": checks.kind(mesh.cells).name,
+                "nodes": len(mesh.points),
                 "shortest_edge_m": float(lengths.min()), "longest_edge_m": float(lengths.max()),
                 "smallest_scaled_jacobian": float(scaled.min()), "warnings": list(mesh.warnings),
                 "surfaces": surfaces, "mesh": study.relative(path), "picture": study.relative(picture)}, [path, picture]
@@ -40,19 +41,21 @@ def run(study: Study) -> dict:
 
 
 def area(points: np.ndarray, facets: np.ndarray) -> float:
-    """Area (m2) of quadrilaterals (m,4): half the length of the cross product of the diagonals, exact for plane ones."""
-    corners = points[facets]
-    normals = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
-    return float(0.5 * np.linalg.norm(normals, axis=1).sum())
+    """Area (m2) of facets (m,4) or (m,6), exact for plane ones."""
+    from highfi.facets import gauss
+
+    return float(gauss(points[facets], 2)[1].sum())
 
 
 def _save(mesh, path: Path) -> None:
     import meshio
 
+    from highfi.cells import kind
+
     names = list(mesh.surfaces)
     facets = np.concatenate([mesh.surfaces[name] for name in names])
-    kind = np.concatenate([np.full(len(mesh.surfaces[name]), index + 1) for index, name in enumerate(names)])
-    document = meshio.Mesh(mesh.points, [("hexahedron", mesh.hexes), ("quad", facets)],
-                           cell_data={"surface": [np.zeros(len(mesh.hexes), dtype=int), kind]})
+    group = np.concatenate([np.full(len(mesh.surfaces[name]), index + 1) for index, name in enumerate(names)])
+    document = meshio.Mesh(mesh.points, [(kind(mesh.cells).cell, mesh.cells), (kind(mesh.cells).facet, facets)],
+                           cell_data={"surface": [np.zeros(len(mesh.cells), dtype=int), group]})
     with replacing(path) as temporary:
         document.write(temporary, file_format="vtu")

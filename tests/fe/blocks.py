@@ -42,7 +42,7 @@ def static(operator, load, held):
 def without_bubbles(mesh, operator, youngs_modulus, poisson_ratio):
     """The same operator with the plain, fully integrated hexahedron, which the tests of bending use as their control."""
     _, representatives = assembly.shape_classes(mesh)
-    strain = element.kinematics(element.basis(mesh.points[mesh.hexes[representatives]]))
+    strain = element.kinematics(element.basis(mesh.points[mesh.cells[representatives]]))
     law = element.elasticity(youngs_modulus, poisson_ratio)
     return operator._replace(stiffness=np.einsum("cq,cqsi,st,cqtj->cij", strain.volume, strain.nodal, law, strain.nodal))
 

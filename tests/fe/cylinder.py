@@ -44,7 +44,7 @@ def solve(refinement: int, poisson_ratio: float, bubbles: bool = True) -> Soluti
 
 def _pressure(mesh, inside):
     """Nodal forces (n,3) N of the pressure on the facets whose nodes are all `inside`; each facet is a plane rectangle."""
-    facets = boundary_facets(mesh.hexes)
+    facets = boundary_facets(mesh.cells)
     facets = facets[inside[facets].all(axis=1)]
     corners, load = mesh.points[facets], np.zeros(mesh.points.shape)
     outward = 0.5 * np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])

@@ -17,18 +17,18 @@ def march(operator, displacement, velocity, step, steps, watched=(0, 0)):
     v(n+1/2)' M v(n+1/2) / 2 + u(n)' K u(n+1) / 2.
     """
     inverse_mass = np.where(operator.free, 1.0 / operator.mass, 0.0)
-    return _march(displacement, velocity, step, steps, watched[0], watched[1], operator.hexes, operator.shape_class,
+    return _march(displacement, velocity, step, steps, watched[0], watched[1], operator.cells, operator.shape_class,
                   operator.stiffness, operator.mass, inverse_mass)
 
 
 @njit
-def _march(displacement, velocity, step, steps, node, component, hexes, shape_class, stiffness, mass, inverse_mass):
+def _march(displacement, velocity, step, steps, node, component, cells, shape_class, stiffness, mass, inverse_mass):
     force = np.empty_like(displacement)
     trace = np.empty(steps + 1)
     invariant = np.empty(steps)
     trace[0] = displacement[node, component]
     for n in range(steps):
-        internal_force(displacement, hexes, shape_class, stiffness, force)
+        internal_force(displacement, cells, shape_class, stiffness, force)
         energy = 0.0
         for a in range(mass.size):
             for c in range(3):
@@ -50,7 +50,7 @@ def driven(operator, step, load, displacement, velocity):
     resistance = np.empty_like(displacement)
     number = 0
     while True:
-        internal_force(displacement, operator.hexes, operator.shape_class, operator.stiffness, resistance)
+        internal_force(displacement, operator.cells, operator.shape_class, operator.stiffness, resistance)
         resistance -= load(number * step, displacement)
         kick_nodes(inverse_mass, velocity, resistance, (0.0, 0.0, 0.0), step if number else 0.5 * step)
         displacement += step * velocity

@@ -105,7 +105,7 @@ def two_rods(elements):
     """Two equal rods in a row that share no node."""
     rod = block((elements, 1, 1), (LENGTH, WIDTH, WIDTH))
     return RailMesh(np.concatenate([rod.points, rod.points + [LENGTH, 0.0, 0.0]]),
-                    np.concatenate([rod.hexes, rod.hexes + len(rod.points)]), {})
+                    np.concatenate([rod.cells, rod.cells + len(rod.points)]), {})
 
 
 def collide(elements, fraction, stiffness, speed=2.0):
@@ -142,7 +142,7 @@ def collide(elements, fraction, stiffness, speed=2.0):
     force, time = np.array(forces), step * np.arange(len(forces))
     # The kinetic energy at the time of the displacement, from the half steps around it: the one the scheme keeps.
     strained = np.empty_like(displacement)
-    internal_force(displacement, operator.hexes, operator.shape_class, operator.stiffness, strained)
+    internal_force(displacement, operator.cells, operator.shape_class, operator.stiffness, strained)
     following = velocity - step * strained / operator.mass[:, None]
     energy = 0.5 * (operator.mass @ (velocity * following).sum(axis=1) + (displacement * strained).sum())
     rod = operator.mass[:half] / operator.mass[:half].sum()

@@ -78,12 +78,12 @@ def test_root_stress(divisions):
     assert ROOT_STRESS == pytest.approx(7.5e6, rel=1e-12)
     mesh = beam(divisions)
     operator = assembly.build(mesh, **ALUMINIUM, fixed=())
-    corners = mesh.points[mesh.hexes]
+    corners = mesh.points[mesh.cells]
     centre = corners.mean(axis=1)
     law = element.elasticity(**ELASTIC)
 
     def fibre_stress(found):
-        stress = element.centre_strain(corners, found[mesh.hexes]) @ law
+        stress = element.centre_strain(corners, found[mesh.cells]) @ law
         outer = (centre[:, 0] == centre[:, 0].min()) & np.isclose(centre[:, 2], centre[:, 2].max())
         height = 2.0 * centre[outer, 2] / BEAM["height"] - 1.0
         return -(stress[outer, 0] / height / (1.0 - centre[outer, 0] / BEAM["length"])).mean()

@@ -23,11 +23,11 @@ def space_errors(refinement):
                                                      cylinder.MODULUS, NU)
     mean = exact[:, None] * found.mesh.points[:, :2] / found.radius[:, None]
     miss = ((found.displacement[:, :2] - mean) ** 2).sum(axis=1)
-    law, corners = element.elasticity(cylinder.MODULUS, NU), found.mesh.points[found.mesh.hexes]
+    law, corners = element.elasticity(cylinder.MODULUS, NU), found.mesh.points[found.mesh.cells]
     cells = element.basis(corners)
     places = np.einsum("aq,cai->cqi", element.shape_functions(cells), corners)
     stress = elasticity.pressed_cylinder_stress(places, cylinder.INNER, cylinder.OUTER, cylinder.PRESSURE, NU)
-    astray = element.gauss_strain(corners, law, found.displacement[found.mesh.hexes]) @ law - stress
+    astray = element.gauss_strain(corners, law, found.displacement[found.mesh.cells]) @ law - stress
     volume = cells.dx[..., None]
     return (np.sqrt((found.mass @ miss) / (found.mass @ exact**2)),
             np.sqrt((volume * astray**2).sum() / (volume * stress**2).sum()))

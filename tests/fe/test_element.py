@@ -28,7 +28,7 @@ PATCH_GRADIENT = 0.5e-3 * np.array([[2.0, 1.0, 1.0], [1.0, 2.0, 1.0], [1.0, 1.0,
 
 def force(operator, displacement):
     result = np.empty_like(displacement)
-    internal_force(displacement, operator.hexes, operator.shape_class, operator.stiffness, result)
+    internal_force(displacement, operator.cells, operator.shape_class, operator.stiffness, result)
     return result
 
 
@@ -47,8 +47,8 @@ def test_patch_has_constant_stress(turn):
     displacement = (points @ PATCH_GRADIENT.T @ turn.T).ravel()
     displacement[inner] = 0.0
     displacement[inner] = spsolve(matrix[inner][:, inner].tocsc(), -(matrix @ displacement)[inner])
-    law, corners = element.elasticity(1e6, 0.25), mesh.points[mesh.hexes]
-    nodal = displacement.reshape(-1, 3)[mesh.hexes]
+    law, corners = element.elasticity(1e6, 0.25), mesh.points[mesh.cells]
+    nodal = displacement.reshape(-1, 3)[mesh.cells]
     gauss, centre = element.gauss_strain(corners, law, nodal) @ law, element.centre_strain(corners, nodal) @ law
     for stress in (*np.moveaxis(gauss, 1, 0), centre):
         xx, yy, zz, xy, yz, zx = stress.T
@@ -92,7 +92,7 @@ def test_hexahedron_without_bubbles_locks():
 @pytest.mark.case("O12")
 def test_turned_rail_has_turned_forces(rail):
     displacement = np.random.default_rng(1).standard_normal(rail.points.shape)
-    turned = RailMesh(rail.points @ TURN.T, rail.hexes, rail.surfaces)
+    turned = RailMesh(rail.points @ TURN.T, rail.cells, rail.surfaces)
     here, there = assembly.build(rail, **ALUMINIUM), assembly.build(turned, **ALUMINIUM)
     expected = force(here, displacement) @ TURN.T
     assert np.abs(force(there, displacement @ TURN.T) - expected).max() < 1e-12 * np.abs(expected).max()

@@ -16,7 +16,7 @@ def rail():
     """One of the four L rails."""
     four = read(l_rail.build(l_rail.LRailGeometry(), 0.008))
     count = len(four.points) // 4
-    return RailMesh(four.points[:count], four.hexes[(four.hexes < count).all(axis=1)], {})
+    return RailMesh(four.points[:count], four.cells[(four.cells < count).all(axis=1)], {})
 
 
 @pytest.mark.case("X16")

@@ -6,7 +6,8 @@ import meshio
 import numpy as np
 import pytest
 
-from highfi.mesh import MeshError, along_x, corner_jacobians, edge_lengths, read
+from highfi.cells import corner_jacobians, edge_lengths
+from highfi.mesh import MeshError, along_x, read
 from meshes import generator, l_rail, msh
 
 GEOMETRY = l_rail.LRailGeometry()
@@ -40,12 +41,12 @@ def test_areas_and_volume_do_not_depend_on_the_mesh(size, count):
     for name, area in AREAS.items():
         vectors, _ = facet_vectors(mesh, name)
         assert np.linalg.norm(vectors, axis=1).sum() == pytest.approx(area, rel=1e-12)
-    jacobian, scaled = corner_jacobians(mesh.points, mesh.hexes)
+    jacobian, scaled = corner_jacobians(mesh.points, mesh.cells)
     assert jacobian.mean(axis=1).sum() == pytest.approx(4 * 176e-6 * 0.220, rel=1e-12)
     assert scaled.min() == pytest.approx(1.0, rel=1e-9)
     if count:
-        assert len(mesh.hexes) == count
-        assert np.ptp(edge_lengths(mesh.points, mesh.hexes)) < 1e-12
+        assert len(mesh.cells) == count
+        assert np.ptp(edge_lengths(mesh.points, mesh.cells)) < 1e-12
 
 
 @pytest.mark.parametrize("size, even", [(0.0034, False), (0.0013, True), (0.0007, True)])
@@ -80,7 +81,7 @@ def test_build_is_repeatable_and_survives_a_file(built, tmp_path):
     msh.save(l_rail.build(GEOMETRY, 0.004), tmp_path / "second.msh")
     assert (tmp_path / "first.msh").read_bytes() == (tmp_path / "second.msh").read_bytes()
     here, there = read(built), read(tmp_path / "first.msh")
-    assert np.array_equal(here.points, there.points) and np.array_equal(here.hexes, there.hexes)
+    assert np.array_equal(here.points, there.points) and np.array_equal(here.cells, there.cells)
     assert all(np.array_equal(here.surfaces[name], there.surfaces[name]) for name in AREAS)
 
 
@@ -102,7 +103,7 @@ def test_unused_points_are_dropped_and_numbering_follows(built):
                          [(block.type, block.data + 1) for block in built.cells],
                          field_data=built.field_data, cell_data=built.cell_data)
     here, there = read(built), read(padded)
-    assert np.array_equal(here.points, there.points) and np.array_equal(here.hexes, there.hexes)
+    assert np.array_equal(here.points, there.points) and np.array_equal(here.cells, there.cells)
     ordered = along_x(there)
     assert (np.diff(np.round(ordered.points[:, 0], 9)) >= 0.0).all()
     for name in AREAS:
@@ -163,7 +164,7 @@ def test_files_of_gmsh_are_read_in_its_own_formats(tmp_path, version, binary):
     assert set(mesh.surfaces) == {"contact_top", "mount"}
     assert facet_vectors(mesh, "contact_top")[0].sum(axis=0) == pytest.approx([0.0, 0.0, 2e-4], abs=1e-15)
     assert np.abs(facet_vectors(mesh, "mount")[0]).sum(axis=0) == pytest.approx([1e-4, 0.0, 0.0], abs=1e-15)
-    assert corner_jacobians(mesh.points, mesh.hexes)[0].mean(axis=1).sum() == pytest.approx(1e-6)
+    assert corner_jacobians(mesh.points, mesh.cells)[0].mean(axis=1).sum() == pytest.approx(1e-6)
 
 
 def test_a_file_of_abaqus_is_read(built, tmp_path):

@@ -39,7 +39,7 @@ def both_forces(mesh):
     columns, number = pencils.find(mesh.points, operator)
     displacement = np.random.default_rng(3).standard_normal(mesh.points.shape)
     expected = np.empty_like(displacement)
-    internal_force(displacement, operator.hexes, operator.shape_class, operator.stiffness, expected)
+    internal_force(displacement, operator.cells, operator.shape_class, operator.stiffness, expected)
     size = -(-(number.max() + 1) // pencils.LANES) * pencils.LANES
     padded, force = np.zeros((3, size)), np.zeros((3, size))
     padded[:, number] = displacement.T

@@ -81,12 +81,12 @@ def test_trapezoids_are_warned_of():
     """Leaning sections, at 45 degrees in turn, leave 5 % and 3 % of the bending: reading such a mesh says so."""
     good, bad = cantilever(6), cantilever(6, lean=1.0)
     assert translations(bad, built(bad))[1:] == pytest.approx([0.047, 0.030], abs=0.002)
-    facets = boundary_facets(good.hexes)
+    facets = boundary_facets(good.cells)
     tags = np.where((good.points[facets][:, :, 0] == 0.0).all(axis=1), 1, 2)
 
     def warnings(mesh):
-        return read(meshio.Mesh(mesh.points, [("hexahedron", mesh.hexes), ("quad", facets)],
-                                cell_data={"gmsh:physical": [np.full(len(mesh.hexes), 3), tags]},
+        return read(meshio.Mesh(mesh.points, [("hexahedron", mesh.cells), ("quad", facets)],
+                                cell_data={"gmsh:physical": [np.full(len(mesh.cells), 3), tags]},
                                 field_data={"mount": np.array([1, 2]), "contact": np.array([2, 2])})).warnings
 
     assert warnings(good) == ()

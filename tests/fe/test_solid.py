@@ -5,8 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from highfi import assembly, element
-from highfi.mesh import MeshError, RailMesh, boundary_facets, corner_jacobians, read
+from highfi import assembly, element, facets, tetrahedron
+from highfi.cells import corner_jacobians
+from highfi.mesh import MeshError, RailMesh, boundary_facets, read
 from highfi.rail import make_mesh
 from meshes import generator, l_rail, solid
 from scenes import SceneError, parse
@@ -93,7 +94,7 @@ def test_the_built_in_rails_drawn_in_cad_are_the_built_in_mesh(tmp_path, size):
     found = make_mesh(scene_of(drawn(tmp_path / "rails.step", l_sections), l_surfaces()), size)
     built = read(l_rail.build(l_rail.LRailGeometry(), size))
     assert len(found.points) == len(built.points) and np.array_equal(ordered(found.points), ordered(built.points))
-    assert len(found.hexes) == len(built.hexes) and found.warnings == ()
+    assert len(found.cells) == len(built.cells) and found.warnings == ()
     for name in built.surfaces:
         assert np.array_equal(ordered(facet_vectors(found, name)[1]), ordered(facet_vectors(built, name)[1])), name
 
@@ -139,8 +140,24 @@ def test_a_plate_drawn_out_bends_as_it_should_and_one_of_split_tetrahedra_does_n
     exact = elasticity.timoshenko_cantilever(1, 0.1, 0.02, 0.004, **ALUMINIUM)[0]
     good = lowest_frequency(*solid.build(drawn(tmp_path / "plate.step", tilted_plate), 0.004, NONE))
     assert good == pytest.approx(exact, rel=0.02)
-    poor = lowest_frequency(*solid.build(drawn(tmp_path / "hole.step", lambda occ: tilted_plate(occ, hole=True)), 0.004, NONE))
-    assert poor > 1.05 * exact
+    file = drawn(tmp_path / "hole.step", lambda occ: tilted_plate(occ, hole=True))
+    assert lowest_frequency(*solid.build(file, 0.004, NONE)) > 1.05 * exact
+    # In tetrahedra of second order it bends as the good one does.
+    assert lowest_frequency(*solid.build(file, 0.004, NONE, tetrahedra=True)) == pytest.approx(good, rel=0.01)
+
+
+def test_a_drilled_block_in_tetrahedra_follows_its_hole(tmp_path):
+    surfaces = {"contact_top": [flat(2, 0.008, [(0, 0), (0.04, 0.02)])], "mount": [flat(2, 0.0, [(0, 0), (0.04, 0.02)])]}
+    scene = scene_of(drawn(tmp_path / "block.step", drilled), surfaces, 0.0, 0.04).replace({"rail.elements": "tet10"})
+    mesh = make_mesh(scene, 0.002)
+    area = 0.040 * 0.020 - math.pi * 0.005**2
+    assert mesh.cells.shape[1] == 10 and not any("skewed" in words for words in mesh.warnings)
+    for name in surfaces:
+        nodes = mesh.points[mesh.surfaces[name]]
+        assert facets.gauss(nodes, 4)[1].sum() == pytest.approx(area, rel=1e-3)
+        assert np.abs(facets.normals(nodes)[:, 2]) == pytest.approx(1.0)
+    volume = tetrahedron.kinematics(mesh.points[mesh.cells]).volume.sum()
+    assert volume == pytest.approx(0.008 * area, rel=1e-3)
 
 
 def test_files_and_boxes_that_cannot_be_used(tmp_path):

@@ -37,10 +37,10 @@ def scene(mass, speed, penalty, duration, interval):
 def rail(elements, length, clamped):
     """Square bar along y in the path of the payload's mass centre: its face y = 0 is touched; all facets are clamped or none."""
     mesh = block((2, elements, 1), (WIDTH, length, WIDTH))
-    facets = boundary_facets(mesh.hexes)
+    facets = boundary_facets(mesh.cells)
     touched = facets[(mesh.points[facets][:, :, 1] == 0.0).all(axis=1)]
     centred = mesh.points - [0.5 * WIDTH, 0.0, 0.5 * WIDTH]
-    return RailMesh(centred, mesh.hexes, {"contact_y": touched, "mount": facets if clamped else facets[:0]})
+    return RailMesh(centred, mesh.cells, {"contact_y": touched, "mount": facets if clamped else facets[:0]})
 
 
 def march(loop):

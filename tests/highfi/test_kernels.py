@@ -20,7 +20,7 @@ def begun(kernel: str, threads: int = 1, **overrides) -> Loop:
     assert system.rail.pencils is not None
     if kernel == "elements":
         elements = general_elements(system.mesh.points, system.operator)
-        elements = elements._replace(hexes=system.number[elements.hexes].astype(np.uint32))
+        elements = elements._replace(cells=system.number[elements.cells].astype(np.uint32))
         system = system._replace(rail=system.rail._replace(pencils=None, elements=elements))
     loop = Loop(scene, system, choose(system, scene, NUMERICS), threads)
     loop.begin()

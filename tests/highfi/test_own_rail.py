@@ -78,7 +78,7 @@ def test_the_built_in_rails_from_a_file_give_the_same_run(tmp_path):
 
 def test_a_smaller_element_size_splits_the_elements_of_the_file():
     coarse, fine = (highfi.prepare(channels(), highfi.Numerics(element_size=size)) for size in (0.004, 0.002))
-    assert len(fine.hexes) == 8 * len(coarse.hexes)
+    assert len(fine.cells) == 8 * len(coarse.cells)
 
 
 def test_walls_that_the_scene_places_elsewhere_are_all_named():
@@ -115,7 +115,7 @@ def test_a_wall_out_of_place_on_both_sides_of_the_bound(tmp_path, off, refused):
     mesh.points[mesh.points[:, 1] > 0.0, 1] += off
     scene = from_file(channels(), saved(mesh, tmp_path / "rails.msh"))
     if not refused:
-        assert highfi.prepare(scene).hexes.size
+        assert highfi.prepare(scene).cells.size
     else:
         with pytest.raises(SceneError, match="rail.clearance"):
             highfi.prepare(scene)

@@ -20,6 +20,12 @@ def test_area_of_quadrilaterals():
     assert area(points, np.array([[0, 1, 2, 3], [0, 1, 5, 4]])) == pytest.approx(6.0 + 10.0)
 
 
+def test_area_of_curved_triangles():
+    """A half disc of six-node triangles is short of the disc by no more than their edges are."""
+    points = np.array([[0, 0, 0], [2, 0, 0], [0, 2, 0], [1, 0, 0], [2**0.5, 2**0.5, 0], [0, 1, 0]], dtype=float)
+    assert area(points, np.array([[0, 1, 2, 3, 4, 5]])) == pytest.approx(np.pi, rel=0.02)
+
+
 def test_ablation_takes_every_effect_away_once():
     plain = scenes.load("tiny").condition("phi15")
     scene = plain.replace({"rail.damping.ratios": [0.01, 0.01], "rail.damping.frequencies": ["500 Hz", "5 kHz"]})

@@ -1,0 +1,69 @@
+"""Facets of the rail's surfaces, bilinear ones of four corners and quadratic ones of six nodes: places, normals, Gauss points.
+
+A quadratic triangle may bulge beyond its nodes. It lies in the convex hull of its six Bernstein control points: the corners and,
+for each edge, 2 m - (a + b) / 2 with m the node between a and b (Farin, Curves and Surfaces for CAGD, 5th ed. 2002, chapter 17). A
+bilinear facet lies in the hull of its corners, which are its own control points.
+"""
+
+import numpy as np
+from skfem import ElementTriP2
+from skfem.quadrature import get_quadrature
+
+# Polynomial degree of the symmetric rules on a triangle with positive weights and points inside (Dunavant, Int. J. Numer. Methods
+# Eng. 21 (1985) 1129-1148), by their number of points.
+_DEGREE = {3: 2, 6: 4, 12: 6, 16: 8, 19: 9, 25: 10, 33: 12, 42: 14, 61: 17, 73: 19}
+
+
+def control(nodes_per_facet: int) -> np.ndarray | None:
+    """Matrix (6,6) that makes control points of the nodes of a triangle; None for four nodes, which are control points."""
+    if nodes_per_facet == 4:
+        return None
+    matrix = np.eye(6)
+    for middle, (a, b) in enumerate(((0, 1), (1, 2), (2, 0)), start=3):
+        matrix[middle, [a, b, middle]] = -0.5, -0.5, 2.0
+    return matrix
+
+
+def hull(nodes: np.ndarray) -> np.ndarray:
+    """Control points (m,k,3) of facets with nodes (m,k,3)."""
+    matrix = control(nodes.shape[1])
+    return nodes if matrix is None else np.einsum("ab,mbi->mai", matrix, nodes)
+
+
+def normals(nodes: np.ndarray) -> np.ndarray:
+    """Unit normals (m,3) of facets with nodes (m,k,3), by their corners, out of the solid."""
+    if nodes.shape[1] == 4:
+        across = np.cross(nodes[:, 2] - nodes[:, 0], nodes[:, 3] - nodes[:, 1])
+    else:
+        across = np.cross(nodes[:, 1] - nodes[:, 0], nodes[:, 2] - nodes[:, 0])
+    return across / np.linalg.norm(across, axis=1, keepdims=True)
+
+
+def gauss(nodes: np.ndarray, quadrature: int) -> tuple[np.ndarray, np.ndarray]:
+    """Shape functions (q,k) and areas (m,q) in m2 at the Gauss points of facets with nodes (m,k,3) m.
+
+    A bilinear facet has ``quadrature`` points along each edge, a triangle with edges of the same length at least as many per area,
+    and no fewer than three. All areas are positive; shape functions at the corners of a triangle may be negative.
+    """
+    shape, along, weight = _bilinear(quadrature) if nodes.shape[1] == 4 else _quadratic(quadrature)
+    r, s = np.einsum("dqa,mai->dmqi", along, nodes)
+    return shape, np.linalg.norm(np.cross(r, s), axis=2) * weight
+
+
+def _bilinear(quadrature: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Functions (q,4), their derivatives (2,q,4) on the square from -1 to 1, and weights (q,)."""
+    nodes, weights = np.polynomial.legendre.leggauss(quadrature)
+    r, s = (grid.ravel() for grid in np.meshgrid(nodes, nodes, indexing="ij"))
+    ra, sa = np.array([-1.0, 1.0, 1.0, -1.0]), np.array([-1.0, -1.0, 1.0, 1.0])
+    shape = 0.25 * (1.0 + np.outer(r, ra)) * (1.0 + np.outer(s, sa))
+    along = np.stack([0.25 * ra * (1.0 + np.outer(s, sa)), 0.25 * sa * (1.0 + np.outer(r, ra))])
+    return shape, along, np.outer(weights, weights).ravel()
+
+
+def _quadratic(quadrature: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The same (q,6), (2,q,6) and (q,) on the unit triangle."""
+    # A triangle has half the area of a square with edges of the same length.
+    degree = next(degree for points, degree in _DEGREE.items() if 2 * points >= quadrature**2)
+    places, weight = get_quadrature(ElementTriP2, degree)
+    values, gradients = zip(*(ElementTriP2().lbasis(places, node) for node in range(6)))
+    return np.array(values).T, np.moveaxis(np.array(gradients), (1, 2, 0), (0, 1, 2)), weight
