@@ -81,6 +81,21 @@ def find(displacement, recovery, worst, room, first, last):
             _note(room, worst, e)
 
 
+@kernel
+def gradients(displacement, recovery, room, first, last, out):
+    """Fill ``out`` (last - first, 72) with the displacement gradients of elements ``first`` to ``last``: component, axis, corner."""
+    u = displacement.T
+    for e in range(first, last):
+        c = recovery.shape_class[e]
+        for i in range(3):
+            _gather(u[i], recovery.hexes[e], room, i)
+        _bubbles(recovery.amplitude[c], room)
+        for i in range(3):
+            _gradient(recovery.slope[c], recovery.bubble[c], room, i)
+        for j in range(72):
+            out[e - first, j] = room[GRADIENT + j]
+
+
 @inlined
 def _gather(u, nodes, room, i):
     """AT + 8 i: displacement along i of the corners, from that of the first one; ALONG + 24 i: its differences along the edges of

@@ -25,14 +25,15 @@ _OFF_AXIS = 1e-3  # m: a rail whose middle is nearer to a plane of symmetry has 
 
 
 class Watch(NamedTuple):
-    """Constant: recovery of all elements, room for one in each thread, patches or None, samples from one look to the next, and shear
-    modulus (Pa)."""
+    """Constant: recovery of all elements, room for one in each thread, patches or None, samples from one look to the next, shear
+    modulus and Lame's first constant (Pa)."""
 
     recovery: peaks.Recovery
     rooms: np.ndarray
     patch: patch.Patch | None
     every: int
     shear_modulus: float
+    lame: float
 
 
 def build(system: System, material: MaterialTable, steps_per_sample: int, threads: int) -> Watch:
@@ -41,7 +42,8 @@ def build(system: System, material: MaterialTable, steps_per_sample: int, thread
     points, operator = system.mesh.points - system.origin, system.operator
     recovery = peaks.build(points, system.mesh.hexes, operator.shape_class, law, system.number)
     gauges = patch.find(system.mesh, system.faces, points, law, system.number)
-    return Watch(recovery, np.zeros((threads, peaks.SIZE)), gauges, math.ceil(_STEPS / (_SHARE * steps_per_sample)), float(law[3, 3]))
+    return Watch(recovery, np.zeros((threads, peaks.SIZE)), gauges, math.ceil(_STEPS / (_SHARE * steps_per_sample)), float(law[3, 3]),
+                 float(law[0, 1]))
 
 
 def look(watch: Watch, displacement: np.ndarray, time: float, worst: peaks.Worst, pool) -> None:
