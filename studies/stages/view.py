@@ -10,6 +10,7 @@ import math
 import re
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
 import numpy as np
@@ -42,6 +43,7 @@ def run(study: Study, condition: str | None = None, frames: int = FRAMES, factor
         taken = _take(study, asked, known, folder, frames)
         document, files = _document(study, asked, known, folder, taken, factor)
         drawn, why = _draw(document, folder)
+        document |= {"asked_frames": frames, "asked_factor": factor}
         document["pictures"] = {Path(picture).stem: study.relative(folder / picture) for picture in drawn}
         document["without_pictures"] = why
         if why:
@@ -144,7 +146,7 @@ def _document(study: Study, asked: Run, known: Trajectory, folder: Path, taken: 
     at_peak = min(range(len(taken.frames)), key=lambda index: abs(taken.frames[index]["time_s"] - stress["peak_stress_time_s"]))
     peak = {"stress_pa": stress["peak_stress_pa"], "place_m": stress["peak_stress_place_m"], "rail": stress["peak_stress_rail"],
             "time_s": stress["peak_stress_time_s"], "frame": at_peak}
-    return {"condition": asked.label, "asked_frames": len(taken.samples), "asked_factor": factor, "folder": study.relative(folder),
+    return {"condition": asked.label, "folder": study.relative(folder),
             "collection": study.relative(files[-1]), "frames": taken.frames, "peak": peak, "bounds_m": [taken.low.tolist(), taken.high.tolist()],
             "element_size_m": asked.numerics.element_size, "factor": factor or exaggeration(taken.frames),
             "title": f"{study.scene.name} / {asked.label}"}, files
@@ -160,20 +162,25 @@ def exaggeration(frames: list[dict]) -> float:
     return next(step * power for step in (5.0, 2.0, 1.0) if step * power <= ratio)
 
 
+def rounded_up(value: float) -> float:
+    """The end of a scale of five parts: the next of 1, 1.5, 2, 2.5, 3, 4, 5, 6, 8 times a power of ten; 1 for nothing."""
+    power = 10.0 ** math.floor(math.log10(value)) if value > 0.0 else 1.0
+    return next(step * power for step in (1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0) if value <= step * power * (1.0 + 1e-9))
+
+
 def _draw(document: dict, folder: Path) -> tuple[list[str], str]:
     """Names of the pictures drawn, or none and why."""
-    from studies.view import pictures
-
     if pyvista_version() is None:
         return [], _HOW
-    order = {"folder": str(folder), "frames": document["frames"], "factor": document["factor"], "bounds": document["bounds_m"],
+    order = {"folder": str(folder.resolve()), "frames": document["frames"], "factor": document["factor"], "bounds": document["bounds_m"],
              "peak": document["peak"], "title": document["title"], "mesh": f"elements of {1e3 * document['element_size_m']:g} mm",
-             "scale_pa": max(frame["largest_mean_stress_pa"] for frame in document["frames"]) or 1.0}
-    with Board("view", 1) as board:
+             "scale_pa": rounded_up(max(frame["largest_mean_stress_pa"] for frame in document["frames"]))}
+    # Complaints go to a file: a full pipe that nobody reads would stop the child.
+    with Board("view", 1) as board, tempfile.TemporaryFile("w+") as complaints:
         report = board.callback("pictures")
         report(0.0)
         child = subprocess.Popen([sys.executable, "-m", "studies.view.pictures"], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
-                                 stderr=subprocess.PIPE, text=True)
+                                 stderr=complaints, text=True, cwd=Path(__file__).resolve().parent.parent.parent)
         child.stdin.write(json.dumps(order))
         child.stdin.close()
         said = {}
@@ -181,8 +188,10 @@ def _draw(document: dict, folder: Path) -> tuple[list[str], str]:
             if line.startswith("{"):
                 said = json.loads(line)
                 report(said.get("done", 1.0))
-        complaint = child.stderr.read().strip().splitlines()
-        if child.wait() or "pictures" not in said:
+        child.wait()
+        complaints.seek(0)
+        complaint = complaints.read().strip().splitlines()
+        if child.returncode or "pictures" not in said:
             return [], f"no pictures: pyvista could not draw here ({complaint[-1] if complaint else f'exit code {child.returncode}'})"
         board.finished("pictures", ", ".join(said["pictures"]))
     return said["pictures"], ""

@@ -19,9 +19,12 @@ LARGEST = 3_000_000  # bytes of an animation, which a report carries inside it
 _STILL_SIZE, _SIZE = (1500, 620), (840, 430)
 _MOST = 120  # frames of an animation
 _SECONDS = 6.0  # it lasts
-_INK, _BODY, _PADS = "#24292f", "#8a96a3", "#39434e"
-_VIEW, _CLOSE = (0.52, -0.80, 0.45), (0.75, -0.55, 0.45)  # from where the eye looks, in platform axes
-_COLOURS = "viridis"
+_INK, _BODY, _PADS, _EDGE = "#24292f", "#8a96a3", "#39434e", "#5b6570"
+_VIEW = (0.52, -0.80, 0.45)  # from where the eye looks, in platform axes
+_ALONG, _REACH = 0.9, 0.030  # how far the closer eye looks along the rail, and half the height (m) it sees
+# Falling lightness, so that it reads in grey too, and a rail without stress looks like bare metal.
+_COLOURS = ("#e4e8ec", "#f6d78b", "#ee9b46", "#d1495b", "#7d2050", "#2c0d33")
+_MARK = "#1b6ca8"
 
 
 class Drawing:
@@ -39,7 +42,10 @@ class Drawing:
         self.bodies = pyvista.read(self.folder / order["frames"][0]["bodies"])
         self.payload = self.bodies.extract_cells(self.bodies[PAD] == 0).extract_surface(algorithm="dataset_surface")
         self.pads = self.bodies.extract_cells(self.bodies[PAD] > 0).extract_surface(algorithm="dataset_surface")
-        self.edges = self.payload.extract_feature_edges(30)
+        self.edges, self.corners = self.payload.extract_feature_edges(30), self.pads.extract_feature_edges(30)
+        self.outline = self.surface.extract_feature_edges(30, boundary_edges=False, non_manifold_edges=False)
+        # Nodes of the outline among those of the surface, which stay the same however it is deformed.
+        self._along = np.array([self.surface.find_closest_point(place) for place in self.outline.points])
 
     def show(self, index: int) -> None:
         """Bring all to frame ``index``."""
@@ -48,42 +54,58 @@ class Drawing:
         frame = self.order["frames"][index]
         rails, bodies = pyvista.read(self.folder / frame["rails"]), pyvista.read(self.folder / frame["bodies"])
         self.surface.points = self._rest + self.order["factor"] * rails[DISPLACEMENT][self._node]
+        self.outline.points = self.surface.points[self._along]
         self.surface["stress"] = 1e-6 * rails[VON_MISES][self._node]
         for part, chosen in ((self.payload, bodies[PAD] == 0), (self.pads, bodies[PAD] > 0)):
             part.points = bodies.extract_cells(chosen).extract_surface(algorithm="dataset_surface").points
         self.edges.points = self.payload.extract_feature_edges(30).points
+        self.corners.points = self.pads.extract_feature_edges(30).points
 
     def fill(self, close: bool, bar: bool) -> None:
-        """Put the parts into the present panel; ``close`` shows elements, ``bar`` the colour scale."""
-        bar_look = {"title": "von Mises stress (MPa), mean at nodes", "color": _INK, "vertical": False, "position_x": 0.22, "position_y": 0.03,
-                    "width": 0.56, "height": 0.075, "n_labels": 5, "fmt": "%.3g", "title_font_size": 17, "label_font_size": 15}
-        self.plotter.add_mesh(self.surface, scalars="stress", cmap=_COLOURS, clim=[0.0, 1e-6 * self.order["scale_pa"]], show_edges=close,
-                              edge_color="#5b6570", line_width=1, show_scalar_bar=bar, scalar_bar_args=bar_look if bar else None,
-                              smooth_shading=False, copy_mesh=False)
-        self.plotter.add_mesh(self.payload, color=_BODY, opacity=0.10 if close else 0.18, copy_mesh=False)
-        self.plotter.add_mesh(self.edges, color=_BODY, line_width=1.5, copy_mesh=False)
-        self.plotter.add_mesh(self.pads, color=_PADS, opacity=0.45 if close else 1.0, copy_mesh=False)
+        """Put the parts into the present panel; ``close`` shows elements and leaves out the payload, which stands in the way."""
+        from matplotlib.colors import LinearSegmentedColormap
+
+        colours = LinearSegmentedColormap.from_list("stress", _COLOURS)
+        look = {"title": "von Mises stress (MPa), mean at nodes", "color": _INK, "vertical": False, "position_x": 0.24, "position_y": 0.04,
+                "width": 0.62, "height": 0.11, "n_labels": 6, "fmt": "%.3g", "title_font_size": 17, "label_font_size": 15}
+        self.plotter.add_mesh(self.surface, scalars="stress", cmap=colours, clim=[0.0, 1e-6 * self.order["scale_pa"]], show_edges=close,
+                              edge_color=_EDGE, line_width=1, show_scalar_bar=bar, scalar_bar_args=look if bar else None,
+                              smooth_shading=False, copy_mesh=False, ambient=0.55, diffuse=0.5)  # shade may not pass for stress
+        if close:
+            self.plotter.add_mesh(self.corners, color=_MARK, line_width=2, copy_mesh=False)
+        else:
+            self.plotter.add_mesh(self.pads, color=_PADS, copy_mesh=False)
+            self.plotter.add_mesh(self.outline, color=_EDGE, line_width=1.2, copy_mesh=False)
+            self.plotter.add_mesh(self.payload, color=_BODY, opacity=0.12, copy_mesh=False)
+            self.plotter.add_mesh(self.edges, color=_BODY, line_width=1.5, copy_mesh=False)
 
     def write(self, lines: list[str], name: str) -> None:
-        """Text in the upper left corner of the present panel."""
-        self.plotter.add_text("\n".join(lines), position="upper_left", font_size=9, color=_INK, name=name)
+        """Text in the upper left corner of the present panel, on white."""
+        text = self.plotter.add_text("\n".join(lines), position="upper_left", font_size=10, color=_INK, name=name)
+        text.prop.SetBackgroundColor(1.0, 1.0, 1.0)
+        text.prop.SetBackgroundOpacity(0.85)
 
-    def frame_all(self) -> None:
-        """Look at all rails and the whole way of the payload, seen alike from far away."""
-        low, high = np.array(self.order["bounds"])
+    def frame_all(self, bounds, zoom: float) -> None:
+        """Look at everything within ``bounds``, its least and largest places (m), alike from near and far."""
+        low, high = np.array(bounds)
         self.plotter.enable_parallel_projection()
         self.plotter.camera_position = [tuple(0.5 * (low + high) + np.array(_VIEW)), tuple(0.5 * (low + high)), (0.0, 0.0, 1.0)]
         self.plotter.reset_camera(bounds=(low[0], high[0], low[1], high[1], low[2], high[2]))
-        self.plotter.camera.zoom(1.35)
+        self.plotter.camera.zoom(zoom)
+        # The colour scale stands below, so the view is moved up by a little.
+        camera, shift = self.plotter.camera, np.array([0.0, 0.0, -0.07 * self.plotter.camera.parallel_scale])
+        camera.position, camera.focal_point = tuple(camera.position + shift), tuple(camera.focal_point + shift)
         self.plotter.add_axes(color=_INK, line_width=2, viewport=(0.0, 0.0, 0.16, 0.26))
 
-    def close_in(self) -> None:
-        """Look at the place of the peak."""
-        place = np.array(self.order["peak"]["place_m"])
-        away = np.array(_CLOSE) * [1.0, -1.0 if place[1] < 0.0 else 1.0, 1.0]
+    def close_in(self, node: int) -> None:
+        """Look at a node of the surface from outside the rail and from its open end."""
+        place = self.surface.points[node]
+        outside = self.surface.compute_normals(cell_normals=False, auto_orient_normals=True, split_vertices=False)["Normals"][node]
+        across = np.array([0.0, *outside[1:]]) / max(np.linalg.norm(outside[1:]), 1e-9)
+        tilt = np.array([_ALONG, 0.0, 0.6 * np.sign(place[2]) * (abs(across[2]) < 0.3)])
         self.plotter.enable_parallel_projection()
-        self.plotter.camera_position = [tuple(place + away), tuple(place), (0.0, 0.0, 1.0)]
-        self.plotter.camera.parallel_scale = 0.035
+        self.plotter.camera_position = [tuple(place + 0.3 * (across + tilt)), tuple(place), (0.0, 0.0, 1.0)]
+        self.plotter.camera.parallel_scale = _REACH
 
 
 def still(order: dict) -> Path:
@@ -93,15 +115,15 @@ def still(order: dict) -> Path:
     drawing.plotter.subplot(0, 0)
     drawing.fill(close=False, bar=True)
     drawing.write(_words(order, peak["frame"]), "words")
-    drawing.frame_all()
+    drawing.frame_all(_bounds(drawing), 1.0)
     drawing.plotter.subplot(0, 1)
     drawing.fill(close=True, bar=False)
     node = np.linalg.norm(drawing._rest - peak["place_m"], axis=1).argmin()
-    drawing.plotter.add_points(drawing.surface.points[[node]], color="#d1495b", point_size=16, render_points_as_spheres=True)
-    place = ", ".join(f"{1e3 * value:.4g}" for value in peak["place_m"])
-    drawing.write([f"worst element corner: {1e-6 * peak['stress_pa']:.4g} MPa", f"x, y, z = {place} mm (rail {peak['rail']})",
+    drawing.plotter.add_points(drawing.surface.points[[node]], color=_MARK, point_size=18, render_points_as_spheres=True)
+    place = ", ".join(f"{1e3 * value:.5g}" for value in peak["place_m"])
+    drawing.write([f"blue dot, worst element corner: {1e-6 * peak['stress_pa']:.4g} MPa; blue lines, pads", f"x, y, z = {place} mm (rail {peak['rail']})",
                    order["mesh"]], "peak")
-    drawing.close_in()
+    drawing.close_in(int(node))
     path = drawing.folder / STILL
     with replacing(path) as temporary:
         drawing.plotter.screenshot(temporary)
@@ -116,7 +138,7 @@ def animation(order: dict) -> Path:
     drawing = Drawing(order, _SIZE)
     drawing.show(0)
     drawing.fill(close=False, bar=True)
-    drawing.frame_all()
+    drawing.frame_all(order["bounds"], 1.2)
     images = []
     for index in np.unique(np.linspace(0, len(order["frames"]) - 1, min(_MOST, len(order["frames"]))).round().astype(int)):
         drawing.show(int(index))
@@ -132,6 +154,12 @@ def animation(order: dict) -> Path:
         if path.stat().st_size <= LARGEST:
             break
     return path
+
+
+def _bounds(drawing: Drawing) -> list[np.ndarray]:
+    """Least and largest places of what is shown now."""
+    points = np.concatenate([drawing.surface.points, drawing.payload.points, drawing.pads.points])
+    return [points.min(axis=0), points.max(axis=0)]
 
 
 def _words(order: dict, index: int) -> list[str]:
