@@ -31,13 +31,16 @@ class Patch(NamedTuple):
 
 
 def find(mesh: RailMesh, faces, points: np.ndarray, law: np.ndarray, number: np.ndarray) -> Patch | None:
-    """Patches of a mesh whose points (n,3) m are in the axes of ``faces.wall``; None where no station has room for them all.
+    """Patches of a mesh whose points (n,3) m are in the axes of ``faces.wall``; None where no pad has a wall, or no station room for
+    a patch on each.
 
     ``law`` (6,6) Pa; ``number`` (n,) of each node in the nodal arrays.
     """
     names = sorted(name for name in mesh.surfaces if name.startswith("contact"))
     facets = np.concatenate([mesh.surfaces[name] for name in names])
     walls = _walls(points[facets], faces)
+    if not walls:
+        return None
     for station in _stations(points, mesh, facets):
         spots = [_spots(points, facets[near], axis, (station, across)) for near, axis, across in walls]
         if all(spot is not None for spot in spots):
@@ -68,7 +71,7 @@ def _stations(points: np.ndarray, mesh: RailMesh, facets: np.ndarray) -> np.ndar
     start, end = points[facets][:, :, 0].min(), points[facets][:, :, 0].max()
     tried = np.arange(start + 0.5 * SIDE, end - 0.5 * SIDE + 1e-9, _GRID)
     held = points[mesh.surfaces["mount"]][:, :, 0]
-    clamp = np.maximum(held.min(axis=1) - tried[:, None], tried[:, None] - held.max(axis=1)).min(axis=1)
+    clamp = np.maximum(held.min(axis=1) - tried[:, None], tried[:, None] - held.max(axis=1)).min(axis=1, initial=np.inf)
     # In tenths of a micrometre, so that places which tie do so on every mesh.
     free = np.round(1e7 * np.minimum(np.minimum(clamp, tried - start), end - tried).clip(min=0.0))
     around = np.concatenate([[-1.0], free, [-1.0]])
