@@ -30,7 +30,7 @@ def shown(rows: list[dict], views: list[dict], folder: Path, scene: str) -> Html
 def _row(row: dict) -> tuple:
     strength = row["yield_strength_pa"]
     return (row["condition"], number(1e-6 * row["peak_stress_pa"], 4), None if strength is None else number(100.0 * row["peak_stress_pa"] / strength),
-            ", ".join(f"{1e3 * value:.4g}" for value in row["peak_stress_place_m"]), row["peak_stress_rail"],
+            ", ".join(f"{1e3 * value:.5g}" for value in row["peak_stress_place_m"]), row["peak_stress_rail"],
             f"{1e3 * row['peak_stress_time_s']:.4g}", number(100.0 * row["largest_strain"], 2),
             number(math.degrees(row["largest_rotation_rad"]), 2))
 

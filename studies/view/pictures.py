@@ -121,8 +121,8 @@ def still(order: dict) -> Path:
     node = np.linalg.norm(drawing._rest - peak["place_m"], axis=1).argmin()
     drawing.plotter.add_points(drawing.surface.points[[node]], color=_MARK, point_size=18, render_points_as_spheres=True)
     place = ", ".join(f"{1e3 * value:.5g}" for value in peak["place_m"])
-    drawing.write([f"blue dot, worst element corner: {1e-6 * peak['stress_pa']:.4g} MPa; blue lines, pads", f"x, y, z = {place} mm (rail {peak['rail']})",
-                   order["mesh"]], "peak")
+    drawing.write([f"worst element corner (dot): {1e-6 * peak['stress_pa']:.4g} MPa", f"x, y, z = {place} mm",
+                   f"rail {peak['rail']}; {order['mesh']}; pads in blue"], "peak")
     drawing.close_in(int(node))
     path = drawing.folder / STILL
     with replacing(path) as temporary:
@@ -138,7 +138,7 @@ def animation(order: dict) -> Path:
     drawing = Drawing(order, _SIZE)
     drawing.show(0)
     drawing.fill(close=False, bar=True)
-    drawing.frame_all(order["bounds"], 1.2)
+    drawing.frame_all(order["bounds"], 1.05)
     images = []
     for index in np.unique(np.linspace(0, len(order["frames"]) - 1, min(_MOST, len(order["frames"]))).round().astype(int)):
         drawing.show(int(index))
