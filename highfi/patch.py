@@ -1,10 +1,10 @@
 """A strain gauge on each contact wall: the mean stress over a square of 4 mm, which a finer mesh brings nearer to one value.
 
-The stress at a sharp corner or at the border of a clamp has no such value: it grows with every refinement. So the patches lie on the
-track of the pads, in the middle of the last free span: of the places farther from any clamp and from the ends than those beside
-them, and at least half as far as the farthest, the one nearest to the open end, where the last pads press.
-They depend on the scene and on where the mesh is clamped, never on its elements: 4 x 4 points at the middles of squares of 1 mm,
-each seen from the element behind the wall (``highfi.recovery``).
+The stress at a sharp corner or at the border of a clamp has no such value: it grows with every refinement. So the patches lie on
+the track of the pads, in the middle of the last free span: of the places farther from any clamp and from the ends than those
+beside them, and at least half as far as the farthest, the one nearest to the open end, where the last pads press. They depend on
+the scene and on where the mesh is clamped, never on its elements: 4 x 4 points at the middles of squares of 1 mm, each seen from
+the element behind the wall (``highfi.recovery``).
 """
 
 from typing import NamedTuple
@@ -22,8 +22,8 @@ _INSIDE = 1e-6  # how far outside its facet, in local coordinates, a point may s
 
 
 class Patch(NamedTuple):
-    """Constant: centre (w,3) m of the patches in the axes of the points they were found with; node (w,k) numbers in the nodal arrays
-    and matrix (w,6,3k) Pa/m, from the displacement of those nodes to the mean stress, padded with zeros to the largest k."""
+    """Constant: centre (w,3) m of the patches in the axes of the points they were found with; node (w,k) numbers in the nodal
+    arrays and matrix (w,6,3k) Pa/m, from the displacement of those nodes to the mean stress, padded with zeros to the largest k."""
 
     centre: np.ndarray
     node: np.ndarray
@@ -31,8 +31,8 @@ class Patch(NamedTuple):
 
 
 def find(mesh: RailMesh, faces, points: np.ndarray, law: np.ndarray, number: np.ndarray) -> Patch | None:
-    """Patches of a mesh whose points (n,3) m are in the axes of ``faces.wall``; None where no pad has a wall, or no station room for
-    a patch on each.
+    """Patches of a mesh whose points (n,3) m are in the axes of ``faces.wall``; None where no pad has a wall, or no station room
+    for a patch on each.
 
     ``law`` (6,6) Pa; ``number`` (n,) of each node in the nodal arrays.
     """
@@ -79,8 +79,9 @@ def _stations(points: np.ndarray, mesh: RailMesh, facets: np.ndarray) -> np.ndar
     return tried[np.lexsort((np.where(middle, -tried, -free), ~middle))]
 
 
-def _spots(points: np.ndarray, facets: np.ndarray, axis: int, middle: tuple[float, float]) -> list[tuple[np.ndarray, np.ndarray]] | None:
-    """For each point of the patch around ``middle`` (x, across) its facet (4,) and the weights (4,) of the facet's corners there."""
+def _spots(points: np.ndarray, facets: np.ndarray, axis: int,
+           middle: tuple[float, float]) -> list[tuple[np.ndarray, np.ndarray]] | None:
+    """For each point of the patch around ``middle`` (x, across) its facet (4,) and the weights (4,) of its corners there."""
     offsets = (np.arange(_POINTS) + 0.5) * SIDE / _POINTS - 0.5 * SIDE
     plane = points[facets][:, :, [0, 3 - axis]]
     low, high = plane.min(axis=1) - _INSIDE * SIDE, plane.max(axis=1) + _INSIDE * SIDE
@@ -95,7 +96,7 @@ def _spots(points: np.ndarray, facets: np.ndarray, axis: int, middle: tuple[floa
 
 
 def _weights(corners: np.ndarray, target: np.ndarray) -> np.ndarray | None:
-    """Bilinear weights (4,) of the corners (4,2) of a plane quadrilateral at a point in it, None for one outside; by Newton's rule."""
+    """Bilinear weights (4,) of the corners (4,2) of a plane facet at a point in it, None for one outside; by Newton's rule."""
     place = np.full(2, 0.5)
     for _ in range(_NEWTON):
         r, s = place

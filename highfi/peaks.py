@@ -25,8 +25,8 @@ AT, ALONG, BUBBLES, GRADIENT, SQUARES, SIZE = 0, 24, 96, 112, 184, 208
 
 
 class Recovery(NamedTuple):
-    """Constant: hexes (e,8) numbers in the nodal arrays; shape_class (e,); for each class amplitude (c,24*16) of the bubbles, nine of 16
-    in use, slope and bubble (c,3*3*8) 1/m: of local coordinate and of bubble i along j at each corner."""
+    """Constant: hexes (e,8) numbers in the nodal arrays; shape_class (e,); for each class amplitude (c,24*16) of the bubbles,
+    nine of 16 in use, slope and bubble (c,3*3*8) 1/m: of local coordinate and of bubble i along j at each corner."""
 
     hexes: np.ndarray
     shape_class: np.ndarray
@@ -36,7 +36,8 @@ class Recovery(NamedTuple):
 
 
 class Worst(NamedTuple):
-    """Evolving: largest square (3,) of STRESS over the shear modulus, STRAIN, ROTATION; where (3,2), element and corner; when (3,) s."""
+    """Evolving: largest square (3,) of STRESS over the shear modulus, STRAIN, ROTATION; where (3,2), element and corner; when
+    (3,) s."""
 
     square: np.ndarray
     place: np.ndarray
@@ -83,7 +84,7 @@ def find(displacement, recovery, worst, room, first, last):
 
 @kernel
 def gradients(displacement, recovery, room, first, last, out):
-    """Fill ``out`` (last - first, 72) with the displacement gradients of elements ``first`` to ``last``: component, axis, corner."""
+    """Fill ``out`` (last - first, 72) with displacement gradients of elements ``first`` to ``last``: component, axis, corner."""
     u = displacement.T
     for e in range(first, last):
         c = recovery.shape_class[e]

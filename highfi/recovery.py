@@ -4,8 +4,9 @@
     grad N_a = J^-1 dN_a/dxi,       grad P_i = (det J0 / det J) 4 (1 - 2 xi_i) J0^-1 e_i
 
 with J at the point, J0 at the centre, and the condensed amplitudes a of ``highfi.element``: the same modes that the stiffness was
-condensed with, so the stress does the work the element's forces do. At the centre the bubbles have no gradient. Elsewhere they carry
-the bending: at the corners of a wall one element thick, where the centre knows nothing of it. Stress is the strain times the law.
+condensed with, so the stress does the work the element's forces do. At the centre the bubbles have no gradient. Elsewhere they
+carry the bending: at the corners of a wall one element thick, where the centre knows nothing of it. Stress is the strain times
+the law.
 
 Source: Taylor, Beresford, Wilson, Int. J. Numer. Methods Eng. 10 (1976) 1211-1219; Wilson, Static and Dynamic Analysis of
 Structures (2002), chapter 6, on stresses recovered with the incompatible modes.
@@ -32,13 +33,14 @@ def gradients(corners: np.ndarray, local: np.ndarray) -> tuple[np.ndarray, np.nd
 
 
 def amplitudes(corners: np.ndarray, law: np.ndarray) -> np.ndarray:
-    """Bubble amplitudes (c,9,24) of unit displacements of the corners (c,8,3) m: bubble * 3 + component by corner * 3 + component."""
+    """Bubble amplitudes (c,9,24) of unit displacements of the corners (c,8,3) m, numbered bubble * 3 + component."""
     coupling, own = element.bubble_blocks(element.kinematics(element.basis(corners)), law)
     return -np.linalg.solve(own, coupling)
 
 
 def strain_matrix(corners: np.ndarray, law: np.ndarray, local: np.ndarray) -> np.ndarray:
-    """Matrix (p,6,24) 1/m from the displacement of the corners, corner * 3 + component, to the strain at p points; see ``gradients``.
+    """Matrix (p,6,24) 1/m from the displacement of the corners, corner * 3 + component, to the strain at p points; see
+    ``gradients``.
 
     Strain is ordered xx, yy, zz, xy, yz, zx, shear in engineering measure.
     """
@@ -80,7 +82,7 @@ def von_mises(stress: np.ndarray) -> np.ndarray:
 
 
 def _mapping(corners: np.ndarray, local: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Inverse Jacobian (p,3,3), its [j, i] the slope of local coordinate i along j; Jacobian (p,); slopes (p,8,3) of the functions."""
+    """Inverse Jacobian (p,3,3), its [j, i] the slope of local coordinate i along j; Jacobian (p,); slopes (p,8,3) of functions."""
     high = element.VTK_CORNERS == 1
     value = np.where(high, local[:, None], 1.0 - local[:, None])
     slope = np.where(high, 1.0, -1.0)

@@ -53,11 +53,12 @@ def run(scene: Scene, numerics: Numerics | None = None, progress: Callable[[floa
         resume: bool = False, observer: Callable[["Loop"], None] | None = None) -> Trajectory:
     """Solve ``scene`` with flexible rails until the settled window is complete, a jam, or the scene's duration.
 
-    ``progress`` is called with the fraction of the duration done. ``threads`` share the run, unless said otherwise as
-    many as there are processors and elements enough for; the result does not hang on their number. With the path of a
-    ``checkpoint`` the run is kept there every ``checkpoint_every`` seconds (wall clock), and the file stays; with ``resume`` it
-    goes on from that file if there is one, to the same bits, and its cost is that of all parts. ``observer`` is called with the
-    loop at every sample, the first one at ignition; it may read all and must change nothing. Raises SceneError, MeshError, StepError or CheckpointError before any stepping; what goes wrong later is the status of the result.
+    ``progress`` is called with the fraction of the duration done. ``threads`` share the run, unless said otherwise as many as
+    there are processors and elements enough for; the result does not hang on their number. With the path of a ``checkpoint`` the
+    run is kept there every ``checkpoint_every`` seconds (wall clock), and the file stays; with ``resume`` it goes on from that
+    file if there is one, to the same bits, and its cost is that of all parts. ``observer`` is called with the loop at every
+    sample, the first one at ignition; it may read all and must change nothing. Raises SceneError, MeshError, StepError or
+    CheckpointError before any stepping; what goes wrong later is the status of the result.
     """
     if resume and checkpoint is None:
         raise ValueError("resume: given True without checkpoint, expected the path of the file to go on from")
@@ -220,6 +221,9 @@ class Loop:
         end = outcome.window_start(exit_at, self.marks) + outcome.SETTLE_WINDOW
         return int(np.ceil(end / self.scene.output.interval)) + 2
 
+    def _stress(self) -> dict:
+        return watch.record(self.watch, self.system, self.worst, self.scene.rail.material.yield_strength)
+
     def trajectory(self, cost: dict, numerics: Numerics) -> Trajectory:
         """The result of the samples taken so far."""
         rows, moved = np.array(self.rows), self._motion()
@@ -236,5 +240,5 @@ class Loop:
         return Trajectory(fidelity="highfi", status=status, message=self.message, **moved._asdict(),
                           pad_force=np.array(self.forces), energy=total, transverse_energy=transverse, outcome=result,
                           checks=checks, cost=cost, scene=self.scene.resolved(), numerics=numerics.as_dict(),
-                          stress=watch.record(self.watch, self.system, self.worst, self.scene.rail.material.yield_strength),
+                          stress=None if self.message else self._stress(),
                           wall_stress=np.array(self.gauges).reshape(len(rows), -1, 6) if self.gauges else None)

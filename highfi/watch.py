@@ -1,8 +1,8 @@
 """Stress of the rails while a run goes on: the worst corner of all elements, and the gauges on the walls, both at samples.
 
-A look at all elements costs as much as about eight steps (180 against 25 ns per element, one thread each), so it is taken at so many
-samples only that it stays below a twentieth of the run. What is found is judged at the end: above the yield strength, or beyond what
-small strain and small rotation can tell, the figures are those of a rail that does not exist, and the result says so.
+A look at all elements costs as much as about eight steps (180 against 25 ns per element, one thread each), so it is taken at so
+many samples only that it stays below a twentieth of the run. What is found is judged at the end: above the yield strength, or
+beyond what small strain and small rotation can tell, the figures are those of a rail that does not exist, and the result says so.
 """
 
 import math
@@ -42,8 +42,8 @@ def build(system: System, material: MaterialTable, steps_per_sample: int, thread
     points, operator = system.mesh.points - system.origin, system.operator
     recovery = peaks.build(points, system.mesh.hexes, operator.shape_class, law, system.number)
     gauges = patch.find(system.mesh, system.faces, points, law, system.number)
-    return Watch(recovery, np.zeros((threads, peaks.SIZE)), gauges, math.ceil(_STEPS / (_SHARE * steps_per_sample)), float(law[3, 3]),
-                 float(law[0, 1]))
+    every = math.ceil(_STEPS / (_SHARE * steps_per_sample))
+    return Watch(recovery, np.zeros((threads, peaks.SIZE)), gauges, every, float(law[3, 3]), float(law[0, 1]))
 
 
 def look(watch: Watch, displacement: np.ndarray, time: float, worst: peaks.Worst, pool) -> None:
@@ -76,10 +76,11 @@ def warnings(found: dict) -> list[str]:
     """Why the stresses of a record are not those of a real rail, one sentence each; none where they may be."""
     said, strength = [], found["yield_strength_pa"]
     if strength is not None and found["peak_stress_pa"] > strength:
-        said.append(f"von Mises stress of {1e-6 * found['peak_stress_pa']:.4g} MPa is above the yield strength, {1e-6 * strength:.4g} MPa: "
-                    "the real rail would yield there, this one stays elastic")
+        said.append(f"von Mises stress of {1e-6 * found['peak_stress_pa']:.4g} MPa is above the yield strength, "
+                    f"{1e-6 * strength:.4g} MPa: the real rail would yield there, this one stays elastic")
     if found["largest_strain"] > LARGEST_STRAIN:
-        said.append(f"strain of {100.0 * found['largest_strain']:.3g} % is above the {100.0 * LARGEST_STRAIN:g} % that small strain allows")
+        said.append(f"strain of {100.0 * found['largest_strain']:.3g} % is above the "
+                    f"{100.0 * LARGEST_STRAIN:g} % that small strain allows")
     if found["largest_rotation_rad"] > LARGEST_ROTATION:
         said.append(f"an element turns by {math.degrees(found['largest_rotation_rad']):.3g} deg, above the "
                     f"{math.degrees(LARGEST_ROTATION):.3g} deg that small rotation allows")
@@ -87,9 +88,10 @@ def warnings(found: dict) -> list[str]:
 
 
 def rail_name(mesh: RailMesh, element_number: int) -> str:
-    """The rail that holds an element, by the side of the axis it stands on: "+y -z"; "all" where the solid is one piece around it."""
+    """The rail that holds an element, by the side of the axis it stands on: "+y -z"; "all" for one piece around it."""
     nodes, hexes = len(mesh.points), mesh.hexes
-    links = coo_array((np.ones(hexes[:, 1:].size, dtype=bool), (np.repeat(hexes[:, 0], 7), hexes[:, 1:].ravel())), shape=(nodes, nodes))
+    ends = np.repeat(hexes[:, 0], 7), hexes[:, 1:].ravel()
+    links = coo_array((np.ones(ends[0].size, dtype=bool), ends), shape=(nodes, nodes))
     piece = connected_components(links, directed=False)[1]
     middle = mesh.points[hexes[piece[hexes[:, 0]] == piece[hexes[element_number, 0]]]].mean(axis=(0, 1))
     sides = [f"{'+' if middle[axis] > 0.0 else '-'}{'xyz'[axis]}" for axis in (1, 2) if abs(middle[axis]) > _OFF_AXIS]

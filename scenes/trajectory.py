@@ -63,7 +63,8 @@ class Trajectory:
     A run with flexible rails also says what they bear. ``stress``: peak_stress_pa, the largest von Mises stress, at
     peak_stress_place_m (scene axes, undeformed) of peak_stress_rail at peak_stress_time_s; yield_strength_pa or None; largest_strain,
     largest_rotation_rad; warnings, words about what these make doubtful; patch_places_m of the w patches whose mean stress in platform
-    axes is ``wall_stress`` (n,w,6) Pa. A rigid rail has none: None, and no patches.
+    axes is ``wall_stress`` (n,w,6) Pa. A rigid rail has none: None, and no patches;
+    nor does a run that diverged say how strong its rails must be.
 
     Raises ValueError for an unknown status, arrays that do not fit each other, and any NaN or inf, naming where it is.
     """

@@ -1,7 +1,7 @@
 """Stage ``view``: one condition of the reference to look at, as VTK files for ParaView and, with pyvista, as pictures.
 
-The run is made once more with an observer that writes each frame as it comes, so no more than one of them is ever in memory; it ends
-with the bits of the stored run, which is checked.
+The run is made once more with an observer that writes each frame as it comes, so no more than one of them is ever in memory; it
+ends with the bits of the stored run, which is checked.
 """
 
 import importlib.metadata
@@ -135,7 +135,8 @@ def _take(study: Study, asked: Run, known: Trajectory, folder: Path, frames: int
     return observer
 
 
-def _document(study: Study, asked: Run, known: Trajectory, folder: Path, taken: _Observer, factor: float | None) -> tuple[dict, list[Path]]:
+def _document(study: Study, asked: Run, known: Trajectory, folder: Path, taken: _Observer,
+              factor: float | None) -> tuple[dict, list[Path]]:
     from studies.view import vtk_files
 
     paths = [[folder / frame["rails"], folder / frame["bodies"]] for frame in taken.frames]
@@ -147,7 +148,8 @@ def _document(study: Study, asked: Run, known: Trajectory, folder: Path, taken: 
     peak = {"stress_pa": stress["peak_stress_pa"], "place_m": stress["peak_stress_place_m"], "rail": stress["peak_stress_rail"],
             "time_s": stress["peak_stress_time_s"], "frame": at_peak}
     return {"condition": asked.label, "folder": study.relative(folder),
-            "collection": study.relative(files[-1]), "frames": taken.frames, "peak": peak, "bounds_m": [taken.low.tolist(), taken.high.tolist()],
+            "collection": study.relative(files[-1]), "frames": taken.frames, "peak": peak,
+            "bounds_m": [taken.low.tolist(), taken.high.tolist()],
             "element_size_m": asked.numerics.element_size, "factor": factor or exaggeration(taken.frames),
             "title": f"{study.scene.name} / {asked.label}"}, files
 
@@ -165,15 +167,17 @@ def exaggeration(frames: list[dict]) -> float:
 def rounded_up(value: float) -> float:
     """The end of a scale of five parts: the next of 1, 1.5, 2, 2.5, 3, 4, 5, 6, 8 times a power of ten; 1 for nothing."""
     power = 10.0 ** math.floor(math.log10(value)) if value > 0.0 else 1.0
-    return next(step * power for step in (1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0) if value <= step * power * (1.0 + 1e-9))
+    steps = (1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)
+    return next(step * power for step in steps if value <= step * power * (1.0 + 1e-9))
 
 
 def _draw(document: dict, folder: Path) -> tuple[list[str], str]:
     """Names of the pictures drawn, or none and why."""
     if pyvista_version() is None:
         return [], _HOW
-    order = {"folder": str(folder.resolve()), "frames": document["frames"], "factor": document["factor"], "bounds": document["bounds_m"],
-             "peak": document["peak"], "title": document["title"], "mesh": f"elements of {1e3 * document['element_size_m']:g} mm",
+    order = {"folder": str(folder.resolve()), "frames": document["frames"], "factor": document["factor"],
+             "bounds": document["bounds_m"], "peak": document["peak"], "title": document["title"],
+             "mesh": f"elements of {1e3 * document['element_size_m']:g} mm",
              "scale_pa": rounded_up(max(frame["largest_mean_stress_pa"] for frame in document["frames"]))}
     # Complaints go to a file: a full pipe that nobody reads would stop the child.
     with Board("view", 1) as board, tempfile.TemporaryFile("w+") as complaints:
@@ -192,6 +196,7 @@ def _draw(document: dict, folder: Path) -> tuple[list[str], str]:
         complaints.seek(0)
         complaint = complaints.read().strip().splitlines()
         if child.returncode or "pictures" not in said:
-            return [], f"no pictures: pyvista could not draw here ({complaint[-1] if complaint else f'exit code {child.returncode}'})"
+            why = complaint[-1] if complaint else f"exit code {child.returncode}"
+            return [], f"no pictures: pyvista could not draw here ({why})"
         board.finished("pictures", ", ".join(said["pictures"]))
     return said["pictures"], ""

@@ -55,7 +55,8 @@ class Camera:
                      self._pressure(displacement, turn, centre), turn, centre + system.origin)
 
     def _stresses(self, moved: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Mean stress (n,6) Pa at the nodes, largest von Mises stress (e,) Pa at the corners of each element; ``moved`` as in the loop."""
+        """Mean stress (n,6) Pa at the nodes, largest von Mises stress (e,) Pa at the corners of each element; ``moved`` as in the
+        loop."""
         mesh = self.system.mesh
         total, worst = np.zeros((len(mesh.points), 6)), np.zeros(len(mesh.hexes))
         for first in range(0, len(mesh.hexes), _BATCH):
@@ -93,8 +94,9 @@ class Camera:
 
 
 def bodies(scene: Scene, model: Model) -> tuple[np.ndarray, np.ndarray]:
-    """Boxes (b,8,3) m in payload axes from its mass centre, corners in VTK order: the payload, then a slab behind each pad face; and
-    the number (b,) of its pad counted from 1, 0 for the payload. A scene that gives no size has a payload as large as its pads reach."""
+    """Boxes (b,8,3) m in payload axes from its mass centre, corners in VTK order: the payload, then a slab behind each pad face;
+    and the number (b,) of its pad counted from 1, 0 for the payload. A scene that gives no size has a payload as large as its
+    pads reach."""
     faces, middle = model.faces, -np.array(model.payload.mass_centre)
     reach = np.abs([pad.position for pad in scene.pads]).max(axis=0)
     half = 0.5 * np.array(scene.payload.size) if scene.payload.size else reach

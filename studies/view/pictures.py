@@ -1,7 +1,8 @@
 """Pictures of a series of frames, drawn off-screen with pyvista: a still of the worst moment, and an animation of the ejection.
 
-Runs as a program of its own (``python -m studies.view.pictures``, an order as JSON on standard input), since a graphics library that
-finds no way to draw may end the process it lives in. The rails are drawn deformed by a stated factor, payload and pads to scale.
+Runs as a program of its own (``python -m studies.view.pictures``, an order as JSON on standard input), since a graphics library
+that finds no way to draw may end the process it lives in. The rails are drawn deformed by a stated factor, payload and pads to
+scale.
 """
 
 import json
@@ -66,11 +67,12 @@ class Drawing:
         from matplotlib.colors import LinearSegmentedColormap
 
         colours = LinearSegmentedColormap.from_list("stress", _COLOURS)
-        look = {"title": "von Mises stress (MPa), mean at nodes", "color": _INK, "vertical": False, "position_x": 0.24, "position_y": 0.04,
-                "width": 0.62, "height": 0.11, "n_labels": 6, "fmt": "%.3g", "title_font_size": 17, "label_font_size": 15}
-        self.plotter.add_mesh(self.surface, scalars="stress", cmap=colours, clim=[0.0, 1e-6 * self.order["scale_pa"]], show_edges=close,
-                              edge_color=_EDGE, line_width=1, show_scalar_bar=bar, scalar_bar_args=look if bar else None,
-                              smooth_shading=False, copy_mesh=False, ambient=0.55, diffuse=0.5)  # shade may not pass for stress
+        look = {"title": "von Mises stress (MPa), mean at nodes", "color": _INK, "vertical": False, "position_x": 0.24,
+                "position_y": 0.04, "width": 0.62, "height": 0.11, "n_labels": 6, "fmt": "%.3g",
+                "title_font_size": 17, "label_font_size": 15}
+        self.plotter.add_mesh(self.surface, scalars="stress", cmap=colours, clim=[0.0, 1e-6 * self.order["scale_pa"]],
+                              show_edges=close, edge_color=_EDGE, line_width=1, show_scalar_bar=bar,
+                              scalar_bar_args=look if bar else None, smooth_shading=False, copy_mesh=False, ambient=0.55, diffuse=0.5)  # shade may not pass for stress
         if close:
             self.plotter.add_mesh(self.corners, color=_MARK, line_width=2, copy_mesh=False)
         else:

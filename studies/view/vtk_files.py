@@ -1,8 +1,8 @@
 """Frames as a time series for ParaView: a .vtu of the rails and one of the bodies a frame, and a .pvd that lists them by time.
 
-Places are in platform axes (``studies.view.frames``) and undeformed, so "Warp By Vector" shows the deformation at any scale. Fields are
-single precision, which no eye can tell from double and which halves the files. Every file is written atomically, and the list last,
-so what it names is whole.
+Places are in platform axes (``studies.view.frames``) and undeformed, so "Warp By Vector" shows the deformation at any scale.
+Fields are single precision, which no eye can tell from double and which halves the files. Every file is written atomically, and
+the list last, so what it names is whole.
 """
 
 from pathlib import Path

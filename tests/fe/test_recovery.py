@@ -65,7 +65,8 @@ def test_corner_gradients_are_those_of_the_corner_matrix():
 @pytest.mark.case("O6")
 @pytest.mark.parametrize("divisions", [(60, 2, 1), (40, 2, 2), (40, 2, 4)])
 def test_root_stress_in_the_outer_fibre(divisions):
-    """7.5 MPa 6 P L / b h^2, read at the corners themselves and taken to the root along M(x), also with one element through the height.
+    """7.5 MPa 6 P L / b h^2, read at the corners themselves and taken to the root along M(x), also with one element through the
+    height.
 
     Control: at the centres, which the mean over an element sees, one element through the height shows nothing at all.
     """
@@ -88,8 +89,8 @@ def test_root_stress_in_the_outer_fibre(divisions):
 @pytest.mark.case("O11")
 @pytest.mark.parametrize("poisson_ratio", [0.3, 0.49])
 def test_stress_of_a_thick_cylinder(poisson_ratio):
-    """Corner stresses, averaged over the elements that meet at a node, come to Lame's with the first order that a wall allows, where
-    only elements of one side meet: 7 % of the largest stress on 24 elements through the wall."""
+    """Corner stresses, averaged over the elements that meet at a node, come to Lame's with the first order that a wall allows,
+    where only elements of one side meet: 7 % of the largest stress on 24 elements through the wall."""
     law = element.elasticity(cylinder.MODULUS, poisson_ratio)
     errors = []
     for refinement in (3, 6):
@@ -97,7 +98,8 @@ def test_stress_of_a_thick_cylinder(poisson_ratio):
         stress = at_corners(found.mesh, law, found.displacement)
         nodes = found.mesh.hexes.ravel()
         mean = np.stack([np.bincount(nodes, column) for column in stress.reshape(-1, 6).T], axis=1) / np.bincount(nodes)[:, None]
-        exact = elasticity.pressed_cylinder_stress(found.mesh.points, cylinder.INNER, cylinder.OUTER, cylinder.PRESSURE, poisson_ratio)
+        size = cylinder.INNER, cylinder.OUTER, cylinder.PRESSURE
+        exact = elasticity.pressed_cylinder_stress(found.mesh.points, *size, poisson_ratio)
         assert recovery.von_mises(exact)[found.radius < 3.0001].max() == recovery.von_mises(exact).max()
         errors.append(np.abs(mean - exact).max() / np.abs(exact).max())
     assert errors[1] < 0.075

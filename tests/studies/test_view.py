@@ -84,7 +84,8 @@ def test_files_hold_what_the_loop_had(touching, tmp_path):
     paths = vtk_files.write_frame(tmp_path, 3, frame, loop.system.mesh, boxes, pads)
     rails, bodies = (meshio.read(path) for path in paths)
     assert [path.name for path in paths] == ["rails-0003.vtu", "bodies-0003.vtu"]
-    np.testing.assert_allclose(rails.point_data[vtk_files.DISPLACEMENT], loop.state.displacement[loop.system.number], rtol=1e-6, atol=1e-15)
+    np.testing.assert_allclose(rails.point_data[vtk_files.DISPLACEMENT], loop.state.displacement[loop.system.number],
+                               rtol=1e-6, atol=1e-15)
     np.testing.assert_array_equal(rails.points, loop.system.mesh.points)
     assert len(bodies.cells_dict["hexahedron"]) == 1 + 16
     assert np.bincount(bodies.cell_data[vtk_files.PAD][0]).tolist() == [1] + [2] * 8
@@ -158,8 +159,9 @@ def test_command_writes_prints_and_refuses(viewed, monkeypatch):
 
 
 def known(**parts):
-    stress = {"peak_stress_pa": 2e7, "peak_stress_place_m": [0.01, 0.1, 0.1], "peak_stress_rail": "+y +z", "peak_stress_time_s": 0.0113,
-              "yield_strength_pa": 503e6, "largest_strain": 3e-4, "largest_rotation_rad": 1e-3, "warnings": []}
+    stress = {"peak_stress_pa": 2e7, "peak_stress_place_m": [0.01, 0.1, 0.1], "peak_stress_rail": "+y +z",
+              "peak_stress_time_s": 0.0113, "yield_strength_pa": 503e6, "largest_strain": 3e-4,
+              "largest_rotation_rad": 1e-3, "warnings": []}
     cost = {"wall_s": 1.0, "compile_s": 0.0, "steps": 1, "dt_s": 1e-6, "elements": 1, "ns_per_element_step": 1.0}
     return row("phi15", flight(stress=stress | parts, cost=cost), "")
 
