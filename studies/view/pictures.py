@@ -72,7 +72,8 @@ class Drawing:
                 "title_font_size": 17, "label_font_size": 15}
         self.plotter.add_mesh(self.surface, scalars="stress", cmap=colours, clim=[0.0, 1e-6 * self.order["scale_pa"]],
                               show_edges=close, edge_color=_EDGE, line_width=1, show_scalar_bar=bar,
-                              scalar_bar_args=look if bar else None, smooth_shading=False, copy_mesh=False, ambient=0.55, diffuse=0.5)  # shade may not pass for stress
+                              scalar_bar_args=look if bar else None, smooth_shading=False,
+                              copy_mesh=False, ambient=0.55, diffuse=0.5)  # shade may not pass for stress
         if close:
             self.plotter.add_mesh(self.corners, color=_MARK, line_width=2, copy_mesh=False)
         else:
