@@ -12,7 +12,7 @@ ASKED = --scene $(SCENE) --out $(OUT)
 READY = .venv/.ready
 
 .DEFAULT_GOAL := help
-.PHONY: help mesh highfi lowfi calibrate compare cost stability ablation report convergence full-report bench test test-slow clean
+.PHONY: help mesh highfi lowfi calibrate compare cost stability ablation report view pictures convergence full-report bench test test-slow clean
 
 help: ## print this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## /{printf "  make %-12s %s\n", $$1, $$2}' Makefile
@@ -47,6 +47,12 @@ bench: $(READY) ## speed of the solvers against what one would write today: OUT/
 
 report: $(READY) ## all of the above on one page: OUT/SCENE/report.html
 	$(TIPOFF) report $(ASKED)
+
+view: $(READY) ## one run to look at: VTK files for ParaView, and pictures if `make pictures` was made before
+	$(TIPOFF) view $(ASKED)
+
+pictures: $(READY) ## add pyvista (0.6 GB) to .venv, with which `make view` draws too
+	.venv/bin/python -m pip install --quiet --disable-pip-version-check --no-deps -r requirements-view.lock
 
 convergence: $(READY) ## the error of the reference itself: meshes, steps, penalty, quadrature (minutes)
 	$(TIPOFF) convergence $(ASKED)

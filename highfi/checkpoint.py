@@ -23,8 +23,8 @@ import numpy as np
 from scenes.files import content_hash, replacing, source_hash
 from scenes.trajectory import versions
 
-FORMAT = 1
-CONSTANT = ("scene", "system", "stepping", "team", "pool", "marks", "last", "walls")  # what a Loop is built from
+FORMAT = 2
+CONSTANT = ("scene", "system", "stepping", "team", "pool", "marks", "last", "walls", "watch")  # what a Loop is built from
 _SOURCES = ("scenes", "meshes", "highfi")
 _LINE = re.compile(rb"tipoff checkpoint (\d+) ([0-9a-f]{64})")
 _OTHER = {"scene": "belongs to another scene", "numerics": "belongs to a run with other numerics",

@@ -21,8 +21,8 @@ import numpy as np
 from skfem import Basis, ElementHex1, MeshHex
 
 # Corners of the unit cube in VTK order, and for each corner of a scikit-fem cell the VTK corner at the same place.
-_VTK_CORNERS = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]])
-_SKFEM_TO_VTK = np.array([np.flatnonzero((_VTK_CORNERS == corner).all(axis=1))[0] for corner in ElementHex1.doflocs])
+VTK_CORNERS = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]])
+_SKFEM_TO_VTK = np.array([np.flatnonzero((VTK_CORNERS == corner).all(axis=1))[0] for corner in ElementHex1.doflocs])
 _CENTRE = np.full((3, 1), 0.5)
 _GAUSS_ORDER = 3  # 2 x 2 x 2 points
 # Rows of the strain and the two displacement derivatives (component, direction) whose sum each shear strain is.
@@ -89,7 +89,7 @@ def stiffness(corners: np.ndarray, law: np.ndarray) -> np.ndarray:
     """
     strain = kinematics(basis(corners))
     full = integral(strain.nodal, law, strain.nodal, strain.volume)
-    coupling, own = _bubble_blocks(strain, law)
+    coupling, own = bubble_blocks(strain, law)
     condensed = full - np.swapaxes(coupling, 1, 2) @ np.linalg.solve(own, coupling)
     return 0.5 * (condensed + np.swapaxes(condensed, 1, 2))  # symmetric to the last bit, so that energy is exact
 
@@ -109,13 +109,13 @@ def centre_strain(corners: np.ndarray, displacement: np.ndarray) -> np.ndarray:
 def gauss_strain(corners: np.ndarray, law: np.ndarray, displacement: np.ndarray) -> np.ndarray:
     """Strain (c,8,6) at the Gauss points, bubbles included; displacement (c,8,3) m."""
     strain = kinematics(basis(corners))
-    coupling, own = _bubble_blocks(strain, law)
+    coupling, own = bubble_blocks(strain, law)
     nodal = displacement.reshape(-1, 24, 1)
     amplitude = -np.linalg.solve(own, coupling @ nodal)
     return (strain.nodal @ nodal[:, None] + strain.bubble @ amplitude[:, None])[..., 0]
 
 
-def _bubble_blocks(strain: Kinematics, law: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def bubble_blocks(strain: Kinematics, law: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """L (c,9,24) and H (c,9,9) of the module docstring."""
     return (integral(strain.bubble, law, strain.nodal, strain.volume),
             integral(strain.bubble, law, strain.bubble, strain.volume))

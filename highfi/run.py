@@ -8,7 +8,7 @@ from typing import Callable
 
 import numpy as np
 
-from highfi import observe, records, samples
+from highfi import observe, patch, peaks, records, samples, watch
 from highfi.checkpoint import Checkpoint, restore
 from highfi.contact import FASTEST_APPROACH
 from highfi.fit import check_fit
@@ -51,14 +51,15 @@ def prepare(scene: Scene, numerics: Numerics | None = None) -> RailMesh:
 
 def run(scene: Scene, numerics: Numerics | None = None, progress: Callable[[float], None] | None = None,
         threads: int | None = None, checkpoint: str | Path | None = None, checkpoint_every: float = 60.0,
-        resume: bool = False) -> Trajectory:
+        resume: bool = False, observer: Callable[["Loop"], None] | None = None) -> Trajectory:
     """Solve ``scene`` with flexible rails until the settled window is complete, a jam, or the scene's duration.
 
-    ``progress`` is called with the fraction of the duration done. ``threads`` share the run, unless said otherwise as
-    many as there are processors and elements enough for; the result does not hang on their number. With the path of a
-    ``checkpoint`` the run is kept there every ``checkpoint_every`` seconds (wall clock), and the file stays; with ``resume`` it
-    goes on from that file if there is one, to the same bits, and its cost is that of all parts. Raises SceneError, MeshError,
-    StepError or CheckpointError before any stepping; what goes wrong later is the status of the result.
+    ``progress`` is called with the fraction of the duration done. ``threads`` share the run, unless said otherwise as many as
+    there are processors and elements enough for; the result does not hang on their number. With the path of a ``checkpoint`` the
+    run is kept there every ``checkpoint_every`` seconds (wall clock), and the file stays; with ``resume`` it goes on from that
+    file if there is one, to the same bits, and its cost is that of all parts. ``observer`` is called with the loop at every
+    sample, the first one at ignition; it may read all and must change nothing. Raises SceneError, MeshError, StepError or
+    CheckpointError before any stepping; what goes wrong later is the status of the result.
     """
     if resume and checkpoint is None:
         raise ValueError("resume: given True without checkpoint, expected the path of the file to go on from")
@@ -73,7 +74,7 @@ def run(scene: Scene, numerics: Numerics | None = None, progress: Callable[[floa
     compiled = clock.perf_counter()
     if saved is not None:
         restore(loop, saved)
-    loop.march(progress, kept)
+    loop.march(progress, kept, observer)
     elements = int(system.operator.cells.shape[0])
     cost = {"wall_s": (compiling - began) + loop.wall, "compile_s": compiled - compiling, "kernel_s": loop.wall,
             "cpu_s": set_up_cpu + loop.cpu + loop.other_cpu,
@@ -99,7 +100,8 @@ class Loop:
         self.last = round(scene.duration / scene.output.interval)
         self.end, self.wall, self.cpu = self.last, 0.0, 0.0
         self.steps, self.damping, self.scale, self.other_cpu, self.message = 0, 0.0, 0.0, 0.0, ""
-        self.rows, self.work, self.forces = [], [], []
+        self.rows, self.work, self.forces, self.gauges = [], [], [], []
+        self.watch, self.worst = watch.build(system, scene.rail.material, stepping.steps_per_sample, threads), peaks.nothing()
 
     def arguments(self) -> tuple:
         """Records the kernels take, in their order."""
@@ -119,11 +121,15 @@ class Loop:
         self.advance_steps(0)
         self._sample()
 
-    def march(self, progress, kept: Checkpoint | None = None) -> None:
+    def march(self, progress, kept: Checkpoint | None = None, observer=None) -> None:
         """Advance sample by sample until something ends the run."""
         began, cpu = clock.perf_counter() - self.wall, clock.thread_time() - self.cpu
+        if observer:
+            observer(self)
         while len(self.rows) <= self.end and not self.message:
             self.advance_one_sample()
+            if observer:
+                observer(self)
             if len(self.rows) % _LOOK_EVERY == 0:
                 self.end = min(self.end, self._end())
                 if progress:
@@ -160,6 +166,14 @@ class Loop:
             self.rows.append(row)
             self.work.append(state.work.copy())
             self.forces.append(state.face_force @ rotation.matrices(state.platform.quaternion[None])[0].T)
+            self._watch()
+
+    def _watch(self) -> None:
+        """Stresses at the sample just taken."""
+        if self.watch.patch is not None:
+            self.gauges.append(patch.stress(self.watch.patch, self.state.displacement))
+        if (len(self.rows) - 1) % self.watch.every == 0:
+            watch.look(self.watch, self.state.displacement, self.steps * self.stepping.dt_s, self.worst, self.pool)
 
     def _kick(self, step: float) -> None:
         """Advance the velocities alone, over ``step`` (s), by the present forces."""
@@ -208,6 +222,9 @@ class Loop:
         end = outcome.window_start(exit_at, self.marks) + outcome.SETTLE_WINDOW
         return int(np.ceil(end / self.scene.output.interval)) + 2
 
+    def _stress(self) -> dict:
+        return watch.record(self.watch, self.system, self.worst, self.scene.rail.material.yield_strength)
+
     def trajectory(self, cost: dict, numerics: Numerics) -> Trajectory:
         """The result of the samples taken so far."""
         rows, moved = np.array(self.rows), self._motion()
@@ -223,4 +240,6 @@ class Loop:
                   "friction_power_max": float(-friction.min()), "friction_step_ratio": float(self.damping)}
         return Trajectory(fidelity="highfi", status=status, message=self.message, **moved._asdict(),
                           pad_force=np.array(self.forces), energy=total, transverse_energy=transverse, outcome=result,
-                          checks=checks, cost=cost, scene=self.scene.resolved(), numerics=numerics.as_dict())
+                          checks=checks, cost=cost, scene=self.scene.resolved(), numerics=numerics.as_dict(),
+                          stress=None if self.message else self._stress(),
+                          wall_stress=np.array(self.gauges).reshape(len(rows), -1, 6) if self.gauges else None)

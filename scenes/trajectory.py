@@ -24,12 +24,14 @@ _DIMENSIONS = {
     "rate": ("time", "axis"), "platform_position": ("time", "axis"), "platform_velocity": ("time", "axis"),
     "platform_quaternion": ("time", "component"), "platform_rate": ("time", "axis"),
     "pad_force": ("time", "face", "axis"), "energy": ("time", "entry"), "transverse_energy": ("time", "entry"),
+    "wall_stress": ("time", "patch", "stress_component"),
 }
-_PLAIN = ("checks", "cost", "scene", "numerics", "versions")
+_PLAIN = ("checks", "cost", "scene", "numerics", "versions", "stress")
+_STRESS = ("xx", "yy", "zz", "xy", "yz", "zx")
 _UNITS = {
     "position": "m", "velocity": "m/s", "quaternion": "1", "rate": "rad/s", "platform_position": "m",
     "platform_velocity": "m/s", "platform_quaternion": "1", "platform_rate": "rad/s", "pad_force": "N",
-    "energy": "J", "transverse_energy": "J",
+    "energy": "J", "transverse_energy": "J", "wall_stress": "Pa",
 }
 
 
@@ -58,6 +60,12 @@ class Trajectory:
     (n, len(ledger.ENTRIES)) J. ``checks`` holds the kept promises (dimensionless), ``cost`` wall_s, compile_s, steps, dt_s
     and what a fidelity adds, ``scene`` the resolved inputs. A diverged or refused run has no settled values.
 
+    A run with flexible rails also says what they bear. ``stress``: peak_stress_pa, the largest von Mises stress, at
+    peak_stress_place_m (scene axes, undeformed) of peak_stress_rail at peak_stress_time_s; yield_strength_pa or None; largest_strain,
+    largest_rotation_rad; warnings, words about what these make doubtful; patch_places_m of the w patches whose mean stress in platform
+    axes is ``wall_stress`` (n,w,6) Pa. A rigid rail has none: None, and no patches;
+    nor does a run that diverged say how strong its rails must be.
+
     Raises ValueError for an unknown status, arrays that do not fit each other, and any NaN or inf, naming where it is.
     """
 
@@ -81,12 +89,16 @@ class Trajectory:
     scene: dict
     message: str = ""
     numerics: dict = field(default_factory=dict)
+    stress: dict | None = None
+    wall_stress: np.ndarray | None = None
     versions: dict[str, str] = field(default_factory=versions)
 
     def __post_init__(self):
         if self.status not in STATUSES:
             raise ValueError(f"status {self.status!r}, expected one of {STATUSES}")
-        widths = {"axis": 3, "component": 4, "entry": len(ledger.ENTRIES), "time": np.size(self.time)}
+        if self.wall_stress is None:
+            object.__setattr__(self, "wall_stress", np.zeros((np.size(self.time), 0, len(_STRESS))))
+        widths = {"stress_component": len(_STRESS), "axis": 3, "component": 4, "entry": len(ledger.ENTRIES), "time": np.size(self.time)}
         for name, dimensions in ({"time": ("time",)} | _DIMENSIONS).items():
             shape = np.shape(getattr(self, name))
             if len(shape) != len(dimensions) or any(widths.get(d, n) != n for d, n in zip(dimensions, shape)):
@@ -105,6 +117,10 @@ class Trajectory:
             variables[name] = (("time", "axis"), relative[name], {"units": unit})
         coordinates = {"time": ("time", self.time, {"units": "s"}), "axis": list(_VECTOR),
                        "component": ["w", "x", "y", "z"], "entry": list(ledger.ENTRIES)}
+        if self.wall_stress.size:
+            coordinates["stress_component"] = list(_STRESS)
+        else:
+            del variables["wall_stress"]  # a dimension of no length means an unlimited one to netCDF
         plain = {name: json.dumps(getattr(self, name), allow_nan=False) for name in _PLAIN}
         return xarray.Dataset(variables, coordinates, attrs={
             "fidelity": self.fidelity, "status": self.status, "message": self.message,
@@ -122,7 +138,7 @@ class Trajectory:
             raise FileNotFoundError(f"{path}: no such trajectory file")
         try:
             with xarray.open_dataset(path, engine="h5netcdf", decode_timedelta=False) as data:
-                arrays = {name: data[name].values for name in _DIMENSIONS}
+                arrays = {name: data[name].values for name in _DIMENSIONS if name in data or name != "wall_stress"}
                 plain = {name: json.loads(data.attrs[name]) for name in _PLAIN}
                 result = outcome.Outcome(**json.loads(data.attrs["outcome"]))
                 return cls(fidelity=data.attrs["fidelity"], status=data.attrs["status"], message=data.attrs["message"],

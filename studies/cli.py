@@ -203,6 +203,38 @@ def convergence(scene: SceneName = "reference", out: Out = Path("out"), set_: Se
         print("\n".join(found["summary"]))
 
 
+@app.command()
+def view(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = None,
+         condition: Annotated[Optional[str], typer.Option("--condition", metavar="NAME",
+                              help="Named condition; default: the first refined one.")] = None,
+         frames: Annotated[int, typer.Option("--frames", metavar="N", min=2, help="Instants to write, evenly over the run.")] = 60,
+         exaggeration: Annotated[Optional[float], typer.Option("--exaggeration", metavar="X", min=1e-6,
+                                 help="Factor of the rail's deformation in pictures; default: one that shows it.")] = None,
+         element_size: ElementSize = None, json_: Json = False) -> None:
+    """Stress and motion of one condition to look at; writes view/CONDITION/ with run.pvd, and pictures where pyvista is installed.
+
+    Open run.pvd in ParaView. Rails and payload are there as seen from the platform, undeformed: "Warp By Vector" with the array
+    "displacement (m)" and a scale of some hundreds shows how the rails give way; colour by "von Mises stress (Pa)" or
+    "contact pressure (Pa)", and play.
+
+      tipoff view --condition phi60 --frames 120
+
+      tipoff view --scene my_launcher.toml --element-size 4 --exaggeration 500
+
+    Pictures (peak.png, ejection.webp) need pyvista, which `make pictures` installs; the files for ParaView need nothing more.
+    """
+
+    def work() -> dict:
+        from studies.stages import view as stage
+
+        return stage.run(_study(scene, out, set_, element_size=element_size), condition, frames, exaggeration)
+
+    found = _guarded(work, json_)
+    if not json_:
+        folder = Path(out) / found["scene"]
+        print("\n".join(f"{folder / path}" for path in (found["collection"], *found["pictures"].values())))
+
+
 _stage("report", "All of it on one self-contained page; writes report.html and figures/.")
 
 

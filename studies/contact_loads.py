@@ -33,7 +33,12 @@ def cutoff(scene: Scene) -> float:
     return min(CUTOFF, _OF_SAMPLING / scene.output.interval)
 
 
+def low_passed(scene: Scene, samples: np.ndarray) -> np.ndarray:
+    """Samples (n,...) of a run of the scene without what they have above ``cutoff``."""
+    sections = butter(_ORDER, cutoff(scene), fs=1.0 / scene.output.interval, output="sos")
+    return sosfiltfilt(sections, samples, axis=0)
+
+
 def filtered_peak(scene: Scene, run: Trajectory) -> float:
     """Largest size (N) of the force on any pad below ``cutoff``."""
-    sections = butter(_ORDER, cutoff(scene), fs=1.0 / scene.output.interval, output="sos")
-    return float(np.linalg.norm(sosfiltfilt(sections, by_pad(scene, run.pad_force), axis=0), axis=2).max())
+    return float(np.linalg.norm(low_passed(scene, by_pad(scene, run.pad_force)), axis=2).max())

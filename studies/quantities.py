@@ -1,11 +1,11 @@
-"""What a refinement of the reference is judged by: the state the payload leaves with, and the loads of the pads that touch."""
+"""What a refinement of the reference is judged by: the state the payload leaves with, the loads of the pads that touch, and stress."""
 
 import math
 from typing import Iterator, Sequence
 
 from scenes.scene import Scene
 from scenes.trajectory import Trajectory
-from studies import contact_loads
+from studies import contact_loads, stresses
 from studies.metrics import AXES
 
 RATE = "settled rate"
@@ -23,6 +23,11 @@ def quantities(scene: Scene, runs: Sequence[Trajectory]) -> Iterator[tuple[str, 
     if any(found.any() for found in impulses):
         peaks = [contact_loads.filtered_peak(scene, found) for found in runs]
         yield f"peak contact force below {1e-3 * contact_loads.cutoff(scene):g} kHz", "N", peaks
+    patches = [stresses.patch_peak(scene, found) for found in runs]
+    if None not in patches:
+        yield f"patch stress below {1e-3 * contact_loads.cutoff(scene):g} kHz", "MPa", [1e-6 * stress for stress in patches]
+    if all(found.stress for found in runs):
+        yield stresses.PEAK, "MPa", [1e-6 * found.stress["peak_stress_pa"] for found in runs]
 
 
 def settled_rate(run: Trajectory) -> list[float | None]:

@@ -29,6 +29,11 @@ def lines(result: dict, fidelity: str, study: Study) -> list[str]:
         said.append("  rate          " + ", ".join(f"{value:.4g}" for value in settled["rate_deg_s"]) + " deg/s (x, y, z)")
         said.append(f"  direction     {settled['direction_error_deg']:.4g} deg off axis, "
                     f"{1e3 * settled['lateral_velocity_m_s']:.4g} mm/s across")
+    if result.get("peak_stress_pa") is not None:
+        place = ", ".join(f"{1e3 * value:.4g}" for value in result["peak_stress_place_m"])
+        said.append(f"  peak stress   {1e-6 * result['peak_stress_pa']:.4g} MPa (von Mises) at x, y, z = {place} mm, rail "
+                    f"{result['peak_stress_rail']}, {1e3 * result['peak_stress_time_s']:.4g} ms after ignition")
+        said += [f"  warning       {words}" for words in result["warnings"]]
     said.append(f"  took          {result['wall_s']:.3g} s, {result['steps']} steps")
     said.append(f"  trajectory    {study.path(result['trajectory'])}")
     return said

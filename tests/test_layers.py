@@ -171,3 +171,7 @@ def test_lock_holds_every_dependency():
     pinned = set(re.findall(r"^([A-Za-z0-9_.-]+)==", (ROOT / "requirements.lock").read_text(), re.MULTILINE))
     normal = {re.sub(r"[-_.]+", "-", name).lower() for name in pinned}
     assert {re.match(r"[A-Za-z0-9_.-]+", name).group().lower() for name in asked} <= normal
+    # The extra for pictures has a lock of its own, beside the first one and not against it.
+    added = set(re.findall(r"^([A-Za-z0-9_.-]+)==", (ROOT / "requirements-view.lock").read_text(), re.MULTILINE))
+    assert {re.match(r"[A-Za-z0-9_.-]+", name).group() for name in project["optional-dependencies"]["view"]} <= added
+    assert not added & pinned

@@ -8,7 +8,7 @@ from pathlib import Path
 from scenes.scene import Scene
 from scenes.trajectory import versions
 from studies import machine
-from studies.report import convergence, figures, inputs, tables
+from studies.report import convergence, figures, inputs, stress, tables
 from studies.report.chart import Chart, to_html, to_png
 from studies.report.figures import Runs
 from studies.report.markup import Html, caption, code, number, paragraph, section, table
@@ -16,7 +16,7 @@ from studies.report.promises import promises, render
 from studies.report.style import CSS
 
 _CONTENTS = (("answer", "Answer"), ("scene", "Scene"), ("mesh", "Mesh"), ("thrust", "Thrust"), ("figure6", "Curves"),
-             ("contact-forces", "Contact"), ("energy", "Energy"), ("calibration", "Calibration"),
+             ("contact-forces", "Contact"), ("energy", "Energy"), ("stress", "Stress"), ("calibration", "Calibration"),
              ("agreement-section", "Agreement"), ("speedup", "Speed"), ("cost", "Cost"), ("convergence", "Convergence"), ("bench", "Solver"), ("stability", "Hard cases"),
              ("ablation", "Ablation"), ("promises", "Promises"), ("colophon", "Origin"))
 
@@ -32,7 +32,7 @@ class Page:
         """The whole page; writes every figure as PNG on the way."""
         from plotly.offline import get_plotlyjs
 
-        body = "".join([self._answer(), self._scene(), self._mesh(), self._thrust(), self._curves(), self._contact(), self._energy(),
+        body = "".join([self._answer(), self._scene(), self._mesh(), self._thrust(), self._curves(), self._contact(), self._energy(), self._stress(),
                         self._of("calibration", "calibration", "Calibration", tables.calibration, "calibrate"),
                         self._of("agreement", "agreement-section", "Agreement with the reference", tables.agreement, "compare"),
                         self._of("agreement", "speedup", "Speed", lambda found: tables.speedup(found["speedup"]), "compare"),
@@ -143,6 +143,13 @@ class Page:
             figures.energy_ledgers(self.runs, name), f"Condition {name}. The transverse ledger leaves out the axial motion, so that its "
             "hundreds of joules cannot hide the millijoules that decide the rates. The dashed residual should lie on zero."))
 
+    def _stress(self) -> Html:
+        """Peak stresses of all conditions; pictures of those that `make view` was made for."""
+        rows = self._rows()["highfi"]
+        if not rows:
+            return section("stress", "Stress of the rails", self._missing("highfi", "highfi"))
+        return stress.shown(rows, self.documents.get("view") or [], self.folder, self.scene.name)
+
     def _cost(self, found: dict) -> Html:
         return section("cost", "What accuracy costs", self._figure(
             figures.cost_picture(found), f"Condition {found['condition']}. Error against the finest finite-element mesh, whose own "
@@ -167,6 +174,6 @@ class Page:
         facts = [("made", datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%d %H:%M UTC")),
                  ("machine", f"{here['processor']}, {here['cores']} cores, {here['memory_gib']} GiB, {here['system']}"),
                  ("Python", here["python"]), *versions().items(), ("scene hash", code(self.scene.hash))]
-        keys = [(stage, code(found["key"])) for stage, found in self.documents.items() if found]
+        keys = [(stage, code(found["key"])) for stage, found in self.documents.items() if found and stage != "view"]
         return section("colophon", "Where these numbers come from", table(("", ""), facts),
                        table(("result file", "key: hash of scene, code and numerics"), [(f"{stage}.json", key) for stage, key in keys]))

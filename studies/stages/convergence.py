@@ -12,8 +12,8 @@ from pathlib import Path
 from highfi.numerics import Numerics
 from scenes.scene import Scene
 from scenes.trajectory import Trajectory
-from studies import agreement, contact_loads
-from studies.convergence import estimate
+from studies import agreement, contact_loads, stresses
+from studies.convergence import Estimate, estimate
 from studies.quantities import RATE, quantities, settled_rate
 from studies.stages.compare import refined
 from studies.store import SOURCES, Run
@@ -77,6 +77,8 @@ def _judged(scene: Scene, parameter: str, unit: str, sizes: list[float], runs: l
     rows = []
     for quantity, its_unit, values in quantities(scene, runs):
         found, at_nominal = estimate(sizes, values), values[sizes.index(nominal)]
+        if quantity == stresses.PEAK and parameter == "element size":
+            found = Estimate(found.order, None, None, stresses.SINGULAR)
         unknown = None in (found.uncertainty, at_nominal)
         rows.append({"quantity": quantity, "unit": its_unit, "parameter": parameter, "sizes": sizes, "size_unit": unit,
                      "values": values, **asdict(found), "nominal_size": nominal,

@@ -7,7 +7,7 @@ from typing import Callable
 from scenes.calibration import Calibration
 from scenes.files import content_hash, write_text
 from studies import bench
-from studies.stages import ablation, calibrate, compare, convergence, cost, mesh, runs, stability
+from studies.stages import ablation, calibrate, compare, convergence, cost, mesh, runs, stability, view
 from studies.store import Run, code_hash
 from studies.study import Study, StudyError
 
@@ -24,7 +24,8 @@ def run(study: Study) -> dict:
             documents[name] = stage(study)
         except StudyError as fault:
             documents[name], problems[name] = None, str(fault)
-    there = {convergence.NAME: convergence.stored(study), "bench": bench.stored(study.folder.parent)}
+    there = {convergence.NAME: convergence.stored(study), "bench": bench.stored(study.folder.parent),
+             "view": view.stored(study)}
 
     def make() -> tuple[dict, list[Path]]:
         from studies.report.page import Page

@@ -4,6 +4,7 @@ import math
 from pathlib import Path
 
 from scenes.trajectory import Trajectory
+from studies import stresses
 from studies.store import SOURCES, Run
 from studies.study import FAILED, Study
 
@@ -42,5 +43,5 @@ def row(name: str, run: Trajectory, path: str) -> dict:
              "angular_momentum_error": checks.get("angular_momentum_error"), "settled": settled, "trajectory": path,
              "checks": checks, "cost": cost, "numerics": run.numerics}
     if run.fidelity == "highfi":
-        found |= {"elements": cost["elements"], "ns_per_element_step": cost["ns_per_element_step"]}
+        found |= {"elements": cost["elements"], "ns_per_element_step": cost["ns_per_element_step"]} | stresses.facts(run)
     return found

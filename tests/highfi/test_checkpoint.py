@@ -22,7 +22,7 @@ from tests.highfi.support import COARSE, Stopped, begun, stopped, tiny
 pytestmark = pytest.mark.case("X20")
 ROOT = Path(__file__).resolve().parent.parent.parent
 ARRAYS = ("time", "position", "velocity", "quaternion", "rate", "platform_position", "platform_velocity", "platform_quaternion",
-          "platform_rate", "pad_force", "energy", "transverse_energy")
+          "platform_rate", "pad_force", "energy", "transverse_energy", "wall_stress")
 TOUCHING = 115  # a sample at which pads of ``tiny`` touch
 
 
@@ -36,7 +36,7 @@ def assert_same(found: Trajectory, expected: Trajectory) -> None:
     """All that a result holds but what it cost, bit for bit."""
     for name in ARRAYS:
         np.testing.assert_array_equal(getattr(found, name), getattr(expected, name), err_msg=name)
-    for name in ("status", "message", "outcome", "checks"):
+    for name in ("status", "message", "outcome", "checks", "stress"):
         assert getattr(found, name) == getattr(expected, name), name
     assert found.cost["steps"] == expected.cost["steps"]
 
@@ -111,7 +111,7 @@ def test_what_is_left_out_does_not_change():
     assert digest(arrays(system)) == before
     assert (loop.marks, loop.stepping, loop.last) == others
     # A scene is frozen; a team and a pool of threads are not of the run.
-    assert set(CONSTANT) == {"scene", "system", "stepping", "team", "pool", "marks", "last", "walls"}
+    assert set(CONSTANT) == {"scene", "system", "stepping", "team", "pool", "marks", "last", "walls", "watch"}
 
 
 CHILD = """

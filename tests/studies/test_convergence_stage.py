@@ -103,6 +103,27 @@ def test_loads_of_the_one_pad_that_touches(study):
     assert found["force_cutoff_hz"] == 1000.0
 
 
+def test_stress_is_judged_on_patches_and_never_at_its_peak(tmp_path, monkeypatch, asked):
+    """A patch errs with the square of the element size; the peak grows by a third with every halving, as at a sharp corner."""
+    def execute(run, progress=None, threads=None, **kept):
+        size = 1e3 * run.numerics.element_size
+        gauge = np.zeros((601, 2, 6))
+        gauge[:, 1, 0] = 1e6 * (5.0 + 1e-3 * size**2)
+        return motion(run, wall_stress=gauge, stress={"peak_stress_pa": 1e7 * 0.75 ** math.log2(size)})
+
+    monkeypatch.setattr(store_module, "execute", execute)
+    study = Study(scenes.load("tiny"), tmp_path / "tiny", defaults("tiny"))
+    found = convergence.run(study)
+    patch = row(found, "element size", "patch stress below 1 kHz")
+    assert (patch["unit"], patch["order"]) == ("MPa", pytest.approx(2.0, abs=1e-6))
+    assert patch["uncertainty"] == pytest.approx(1.25 * 0.016, rel=1e-6)
+    peak = row(found, "element size", "peak stress of the rail")
+    assert (peak["uncertainty"], peak["nominal_uncertainty"], peak["gci_percent"]) == (None, None, None)
+    assert peak["order"] < 0.0 and "mesh-dependent" in peak["method"]
+    shown = Page(study.scene, study.folder, {"convergence": found}, Runs({}, {}, {}), {})._convergence()
+    assert "patch stress below 1 kHz" in shown and "mesh-dependent" in shown
+
+
 def test_penalty_and_quadrature_are_compared_with_the_nominal_run(study):
     found = convergence.run(study)
     assert [item["factor"] for item in found["penalty"]] == [0.25, 1.0, 4.0, 16.0]

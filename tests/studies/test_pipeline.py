@@ -17,7 +17,7 @@ ROW = {"condition", "velocity_relative_l2", "rate_relative_l2", "iso18571", "set
        "floor_deg_s", "floor_l2", "reference_uncertainty_deg_s"}
 RUN = {"condition", "status", "wall_s", "compile_s", "steps", "dt_s", "energy_error", "transverse_energy_error", "linear_momentum_error",
        "angular_momentum_error", "settled", "trajectory"}
-SECTIONS = ("answer", "scene", "mesh", "thrust", "figure6", "contact-forces", "energy", "calibration", "agreement", "speedup", "cost",
+SECTIONS = ("answer", "scene", "mesh", "thrust", "figure6", "contact-forces", "energy", "stress", "calibration", "agreement", "speedup", "cost",
             "stability", "ablation", "promises", "colophon")
 
 
@@ -62,6 +62,8 @@ def test_runs_hold_the_keys_other_tools_read(pipeline, fidelity):
         assert row["status"] == "exited"
         assert len(row["settled"]["velocity_m_s"]) == len(row["settled"]["rate_deg_s"]) == 3
         assert Trajectory.load(pipeline[0] / row["trajectory"]).fidelity == fidelity
+        if fidelity == "highfi":
+            assert 0.0 < row["peak_stress_pa"] < row["yield_strength_pa"] and len(row["peak_stress_place_m"]) == 3
 
 
 def test_agreement_holds_the_keys_other_tools_read(pipeline):

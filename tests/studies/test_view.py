@@ -1,0 +1,201 @@
+"""A run to look at: VTK files that hold what the run had, the list of them, pictures where there is pyvista, and the page."""
+
+import json
+from pathlib import Path
+from xml.etree import ElementTree
+
+import meshio
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+import scenes
+from highfi import Numerics, peaks, watch
+from highfi.peaks import STRESS
+from highfi.step import evaluate
+from scenes.trajectory import Trajectory
+from studies.cli import app
+from studies.report import stress as section
+from studies.report.figures import Runs
+from studies.report.page import Page
+from studies.settings import defaults
+from studies.stages import view
+from studies.stages.runs import row
+from studies.study import Study
+from studies.view import frames, vtk_files
+from tests.highfi.support import begun, stopped, tiny
+from tests.studies.synthetic import flight
+
+TOUCHING = 115  # a sample at which pads of ``tiny`` touch
+
+
+@pytest.fixture(scope="module")
+def viewed(tmp_path_factory):
+    """(study, result) of the stage on ``tiny``, as if pyvista were not there."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(view, "pyvista_version", lambda: None)
+        study = Study(scenes.load("tiny"), tmp_path_factory.mktemp("out") / "tiny", defaults("tiny"))
+        yield study, view.run(study, "phi15", 7)
+
+
+@pytest.fixture(scope="module")
+def touching():
+    """A loop at a moment when pads touch, and its frame."""
+    loop = stopped(TOUCHING)
+    return loop, frames.Camera(loop).take(loop)
+
+
+def test_without_pyvista_there_are_files_and_a_way_to_pictures(viewed):
+    study, found = viewed
+    assert found["pictures"] == {} and "make pictures" in found["without_pictures"]
+    assert len(found["frames"]) == 7 and len(found["files"]) == 2 * 7 + 1
+    assert view.run(study, "phi15", 7) == found  # nothing changed, nothing made
+    assert view.stored(study) == [found]
+
+
+def test_the_list_names_every_file_at_its_time(viewed):
+    study, found = viewed
+    listed = ElementTree.parse(study.path(found["collection"])).getroot()
+    assert (listed.tag, listed.get("type")) == ("VTKFile", "Collection")
+    sets = listed.findall("./Collection/DataSet")
+    expected = [(frame["time_s"], part, frame[name]) for frame in found["frames"] for part, name in enumerate(("rails", "bodies"))]
+    assert [(float(item.get("timestep")), int(item.get("part")), item.get("file")) for item in sets] == [
+        (pytest.approx(time), part, file) for time, part, file in expected]
+    assert all((study.path(found["folder"]) / file).is_file() for _, _, file in expected)
+
+
+def test_one_frame_is_the_moment_of_the_peak_and_shows_it(viewed):
+    study, found = viewed
+    run = Trajectory.load(study.store.path(study.highfi("phi15")))
+    frame = found["frames"][found["peak"]["frame"]]
+    assert frame["time_s"] == pytest.approx(run.stress["peak_stress_time_s"])
+    rails = meshio.read(study.path(found["folder"]) / frame["rails"])
+    worst = rails.cell_data[vtk_files.WORST][0]
+    assert worst.max() == pytest.approx(run.stress["peak_stress_pa"], rel=1e-6)
+    corners = rails.points[rails.cells_dict["hexahedron"][worst.argmax()]]
+    # Elements beside each other may tie, so the place is a corner of the worst or its like.
+    assert np.linalg.norm(corners - run.stress["peak_stress_place_m"], axis=1).min() < 0.02
+    assert rails.point_data[vtk_files.VON_MISES].max() <= worst.max() * (1.0 + 1e-6)
+
+
+def test_files_hold_what_the_loop_had(touching, tmp_path):
+    loop, frame = touching
+    boxes, pads = frames.bodies(loop.scene, loop.system.model)
+    paths = vtk_files.write_frame(tmp_path, 3, frame, loop.system.mesh, boxes, pads)
+    rails, bodies = (meshio.read(path) for path in paths)
+    assert [path.name for path in paths] == ["rails-0003.vtu", "bodies-0003.vtu"]
+    np.testing.assert_allclose(rails.point_data[vtk_files.DISPLACEMENT], loop.state.displacement[loop.system.number],
+                               rtol=1e-6, atol=1e-15)
+    np.testing.assert_array_equal(rails.points, loop.system.mesh.points)
+    assert len(bodies.cells_dict["hexahedron"]) == 1 + 16
+    assert np.bincount(bodies.cell_data[vtk_files.PAD][0]).tolist() == [1] + [2] * 8
+    # Payload and pads moved out of the rails, as far as the payload did.
+    middle = bodies.points[:8].mean(axis=0)
+    way = loop.state.payload.position - loop.state.platform.position + loop.system.origin
+    assert middle == pytest.approx(way, abs=1e-4)
+
+
+@pytest.mark.parametrize("size, off", [(0.004, 0.2), (0.002, 0.05)])
+def test_contact_pressure_comes_to_the_force_on_the_pads(size, off):
+    """Pressure at nodes times their share of the wall, as the nodes under a pad grow in number."""
+    numerics = Numerics(element_size=size)
+    loop = begun(tiny(), numerics)
+    # Pressed 30 um into one wall, long before the payload would get there: faces that wait must look.
+    loop.active.wait[:] = 0
+    loop.state.payload.position[1] += loop.scene.contact.clearance + 30e-6
+    evaluate(*loop.arguments()[:3], loop.system.model.payload, loop.system.frame, loop.system.model.penalty,
+             loop.system.model.friction, loop.state, loop.active, loop.team, loop.stepping.dt_s)
+    mesh, frame = loop.system.mesh, frames.Camera(loop).take(loop)
+    share = np.zeros(len(mesh.points))
+    for name, facets in mesh.surfaces.items():
+        if name.startswith("contact"):
+            corners = mesh.points[facets]
+            areas = 0.5 * np.linalg.norm(np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1]), axis=1)
+            np.add.at(share, facets, 0.25 * areas[:, None])
+    normal = np.abs(loop.state.face_force[np.arange(16), loop.system.faces.axis]).sum()
+    assert normal > 1000.0
+    assert (frame.pressure * share).sum() == pytest.approx(normal, rel=off)
+    assert not frame.pressure[share == 0.0].any()
+
+
+def test_camera_sees_the_stress_that_the_run_is_watched_for(touching):
+    loop, frame = touching
+    worst = peaks.nothing()
+    watch.look(loop.watch, loop.state.displacement, 0.0, worst, loop.pool)
+    assert frame.worst.max() == pytest.approx(loop.watch.shear_modulus * np.sqrt(worst.square[STRESS]), rel=1e-12)
+    assert frame.worst.argmax() == worst.place[STRESS, 0]
+    still = frames.Camera(first := begun()).take(first)
+    assert not still.displacement.any() and not still.worst.any() and not still.pressure.any()
+
+
+def test_fewer_frames_leave_no_old_ones(tmp_path):
+    for index in range(3):
+        (tmp_path / f"rails-{index:04d}.vtu").write_text("")
+    vtk_files.discard_others(tmp_path, [tmp_path / "rails-0000.vtu"])
+    assert [path.name for path in tmp_path.iterdir()] == ["rails-0000.vtu"]
+
+
+@pytest.mark.parametrize("largest, factor", [(1e-5, 500.0), (3e-5, 200.0), (0.02, 1.0), (0.0, 1.0)])
+def test_exaggeration_is_a_round_number_that_shows_the_deformation(largest, factor):
+    assert view.exaggeration([{"largest_displacement_m": largest}]) == factor
+
+
+@pytest.mark.parametrize("value, end", [(12.9e6, 15e6), (1.0, 1.0), (0.0, 1.0), (9.1, 10.0)])
+def test_scales_end_at_round_numbers(value, end):
+    assert view.rounded_up(value) == pytest.approx(end)
+
+
+def test_command_writes_prints_and_refuses(viewed, monkeypatch):
+    study, found = viewed
+    monkeypatch.setattr(view, "pyvista_version", lambda: None)
+    arguments = ["view", "--scene", "tiny", "--condition", "phi15", "--frames", "7", "--out", str(study.folder.parent)]
+    told = CliRunner().invoke(app, [*arguments, "--json"], catch_exceptions=False)
+    assert told.exit_code == 0 and json.loads(told.stdout) == found
+    said = CliRunner().invoke(app, arguments, catch_exceptions=False)
+    assert said.stdout.split() == [str(study.path(found["collection"]))]
+    assert CliRunner().invoke(app, [*arguments, "--frames", "1"]).exit_code == 2
+    refused = CliRunner().invoke(app, ["view", "--scene", "tiny", "--condition", "phi99", "--out", str(study.folder.parent)])
+    assert refused.exit_code == 2 and "phi99" in refused.stderr
+
+
+def known(**parts):
+    stress = {"peak_stress_pa": 2e7, "peak_stress_place_m": [0.01, 0.1, 0.1], "peak_stress_rail": "+y +z",
+              "peak_stress_time_s": 0.0113, "yield_strength_pa": 503e6, "largest_strain": 3e-4,
+              "largest_rotation_rad": 1e-3, "warnings": []}
+    cost = {"wall_s": 1.0, "compile_s": 0.0, "steps": 1, "dt_s": 1e-6, "elements": 1, "ns_per_element_step": 1.0}
+    return row("phi15", flight(stress=stress | parts, cost=cost), "")
+
+
+def test_page_shows_peaks_and_says_what_would_show_more(viewed):
+    study, found = viewed
+    page = Page(study.scene, study.folder, {"highfi": {"key": "k", "conditions": [known()]}}, Runs({}, {}, {}), {})
+    shown = page._stress()
+    assert 'id="stress"' in shown and "+y +z" in shown and "503 MPa" in shown and ">3.98<" in shown
+    assert "make view SCENE=tiny" in shown and "notice" not in shown
+    page.documents["view"] = [found]
+    assert "make view" not in page._stress() and "make pictures" in page._stress() and found["collection"] in page._stress()
+    assert "make highfi SCENE=tiny" in Page(study.scene, study.folder, {}, Runs({}, {}, {}), {})._stress()
+
+
+def test_page_warns_and_escapes():
+    warned = section.shown([known(warnings=["stress <above> yield"])], [], Path("."), "tiny")
+    assert 'class="notice"' in warned and "stress &lt;above&gt; yield" in warned
+    assert "of the reference says" in section.shown([known() | {"peak_stress_pa": None}], [], Path("."), "tiny")
+
+
+def test_pictures_are_drawn_and_embedded(viewed, monkeypatch):
+    pytest.importorskip("pyvista")
+    from PIL import Image
+
+    monkeypatch.setattr(view, "pyvista_version", lambda: "there")
+    study, found = viewed
+    folder = study.path(found["folder"])
+    drawn, why = view._draw(found | {"frames": found["frames"][:4], "peak": found["peak"] | {"frame": 3}}, folder)
+    assert (drawn, why) == (["peak.png", "ejection.webp"], "")
+    with Image.open(folder / "peak.png") as still, Image.open(folder / "ejection.webp") as moving:
+        assert still.width > 1000 and len(still.convert("RGB").getcolors(1 << 24)) > 100
+        assert moving.n_frames >= 2
+    assert (folder / "ejection.webp").stat().st_size < 3_000_000
+    shown = section.shown([known()], [found | {"pictures": {"peak": f"{found['folder']}/peak.png",
+                                                           "ejection": f"{found['folder']}/ejection.webp"}}], study.folder, "tiny")
+    assert shown.count("data:image/") == 2 and "times their deformation" in shown
