@@ -49,7 +49,7 @@ def axial_velocity_of_platform(state, frame, base):
 
 
 @kernel
-def add_work(touch, payload, frame, drive, friction, gravity, state, active, pose, thrust, half, ahead):
+def add_work(rail, surface, payload, frame, drive, friction, gravity, state, active, pose, thrust, half, ahead):
     """Add half a step of work, total and axial, at the velocities of ``pose`` and those of the nodes once kicked over ``ahead`` (s)."""
     force, moment, point = thrust
     work, v = state.work, state.payload.velocity
@@ -61,7 +61,7 @@ def add_work(touch, payload, frame, drive, friction, gravity, state, active, pos
     work[CONTACT_AXIAL] += half * normal * v[0]
     work[FRICTION_AXIAL] -= half * drag * v[0]
     pull = pull_on_nodes(gravity, pose)
-    work[FRICTION] -= half * friction_power(touch, active, pose, friction, pull, ahead)
+    work[FRICTION] -= half * friction_power(rail, surface, state, active, pose, friction, pull, ahead)
     _platform_work(frame, drive, state, pose.frame, thrust, normal, drag, half)
     _gravity_work(payload, frame, gravity, state, pose.frame, half)
 

@@ -111,11 +111,12 @@ def hold(rail, resistance, first, last, total):
 
 
 @kernel
-def follow_frame(rail, state, frame):
-    """Give clamped nodes of the walls the frame's own inertial velocity, which friction needs."""
+def follow_frame(rail, state, frame, nodes, first, last):
+    """Give clamped ``nodes`` from number ``first`` to ``last`` the frame's own inertial velocity, which friction needs."""
     if frame is not None:
         velocity, rate = triple(state.motion), (state.motion[RATE], state.motion[RATE + 1], state.motion[RATE + 2])
-        for node in rail.walls:
+        for k in range(first, last):
+            node = nodes[k]
             spin = rotation.cross(rate, (rail.points[node, 0], rail.points[node, 1], rail.points[node, 2]))
             for i in range(3):
                 state.velocity[node, i] = velocity[i] + spin[i]

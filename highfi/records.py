@@ -25,7 +25,7 @@ class Elements(NamedTuple):
 
 class Rail(NamedTuple):
     """Constant: points (n,3) m; mass (n,) kg; inverse_mass (n,) 1/kg, zero where clamped; clamped (k,) node numbers in
-    ascending order, held (b+1,) the first of them in each block, walls (w,) those of them that pads can meet; either
+    ascending order, held (b+1,) the first of them in each block; either
     pencils, of an extruded mesh, or elements, the other one None; blocks (b+1,) first node of each run of nodes that is worked on at
     once, the nodes of a chunk of pencils; damping, None where the scene has none."""
 
@@ -34,11 +34,23 @@ class Rail(NamedTuple):
     inverse_mass: np.ndarray
     clamped: np.ndarray
     held: np.ndarray
-    walls: np.ndarray
     pencils: Pencils | None
     elements: Elements | None
     blocks: np.ndarray
     damping: Damping | None
+
+
+class Groups(NamedTuple):
+    """Constant: groups of pad faces of which no two can meet the same node. face (f,) group by group, the first of each in
+    first_face (g+1,); clamped (w,) nodes that pads can meet, the first of each group in first_clamped (g+1,); first_node (g,) and
+    first_point (g,): where the part of a group begins in the lists of Active."""
+
+    face: np.ndarray
+    first_face: np.ndarray
+    clamped: np.ndarray
+    first_clamped: np.ndarray
+    first_node: np.ndarray
+    first_point: np.ndarray
 
 
 class Surface(NamedTuple):
@@ -56,6 +68,7 @@ class Surface(NamedTuple):
     start: np.ndarray
     longest: float
     control: np.ndarray | None
+    groups: Groups
 
 
 class Frame(NamedTuple):
@@ -100,11 +113,11 @@ class State(NamedTuple):
     """Evolving. displacement (n,3) m; velocity (n,3) m/s: *inertial* nodal velocity at the half step, resolved in frame axes;
     resistance (n,3) N: K u and damping minus contact, zero where clamped; contact (n,3) N on its way into it, else zero; turning
     (b,3) N m: parts of the sum of u x resistance before contact; clamping (b,6) parts of its force (N) and moment about the frame's
-    origin (N m) on the clamped nodes; reaction (6): force and moment about the frame's origin of minus the resistance of all moving nodes
-    (N, N m); motion: what nodes need of frame and gravity in the
-    next drift, see MOTION; rail_momentum (3) = sum of m w and rail_moment
-    (3) = sum of m (X + u) over moving nodes (kg m/s, kg m); load: see LOAD; work: see WORK; impulse (6) of external forces and
-    moments about the scene origin (N s, N m s); face_force (f,3) N on the payload in frame axes; history, None without damping."""
+    origin (N m) on the clamped nodes; reaction (6): force and moment about the frame's origin of minus the resistance of all moving
+    nodes (N, N m); motion: what nodes need of frame and gravity in the next drift, see MOTION; rail_momentum (3) = sum of m w and
+    rail_moment (3) = sum of m (X + u) over moving nodes (kg m/s, kg m); load: see LOAD, and loads (g,LOAD_SIZE) those of each group
+    of faces; work: see WORK; impulse (6) of external forces and moments about the scene origin (N s, N m s); face_force (f,3) N on
+    the payload in frame axes; history, None without damping."""
 
     payload: Body
     platform: Body
@@ -119,6 +132,7 @@ class State(NamedTuple):
     rail_momentum: np.ndarray
     rail_moment: np.ndarray
     load: np.ndarray
+    loads: np.ndarray
     work: np.ndarray
     impulse: np.ndarray
     face_force: np.ndarray
@@ -126,10 +140,10 @@ class State(NamedTuple):
 
 
 class Active(NamedTuple):
-    """Evolving: where contact is now. count (2,): border points and nodes in use; point (k,2) facet and Gauss point, face (k,) and
-    energy (k,) J stored of loaded points near the border of their face; node (m,) numbers of the nodes that carry load; seen (n,)
-    whether a node is among them; drag (n,3) N: their shares of the friction on the payload in frame axes; node_damping (n,) N s/m that
-    friction brings to them; wait (f,) steps for which a face cannot touch."""
+    """Evolving: where contact is now. count (g,2): border points and nodes of each group in use; point (k,2) facet and Gauss point,
+    face (k,) and energy (k,) J stored of loaded points near the border of their face; node (m,) numbers of the nodes that carry load;
+    seen (n,) whether a node is among them; drag (n,3) N: their shares of the friction on the payload in frame axes; node_damping (n,)
+    N s/m that friction brings to them; wait (f,) steps for which a face cannot touch."""
 
     count: np.ndarray
     point: np.ndarray
@@ -145,9 +159,10 @@ class Active(NamedTuple):
 # Slots of Active.count.
 BORDER, NODES = 0, 1
 
-# Slots of State.load: contact on the payload in frame axes.
-NORMAL_FORCE, FRICTION_FORCE, MOMENT, MOMENT_ON_RAIL, FRICTION_MOMENT, STORED, DAMPING_RATIO = 0, 3, 6, 9, 12, 15, 16
-LOAD_SIZE = 17
+# Slots of State.load: contact on the payload in frame axes. GAINED is the energy (J) of points that came under a pressed face over
+# its edge in this step, less that of points that left so.
+NORMAL_FORCE, FRICTION_FORCE, MOMENT, MOMENT_ON_RAIL, FRICTION_MOMENT, STORED, DAMPING_RATIO, GAINED = 0, 3, 6, 9, 12, 15, 16, 17
+LOAD_SIZE = 18
 
 # Slots of State.motion, in frame axes: the frame's velocity (m/s), its turn over the step less one (nine numbers), its rate
 # (rad/s), gravity (m/s2).

@@ -12,18 +12,17 @@ clamp forces alone would lose sum u x f. F_c and T_c are contact on all rail nod
 moment about the undeformed places, both sums need the dense nodal arrays for u x K u only. The same holds for the part
 of structural damping (``damping``) that is proportional to K; the part proportional to mass is summed node by node.
 
-Nodes are moved and loaded by all threads of the team; the first one does the bodies before and contact after.
+Nodes are moved and loaded, and contact is searched, by all threads of the team; the first one moves the bodies before.
 """
 
-from highfi.contact import collect_contact, contact_forces, touched
+from highfi.contact import collect_contact, contact_forces
 from highfi.damping import begin_damping, collect_damping
 from highfi.elastic import elastic_force, finish_load, hold_blocks, move_and_load
 from highfi.loads import add_external_impulse, add_work, pull_on_nodes, thrust_load
-from highfi.nodes import follow_frame
 from highfi.pose import drift_body, seen_from_frame, small_turn, triple
 from highfi.records import (DAMPING_RATIO, FRAME_VELOCITY, FRICTION_FORCE, MOMENT, MOMENT_ON_RAIL, NORMAL_FORCE, PULL, RATE,
                             TURN)
-from highfi.team import meet
+from highfi.team import deal, meet
 from scenes import rotation
 from scenes.jit import kernel
 
@@ -34,12 +33,14 @@ def evaluate(rail, surface, faces, payload, frame, penalty, friction, state, act
     elastic_force(rail, state.displacement, state.resistance, state.turning, team)
     begin_damping(state.history, state)
     hold_blocks(rail, state, 0, 1)
-    contact_forces(rail, surface, faces, penalty, friction, state, active, seen_from_frame(state, payload, frame), dt)
-    collect(rail, penalty, state, active)
+    pose = seen_from_frame(state, payload, frame)
+    deal(team)
+    contact_forces(rail, surface, faces, frame, penalty, friction, state, active, pose, team, dt)
+    collect(surface, penalty, rail, state, active)
 
 
 @kernel
-def collect(rail, penalty, state, active):
+def collect(surface, penalty, rail, state, active):
     """Sum up: ``state.reaction``, and contact into the resistance."""
     state.reaction[:] = 0.0
     for part in range(state.turning.shape[0]):
@@ -48,7 +49,7 @@ def collect(rail, penalty, state, active):
             state.reaction[3 + i] += state.clamping[part, 3 + i] - state.turning[part, i]
     collect_damping(state.history, state)
     if penalty is not None:
-        collect_contact(touched(rail, state), active)
+        collect_contact(rail, surface, state, active)
 
 
 @kernel
@@ -155,19 +156,18 @@ def advance(rail, surface, faces, payload, frame, drive, pulses, curve, offset, 
             thrust = thrust_load(state, drive, pulses, curve, offset, n * dt)
             kick_bodies(payload, frame, drive, gravity, state, pose, thrust, dt)
             pose = seen_from_frame(state, payload, frame)
-            add_work(touched(rail, state), payload, frame, drive, friction, gravity, state, active, pose, thrust, 0.5 * dt, dt)
+            add_work(rail, surface, payload, frame, drive, friction, gravity, state, active, pose, thrust, 0.5 * dt, dt)
             drift_bodies(payload, frame, drive, gravity, state, pose, dt)
+            deal(team)
         meet(team)
         move_and_load(rail, frame, state, team, thread, dt)
-        if thread == 0:
-            follow_frame(rail, state, frame)
-            pose = seen_from_frame(state, payload, frame)
-            contact_forces(rail, surface, faces, penalty, friction, state, active, pose, dt)
+        pose = seen_from_frame(state, payload, frame)
+        contact_forces(rail, surface, faces, frame, penalty, friction, state, active, pose, team, dt)
         finish_load(rail, state, team, thread, dt)
         meet(team)
         if thread == 0:
-            collect(rail, penalty, state, active)
+            collect(surface, penalty, rail, state, active)
             thrust = thrust_load(state, drive, pulses, curve, offset, (n + 1) * dt)
-            add_work(touched(rail, state), payload, frame, drive, friction, gravity, state, active, pose, thrust, 0.5 * dt, 0.0)
+            add_work(rail, surface, payload, frame, drive, friction, gravity, state, active, pose, thrust, 0.5 * dt, 0.0)
             damping = max(damping, state.load[DAMPING_RATIO])
     return damping

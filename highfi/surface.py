@@ -3,28 +3,52 @@
 import numpy as np
 
 from highfi import facets as geometry
-from highfi.records import Surface
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from highfi.records import Groups, Surface
 
 _FACING = -0.9  # cosine between pad normal and facet normal below which the two can touch
 _MARGIN = 2e-3  # m, how far sideways and in depth a facet may lie from the face's own place
 
 
-def build(surfaces: dict[str, np.ndarray], points: np.ndarray, faces, quadrature: int) -> Surface:
+def build(surfaces: dict[str, np.ndarray], points: np.ndarray, faces, quadrature: int, clamped: np.ndarray) -> Surface:
     """Surface record of all facets (m,k) in ``surfaces`` whose name starts with ``contact``.
 
-    ``points`` (n,3) m are in frame axes, ``faces`` the model's pad faces.
+    ``points`` (n,3) m are in frame axes, ``faces`` the model's pad faces, ``clamped`` (k,) numbers of nodes.
     """
     facets = np.concatenate([group for name, group in sorted(surfaces.items()) if name.startswith("contact")])
     nodes = points[facets]
     shape, area = geometry.gauss(nodes, quadrature)
-    groups = [in_reach(nodes, faces, face) for face in range(faces.axis.size)]
+    found = [in_reach(nodes, faces, face) for face in range(faces.axis.size)]
     extent = geometry.hull(nodes)[:, :, 0]
     smallest = extent.min(axis=1)
-    groups = [group[np.argsort(smallest[group], kind="stable")] for group in groups]
-    reach = np.concatenate(groups)
+    found = [group[np.argsort(smallest[group], kind="stable")] for group in found]
+    reach = np.concatenate(found)
     longest = float((extent.max(axis=1) - smallest).max())
-    first = np.cumsum([0] + [group.size for group in groups])
-    return Surface(facets, shape, _spread(shape), area, first, reach, smallest[reach], longest, geometry.control(facets.shape[1]))
+    first = np.cumsum([0] + [group.size for group in found])
+    groups = _groups([np.unique(facets[group]) for group in found], [group.size * len(shape) for group in found], clamped)
+    return Surface(facets, shape, _spread(shape), area, first, reach, smallest[reach], longest, geometry.control(facets.shape[1]),
+                   groups)
+
+
+def _groups(nodes: list[np.ndarray], points: list[int], clamped: np.ndarray) -> Groups:
+    """Groups of faces, each of which can meet these ``nodes`` and has so many Gauss ``points`` before it."""
+    face = np.repeat(np.arange(len(nodes)), [part.size for part in nodes])
+    node = np.concatenate(nodes)
+    size = len(nodes) + node.max(initial=0) + 1
+    pairs = coo_array((np.ones(face.size, dtype=bool), (face, len(nodes) + node)), shape=(size, size))
+    group = connected_components(pairs, directed=False)[1][:len(nodes)]
+    members = [np.flatnonzero(group == name) for name in dict.fromkeys(group.tolist())]
+    own = [np.unique(np.concatenate([nodes[each] for each in faces])) for faces in members]
+    held = [np.intersect1d(part, clamped) for part in own]
+    return Groups(np.concatenate(members), _starts(members), np.concatenate(held), _starts(held), _starts(own)[:-1],
+                  np.cumsum([0, *(sum(points[each] for each in faces) for faces in members)])[:-1])
+
+
+def _starts(parts: list[np.ndarray]) -> np.ndarray:
+    """First index of each part, and the end of the last, once they are put together."""
+    return np.cumsum([0, *(part.size for part in parts)])
 
 
 def capacity(surface: Surface) -> int:

@@ -55,8 +55,7 @@ def build(scene: Scene, numerics: Numerics, mesh: RailMesh) -> System:
     rail, number = _rail(mesh.points - origin, operator, damping)
     masses = np.where(rail.inverse_mass > 0.0, rail.mass, 0.0)
     surfaces = {name: number[facets] for name, facets in mesh.surfaces.items()}
-    gauss = surface.build(surfaces, rail.points, faces, numerics.points_per_edge())
-    rail = rail._replace(walls=np.intersect1d(rail.clamped, gauss.facets))
+    gauss = surface.build(surfaces, rail.points, faces, numerics.points_per_edge(), rail.clamped)
     drive = records.Drive(model.thrust_arm, model.reacts_on_platform, float(moving.sum()))
     return System(model, mesh, operator, number, rail, masses, gauss, faces, frame, drive, origin, offset)
 
@@ -76,7 +75,7 @@ def _rail(points: np.ndarray, operator: assembly.Operator, damping: Damping | No
         blocks = columns.chunks * columns.stride
     clamped = np.sort(number[~operator.free])
     held = np.searchsorted(clamped, blocks)
-    return records.Rail(place, mass, inverse, clamped, held, clamped[:0], columns, elements, blocks, damping), number
+    return records.Rail(place, mass, inverse, clamped, held, columns, elements, blocks, damping), number
 
 
 def general_elements(points: np.ndarray, operator: assembly.Operator) -> records.Elements:
@@ -126,15 +125,17 @@ def initial_state(system: System) -> tuple[records.State, records.Active]:
         platform.spin[:] = np.linalg.inv(system.frame.inverse_inertia) @ rate
         velocity[system.number] = platform.velocity + np.cross(rate, system.rail.points[system.number])
     count = system.faces.axis.size
-    parts = system.rail.blocks.size - 1
+    parts, groups = system.rail.blocks.size - 1, system.surface.groups.first_face.size - 1
     state = records.State(payload, platform, zeros(nodes, order="F"), velocity, zeros(nodes, order="F"), np.zeros(nodes),
                           np.zeros((parts, 3)), np.zeros((parts, 6)), np.zeros(6), np.zeros(records.MOTION_SIZE),
-                          system.moving_mass @ velocity, system.moving_mass @ system.rail.points, np.zeros(records.LOAD_SIZE), np.zeros(records.WORK_SIZE),
-                          np.zeros(6), np.zeros((count, 3)), _history(system.rail, nodes, parts))
+                          system.moving_mass @ velocity, system.moving_mass @ system.rail.points, np.zeros(records.LOAD_SIZE),
+                          np.zeros((groups, records.LOAD_SIZE)), np.zeros(records.WORK_SIZE), np.zeros(6), np.zeros((count, 3)),
+                          _history(system.rail, nodes, parts))
     room, size = surface.capacity(system.surface), nodes[0]
-    active = records.Active(np.zeros(2, dtype=np.int64), np.zeros((room, 2), dtype=np.int64), np.zeros(room, dtype=np.int64),
-                            np.zeros(room), np.zeros(np.unique(system.surface.facets).size, dtype=np.int64),
-                            np.zeros(size, dtype=np.bool_), np.zeros(nodes), np.zeros(size), np.zeros(count, dtype=np.int64))
+    active = records.Active(np.zeros((groups, 2), dtype=np.int64), np.zeros((room, 2), dtype=np.int64),
+                            np.zeros(room, dtype=np.int64), np.zeros(room),
+                            np.zeros(np.unique(system.surface.facets).size, dtype=np.int64), np.zeros(size, dtype=np.bool_),
+                            np.zeros(nodes), np.zeros(size), np.zeros(count, dtype=np.int64))
     return state, active
 
 

@@ -16,13 +16,13 @@ from highfi.memory import zeros
 from highfi.pencils import LANES
 from scenes.jit import kernel
 
-_ROUND, _ARRIVED = 0, 8  # a cache line apart
+_ROUND, _ARRIVED, _TICKET = 0, 8, 16  # a cache line apart
 _PATIENCE = 4000  # looks at the barrier before the processor is offered to others
 
 
 class Team(NamedTuple):
-    """``size`` threads, the ``counters`` of their barrier, and room of its own for each: (4, LANES) ``lanes``, which also hold the forces
-    of one element."""
+    """``size`` threads, the ``counters`` of their barrier and of their tickets, and room of its own for each: (4, LANES) ``lanes``,
+    which also hold the forces of one element."""
 
     size: int
     counters: np.ndarray
@@ -31,7 +31,7 @@ class Team(NamedTuple):
 
 def gather(size: int) -> Team:
     """A team of ``size`` threads, none of them at work yet."""
-    return Team(size, np.zeros(16, dtype=np.int64), zeros((size, 4, LANES)))
+    return Team(size, np.zeros(24, dtype=np.int64), zeros((size, 4, LANES)))
 
 
 def processors() -> int:
@@ -98,3 +98,15 @@ def meet(team):
             looks += 1
             if looks > _PATIENCE:
                 _let_others_run()
+
+
+@kernel
+def deal(team):
+    """Let tickets start from zero again; one thread calls this where no other one takes any before they have met."""
+    _write(team.counters, _TICKET, 0)
+
+
+@kernel
+def take(team):
+    """The number of the next piece of work that no thread has taken yet."""
+    return _add_one(team.counters, _TICKET)
