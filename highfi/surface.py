@@ -27,12 +27,12 @@ def build(surfaces: dict[str, np.ndarray], points: np.ndarray, faces, quadrature
     reach = np.concatenate(found)
     longest = float((extent.max(axis=1) - smallest).max())
     first = np.cumsum([0] + [group.size for group in found])
-    groups = _groups([np.unique(facets[group]) for group in found], [group.size * len(shape) for group in found], clamped)
+    groups = group_faces([np.unique(facets[group]) for group in found], [group.size * len(shape) for group in found], clamped)
     return Surface(facets, shape, _spread(shape), area, first, reach, smallest[reach], longest, geometry.control(facets.shape[1]),
                    groups)
 
 
-def _groups(nodes: list[np.ndarray], points: list[int], clamped: np.ndarray) -> Groups:
+def group_faces(nodes: list[np.ndarray], points: list[int], clamped: np.ndarray) -> Groups:
     """Groups of faces, each of which can meet these ``nodes`` and has so many Gauss ``points`` before it."""
     face = np.repeat(np.arange(len(nodes)), [part.size for part in nodes])
     node = np.concatenate(nodes)
