@@ -16,6 +16,7 @@ from scenes.faults import Fault, SceneError
 from scenes.scene import Scene
 
 _MOST_SLABS = 64
+_SAME = 1e-9  # m: two places closer than this are the same
 
 
 class System(NamedTuple):
@@ -63,14 +64,14 @@ def build(scene: Scene, numerics: Numerics, mesh: RailMesh) -> System:
 def _rail(points: np.ndarray, operator: assembly.Operator, damping: Damping | None) -> tuple[records.Rail, np.ndarray]:
     """Nodal arrays in the loop's own numbering, and the number (n,) of each mesh node in it."""
     found = pencils.find(points, operator)
-    columns, number = found if found else (None, np.arange(len(points)))
+    columns, number = found if found else (None, along_x(points))
     size = -(-(number.max() + 1) // pencils.LANES) * pencils.LANES
     place, mass, inverse = zeros((size, 3), order="F"), zeros((size,)), zeros((size,))
     place[number], mass[number] = points, operator.mass
     inverse[number[operator.free]] = 1.0 / operator.mass[operator.free]
     elements, blocks = None, None
     if columns is None:
-        elements, blocks = general_elements(points, operator), np.append(np.arange(0, size, pencils.CHUNK), size)
+        elements, blocks = general_elements(points, operator, number), np.append(np.arange(0, size, pencils.CHUNK), size)
     else:
         blocks = columns.chunks * columns.stride
     clamped = np.sort(number[~operator.free])
@@ -78,16 +79,28 @@ def _rail(points: np.ndarray, operator: assembly.Operator, damping: Damping | No
     return records.Rail(place, mass, inverse, clamped, held, columns, elements, blocks, damping), number
 
 
-def general_elements(points: np.ndarray, operator: assembly.Operator) -> records.Elements:
-    """Elements in slabs along X. A slab is at least as thick as the longest element, and an element belongs to the one that holds
-    the middle of its extent (the mean of its nodes may lie elsewhere): so elements of slabs with one between share no node."""
+def along_x(points: np.ndarray) -> np.ndarray:
+    """Number (n,) of each node of a mesh of any shape: those near each other along X come together, so that they meet in the cache."""
+    number = np.empty(len(points), dtype=np.int64)
+    x, y, z = np.round(points / _SAME).T
+    number[np.lexsort((z, y, x))] = np.arange(len(points))
+    return number
+
+
+def general_elements(points: np.ndarray, operator: assembly.Operator, number: np.ndarray) -> records.Elements:
+    """Elements in slabs along X, by the ``number`` (n,) of each node in the nodal arrays and in the order of their first one.
+
+    A slab is at least as thick as the longest element, and an element belongs to the one that holds the middle of its extent (the
+    mean of its nodes may lie elsewhere): so elements of slabs with one between share no node.
+    """
     x = points[operator.cells][:, :, 0]
     middle, longest = 0.5 * (x.min(axis=1) + x.max(axis=1)), np.ptp(x, axis=1).max()
     width = max(1.001 * longest, np.ptp(middle) / _MOST_SLABS)
     slab = ((middle - middle.min()) / width).astype(np.int64)
-    order = np.argsort(slab, kind="stable")
+    cells = number[operator.cells]
+    order = np.lexsort((cells.min(axis=1), slab))
     slabs = np.searchsorted(slab[order], np.arange(slab.max() + 2))
-    return records.Elements(operator.cells[order], operator.shape_class[order], operator.stiffness, slabs)
+    return records.Elements(cells[order].astype(np.uint32), operator.shape_class[order], operator.stiffness, slabs)
 
 
 def _rigid_part(scene, platform, points, moving) -> tuple[records.Frame, np.ndarray]:

@@ -19,8 +19,7 @@ def begun(kernel: str, threads: int = 1, **overrides) -> Loop:
     system = build(scene, NUMERICS, highfi.prepare(scene, NUMERICS))
     assert system.rail.pencils is not None
     if kernel == "elements":
-        elements = general_elements(system.mesh.points, system.operator)
-        elements = elements._replace(cells=system.number[elements.cells].astype(np.uint32))
+        elements = general_elements(system.mesh.points, system.operator, system.number)
         system = system._replace(rail=system.rail._replace(pencils=None, elements=elements))
     loop = Loop(scene, system, choose(system, scene, NUMERICS), threads)
     loop.begin()

@@ -58,7 +58,7 @@ def test_slabs_with_one_between_share_no_node():
     """Else two threads would add to one node at once. Control: filed by the mean of their nodes, tetrahedra of such slabs meet."""
     mesh = tets.split(block((24, 2, 2), (0.24, 0.02, 0.02)))
     operator = assembly.build(mesh, **ALUMINIUM)
-    elements = general_elements(mesh.points, operator)
+    elements = general_elements(mesh.points, operator, np.arange(len(mesh.points)))
     assert elements.slabs.size > 10 and shared_nodes(operator, elements) == 0
     x = mesh.points[operator.cells][:, :, 0]
     slab = ((x.mean(axis=1) - x.mean(axis=1).min()) / (1.001 * np.ptp(x, axis=1).max())).astype(int)
