@@ -4,13 +4,13 @@ import math
 
 import numpy as np
 
-from highfi import hexahedral_peaks
+from highfi import hexahedral_peaks, tetrahedral_peaks
 from highfi.worst import Worst
 
-_KERNELS = {8: hexahedral_peaks}  # by the nodes of an element
+_KERNELS = {8: hexahedral_peaks, 10: tetrahedral_peaks}  # by the nodes of an element
 SIZE = max(kernels.SIZE for kernels in _KERNELS.values())  # room for one element
 
-Recovery = hexahedral_peaks.Recovery
+Recovery = hexahedral_peaks.Recovery | tetrahedral_peaks.Recovery
 
 
 def build(points: np.ndarray, cells: np.ndarray, shape_class: np.ndarray, law: np.ndarray, number: np.ndarray) -> Recovery:
