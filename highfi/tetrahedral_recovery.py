@@ -10,7 +10,8 @@ import numpy as np
 
 from highfi import element, tetrahedron
 
-NODES = np.concatenate([corners := np.eye(4)[:, 1:], corners[tetrahedron.EDGES].mean(axis=1)])  # on the unit tetrahedron
+_CORNERS = np.eye(4)[:, 1:]
+NODES = np.concatenate([_CORNERS, _CORNERS[tetrahedron.EDGES].mean(axis=1)])  # (10,3) places on the unit tetrahedron
 
 
 def gradients(nodes: np.ndarray, local: np.ndarray) -> np.ndarray:

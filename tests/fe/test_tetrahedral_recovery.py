@@ -39,7 +39,7 @@ def found(mesh, displacement, law=LAW):
 @pytest.mark.case("O9")
 @pytest.mark.parametrize("curved", [False, True])
 def test_patch_has_constant_stress_at_every_node(curved):
-    """2000 and 400, and hence a von Mises stress of 1200, at all ten nodes of each element, by the plain formulas and the kernel."""
+    """2000 and 400, and hence a von Mises stress of 1200, at all ten nodes of each element, by formulas and kernel."""
     mesh, inside = patch(curved)
     law = element.elasticity(1e6, 0.25)
     displacement = strained(mesh, inside, assembly.sparse(assembly.build(mesh, 1.0, 1e6, 0.25, fixed=())))
