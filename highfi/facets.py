@@ -50,8 +50,10 @@ def weights(nodes: np.ndarray, target: np.ndarray) -> np.ndarray | None:
     for _ in range(_NEWTON):
         values, slopes = functions(place[:, None])
         place = (place + np.linalg.solve((slopes[:, 0] @ nodes).T, target - values[0] @ nodes)).clip(-_FAR, _FAR)
+    values = functions(place[:, None])[0][0]
     outside = np.abs(place).max() - 1.0 if square else -min(*place, 1.0 - place.sum())
-    return functions(place[:, None])[0][0] if outside < INSIDE else None
+    missed = np.abs(values @ nodes - target).max() / np.ptp(nodes, axis=0).max()  # outside a curved facet there may be no way to it
+    return values if max(outside, missed) < INSIDE else None
 
 
 def gauss(nodes: np.ndarray, quadrature: int) -> tuple[np.ndarray, np.ndarray]:
