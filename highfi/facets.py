@@ -12,6 +12,9 @@ from skfem.quadrature import get_quadrature
 # Polynomial degree of the symmetric rules on a triangle with positive weights and points inside (Dunavant, Int. J. Numer. Methods
 # Eng. 21 (1985) 1129-1148), by their number of points.
 _DEGREE = {3: 2, 6: 4, 12: 6, 16: 8, 19: 9, 25: 10, 33: 12, 42: 14, 61: 17, 73: 19}
+INSIDE = 1e-6  # how far outside its facet, in local coordinates, a point may seem to lie
+_NEWTON = 20
+_FAR = 3.0  # local coordinates beyond which the way back to the facet is not looked for
 
 
 def control(nodes_per_facet: int) -> np.ndarray | None:
@@ -25,7 +28,7 @@ def control(nodes_per_facet: int) -> np.ndarray | None:
 
 
 def hull(nodes: np.ndarray) -> np.ndarray:
-    """Control points (m,k,3) of facets with nodes (m,k,3)."""
+    """Control points (m,k,i) of facets with nodes (m,k,i), in space or in a plane they are seen in."""
     matrix = control(nodes.shape[1])
     return nodes if matrix is None else np.einsum("ab,mbi->mai", matrix, nodes)
 
@@ -37,6 +40,20 @@ def normals(nodes: np.ndarray) -> np.ndarray:
     else:
         across = np.cross(nodes[:, 1] - nodes[:, 0], nodes[:, 2] - nodes[:, 0])
     return across / np.linalg.norm(across, axis=1, keepdims=True)
+
+
+def weights(nodes: np.ndarray, target: np.ndarray) -> np.ndarray | None:
+    """Values (k,) of the nodal functions at ``target`` (2,) in a facet that a plane shows with nodes (k,2), by Newton's rule; None
+    where it lies outside."""
+    square = len(nodes) == 4
+    functions, place = (_square_functions, np.zeros(2)) if square else (_triangle_functions, np.full(2, 1.0 / 3.0))
+    for _ in range(_NEWTON):
+        values, slopes = functions(place[:, None])
+        place = (place + np.linalg.solve((slopes[:, 0] @ nodes).T, target - values[0] @ nodes)).clip(-_FAR, _FAR)
+    values = functions(place[:, None])[0][0]
+    outside = np.abs(place).max() - 1.0 if square else -min(*place, 1.0 - place.sum())
+    missed = np.abs(values @ nodes - target).max() / np.ptp(nodes, axis=0).max()  # outside a curved facet there may be no way to it
+    return values if max(outside, missed) < INSIDE else None
 
 
 def gauss(nodes: np.ndarray, quadrature: int) -> tuple[np.ndarray, np.ndarray]:
@@ -52,12 +69,9 @@ def gauss(nodes: np.ndarray, quadrature: int) -> tuple[np.ndarray, np.ndarray]:
 
 def _bilinear(quadrature: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Functions (q,4), their derivatives (2,q,4) on the square from -1 to 1, and weights (q,)."""
-    nodes, weights = np.polynomial.legendre.leggauss(quadrature)
-    r, s = (grid.ravel() for grid in np.meshgrid(nodes, nodes, indexing="ij"))
-    ra, sa = np.array([-1.0, 1.0, 1.0, -1.0]), np.array([-1.0, -1.0, 1.0, 1.0])
-    shape = 0.25 * (1.0 + np.outer(r, ra)) * (1.0 + np.outer(s, sa))
-    along = np.stack([0.25 * ra * (1.0 + np.outer(s, sa)), 0.25 * sa * (1.0 + np.outer(r, ra))])
-    return shape, along, np.outer(weights, weights).ravel()
+    nodes, weight = np.polynomial.legendre.leggauss(quadrature)
+    places = np.stack([grid.ravel() for grid in np.meshgrid(nodes, nodes, indexing="ij")])
+    return *_square_functions(places), np.outer(weight, weight).ravel()
 
 
 def _quadratic(quadrature: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -65,5 +79,18 @@ def _quadratic(quadrature: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     # A triangle has half the area of a square with edges of the same length.
     degree = next(degree for points, degree in _DEGREE.items() if 2 * points >= quadrature**2)
     places, weight = get_quadrature(ElementTriP2, degree)
+    return *_triangle_functions(places), weight
+
+
+def _square_functions(places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Functions (q,4) and their derivatives (2,q,4) at places (2,q) of the square from -1 to 1."""
+    r, s = places
+    ra, sa = np.array([-1.0, 1.0, 1.0, -1.0]), np.array([-1.0, -1.0, 1.0, 1.0])
+    shape = 0.25 * (1.0 + np.outer(r, ra)) * (1.0 + np.outer(s, sa))
+    return shape, np.stack([0.25 * ra * (1.0 + np.outer(s, sa)), 0.25 * sa * (1.0 + np.outer(r, ra))])
+
+
+def _triangle_functions(places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The same (q,6) and (2,q,6) at places (2,q) of the unit triangle."""
     values, gradients = zip(*(ElementTriP2().lbasis(places, node) for node in range(6)))
-    return np.array(values).T, np.moveaxis(np.array(gradients), (1, 2, 0), (0, 1, 2)), weight
+    return np.array(values).T, np.moveaxis(np.array(gradients), (1, 2, 0), (0, 1, 2))

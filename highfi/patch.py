@@ -4,21 +4,21 @@ The stress at a sharp corner or at the border of a clamp has no such value: it g
 the track of the pads, in the middle of the last free span: of the places farther from any clamp and from the ends than those
 beside them, and at least half as far as the farthest, the one nearest to the open end, where the last pads press. They depend on
 the scene and on where the mesh is clamped, never on its elements: 4 x 4 points at the middles of squares of 1 mm, each seen from
-the element behind the wall (``highfi.recovery``).
+the element behind the wall (``highfi.recovery``, ``highfi.tetrahedral_recovery``).
 """
 
 from typing import NamedTuple
 
 import numpy as np
 
-from highfi import element, recovery, surface
+from highfi import facets as geometry
+from highfi import recovery, surface, tetrahedral_recovery
 from highfi.mesh import RailMesh
 
 SIDE = 4e-3  # m
 _POINTS = 4  # along each side
 _GRID = 1e-3  # m between the stations tried
-_NEWTON = 20
-_INSIDE = 1e-6  # how far outside its facet, in local coordinates, a point may seem to lie
+_RECOVERY = {8: recovery, 10: tetrahedral_recovery}  # by the nodes of an element
 
 
 class Patch(NamedTuple):
@@ -81,41 +81,32 @@ def _stations(points: np.ndarray, mesh: RailMesh, facets: np.ndarray) -> np.ndar
 
 def _spots(points: np.ndarray, facets: np.ndarray, axis: int,
            middle: tuple[float, float]) -> list[tuple[np.ndarray, np.ndarray]] | None:
-    """For each point of the patch around ``middle`` (x, across) its facet (4,) and the weights (4,) of its corners there."""
+    """For each point of the patch around ``middle`` (x, across) its facet (k,) and the weights (k,) of its nodes there."""
     offsets = (np.arange(_POINTS) + 0.5) * SIDE / _POINTS - 0.5 * SIDE
     plane = points[facets][:, :, [0, 3 - axis]]
-    low, high = plane.min(axis=1) - _INSIDE * SIDE, plane.max(axis=1) + _INSIDE * SIDE
+    hull, slack = geometry.hull(plane), geometry.INSIDE * SIDE
+    low, high = hull.min(axis=1) - slack, hull.max(axis=1) + slack
     found = []
     for target in np.stack(np.meshgrid(*(place + offsets for place in middle), indexing="ij"), axis=-1).reshape(-1, 2):
         around = np.flatnonzero(((low < target) & (target < high)).all(axis=1))
-        spots = [(facets[facet], weights) for facet in around if (weights := _weights(plane[facet], target)) is not None]
-        if not spots:
+        spots = ((facets[facet], weights) for facet in around if (weights := geometry.weights(plane[facet], target)) is not None)
+        if (spot := next(spots, None)) is None:
             return None
-        found.append(spots[0])
+        found.append(spot)
     return found
-
-
-def _weights(corners: np.ndarray, target: np.ndarray) -> np.ndarray | None:
-    """Bilinear weights (4,) of the corners (4,2) of a plane facet at a point in it, None for one outside; by Newton's rule."""
-    place = np.full(2, 0.5)
-    for _ in range(_NEWTON):
-        r, s = place
-        weights = np.array([(1.0 - r) * (1.0 - s), r * (1.0 - s), r * s, (1.0 - r) * s])
-        slopes = np.array([[s - 1.0, 1.0 - s, s, -s], [r - 1.0, -r, r, 1.0 - r]])
-        place = place + np.linalg.solve((slopes @ corners).T, target - weights @ corners)
-    return weights if (np.abs(place - 0.5) < 0.5 + _INSIDE).all() else None
 
 
 def _assembled(mesh: RailMesh, points: np.ndarray, spots: list, law: np.ndarray, number: np.ndarray) -> Patch:
     """The mean over the points of each wall as one matrix."""
     facets = np.array([facet for wall in spots for facet, _ in wall])
     weights = np.array([weight for wall in spots for _, weight in wall])
-    hexes = _behind(mesh.cells, facets)
-    corner = (hexes[:, None] == facets[:, :, None]).argmax(axis=2)
-    local = np.einsum("pa,pai->pi", weights, element.VTK_CORNERS[corner].astype(float))
-    matrix = law @ recovery.strain_matrix(points[hexes], law, local) / _POINTS**2
+    cells, formulas = _behind(mesh.cells, facets), _RECOVERY[mesh.cells.shape[1]]
+    place = (cells[:, None] == facets[:, :, None]).argmax(axis=2)
+    local = np.einsum("pa,pai->pi", weights, formulas.NODES[place])
+    matrix = law @ formulas.strain_matrix(points[cells], law, local) / _POINTS**2
     centre = np.einsum("pa,pai->pi", weights, points[facets]).reshape(len(spots), -1, 3).mean(axis=1)
-    parts = [_summed(nodes, part) for nodes, part in zip(hexes.reshape(len(spots), -1, 8), matrix.reshape(len(spots), -1, 6, 24))]
+    walls = cells.reshape(len(spots), _POINTS**2, -1), matrix.reshape(len(spots), _POINTS**2, 6, -1)
+    parts = [_summed(nodes, part) for nodes, part in zip(*walls)]
     size = max(len(nodes) for nodes, _ in parts)
     node, whole = np.zeros((len(parts), size), dtype=np.int64), np.zeros((len(parts), 6, size, 3))
     for wall, (nodes, part) in enumerate(parts):
@@ -123,15 +114,16 @@ def _assembled(mesh: RailMesh, points: np.ndarray, spots: list, law: np.ndarray,
     return Patch(centre, node, whole.reshape(len(parts), 6, -1))
 
 
-def _behind(hexes: np.ndarray, facets: np.ndarray) -> np.ndarray:
-    """Corners (p,8) of the element that each facet (p,4) bounds."""
-    near = hexes[np.isin(hexes, facets).sum(axis=1) >= 4]
-    return near[[np.flatnonzero(np.isin(near, facet).sum(axis=1) == 4)[0] for facet in facets]]
+def _behind(cells: np.ndarray, facets: np.ndarray) -> np.ndarray:
+    """Nodes (p,k) of the element that each facet (p,f) bounds."""
+    size = facets.shape[1]
+    near = cells[np.isin(cells, facets).sum(axis=1) >= size]
+    return near[[np.flatnonzero(np.isin(near, facet).sum(axis=1) == size)[0] for facet in facets]]
 
 
-def _summed(hexes: np.ndarray, matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Nodes (k,) of the elements (p,8) around the points of one wall, and the sum (6,k,3) of what each of them brings."""
-    nodes, place = np.unique(hexes, return_inverse=True)
+def _summed(cells: np.ndarray, matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Nodes (k,) of the elements (p,f) around the points of one wall, and the sum (6,k,3) of what each of them brings."""
+    nodes, place = np.unique(cells, return_inverse=True)
     total = np.zeros((len(nodes), 6, 3))
-    np.add.at(total, place.ravel(), matrix.reshape(len(hexes), 6, 8, 3).transpose(0, 2, 1, 3).reshape(-1, 6, 3))
+    np.add.at(total, place.ravel(), matrix.reshape(len(cells), 6, -1, 3).transpose(0, 2, 1, 3).reshape(-1, 6, 3))
     return nodes, total.transpose(1, 0, 2)

@@ -1,164 +1,37 @@
-"""The worst corner of all elements: von Mises stress, strain and rotation, found in one pass over the displacement.
+"""The worst node of all elements of a mesh, whichever kind they are of: one kernel for each, chosen by the nodes of an element."""
 
-With G the displacement gradient at a corner (``highfi.recovery``), e its symmetric and w its antisymmetric part, and g the shear
-modulus, Hooke's law leaves of the equivalent stress::
-
-    s^2 = g^2 (2 [(exx-eyy)^2 + (eyy-ezz)^2 + (ezz-exx)^2] + 3 [gxy^2 + gyz^2 + gzx^2])        shear strains in engineering measure
-    strain^2 = sum e_ij^2  (no principal strain is larger),        rotation^2 = wyz^2 + wzx^2 + wxy^2  (rad^2)
-
-Stresses of the elements that meet at a corner are not averaged: the worst one counts, as it does where strength is judged.
-"""
-
-from typing import NamedTuple
+import math
 
 import numpy as np
 
-from highfi import recovery
-from highfi.memory import aligned
-from scenes.jit import inlined, kernel
+from highfi import hexahedral_peaks, tetrahedral_peaks
+from highfi.worst import Worst
 
-STRESS, STRAIN, ROTATION = 0, 1, 2
-_BATCH = 2048  # classes at once; bounds the memory of an unstructured mesh
-_LANES = 16  # the nine amplitudes, padded to whole vectors
-# Places in the room for one element; flat arrays, because the compiler must see that they lie apart.
-AT, ALONG, BUBBLES, GRADIENT, SQUARES, SIZE = 0, 24, 96, 112, 184, 208
+_KERNELS = {8: hexahedral_peaks, 10: tetrahedral_peaks}  # by the nodes of an element
+SIZE = max(kernels.SIZE for kernels in _KERNELS.values())  # room for one element
+
+Recovery = hexahedral_peaks.Recovery | tetrahedral_peaks.Recovery
 
 
-class Recovery(NamedTuple):
-    """Constant: cells (e,8) numbers in the nodal arrays; shape_class (e,); for each class amplitude (c,24*16) of the bubbles,
-    nine of 16 in use, slope and bubble (c,3*3*8) 1/m: of local coordinate and of bubble i along j at each corner."""
-
-    cells: np.ndarray
-    shape_class: np.ndarray
-    amplitude: np.ndarray
-    slope: np.ndarray
-    bubble: np.ndarray
+def build(points: np.ndarray, cells: np.ndarray, shape_class: np.ndarray, law: np.ndarray, number: np.ndarray) -> Recovery:
+    """Recovery of a mesh, points (n,3) m and cells (e,k), with the classes of its operator; ``law`` (6,6) Pa; ``number`` (n,) of
+    each node in the nodal arrays."""
+    return _KERNELS[cells.shape[1]].build(points, cells, shape_class, law, number)
 
 
-class Worst(NamedTuple):
-    """Evolving: largest square (3,) of STRESS over the shear modulus, STRAIN, ROTATION; where (3,2), element and corner; when
-    (3,) s."""
-
-    square: np.ndarray
-    place: np.ndarray
-    time: np.ndarray
-
-
-def build(points: np.ndarray, hexes: np.ndarray, shape_class: np.ndarray, law: np.ndarray, number: np.ndarray) -> Recovery:
-    """Recovery of a mesh, points (n,3) m and hexes (e,8), with the classes of its operator; ``number`` (n,) of each node in the
-    nodal arrays."""
-    _, representatives = np.unique(shape_class, return_index=True)
-    corners = points[hexes[representatives]]
-    parts = [_of_classes(corners[start:start + _BATCH], law) for start in range(0, len(corners), _BATCH)]
-    amplitude, slope, bubble = (aligned(np.concatenate(part)) for part in zip(*parts))
-    return Recovery(number[hexes].astype(np.uint32), shape_class, amplitude, slope, bubble)
-
-
-def _of_classes(corners: np.ndarray, law: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    amplitude = np.zeros((len(corners), 24, _LANES))
-    by_component = recovery.amplitudes(corners, law).reshape(-1, 3, 3, 24).transpose(0, 3, 2, 1)
-    amplitude[:, :, :9] = by_component.reshape(-1, 24, 9)
-    flat = (np.moveaxis(part, 1, 3).reshape(-1, 72) for part in recovery.corner_gradients(corners))
-    return amplitude.reshape(-1, 24 * _LANES), *flat
-
-
-def nothing() -> Worst:
-    """No element looked at yet."""
-    return Worst(np.zeros(3), np.zeros((3, 2), dtype=np.int64), np.zeros(3))
-
-
-@kernel
-def find(displacement, recovery, worst, room, first, last):
+def find(displacement: np.ndarray, recovery: Recovery, worst: Worst, room: np.ndarray, first: int, last: int) -> None:
     """Raise ``worst`` to what elements ``first`` to ``last`` have under displacement (n,3) m; ``room`` (SIZE,) for one of them."""
-    u = displacement.T
-    for e in range(first, last):
-        c = recovery.shape_class[e]
-        for i in range(3):
-            _gather(u[i], recovery.cells[e], room, i)
-        _bubbles(recovery.amplitude[c], room)
-        for i in range(3):
-            _gradient(recovery.slope[c], recovery.bubble[c], room, i)
-        if _measure(room, worst.square) > 0:
-            _note(room, worst, e)
+    _KERNELS[recovery.cells.shape[1]].find(displacement, recovery, worst, room, first, last)
 
 
-@kernel
-def gradients(displacement, recovery, room, first, last, out):
-    """Fill ``out`` (last - first, 72) with displacement gradients of elements ``first`` to ``last``: component, axis, corner."""
-    u = displacement.T
-    for e in range(first, last):
-        c = recovery.shape_class[e]
-        for i in range(3):
-            _gather(u[i], recovery.cells[e], room, i)
-        _bubbles(recovery.amplitude[c], room)
-        for i in range(3):
-            _gradient(recovery.slope[c], recovery.bubble[c], room, i)
-        for j in range(72):
-            out[e - first, j] = room[GRADIENT + j]
+def gradients(displacement: np.ndarray, recovery: Recovery, room: np.ndarray, first: int, last: int) -> np.ndarray:
+    """Displacement gradients (last - first,k,3,3) at the nodes of elements ``first`` to ``last``: component, axis."""
+    nodes = recovery.cells.shape[1]
+    found = np.empty((last - first, 9 * nodes))
+    _KERNELS[nodes].gradients(displacement, recovery, room, first, last, found)
+    return found.reshape(-1, 3, 3, nodes).transpose(0, 3, 1, 2)
 
 
-@inlined
-def _gather(u, nodes, room, i):
-    """AT + 8 i: displacement along i of the corners, from that of the first one; ALONG + 24 i: its differences along the edges of
-    each local axis, at each corner."""
-    first = u[nodes[0]]
-    b, c, d, e = u[nodes[1]] - first, u[nodes[2]] - first, u[nodes[3]] - first, u[nodes[4]] - first
-    f, g, h = u[nodes[5]] - first, u[nodes[6]] - first, u[nodes[7]] - first
-    _row(room, AT + 8 * i, 0.0, b, c, d, e, f, g, h)
-    _row(room, ALONG + 24 * i, b, b, c - d, c - d, f - e, f - e, g - h, g - h)
-    _row(room, ALONG + 24 * i + 8, d, c - b, c - b, d, h - e, g - f, g - f, h - e)
-    _row(room, ALONG + 24 * i + 16, e, f - b, g - c, h - d, e, f - b, g - c, h - d)
-
-
-@inlined
-def _row(room, n, a, b, c, d, e, f, g, h):
-    room[n], room[n + 1], room[n + 2], room[n + 3] = a, b, c, d
-    room[n + 4], room[n + 5], room[n + 6], room[n + 7] = e, f, g, h
-
-
-@inlined
-def _bubbles(amplitude, room):
-    """BUBBLES: amplitudes of the bubbles, component * 3 + bubble."""
-    for j in range(_LANES):
-        room[BUBBLES + j] = 0.0
-    for k in range(1, 8):
-        x, y, z = room[AT + k], room[AT + 8 + k], room[AT + 16 + k]
-        n = 3 * _LANES * k
-        for j in range(_LANES):
-            room[BUBBLES + j] += amplitude[n + j] * x + amplitude[n + _LANES + j] * y + amplitude[n + 2 * _LANES + j] * z
-
-
-@inlined
-def _gradient(slope, bubble, room, i):
-    """GRADIENT + 24 i: slope of displacement i along each axis, at each corner."""
-    x, y, z = room[BUBBLES + 3 * i], room[BUBBLES + 3 * i + 1], room[BUBBLES + 3 * i + 2]
-    for j in range(24):
-        k = ALONG + 24 * i + (j & 7)
-        room[GRADIENT + 24 * i + j] = ((room[k] * slope[j] + room[k + 8] * slope[24 + j] + room[k + 16] * slope[48 + j])
-                                       + (x * bubble[j] + y * bubble[24 + j] + z * bubble[48 + j]))
-
-
-@inlined
-def _measure(room, known):
-    """SQUARES: squares of STRESS, STRAIN, ROTATION; returns how many of them are above those ``known``."""
-    above, stress_known, strain_known, rotation_known = 0, known[0], known[1], known[2]
-    for k in range(8):
-        xx, xy, xz = room[GRADIENT + k], room[GRADIENT + 8 + k], room[GRADIENT + 16 + k]
-        yx, yy, yz = room[GRADIENT + 24 + k], room[GRADIENT + 32 + k], room[GRADIENT + 40 + k]
-        zx, zy, zz = room[GRADIENT + 48 + k], room[GRADIENT + 56 + k], room[GRADIENT + 64 + k]
-        a, b, c = xy + yx, yz + zy, zx + xz
-        shear = a * a + b * b + c * c
-        stress = 2.0 * ((xx - yy) * (xx - yy) + (yy - zz) * (yy - zz) + (zz - xx) * (zz - xx)) + 3.0 * shear
-        strain = xx * xx + yy * yy + zz * zz + 0.5 * shear
-        rotation = 0.25 * ((xy - yx) * (xy - yx) + (yz - zy) * (yz - zy) + (zx - xz) * (zx - xz))
-        room[SQUARES + k], room[SQUARES + 8 + k], room[SQUARES + 16 + k] = stress, strain, rotation
-        above += (stress > stress_known) + (strain > strain_known) + (rotation > rotation_known)
-    return above
-
-
-@inlined
-def _note(room, worst, e):
-    for what in range(3):
-        for k in range(8):
-            if room[SQUARES + 8 * what + k] > worst.square[what]:
-                worst.square[what], worst.place[what, 0], worst.place[what, 1] = room[SQUARES + 8 * what + k], e, k
+def samples_between(recovery: Recovery, steps_per_sample: int, share: float) -> int:
+    """Samples from one look at all elements to the next, such that looks take no more than ``share`` of a run."""
+    return math.ceil(_KERNELS[recovery.cells.shape[1]].STEPS / (share * steps_per_sample))

@@ -16,6 +16,7 @@ import numpy as np
 
 from highfi import element
 
+NODES = element.VTK_CORNERS.astype(float)  # (8,3) places on the unit cube
 CENTRE = np.full(3, 0.5)
 _SHEAR = ((0, 1), (1, 2), (2, 0))  # components of xy, yz, zx
 
@@ -59,7 +60,7 @@ def strain(corners: np.ndarray, law: np.ndarray, local: np.ndarray, displacement
 
 def corner_gradients(corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """At the corners of c elements: slopes (c,8,3,3) 1/m of local coordinate i along j, and gradients (c,8,3,3) of the bubbles."""
-    count, local = len(corners), np.tile(element.VTK_CORNERS, (len(corners), 1)).astype(float)
+    count, local = len(corners), np.tile(NODES, (len(corners), 1))
     repeated = np.repeat(corners, 8, axis=0)
     inverse, _, _ = _mapping(repeated, local)
     _, bubble = gradients(repeated, local)
@@ -68,7 +69,7 @@ def corner_gradients(corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 def corner_matrix(corners: np.ndarray, law: np.ndarray) -> np.ndarray:
     """Matrix (c,8,6,24) Pa/m from the displacement of the corners (c,8,3) m to the stress at each corner."""
-    count, local = len(corners), np.tile(element.VTK_CORNERS, (len(corners), 1)).astype(float)
+    count, local = len(corners), np.tile(NODES, (len(corners), 1))
     nodal, bubble = gradients(np.repeat(corners, 8, axis=0), local)
     strained = element.strain_matrix(nodal).reshape(count, 8, 6, 24)
     return law @ (strained + element.strain_matrix(bubble).reshape(count, 8, 6, 9) @ amplitudes(corners, law)[:, None])

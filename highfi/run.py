@@ -8,7 +8,7 @@ from typing import Callable
 
 import numpy as np
 
-from highfi import observe, patch, peaks, records, samples, watch
+from highfi import observe, patch, records, samples, watch, worst
 from highfi.checkpoint import Checkpoint, restore
 from highfi.contact import FASTEST_APPROACH
 from highfi.fit import check_fit
@@ -101,7 +101,7 @@ class Loop:
         self.end, self.wall, self.cpu = self.last, 0.0, 0.0
         self.steps, self.damping, self.scale, self.other_cpu, self.message = 0, 0.0, 0.0, 0.0, ""
         self.rows, self.work, self.forces, self.gauges = [], [], [], []
-        self.watch, self.worst = watch.build(system, scene.rail.material, stepping.steps_per_sample, threads), peaks.nothing()
+        self.watch, self.worst = watch.build(system, scene.rail.material, stepping.steps_per_sample, threads), worst.nothing()
 
     def arguments(self) -> tuple:
         """Records the kernels take, in their order."""

@@ -1,8 +1,8 @@
-"""Stress of the rails while a run goes on: the worst corner of all elements, and the gauges on the walls, both at samples.
+"""Stress of the rails while a run goes on: the worst node of all elements, and the gauges on the walls, both at samples.
 
-A look at all elements costs as much as about eight steps (180 against 25 ns per element, one thread each), so it is taken at so
-many samples only that it stays below a twentieth of the run. What is found is judged at the end: above the yield strength, or
-beyond what small strain and small rotation can tell, the figures are those of a rail that does not exist, and the result says so.
+A look at all elements costs as much as up to eight steps (``highfi.peaks``), so it is taken at so many samples only that it stays
+below a twentieth of the run. What is found is judged at the end: above the yield strength, or beyond what small strain and small
+rotation can tell, the figures are those of a rail that does not exist, and the result says so.
 """
 
 import math
@@ -15,9 +15,9 @@ from scipy.sparse.csgraph import connected_components
 from highfi import element, patch, peaks
 from highfi.mesh import RailMesh
 from highfi.system import System
+from highfi.worst import ROTATION, STRAIN, STRESS, Worst
 from scenes.rail import MaterialTable
 
-_STEPS = 8.0  # that a look costs
 _SHARE = 0.05  # of the run that looks may cost
 LARGEST_STRAIN = 0.01  # its square, left out, is then half a per cent of it; most metals have yielded before
 LARGEST_ROTATION = 0.02  # rad: taken for a strain of half its square, 2e-4, which in aluminium is 14 MPa
@@ -42,14 +42,14 @@ def build(system: System, material: MaterialTable, steps_per_sample: int, thread
     points, operator = system.mesh.points - system.origin, system.operator
     recovery = peaks.build(points, system.mesh.cells, operator.shape_class, law, system.number)
     gauges = patch.find(system.mesh, system.faces, points, law, system.number)
-    every = math.ceil(_STEPS / (_SHARE * steps_per_sample))
+    every = peaks.samples_between(recovery, steps_per_sample, _SHARE)
     return Watch(recovery, np.zeros((threads, peaks.SIZE)), gauges, every, float(law[3, 3]), float(law[0, 1]))
 
 
-def look(watch: Watch, displacement: np.ndarray, time: float, worst: peaks.Worst, pool) -> None:
+def look(watch: Watch, displacement: np.ndarray, time: float, worst: Worst, pool) -> None:
     """Raise ``worst`` to what the elements have now, at ``time`` (s), each thread of ``pool`` looking at its part of them."""
     bounds = np.linspace(0, len(watch.recovery.cells), len(watch.rooms) + 1).astype(int)
-    found = [peaks.Worst(*(part.copy() for part in worst)) for _ in watch.rooms]
+    found = [Worst(*(part.copy() for part in worst)) for _ in watch.rooms]
     tasks = list(zip(found, watch.rooms, bounds[:-1], bounds[1:]))
     others = [pool.submit(peaks.find, displacement, watch.recovery, *task) for task in tasks[1:]]
     peaks.find(displacement, watch.recovery, *tasks[0])
@@ -60,14 +60,14 @@ def look(watch: Watch, displacement: np.ndarray, time: float, worst: peaks.Worst
         worst.square[higher], worst.place[higher], worst.time[higher] = part.square[higher], part.place[higher], time
 
 
-def record(watch: Watch, system: System, worst: peaks.Worst, yield_strength: float | None) -> dict:
+def record(watch: Watch, system: System, worst: Worst, yield_strength: float | None) -> dict:
     """What a result says of its stresses: see ``Trajectory.stress``."""
-    mesh, origin, (element_number, corner) = system.mesh, system.origin, worst.place[peaks.STRESS]
-    place = mesh.points[mesh.cells[element_number, corner]]
-    found = {"peak_stress_pa": watch.shear_modulus * math.sqrt(worst.square[peaks.STRESS]), "peak_stress_place_m": place.tolist(),
-             "peak_stress_rail": rail_name(mesh, int(element_number)), "peak_stress_time_s": float(worst.time[peaks.STRESS]),
-             "yield_strength_pa": yield_strength, "largest_strain": math.sqrt(worst.square[peaks.STRAIN]),
-             "largest_rotation_rad": math.sqrt(worst.square[peaks.ROTATION]), "samples_between_looks": watch.every,
+    mesh, origin, (element_number, node) = system.mesh, system.origin, worst.place[STRESS]
+    place = mesh.points[mesh.cells[element_number, node]]
+    found = {"peak_stress_pa": watch.shear_modulus * math.sqrt(worst.square[STRESS]), "peak_stress_place_m": place.tolist(),
+             "peak_stress_rail": rail_name(mesh, int(element_number)), "peak_stress_time_s": float(worst.time[STRESS]),
+             "yield_strength_pa": yield_strength, "largest_strain": math.sqrt(worst.square[STRAIN]),
+             "largest_rotation_rad": math.sqrt(worst.square[ROTATION]), "samples_between_looks": watch.every,
              "patch_places_m": [] if watch.patch is None else (watch.patch.centre + origin).tolist()}
     return found | {"warnings": warnings(found)}
 
@@ -89,10 +89,10 @@ def warnings(found: dict) -> list[str]:
 
 def rail_name(mesh: RailMesh, element_number: int) -> str:
     """The rail that holds an element, by the side of the axis it stands on: "+y -z"; "all" for one piece around it."""
-    nodes, hexes = len(mesh.points), mesh.cells
-    ends = np.repeat(hexes[:, 0], 7), hexes[:, 1:].ravel()
+    nodes, cells = len(mesh.points), mesh.cells
+    ends = np.repeat(cells[:, 0], cells.shape[1] - 1), cells[:, 1:].ravel()
     links = coo_array((np.ones(ends[0].size, dtype=bool), ends), shape=(nodes, nodes))
     piece = connected_components(links, directed=False)[1]
-    middle = mesh.points[hexes[piece[hexes[:, 0]] == piece[hexes[element_number, 0]]]].mean(axis=(0, 1))
+    middle = mesh.points[cells[piece[cells[:, 0]] == piece[cells[element_number, 0]]]].mean(axis=(0, 1))
     sides = [f"{'+' if middle[axis] > 0.0 else '-'}{'xyz'[axis]}" for axis in (1, 2) if abs(middle[axis]) > _OFF_AXIS]
     return " ".join(sides) or "all"

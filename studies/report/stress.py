@@ -21,7 +21,7 @@ def shown(rows: list[dict], views: list[dict], folder: Path, scene: str) -> Html
                      for row in known for words in row["warnings"])
     strengths = {row["yield_strength_pa"] for row in known} - {None}
     strength = ", ".join(f"{1e-6 * value:g} MPa" for value in sorted(strengths)) or "not stated by the scene"
-    words = (f"Largest von Mises stress at any corner of any element, not averaged. Yield strength: {strength}. At a sharp "
+    words = (f"Largest von Mises stress at any node of any element, not averaged. Yield strength: {strength}. At a sharp "
              "inner corner or the border of a clamp the stress of linear elasticity has no limit, so the peak grows with every "
              "finer mesh; the convergence study judges stress by its mean over patches of 4 mm instead. "
              "Rails are elastic, strains and rotations small.")

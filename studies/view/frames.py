@@ -23,7 +23,7 @@ _PAD_DEPTH = 6e-3  # m, how thick pads are drawn; the scene gives their faces on
 
 class Frame(NamedTuple):
     """One instant: time (s); displacement (n,3) m of the mesh nodes, von_mises (n,) Pa as the mean over the elements that meet at a
-    node, worst (e,) Pa at the worst corner of each element, pressure (n,) Pa; turn (3,3) and centre (3,) m of the payload."""
+    node, worst (e,) Pa at the worst node of each element, pressure (n,) Pa; turn (3,3) and centre (3,) m of the payload."""
 
     time: float
     displacement: np.ndarray
@@ -55,18 +55,16 @@ class Camera:
                      self._pressure(displacement, turn, centre), turn, centre + system.origin)
 
     def _stresses(self, moved: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Mean stress (n,6) Pa at the nodes, largest von Mises stress (e,) Pa at the corners of each element; ``moved`` as in the
+        """Mean stress (n,6) Pa at the nodes, largest von Mises stress (e,) Pa at the nodes of each element; ``moved`` as in the
         loop."""
         mesh = self.system.mesh
         total, worst = np.zeros((len(mesh.points), 6)), np.zeros(len(mesh.cells))
         for first in range(0, len(mesh.cells), _BATCH):
-            hexes = mesh.cells[first:first + _BATCH]
-            gradient = np.empty((len(hexes), 72))
-            peaks.gradients(moved, self._recovery, self._room, first, first + len(hexes), gradient)
-            stress = self._law(gradient.reshape(-1, 3, 3, 8).transpose(0, 3, 1, 2))
-            worst[first:first + len(hexes)] = recovery.von_mises(stress).max(axis=1)
+            cells = mesh.cells[first:first + _BATCH]
+            stress = self._law(peaks.gradients(moved, self._recovery, self._room, first, first + len(cells)))
+            worst[first:first + len(cells)] = recovery.von_mises(stress).max(axis=1)
             for component in range(6):
-                total[:, component] += np.bincount(hexes.ravel(), stress[..., component].ravel(), len(total))
+                total[:, component] += np.bincount(cells.ravel(), stress[..., component].ravel(), len(total))
         return total / self._meeting[:, None], worst
 
     def _law(self, gradient: np.ndarray) -> np.ndarray:

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
+from highfi.mesh import boundary_facets
 from scenes.files import replacing
 from studies.view.vtk_files import DISPLACEMENT, PAD, VON_MISES
 
@@ -26,6 +27,8 @@ _ALONG, _REACH = 0.9, 0.030  # how far the closer eye looks along the rail, and 
 # Falling lightness, so that it reads in grey too, and a rail without stress looks like bare metal.
 _COLOURS = ("#e4e8ec", "#f6d78b", "#ee9b46", "#d1495b", "#7d2050", "#2c0d33")
 _MARK = "#1b6ca8"
+_NODE = "node"
+_LIFT = -8.0  # towards the eye, in steps of the depth buffer
 
 
 class Drawing:
@@ -38,8 +41,12 @@ class Drawing:
         self.plotter = pyvista.Plotter(off_screen=True, window_size=size, shape=shape, border=False)
         self.plotter.set_background("white")
         grid = pyvista.read(self.folder / order["frames"][0]["rails"])
-        self.surface = grid.extract_surface(algorithm="dataset_surface")
-        self._node, self._rest = self.surface["vtkOriginalPointIds"], self.surface.points.copy()
+        # Point ids that VTK keeps are wrong where it parts the facets of quadratic elements; a field of its own is carried along.
+        grid[_NODE] = np.arange(grid.n_points, dtype=float)
+        self.surface = grid.extract_surface(algorithm="dataset_surface", nonlinear_subdivision=1)
+        self._node = np.rint(self.surface[_NODE]).astype(int)
+        self._grid, self._rest = grid.points.copy(), grid.points[self._node]
+        self.net = pyvista.PolyData(grid.points.copy(), lines=_net(next(iter(grid.cells_dict.values()))))
         self.bodies = pyvista.read(self.folder / order["frames"][0]["bodies"])
         self.payload = self.bodies.extract_cells(self.bodies[PAD] == 0).extract_surface(algorithm="dataset_surface")
         self.pads = self.bodies.extract_cells(self.bodies[PAD] > 0).extract_surface(algorithm="dataset_surface")
@@ -54,7 +61,8 @@ class Drawing:
 
         frame = self.order["frames"][index]
         rails, bodies = pyvista.read(self.folder / frame["rails"]), pyvista.read(self.folder / frame["bodies"])
-        self.surface.points = self._rest + self.order["factor"] * rails[DISPLACEMENT][self._node]
+        self.net.points = self._grid + self.order["factor"] * rails[DISPLACEMENT]
+        self.surface.points = self.net.points[self._node]
         self.outline.points = self.surface.points[self._along]
         self.surface["stress"] = 1e-6 * rails[VON_MISES][self._node]
         for part, chosen in ((self.payload, bodies[PAD] == 0), (self.pads, bodies[PAD] > 0)):
@@ -71,10 +79,14 @@ class Drawing:
                 "position_y": 0.04, "width": 0.62, "height": 0.11, "n_labels": 6, "fmt": "%.3g",
                 "title_font_size": 17, "label_font_size": 15}
         self.plotter.add_mesh(self.surface, scalars="stress", cmap=colours, clim=[0.0, 1e-6 * self.order["scale_pa"]],
-                              show_edges=close, edge_color=_EDGE, line_width=1, show_scalar_bar=bar,
+                              show_scalar_bar=bar,
                               scalar_bar_args=look if bar else None, smooth_shading=False,
                               copy_mesh=False, ambient=0.55, diffuse=0.5)  # shade may not pass for stress
         if close:
+            net = self.plotter.add_mesh(self.net, color=_EDGE, line_width=1, copy_mesh=False)
+            # The lines lie in the surface, which would hide every other bit of them.
+            net.mapper.SetResolveCoincidentTopologyToPolygonOffset()
+            net.mapper.SetRelativeCoincidentTopologyLineOffsetParameters(0.0, _LIFT)
             self.plotter.add_mesh(self.corners, color=_MARK, line_width=2, copy_mesh=False)
         else:
             self.plotter.add_mesh(self.pads, color=_PADS, copy_mesh=False)
@@ -112,7 +124,7 @@ class Drawing:
 
 
 def still(order: dict) -> Path:
-    """The worst moment: everything, and the elements around the worst corner."""
+    """The worst moment: everything, and the elements around the worst node."""
     drawing, peak = Drawing(order, _STILL_SIZE, (1, 2)), order["peak"]
     drawing.show(peak["frame"])
     drawing.plotter.subplot(0, 0)
@@ -124,7 +136,7 @@ def still(order: dict) -> Path:
     node = np.linalg.norm(drawing._rest - peak["place_m"], axis=1).argmin()
     drawing.plotter.add_points(drawing.surface.points[[node]], color=_MARK, point_size=18, render_points_as_spheres=True)
     place = ", ".join(f"{1e3 * value:.5g}" for value in peak["place_m"])
-    drawing.write([f"worst element corner (dot): {1e-6 * peak['stress_pa']:.4g} MPa", f"x, y, z = {place} mm",
+    drawing.write([f"worst node of an element (dot): {1e-6 * peak['stress_pa']:.4g} MPa", f"x, y, z = {place} mm",
                    f"rail {peak['rail']}; {order['mesh']}; pads in blue"], "peak")
     drawing.close_in(int(node))
     path = drawing.folder / STILL
@@ -157,6 +169,17 @@ def animation(order: dict) -> Path:
         if path.stat().st_size <= LARGEST:
             break
     return path
+
+
+def _net(cells: np.ndarray) -> np.ndarray:
+    """Edges of the facets of a solid of elements (e,k), through the middles where they have such, as pyvista wants lines."""
+    facets = boundary_facets(cells)
+    corners = facets[:, :4] if facets.shape[1] == 4 else facets[:, :3]
+    parts = [corners, facets[:, corners.shape[1]:], np.roll(corners, -1, axis=1)]
+    ends = np.stack([part for part in parts if part.size], axis=-1)
+    ends = ends.reshape(-1, ends.shape[-1])
+    _, first = np.unique(np.sort(ends, axis=1), axis=0, return_index=True)
+    return np.insert(ends[first], 0, ends.shape[1], axis=1).ravel()
 
 
 def _bounds(drawing: Drawing) -> list[np.ndarray]:

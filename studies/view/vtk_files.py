@@ -10,11 +10,12 @@ from xml.etree import ElementTree
 
 import numpy as np
 
+from highfi.cells import kind
 from highfi.mesh import RailMesh
 from scenes.files import replacing
 from studies.view.frames import Frame
 
-DISPLACEMENT, VON_MISES, WORST = "displacement (m)", "von Mises stress (Pa)", "von Mises stress, worst corner (Pa)"
+DISPLACEMENT, VON_MISES, WORST = "displacement (m)", "von Mises stress (Pa)", "von Mises stress, worst of element (Pa)"
 PRESSURE, PAD = "contact pressure (Pa)", "pad (0: payload)"
 COLLECTION = "run.pvd"
 
@@ -23,7 +24,7 @@ def write_frame(folder: Path, index: int, frame: Frame, mesh: RailMesh, boxes: n
     """Write rails and bodies of one frame; ``boxes`` (b,8,3) m in payload axes and the pads (b,) they belong to."""
     import meshio
 
-    rails = meshio.Mesh(mesh.points, [("hexahedron", mesh.cells)],
+    rails = meshio.Mesh(mesh.points, [(kind(mesh.cells).cell, mesh.cells)],
                         point_data={DISPLACEMENT: _single(frame.displacement), VON_MISES: _single(frame.von_mises),
                                     PRESSURE: _single(frame.pressure)},
                         cell_data={WORST: [_single(frame.worst)]})

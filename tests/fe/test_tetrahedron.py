@@ -35,13 +35,18 @@ def patch(curved: bool) -> tuple[RailMesh, np.ndarray]:
     return RailMesh(points, mesh.cells, {}), inside
 
 
-def stress(mesh, inside, matrix):
-    """Stress (e,q,6) of the patch when its surface is strained evenly and its inner nodes find their own places."""
+def strained(mesh, inside, matrix):
+    """Displacement (n,3) of the patch when its surface is strained evenly and its inner nodes find their own places."""
     displacement = (mesh.points @ PATCH_GRADIENT.T).ravel()
     free = (3 * inside[:, None] + np.arange(3)).ravel()
     displacement[free] = 0.0
     displacement[free] = spsolve(matrix[free][:, free].tocsc(), -(matrix @ displacement)[free])
-    nodal = displacement.reshape(-1, 3)[mesh.cells].reshape(len(mesh.cells), 30)
+    return displacement.reshape(-1, 3)
+
+
+def stress(mesh, inside, matrix):
+    """Stress (e,q,6) of the patch so strained."""
+    nodal = strained(mesh, inside, matrix)[mesh.cells].reshape(len(mesh.cells), 30)
     strain = tetrahedron.kinematics(mesh.points[mesh.cells]).nodal
     return np.einsum("eqsd,ed->eqs", strain, nodal) @ element.elasticity(1e6, 0.25)
 

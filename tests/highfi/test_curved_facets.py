@@ -42,6 +42,18 @@ def test_a_curved_facet_lies_in_its_hull_and_not_in_that_of_its_nodes():
     assert beyond > 0.01
 
 
+@pytest.mark.parametrize("corners", [TRIANGLE[:, :2], np.array([[0.0, 0], [1, 0], [1, 1], [0, 1]])])
+def test_weights_of_a_point_are_those_of_the_place_it_was_made_from(corners):
+    """In facets with every node out of place. One beyond their hull is in none, though the rule may stop at a place inside."""
+    random = np.random.default_rng(1)
+    shape, _ = facets.gauss(np.column_stack([corners, np.zeros(len(corners))])[None], 6)
+    for _ in range(20):
+        nodes = corners + 0.05 * random.standard_normal(corners.shape)
+        for expected in shape:
+            assert facets.weights(nodes, expected @ nodes) == pytest.approx(expected, abs=1e-12)
+        assert facets.weights(nodes, facets.hull(nodes[None])[0].max(axis=0) + 0.01) is None
+
+
 def rail(bulge: float, divisions=(2, 1, 2)) -> RailMesh:
     """Block in the path of the payload's mass centre, the middles of its touched face y = 0 drawn out by ``bulge`` (m)."""
     mesh = tets.split(block(divisions, (WIDTH, WIDTH, WIDTH)))

@@ -7,6 +7,7 @@ import highfi
 from highfi import element, patch, peaks, recovery, watch
 from highfi.numerics import Numerics
 from highfi.system import build
+from highfi.worst import ROTATION, STRAIN, STRESS, nothing
 from tests.fe.blocks import block
 from tests.highfi.support import COARSE, begun, tiny
 
@@ -89,14 +90,14 @@ def test_strain_and_rotation_of_a_distorted_mesh():
     points = mesh.points + 1e-3 * np.random.default_rng(8).uniform(-1.0, 1.0, mesh.points.shape)
     gradient = 1e-4 * np.random.default_rng(9).standard_normal((3, 3))
     count = len(points)
-    classes, worst = np.arange(len(mesh.cells), dtype=np.uint32), peaks.nothing()
+    classes, worst = np.arange(len(mesh.cells), dtype=np.uint32), nothing()
     found = peaks.build(points, mesh.cells, classes, LAW, np.arange(count))
     peaks.find(np.asfortranarray(points @ gradient.T), found, worst, np.zeros(peaks.SIZE), 0, len(mesh.cells))
     even, odd = 0.5 * (gradient + gradient.T), 0.5 * (gradient - gradient.T)
     stress = np.array([even[0, 0], even[1, 1], even[2, 2], 2 * even[0, 1], 2 * even[1, 2], 2 * even[2, 0]]) @ LAW
-    assert LAW[3, 3] * np.sqrt(worst.square[peaks.STRESS]) == pytest.approx(recovery.von_mises(stress), rel=1e-10)
-    assert np.sqrt(worst.square[peaks.STRAIN]) == pytest.approx(np.linalg.norm(even), rel=1e-10)
-    assert np.sqrt(worst.square[peaks.ROTATION]) == pytest.approx(np.linalg.norm(odd) / np.sqrt(2.0), rel=1e-10)
+    assert LAW[3, 3] * np.sqrt(worst.square[STRESS]) == pytest.approx(recovery.von_mises(stress), rel=1e-10)
+    assert np.sqrt(worst.square[STRAIN]) == pytest.approx(np.linalg.norm(even), rel=1e-10)
+    assert np.sqrt(worst.square[ROTATION]) == pytest.approx(np.linalg.norm(odd) / np.sqrt(2.0), rel=1e-10)
 
 
 def patches(size):

@@ -10,9 +10,9 @@ import pytest
 from typer.testing import CliRunner
 
 import scenes
-from highfi import Numerics, peaks, watch
-from highfi.peaks import STRESS
+from highfi import Numerics, watch
 from highfi.step import evaluate
+from highfi.worst import STRESS, nothing
 from scenes.trajectory import Trajectory
 from studies.cli import app
 from studies.report import stress as section
@@ -120,7 +120,7 @@ def test_contact_pressure_comes_to_the_force_on_the_pads(size, off):
 
 def test_camera_sees_the_stress_that_the_run_is_watched_for(touching):
     loop, frame = touching
-    worst = peaks.nothing()
+    worst = nothing()
     watch.look(loop.watch, loop.state.displacement, 0.0, worst, loop.pool)
     assert frame.worst.max() == pytest.approx(loop.watch.shear_modulus * np.sqrt(worst.square[STRESS]), rel=1e-12)
     assert frame.worst.argmax() == worst.place[STRESS, 0]
