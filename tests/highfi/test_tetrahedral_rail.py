@@ -16,9 +16,10 @@ from tests.highfi import tet_rails
 from tests.highfi.support import COARSE, tiny
 from tests.highfi.test_own_rail import assert_promises, from_file, saved
 
-# Thrown at the walls, so that pads press from the first samples on.
-PRESSED = {"duration": "1 ms", "contact__clearance": "0.02 mm", "initial__velocity__y": "0.3 m/s",
-           "initial__velocity__z": "-0.2 m/s"}
+# Thrown at the walls, so that pads press from the first samples on, while sliding: at rest, friction would damp light nodes faster
+# than any step follows.
+PRESSED = {"duration": "1 ms", "contact__clearance": "0.02 mm", "initial__velocity__x": "3 m/s", "initial__velocity__y": "0.1 m/s",
+           "initial__velocity__z": "-0.06 m/s"}
 
 
 def cut(scene, size, path):
@@ -32,7 +33,7 @@ def test_promises_hold_on_rails_that_gmsh_fills(tmp_path):
     file = from_file(scene, saved(tet_rails.build(geometry(scene), 0.020), tmp_path / "rails.msh"))
     found = highfi.run(file, COARSE)
     assert highfi.prepare(file, COARSE).cells.shape[1] == 10
-    assert np.abs(found.pad_force).max() > 100.0
+    assert found.status == "time_limit" and np.abs(found.pad_force).max() > 100.0
     assert_promises(found)
     assert found.cost["dt_s"] <= found.cost["dt_limit_s"] * found.cost["safety"]
     assert found.cost["dt_limit_s"] > found.cost["dt_element_s"]
@@ -42,7 +43,7 @@ def test_promises_hold_on_rails_that_gmsh_fills(tmp_path):
 def test_threads_do_not_change_a_bit(tmp_path):
     scene = cut(tiny(**PRESSED), 0.008, tmp_path / "rails.msh")
     alone, shared = (highfi.run(scene, COARSE, threads=threads) for threads in (1, 2))
-    assert np.abs(alone.pad_force).max() > 0.0
+    assert alone.status == "time_limit" and np.abs(alone.pad_force).max() > 0.0
     for name in ("position", "velocity", "quaternion", "rate", "platform_velocity", "pad_force", "energy", "transverse_energy"):
         np.testing.assert_array_equal(getattr(shared, name), getattr(alone, name), err_msg=name)
 
