@@ -10,10 +10,10 @@ TURN = rotation.exponential((0.7, -1.1, 0.4))  # of the other inertial axes, abo
 
 
 def carried(rate, arm, along: float) -> dict:
-    """``[initial]`` of a payload that turns with a platform at ``rate`` (3,) rad/s, ``arm`` (3,) m from its mass centre, and slides
-    along the rail at ``along`` (m/s)."""
-    velocity = np.cross(rate, arm) + [along, 0.0, 0.0]
-    return {"velocity": dict(zip("xyz", velocity.tolist())), "rate": dict(zip("xyz", rate)), "platform_rate": dict(zip("xyz", rate))}
+    """``[initial]`` of a payload that turns with a platform at ``rate`` (3,) rad/s, ``arm`` (3,) m from its mass centre, and
+    slides along the rail at ``along`` (m/s)."""
+    velocity, turning = np.cross(rate, arm) + [along, 0.0, 0.0], dict(zip("xyz", rate))
+    return {"velocity": dict(zip("xyz", velocity.tolist())), "rate": turning, "platform_rate": turning}
 
 
 def turned(vector: np.ndarray, turn=TURN) -> np.ndarray:
@@ -43,7 +43,7 @@ def largest_jump(angles: np.ndarray) -> float:
 
 
 def turns(quaternion: np.ndarray) -> float:
-    """Full turns between the first and the last of quaternions (n,4) of a body that turns about one axis by little in each sample."""
+    """Full turns between the first and the last of quaternions (n,4) of a body that turns about one axis, little in a sample."""
     steps = np.einsum("ni,ni->n", quaternion[1:], quaternion[:-1])
     return float(2.0 * np.arccos(np.clip(steps, -1.0, 1.0)).sum() / (2.0 * np.pi))
 
@@ -54,8 +54,8 @@ def principal(quaternion: np.ndarray) -> np.ndarray:
 
 
 def assert_smooth(run, interval: float, rate: float) -> None:
-    """Between two samples ``interval`` (s) apart attitudes move by the bodies' ``rate`` (rad/s) and little more, and what is seen from
-    the platform by a small part of its own size."""
+    """Between two samples ``interval`` (s) apart attitudes move by the bodies' ``rate`` (rad/s) and little more, and what is seen
+    from the platform by a small part of its own size."""
     for quaternion in (run.quaternion, run.platform_quaternion):
         assert largest_jump(quaternion) <= 0.6 * rate * interval
     for name in ("relative_position", "relative_velocity", "relative_rate", "rate", "platform_rate"):

@@ -1,10 +1,10 @@
 """X18: the frame of the rails turns three full turns while the payload leaves it. Nothing seen from the frame may hang on the
 inertial axes, nor jump at a full turn.
 
-Really 38 s at 0.5 rad/s. Aluminium would take 1e8 steps, so the scene is the tiny one played 300 times as slowly: with stiffnesses and
-loads divided by 300^2 it takes as many steps as a quick one. A thrust across the rail holds the payload in a corner, since in the clearance
-centrifugal force would make any rounding error grow by exp(0.5 * 38) = 1e8; the axis lies 0.4 deg off the rail's, so that Coriolis
-force presses too.
+Really 38 s at 0.5 rad/s. Aluminium would take 1e8 steps, so the scene is the tiny one on a longer rail, played 300 times as slowly:
+with stiffnesses divided by 300^2 it takes as many steps as a quick one. A thrust across the rail holds the payload in a corner,
+since in the clearance centrifugal force would make any rounding error grow by exp(0.5 * 38) = 1e8; the axis lies 0.08 deg off the
+rail's, so that Coriolis force presses too.
 """
 
 import functools

@@ -1,8 +1,8 @@
-"""X18: the platform turns three full turns while it ejects. What it sees must not hang on the inertial axes, nor jump at a full turn.
+"""X18: the platform turns three full turns while it ejects. What it sees must not hang on inertial axes, nor jump at a full turn.
 
-Really 38 s at 0.5 rad/s, so the payload creeps: 0.1 m/s along a rail of 3 m. A thrust across the rail holds it in a corner, since in the
-clearance centrifugal force would make any rounding error grow by exp(0.5 * 38) = 1e8; the axis lies 0.4 deg off the rail's, so that
-Coriolis force presses too.
+Really 38 s at 0.5 rad/s, so the payload creeps: 0.1 m/s along a rail of 3 m. A thrust across the rail holds it in a corner, since
+in the clearance centrifugal force would make any rounding error grow by exp(0.5 * 38) = 1e8; the axis lies 0.4 deg off the rail's,
+so that Coriolis force presses too.
 """
 
 import numpy as np
