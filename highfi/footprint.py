@@ -3,7 +3,7 @@
     bytes = FIXED + PER_ELEMENT elements
 
 Measured as the largest resident set of mesh, set-up and run of the reference rails: 154,880 elements take 0.35 GB beyond the
-0.2 GB of the interpreter with its libraries, 1.24 million 2.7 GB, 4.05 million 8.7 GB. Most of that is the mesh generator's and gone
+0.2 GB of the interpreter with its libraries, 1.24 million 2.7 GB, 4.05 million 8.7 GB. Most of it is the mesh generator's and gone
 before the first step. An element of a mesh in which no two are alike has a matrix of its own besides, three times while matrices
 are put together.
 """
