@@ -5,7 +5,6 @@ Work is counted in halves around each kick, ``dt/2 f(n) v(n-1/2)`` before and ``
 what is not conservative or not smooth.
 """
 
-from highfi import records
 from highfi.contact import friction_power
 from highfi.pose import body_matrix, body_rate, triple
 from highfi.records import (CONTACT_AXIAL, FRICTION, FRICTION_AXIAL, FRICTION_FORCE, GRAVITY, GRAVITY_AXIAL, NORMAL_FORCE, THRUST,

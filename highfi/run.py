@@ -18,6 +18,7 @@ from highfi.nodes import kick_nodes
 from highfi.numerics import Numerics
 from highfi.pose import seen_from_frame
 from highfi.rail import geometry, make_mesh
+from highfi.room import check_before, check_mesh
 from highfi.step import advance, evaluate, kick_bodies
 from highfi.stepping import Stepping, choose
 from highfi.surface import magnification
@@ -37,13 +38,16 @@ _MESH_LOCK = threading.Lock()
 def prepare(scene: Scene, numerics: Numerics | None = None) -> RailMesh:
     """Mesh of a scene, made once per process. gmsh must run in the main thread: call this there before runs in other threads.
 
-    Raises SceneError or MeshError.
+    Raises SceneError, also where memory does not suffice, or MeshError.
     """
     numerics = numerics or Numerics()
     key = (geometry(scene), numerics.element_size)
     with _MESH_LOCK:
         if key not in _MESHES:
-            _MESHES[key] = make_mesh(scene, numerics.element_size)
+            check_before(scene, numerics.element_size)
+            mesh = make_mesh(scene, numerics.element_size)
+            check_mesh(scene, numerics.element_size, mesh)
+            _MESHES[key] = mesh
         mesh = _MESHES[key]
     check_fit(scene, mesh)
     return mesh

@@ -58,6 +58,32 @@ def build(geometry: LRailGeometry, element_size: float) -> meshio.Mesh:
     return msh.tagged(*_mirrored(points, hexes, surfaces))
 
 
+def elements(geometry: LRailGeometry, element_size: float) -> int:
+    """Elements that ``build`` would make, without making them. Raises ValueError as it does."""
+    _check(geometry, element_size)
+    depths, stations = _depths(geometry), _stations(geometry)
+    layer, across = _layer_length(stations, element_size), [_divisions(b - a, element_size) for a, b in itertools.pairwise(depths)]
+    section = sum(across[i] * across[j] for i, j in _section(geometry, depths))
+    return len(_CORNERS) * section * sum(_divisions(end - start, layer) for start, end in itertools.pairwise(stations))
+
+
+def _depths(geometry: LRailGeometry) -> list[float]:
+    """Grid lines of the section, measured inwards from the outer corner along y and along z."""
+    return _grid_lines(0.0, geometry.thickness, geometry.mount_width, geometry.leg)
+
+
+def _stations(geometry: LRailGeometry) -> list[float]:
+    """Grid planes along X (m)."""
+    return _grid_lines(geometry.x_start, geometry.x_end,
+                       *(geometry.x_start + border for span in geometry.mount_spans for border in span))
+
+
+def _section(geometry: LRailGeometry, depths: list[float]) -> list[tuple[int, int]]:
+    """Intervals of depth along y and along z whose rectangles lie inside the L."""
+    return [(i, j) for i, j in itertools.product(range(len(depths) - 1), repeat=2)
+            if min(depths[i], depths[j]) < geometry.thickness - _TOUCH]
+
+
 def _check(geometry: LRailGeometry, element_size: float) -> None:
     length = geometry.x_end - geometry.x_start
     borders = [0.0, *itertools.chain.from_iterable(geometry.mount_spans), length]
@@ -88,9 +114,7 @@ def _divisions(length: float, element_size: float) -> int:
 
 def _draw(gmsh, geometry: LRailGeometry, element_size: float) -> None:
     """Mesh one rail: a section of rectangles, extruded interval by interval so that the mounts are surfaces of their own."""
-    depths = _grid_lines(0.0, geometry.thickness, geometry.mount_width, geometry.leg)
-    stations = _grid_lines(geometry.x_start, geometry.x_end,
-                           *(geometry.x_start + border for span in geometry.mount_spans for border in span))
+    depths, stations = _depths(geometry), _stations(geometry)
     section = _draw_section(gmsh, geometry, depths, element_size)
     layer = _layer_length(stations, element_size)
     for start, end in itertools.pairwise(stations):
@@ -107,8 +131,7 @@ def _draw_section(gmsh, geometry: LRailGeometry, depths: list[float], element_si
     """Rectangles between `depths`, measured inwards from the outer corner along y and z, that lie inside the L."""
     geo = gmsh.model.geo
     outer_y, outer_z = geometry.inner_corner_y + geometry.thickness, geometry.inner_corner_z + geometry.thickness
-    cells = [(i, j) for i, j in itertools.product(range(len(depths) - 1), repeat=2)
-             if min(depths[i], depths[j]) < geometry.thickness - _TOUCH]
+    cells = _section(geometry, depths)
     corners = sorted({(i + di, j + dj) for i, j in cells for di, dj in itertools.product((0, 1), repeat=2)})
     point = {(i, j): geo.addPoint(geometry.x_start, outer_y - depths[i], outer_z - depths[j]) for i, j in corners}
     line = {}

@@ -54,9 +54,16 @@ def _changes(document: dict) -> Html:
     size = f"{1e3 * document['coarse_size_m']:g} mm"
     stiffness = [(f"{row['factor']:g}", number(row["penalty_n_m3"]), *_changed(row)) for row in document["penalty"]]
     points = [(str(row["points_per_edge"]), *_changed(row)) for row in document["quadrature"]]
+    slides = [(f"{1e3 * row['element_size_m']:g}", str(row["points_per_edge"]), f"{row['frequency']:.4g}", str(row["facets"]),
+               f"{100.0 * row['ripple']:.2g}", f"{100.0 * row['background']:.2g}") for row in document["ripple"]]
     if not stiffness:
         return Html("")
     return Html("".join([
+        fold("ripple of a constant contact force where facets are crossed", table(
+            ("element size (mm)", "Gauss points per facet edge", "facets crossed at (Hz)", "facets", "ripple (%)",
+             "beside it (%)"), slides) + caption(
+            "A payload under constant load slides along straight walls: largest amplitude of a face's force at that frequency and "
+            "its next two multiples, and half-way between them, over the mean force.")) if slides else "",
         fold(f"penalty stiffness, {size} elements", table(("times the scene's", "penalty (N/m³)", *heads), stiffness)),
         fold(f"contact quadrature, {size} elements", table(("Gauss points per facet edge", *heads), points))]))
 

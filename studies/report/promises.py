@@ -2,7 +2,7 @@
 
 from typing import Iterable, NamedTuple
 
-from studies.report.markup import Html, number, section, table
+from studies.report.markup import Html, section, table
 
 
 class Promise(NamedTuple):

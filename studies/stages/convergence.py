@@ -1,7 +1,8 @@
 """Stage ``convergence``: the error of the finite-element reference itself, on one condition.
 
 Meshes and steps are refined one after the other, and every quantity is judged by its observed order (``studies.convergence``);
-penalty and quadrature are changed and compared. What a finer mesh brings with it: a smaller step, and fewer Gauss points per facet,
+penalty and quadrature are changed and compared, and a straight slide shows the ripple that facets put into a constant force
+(``studies.ripple``). What a finer mesh brings with it: a smaller step, and fewer Gauss points per facet,
 so that they stay about 1 mm apart and their own error shows in the quadrature alone. What it may not bring: a wall of the rail has
 one element through it at least, so coarse meshes differ in length and width only; ``meshes`` holds the numbers of elements.
 """
@@ -12,7 +13,7 @@ from pathlib import Path
 from highfi.numerics import Numerics
 from scenes.scene import Scene
 from scenes.trajectory import Trajectory
-from studies import agreement, contact_loads, stresses
+from studies import agreement, contact_loads, ripple, stresses
 from studies.convergence import Estimate, estimate
 from studies.quantities import RATE, quantities, settled_rate
 from studies.stages.compare import refined
@@ -23,8 +24,8 @@ NAME = "convergence"
 
 
 def run(study: Study, condition: str | None = None) -> dict:
-    """``quantities`` over element size and time step with order and uncertainty, ``penalty``, ``quadrature``, and ``summary`` in
-    words. Raises SceneError for an unknown condition, StudyError where a mesh or a step fails."""
+    """``quantities`` over element size and time step with order and uncertainty, ``penalty``, ``quadrature``, ``ripple``, and
+    ``summary`` in words. Raises SceneError for an unknown condition, StudyError where a mesh or a step fails."""
     name = condition or (study.scene.agreement.refined or tuple(study.conditions))[0]
     scene = study.condition(name)
 
@@ -33,13 +34,13 @@ def run(study: Study, condition: str | None = None) -> dict:
         steps = _finished(study, "convergence, steps", _steps(study, name))
         judged = [*_judged(scene, "element size", "m", list(study.settings.mesh_sizes), meshes, study.settings.element_size),
                   *_judged(scene, "time step", "s", [found.cost["dt_s"] for found in steps], steps, steps[0].cost["dt_s"])]
-        penalty, quadrature = _penalties(study, name), _quadratures(study, name)
+        penalty, quadrature, ripples = _penalties(study, name), _quadratures(study, name), _ripples(study, scene)
         return {"condition": name, "element_size_m": study.settings.element_size, "coarse_size_m": study.settings.coarse_size,
                 "force_cutoff_hz": contact_loads.cutoff(scene),
                 "meshes": [{"element_size_m": size, "elements": found.cost["elements"], "dt_s": found.cost["dt_s"],
                             "wall_s": found.cost["wall_s"]} for size, found in zip(study.settings.mesh_sizes, meshes)],
-                "quantities": judged, "penalty": penalty, "quadrature": quadrature,
-                "summary": summary(name, judged, penalty, quadrature)}, []
+                "quantities": judged, "penalty": penalty, "quadrature": quadrature, "ripple": ripples,
+                "summary": summary(name, judged, penalty, quadrature) + _told(ripples)}, []
 
     return study.stage(NAME, _key(study, name), make)
 
@@ -109,6 +110,25 @@ def _quadratures(study: Study, name: str) -> list[dict]:
              for points in study.settings.quadratures]
     heads = [{"points_per_edge": points} for points in study.settings.quadratures]
     return _compared(study, "convergence, quadrature", name, heads, asked)
+
+
+def _ripples(study: Study, scene: Scene) -> list[dict]:
+    """Rows by element size, the first with a single Gauss point a facet for comparison; none where the rail lets nothing be told."""
+    rows = []
+    for size, points in ((study.settings.coarse_size, 1), (study.settings.coarse_size, None), (study.settings.element_size, None)):
+        numerics = Numerics(element_size=size, quadrature=points)
+        if found := ripple.measure(scene, numerics):
+            rows.append({"element_size_m": size, "points_per_edge": numerics.points_per_edge(), **found._asdict()})
+    return rows
+
+
+def _told(ripples: list[dict]) -> list[str]:
+    """The ripple of the finest mesh in words, if there is one."""
+    if not ripples:
+        return []
+    finest = ripples[-1]
+    return [f"ripple of a constant contact force at {finest['frequency']:.4g} Hz, at which facets of "
+            f"{1e3 * finest['element_size_m']:.3g} mm are crossed: {100.0 * finest['ripple']:.2g} %"]
 
 
 def _compared(study: Study, title: str, name: str, heads: list[dict], asked: list[Run]) -> list[dict]:

@@ -8,7 +8,7 @@ from scenes.calibration import Calibration
 from scenes.files import content_hash, write_text
 from studies import bench
 from studies.stages import ablation, calibrate, compare, convergence, cost, mesh, runs, stability, view
-from studies.store import Run, code_hash
+from studies.store import Run
 from studies.study import Study, StudyError
 
 STAGES: dict[str, Callable[[Study], dict]] = {

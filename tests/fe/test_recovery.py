@@ -9,7 +9,7 @@ from highfi.mesh import RailMesh
 from tests.exact import elasticity
 from tests.fe import cylinder
 from tests.fe.blocks import ALUMINIUM, block
-from tests.fe.test_beams import BEAM, ELASTIC, FORCE, ROOT_STRESS, deflection
+from tests.fe.test_beams import BEAM, ELASTIC, ROOT_STRESS, deflection
 from tests.fe.test_element import PATCH_GRADIENT, PATCH_HEXES, PATCH_INNER, PATCH_OUTER
 
 CORNERS = element.VTK_CORNERS.astype(float)

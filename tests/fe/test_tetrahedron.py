@@ -9,7 +9,7 @@ from highfi.mesh import RailMesh, boundary_facets
 from highfi.operator import internal_force
 from tests.exact import elasticity
 from tests.fe import tets
-from tests.fe.blocks import ALUMINIUM, block, highest_mode, modes
+from tests.fe.blocks import ALUMINIUM, block, highest_mode
 from tests.fe.test_beams import BEAM, ELASTIC, FORCE, deflection, free_frequencies
 from tests.fe.test_element import PATCH_GRADIENT, bending_frequencies
 

@@ -145,7 +145,7 @@ def test_step_of_a_damped_rail_keeps_below_the_damped_limit(ratio):
         assert 0.99 * limit < loop.stepping.dt_s <= loop.stepping.dt_limit_s <= limit
         assert loop.stepping.damping_ratio == pytest.approx(ratio, rel=2e-3)
         loop.stepping = replace(loop.stepping, dt_s=step or loop.stepping.dt_s)
-        ringing = Ringing(loop, frequency, shape)
+        Ringing(loop, frequency, shape)  # sets the loop going
         loop.advance_steps(40_000 if step is None or step < 1.01 * limit else 400)
         largest[step] = np.nan_to_num(np.abs(loop.state.displacement), nan=np.inf).max() / (1e-6 * np.abs(shape).max())
     chosen, above, undamped = largest.values()

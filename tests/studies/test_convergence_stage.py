@@ -13,6 +13,7 @@ from studies import store as store_module
 from studies.cli import app
 from studies.report.figures import Runs
 from studies.report.page import Page
+from studies.ripple import Ripple
 from studies.settings import Settings, defaults
 from studies.stages import convergence, report
 from studies.study import Study, StudyError
@@ -41,6 +42,11 @@ def motion(run, **parts):
     return flight(lambda t: np.tile(np.radians(settled(run)), (t.size, 1)), pad_force=force, cost=cost, **parts)
 
 
+def rippling(scene, numerics):
+    """A ripple that falls with the points on a facet; none without contact."""
+    return scene.contact and Ripple(0.04 / numerics.points_per_edge(), 1e-3, 750.0, 6, 200.0)
+
+
 @pytest.fixture
 def asked(monkeypatch):
     """Labels of the runs that were made, in order; ``asked.failing`` maps a label to what became of it instead."""
@@ -55,6 +61,7 @@ def asked(monkeypatch):
 
     monkeypatch.setattr(store_module, "execute", execute)
     monkeypatch.setattr(store_module, "prepare", lambda run: None)
+    monkeypatch.setattr(convergence.ripple, "measure", rippling)
     return made
 
 
@@ -131,8 +138,17 @@ def test_penalty_and_quadrature_are_compared_with_the_nominal_run(study):
     assert found["penalty"][3]["penalty_n_m3"] == 16.0 * NOMINAL_PENALTY
     changes = {item["points_per_edge"]: item["settled_rate_change_deg_s"] for item in found["quadrature"]}
     assert changes == {2: 0.0, 4: 0.0, 8: 0.0}
-    assert found["summary"][2:] == ["penalty stiffness, times 0.25 to 16: a settled rate changes by up to 0.04 deg/s",
+    assert found["summary"][2:4] == ["penalty stiffness, times 0.25 to 16: a settled rate changes by up to 0.04 deg/s",
                                     "Gauss points per facet edge, 2 to 8: a settled rate changes by up to 0 deg/s"]
+
+
+def test_ripple_of_both_meshes_beside_that_of_a_single_point(study):
+    found = convergence.run(study)
+    assert [(row["element_size_m"], row["points_per_edge"], row["ripple"]) for row in found["ripple"]] == [
+        (0.016, 1, 0.04), (0.016, 8, 0.005), (0.008, 8, 0.005)]
+    assert found["summary"][-1] == "ripple of a constant contact force at 750 Hz, at which facets of 8 mm are crossed: 0.5 %"
+    shown = Page(study.scene, study.folder, {"convergence": found}, Runs({}, {}, {}), {})._convergence()
+    assert "ripple of a constant contact force where facets are crossed" in shown
 
 
 def test_no_run_is_made_twice_and_none_again(study, asked):
