@@ -11,7 +11,7 @@ import numpy as np
 
 from lowfi.equations import derivative
 from lowfi.state import DYNAMIC_SIZE, STATE_SIZE, copy, normalise
-from scenes.jit import njit
+from scenes.jit import inlined
 
 STAGES = 7
 STABLE_RADIUS = 0.95
@@ -36,7 +36,7 @@ DENSE = np.array([
     [0.0, 40617522 / 29380423, -110615467 / 29380423, 69997945 / 29380423]])
 
 
-@njit
+@inlined
 def attempt(system, active, stretch, time, dt, fresh, start, stages, end):
     """From ``start`` (STATE_SIZE,) at ``time`` to ``end`` at ``time + dt``; unless ``fresh``, ``stages`` (7, STATE_SIZE) holds k_1.
 
@@ -55,7 +55,7 @@ def attempt(system, active, stretch, time, dt, fresh, start, stages, end):
         derivative(system, active, min(max(time + NODES[stage] * dt, stretch[0]), stretch[1]), end, stages[stage])
 
 
-@njit
+@inlined
 def interpolate(dt, theta, start, stages, size, out):
     """The first ``size`` slots of the state at ``theta`` in 0..1 of a step."""
     copy(start, out, size)

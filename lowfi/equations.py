@@ -11,10 +11,10 @@ from lowfi.state import IMPULSE, MOMENT, PAYLOAD, PLACE, PLATFORM, QUATERNION, T
 from lowfi.touch import load, penetration, relative_pose
 from scenes import rotation
 from scenes.effects.thrust_law import magnitude
-from scenes.jit import njit
+from scenes.jit import inlined
 
 
-@njit
+@inlined
 def derivative(system, active, time, state, out):
     """Fill ``out`` with the time derivative of ``state`` (both STATE_SIZE,). ``active`` (f,) tells which faces are felt."""
     body = slot.motion(system.payload.mass, system.payload.inverse_inertia, state, PAYLOAD)
@@ -27,7 +27,7 @@ def derivative(system, active, time, state, out):
     move_platform(system.platform, state, base, out)
 
 
-@njit
+@inlined
 def move(mass, state, body, out):
     """Turn the force in the velocity slots into acceleration and add the kinematics."""
     turning = rotation.product((0.0, 0.5 * body.rate[0], 0.5 * body.rate[1], 0.5 * body.rate[2]), slot.quaternion(state, 0))
@@ -38,13 +38,13 @@ def move(mass, state, body, out):
         out[QUATERNION + i] = turning[i]
 
 
-@njit
+@inlined
 def move_platform(platform, state, base, out):
     if platform is not None:
         move(platform.mass, state[PLATFORM:], base, out[PLATFORM:])
 
 
-@njit
+@inlined
 def push(out, force_slot, moment_slot, force, point, sign):
     """Add ``sign`` times a force at a point to a body, or to the impulse from outside."""
     moment = rotation.cross(point, force)
@@ -53,7 +53,7 @@ def push(out, force_slot, moment_slot, force, point, sign):
         out[moment_slot + i] += sign * moment[i]
 
 
-@njit
+@inlined
 def add_thrust(thrust, offset, platform, reacts, time, body, base, out):
     size = magnitude(thrust.pulses, thrust.curve, time)
     if size == 0.0:
@@ -65,7 +65,7 @@ def add_thrust(thrust, offset, platform, reacts, time, body, base, out):
     react(platform, reacts, force, point, base, out)
 
 
-@njit
+@inlined
 def line_of_action(offset, size, body):
     """Thrust (N) and a point of its line (m) in scene axes; without an offset the line passes through the mass centre."""
     if offset is not None:
@@ -73,14 +73,14 @@ def line_of_action(offset, size, body):
     return (size * body.turn[0], size * body.turn[3], size * body.turn[6]), body.place
 
 
-@njit
+@inlined
 def _offset_line(offset, size, body):
     d, arm = offset.direction, rotation.rotate(body.turn, offset.arm)
     point = (body.place[0] + arm[0], body.place[1] + arm[1], body.place[2] + arm[2])
     return rotation.rotate(body.turn, (size * d[0], size * d[1], size * d[2])), point
 
 
-@njit
+@inlined
 def react(platform, reacts, force, point, base, out):
     """Reaction of the thrust: on a free platform, or outside (exhaust, fixed platform)."""
     if platform is None:
@@ -89,7 +89,7 @@ def react(platform, reacts, force, point, base, out):
         _react_on_free_platform(reacts, force, point, base, out)
 
 
-@njit
+@inlined
 def _react_on_free_platform(reacts, force, point, base, out):
     if reacts:
         push(out, PLATFORM + VELOCITY, PLATFORM + MOMENT, force, point, -1.0)
@@ -99,20 +99,20 @@ def _react_on_free_platform(reacts, force, point, base, out):
         push(out, IMPULSE, TURN, force, point, 1.0)
 
 
-@njit
+@inlined
 def add_gravity(gravity, payload, platform, body, base, out):
     if gravity is not None:
         _weigh(gravity, payload.mass, PAYLOAD, body, out)
         _weigh_platform(gravity, platform, base, out)
 
 
-@njit
+@inlined
 def _weigh_platform(gravity, platform, base, out):
     if platform is not None:
         _weigh(gravity, platform.mass, PLATFORM, base, out)
 
 
-@njit
+@inlined
 def _weigh(gravity, mass, which, body, out):
     weight = (mass * gravity.x, mass * gravity.y, mass * gravity.z)
     push(out, which + VELOCITY, which + MOMENT, weight, body.place, 1.0)
@@ -121,7 +121,7 @@ def _weigh(gravity, mass, which, body, out):
     out[slot.GRAVITY_AXIAL] += weight[0] * body.velocity[0]
 
 
-@njit
+@inlined
 def add_contact(laws, friction, faces, platform, active, body, base, out):
     if laws is not None:
         place, turn = relative_pose(platform, body, base)
@@ -132,7 +132,7 @@ def add_contact(laws, friction, faces, platform, active, body, base, out):
                     _press(load(laws, friction, platform, faces[i], p, body, base), friction, platform, body, base, out)
 
 
-@njit
+@inlined
 def _press(face, friction, platform, body, base, out):
     """Add the load of one touching face: the pair of forces at one point, and what its energy becomes."""
     _pair(platform, face.normal, face.point, out)
@@ -144,7 +144,7 @@ def _press(face, friction, platform, body, base, out):
     _rub(friction, face, platform, body, base, out)
 
 
-@njit
+@inlined
 def _rub(friction, face, platform, body, base, out):
     if friction is not None:
         _pair(platform, face.drag, face.point, out)
@@ -152,7 +152,7 @@ def _rub(friction, face, platform, body, base, out):
         out[slot.FRICTION_AXIAL] -= face.drag[0] * _axial_speed(platform, body, base)
 
 
-@njit
+@inlined
 def _pair(platform, force, point, out):
     """A force on the payload and its opposite at the same point, on the platform or on the ground."""
     push(out, PAYLOAD + VELOCITY, PAYLOAD + MOMENT, force, point, 1.0)
@@ -162,7 +162,7 @@ def _pair(platform, force, point, out):
         push(out, PLATFORM + VELOCITY, PLATFORM + MOMENT, force, point, -1.0)
 
 
-@njit
+@inlined
 def _axial_speed(platform, body, base):
     """X velocity (m/s) of the payload's mass centre, less the platform's."""
     if platform is not None:

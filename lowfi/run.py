@@ -59,7 +59,7 @@ class Run:
         reach = float(np.sqrt((model.faces.centre**2).sum(axis=1).max()))
         self.tolerance = Tolerance(numerics.relative_tolerance, numerics.speed_floor, reach)
         self.system = system.build(model)
-        self.loop = march.ready(self.system, state.initial(model), self.interval)
+        self.loop = march.ready(self.system, state.initial(model), plan.first_step(self.plan))
         self.rows, self.forces = np.zeros((self.end + 1, SAMPLE_SIZE)), np.zeros((self.end + 1, model.faces.axis.size, 3))
         self.taken, self.left, self.message = 0, False, ""
 

@@ -8,7 +8,7 @@ from lowfi.state import IMPULSE, MOMENT, PAYLOAD, PLACE, PLATFORM, VELOCITY, WOR
 from lowfi.system import HALF_LENGTH
 from lowfi.touch import along, load, penetration, relative_pose
 from scenes import rotation
-from scenes.jit import njit
+from scenes.jit import kernel
 
 # Slots of a sample: payload and platform first (place, velocity, quaternion, rate in body axes), each BODY_SIZE long.
 RATE = slot.MOMENT  # where the state holds angular momentum the sample holds the rate
@@ -17,7 +17,7 @@ LINEAR, ANGULAR, GIVEN = WORKS + WORK_SIZE, WORKS + WORK_SIZE + 3, WORKS + WORK_
 SAMPLE_SIZE = GIVEN + 6
 
 
-@njit
+@kernel
 def observe(system, engaged, state, row, forces):
     """Fill ``row`` (SAMPLE_SIZE,) and ``forces`` (f,3) N on the payload in scene axes; False where a number is not finite."""
     payload = system.payload
@@ -38,7 +38,7 @@ def observe(system, engaged, state, row, forces):
     return np.isfinite(total)
 
 
-@njit
+@kernel
 def rearmost_edge(faces, platform, row):
     """X (m) in platform axes of the rearmost trailing edge of the pads."""
     place, turn = slot.triple(row, PAYLOAD + PLACE), rotation.matrix(slot.quaternion(row, PAYLOAD))
@@ -51,7 +51,7 @@ def rearmost_edge(faces, platform, row):
     return rearmost
 
 
-@njit
+@kernel
 def _copy(state, body, row):
     """Places and velocities of one body, whose slots stand first in ``state`` and ``row``."""
     slot.copy(state, row, slot.MOMENT)
@@ -60,13 +60,13 @@ def _copy(state, body, row):
         row[RATE + i] = rate[i]
 
 
-@njit
+@kernel
 def _platform(platform, state, base, row):
     if platform is not None:
         _body(platform.mass, state[PLATFORM:], base, row)
 
 
-@njit
+@kernel
 def _body(mass, state, body, row):
     """Add kinetic energy and momenta of one body."""
     moment, orbit = slot.triple(state, MOMENT), rotation.cross(body.place, body.velocity)
@@ -78,7 +78,7 @@ def _body(mass, state, body, row):
         row[ANGULAR + i] += moment[i]
 
 
-@njit
+@kernel
 def _press(laws, friction, faces, platform, engaged, body, base, forces):
     """Fill ``forces``; the energy (J) stored in all faces."""
     energy = 0.0

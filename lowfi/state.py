@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from scenes import rotation
-from scenes.jit import njit
+from scenes.jit import inlined
 from scenes.model import Model
 
 # Offsets inside a body's slots.
@@ -38,25 +38,25 @@ class Motion(NamedTuple):
     rate: tuple
 
 
-@njit
+@inlined
 def copy(source, target, size):
     """Copy the first ``size`` numbers. A loop, because a slice brings Numba's broadcasting and its error texts into each kernel."""
     for j in range(size):
         target[j] = source[j]
 
 
-@njit
+@inlined
 def triple(values, first):
     return (values[first], values[first + 1], values[first + 2])
 
 
-@njit
+@inlined
 def quaternion(state, body):
     first = body + QUATERNION
     return (state[first], state[first + 1], state[first + 2], state[first + 3])
 
 
-@njit
+@inlined
 def motion(mass, inverse_inertia, state, body):
     """Motion of the body whose slots begin at ``body``."""
     place, velocity = triple(state, body + PLACE), triple(state, body + VELOCITY)
@@ -66,7 +66,7 @@ def motion(mass, inverse_inertia, state, body):
     return Motion(place, velocity, turn, rotation.angular_velocity(turn, inverse_inertia, spin))
 
 
-@njit
+@inlined
 def frame(platform, state):
     """Motion of the frame that carries the rails: the platform, or the scene axes at rest."""
     if platform is not None:
@@ -75,7 +75,7 @@ def frame(platform, state):
     return Motion(zero, zero, (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0), zero)
 
 
-@njit
+@inlined
 def velocity_at(body, point):
     """Velocity (m/s) of the point of a body that is now at ``point``."""
     arm = (point[0] - body.place[0], point[1] - body.place[1], point[2] - body.place[2])
@@ -83,7 +83,7 @@ def velocity_at(body, point):
     return (body.velocity[0] + swing[0], body.velocity[1] + swing[1], body.velocity[2] + swing[2])
 
 
-@njit
+@inlined
 def normalise(state):
     """Bring both quaternions back to length one."""
     for body in (PAYLOAD, PLATFORM):
