@@ -13,8 +13,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from lowfi.dormand_prince import ERROR, STAGES
-from lowfi.state import BODY_SIZE, DYNAMIC_SIZE, MOMENT, PLACE, PLATFORM, VELOCITY, quaternion, triple
+from lowfi.dormand_prince import local_error
+from lowfi.state import BODY_SIZE, MOMENT, PLACE, PLATFORM, VELOCITY, quaternion, triple
 from scenes import rotation
 from scenes.jit import inlined
 
@@ -30,13 +30,7 @@ class Tolerance(NamedTuple):
 @inlined
 def error_ratio(tolerance, payload, platform, dt, stages, end, error):
     """Error of the step that led to ``end`` over what is allowed; NaN where anything is. ``error`` (DYNAMIC_SIZE,) is scratch."""
-    for j in range(DYNAMIC_SIZE):
-        error[j] = 0.0
-    for i in range(STAGES):
-        weight = dt * ERROR[i]
-        if weight != 0.0:
-            for j in range(DYNAMIC_SIZE):
-                error[j] += weight * stages[i, j]
+    local_error(dt, stages, error)
     ratio = _body_ratio(tolerance, payload.mass, payload.inverse_inertia, dt, error[:BODY_SIZE], end[:BODY_SIZE])
     return worse(ratio, _platform_ratio(tolerance, platform, dt, error, end))
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from lowfi import state as slot
 from lowfi.dormand_prince import interpolate
-from lowfi.touch import along, load, penetration, relative_pose
+from lowfi.touch import along, approach, load, penetration, relative_motion, relative_pose
 from scenes.effects.contact import stored_energy
 from scenes.jit import inlined
 
@@ -30,12 +30,16 @@ def survey(laws, faces, platform, payload, state, out):
     if laws is not None:
         body, base = slot.motion(payload.mass, payload.inverse_inertia, state, slot.PAYLOAD), slot.frame(platform, state)
         place, turn = relative_pose(platform, body, base)
+        drift, swing = relative_motion(platform, body, base, place, turn)
         for i in range(out.shape[0]):
             p = penetration(faces[i], place, turn)
-            face = load(laws, None, platform, faces[i], max(p, 0.0), body, base)
-            out[i, MODE] = OPEN if p <= 0.0 else (PRESSING if face.raw >= 0.0 else CUT_OFF)
-            out[i, DEPTH], out[i, CLOSING], out[i, PULL] = p, face.closing, _pull(face)
+            out[i, MODE], out[i, DEPTH], out[i, PULL] = OPEN, p, 1.0
             out[i, ALONG] = along(faces[i], place, turn)
+            out[i, CLOSING] = approach(faces[i], drift, swing)
+            if p > 0.0:
+                face = load(laws, None, platform, faces[i], p, body, base)
+                out[i, MODE] = PRESSING if face.raw >= 0.0 else CUT_OFF
+                out[i, PULL] = _pull(face)
 
 
 @inlined
@@ -55,18 +59,19 @@ def first_event(laws, payload, platform, faces, rail, engaged, before, after, dt
     first, blamed = 1.0, -1
     if laws is not None:
         for i in range(engaged.size):
+            if before[i, MODE] == OPEN and after[i, MODE] == OPEN:
+                theta = 1.0
+                if engaged[i]:
+                    theta = _grazing(before[i, DEPTH], after[i, DEPTH], span * dt * before[i, CLOSING], span * dt * after[i, CLOSING])
+                if theta < first:
+                    first, blamed = theta, i
+                continue
             for kind in (DEPTH, PULL, ALONG):
                 level = _level(rail, engaged[i], kind, before[i], after[i])
                 if not np.isnan(level):
-                    theta = _locate(laws, payload, platform, faces[i], kind, before[i, kind] - level, after[i, kind] - level, level,
-                                    dt, span, start, stages, work)
+                    theta = _locate(laws, payload, platform, faces[i], kind, before[i], after[i], level, dt, span, start, stages, work)
                     if theta < first and (theta > SOONEST or (kind == DEPTH and after[i, DEPTH] > 0.0)):
                         first, blamed = theta, i
-            if engaged[i] and before[i, MODE] == OPEN and after[i, MODE] == OPEN:
-                theta = _grazing(before[i, DEPTH], after[i, DEPTH], span * dt * before[i, CLOSING],
-                                  span * dt * after[i, CLOSING])
-                if theta < first:
-                    first, blamed = theta, i
     return first, blamed
 
 
@@ -110,12 +115,15 @@ def _gauge(laws, payload, platform, face, kind, state):
 
 
 @inlined
-def _locate(laws, payload, platform, face, kind, f_low, f_high, level, dt, span, start, stages, work):
-    """Fraction of the first ``span`` of a step at which the quantity passes ``level``, on its far side; it is ``f_low`` and ``f_high`` off at the ends."""
+def _locate(laws, payload, platform, face, kind, before, after, level, dt, span, start, stages, work):
+    """Fraction of the first ``span`` of a step at which the quantity passes ``level``; ``before`` and ``after`` survey its ends."""
     low, high, side = 0.0, 1.0, 0
+    f_low, f_high = before[kind] - level, after[kind] - level
     close = 1e-13 if kind != PULL else 0.1 * _NEAR
+    theta = f_low / (f_low - f_high)
+    if kind == DEPTH:
+        theta = _cubic_root(f_low, f_high, span * dt * before[CLOSING], span * dt * after[CLOSING], theta)
     for _ in range(60):
-        theta = (low * f_high - high * f_low) / (f_high - f_low)
         interpolate(dt, span * theta, start, stages, slot.DYNAMIC_SIZE, work)
         f = _gauge(laws, payload, platform, face, kind, work) - level
         if abs(f) < close or high - low < 1e-14:
@@ -128,7 +136,19 @@ def _locate(laws, payload, platform, face, kind, f_low, f_high, level, dt, span,
             low, f_low = theta, f
             f_high = 0.5 * f_high if side == -1 else f_high
             side = -1
+        theta = (low * f_high - high * f_low) / (f_high - f_low)
     return high
+
+
+@inlined
+def _cubic_root(f_low, f_high, rise, fall, guess):
+    """A root in 0..1 of the cubic with these values and slopes at 0 and 1, by Newton's method; ``guess`` where it finds none."""
+    step = f_high - f_low
+    a, b = rise + fall - 2.0 * step, 3.0 * step - 2.0 * rise - fall
+    theta = guess
+    for _ in range(8):
+        theta -= (f_low + theta * (rise + theta * (b + theta * a))) / (rise + theta * (2.0 * b + theta * 3.0 * a))
+    return theta if 0.0 < theta < 1.0 else guess
 
 
 @inlined

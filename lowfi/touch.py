@@ -49,6 +49,35 @@ def _relative_turn(a, b):
 
 
 @inlined
+def relative_motion(platform, body, base, place, turn):
+    """Rates of change of ``place`` (m/s) and ``turn`` (1/s), the payload's pose in platform axes."""
+    spin = rotation.unrotate(base.turn, body.rate)
+    drift = rotation.unrotate(base.turn, body.velocity)
+    if platform is not None:
+        drift, spin = _seen_from_platform(body, base, place, spin)
+    swing = (spin[1] * turn[6] - spin[2] * turn[3], spin[1] * turn[7] - spin[2] * turn[4], spin[1] * turn[8] - spin[2] * turn[5],
+             spin[2] * turn[0] - spin[0] * turn[6], spin[2] * turn[1] - spin[0] * turn[7], spin[2] * turn[2] - spin[0] * turn[8],
+             spin[0] * turn[3] - spin[1] * turn[0], spin[0] * turn[4] - spin[1] * turn[1], spin[0] * turn[5] - spin[1] * turn[2])
+    return drift, swing
+
+
+@inlined
+def _seen_from_platform(body, base, place, spin):
+    v, V = body.velocity, base.velocity
+    own = rotation.unrotate(base.turn, base.rate)
+    a, b = rotation.unrotate(base.turn, (v[0] - V[0], v[1] - V[1], v[2] - V[2])), rotation.cross(own, place)
+    return (a[0] - b[0], a[1] - b[1], a[2] - b[2]), (spin[0] - own[0], spin[1] - own[1], spin[2] - own[2])
+
+
+@inlined
+def approach(face, drift, swing):
+    """Rate (m/s) of the penetration of ``face``, from the rates of the pose."""
+    y = drift[1] + swing[3] * face[0] + swing[4] * face[1] + swing[5] * face[2]
+    z = drift[2] + swing[6] * face[0] + swing[7] * face[1] + swing[8] * face[2]
+    return face[NORMAL_Y] * y + face[NORMAL_Z] * z
+
+
+@inlined
 def along(face, place, turn):
     """X (m) of the centre of ``face``, a row of the table of faces, in platform axes."""
     return place[0] + turn[0] * face[0] + turn[1] * face[1] + turn[2] * face[2]
