@@ -52,14 +52,30 @@ class Loop(NamedTuple):
 
 def ready(system, state: np.ndarray, first_step: float) -> Loop:
     """A loop about to take its first sample of ``system`` at ``state`` (STATE_SIZE,), and its first step of ``first_step`` (s)."""
-    clock, count, faces = np.zeros(CLOCK_SIZE), np.zeros(COUNT_SIZE, dtype=np.int64), system.faces.shape[0]
+    faces = system.faces.shape[0]
+    loop = Loop(np.zeros(slot.STATE_SIZE), np.zeros(slot.STATE_SIZE), np.zeros((STAGES, slot.STATE_SIZE)), np.zeros((faces, SURVEY_SIZE)),
+                np.zeros((faces, SURVEY_SIZE)), np.zeros(faces, dtype=np.bool_), np.zeros(faces, dtype=np.bool_), np.zeros(CLOCK_SIZE),
+                np.zeros(COUNT_SIZE, dtype=np.int64), np.zeros(slot.STATE_SIZE))
+    reset(system, state, first_step, loop)
+    return loop
+
+
+@kernel
+def reset(system, state, first_step, loop):
+    """Bring a loop of any past to the begin of a run."""
+    clock, count = loop.clock, loop.count
+    clock[:] = 0.0
+    count[:] = 0
     clock[WANTED], clock[LIMIT], clock[SPAN], count[SEGMENT] = first_step, np.inf, 1.0, -1
     clock[FRICTION_POWER] = clock[DAMPING_POWER] = -np.inf
-    after, engaged = np.zeros((faces, SURVEY_SIZE)), np.zeros(faces, dtype=np.bool_)
-    survey(system.contact, system.faces, system.platform, system.payload, state, after)
-    on_rail(system.contact, system.rail_start, system.rail_end, after, engaged)
-    return Loop(state.copy(), state.copy(), np.zeros((STAGES, slot.STATE_SIZE)), np.zeros_like(after), after, engaged,
-                np.zeros_like(engaged), clock, count, np.zeros(slot.STATE_SIZE))
+    slot.copy(state, loop.start, slot.STATE_SIZE)
+    slot.copy(state, loop.end, slot.STATE_SIZE)
+    loop.engaged[:] = False
+    loop.active[:] = False
+    loop.stages[:] = 0.0
+    loop.after[:] = 0.0
+    survey(system.contact, system.faces, system.platform, system.payload, state, loop.after)
+    on_rail(system.contact, system.rail_start, system.rail_end, loop.after, loop.engaged)
 
 
 @kernel

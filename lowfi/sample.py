@@ -23,8 +23,7 @@ def observe(system, engaged, state, row, forces):
     payload = system.payload
     body, base = slot.motion(payload.mass, payload.inverse_inertia, state, PAYLOAD), slot.frame(system.platform, state)
     row[:] = 0.0
-    _copy(state[:PLATFORM], body, row[:PLATFORM])
-    _copy(state[PLATFORM:], base, row[PLATFORM:])
+    _place(state, body, base, row)
     _body(payload.mass, state[:PLATFORM], body, row)
     _platform(system.platform, state, base, row)
     row[STORED] = _press(system.contact, system.friction, system.faces, system.platform, engaged, body, base, forces)
@@ -36,6 +35,35 @@ def observe(system, engaged, state, row, forces):
     for i in range(engaged.size):
         total += abs(forces[i, 0]) + abs(forces[i, 1]) + abs(forces[i, 2])
     return np.isfinite(total)
+
+
+@kernel
+def posture(system, state, row):
+    """Fill only what ``row`` tells of the motion: its first two bodies."""
+    _place(state, slot.motion(system.payload.mass, system.payload.inverse_inertia, state, PAYLOAD), slot.frame(system.platform, state), row)
+
+
+@kernel
+def payload_rates(payload, state, row):
+    """Fill only the payload's part of ``row``."""
+    _copy(state[:PLATFORM], slot.motion(payload.mass, payload.inverse_inertia, state, PAYLOAD), row[:PLATFORM])
+
+
+@kernel
+def _place(state, body, base, row):
+    _copy(state[:PLATFORM], body, row[:PLATFORM])
+    _copy(state[PLATFORM:], base, row[PLATFORM:])
+
+
+@kernel
+def relative_axial_speed(platform, row):
+    """X velocity (m/s) of the payload's mass centre as seen from the platform, in its axes."""
+    turn = rotation.matrix(slot.quaternion(row, PLATFORM))
+    place, origin = slot.triple(row, PAYLOAD + PLACE), slot.triple(row, PLATFORM + PLACE)
+    v, V = slot.triple(row, PAYLOAD + VELOCITY), slot.triple(row, PLATFORM + VELOCITY)
+    spin = rotation.rotate(turn, slot.triple(row, PLATFORM + RATE))
+    swing = rotation.cross(spin, (place[0] - origin[0], place[1] - origin[1], place[2] - origin[2]))
+    return turn[0] * (v[0] - V[0] - swing[0]) + turn[3] * (v[1] - V[1] - swing[1]) + turn[6] * (v[2] - V[2] - swing[2])
 
 
 @kernel

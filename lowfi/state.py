@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from scenes import rotation
-from scenes.jit import inlined
+from scenes.jit import inlined, kernel
 from scenes.model import Model
 
 # Offsets inside a body's slots.
@@ -96,7 +96,7 @@ def normalise(state):
 def initial(model: Model) -> np.ndarray:
     """State (STATE_SIZE,) at ignition."""
     state, start, payload, platform = np.zeros(STATE_SIZE), model.initial, model.payload, model.platform
-    place = np.add(payload.mass_centre, start.position)
+    place = tuple(a + b for a, b in zip(payload.mass_centre, start.position))
     _fill(state, PAYLOAD, payload.mass, payload.inertia, place, start.velocity, rotation.exponential(start.attitude), start.rate)
     state[PLATFORM + QUATERNION] = 1.0
     if platform is not None:
@@ -105,9 +105,14 @@ def initial(model: Model) -> np.ndarray:
     return state
 
 
-def _fill(state, body, mass, inertia, place, velocity, attitude, rate) -> None:
-    turn = rotation.matrices(np.array([attitude]))[0]
-    state[body + PLACE:body + PLACE + 3] = place
-    state[body + VELOCITY:body + VELOCITY + 3] = velocity
-    state[body + QUATERNION:body + QUATERNION + 4] = attitude
-    state[body + MOMENT:body + MOMENT + 3] = mass * np.cross(place, velocity) + turn @ (inertia @ np.array(rate))
+@kernel
+def _fill(state, body, mass, inertia, place, velocity, attitude, rate):
+    orbit, turn, j = rotation.cross(place, velocity), rotation.matrix(attitude), inertia
+    spin = rotation.rotate(turn, (j[0, 0] * rate[0] + j[0, 1] * rate[1] + j[0, 2] * rate[2],
+                                  j[1, 0] * rate[0] + j[1, 1] * rate[1] + j[1, 2] * rate[2],
+                                  j[2, 0] * rate[0] + j[2, 1] * rate[1] + j[2, 2] * rate[2]))
+    for i in range(3):
+        state[body + PLACE + i], state[body + VELOCITY + i] = place[i], velocity[i]
+        state[body + MOMENT + i] = mass * orbit[i] + spin[i]
+    for i in range(4):
+        state[body + QUATERNION + i] = attitude[i]

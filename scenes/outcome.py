@@ -64,10 +64,14 @@ def milestones(scene: Scene, model) -> Milestones:
     """Instants and trailing edges ``edges`` (f,3) in body axes that ``judge`` needs."""
     edges = model.faces.centre.copy()
     edges[:, 0] -= model.faces.half_length
-    speed = model.friction.static_speed if model.friction else 0.01
     record = model.thrust
-    return Milestones(thrust.burnout(record, 1e-3, scene.duration), thrust.burnout(record, 1e-2, scene.duration), speed,
+    return Milestones(thrust.burnout(record, 1e-3, scene.duration), thrust.burnout(record, 1e-2, scene.duration), jam_speed(model),
                       scene.thrust.kind == "constant", edges, model.rail_end)
+
+
+def jam_speed(model) -> float:
+    """Relative axial speed (m/s) below which a payload may be jammed."""
+    return model.friction.static_speed if model.friction else 0.01
 
 
 def relative_motion(motion) -> dict[str, np.ndarray]:
@@ -84,23 +88,23 @@ def relative_motion(motion) -> dict[str, np.ndarray]:
 
 def clearance_to_exit(motion, marks: Milestones) -> np.ndarray:
     """Distance (n,) m by which the rearmost trailing edge is past the rail end (negative while on the rail)."""
-    past = np.empty(len(motion.time))
+    past = np.empty((len(motion.time), 1))
     distances(motion.position, motion.quaternion, motion.platform_position, motion.platform_quaternion, marks.edges, marks.rail_end, past)
-    return past
+    return past[:, 0]
 
 
 @kernel
 def distances(position, quaternion, platform_position, platform_quaternion, edges, rail_end, out):
-    """``clearance_to_exit`` of n samples with edges (f,3) m into ``out`` (n,)."""
-    for n in range(out.size):
+    """``clearance_to_exit`` of n samples with edges (f,3) m into ``out`` (n,1)."""
+    for n in range(out.shape[0]):
         turn, axis = rotation.matrix(_four(quaternion[n])), rotation.matrix(_four(platform_quaternion[n]))
         along = rotation.unrotate(turn, (axis[0], axis[3], axis[6]))
         rearmost = np.inf
         for edge in edges:
             rearmost = min(rearmost, along[0] * edge[0] + along[1] * edge[1] + along[2] * edge[2])
         place, origin = position[n], platform_position[n]
-        out[n] = rearmost - rail_end + (axis[0] * (place[0] - origin[0]) + axis[3] * (place[1] - origin[1])
-                                        + axis[6] * (place[2] - origin[2]))
+        out[n, 0] = rearmost - rail_end + (axis[0] * (place[0] - origin[0]) + axis[3] * (place[1] - origin[1])
+                                           + axis[6] * (place[2] - origin[2]))
 
 
 @kernel
@@ -117,17 +121,18 @@ def exit_time(motion, marks: Milestones) -> float | None:
     if after[0] == 0:
         return float(motion.time[0])
     near = slice(max(after[0] - AROUND, 0), after[0] + AROUND)
-    return crossed(motion.time[near], past[near], after[0] - near.start, np.empty((2, past[near].size)))
+    return crossed(motion.time[near], past[near, None], after[0] - near.start, np.empty(past[near].size), np.empty((past[near].size, 1)))
 
 
 @kernel
-def crossed(time, past, after, work):
-    """Instant (s) between samples ``after`` - 1 and ``after`` at which ``past`` (n,) m passes zero; ``work`` (2, n) is scratch."""
+def crossed(time, past, after, work, slope):
+    """Instant (s) between samples ``after`` - 1 and ``after`` at which ``past`` (n,1) m passes zero; ``work`` (n,) and ``slope`` (n,1)
+    are scratch."""
     if time.size >= 4:
-        spline.slopes(time, past, work[0], work[1])
-        return spline.crossing(time, past, work[1], after - 1)
-    rise = past[after] - past[after - 1]
-    return time[after] - past[after] / rise * (time[after] - time[after - 1])
+        spline.slopes(time, past, work, slope)
+        return spline.crossing(time, past, slope, after - 1)
+    rise = past[after, 0] - past[after - 1, 0]
+    return time[after] - past[after, 0] / rise * (time[after] - time[after - 1])
 
 
 def window_start(exit_at: float, marks: Milestones) -> float:
@@ -141,17 +146,17 @@ def mean(time: np.ndarray, values: np.ndarray, start: float, end: float) -> np.n
     near = slice(max(first - AROUND, 0), last + AROUND)
     if time[near].size < 4:
         return CubicSpline(time[near], values[near]).integrate(start, end) / (end - start)
-    found = np.empty(3)
-    for axis in range(3):
-        found[axis] = average(time[near], np.ascontiguousarray(values[near, axis]), start, end, np.empty((2, time[near].size)))
+    found, points = np.empty(3), time[near].size
+    average(time[near], values[near], start, end, np.empty(points), np.empty((points, 3)), found)
     return found
 
 
 @kernel
-def average(time, values, start, end, work):
-    """Mean over start..end (s) of ``values`` (n,), n at least 4; ``work`` (2, n) is scratch."""
-    spline.slopes(time, values, work[0], work[1])
-    return spline.integral(time, values, work[1], start, end) / (end - start)
+def average(time, values, start, end, work, slope, out):
+    """Means ``out`` (3,) over start..end (s) of ``values`` (n,3), n at least 4; ``work`` (n,) and ``slope`` (n,3) are scratch."""
+    spline.slopes(time, values, work, slope)
+    for axis in range(3):
+        out[axis] = spline.integral(time, values, slope, axis, start, end) / (end - start)
 
 
 def is_jammed(motion, marks: Milestones) -> bool:
@@ -178,11 +183,11 @@ def judge(motion, marks: Milestones) -> tuple[str, Outcome]:
                              mean(motion.time, motion.rate, start, end), motion.quaternion[index])
 
 
-def settled(exit_at: float, start: float, velocity: np.ndarray, rate: np.ndarray, attitude: np.ndarray) -> Outcome:
-    """Outcome of an exit at ``exit_at`` (s) with these means over the window from ``start`` (s), and the quaternion at exit."""
+def settled(exit_at: float, start: float, velocity: np.ndarray, rate: np.ndarray, attitude: np.ndarray | None = None) -> Outcome:
+    """Outcome of an exit at ``exit_at`` (s) with these means over the window from ``start`` (s), and the quaternion at exit if known."""
     lateral = float(np.hypot(velocity[1], velocity[2]))
     return Outcome(exit_at, start, velocity.tolist(), rate.tolist(), lateral, float(np.arctan2(lateral, velocity[0])),
-                   _rotation_vector(attitude))
+                   None if attitude is None else _rotation_vector(attitude))
 
 
 def _rotation_vector(q: np.ndarray) -> list[float]:

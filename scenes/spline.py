@@ -12,58 +12,64 @@ from scenes.jit import kernel
 
 @kernel
 def slopes(x, y, work, out):
-    """Slopes ``out`` (n,) of the spline through ``y`` (n,) at rising ``x`` (n,), n at least 4; ``work`` (n,) is scratch."""
-    last = out.size - 1
-    before, after = x[1] - x[0], x[2] - x[1]
-    both = x[2] - x[0]
-    d0, d1 = (y[1] - y[0]) / before, (y[2] - y[1]) / after
+    """Slopes ``out`` (n,k) of the splines through the columns of ``y`` (n,k) at rising ``x`` (n,), n at least 4; ``work`` (n,) is scratch."""
+    last, columns = x.size - 1, y.shape[1]
+    before, after, both = x[1] - x[0], x[2] - x[1], x[2] - x[0]
+    p, q = (before + 2.0 * both) / (both * before), before * before / (both * after * after)
     work[0] = both / after
-    out[0] = ((before + 2.0 * both) * after * d0 + before * before * d1) / (both * after)
+    for k in range(columns):
+        out[0, k] = p * (y[1, k] - y[0, k]) + q * (y[2, k] - y[1, k])
     for i in range(1, last):
         before, after = x[i] - x[i - 1], x[i + 1] - x[i]
-        d0, d1 = (y[i] - y[i - 1]) / before, (y[i + 1] - y[i]) / after
-        pivot = 2.0 * (before + after) - after * work[i - 1]
-        work[i] = before / pivot
-        out[i] = (3.0 * (after * d0 + before * d1) - after * out[i - 1]) / pivot
+        share = 1.0 / (2.0 * (before + after) - after * work[i - 1])
+        work[i] = before * share
+        p, q, r = 3.0 * share * after / before, 3.0 * share * before / after, share * after
+        for k in range(columns):
+            out[i, k] = p * (y[i, k] - y[i - 1, k]) + q * (y[i + 1, k] - y[i, k]) - r * out[i - 1, k]
     both = x[last] - x[last - 2]
-    pivot = before - both * work[last - 1]
-    out[last] = ((after * after * d0 + (2.0 * both + after) * before * d1) / both - both * out[last - 1]) / pivot
+    share = 1.0 / (before - both * work[last - 1])
+    p, q = share * after * after / (both * before), share * (2.0 * both + after) * before / (both * after)
+    for k in range(columns):
+        out[last, k] = p * (y[last - 1, k] - y[last - 2, k]) + q * (y[last, k] - y[last - 1, k]) - share * both * out[last - 1, k]
     for i in range(last - 1, -1, -1):
-        out[i] -= work[i] * out[i + 1]
+        for k in range(columns):
+            out[i, k] -= work[i] * out[i + 1, k]
 
 
 @kernel
-def integral(x, y, slope, start, end):
-    """Integral over ``start``..``end``, inside ``x``, of the spline with these slopes."""
+def integral(x, y, slope, k, start, end):
+    """Integral over ``start``..``end``, inside ``x``, of the spline of column ``k`` with these slopes."""
     total = 0.0
     for i in range(x.size - 1):
-        low, high = max(start, x[i]), min(end, x[i + 1])
-        if high > low:
-            total += _antiderivative(x, y, slope, i, high) - _antiderivative(x, y, slope, i, low)
+        low, high, h = max(start, x[i]), min(end, x[i + 1]), x[i + 1] - x[i]
+        if high - low == h:
+            total += h * (0.5 * (y[i, k] + y[i + 1, k]) + h / 12.0 * (slope[i, k] - slope[i + 1, k]))
+        elif high > low:
+            total += _antiderivative(x, y, slope, i, k, high) - _antiderivative(x, y, slope, i, k, low)
     return total
 
 
 @kernel
-def _antiderivative(x, y, slope, i, at):
+def _antiderivative(x, y, slope, i, k, at):
     h, t = x[i + 1] - x[i], at - x[i]
-    d = (y[i + 1] - y[i]) / h
-    b, a = (3.0 * d - 2.0 * slope[i] - slope[i + 1]) / h, (slope[i] + slope[i + 1] - 2.0 * d) / (h * h)
-    return t * (y[i] + t * (slope[i] / 2.0 + t * (b / 3.0 + t * a / 4.0)))
+    d = (y[i + 1, k] - y[i, k]) / h
+    b, a = (3.0 * d - 2.0 * slope[i, k] - slope[i + 1, k]) / h, (slope[i, k] + slope[i + 1, k] - 2.0 * d) / (h * h)
+    return t * (y[i, k] + t * (slope[i, k] / 2.0 + t * (b / 3.0 + t * a / 4.0)))
 
 
 @kernel
 def crossing(x, y, slope, i):
-    """Where piece ``i``, not above zero at its begin and above zero at its end, passes zero: bisection to the last bit."""
+    """Where, in the only column, piece ``i``, not above zero at its begin and above zero at its end, passes zero: bisection to the last bit."""
     h = x[i + 1] - x[i]
-    d = (y[i + 1] - y[i]) / h
-    b, a = (3.0 * d - 2.0 * slope[i] - slope[i + 1]) / h, (slope[i] + slope[i + 1] - 2.0 * d) / (h * h)
+    d = (y[i + 1, 0] - y[i, 0]) / h
+    b, a = (3.0 * d - 2.0 * slope[i, 0] - slope[i + 1, 0]) / h, (slope[i, 0] + slope[i + 1, 0] - 2.0 * d) / (h * h)
     low, high = x[i], x[i + 1]
     while True:
         middle = 0.5 * (low + high)
         if not low < middle < high:
             return high
         t = middle - x[i]
-        if y[i] + t * (slope[i] + t * (b + t * a)) > 0.0:
+        if y[i, 0] + t * (slope[i, 0] + t * (b + t * a)) > 0.0:
             high = middle
         else:
             low = middle
