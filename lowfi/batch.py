@@ -86,16 +86,34 @@ class Family:
         interval = scene.output.interval
         return plan.make(model, interval, end_of(scene) * interval, self.numerics)
 
-    def _settled(self, group: _Group) -> list[tuple[int, Case]]:
-        began, model = clock.perf_counter(), group.built.model
-        common, planned, marks = system.build(model, ledger=False), group.plan, group.marks
+    def kernels(self, table: Sequence[Mapping[str, Any]]) -> list[Callable[[], np.ndarray]]:
+        """Calls of the bare kernel for the groups of ``table``, set up beforehand: each returns ``settle``'s results. For timing."""
+        groups: dict[tuple, _Group] = {}
+        for number, row in enumerate(table):
+            built = models.built(self.variations.of(row), self.base)
+            group = self._group(groups, built)
+            group.rows.append((number, row))
+            group.cases.append(built.model)
+        return [self._kernel(group) for group in groups.values()]
+
+    def _kernel(self, group: _Group) -> Callable[[], np.ndarray]:
+        model, planned, marks = group.built.model, group.plan, group.marks
+        common, first = system.build(model, ledger=False), plan.first_step(planned)
         ends = settle.Ends(end_of(group.built.scene), marks.settled_thrust, marks.spent_thrust, marks.constant_thrust, marks.jam_speed,
                            max(1, round(outcome.JAM_DURATION / planned.interval)))
-        first = plan.first_step(planned)
+        loop, room, cases = march.ready(common, state.initial(model), first), settle.scratch(planned.interval), _stacked(common, group)
         results = np.zeros((len(group.cases), settle.RESULT_SIZE))
-        loop = march.ready(common, state.initial(model), first)
-        settle.settle(common, planned, self.numerics.relative_tolerance, self.numerics.speed_floor, ends, _stacked(common, group), first, loop,
-                      settle.scratch(planned.interval), results)
+
+        def call() -> np.ndarray:
+            settle.settle(common, planned, self.numerics.relative_tolerance, self.numerics.speed_floor, ends, cases, first, loop, room,
+                          results)
+            return results
+
+        return call
+
+    def _settled(self, group: _Group) -> list[tuple[int, Case]]:
+        began = clock.perf_counter()
+        results = self._kernel(group)()
         share = (clock.perf_counter() - began) / len(results)
         return [(number, self._case(row, result, share)) for (number, row), result in zip(group.rows, results)]
 
