@@ -88,8 +88,8 @@ def local_error(h, k, out):
 def interpolate(dt, theta, start, stages, size, out):
     """The first ``size`` slots of the state at ``theta`` in 0..1 of a step."""
     h = dt * theta
-    b0, b2, b3, b4, b5, b6 = (_weight(0, theta), _weight(2, theta), _weight(3, theta), _weight(4, theta), _weight(5, theta),
-                              _weight(6, theta))
+    b0, b2, b3, b4, b5, b6 = (_polynomial(0, theta), _polynomial(2, theta), _polynomial(3, theta), _polynomial(4, theta), _polynomial(5, theta),
+                              _polynomial(6, theta))
     for j in range(size):
         out[j] = start[j] + h * (b0 * stages[0, j] + b2 * stages[2, j] + b3 * stages[3, j] + b4 * stages[4, j] + b5 * stages[5, j]
                                  + b6 * stages[6, j])
@@ -97,5 +97,5 @@ def interpolate(dt, theta, start, stages, size, out):
 
 
 @inlined
-def _weight(stage, theta):
+def _polynomial(stage, theta):
     return DENSE[stage, 0] + theta * (DENSE[stage, 1] + theta * (DENSE[stage, 2] + theta * DENSE[stage, 3]))
