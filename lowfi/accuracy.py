@@ -13,10 +13,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from lowfi.dormand_prince import ERROR, STAGES
-from lowfi.state import BODY_SIZE, DYNAMIC_SIZE, MOMENT, PLACE, PLATFORM, VELOCITY, quaternion, triple
+from lowfi.dormand_prince import local_error
+from lowfi.state import BODY_SIZE, MOMENT, PLACE, PLATFORM, VELOCITY, quaternion, triple
 from scenes import rotation
-from scenes.jit import njit
+from scenes.jit import inlined
 
 
 class Tolerance(NamedTuple):
@@ -27,27 +27,21 @@ class Tolerance(NamedTuple):
     reach: float
 
 
-@njit
+@inlined
 def error_ratio(tolerance, payload, platform, dt, stages, end, error):
     """Error of the step that led to ``end`` over what is allowed; NaN where anything is. ``error`` (DYNAMIC_SIZE,) is scratch."""
-    for j in range(DYNAMIC_SIZE):
-        error[j] = 0.0
-    for i in range(STAGES):
-        weight = dt * ERROR[i]
-        if weight != 0.0:
-            for j in range(DYNAMIC_SIZE):
-                error[j] += weight * stages[i, j]
+    local_error(dt, stages, error)
     ratio = _body_ratio(tolerance, payload.mass, payload.inverse_inertia, dt, error[:BODY_SIZE], end[:BODY_SIZE])
     return worse(ratio, _platform_ratio(tolerance, platform, dt, error, end))
 
 
-@njit
+@inlined
 def worse(a, b):
     """The larger of two numbers; NaN when either is NaN."""
     return a if not a <= b else b
 
 
-@njit
+@inlined
 def _platform_ratio(tolerance, platform, dt, error, end):
     ratio = 0.0
     if platform is not None:
@@ -55,7 +49,7 @@ def _platform_ratio(tolerance, platform, dt, error, end):
     return ratio
 
 
-@njit
+@inlined
 def _body_ratio(tolerance, mass, inverse_inertia, dt, error, end):
     """Ratio of one body, whose slots stand first in ``error`` and ``end``."""
     place, velocity = triple(end, PLACE), triple(end, VELOCITY)

@@ -11,7 +11,7 @@ import numpy as np
 
 from lowfi.equations import derivative
 from lowfi.state import DYNAMIC_SIZE, STATE_SIZE, copy, normalise
-from scenes.jit import njit
+from scenes.jit import inlined
 
 STAGES = 7
 STABLE_RADIUS = 0.95
@@ -36,32 +36,66 @@ DENSE = np.array([
     [0.0, 40617522 / 29380423, -110615467 / 29380423, 69997945 / 29380423]])
 
 
-@njit
+@inlined
 def attempt(system, active, stretch, time, dt, fresh, start, stages, end):
     """From ``start`` (STATE_SIZE,) at ``time`` to ``end`` at ``time + dt``; unless ``fresh``, ``stages`` (7, STATE_SIZE) holds k_1.
 
     Thrust is taken inside ``stretch`` (s), open between two corners, whatever rounding does to stage times.
     """
     for stage in range(0 if fresh else 1, STAGES):
-        size = STATE_SIZE if stage == STAGES - 1 else DYNAMIC_SIZE
-        copy(start, end, size)
-        for i in range(stage):
-            weight = dt * MATRIX[stage, i]
-            if weight != 0.0:
-                for j in range(size):
-                    end[j] += weight * stages[i, j]
+        _combine(stage, dt, start, stages, end)
         if stage == STAGES - 1:
             normalise(end)
         derivative(system, active, min(max(time + NODES[stage] * dt, stretch[0]), stretch[1]), end, stages[stage])
 
 
-@njit
+@inlined
+def _combine(stage, h, y, k, out):
+    """out = y + h sum_j a_stage,j k_j, each sum in one pass over the slots; quadratures only where the step ends."""
+    if stage == 0:
+        copy(y, out, STATE_SIZE)
+    elif stage == 1:
+        for j in range(DYNAMIC_SIZE):
+            out[j] = y[j] + h * (MATRIX[1, 0] * k[0, j])
+    elif stage == 2:
+        for j in range(DYNAMIC_SIZE):
+            out[j] = y[j] + h * (MATRIX[2, 0] * k[0, j] + MATRIX[2, 1] * k[1, j])
+    elif stage == 3:
+        for j in range(DYNAMIC_SIZE):
+            out[j] = y[j] + h * (MATRIX[3, 0] * k[0, j] + MATRIX[3, 1] * k[1, j] + MATRIX[3, 2] * k[2, j])
+    elif stage == 4:
+        for j in range(DYNAMIC_SIZE):
+            out[j] = y[j] + h * (MATRIX[4, 0] * k[0, j] + MATRIX[4, 1] * k[1, j] + MATRIX[4, 2] * k[2, j] + MATRIX[4, 3] * k[3, j])
+    elif stage == 5:
+        for j in range(DYNAMIC_SIZE):
+            out[j] = y[j] + h * (MATRIX[5, 0] * k[0, j] + MATRIX[5, 1] * k[1, j] + MATRIX[5, 2] * k[2, j] + MATRIX[5, 3] * k[3, j]
+                                 + MATRIX[5, 4] * k[4, j])
+    else:
+        for j in range(STATE_SIZE):
+            out[j] = y[j] + h * (MATRIX[6, 0] * k[0, j] + MATRIX[6, 2] * k[2, j] + MATRIX[6, 3] * k[3, j] + MATRIX[6, 4] * k[4, j]
+                                 + MATRIX[6, 5] * k[5, j])
+
+
+@inlined
+def local_error(h, k, out):
+    """Difference of the two orders in every dynamic slot of ``out``."""
+    for j in range(DYNAMIC_SIZE):
+        out[j] = h * (ERROR[0] * k[0, j] + ERROR[2] * k[2, j] + ERROR[3] * k[3, j] + ERROR[4] * k[4, j] + ERROR[5] * k[5, j]
+                      + ERROR[6] * k[6, j])
+
+
+@inlined
 def interpolate(dt, theta, start, stages, size, out):
     """The first ``size`` slots of the state at ``theta`` in 0..1 of a step."""
-    copy(start, out, size)
-    for i in range(STAGES):
-        weight = dt * theta * (DENSE[i, 0] + theta * (DENSE[i, 1] + theta * (DENSE[i, 2] + theta * DENSE[i, 3])))
-        if weight != 0.0:
-            for j in range(size):
-                out[j] += weight * stages[i, j]
+    h = dt * theta
+    b0, b2, b3, b4, b5, b6 = (_polynomial(0, theta), _polynomial(2, theta), _polynomial(3, theta), _polynomial(4, theta), _polynomial(5, theta),
+                              _polynomial(6, theta))
+    for j in range(size):
+        out[j] = start[j] + h * (b0 * stages[0, j] + b2 * stages[2, j] + b3 * stages[3, j] + b4 * stages[4, j] + b5 * stages[5, j]
+                                 + b6 * stages[6, j])
     normalise(out)
+
+
+@inlined
+def _polynomial(stage, theta):
+    return DENSE[stage, 0] + theta * (DENSE[stage, 1] + theta * (DENSE[stage, 2] + theta * DENSE[stage, 3]))

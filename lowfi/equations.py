@@ -11,23 +11,23 @@ from lowfi.state import IMPULSE, MOMENT, PAYLOAD, PLACE, PLATFORM, QUATERNION, T
 from lowfi.touch import load, penetration, relative_pose
 from scenes import rotation
 from scenes.effects.thrust_law import magnitude
-from scenes.jit import njit
+from scenes.jit import inlined
 
 
-@njit
+@inlined
 def derivative(system, active, time, state, out):
     """Fill ``out`` with the time derivative of ``state`` (both STATE_SIZE,). ``active`` (f,) tells which faces are felt."""
     body = slot.motion(system.payload.mass, system.payload.inverse_inertia, state, PAYLOAD)
     base = slot.frame(system.platform, state)
     out[:] = 0.0
-    add_thrust(system.thrust, system.thrust_offset, system.platform, system.reacts_on_platform, time, body, base, out)
-    add_gravity(system.gravity, system.payload, system.platform, body, base, out)
-    add_contact(system.contact, system.friction, system.faces, system.platform, active, body, base, out)
+    add_thrust(system.thrust, system.thrust_offset, system.platform, system.reacts_on_platform, system.ledger, time, body, base, out)
+    add_gravity(system.gravity, system.payload, system.platform, system.ledger, body, base, out)
+    add_contact(system.contact, system.friction, system.faces, system.platform, system.ledger, active, body, base, out)
     move(system.payload.mass, state[:PLATFORM], body, out[:PLATFORM])
     move_platform(system.platform, state, base, out)
 
 
-@njit
+@inlined
 def move(mass, state, body, out):
     """Turn the force in the velocity slots into acceleration and add the kinematics."""
     turning = rotation.product((0.0, 0.5 * body.rate[0], 0.5 * body.rate[1], 0.5 * body.rate[2]), slot.quaternion(state, 0))
@@ -38,13 +38,13 @@ def move(mass, state, body, out):
         out[QUATERNION + i] = turning[i]
 
 
-@njit
+@inlined
 def move_platform(platform, state, base, out):
     if platform is not None:
         move(platform.mass, state[PLATFORM:], base, out[PLATFORM:])
 
 
-@njit
+@inlined
 def push(out, force_slot, moment_slot, force, point, sign):
     """Add ``sign`` times a force at a point to a body, or to the impulse from outside."""
     moment = rotation.cross(point, force)
@@ -53,19 +53,33 @@ def push(out, force_slot, moment_slot, force, point, sign):
         out[moment_slot + i] += sign * moment[i]
 
 
-@njit
-def add_thrust(thrust, offset, platform, reacts, time, body, base, out):
+@inlined
+def add_thrust(thrust, offset, platform, reacts, ledger, time, body, base, out):
     size = magnitude(thrust.pulses, thrust.curve, time)
     if size == 0.0:
         return
     force, point = line_of_action(offset, size, body)
     push(out, PAYLOAD + VELOCITY, PAYLOAD + MOMENT, force, point, 1.0)
-    out[slot.THRUST] += rotation.dot(force, slot.velocity_at(body, point))
-    out[slot.THRUST_AXIAL] += force[0] * body.velocity[0]
-    react(platform, reacts, force, point, base, out)
+    _book(ledger, slot.THRUST, slot.THRUST_AXIAL, force, slot.velocity_at(body, point), body.velocity[0], 1.0, out)
+    react(platform, reacts, ledger, force, point, base, out)
 
 
-@njit
+@inlined
+def _book(ledger, entry, axial_entry, force, velocity, axial_speed, sign, out):
+    """Add the power of a force on a point, and its axial part, to the ledger."""
+    if ledger is not None:
+        out[entry] += sign * rotation.dot(force, velocity)
+        out[axial_entry] += sign * force[0] * axial_speed
+
+
+@inlined
+def _outside(ledger, force, point, out):
+    """Count a force from outside among the impulses."""
+    if ledger is not None:
+        push(out, IMPULSE, TURN, force, point, 1.0)
+
+
+@inlined
 def line_of_action(offset, size, body):
     """Thrust (N) and a point of its line (m) in scene axes; without an offset the line passes through the mass centre."""
     if offset is not None:
@@ -73,96 +87,99 @@ def line_of_action(offset, size, body):
     return (size * body.turn[0], size * body.turn[3], size * body.turn[6]), body.place
 
 
-@njit
+@inlined
 def _offset_line(offset, size, body):
     d, arm = offset.direction, rotation.rotate(body.turn, offset.arm)
     point = (body.place[0] + arm[0], body.place[1] + arm[1], body.place[2] + arm[2])
     return rotation.rotate(body.turn, (size * d[0], size * d[1], size * d[2])), point
 
 
-@njit
-def react(platform, reacts, force, point, base, out):
+@inlined
+def react(platform, reacts, ledger, force, point, base, out):
     """Reaction of the thrust: on a free platform, or outside (exhaust, fixed platform)."""
     if platform is None:
-        push(out, IMPULSE, TURN, force, point, 1.0)
+        _outside(ledger, force, point, out)
     if platform is not None:
-        _react_on_free_platform(reacts, force, point, base, out)
+        _react_on_free_platform(reacts, ledger, force, point, base, out)
 
 
-@njit
-def _react_on_free_platform(reacts, force, point, base, out):
+@inlined
+def _react_on_free_platform(reacts, ledger, force, point, base, out):
     if reacts:
         push(out, PLATFORM + VELOCITY, PLATFORM + MOMENT, force, point, -1.0)
-        out[slot.THRUST] -= rotation.dot(force, slot.velocity_at(base, point))
-        out[slot.THRUST_AXIAL] -= force[0] * base.velocity[0]
+        _book(ledger, slot.THRUST, slot.THRUST_AXIAL, force, slot.velocity_at(base, point), base.velocity[0], -1.0, out)
     else:
-        push(out, IMPULSE, TURN, force, point, 1.0)
+        _outside(ledger, force, point, out)
 
 
-@njit
-def add_gravity(gravity, payload, platform, body, base, out):
+@inlined
+def add_gravity(gravity, payload, platform, ledger, body, base, out):
     if gravity is not None:
-        _weigh(gravity, payload.mass, PAYLOAD, body, out)
-        _weigh_platform(gravity, platform, base, out)
+        _weigh(gravity, payload.mass, PAYLOAD, ledger, body, out)
+        _weigh_platform(gravity, platform, ledger, base, out)
 
 
-@njit
-def _weigh_platform(gravity, platform, base, out):
+@inlined
+def _weigh_platform(gravity, platform, ledger, base, out):
     if platform is not None:
-        _weigh(gravity, platform.mass, PLATFORM, base, out)
+        _weigh(gravity, platform.mass, PLATFORM, ledger, base, out)
 
 
-@njit
-def _weigh(gravity, mass, which, body, out):
+@inlined
+def _weigh(gravity, mass, which, ledger, body, out):
     weight = (mass * gravity.x, mass * gravity.y, mass * gravity.z)
     push(out, which + VELOCITY, which + MOMENT, weight, body.place, 1.0)
-    push(out, IMPULSE, TURN, weight, body.place, 1.0)
-    out[slot.GRAVITY] += rotation.dot(weight, body.velocity)
-    out[slot.GRAVITY_AXIAL] += weight[0] * body.velocity[0]
+    _outside(ledger, weight, body.place, out)
+    _book(ledger, slot.GRAVITY, slot.GRAVITY_AXIAL, weight, body.velocity, body.velocity[0], 1.0, out)
 
 
-@njit
-def add_contact(laws, friction, faces, platform, active, body, base, out):
+@inlined
+def add_contact(laws, friction, faces, platform, ledger, active, body, base, out):
     if laws is not None:
         place, turn = relative_pose(platform, body, base)
         for i in range(active.size):
             if active[i]:
                 p = penetration(faces[i], place, turn)
                 if p > 0.0:
-                    _press(load(laws, friction, platform, faces[i], p, body, base), friction, platform, body, base, out)
+                    _press(load(laws, friction, platform, faces[i], p, body, base), friction, platform, ledger, body, base, out)
 
 
-@njit
-def _press(face, friction, platform, body, base, out):
+@inlined
+def _press(face, friction, platform, ledger, body, base, out):
     """Add the load of one touching face: the pair of forces at one point, and what its energy becomes."""
-    _pair(platform, face.normal, face.point, out)
-    if face.raw >= 0.0:
-        out[slot.DAMPING] += (face.raw - face.elastic) * face.closing
-    else:
-        out[slot.RELEASED] -= face.elastic * face.closing
-    out[slot.CONTACT_AXIAL] += face.normal[0] * _axial_speed(platform, body, base)
-    _rub(friction, face, platform, body, base, out)
+    _pair(platform, ledger, face.normal, face.point, out)
+    _spend(ledger, face, platform, body, base, out)
+    _rub(friction, face, platform, ledger, body, base, out)
 
 
-@njit
-def _rub(friction, face, platform, body, base, out):
+@inlined
+def _spend(ledger, face, platform, body, base, out):
+    if ledger is not None:
+        if face.raw >= 0.0:
+            out[slot.DAMPING] += (face.raw - face.elastic) * face.closing
+        else:
+            out[slot.RELEASED] -= face.elastic * face.closing
+        out[slot.CONTACT_AXIAL] += face.normal[0] * _axial_speed(platform, body, base)
+
+
+@inlined
+def _rub(friction, face, platform, ledger, body, base, out):
     if friction is not None:
-        _pair(platform, face.drag, face.point, out)
-        out[slot.FRICTION] -= rotation.dot(face.drag, face.slip)
-        out[slot.FRICTION_AXIAL] -= face.drag[0] * _axial_speed(platform, body, base)
+        _pair(platform, ledger, face.drag, face.point, out)
+        _book(ledger, slot.FRICTION, slot.FRICTION_AXIAL, face.drag, face.slip, _axial_speed(platform, body, base), -1.0, out)
 
 
-@njit
-def _pair(platform, force, point, out):
+@inlined
+def _pair(platform, ledger, force, point, out):
     """A force on the payload and its opposite at the same point, on the platform or on the ground."""
     push(out, PAYLOAD + VELOCITY, PAYLOAD + MOMENT, force, point, 1.0)
     if platform is None:
-        push(out, IMPULSE, TURN, force, point, 1.0)
+        _outside(ledger, force, point, out)
     if platform is not None:
         push(out, PLATFORM + VELOCITY, PLATFORM + MOMENT, force, point, -1.0)
 
 
-@njit
+@inlined
 def _axial_speed(platform, body, base):
     """X velocity (m/s) of the payload's mass centre, less the platform's."""
     if platform is not None:

@@ -1,17 +1,18 @@
 """Where inside a step the right-hand side changes its law: a face closes or opens, its force is cut off, it leaves the rail.
 
 A face that is open when a step begins is not felt within it: the step passes through the wall, the instant of touching is found on its
-interpolant (regula falsi of the Illinois kind), and the step is taken again up to there. So no step crosses a jump, none is rejected for
-one, and no contact is too short to be seen. A gap that closes and opens again by itself is found from the cubic through its ends.
+interpolant (regula falsi of the Illinois kind), and the step ends there: on its interpolant where the law was one and the same all along
+and the error leaves room, else by taking it again up to there. So no step crosses a jump, none is rejected for one, and no contact is too
+short to be seen. A gap that closes and opens again by itself is found from the cubic through its ends.
 """
 
 import numpy as np
 
 from lowfi import state as slot
 from lowfi.dormand_prince import interpolate
-from lowfi.touch import along, load, penetration, relative_pose
+from lowfi.touch import along, approach, load, penetration, relative_motion, relative_pose
 from scenes.effects.contact import stored_energy
-from scenes.jit import njit
+from scenes.jit import inlined
 
 # A crossing is aimed this far beyond itself (m), which is above rounding and below anything a force could feel.
 BEYOND = 1e-12
@@ -22,55 +23,59 @@ OPEN, PRESSING, CUT_OFF = 0.0, 1.0, 2.0
 MODE, DEPTH, CLOSING, PULL, ALONG, SURVEY_SIZE = 0, 1, 2, 3, 4, 5
 
 
-@njit
-def survey(laws, faces, platform, payload, engaged, state, out):
-    """Fill ``out`` (f, SURVEY_SIZE) with mode, penetration (m), its rate (m/s), pull and X (m) of every face; True when
-    any that is on the rail touches. The mode of a face off the rail is the one it would have there."""
-    touching = False
+@inlined
+def survey(laws, faces, platform, payload, state, out):
+    """Fill ``out`` (f, SURVEY_SIZE) with mode, penetration (m), its rate (m/s), pull and X (m) of every face. The mode of a face off
+    the rail is the one it would have there."""
     if laws is not None:
         body, base = slot.motion(payload.mass, payload.inverse_inertia, state, slot.PAYLOAD), slot.frame(platform, state)
         place, turn = relative_pose(platform, body, base)
-        for i in range(engaged.size):
+        drift, swing = relative_motion(platform, body, base, place, turn)
+        for i in range(out.shape[0]):
             p = penetration(faces[i], place, turn)
-            face = load(laws, None, platform, faces[i], max(p, 0.0), body, base)
-            out[i, MODE] = OPEN if p <= 0.0 else (PRESSING if face.raw >= 0.0 else CUT_OFF)
-            out[i, DEPTH], out[i, CLOSING], out[i, PULL] = p, face.closing, _pull(face)
+            out[i, MODE], out[i, DEPTH], out[i, PULL] = OPEN, p, 1.0
             out[i, ALONG] = along(faces[i], place, turn)
-            touching = touching or (p > 0.0 and engaged[i])
-    return touching
+            out[i, CLOSING] = approach(faces[i], drift, swing)
+            if p > 0.0:
+                face = load(laws, None, platform, faces[i], p, body, base)
+                out[i, MODE] = PRESSING if face.raw >= 0.0 else CUT_OFF
+                out[i, PULL] = _pull(face)
 
 
-@njit
+@inlined
 def _pull(face):
     """Raw force over the sum of the sizes of its elastic and damping parts: -1..1, negative where the law would pull."""
     size = face.elastic + abs(face.raw - face.elastic)
     return face.raw / size if size > 0.0 else 1.0
 
 
-@njit
-def first_event(laws, payload, platform, faces, rail, engaged, before, after, dt, start, stages, work):
-    """Fraction of the step (0..1] at which it must end, and the face to blame; ``before`` and ``after`` survey its ends.
+@inlined
+def first_event(laws, payload, platform, faces, rail, engaged, before, after, dt, span, start, stages, work):
+    """Fraction (0..1] of the first ``span`` of a step at which it must end, and the face to blame; ``before`` and ``after`` survey the
+    ends of that part.
 
     ``rail`` is its start and end (m); ``work`` (DYNAMIC_SIZE,) is scratch.
     """
     first, blamed = 1.0, -1
     if laws is not None:
         for i in range(engaged.size):
+            if before[i, MODE] == OPEN and after[i, MODE] == OPEN:
+                theta = 1.0
+                if engaged[i]:
+                    theta = _grazing(before[i, DEPTH], after[i, DEPTH], span * dt * before[i, CLOSING], span * dt * after[i, CLOSING])
+                if theta < first:
+                    first, blamed = theta, i
+                continue
             for kind in (DEPTH, PULL, ALONG):
                 level = _level(rail, engaged[i], kind, before[i], after[i])
                 if not np.isnan(level):
-                    theta = _locate(laws, payload, platform, faces[i], kind, before[i, kind] - level, after[i, kind] - level, level,
-                                    dt, start, stages, work)
+                    theta = _locate(laws, payload, platform, faces[i], kind, before[i], after[i], level, dt, span, start, stages, work)
                     if theta < first and (theta > SOONEST or (kind == DEPTH and after[i, DEPTH] > 0.0)):
                         first, blamed = theta, i
-            if engaged[i] and before[i, MODE] == OPEN and after[i, MODE] == OPEN:
-                theta = _grazing(before[i, DEPTH], after[i, DEPTH], dt * before[i, CLOSING], dt * after[i, CLOSING])
-                if theta < first:
-                    first, blamed = theta, i
     return first, blamed
 
 
-@njit
+@inlined
 def _level(rail, engaged, kind, before, after):
     """Value that a face's quantity ``kind`` must reach for its mode to change in this step; NaN when it does not change."""
     a, b = before[kind], after[kind]
@@ -87,7 +92,7 @@ def _level(rail, engaged, kind, before, after):
     return level if (a - level) * (b - level) < 0.0 else np.nan
 
 
-@njit
+@inlined
 def _edge(rail_start, rail_end, engaged, before, after):
     """X (m) just beyond the end of the rail a face passes; NaN when it passes none."""
     inside = rail_start <= after <= rail_end
@@ -98,7 +103,7 @@ def _edge(rail_start, rail_end, engaged, before, after):
     return rail_end - BEYOND if before > rail_end else rail_start + BEYOND
 
 
-@njit
+@inlined
 def _gauge(laws, payload, platform, face, kind, state):
     """Quantity ``kind`` of ``face`` at ``state``."""
     body, base = slot.motion(payload.mass, payload.inverse_inertia, state, slot.PAYLOAD), slot.frame(platform, state)
@@ -109,14 +114,17 @@ def _gauge(laws, payload, platform, face, kind, state):
     return p if kind == DEPTH else _pull(load(laws, None, platform, face, max(p, 0.0), body, base))
 
 
-@njit
-def _locate(laws, payload, platform, face, kind, f_low, f_high, level, dt, start, stages, work):
-    """Fraction of the step at which the quantity passes ``level``, on its far side; it is ``f_low`` and ``f_high`` off at the ends."""
+@inlined
+def _locate(laws, payload, platform, face, kind, before, after, level, dt, span, start, stages, work):
+    """Fraction of the first ``span`` of a step at which the quantity passes ``level``; ``before`` and ``after`` survey its ends."""
     low, high, side = 0.0, 1.0, 0
+    f_low, f_high = before[kind] - level, after[kind] - level
     close = 1e-13 if kind != PULL else 0.1 * _NEAR
+    theta = f_low / (f_low - f_high)
+    if kind == DEPTH:
+        theta = _cubic_root(f_low, f_high, span * dt * before[CLOSING], span * dt * after[CLOSING], theta)
     for _ in range(60):
-        theta = (low * f_high - high * f_low) / (f_high - f_low)
-        interpolate(dt, theta, start, stages, slot.DYNAMIC_SIZE, work)
+        interpolate(dt, span * theta, start, stages, slot.DYNAMIC_SIZE, work)
         f = _gauge(laws, payload, platform, face, kind, work) - level
         if abs(f) < close or high - low < 1e-14:
             return theta
@@ -128,10 +136,22 @@ def _locate(laws, payload, platform, face, kind, f_low, f_high, level, dt, start
             low, f_low = theta, f
             f_high = 0.5 * f_high if side == -1 else f_high
             side = -1
+        theta = (low * f_high - high * f_low) / (f_high - f_low)
     return high
 
 
-@njit
+@inlined
+def _cubic_root(f_low, f_high, rise, fall, guess):
+    """A root in 0..1 of the cubic with these values and slopes at 0 and 1, by Newton's method; ``guess`` where it finds none."""
+    step = f_high - f_low
+    a, b = rise + fall - 2.0 * step, 3.0 * step - 2.0 * rise - fall
+    theta = guess
+    for _ in range(8):
+        theta -= (f_low + theta * (rise + theta * (b + theta * a))) / (rise + theta * (2.0 * b + theta * 3.0 * a))
+    return theta if 0.0 < theta < 1.0 else guess
+
+
+@inlined
 def _grazing(before, after, rise, fall):
     """Fraction at which an open gap is narrowest, if it closes in between: maximum of the cubic through values and slopes."""
     if not (rise > 0.0 > fall and max(before, after) + max(rise, -fall) > BEYOND):
@@ -145,7 +165,7 @@ def _grazing(before, after, rise, fall):
     return theta if depth > BEYOND and SOONEST < theta < 1.0 else 1.0
 
 
-@njit
+@inlined
 def on_rail(laws, rail_start, rail_end, surveyed, engaged):
     """Bring ``engaged`` (f,) up to date; (changed, energy (J) that leaving faces took with them, less what entering ones bring)."""
     changed, energy = False, 0.0
@@ -159,7 +179,16 @@ def on_rail(laws, rail_start, rail_end, surveyed, engaged):
     return changed, energy
 
 
-@njit
+@inlined
+def same_law(before, after, active):
+    """Whether every felt face keeps its mode from one survey to the other: the right-hand side was smooth in between."""
+    for i in range(active.size):
+        if active[i] and before[i, MODE] != after[i, MODE]:
+            return False
+    return True
+
+
+@inlined
 def felt(surveyed, engaged, active):
     """Bring ``active`` (f,) up to date, the faces that touch as a step begins; True when any changed."""
     changed = False
@@ -170,7 +199,7 @@ def felt(surveyed, engaged, active):
     return changed
 
 
-@njit
+@inlined
 def stored(laws, depth):
     """Elastic energy (J) of one face at penetration ``depth`` (m), zero across a gap."""
     energy = 0.0

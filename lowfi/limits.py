@@ -16,23 +16,27 @@ from lowfi.touch import load, outward, penetration, relative_pose
 from scenes import rotation
 from scenes.effects import contact as law
 from scenes.effects.friction import coefficient_over_speed
-from scenes.jit import njit
+from scenes.jit import inlined
 
 _NUDGE = 1e-6  # relative change of p or s in a difference quotient: truncation and rounding are then both below 1e-5
 
 
-@njit
-def fastest_rate(laws, friction, faces, platform, payload, engaged, state):
-    """Bound S (1/s) of the eigenvalues of the touching faces at ``state``; 0 when none touches."""
+@inlined
+def fastest_rate(laws, friction, faces, platform, payload, active, state, ahead):
+    """Bound S (1/s) of the eigenvalues of the ``active`` faces (f,) that touch at ``state``; 0 when none does.
+
+    With a time ``ahead`` (s) it is a guess of the bound then: every face that closes is taken to go on closing at its speed.
+    """
     rate = 0.0
     if laws is not None:
         body, base = slot.motion(payload.mass, payload.inverse_inertia, state, slot.PAYLOAD), slot.frame(platform, state)
         place, turn = relative_pose(platform, body, base)
         stiffness, damping = 0.0, 0.0
-        for i in range(engaged.size):
-            if engaged[i]:
+        for i in range(active.size):
+            if active[i]:
                 p = penetration(faces[i], place, turn)
                 if p > 0.0:
+                    p += ahead * max(load(laws, None, platform, faces[i], p, body, base).closing, 0.0)
                     k, c = _face(laws, friction, platform, payload, faces[i], p, body, base)
                     stiffness += k
                     damping += c
@@ -40,7 +44,7 @@ def fastest_rate(laws, friction, faces, platform, payload, engaged, state):
     return rate
 
 
-@njit
+@inlined
 def _face(laws, friction, platform, payload, face, p, body, base):
     """Contribution of one face to K (1/s2) and C (1/s)."""
     now, n = load(laws, friction, platform, face, p, body, base), outward(face, base)
@@ -52,7 +56,7 @@ def _face(laws, friction, platform, payload, face, p, body, base):
     return stiffness, damping
 
 
-@njit
+@inlined
 def _friction_damping(friction, now, platform, payload, body, base, n):
     damping = 0.0
     if friction is not None:
@@ -67,7 +71,7 @@ def _friction_damping(friction, now, platform, payload, body, base, n):
     return damping
 
 
-@njit
+@inlined
 def _tangent(n):
     """A unit vector across the unit vector ``n``."""
     t = rotation.cross(n, (1.0, 0.0, 0.0)) if abs(n[0]) < 0.7 else rotation.cross(n, (0.0, 1.0, 0.0))
@@ -75,7 +79,7 @@ def _tangent(n):
     return (t[0] / size, t[1] / size, t[2] / size)
 
 
-@njit
+@inlined
 def inverse_mass(platform, payload, body, base, point, direction):
     """Inverse mass (1/kg) that a pair of forces along ``direction`` at ``point`` meets."""
     total = _own(payload.mass, payload.inverse_inertia, body, point, direction)
@@ -84,7 +88,7 @@ def inverse_mass(platform, payload, body, base, point, direction):
     return total
 
 
-@njit
+@inlined
 def _own(mass, inverse_inertia, body, point, direction):
     p = body.place
     lever = rotation.cross((point[0] - p[0], point[1] - p[1], point[2] - p[2]), direction)

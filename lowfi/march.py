@@ -7,20 +7,22 @@ import numpy as np
 from lowfi import state as slot
 from lowfi.accuracy import error_ratio
 from lowfi.dormand_prince import STABLE_RADIUS, STAGES, attempt, interpolate
-from lowfi.events import SOONEST, SURVEY_SIZE, felt, first_event, on_rail, survey
+from lowfi.events import SOONEST, SURVEY_SIZE, felt, first_event, on_rail, same_law, survey
 from lowfi.limits import fastest_rate
 from lowfi.sample import observe, rearmost_edge
-from scenes.jit import njit
+from scenes.jit import inlined, kernel
 
 # What ``march`` returns: all samples taken, or why it stopped before.
 SAMPLED, PASSED, UNDERFLOW, OUT_OF_STEPS, NOT_FINITE = range(5)
-# Slots of Loop.clock: ends and size of the last step (s), step the controller wants (s), bound of the contact's rates at the end
-# (1/s), smallest proven limit met (s), largest step over its limit (1), largest friction and damping power (W, not above zero).
-BEGAN, NOW, SIZE, WANTED, RATE, LIMIT, LIMIT_USED, FRICTION_POWER, DAMPING_POWER, CLOCK_SIZE = range(10)
+# Slots of Loop.clock: ends of the last step and its size before an event cut it (s), the fraction kept, step the controller wants (s),
+# bound of the contact's rates at the end (1/s), smallest proven limit met (s), largest step over its limit (1), largest friction and damping power (W, not above zero).
+BEGAN, NOW, SIZE, SPAN, WANTED, RATE, LIMIT, LIMIT_USED, FRICTION_POWER, DAMPING_POWER, CLOCK_SIZE = range(11)
 # Slots of Loop.count.
 SEGMENT, STEPS, REJECTED, EVENTS, EVALUATIONS, TAKEN, COUNT_SIZE = range(7)
 _SAFETY, _SHRINK, _GROW = 0.9, 0.2, 5.0
-_LANDINGS = 40  # attempts to end one step at an event
+_SPARE = 0.1  # largest error ratio at which a step may be cut by interpolation, whose error is some times larger
+_NEAR_END = 1e-3  # last share of a step in which a change of law cannot be felt: its effect goes with the square
+_LANDINGS = 40  # cuts of one step
 
 
 class Plan(NamedTuple):
@@ -50,17 +52,33 @@ class Loop(NamedTuple):
 
 def ready(system, state: np.ndarray, first_step: float) -> Loop:
     """A loop about to take its first sample of ``system`` at ``state`` (STATE_SIZE,), and its first step of ``first_step`` (s)."""
-    clock, count, faces = np.zeros(CLOCK_SIZE), np.zeros(COUNT_SIZE, dtype=np.int64), system.faces.shape[0]
-    clock[WANTED], clock[LIMIT], count[SEGMENT] = first_step, np.inf, -1
+    faces = system.faces.shape[0]
+    loop = Loop(np.zeros(slot.STATE_SIZE), np.zeros(slot.STATE_SIZE), np.zeros((STAGES, slot.STATE_SIZE)), np.zeros((faces, SURVEY_SIZE)),
+                np.zeros((faces, SURVEY_SIZE)), np.zeros(faces, dtype=np.bool_), np.zeros(faces, dtype=np.bool_), np.zeros(CLOCK_SIZE),
+                np.zeros(COUNT_SIZE, dtype=np.int64), np.zeros(slot.STATE_SIZE))
+    reset(system, state, first_step, loop)
+    return loop
+
+
+@kernel
+def reset(system, state, first_step, loop):
+    """Bring a loop of any past to the begin of a run."""
+    clock, count = loop.clock, loop.count
+    clock[:] = 0.0
+    count[:] = 0
+    clock[WANTED], clock[LIMIT], clock[SPAN], count[SEGMENT] = first_step, np.inf, 1.0, -1
     clock[FRICTION_POWER] = clock[DAMPING_POWER] = -np.inf
-    after, engaged = np.zeros((faces, SURVEY_SIZE)), np.zeros(faces, dtype=np.bool_)
-    survey(system.contact, system.faces, system.platform, system.payload, engaged, state, after)
-    on_rail(system.contact, system.rail_start, system.rail_end, after, engaged)
-    return Loop(state.copy(), state.copy(), np.zeros((STAGES, slot.STATE_SIZE)), np.zeros_like(after), after, engaged,
-                np.zeros_like(engaged), clock, count, np.zeros(slot.STATE_SIZE))
+    slot.copy(state, loop.start, slot.STATE_SIZE)
+    slot.copy(state, loop.end, slot.STATE_SIZE)
+    loop.engaged[:] = False
+    loop.active[:] = False
+    loop.stages[:] = 0.0
+    loop.after[:] = 0.0
+    survey(system.contact, system.faces, system.platform, system.payload, state, loop.after)
+    on_rail(system.contact, system.rail_start, system.rail_end, loop.after, loop.engaged)
 
 
-@njit
+@kernel
 def march(system, plan, tolerance, loop, last, until_passed, rows, forces):
     """Take samples up to number ``last`` into ``rows`` (n, SAMPLE_SIZE) and ``forces`` (n, f, 3), or, if ``until_passed``, up to the
     first one with every trailing edge past the rail end."""
@@ -84,16 +102,16 @@ def march(system, plan, tolerance, loop, last, until_passed, rows, forces):
     return SAMPLED
 
 
-@njit
+@kernel
 def step(system, plan, tolerance, loop):
     """Take one step; False when none is short enough."""
     clock, count = loop.clock, loop.count
-    fresh = _begin(system.contact, system.rail_start, system.rail_end, plan, loop)
+    fresh = _begin(system, plan, loop)
     start, segment = clock[BEGAN], count[SEGMENT]
     stop, rate, landings = plan.stops[segment], clock[RATE], 0
     # At a corner the thrust is the one of the stretch it is seen from.
     stretch = (np.nextafter(0.0 if segment == 0 else plan.stops[segment - 1], np.inf), np.nextafter(stop, -np.inf))
-    ceiling = min(plan.caps[segment], STABLE_RADIUS / rate)
+    ceiling = _foreseen(system, loop, min(clock[WANTED], plan.caps[segment], STABLE_RADIUS / rate, stop - start))
     while True:
         dt = min(clock[WANTED], ceiling)
         reaches = start + dt * (1.0 + 1e-9) >= stop
@@ -108,33 +126,64 @@ def step(system, plan, tolerance, loop):
             count[REJECTED] += 1
             clock[WANTED] = dt * (max(_SHRINK, _SAFETY * ratio**-0.2) if ratio < np.inf else _SHRINK)
             continue
-        touching = survey(system.contact, system.faces, system.platform, system.payload, loop.engaged, loop.end, loop.after)
-        clock[RATE] = 0.0
-        if touching:
-            clock[RATE] = fastest_rate(system.contact, system.friction, system.faces, system.platform, system.payload, loop.engaged,
-                                       loop.end)
+        clock[RATE] = fastest_rate(system.contact, system.friction, system.faces, system.platform, system.payload, loop.active,
+                                   loop.end, 0.0)
         limit = STABLE_RADIUS / max(rate, clock[RATE])
         if dt > limit * (1.0 + 1e-12):
             count[REJECTED] += 1
             clock[WANTED] = _SAFETY * limit
             continue
-        theta, face = first_event(system.contact, system.payload, system.platform, system.faces, (system.rail_start, system.rail_end),
-                            loop.engaged, loop.before, loop.after, dt, loop.start, loop.stages, loop.work)
-        if theta < 1.0 - 1e-9 and landings < _LANDINGS:
-            landings += 1
-            if theta > SOONEST and start + 0.01 * theta * dt > start:
-                ceiling = theta * dt
-                continue
-            if not loop.active[face]:  # it touches as the step begins, by rounding on the wrong side
-                loop.active[face] = fresh = True
-                continue
-        _accept(loop.stages[STAGES - 1], clock, count, dt, stop if reaches else start + dt, ratio, limit)
-        count[EVENTS] += landings
+        survey(system.contact, system.faces, system.platform, system.payload, loop.end, loop.after)
+        smooth = ratio <= _SPARE and same_law(loop.before, loop.after, loop.active)
+        span, face = _land(system, loop, dt)
+        if face >= 0:  # it touches as the step begins, by rounding on the wrong side
+            loop.active[face] = fresh = True
+            continue
+        if span < 1.0 and not smooth and not (landings > 0 and span > 1.0 - _NEAR_END) and landings < _LANDINGS:
+            landings, ceiling = landings + 1, span * dt * (1.0 + 0.2 * _NEAR_END)
+            continue
+        clock[SPAN] = span
+        if span < 1.0:
+            _accept_part(clock, count, dt, start + span * dt, limit)
+        else:
+            _accept(loop.stages[STAGES - 1], clock, count, dt, stop if reaches else start + dt, ratio, limit)
         return True
 
 
-@njit
-def _begin(laws, rail_start, rail_end, plan, loop):
+@inlined
+def _foreseen(system, loop, dt):
+    """``dt`` (s), less where the proven limit will certainly have fallen below it when such a step ends: a guess that saves attempts."""
+    touching = False
+    for felt_now in loop.active:
+        touching = touching or felt_now
+    while touching:
+        limit = STABLE_RADIUS / fastest_rate(system.contact, system.friction, system.faces, system.platform, system.payload, loop.active,
+                                             loop.start, 0.7 * dt)
+        touching = dt > limit
+        dt = max(0.7 * dt, limit) if touching else dt
+    return dt
+
+
+@inlined
+def _land(system, loop, dt):
+    """Cut the step at its first event: the fraction kept, with ``loop.end`` and its survey there, or a face to be felt from the start."""
+    span = 1.0
+    for _ in range(_LANDINGS):
+        theta, face = first_event(system.contact, system.payload, system.platform, system.faces, (system.rail_start, system.rail_end),
+                                  loop.engaged, loop.before, loop.after, dt, span, loop.start, loop.stages, loop.work)
+        if theta >= 1.0 - 1e-9:
+            return span, -1
+        if theta * span <= SOONEST or loop.clock[BEGAN] + 0.01 * theta * span * dt == loop.clock[BEGAN]:
+            return span, -1 if loop.active[face] else face
+        span *= theta
+        loop.count[EVENTS] += 1
+        interpolate(dt, span, loop.start, loop.stages, slot.STATE_SIZE, loop.end)
+        survey(system.contact, system.faces, system.platform, system.payload, loop.end, loop.after)
+    return span, -1
+
+
+@inlined
+def _begin(system, plan, loop):
     """Make the end of the last step the start of the next; what jumps in between jumps here. True when the derivative jumps too."""
     clock, count = loop.clock, loop.count
     slot.copy(loop.end, loop.start, slot.STATE_SIZE)
@@ -142,21 +191,30 @@ def _begin(laws, rail_start, rail_end, plan, loop):
     fresh = count[SEGMENT] < 0 or clock[NOW] >= plan.stops[count[SEGMENT]]
     if fresh:
         count[SEGMENT] += 1
-    changed, energy = on_rail(laws, rail_start, rail_end, loop.after, loop.engaged)
+    changed, energy = on_rail(system.contact, system.rail_start, system.rail_end, loop.after, loop.engaged)
     loop.start[slot.RELEASED] += energy
     for i in range(loop.engaged.size):
         slot.copy(loop.after[i], loop.before[i], SURVEY_SIZE)
     slot.copy(loop.stages[STAGES - 1], loop.stages[0], slot.STATE_SIZE)
-    return felt(loop.after, loop.engaged, loop.active) or fresh or changed
+    if felt(loop.after, loop.engaged, loop.active):
+        changed = True
+        clock[RATE] = fastest_rate(system.contact, system.friction, system.faces, system.platform, system.payload, loop.active,
+                                   loop.start, 0.0)
+    return changed or fresh or clock[SPAN] < 1.0
 
 
-@njit
+@kernel
 def _accept(derivative, clock, count, dt, time, ratio, limit):
     grown = dt * (min(_GROW, _SAFETY * ratio**-0.2) if ratio > 0.0 else _GROW)
-    # A step cut short by an event or a corner says little about the next one.
+    # A step cut short by a corner says little about the next one.
     clock[WANTED] = grown if dt >= clock[WANTED] else max(grown, clock[WANTED])
-    clock[NOW], clock[SIZE] = time, dt
-    clock[LIMIT], clock[LIMIT_USED] = min(clock[LIMIT], limit), max(clock[LIMIT_USED], dt / limit)
     clock[FRICTION_POWER] = max(clock[FRICTION_POWER], -derivative[slot.FRICTION])
     clock[DAMPING_POWER] = max(clock[DAMPING_POWER], -derivative[slot.DAMPING])
+    _accept_part(clock, count, dt, time, limit)
+
+
+@kernel
+def _accept_part(clock, count, dt, time, limit):
+    clock[NOW], clock[SIZE] = time, dt
+    clock[LIMIT], clock[LIMIT_USED] = min(clock[LIMIT], limit), max(clock[LIMIT_USED], dt / limit)
     count[STEPS] += 1

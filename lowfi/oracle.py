@@ -10,14 +10,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from lowfi.system import System, build
+from lowfi.system import build
 from scenes import model as models
 from scenes import rotation
 from scenes.effects import contact as law
 from scenes.effects.friction import coefficient_over_speed
 from scenes.effects.gravity import acceleration
 from scenes.effects.thrust_law import magnitude
-from scenes.jit import njit
+from scenes.jit import inlined, njit
 from scenes.scene import Scene
 
 _BODY = 13  # place, velocity, quaternion, body rate
@@ -35,17 +35,22 @@ class Samples(NamedTuple):
     evaluations: int
 
 
-def solve(scene: Scene, steps_per_sample: int, samples: int | None = None) -> Samples:
+def solve(scene: Scene, steps_per_sample: int, samples: int | None = None, interval: float | None = None) -> Samples:
     """Motion of the payload of ``scene`` with ``steps_per_sample`` equal steps between samples, to the scene's duration."""
+    interval = interval or scene.output.interval
+    job, rows = prepared(scene, steps_per_sample, samples if samples is not None else round(scene.duration / interval), interval)
+    integrate(*job, rows)
+    return Samples(np.arange(len(rows)) * interval, rows[:, 0:3], rows[:, 3:6], rows[:, 6:10], rows[:, 10:13],
+                   4 * steps_per_sample * (len(rows) - 1))
+
+
+def prepared(scene: Scene, steps_per_sample: int, samples: int, interval: float) -> tuple[tuple, np.ndarray]:
+    """Arguments of ``integrate`` but the last, and the last: rows (samples + 1, 26) of which only the first is filled."""
     model = models.build(scene)
-    system, interval = build(model), scene.output.interval
     inertias = (model.payload.inertia, model.platform.inertia if model.platform is not None else np.eye(3))
-    count = samples if samples is not None else round(scene.duration / interval)
-    rows = np.zeros((count + 1, _SIZE))
+    rows = np.zeros((samples + 1, _SIZE))
     rows[0] = _start(model)
-    integrate(system, *inertias, interval / steps_per_sample, steps_per_sample, rows)
-    return Samples(np.arange(count + 1) * interval, rows[:, 0:3], rows[:, 3:6], rows[:, 6:10], rows[:, 10:13],
-                   4 * steps_per_sample * count)
+    return (build(model), *inertias, interval / steps_per_sample, steps_per_sample), rows
 
 
 def _start(model) -> np.ndarray:
@@ -74,7 +79,7 @@ def integrate(system, inertia, platform_inertia, dt, steps_per_sample, rows):
             rows[number, j] = state[j]
 
 
-@njit
+@inlined
 def slope(system, inertia, platform_inertia, time, state, out):
     """Time derivative ``out`` of ``state`` (26,)."""
     r, v, q, w = _parts(state, 0)
@@ -86,26 +91,37 @@ def slope(system, inertia, platform_inertia, time, state, out):
     given = system.reacts_on_platform
     F = (-force[0], -force[1], -force[2]) if given else (0.0, 0.0, 0.0)
     M = _reversed(force, moment, r, R) if given else (0.0, 0.0, 0.0)
+    place = rotation.unrotate(frame, (r[0] - R[0], r[1] - R[1], r[2] - R[2]))
+    x, y, z = _column(frame, turn, 0), _column(frame, turn, 1), _column(frame, turn, 2)
+    axes = (x[0], y[0], z[0], x[1], y[1], z[1], x[2], y[2], z[2])
     for i in range(system.faces.shape[0]):
-        push, arm = touch(system.contact, system.friction, system.faces[i], system.rail_start, system.rail_end,
+        push, arm = touch(system.contact, system.friction, system.faces[i], system.rail_start, system.rail_end, place, axes,
                           (r, v, turn, spin), (R, V, frame, frame_spin))
-        twist = rotation.cross(arm, push)
-        force, moment = _sum(force, push), _sum(moment, twist)
-        F, M = _sum(F, (-push[0], -push[1], -push[2])), _sum(M, _reversed(push, twist, r, R))
+        if push[0] != 0.0 or push[1] != 0.0 or push[2] != 0.0:
+            twist = rotation.cross(arm, push)
+            force, moment = _sum(force, push), _sum(moment, twist)
+            F, M = _sum(F, (-push[0], -push[1], -push[2])), _sum(M, _reversed(push, twist, r, R))
     fall = acceleration(system.gravity)
     _newton_euler(system.payload.mass, inertia, system.payload.inverse_inertia, turn, q, v, w, force, moment, fall, out[:_BODY])
     _platform(system.platform, platform_inertia, frame, Q, V, W, F, M, fall, out[_BODY:])
 
 
-@njit
+@inlined
+def _column(frame, turn, i):
+    """Body axis ``i`` in platform axes."""
+    return rotation.unrotate(frame, (turn[i], turn[3 + i], turn[6 + i]))
+
+
+@inlined
 def _platform(platform, inertia, frame, Q, V, W, F, M, fall, out):
     if platform is None:
-        out[:] = 0.0
+        for j in range(_BODY):
+            out[j] = 0.0
     if platform is not None:
         _newton_euler(platform.mass, inertia, platform.inverse_inertia, frame, Q, V, W, F, M, fall, out)
 
 
-@njit
+@inlined
 def _newton_euler(mass, inertia, inverse, turn, q, v, w, force, moment, fall, out):
     h = (inertia[0, 0] * w[0] + inertia[0, 1] * w[1] + inertia[0, 2] * w[2],
          inertia[1, 0] * w[0] + inertia[1, 1] * w[1] + inertia[1, 2] * w[2],
@@ -120,7 +136,7 @@ def _newton_euler(mass, inertia, inverse, turn, q, v, w, force, moment, fall, ou
         out[6 + i] = turning[i]
 
 
-@njit
+@inlined
 def thrust(record, offset, time, turn):
     """Force (N) and moment about the payload's mass centre (N m), scene axes."""
     size = magnitude(record.pulses, record.curve, time)
@@ -132,30 +148,34 @@ def thrust(record, offset, time, turn):
     return force, moment
 
 
-@njit
-def touch(laws, friction, face, rail_start, rail_end, payload, platform):
-    """Force (N) of one face on the payload and its arm from the payload's mass centre (m), scene axes."""
+@inlined
+def touch(laws, friction, face, rail_start, rail_end, place, axes, payload, platform):
+    """Force (N) of one face on the payload and its arm from the payload's mass centre (m), scene axes.
+
+    ``place`` (m) and ``axes`` (nine numbers) are the payload's as the platform sees them.
+    """
     force, arm = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
     if laws is not None:
-        r, v, turn, spin = payload
-        R, V, frame, frame_spin = platform
-        arm = rotation.rotate(turn, (face[0], face[1], face[2]))
-        d = (r[0] + arm[0] - R[0], r[1] + arm[1] - R[1], r[2] + arm[2] - R[2])
-        x = rotation.unrotate(frame, d)
+        c = rotation.rotate(axes, (face[0], face[1], face[2]))
+        x = (place[0] + c[0], place[1] + c[1], place[2] + c[2])
         p = face[3] * x[1] + face[4] * x[2] - face[5]
         if p > 0.0 and rail_start <= x[0] <= rail_end:
+            r, v, turn, spin = payload
+            R, V, frame, frame_spin = platform
+            arm = rotation.rotate(turn, (face[0], face[1], face[2]))
+            d = (r[0] + arm[0] - R[0], r[1] + arm[1] - R[1], r[2] + arm[2] - R[2])
             a, b = rotation.cross(spin, arm), rotation.cross(frame_spin, d)
             u = rotation.unrotate(frame, (v[0] + a[0] - V[0] - b[0], v[1] + a[1] - V[1] - b[1], v[2] + a[2] - V[2] - b[2]))
             closing = face[3] * u[1] + face[4] * u[2]
             elastic, damping = law.parts(laws.impact, laws.hunt_crossley, laws.linear, p, closing)
             normal = max(0.0, elastic + damping)
             slip = (u[0], u[1] - closing * face[3], u[2] - closing * face[4])
-            c = normal * _drag(friction, slip)
-            force = rotation.rotate(frame, (-c * slip[0], -normal * face[3] - c * slip[1], -normal * face[4] - c * slip[2]))
+            drag = normal * _drag(friction, slip)
+            force = rotation.rotate(frame, (-drag * slip[0], -normal * face[3] - drag * slip[1], -normal * face[4] - drag * slip[2]))
     return force, arm
 
 
-@njit
+@inlined
 def _drag(friction, slip):
     value = 0.0
     if friction is not None:
@@ -163,19 +183,19 @@ def _drag(friction, slip):
     return value
 
 
-@njit
+@inlined
 def _reversed(force, moment, r, R):
     """Moment about R of the opposite of ``force``, whose moment about r is ``moment``."""
     carried = rotation.cross((r[0] - R[0], r[1] - R[1], r[2] - R[2]), force)
     return (-moment[0] - carried[0], -moment[1] - carried[1], -moment[2] - carried[2])
 
 
-@njit
+@inlined
 def _sum(a, b):
     return (a[0] + b[0], a[1] + b[1], a[2] + b[2])
 
 
-@njit
+@inlined
 def _parts(state, first):
     return ((state[first], state[first + 1], state[first + 2]), (state[first + 3], state[first + 4], state[first + 5]),
             (state[first + 6], state[first + 7], state[first + 8], state[first + 9]),

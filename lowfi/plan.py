@@ -7,8 +7,8 @@ from lowfi.numerics import Numerics
 from scenes.effects import thrust_law
 from scenes.model import Model
 
-# A Gaussian is below 2e-14 of its peak beyond this many widths, and a step inside sees at least two points of every width.
-_REACH, _SHARE = 8.0, 0.5
+# A Gaussian is below 2e-14 of its peak beyond this many widths, and the stages of a step inside, at most half of it apart, see two points of every width.
+_REACH, _SHARE = 8.0, 1.0
 
 
 def make(model: Model, interval: float, end: float, numerics: Numerics) -> Plan:
@@ -23,3 +23,8 @@ def make(model: Model, interval: float, end: float, numerics: Numerics) -> Plan:
     middles = 0.5 * (stops + np.append(0.0, stops[:-1]))
     acting = (begins < middles[:, None]) & (middles[:, None] < ends)
     return Plan(stops, np.where(acting, _SHARE * widths, np.inf).min(axis=1), interval, numerics.maximum_steps)
+
+
+def first_step(made: Plan) -> float:
+    """Size (s) of the first step that is tried."""
+    return 0.25 * float(made.caps[0]) if np.isfinite(made.caps[0]) else made.interval

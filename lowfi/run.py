@@ -46,6 +46,11 @@ def run(scene: Scene, calibration: Calibration | None = None, numerics: Numerics
     return result
 
 
+def end_of(scene: Scene) -> int:
+    """Number of the last sample before the scene's duration is over."""
+    return max(1, round(scene.duration / scene.output.interval))
+
+
 class Run:
     """State of a run in progress and its samples."""
 
@@ -54,12 +59,12 @@ class Run:
         self.model = model = models.build(scene)
         self.marks = outcome.milestones(scene, model)
         self.interval = scene.output.interval
-        self.end = max(1, round(scene.duration / self.interval))
+        self.end = end_of(scene)
         self.plan = plan.make(model, self.interval, self.end * self.interval, numerics)
         reach = float(np.sqrt((model.faces.centre**2).sum(axis=1).max()))
         self.tolerance = Tolerance(numerics.relative_tolerance, numerics.speed_floor, reach)
         self.system = system.build(model)
-        self.loop = march.ready(self.system, state.initial(model), self.interval)
+        self.loop = march.ready(self.system, state.initial(model), plan.first_step(self.plan))
         self.rows, self.forces = np.zeros((self.end + 1, SAMPLE_SIZE)), np.zeros((self.end + 1, model.faces.axis.size, 3))
         self.taken, self.left, self.message = 0, False, ""
 

@@ -8,7 +8,7 @@ from lowfi.state import IMPULSE, MOMENT, PAYLOAD, PLACE, PLATFORM, VELOCITY, WOR
 from lowfi.system import HALF_LENGTH
 from lowfi.touch import along, load, penetration, relative_pose
 from scenes import rotation
-from scenes.jit import njit
+from scenes.jit import kernel
 
 # Slots of a sample: payload and platform first (place, velocity, quaternion, rate in body axes), each BODY_SIZE long.
 RATE = slot.MOMENT  # where the state holds angular momentum the sample holds the rate
@@ -17,14 +17,13 @@ LINEAR, ANGULAR, GIVEN = WORKS + WORK_SIZE, WORKS + WORK_SIZE + 3, WORKS + WORK_
 SAMPLE_SIZE = GIVEN + 6
 
 
-@njit
+@kernel
 def observe(system, engaged, state, row, forces):
     """Fill ``row`` (SAMPLE_SIZE,) and ``forces`` (f,3) N on the payload in scene axes; False where a number is not finite."""
     payload = system.payload
     body, base = slot.motion(payload.mass, payload.inverse_inertia, state, PAYLOAD), slot.frame(system.platform, state)
     row[:] = 0.0
-    _copy(state[:PLATFORM], body, row[:PLATFORM])
-    _copy(state[PLATFORM:], base, row[PLATFORM:])
+    _place(state, body, base, row)
     _body(payload.mass, state[:PLATFORM], body, row)
     _platform(system.platform, state, base, row)
     row[STORED] = _press(system.contact, system.friction, system.faces, system.platform, engaged, body, base, forces)
@@ -38,7 +37,36 @@ def observe(system, engaged, state, row, forces):
     return np.isfinite(total)
 
 
-@njit
+@kernel
+def posture(system, state, row):
+    """Fill only what ``row`` tells of the motion: its first two bodies."""
+    _place(state, slot.motion(system.payload.mass, system.payload.inverse_inertia, state, PAYLOAD), slot.frame(system.platform, state), row)
+
+
+@kernel
+def payload_rates(payload, state, row):
+    """Fill only the payload's part of ``row``."""
+    _copy(state[:PLATFORM], slot.motion(payload.mass, payload.inverse_inertia, state, PAYLOAD), row[:PLATFORM])
+
+
+@kernel
+def _place(state, body, base, row):
+    _copy(state[:PLATFORM], body, row[:PLATFORM])
+    _copy(state[PLATFORM:], base, row[PLATFORM:])
+
+
+@kernel
+def relative_axial_speed(platform, row):
+    """X velocity (m/s) of the payload's mass centre as seen from the platform, in its axes."""
+    turn = rotation.matrix(slot.quaternion(row, PLATFORM))
+    place, origin = slot.triple(row, PAYLOAD + PLACE), slot.triple(row, PLATFORM + PLACE)
+    v, V = slot.triple(row, PAYLOAD + VELOCITY), slot.triple(row, PLATFORM + VELOCITY)
+    spin = rotation.rotate(turn, slot.triple(row, PLATFORM + RATE))
+    swing = rotation.cross(spin, (place[0] - origin[0], place[1] - origin[1], place[2] - origin[2]))
+    return turn[0] * (v[0] - V[0] - swing[0]) + turn[3] * (v[1] - V[1] - swing[1]) + turn[6] * (v[2] - V[2] - swing[2])
+
+
+@kernel
 def rearmost_edge(faces, platform, row):
     """X (m) in platform axes of the rearmost trailing edge of the pads."""
     place, turn = slot.triple(row, PAYLOAD + PLACE), rotation.matrix(slot.quaternion(row, PAYLOAD))
@@ -51,7 +79,7 @@ def rearmost_edge(faces, platform, row):
     return rearmost
 
 
-@njit
+@kernel
 def _copy(state, body, row):
     """Places and velocities of one body, whose slots stand first in ``state`` and ``row``."""
     slot.copy(state, row, slot.MOMENT)
@@ -60,13 +88,13 @@ def _copy(state, body, row):
         row[RATE + i] = rate[i]
 
 
-@njit
+@kernel
 def _platform(platform, state, base, row):
     if platform is not None:
         _body(platform.mass, state[PLATFORM:], base, row)
 
 
-@njit
+@kernel
 def _body(mass, state, body, row):
     """Add kinetic energy and momenta of one body."""
     moment, orbit = slot.triple(state, MOMENT), rotation.cross(body.place, body.velocity)
@@ -78,7 +106,7 @@ def _body(mass, state, body, row):
         row[ANGULAR + i] += moment[i]
 
 
-@njit
+@kernel
 def _press(laws, friction, faces, platform, engaged, body, base, forces):
     """Fill ``forces``; the energy (J) stored in all faces."""
     energy = 0.0

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from scenes import rotation
-from scenes.jit import njit
+from scenes.jit import inlined, kernel
 from scenes.model import Model
 
 # Offsets inside a body's slots.
@@ -38,25 +38,25 @@ class Motion(NamedTuple):
     rate: tuple
 
 
-@njit
+@inlined
 def copy(source, target, size):
     """Copy the first ``size`` numbers. A loop, because a slice brings Numba's broadcasting and its error texts into each kernel."""
     for j in range(size):
         target[j] = source[j]
 
 
-@njit
+@inlined
 def triple(values, first):
     return (values[first], values[first + 1], values[first + 2])
 
 
-@njit
+@inlined
 def quaternion(state, body):
     first = body + QUATERNION
     return (state[first], state[first + 1], state[first + 2], state[first + 3])
 
 
-@njit
+@inlined
 def motion(mass, inverse_inertia, state, body):
     """Motion of the body whose slots begin at ``body``."""
     place, velocity = triple(state, body + PLACE), triple(state, body + VELOCITY)
@@ -66,7 +66,7 @@ def motion(mass, inverse_inertia, state, body):
     return Motion(place, velocity, turn, rotation.angular_velocity(turn, inverse_inertia, spin))
 
 
-@njit
+@inlined
 def frame(platform, state):
     """Motion of the frame that carries the rails: the platform, or the scene axes at rest."""
     if platform is not None:
@@ -75,7 +75,7 @@ def frame(platform, state):
     return Motion(zero, zero, (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0), zero)
 
 
-@njit
+@inlined
 def velocity_at(body, point):
     """Velocity (m/s) of the point of a body that is now at ``point``."""
     arm = (point[0] - body.place[0], point[1] - body.place[1], point[2] - body.place[2])
@@ -83,7 +83,7 @@ def velocity_at(body, point):
     return (body.velocity[0] + swing[0], body.velocity[1] + swing[1], body.velocity[2] + swing[2])
 
 
-@njit
+@inlined
 def normalise(state):
     """Bring both quaternions back to length one."""
     for body in (PAYLOAD, PLATFORM):
@@ -96,7 +96,7 @@ def normalise(state):
 def initial(model: Model) -> np.ndarray:
     """State (STATE_SIZE,) at ignition."""
     state, start, payload, platform = np.zeros(STATE_SIZE), model.initial, model.payload, model.platform
-    place = np.add(payload.mass_centre, start.position)
+    place = tuple(a + b for a, b in zip(payload.mass_centre, start.position))
     _fill(state, PAYLOAD, payload.mass, payload.inertia, place, start.velocity, rotation.exponential(start.attitude), start.rate)
     state[PLATFORM + QUATERNION] = 1.0
     if platform is not None:
@@ -105,9 +105,14 @@ def initial(model: Model) -> np.ndarray:
     return state
 
 
-def _fill(state, body, mass, inertia, place, velocity, attitude, rate) -> None:
-    turn = rotation.matrices(np.array([attitude]))[0]
-    state[body + PLACE:body + PLACE + 3] = place
-    state[body + VELOCITY:body + VELOCITY + 3] = velocity
-    state[body + QUATERNION:body + QUATERNION + 4] = attitude
-    state[body + MOMENT:body + MOMENT + 3] = mass * np.cross(place, velocity) + turn @ (inertia @ np.array(rate))
+@kernel
+def _fill(state, body, mass, inertia, place, velocity, attitude, rate):
+    orbit, turn, j = rotation.cross(place, velocity), rotation.matrix(attitude), inertia
+    spin = rotation.rotate(turn, (j[0, 0] * rate[0] + j[0, 1] * rate[1] + j[0, 2] * rate[2],
+                                  j[1, 0] * rate[0] + j[1, 1] * rate[1] + j[1, 2] * rate[2],
+                                  j[2, 0] * rate[0] + j[2, 1] * rate[1] + j[2, 2] * rate[2]))
+    for i in range(3):
+        state[body + PLACE + i], state[body + VELOCITY + i] = place[i], velocity[i]
+        state[body + MOMENT + i] = mass * orbit[i] + spin[i]
+    for i in range(4):
+        state[body + QUATERNION + i] = attitude[i]

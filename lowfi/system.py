@@ -27,7 +27,7 @@ class Body(NamedTuple):
 
 
 class System(NamedTuple):
-    """All records of one run; None where an effect is absent. faces (f, FACE_SIZE); rail_start and rail_end (m) as in ``Model``."""
+    """All records of one run; None where an effect, or the ledger, is absent. faces (f, FACE_SIZE); rail_start and rail_end (m) as in ``Model``."""
 
     payload: Body
     platform: Body | None
@@ -40,13 +40,14 @@ class System(NamedTuple):
     contact: Laws | None
     friction: Friction | None
     gravity: Gravity | None
+    ledger: bool | None
 
 
-def build(model: Model) -> System:
-    """Records of ``model`` as the kernels take them."""
+def build(model: Model, ledger: bool = True) -> System:
+    """Records of ``model`` as the kernels take them. Without a ``ledger`` no work, loss or impulse is integrated."""
     return System(_body(model.payload), _body(model.platform) if model.platform is not None else None, _table(model.faces),
                   float(model.rail_start), float(model.rail_end), model.thrust, model.reacts_on_platform, model.thrust_offset,
-                  model.contact, model.friction, model.gravity)
+                  model.contact, model.friction, model.gravity, True if ledger else None)
 
 
 def _body(record) -> Body:

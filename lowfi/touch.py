@@ -15,7 +15,7 @@ from lowfi.system import NORMAL_Y, NORMAL_Z, WALL
 from scenes import rotation
 from scenes.effects import contact as law
 from scenes.effects.friction import coefficient_over_speed
-from scenes.jit import njit
+from scenes.jit import inlined
 
 
 class Load(NamedTuple):
@@ -31,7 +31,7 @@ class Load(NamedTuple):
     raw: float
 
 
-@njit
+@inlined
 def relative_pose(platform, body, base):
     """Place (m) and rotation (nine numbers) of the payload in platform axes."""
     if platform is not None:
@@ -40,7 +40,7 @@ def relative_pose(platform, body, base):
     return body.place, body.turn
 
 
-@njit
+@inlined
 def _relative_turn(a, b):
     """A' B of two matrices."""
     return (a[0] * b[0] + a[3] * b[3] + a[6] * b[6], a[0] * b[1] + a[3] * b[4] + a[6] * b[7], a[0] * b[2] + a[3] * b[5] + a[6] * b[8],
@@ -48,13 +48,42 @@ def _relative_turn(a, b):
             a[2] * b[0] + a[5] * b[3] + a[8] * b[6], a[2] * b[1] + a[5] * b[4] + a[8] * b[7], a[2] * b[2] + a[5] * b[5] + a[8] * b[8])
 
 
-@njit
+@inlined
+def relative_motion(platform, body, base, place, turn):
+    """Rates of change of ``place`` (m/s) and ``turn`` (1/s), the payload's pose in platform axes."""
+    spin = rotation.unrotate(base.turn, body.rate)
+    drift = rotation.unrotate(base.turn, body.velocity)
+    if platform is not None:
+        drift, spin = _seen_from_platform(body, base, place, spin)
+    swing = (spin[1] * turn[6] - spin[2] * turn[3], spin[1] * turn[7] - spin[2] * turn[4], spin[1] * turn[8] - spin[2] * turn[5],
+             spin[2] * turn[0] - spin[0] * turn[6], spin[2] * turn[1] - spin[0] * turn[7], spin[2] * turn[2] - spin[0] * turn[8],
+             spin[0] * turn[3] - spin[1] * turn[0], spin[0] * turn[4] - spin[1] * turn[1], spin[0] * turn[5] - spin[1] * turn[2])
+    return drift, swing
+
+
+@inlined
+def _seen_from_platform(body, base, place, spin):
+    v, V = body.velocity, base.velocity
+    own = rotation.unrotate(base.turn, base.rate)
+    a, b = rotation.unrotate(base.turn, (v[0] - V[0], v[1] - V[1], v[2] - V[2])), rotation.cross(own, place)
+    return (a[0] - b[0], a[1] - b[1], a[2] - b[2]), (spin[0] - own[0], spin[1] - own[1], spin[2] - own[2])
+
+
+@inlined
+def approach(face, drift, swing):
+    """Rate (m/s) of the penetration of ``face``, from the rates of the pose."""
+    y = drift[1] + swing[3] * face[0] + swing[4] * face[1] + swing[5] * face[2]
+    z = drift[2] + swing[6] * face[0] + swing[7] * face[1] + swing[8] * face[2]
+    return face[NORMAL_Y] * y + face[NORMAL_Z] * z
+
+
+@inlined
 def along(face, place, turn):
     """X (m) of the centre of ``face``, a row of the table of faces, in platform axes."""
     return place[0] + turn[0] * face[0] + turn[1] * face[1] + turn[2] * face[2]
 
 
-@njit
+@inlined
 def penetration(face, place, turn):
     """Penetration (m) of ``face`` into its wall, negative across the gap."""
     y = place[1] + turn[3] * face[0] + turn[4] * face[1] + turn[5] * face[2]
@@ -62,20 +91,20 @@ def penetration(face, place, turn):
     return face[NORMAL_Y] * y + face[NORMAL_Z] * z - face[WALL]
 
 
-@njit
+@inlined
 def outward(face, base):
     """Outward normal of ``face`` in scene axes."""
     return rotation.rotate(base.turn, (0.0, face[NORMAL_Y], face[NORMAL_Z]))
 
 
-@njit
+@inlined
 def pad_point(face, body):
     """Centre of ``face`` in scene axes (m)."""
     arm = rotation.rotate(body.turn, (face[0], face[1], face[2]))
     return (body.place[0] + arm[0], body.place[1] + arm[1], body.place[2] + arm[2])
 
 
-@njit
+@inlined
 def relative_velocity(platform, body, base, point):
     """Velocity (m/s) of the payload's point against the platform's point at the same place."""
     u = velocity_at(body, point)
@@ -85,7 +114,7 @@ def relative_velocity(platform, body, base, point):
     return u
 
 
-@njit
+@inlined
 def friction_force(friction, normal_force, slip):
     """Friction on the payload (N) at slip velocity ``slip`` (m/s); zero where the effect is absent."""
     if friction is not None:
@@ -94,7 +123,7 @@ def friction_force(friction, normal_force, slip):
     return (0.0, 0.0, 0.0)
 
 
-@njit
+@inlined
 def load(laws, friction, platform, face, p, body, base):
     """Load of ``face`` at penetration ``p`` >= 0."""
     point, n = pad_point(face, body), outward(face, base)

@@ -62,33 +62,60 @@ class Model(NamedTuple):
     thrust_arm: float
 
 
+class Built(NamedTuple):
+    """A model, the scene it was made from, and its faces measured from the nominal mass centre."""
+
+    scene: Scene
+    model: Model
+    nominal: Faces
+
+
 def build(scene: Scene) -> Model:
     """Records of ``scene``."""
+    return built(scene).model
+
+
+def built(scene: Scene, known: Built | None = None) -> Built:
+    """Records of ``scene``; those that come from the very tables of a ``known`` scene are taken from there."""
+    old = known.scene if known else None
+
+    def kept(*names: str) -> bool:
+        return old is not None and all(getattr(old, name) is getattr(scene, name) for name in names)
+
     offset = scene.mass_offset.eccentricity.offset() if scene.mass_offset else (0.0, 0.0, 0.0)
-    inertia = tensor(scene.payload.inertia)
-    platform = scene.platform.record() if scene.platform else None
-    origin = np.array(platform.mass_centre if platform else (0.0, 0.0, 0.0))
+    platform = known.model.platform if kept("platform") else scene.platform.record() if scene.platform else None
     touching = scene.contact is not None
-    return Model(
-        payload=Payload(scene.payload.mass, inertia, np.linalg.inv(inertia), offset),
-        faces=_faces(scene, np.array(offset), origin),
-        rail_start=scene.rail.start - origin[0],
-        rail_end=scene.rail.end - origin[0],
-        thrust=scene.thrust.record(),
+    origin = platform.mass_centre[0] if platform else 0.0
+    nominal = known.nominal if kept("pads", "rail", "contact", "platform") else _faces(scene, platform)
+    return Built(scene, Model(
+        payload=_payload(scene, offset, known.model.payload if kept("payload") else None),
+        faces=nominal._replace(centre=nominal.centre - np.array(offset)),
+        rail_start=scene.rail.start - origin,
+        rail_end=scene.rail.end - origin,
+        thrust=known.model.thrust if kept("thrust") else scene.thrust.record(),
         reacts_on_platform=scene.thrust.reaction == "platform",
         thrust_offset=thrust_offset.record(scene.thrust_offset, scene.mass_offset, scene.thrust.arm),
-        contact=contact.laws(scene.contact.record()) if touching else None,
+        contact=known.model.contact if kept("contact") else contact.laws(scene.contact.record()) if touching else None,
         penalty=scene.contact.penalty if touching else None,
         # Friction without contact has no normal force to act on, so it is absent too.
-        friction=scene.friction.record() if scene.friction and touching else None,
+        friction=known.model.friction if kept("friction", "contact") else scene.friction.record() if scene.friction and touching else None,
         platform=platform,
         gravity=scene.gravity.record() if scene.gravity else None,
-        initial=scene.initial.record() if scene.initial else Initial(),
+        initial=known.model.initial if kept("initial") else scene.initial.record() if scene.initial else Initial(),
         thrust_arm=scene.thrust.arm,
-    )
+    ), nominal)
 
 
-def _faces(scene: Scene, offset: np.ndarray, origin: np.ndarray) -> Faces:
+def _payload(scene: Scene, offset: tuple, known: Payload | None) -> Payload:
+    if known is not None:
+        return known._replace(mass_centre=offset)
+    inertia = tensor(scene.payload.inertia)
+    return Payload(scene.payload.mass, inertia, np.linalg.inv(inertia), offset)
+
+
+def _faces(scene: Scene, platform: Platform | None) -> Faces:
+    """Faces with their centres measured from the nominal mass centre."""
+    origin = platform.mass_centre if platform else (0.0, 0.0, 0.0)
     clearance = scene.contact.clearance if scene.contact else 0.0
     gap = scene.rail.gap(clearance)
     rows = []
@@ -101,7 +128,7 @@ def _faces(scene: Scene, offset: np.ndarray, origin: np.ndarray) -> Faces:
             centre[across] -= np.sign(corner[across]) * pad.inset
             centre[axis] += sign * (gap - clearance)  # a shim, where the walls of a file stand off the pads by another clearance
             wall = corner[axis] + sign * gap - origin[axis]
-            rows.append((centre - offset, axis, sign, pad.length / 2, pad.width / 2, pad.relief, wall, index))
+            rows.append((centre, axis, sign, pad.length / 2, pad.width / 2, pad.relief, wall, index))
     columns = list(zip(*rows))
     return Faces(np.array(columns[0]), np.array(columns[1], dtype=np.int64), *map(np.array, columns[2:7]),
                  np.array(columns[7], dtype=np.int64))

@@ -11,10 +11,12 @@ from typing import NamedTuple
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from scenes import rotation
+from scenes import rotation, spline
 from scenes.effects import thrust
+from scenes.jit import kernel
 from scenes.scene import Scene
 
+AROUND = 3  # samples on either side that a spline sees beyond what it is asked about
 SETTLE_DELAY = 1e-3
 SETTLE_WINDOW = 2e-3
 JAM_DURATION = 5e-3
@@ -62,10 +64,14 @@ def milestones(scene: Scene, model) -> Milestones:
     """Instants and trailing edges ``edges`` (f,3) in body axes that ``judge`` needs."""
     edges = model.faces.centre.copy()
     edges[:, 0] -= model.faces.half_length
-    speed = model.friction.static_speed if model.friction else 0.01
     record = model.thrust
-    return Milestones(thrust.burnout(record, 1e-3, scene.duration), thrust.burnout(record, 1e-2, scene.duration), speed,
+    return Milestones(thrust.burnout(record, 1e-3, scene.duration), thrust.burnout(record, 1e-2, scene.duration), jam_speed(model),
                       scene.thrust.kind == "constant", edges, model.rail_end)
+
+
+def jam_speed(model) -> float:
+    """Relative axial speed (m/s) below which a payload may be jammed."""
+    return model.friction.static_speed if model.friction else 0.01
 
 
 def relative_motion(motion) -> dict[str, np.ndarray]:
@@ -82,11 +88,28 @@ def relative_motion(motion) -> dict[str, np.ndarray]:
 
 def clearance_to_exit(motion, marks: Milestones) -> np.ndarray:
     """Distance (n,) m by which the rearmost trailing edge is past the rail end (negative while on the rail)."""
-    body, frame = rotation.matrices(motion.quaternion), rotation.matrices(motion.platform_quaternion)
-    axis = frame[:, :, 0]
-    along = np.einsum("ni,nij->nj", axis, body) @ marks.edges.T
-    centre = np.einsum("ni,ni->n", axis, motion.position - motion.platform_position)
-    return along.min(axis=1) + centre - marks.rail_end
+    past = np.empty((len(motion.time), 1))
+    distances(motion.position, motion.quaternion, motion.platform_position, motion.platform_quaternion, marks.edges, marks.rail_end, past)
+    return past[:, 0]
+
+
+@kernel
+def distances(position, quaternion, platform_position, platform_quaternion, edges, rail_end, out):
+    """``clearance_to_exit`` of n samples with edges (f,3) m into ``out`` (n,1)."""
+    for n in range(out.shape[0]):
+        turn, axis = rotation.matrix(_four(quaternion[n])), rotation.matrix(_four(platform_quaternion[n]))
+        along = rotation.unrotate(turn, (axis[0], axis[3], axis[6]))
+        rearmost = np.inf
+        for edge in edges:
+            rearmost = min(rearmost, along[0] * edge[0] + along[1] * edge[1] + along[2] * edge[2])
+        place, origin = position[n], platform_position[n]
+        out[n, 0] = rearmost - rail_end + (axis[0] * (place[0] - origin[0]) + axis[3] * (place[1] - origin[1])
+                                           + axis[6] * (place[2] - origin[2]))
+
+
+@kernel
+def _four(q):
+    return (q[0], q[1], q[2], q[3])
 
 
 def exit_time(motion, marks: Milestones) -> float | None:
@@ -97,11 +120,19 @@ def exit_time(motion, marks: Milestones) -> float | None:
         return None
     if after[0] == 0:
         return float(motion.time[0])
-    near = slice(max(after[0] - 3, 0), after[0] + 3)
-    roots = CubicSpline(motion.time[near], past[near]).roots(extrapolate=False)
-    low, high = motion.time[after[0] - 1], motion.time[after[0]]
-    inside = [root for root in roots if low <= root <= high]
-    return float(inside[0]) if inside else float(high)
+    near = slice(max(after[0] - AROUND, 0), after[0] + AROUND)
+    return crossed(motion.time[near], past[near, None], after[0] - near.start, np.empty(past[near].size), np.empty((past[near].size, 1)))
+
+
+@kernel
+def crossed(time, past, after, work, slope):
+    """Instant (s) between samples ``after`` - 1 and ``after`` at which ``past`` (n,1) m passes zero; ``work`` (n,) and ``slope`` (n,1)
+    are scratch."""
+    if time.size >= 4:
+        spline.slopes(time, past, work, slope)
+        return spline.crossing(time, past, slope, after - 1)
+    rise = past[after, 0] - past[after - 1, 0]
+    return time[after] - past[after, 0] / rise * (time[after] - time[after - 1])
 
 
 def window_start(exit_at: float, marks: Milestones) -> float:
@@ -112,9 +143,20 @@ def window_start(exit_at: float, marks: Milestones) -> float:
 def mean(time: np.ndarray, values: np.ndarray, start: float, end: float) -> np.ndarray:
     """Mean over start..end (s) of samples (n,3), by the integral of a cubic spline."""
     first, last = np.searchsorted(time, [start, end])
-    near = slice(max(first - 3, 0), last + 3)
-    spline = CubicSpline(time[near], values[near])
-    return spline.integrate(start, end) / (end - start)
+    near = slice(max(first - AROUND, 0), last + AROUND)
+    if time[near].size < 4:
+        return CubicSpline(time[near], values[near]).integrate(start, end) / (end - start)
+    found, points = np.empty(3), time[near].size
+    average(time[near], values[near], start, end, np.empty(points), np.empty((points, 3)), found)
+    return found
+
+
+@kernel
+def average(time, values, start, end, work, slope, out):
+    """Means ``out`` (3,) over start..end (s) of ``values`` (n,3), n at least 4; ``work`` (n,) and ``slope`` (n,3) are scratch."""
+    spline.slopes(time, values, work, slope)
+    for axis in range(3):
+        out[axis] = spline.integral(time, values, slope, axis, start, end) / (end - start)
 
 
 def is_jammed(motion, marks: Milestones) -> bool:
@@ -136,12 +178,16 @@ def judge(motion, marks: Milestones) -> tuple[str, Outcome]:
     end = start + SETTLE_WINDOW
     if motion.time[-1] < end * (1.0 - 1e-12):
         return "time_limit", Outcome(exit_time=exit_at)
-    velocity = mean(motion.time, motion.velocity, start, end)
-    rate = mean(motion.time, motion.rate, start, end)
-    lateral = float(np.hypot(velocity[1], velocity[2]))
     index = min(int(np.searchsorted(motion.time, exit_at)), motion.time.size - 1)
-    return "exited", Outcome(exit_at, start, velocity.tolist(), rate.tolist(), lateral,
-                             float(np.arctan2(lateral, velocity[0])), _rotation_vector(motion.quaternion[index]))
+    return "exited", settled(exit_at, start, mean(motion.time, motion.velocity, start, end),
+                             mean(motion.time, motion.rate, start, end), motion.quaternion[index])
+
+
+def settled(exit_at: float, start: float, velocity: np.ndarray, rate: np.ndarray, attitude: np.ndarray | None = None) -> Outcome:
+    """Outcome of an exit at ``exit_at`` (s) with these means over the window from ``start`` (s), and the quaternion at exit if known."""
+    lateral = float(np.hypot(velocity[1], velocity[2]))
+    return Outcome(exit_at, start, velocity.tolist(), rate.tolist(), lateral, float(np.arctan2(lateral, velocity[0])),
+                   None if attitude is None else _rotation_vector(attitude))
 
 
 def _rotation_vector(q: np.ndarray) -> list[float]:

@@ -43,12 +43,12 @@ def run(out: Path, sizes: tuple[float, ...] = SIZES, repeats: int = 5, steps: in
 
 
 def stored(out: Path) -> dict | None:
-    """The ``rows`` of an earlier run and their digest, ``key``, if there was one."""
-    path = Path(out) / "bench" / "highfi.json"
-    if not path.is_file():
+    """The ``rows`` of an earlier run, what there is of the surrogate (``lowfi``), and their digest, ``key``; None without any."""
+    found = {name: json.loads(path.read_text()) for name in ("highfi", "lowfi")
+             if (path := Path(out) / "bench" / f"{name}.json").is_file()}
+    if not found:
         return None
-    rows = json.loads(path.read_text())
-    return {"rows": rows, "key": content_hash(rows)}
+    return {"rows": found.get("highfi", []), "lowfi": found.get("lowfi"), "key": content_hash(found)}
 
 
 def line(row: dict) -> str:

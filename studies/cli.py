@@ -262,13 +262,18 @@ def bench(out: Out = Path("out"),
                                   help="Element size in mm, repeatable; default: 2, 1 and 0.5.")] = None,
           repeats: Annotated[int, typer.Option(metavar="N", min=1, help="Timed repeats; the median counts.")] = 5,
           steps: Annotated[Optional[int], typer.Option(metavar="N", min=1, help="Steps of a timed piece; default: by size.")] = None,
+          cases: Annotated[int, typer.Option(metavar="N", min=1, help="Cases of the surrogate's ensemble.")] = 2000,
           json_: Json = False) -> None:
-    """Speed of the reference solver against a SciPy matrix and NumPy on the same mesh; writes bench/highfi.json."""
+    """Speed of the reference solver against a SciPy matrix and NumPy on the same mesh, and of the surrogate against plain Runge-Kutta
+    at the same error; writes bench/highfi.json and bench/lowfi.json."""
 
     def work() -> dict:
         from studies import bench as stage
+        from studies import bench_lowfi
 
-        return stage.run(out, tuple(1e-3 * size for size in element_size) if element_size else stage.SIZES, repeats, steps)
+        surrogate = bench_lowfi.run(out, cases=cases, repeats=repeats)
+        solver = stage.run(out, tuple(1e-3 * size for size in element_size) if element_size else stage.SIZES, repeats, steps)
+        return {**solver, "surrogate": surrogate}
 
     _guarded(work, json_)
 

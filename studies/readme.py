@@ -33,7 +33,8 @@ def section(folder: Path) -> str:
     if (found := read(folder / "convergence.json")) is not None:
         parts.append(_convergence(found))
     if (found := bench.stored(folder.parent)) is not None:
-        parts.append(_bench(found["rows"]))
+        parts += [_bench(found["rows"])] if found["rows"] else []
+        parts += [_surrogate(found["lowfi"])] if found["lowfi"] else []
     return "\n\n".join(parts)
 
 
@@ -79,6 +80,18 @@ def _bench(rows: list[dict]) -> str:
         lines.append(f"| {row['elements']:,} | {row['ns_per_element_step']:.2f} | {row['ns_free']:.2f} | {row['ns_one_thread']:.2f} | "
                      f"{row['baseline_ns_per_element_step']:.0f} | {row['ratio']:.0f} | {row['bytes_per_element']:.0f} | "
                      f"{row['projected_40_ms_s'] / 3600.0:.2g} h |")
+    return "\n".join(lines)
+
+
+def _surrogate(found: dict) -> str:
+    many = found["ensemble"]
+    lines = ["Speed of the surrogate (`make bench`), processor ms per case on one core at the same error of the settled rate (95th percentile "
+             f"of {found['varied_cases']} varied cases); an ensemble of {many['cases']:,} takes {many['cpu_ms_per_case']:.3f} ms per case at "
+             f"{found['single'][0]['error_percent']:g} %, set-up included:", "",
+             "| error | surrogate | plain Runge-Kutta | ratio | with curves |", "|---|---|---|---|---|"]
+    for row in found["single"]:
+        lines.append(f"| {row['error_percent']:g} % | {row['cpu_ms']:.3f} | {row['baseline_cpu_ms']:.3f} | {row['ratio']:.1f} | "
+                     f"{row['run_cpu_ms']:.2f} |")
     return "\n".join(lines)
 
 

@@ -7,8 +7,6 @@ Misalignment theta from +X, phi from +Y towards +Z: ``F (cos t, sin t cos p, sin
 import math
 from typing import NamedTuple
 
-import numpy as np
-
 from scenes.effects.mass_offset import Eccentricity
 from scenes.table import Table
 from scenes.units import Angle
@@ -47,10 +45,9 @@ def record(thrust_offset, mass_offset, arm: float) -> ThrustOffset | None:
     """
     if thrust_offset is None and mass_offset is None:
         return None
-    direction, point = (1.0, 0.0, 0.0), np.array([-arm, 0.0, 0.0])
+    direction, line, centre = (1.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
     if thrust_offset is not None:
-        direction = thrust_offset.misalignment.direction()
-        point = point + thrust_offset.eccentricity.offset()
+        direction, line = thrust_offset.misalignment.direction(), thrust_offset.eccentricity.offset()
     if mass_offset is not None:
-        point = point - mass_offset.eccentricity.offset()
-    return ThrustOffset(direction, tuple(float(v) for v in point))
+        centre = mass_offset.eccentricity.offset()
+    return ThrustOffset(direction, (line[0] - centre[0] - arm, line[1] - centre[1], line[2] - centre[2]))

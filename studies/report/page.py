@@ -17,7 +17,8 @@ from studies.report.style import CSS
 
 _CONTENTS = (("answer", "Answer"), ("scene", "Scene"), ("mesh", "Mesh"), ("thrust", "Thrust"), ("figure6", "Curves"),
              ("contact-forces", "Contact"), ("energy", "Energy"), ("stress", "Stress"), ("calibration", "Calibration"),
-             ("agreement-section", "Agreement"), ("speedup", "Speed"), ("cost", "Cost"), ("convergence", "Convergence"), ("bench", "Solver"), ("stability", "Hard cases"),
+             ("agreement-section", "Agreement"), ("speedup", "Speed"), ("cost", "Cost"), ("convergence", "Convergence"),
+             ("bench", "Solvers"), ("stability", "Hard cases"),
              ("ablation", "Ablation"), ("promises", "Promises"), ("colophon", "Origin"))
 
 
@@ -156,9 +157,9 @@ class Page:
             "uncertainty is the band: an error inside it cannot be told from zero. Right: what a tighter tolerance can still buy. Labels: element size, tolerance."), tables.cost(found))
 
     def _bench(self) -> Html:
-        """The solver against the loop one would write today, where a benchmark was run."""
+        """Both solvers against the loops one would write today, where a benchmark was run."""
         found = self.documents.get("bench")
-        return tables.bench(found["rows"]) if found else Html("")
+        return tables.bench(found["rows"], found["lowfi"]) if found else Html("")
 
     def _convergence(self) -> Html:
         """Nothing without its result, and no reminder either: only `make full-report` spends the minutes it takes."""

@@ -1,9 +1,12 @@
 """Tables of runs: bad rows are refused alone, the count closes, and no worker count changes a bit."""
 
 import numpy as np
+import pytest
 
 import lowfi
 from scenes import load
+from scenes.faults import SceneError
+from studies.bench_lowfi import varied
 
 ROWS = [{"thrust_offset.misalignment.radial": f"{angle} deg"} for angle in (5, 25, 45, 65)]
 
@@ -21,6 +24,36 @@ def test_same_bits_for_any_worker_count():
     one, three = (lowfi.run_many(load("sensitive"), ROWS, workers=count) for count in (1, 3))
     for name in ("rate", "velocity", "exit_time", "steps"):
         assert np.array_equal(one[name].values, three[name].values)
+
+
+def test_same_bits_as_single_runs():
+    """Varied numbers, tables that come and go, text with units, other thrust, time that ends early, pads pressed at ignition, a
+    payload that hardly moves: whichever way the ensemble takes, nothing differs from ``run``."""
+    base = load("reference")
+    rows = [*varied(6), {"contact.clearance": "0.1 mm"}, {"thrust_offset": "absent"}, {"platform": "absent", "payload.mass": 8.0},
+            {"thrust.peak": "5 kN"}, {"duration": "30 ms"}, {"friction": "absent"}, {"contact": "absent"},
+            {"initial.position.y": 0.26e-3}, {"output.interval": "0.2 ms"}, {"gravity.z": -9.80665}, {"thrust.peak": 20.0}]
+    found = lowfi.run_many(base, rows, workers=2)
+    for index, row in enumerate(rows):
+        alone = lowfi.run(base.replace(row))
+        case = found.isel(case=index)
+        assert (str(case.status.values), str(case.message.values), int(case.steps)) == (alone.status, alone.message, alone.cost["steps"])
+        for name in ("rate", "velocity", "exit_time", "lateral_velocity", "direction_error"):
+            expected = getattr(alone.outcome, name)
+            assert np.array_equal(case[name].values, np.nan * case[name].values if expected is None else expected, equal_nan=True), (row, name)
+
+
+def test_refused_rows_have_the_reason_of_replace():
+    base = load("reference")
+    rows = [{"thrust_offset.misalignment.axial": value, "mass_offset.eccentricity.axial": radius}
+            for value, radius in ((1e-3, 1e-4), (2e-3, 1e-4), (float("nan"), 1e-4), ("1 mm", -1.0), (1e-3, 2e-4))]
+    found = lowfi.run_many(base, rows)
+    assert found.status.values.tolist() == ["exited", "exited", "refused", "refused", "exited"]
+    for index in (2, 3):
+        with pytest.raises(SceneError) as refused:
+            base.replace(rows[index])
+        assert found.message.values[index] == str(refused.value)
+    assert np.array_equal(found.rate.values[4], lowfi.run(base.replace(rows[4])).outcome.rate)
 
 
 def test_curves_keep_their_order():

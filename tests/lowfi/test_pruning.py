@@ -19,7 +19,7 @@ def evaluate(scene):
     records, begin = system.build(built), state.initial(built)
     felt = np.ones(16, dtype=np.bool_)
     equations.derivative(records, felt, 0.0, begin, np.empty_like(begin))
-    limits.fastest_rate(records.contact, records.friction, records.faces, records.platform, records.payload, felt, begin)
+    limits.fastest_rate(records.contact, records.friction, records.faces, records.platform, records.payload, felt, begin, 0.0)
     return len(coefficient_over_speed.signatures)
 reference = load("reference")
 print(evaluate(reference.replace({"friction": None, "platform": None})), evaluate(reference.replace({"platform": None})))

@@ -31,7 +31,7 @@ def test_yardstick_is_central_differences_on_the_assembled_matrix():
 
 
 def test_bench_writes_one_row_per_size(tmp_path):
-    arguments = ["bench", "--element-size", "8", "--repeats", "1", "--steps", "50", "--out", str(tmp_path)]
+    arguments = ["bench", "--element-size", "8", "--repeats", "1", "--steps", "50", "--cases", "40", "--out", str(tmp_path)]
     said = CliRunner().invoke(app, arguments, catch_exceptions=False)
     assert said.exit_code == 0
     row, = json.loads((tmp_path / "bench" / "highfi.json").read_text())
@@ -42,3 +42,12 @@ def test_bench_writes_one_row_per_size(tmp_path):
     page = Page(load("tiny"), tmp_path, {"bench": bench.stored(tmp_path)}, Runs({}, {}, {}), {}).render()
     assert 'id="bench"' in page and f"{row['elements']:,}" in page
     assert bench.stored(tmp_path / "elsewhere") is None
+    surrogate = json.loads((tmp_path / "bench" / "lowfi.json").read_text())
+    for single in surrogate["single"]:
+        assert {"error_percent", "cpu_ms", "baseline_cpu_ms", "ratio"} <= single.keys()
+        assert max(single["measured_percent"], single["baseline_measured_percent"]) <= single["error_percent"]
+        assert single["ratio"] == pytest.approx(single["baseline_cpu_ms"] / single["cpu_ms"])
+        assert f"{single['cpu_ms']:.3f}" in page
+    ensemble = surrogate["ensemble"]
+    assert ensemble["cases"] == ensemble["ok"] == 40 and ensemble["cpu_ms_per_case"] > 0.0 < ensemble["wall_s"]
+    assert ensemble["peak_memory_bytes"] > 10**7

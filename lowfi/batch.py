@@ -1,0 +1,150 @@
+"""Sets up the cases of an ensemble: what a scene fixes once, what each row changes, and groups of cases that one kernel call runs."""
+
+import time as clock
+from typing import Any, Callable, Mapping, NamedTuple, Sequence
+
+import numpy as np
+
+from lowfi import march, plan, settle, state, system
+from lowfi.numerics import Numerics
+from lowfi.run import end_of, run
+from scenes import model as models
+from scenes import outcome
+from scenes.calibration import Calibration
+from scenes.faults import SceneError
+from scenes.model import Built
+from scenes.scene import Scene
+from scenes.variation import Variations
+
+_STATUS = {settle.EXITED: "exited", settle.TIME_LIMIT: "time_limit"}
+
+
+class Case(NamedTuple):
+    """What an ensemble keeps of a run."""
+
+    status: str
+    message: str
+    outcome: outcome.Outcome
+    steps: int
+    wall_s: float
+
+
+class _Group(NamedTuple):
+    """Records that all cases of a group share; ``rows`` are their numbers and overrides, ``cases`` their models."""
+
+    built: Built
+    marks: outcome.Milestones
+    plan: march.Plan
+    rows: list
+    cases: list
+
+
+class Family:
+    """The cases of one scene. A row is run by the kernel of its group, or, where that leaves it open, by ``lowfi.run``."""
+
+    def __init__(self, scene: Scene, calibration: Calibration | None, numerics: Numerics):
+        self.scene, self.calibration, self.numerics = scene, calibration, numerics
+        self.calibrated = calibration.apply(scene) if calibration else scene
+        self.touched = {key.partition(".")[0] for key in calibration.constants} if calibration else set()
+        self.variations = Variations(self.calibrated)
+        self.base = models.built(self.calibrated)
+        self.marks = outcome.milestones(self.calibrated, self.base.model)
+
+    def jobs(self, table: Sequence[Mapping[str, Any]]) -> list[Callable[[], list]]:
+        """Calls that run ``table``: each returns pairs of a row's number and its Case."""
+        groups: dict[tuple, _Group] = {}
+        alone = []
+        for number, row in enumerate(table):
+            if self.touched.intersection(key.partition(".")[0] for key in row):
+                # A calibration is laid over what a row says of the same table, so the order counts.
+                alone.append((number, row))
+                continue
+            try:
+                built = models.built(self.variations.of(row), self.base)
+            except SceneError as error:
+                alone.append((number, Case("refused", str(error), outcome.Outcome(), 0, 0.0)))
+                continue
+            group = self._group(groups, built)
+            group.rows.append((number, row))
+            group.cases.append(built.model)
+        found = [lambda group=group: self._settled(group) for group in groups.values()]
+        return found + [lambda pair=pair: [(pair[0], pair[1] if isinstance(pair[1], Case) else self._whole(pair[1]))] for pair in alone]
+
+    def _group(self, groups: dict, built: Built) -> _Group:
+        scene, model = built.scene, built.model
+        key = (id(scene.thrust), scene.duration, id(scene.output), id(model.contact), id(model.friction), id(model.gravity),
+               id(model.platform), id(built.nominal), model.thrust_offset is None)
+        if key not in groups:
+            same = scene.thrust is self.base.scene.thrust and scene.duration == self.base.scene.duration
+            marks = self.marks if same else outcome.milestones(scene, model)
+            # The records keep alive what the key names by address.
+            kept = Built(scene.model_copy(), model, built.nominal)
+            groups[key] = _Group(kept, marks._replace(jam_speed=outcome.jam_speed(model)), self._plan(scene, model), [], [])
+        return groups[key]
+
+    def _plan(self, scene: Scene, model) -> march.Plan:
+        interval = scene.output.interval
+        return plan.make(model, interval, end_of(scene) * interval, self.numerics)
+
+    def kernels(self, table: Sequence[Mapping[str, Any]]) -> list[Callable[[], np.ndarray]]:
+        """Calls of the bare kernel for the groups of ``table``, set up beforehand: each returns ``settle``'s results. For timing."""
+        groups: dict[tuple, _Group] = {}
+        for number, row in enumerate(table):
+            built = models.built(self.variations.of(row), self.base)
+            group = self._group(groups, built)
+            group.rows.append((number, row))
+            group.cases.append(built.model)
+        return [self._kernel(group) for group in groups.values()]
+
+    def _kernel(self, group: _Group) -> Callable[[], np.ndarray]:
+        model, planned, marks = group.built.model, group.plan, group.marks
+        common, first = system.build(model, ledger=False), plan.first_step(planned)
+        ends = settle.Ends(end_of(group.built.scene), marks.settled_thrust, marks.spent_thrust, marks.constant_thrust, marks.jam_speed,
+                           max(1, round(outcome.JAM_DURATION / planned.interval)))
+        loop, room, cases = march.ready(common, state.initial(model), first), settle.scratch(planned.interval), _stacked(common, group)
+        results = np.zeros((len(group.cases), settle.RESULT_SIZE))
+
+        def call() -> np.ndarray:
+            settle.settle(common, planned, self.numerics.relative_tolerance, self.numerics.speed_floor, ends, cases, first, loop, room,
+                          results)
+            return results
+
+        return call
+
+    def _settled(self, group: _Group) -> list[tuple[int, Case]]:
+        began = clock.perf_counter()
+        results = self._kernel(group)()
+        share = (clock.perf_counter() - began) / len(results)
+        return [(number, self._case(row, result, share)) for (number, row), result in zip(group.rows, results)]
+
+    def _case(self, row: Mapping[str, Any], result: np.ndarray, share: float) -> Case:
+        status = int(result[settle.STATUS])
+        if status == settle.LEFT_OPEN:
+            return self._whole(row)
+        found = outcome.Outcome()
+        if status == settle.EXITED:
+            found = outcome.settled(float(result[settle.EXIT]), float(result[settle.WINDOW]), result[settle.VELOCITY:settle.VELOCITY + 3],
+                                    result[settle.RATE:settle.RATE + 3])
+        return Case(_STATUS[status], "", found, int(result[settle.TAKEN_STEPS]), share)
+
+    def _whole(self, row: Mapping[str, Any]) -> Case:
+        try:
+            found = run(self.scene.replace(row), calibration=self.calibration, numerics=self.numerics)
+        except SceneError as error:
+            return Case("refused", str(error), outcome.Outcome(), 0, 0.0)
+        return Case(found.status, found.message, found.outcome, found.cost["steps"], found.cost["wall_s"])
+
+
+def _stacked(common: system.System, group: _Group) -> settle.Cases:
+    models_, nominal = group.cases, group.built.nominal
+    centre = np.stack([model.faces.centre for model in models_])
+    faces = np.repeat(common.faces[None], len(models_), axis=0)
+    faces[:, :, system.CENTRE:system.CENTRE + 3] = centre
+    edges = centre.copy()
+    edges[:, :, 0] -= nominal.half_length
+    offset = common.thrust_offset is not None
+    return settle.Cases(
+        np.array([model.payload.mass for model in models_]), np.stack([model.payload.inverse_inertia for model in models_]), faces, edges,
+        np.array([model.thrust_offset.direction for model in models_]) if offset else None,
+        np.array([model.thrust_offset.arm for model in models_]) if offset else None,
+        np.stack([state.initial(model) for model in models_]), np.sqrt((centre**2).sum(axis=2).max(axis=1)))
