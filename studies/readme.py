@@ -66,8 +66,29 @@ def _speed(found: dict) -> str:
 
 
 def _convergence(found: dict) -> str:
-    lines = [f"Error of the reference itself (`make convergence`, {found['condition']}):", ""]
-    return "\n".join([*lines, *(f"- {line}" for line in found["summary"])])
+    sizes = [row for row in found["quantities"] if row["parameter"] == "element size"]
+    heads = [f"{1e3 * size:g} mm" for size in sizes[0]["sizes"]]
+    lines = [f"Error of the reference itself (`make convergence`, {found['condition']}):", "", *(f"- {line}" for line in found["summary"]),
+             "", f"| quantity | {' | '.join(heads)} | order | ± at {heads[-1]} |", "|---" * (len(heads) + 3) + "|"]
+    for row in sizes:
+        values = " | ".join("-" if value is None else f"{value:.5g}" for value in row["values"])
+        lines.append(f"| {row['quantity']}, {row['unit']} | {values} | {_number(row['order'])} | {_number(row['uncertainty'])} |")
+    return "\n".join([*lines, "", *_changes(found)])
+
+
+def _changes(found: dict) -> list[str]:
+    """What penalty stiffness and quadrature change."""
+    lines = [f"| {1e3 * found['coarse_size_m']:g} mm elements | settled x, y, z, deg/s | largest change |", "|---|---|---|"]
+    for row in found["penalty"]:
+        lines.append(f"| {row['penalty_n_m3']:.3g} N/m³, {row['factor']:g} times the scene's | {_changed(row)} |")
+    for row in found["quadrature"]:
+        lines.append(f"| {row['points_per_edge']} x {row['points_per_edge']} Gauss points per facet | {_changed(row)} |")
+    return lines
+
+
+def _changed(row: dict) -> str:
+    rates = ", ".join("-" if rate is None else f"{rate:.3f}" for rate in row["settled_rate_deg_s"])
+    return f"{rates} | {_number(row['settled_rate_change_deg_s'])}"
 
 
 def _bench(rows: list[dict]) -> str:
