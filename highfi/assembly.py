@@ -12,7 +12,7 @@ import numpy as np
 from scipy.sparse import coo_array, csr_array
 
 from highfi import element, tetrahedron
-from highfi.memory import aligned
+from scenes.memory import aligned
 from highfi.cells import thickness
 from highfi.mesh import RailMesh
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from highfi import records
 from highfi.elastic import elastic_force
-from highfi.memory import zeros
+from scenes.memory import zeros
 from scenes import rotation
 
 # Slots of the sample vector.

@@ -19,7 +19,7 @@ from scipy.sparse.csgraph import reverse_cuthill_mckee
 
 from highfi.assembly import Operator
 from highfi.folding import Groups, fold
-from highfi.memory import zeros
+from scenes.memory import zeros
 
 LANES = 16  # layers treated at once: two vectors of eight doubles
 CHUNK = 1024  # nodes: enough to be worth a function call, few enough for the second-level cache

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from highfi import assembly, pencils, records, surface
-from highfi.memory import zeros
+from scenes.memory import zeros
 from highfi.mesh import RailMesh
 from highfi.numerics import Numerics
 from scenes import model as scene_model

@@ -12,7 +12,7 @@ from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
-from highfi.memory import zeros
+from scenes.memory import zeros
 from highfi.pencils import LANES
 from scenes.jit import kernel
 

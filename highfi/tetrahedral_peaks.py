@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from highfi import tetrahedral_recovery
-from highfi.memory import aligned
+from scenes.memory import aligned
 from highfi.worst import measure, note
 from scenes.jit import inlined, kernel
 

@@ -11,6 +11,7 @@ from lowfi.events import SOONEST, SURVEY_SIZE, felt, first_event, on_rail, same_
 from lowfi.limits import fastest_rate
 from lowfi.sample import observe, rearmost_edge
 from scenes.jit import inlined, kernel
+from scenes.memory import zeros
 
 # What ``march`` returns: all samples taken, or why it stopped before.
 SAMPLED, PASSED, UNDERFLOW, OUT_OF_STEPS, NOT_FINITE = range(5)
@@ -53,9 +54,10 @@ class Loop(NamedTuple):
 def ready(system, state: np.ndarray, first_step: float) -> Loop:
     """A loop about to take its first sample of ``system`` at ``state`` (STATE_SIZE,), and its first step of ``first_step`` (s)."""
     faces = system.faces.shape[0]
-    loop = Loop(np.zeros(slot.STATE_SIZE), np.zeros(slot.STATE_SIZE), np.zeros((STAGES, slot.STATE_SIZE)), np.zeros((faces, SURVEY_SIZE)),
-                np.zeros((faces, SURVEY_SIZE)), np.zeros(faces, dtype=np.bool_), np.zeros(faces, dtype=np.bool_), np.zeros(CLOCK_SIZE),
-                np.zeros(COUNT_SIZE, dtype=np.int64), np.zeros(slot.STATE_SIZE))
+    state_, survey_ = (slot.STATE_SIZE,), (faces, SURVEY_SIZE)
+    loop = Loop(zeros(state_), zeros(state_), zeros((STAGES, slot.STATE_SIZE)), zeros(survey_), zeros(survey_),
+                np.zeros(faces, dtype=np.bool_), np.zeros(faces, dtype=np.bool_), zeros((CLOCK_SIZE,)),
+                np.zeros(COUNT_SIZE, dtype=np.int64), zeros(state_))
     reset(system, state, first_step, loop)
     return loop
 

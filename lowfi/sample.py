@@ -8,7 +8,7 @@ from lowfi.state import IMPULSE, MOMENT, PAYLOAD, PLACE, PLATFORM, VELOCITY, WOR
 from lowfi.system import HALF_LENGTH
 from lowfi.touch import along, load, penetration, relative_pose
 from scenes import rotation
-from scenes.jit import kernel
+from scenes.jit import inlined, kernel
 
 # Slots of a sample: payload and platform first (place, velocity, quaternion, rate in body axes), each BODY_SIZE long.
 RATE = slot.MOMENT  # where the state holds angular momentum the sample holds the rate
@@ -37,19 +37,19 @@ def observe(system, engaged, state, row, forces):
     return np.isfinite(total)
 
 
-@kernel
+@inlined
 def posture(system, state, row):
     """Fill only what ``row`` tells of the motion: its first two bodies."""
     _place(state, slot.motion(system.payload.mass, system.payload.inverse_inertia, state, PAYLOAD), slot.frame(system.platform, state), row)
 
 
-@kernel
+@inlined
 def payload_rates(payload, state, row):
     """Fill only the payload's part of ``row``."""
     _copy(state[:PLATFORM], slot.motion(payload.mass, payload.inverse_inertia, state, PAYLOAD), row[:PLATFORM])
 
 
-@kernel
+@inlined
 def _place(state, body, base, row):
     _copy(state[:PLATFORM], body, row[:PLATFORM])
     _copy(state[PLATFORM:], base, row[PLATFORM:])
@@ -66,7 +66,7 @@ def relative_axial_speed(platform, row):
     return turn[0] * (v[0] - V[0] - swing[0]) + turn[3] * (v[1] - V[1] - swing[1]) + turn[6] * (v[2] - V[2] - swing[2])
 
 
-@kernel
+@inlined
 def rearmost_edge(faces, platform, row):
     """X (m) in platform axes of the rearmost trailing edge of the pads."""
     place, turn = slot.triple(row, PAYLOAD + PLACE), rotation.matrix(slot.quaternion(row, PAYLOAD))
@@ -79,7 +79,7 @@ def rearmost_edge(faces, platform, row):
     return rearmost
 
 
-@kernel
+@inlined
 def _copy(state, body, row):
     """Places and velocities of one body, whose slots stand first in ``state`` and ``row``."""
     slot.copy(state, row, slot.MOMENT)

@@ -17,7 +17,7 @@ from lowfi.sample import payload_rates, posture, rearmost_edge, relative_axial_s
 from lowfi.system import Body, System
 from scenes import outcome
 from scenes.effects.thrust_offset import ThrustOffset
-from scenes.jit import kernel
+from scenes.jit import inlined, kernel
 
 # What became of a case.
 LEFT_OPEN, EXITED, TIME_LIMIT = range(3)
@@ -211,24 +211,24 @@ def _sample(system, loop, time, row):
     posture(system, loop.work, row)
 
 
-@kernel
+@inlined
 def _sample_payload(system, loop, time, row):
     """The same of the payload alone, its places apart."""
     clock = loop.clock
     if time == clock[NOW]:
         slot.copy(loop.end, loop.work, slot.BODY_SIZE)
     else:
-        interpolate(clock[SIZE], (time - clock[BEGAN]) / clock[SIZE], loop.start, loop.stages, slot.DYNAMIC_SIZE, loop.work)
+        interpolate(clock[SIZE], (time - clock[BEGAN]) / clock[SIZE], loop.start, loop.stages, slot.BODY_SIZE, loop.work)
     payload_rates(system.payload, loop.work, row)
 
 
-@kernel
+@inlined
 def _edge(system, loop, row):
     posture(system, loop.end, row)
     return rearmost_edge(system.faces, system.platform, row)
 
 
-@kernel
+@inlined
 def _course(loop, before, after, interval):
     """Mean speed (m/s) of the rearmost edge in the last step, and how far (m) a sample may lie ahead of the chord and still matter.
 
@@ -240,7 +240,7 @@ def _course(loop, before, after, interval):
     return chord, 0.3 * lasted * bend + (2 + _NEAR) * interval * abs(chord) + 1e-6
 
 
-@kernel
+@inlined
 def _speed(state):
     return state[slot.VELOCITY] - state[slot.PLATFORM + slot.VELOCITY]
 
@@ -254,7 +254,7 @@ def _slow(system, loop, time, ends, row):
     return not abs(relative_axial_speed(system.platform, row)) > ends.jam_speed * _CLEARLY
 
 
-@kernel
+@inlined
 def _finite(state):
     total = 0.0
     for j in range(state.size):

@@ -25,7 +25,7 @@ DYNAMIC_SIZE = 26  # what the equations of motion depend on
 # Slots of work and loss (J), total and axial part.
 THRUST, THRUST_AXIAL, GRAVITY, GRAVITY_AXIAL, FRICTION, FRICTION_AXIAL, DAMPING, RELEASED, CONTACT_AXIAL = range(WORK, WORK + 9)
 WORK_SIZE = 9
-STATE_SIZE = WORK + WORK_SIZE
+STATE_SIZE = 48  # WORK + WORK_SIZE, filled up to whole cache lines: rows of stages are read as vectors of eight
 
 
 class Motion(NamedTuple):

@@ -16,9 +16,9 @@ _KERNEL_PACKAGES = ("scenes", "highfi", "lowfi")
 
 
 def kernel_digest() -> str:
-    """Hexadecimal digest (16 digits) of every source file that may hold a kernel, and of the Numba version."""
+    """Hexadecimal digest (16 digits) of every source file that may hold a kernel, of the Numba version and its optimisation level."""
     root = Path(__file__).resolve().parent.parent
-    digest = hashlib.sha256(numba.__version__.encode())
+    digest = hashlib.sha256(f"{numba.__version__} {numba.config.OPT!r}".encode())
     for package in _KERNEL_PACKAGES:
         for path in sorted((root / package).rglob("*.py")):
             digest.update(str(path.relative_to(root)).encode())
@@ -31,6 +31,11 @@ def _cache_directory() -> Path:
     default = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache")) / "tipoff" / "kernels"
     return (Path(chosen) if chosen else default) / kernel_digest()
 
+
+# Kernels are compiled as parts of those that call them, each time from code that was optimised before. At level 3 the first pass turns
+# vectors of states into scalars, which the next one does not mend: the surrogate then takes half as long again.
+if "NUMBA_OPT" not in os.environ:
+    numba.config.OPT = type(numba.config.OPT)("max")
 
 numba.config.CACHE_DIR = str(_cache_directory())
 

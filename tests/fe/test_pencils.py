@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from highfi import assembly, folding, pencils
-from highfi.memory import zeros
+from scenes.memory import zeros
 from highfi.mesh import read
 from highfi.operator import internal_force
 from highfi.pencil_kernel import pencil_force
