@@ -5,7 +5,7 @@ import numpy as np
 from lowfi import state
 from lowfi.march import DAMPING_POWER, FRICTION_POWER
 from lowfi.sample import ANGULAR, AXIAL_KINETIC, GIVEN, KINETIC, LINEAR, RATE, STORED, WORKS
-from scenes import ledger
+from scenes import ledger, rotation
 from scenes.outcome import Motion
 
 _ENTRY = {name: index for index, name in enumerate(ledger.ENTRIES)}
@@ -42,7 +42,7 @@ def checks(rows: np.ndarray, moved: Motion, total: np.ndarray, across: np.ndarra
     norms = [np.sqrt(np.einsum("ni,ni->n", q, q)) for q in (moved.quaternion, moved.platform_quaternion)]
     return {"energy_error": ledger.total_error(total), "transverse_energy_error": ledger.transverse_error(across),
             "linear_momentum_error": _unexplained(rows, LINEAR, GIVEN, own),
-            "angular_momentum_error": _unexplained(rows, ANGULAR, GIVEN + 3, np.cross(moved.position, own)),
+            "angular_momentum_error": _unexplained(rows, ANGULAR, GIVEN + 3, rotation.crosses(moved.position, own)),
             "quaternion_error": float(max(np.abs(norm - 1.0).max() for norm in norms)),
             "friction_power_max": _power(clock[FRICTION_POWER]), "damping_power_max": _power(clock[DAMPING_POWER])}
 

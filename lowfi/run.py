@@ -9,7 +9,7 @@ from lowfi import balance, march, plan, state, system
 from lowfi.accuracy import Tolerance
 from lowfi.march import EVALUATIONS, EVENTS, LIMIT, LIMIT_USED, NOW, REJECTED, STEPS, TAKEN
 from lowfi.numerics import Numerics
-from lowfi.sample import SAMPLE_SIZE
+from lowfi.sample import SAMPLE_SIZE, relative_axial_speed
 from scenes import model as models
 from scenes import outcome
 from scenes.calibration import Calibration
@@ -91,6 +91,8 @@ class Run:
             self._look(status == march.PASSED)
 
     def _look(self, passed: bool) -> None:
+        if not passed and self._is_moving():
+            return
         recent = self._motion(max(0, self.taken - 2 - round(2.0 * outcome.JAM_DURATION / self.interval)))
         if passed:
             exit_at = outcome.exit_time(recent, self.marks)
@@ -100,6 +102,12 @@ class Run:
                 self.end = min(self.end, int(np.ceil(settled / self.interval)) + _BEYOND_WINDOW)
         elif outcome.is_jammed(recent, self.marks):
             self.end = self.taken - 1
+
+    def _is_moving(self) -> bool:
+        """Whether the payload cannot be jammed by now, judged cheaply."""
+        last = self.taken - 1
+        return not (outcome.may_be_jammed(last * self.interval, self.marks)
+                    and abs(relative_axial_speed(self.system.platform, self.rows[last])) < 2.0 * self.marks.jam_speed)
 
     def _motion(self, first: int = 0) -> outcome.Motion:
         return balance.motion(self.rows[first:self.taken], first, self.interval)

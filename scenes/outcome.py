@@ -65,7 +65,7 @@ def milestones(scene: Scene, model) -> Milestones:
     edges = model.faces.centre.copy()
     edges[:, 0] -= model.faces.half_length
     record = model.thrust
-    return Milestones(thrust.burnout(record, 1e-3, scene.duration), thrust.burnout(record, 1e-2, scene.duration), jam_speed(model),
+    return Milestones(*thrust.burnouts(record, (1e-3, 1e-2), scene.duration), jam_speed(model),
                       scene.thrust.kind == "constant", edges, model.rail_end)
 
 
@@ -79,7 +79,7 @@ def relative_motion(motion) -> dict[str, np.ndarray]:
     frame = rotation.matrices(motion.platform_quaternion)
     separation = motion.position - motion.platform_position
     spin = np.einsum("nij,nj->ni", frame, motion.platform_rate)
-    drift = motion.velocity - motion.platform_velocity - np.cross(spin, separation)
+    drift = motion.velocity - motion.platform_velocity - rotation.crosses(spin, separation)
     body = rotation.matrices(motion.quaternion)
     return {"relative_position": np.einsum("nji,nj->ni", frame, separation),
             "relative_velocity": np.einsum("nji,nj->ni", frame, drift),
@@ -159,10 +159,15 @@ def average(time, values, start, end, work, slope, out):
         out[axis] = spline.integral(time, values, slope, axis, start, end) / (end - start)
 
 
+def may_be_jammed(now: float, marks: Milestones) -> bool:
+    """Whether thrust leaves room for a jam that has lasted long enough at ``now`` (s)."""
+    return now >= JAM_DURATION and (marks.constant_thrust or now - JAM_DURATION >= marks.spent_thrust)
+
+
 def is_jammed(motion, marks: Milestones) -> bool:
     """Whether the payload has come to rest on the rail by the last sample."""
     now = motion.time[-1]
-    if now < JAM_DURATION or not (marks.constant_thrust or now - JAM_DURATION >= marks.spent_thrust):
+    if not may_be_jammed(now, marks):
         return False
     recent = motion.time >= now - JAM_DURATION * (1.0 + 1e-9)
     speed = relative_motion(motion)["relative_velocity"][recent, 0]

@@ -89,6 +89,11 @@ def angular_velocity(m, inverse_inertia, momentum):
     return rotate(m, w)
 
 
+def crosses(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """Vector products of two (n,3) arrays. numpy's own spends ten times as long on finding out which axis is meant."""
+    return a[:, [1, 2, 0]] * b[:, [2, 0, 1]] - a[:, [2, 0, 1]] * b[:, [1, 2, 0]]
+
+
 def matrices(quaternion: np.ndarray) -> np.ndarray:
     """Rotation matrices (n,3,3) of unit quaternions (n,4)."""
     w, x, y, z = np.asarray(quaternion, dtype=float).T

@@ -106,7 +106,8 @@ class Trajectory:
             if not np.isfinite(getattr(self, name)).all():
                 raise ValueError(f"{name} holds NaN or inf: a run must stop before it reaches a result")
         plain = {name: getattr(self, name) for name in _PLAIN} | {"outcome": self.outcome._asdict()}
-        if lost := [".".join(path) for path, number in _numbers(plain) if not math.isfinite(number)]:
+        if not _is_finite(plain):
+            lost = [".".join(path) for path, number in _numbers(plain) if not math.isfinite(number)]
             raise ValueError(f"{', '.join(lost)}: NaN or inf, which no result may hold (None says that there is no value)")
 
     def to_xarray(self) -> xarray.Dataset:
@@ -146,6 +147,15 @@ class Trajectory:
         except (OSError, KeyError, TypeError, ValueError, RuntimeError) as error:
             # What HDF5 says of a damaged file depends on where the damage is.
             raise OSError(f"{path}: not a whole trajectory file ({error})") from error
+
+
+def _is_finite(plain: dict) -> bool:
+    """Whether every number of nested dicts and lists is finite, asked of the encoder that will write them."""
+    try:
+        json.dumps(plain, allow_nan=False)
+    except ValueError:
+        return False
+    return True
 
 
 def _numbers(value, path=()):

@@ -124,19 +124,27 @@ def peak(thrust: Thrust, duration: float) -> float:
     return float(_grid(thrust, duration)[1].max())
 
 
-def burnout(thrust: Thrust, fraction: float, duration: float) -> float:
-    """Earliest time (s) after which thrust stays below ``fraction`` of its peak; ``duration`` if that is later.
+def burnouts(thrust: Thrust, fractions: tuple[float, ...], duration: float) -> tuple[float, ...]:
+    """For each fraction the earliest time (s) after which thrust stays below this share of its peak; ``duration`` if that is later.
 
     The last grid point above is found first, then the crossing behind it by bisection to the last bit.
     """
     time, force = _grid(thrust, duration)
-    level = fraction * force.max()
-    above = np.flatnonzero(force >= level)
+    return tuple(_last_above(thrust, time, force, fraction * force.max(), duration) for fraction in fractions)
+
+
+def burnout(thrust: Thrust, fraction: float, duration: float) -> float:
+    """``burnouts`` of one fraction."""
+    return burnouts(thrust, (fraction,), duration)[0]
+
+
+def _last_above(thrust: Thrust, time: np.ndarray, force: np.ndarray, level: float, duration: float) -> float:
     if level == 0.0:
         return 0.0
-    if above[-1] == time.size - 1:
+    above = np.flatnonzero(force >= level)[-1]
+    if above == time.size - 1:
         return float(duration)
-    return float(_bisected(thrust.pulses, thrust.curve, level, time[above[-1]], time[above[-1] + 1]))
+    return float(_bisected(thrust.pulses, thrust.curve, level, time[above], time[above + 1]))
 
 
 def kept(begin: float, end: float, centre: float, width: float) -> float:
