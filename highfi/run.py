@@ -25,6 +25,7 @@ from highfi.surface import magnification
 from highfi.system import System, build, initial_state
 from highfi.team import gather, processors
 from scenes import ledger, outcome, rotation
+from scenes.effects.friction import require_two_step
 from scenes.scene import Scene
 from scenes.trajectory import Trajectory
 
@@ -40,6 +41,7 @@ def prepare(scene: Scene, numerics: Numerics | None = None) -> RailMesh:
 
     Raises SceneError, also where memory does not suffice, or MeshError.
     """
+    require_two_step(scene)
     numerics = numerics or Numerics()
     key = (geometry(scene), numerics.element_size)
     with _MESH_LOCK:

@@ -7,8 +7,8 @@ from scenes.jit import machine_code
 from scenes.scene import Scene
 
 # A function that only this effect calls.
-LAWS = {"contact": "penetration", "friction": "coefficient_over_speed", "gravity": "_weigh", "platform": "_relative_turn",
-        "thrust_offset": "_offset_line"}
+LAWS = {"contact": "penetration", "friction": "coefficient_over_speed", "sticking": "traction", "gravity": "_weigh",
+        "platform": "_relative_turn", "thrust_offset": "_offset_line"}
 
 
 def compiled_effects(scene: Scene, numerics: Numerics | None = None) -> dict[str, bool]:

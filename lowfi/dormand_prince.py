@@ -37,7 +37,7 @@ DENSE = np.array([
 
 
 @inlined
-def attempt(system, active, stretch, time, dt, fresh, start, stages, end):
+def attempt(system, active, grip, stretch, time, dt, fresh, start, stages, end):
     """From ``start`` (STATE_SIZE,) at ``time`` to ``end`` at ``time + dt``; unless ``fresh``, ``stages`` (7, STATE_SIZE) holds k_1.
 
     Thrust is taken inside ``stretch`` (s), open between two corners, whatever rounding does to stage times.
@@ -46,7 +46,7 @@ def attempt(system, active, stretch, time, dt, fresh, start, stages, end):
         _combine(stage, dt, start, stages, end)
         if stage == STAGES - 1:
             normalise(end)
-        derivative(system, active, min(max(time + NODES[stage] * dt, stretch[0]), stretch[1]), end, stages[stage])
+        derivative(system, active, grip, min(max(time + NODES[stage] * dt, stretch[0]), stretch[1]), end, stages[stage])
 
 
 @inlined

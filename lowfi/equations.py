@@ -6,6 +6,7 @@ Every effect adds itself to the derivative in one line of ``derivative``; while 
 Axial power is each force's X component times the X velocity of the mass centre of the body it acts on (``scenes.ledger``).
 """
 
+from lowfi import grip as grips
 from lowfi import state as slot
 from lowfi.state import IMPULSE, MOMENT, PAYLOAD, PLACE, PLATFORM, QUATERNION, TURN, VELOCITY
 from lowfi.touch import load, penetration, relative_pose
@@ -15,14 +16,16 @@ from scenes.jit import inlined
 
 
 @inlined
-def derivative(system, active, time, state, out):
-    """Fill ``out`` with the time derivative of ``state`` (both STATE_SIZE,). ``active`` (f,) tells which faces are felt."""
+def derivative(system, active, grip, time, state, out):
+    """Fill ``out`` with the time derivative of ``state`` (both STATE_SIZE,). ``active`` (f,) tells which faces are felt, ``grip``
+    (f, GRIP_SIZE) or None how they stick."""
     body = slot.motion(system.payload.mass, system.payload.inverse_inertia, state, PAYLOAD)
     base = slot.frame(system.platform, state)
     out[:] = 0.0
     add_thrust(system.thrust, system.thrust_offset, system.platform, system.reacts_on_platform, system.ledger, time, body, base, out)
     add_gravity(system.gravity, system.payload, system.platform, system.ledger, body, base, out)
-    add_contact(system.contact, system.friction, system.faces, system.platform, system.ledger, active, body, base, out)
+    add_contact(system.contact, system.friction, system.sticking, system.faces, system.platform, system.ledger, active, grip, body,
+                base, out)
     move(system.payload.mass, state[:PLATFORM], body, out[:PLATFORM])
     move_platform(system.platform, state, base, out)
 
@@ -134,14 +137,16 @@ def _weigh(gravity, mass, which, ledger, body, out):
 
 
 @inlined
-def add_contact(laws, friction, faces, platform, ledger, active, body, base, out):
+def add_contact(laws, friction, sticking, faces, platform, ledger, active, grip, body, base, out):
     if laws is not None:
         place, turn = relative_pose(platform, body, base)
         for i in range(active.size):
             if active[i]:
                 p = penetration(faces[i], place, turn)
                 if p > 0.0:
-                    _press(load(laws, friction, platform, faces[i], p, body, base), friction, platform, ledger, body, base, out)
+                    face = load(laws, friction, platform, faces[i], p, body, base)
+                    _press(face, friction, platform, ledger, body, base, out)
+                    _grip(sticking, grip, i, faces, face, platform, ledger, body, base, out)
 
 
 @inlined
@@ -150,6 +155,23 @@ def _press(face, friction, platform, ledger, body, base, out):
     _pair(platform, ledger, face.normal, face.point, out)
     _spend(ledger, face, platform, body, base, out)
     _rub(friction, face, platform, ledger, body, base, out)
+
+
+@inlined
+def _grip(sticking, grip, number, faces, face, platform, ledger, body, base, out):
+    """Add the friction that sticks. Of its work only the heat is lost, what the spring takes is stored; the axial part of all of it
+    stands with friction, where the spring's energy ends too."""
+    if sticking is not None:
+        drag, heat = grips.traction(sticking, grip[number], faces[number], face, base)
+        _pair(platform, ledger, drag, face.point, out)
+        _lose(ledger, heat, drag[0] * _axial_speed(platform, body, base), out)
+
+
+@inlined
+def _lose(ledger, heat, axial_power, out):
+    if ledger is not None:
+        out[slot.FRICTION] += heat
+        out[slot.FRICTION_AXIAL] -= axial_power
 
 
 @inlined

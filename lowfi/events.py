@@ -3,11 +3,13 @@
 A face that is open when a step begins is not felt within it: the step passes through the wall, the instant of touching is found on its
 interpolant (regula falsi of the Illinois kind), and the step ends there: on its interpolant where the law was one and the same all along
 and the error leaves room, else by taking it again up to there. So no step crosses a jump, none is rejected for one, and no contact is too
-short to be seen. A gap that closes and opens again by itself is found from the cubic through its ends.
+short to be seen. A gap that closes and opens again by itself is found from the cubic through its ends. Where friction sticks, a
+face that slips or stops ends the step likewise.
 """
 
 import numpy as np
 
+from lowfi import grip as grips
 from lowfi import state as slot
 from lowfi.dormand_prince import interpolate
 from lowfi.touch import along, approach, load, penetration, relative_motion, relative_pose
@@ -20,13 +22,13 @@ SOONEST = 1e-9  # an event in this first part of a step is the one the step bega
 _NEAR = 1e-7  # pull that counts as zero
 # Modes of a face, and columns of what ``survey`` fills.
 OPEN, PRESSING, CUT_OFF = 0.0, 1.0, 2.0
-MODE, DEPTH, CLOSING, PULL, ALONG, SURVEY_SIZE = 0, 1, 2, 3, 4, 5
+MODE, DEPTH, CLOSING, PULL, ALONG, MARGIN, SURVEY_SIZE = 0, 1, 2, 3, 4, 5, 6
 
 
 @inlined
-def survey(laws, faces, platform, payload, state, out):
-    """Fill ``out`` (f, SURVEY_SIZE) with mode, penetration (m), its rate (m/s), pull and X (m) of every face. The mode of a face off
-    the rail is the one it would have there."""
+def survey(laws, sticking, faces, platform, payload, grip, state, out):
+    """Fill ``out`` (f, SURVEY_SIZE) with mode, penetration (m), its rate (m/s), pull, X (m) and margin of grip of every face. The
+    mode of a face off the rail is the one it would have there."""
     if laws is not None:
         body, base = slot.motion(payload.mass, payload.inverse_inertia, state, slot.PAYLOAD), slot.frame(platform, state)
         place, turn = relative_pose(platform, body, base)
@@ -40,6 +42,19 @@ def survey(laws, faces, platform, payload, state, out):
                 face = load(laws, None, platform, faces[i], p, body, base)
                 out[i, MODE] = PRESSING if face.raw >= 0.0 else CUT_OFF
                 out[i, PULL] = _pull(face)
+            out[i, MARGIN] = _margin(laws, sticking, grips.row_of(sticking, grip, i), platform, faces[i], p, body, base)
+
+
+@inlined
+def _margin(laws, sticking, row, platform, face, p, body, base):
+    """Margin of a face's grip at penetration ``p`` (m): none for a held one across a gap."""
+    left = 1.0
+    if sticking is not None:
+        if p > 0.0:
+            left = grips.margin(sticking, row, face, load(laws, None, platform, face, p, body, base), base)
+        elif row[grips.HELD] != 0.0:
+            left = -1.0
+    return left
 
 
 @inlined
@@ -50,7 +65,7 @@ def _pull(face):
 
 
 @inlined
-def first_event(laws, payload, platform, faces, rail, engaged, before, after, dt, span, start, stages, work):
+def first_event(laws, sticking, payload, platform, faces, rail, engaged, grip, before, after, dt, span, start, stages, work):
     """Fraction (0..1] of the first ``span`` of a step at which it must end, and the face to blame; ``before`` and ``after`` survey the
     ends of that part.
 
@@ -69,9 +84,27 @@ def first_event(laws, payload, platform, faces, rail, engaged, before, after, dt
             for kind in (DEPTH, PULL, ALONG):
                 level = _level(rail, engaged[i], kind, before[i], after[i])
                 if not np.isnan(level):
-                    theta = _locate(laws, payload, platform, faces[i], kind, before[i], after[i], level, dt, span, start, stages, work)
+                    theta = _locate(laws, sticking, grips.row_of(sticking, grip, i), payload, platform, faces[i], kind, before[i],
+                                    after[i], level, dt, span, start, stages, work)
                     if theta < first and (theta > SOONEST or (kind == DEPTH and after[i, DEPTH] > 0.0)):
                         first, blamed = theta, i
+        first, blamed = _change_of_grip(laws, sticking, payload, platform, faces, engaged, grip, before, after, dt, span, start,
+                                        stages, work, first, blamed)
+    return first, blamed
+
+
+@inlined
+def _change_of_grip(laws, sticking, payload, platform, faces, engaged, grip, before, after, dt, span, start, stages, work, first,
+                    blamed):
+    """``first`` and ``blamed``, or the fraction at which a face slips or stops before, and that face."""
+    if sticking is not None:
+        for i in range(engaged.size):
+            level = grips.last_margin(grip[i], before[i, MARGIN])
+            if engaged[i] and before[i, MODE] != OPEN and before[i, MARGIN] > level > after[i, MARGIN]:
+                theta = _locate(laws, sticking, grip[i], payload, platform, faces[i], MARGIN, before[i], after[i], level, dt, span,
+                                start, stages, work)
+                if SOONEST < theta < first:
+                    first, blamed = theta, i
     return first, blamed
 
 
@@ -104,28 +137,30 @@ def _edge(rail_start, rail_end, engaged, before, after):
 
 
 @inlined
-def _gauge(laws, payload, platform, face, kind, state):
+def _gauge(laws, sticking, row, payload, platform, face, kind, state):
     """Quantity ``kind`` of ``face`` at ``state``."""
     body, base = slot.motion(payload.mass, payload.inverse_inertia, state, slot.PAYLOAD), slot.frame(platform, state)
     place, turn = relative_pose(platform, body, base)
     if kind == ALONG:
         return along(face, place, turn)
     p = penetration(face, place, turn)
+    if kind == MARGIN:
+        return _margin(laws, sticking, row, platform, face, p, body, base)
     return p if kind == DEPTH else _pull(load(laws, None, platform, face, max(p, 0.0), body, base))
 
 
 @inlined
-def _locate(laws, payload, platform, face, kind, before, after, level, dt, span, start, stages, work):
+def _locate(laws, sticking, row, payload, platform, face, kind, before, after, level, dt, span, start, stages, work):
     """Fraction of the first ``span`` of a step at which the quantity passes ``level``; ``before`` and ``after`` survey its ends."""
     low, high, side = 0.0, 1.0, 0
     f_low, f_high = before[kind] - level, after[kind] - level
-    close = 1e-13 if kind != PULL else 0.1 * _NEAR
+    close = 0.1 * abs(level) if kind == MARGIN else 0.1 * _NEAR if kind == PULL else 1e-13
     theta = f_low / (f_low - f_high)
     if kind == DEPTH:
         theta = _cubic_root(f_low, f_high, span * dt * before[CLOSING], span * dt * after[CLOSING], theta)
     for _ in range(60):
         interpolate(dt, span * theta, start, stages, slot.DYNAMIC_SIZE, work)
-        f = _gauge(laws, payload, platform, face, kind, work) - level
+        f = _gauge(laws, sticking, row, payload, platform, face, kind, work) - level
         if abs(f) < close or high - low < 1e-14:
             return theta
         if f * f_high > 0.0:

@@ -7,11 +7,14 @@ the traces bound the spectra of K and C, hence every eigenvalue s::
     |s| <= S = C/2 + sqrt(C^2/4 + K),   K = sum_i |k_i| w_i(n),   C = sum_i |c_i| w_i(n) + N_i |mu'| (w_i(t1) + w_i(t2))
 
 and no step is taken above ``STABLE_RADIUS / S`` (``lowfi.dormand_prince``). |mu'| is the larger of mu/s and |d mu/ds| at the slip now.
+Under the law that sticks a held face adds its spring and damper in both tangents, a sliding one N mu_d/|g| across g
+(``lowfi.grip``).
 """
 
 import numpy as np
 
 from lowfi import state as slot
+from lowfi.grip import HELD, heading
 from lowfi.touch import load, outward, penetration, relative_pose
 from scenes import rotation
 from scenes.effects import contact as law
@@ -22,7 +25,7 @@ _NUDGE = 1e-6  # relative change of p or s in a difference quotient: truncation 
 
 
 @inlined
-def fastest_rate(laws, friction, faces, platform, payload, active, state, ahead):
+def fastest_rate(laws, friction, sticking, faces, platform, payload, active, grip, state, ahead):
     """Bound S (1/s) of the eigenvalues of the ``active`` faces (f,) that touch at ``state``; 0 when none does.
 
     With a time ``ahead`` (s) it is a guess of the bound then: every face that closes is taken to go on closing at its speed.
@@ -38,8 +41,9 @@ def fastest_rate(laws, friction, faces, platform, payload, active, state, ahead)
                 if p > 0.0:
                     p += ahead * max(load(laws, None, platform, faces[i], p, body, base).closing, 0.0)
                     k, c = _face(laws, friction, platform, payload, faces[i], p, body, base)
-                    stiffness += k
-                    damping += c
+                    held, rubbed = _grip(laws, sticking, grip, i, platform, payload, faces, p, body, base)
+                    stiffness += k + held
+                    damping += c + rubbed
         rate = 0.5 * damping + np.sqrt(0.25 * damping * damping + stiffness)
     return rate
 
@@ -69,6 +73,26 @@ def _friction_damping(friction, now, platform, payload, body, base, n):
         damping = max(now.raw, 0.0) * slope * (inverse_mass(platform, payload, body, base, now.point, a)
                                                 + inverse_mass(platform, payload, body, base, now.point, b))
     return damping
+
+
+@inlined
+def _grip(laws, sticking, grip, number, platform, payload, faces, p, body, base):
+    """Contribution of the law that sticks to K (1/s2) and C (1/s)."""
+    stiffness, damping = 0.0, 0.0
+    if sticking is not None:
+        now, n = load(laws, None, platform, faces[number], p, body, base), outward(faces[number], base)
+        row = grip[number]
+        if row[HELD] != 0.0:
+            a = _tangent(n)
+            across = (inverse_mass(platform, payload, body, base, now.point, a)
+                      + inverse_mass(platform, payload, body, base, now.point, rotation.cross(n, a)))
+            stiffness, damping = sticking.stiffness * across, sticking.damping * across
+        else:
+            g = heading(sticking, row, now.slip, base)
+            size = np.sqrt(rotation.dot(g, g))
+            a = rotation.cross(n, (g[0] / size, g[1] / size, g[2] / size))
+            damping = sticking.dynamic * max(now.raw, 0.0) / size * inverse_mass(platform, payload, body, base, now.point, a)
+    return stiffness, damping
 
 
 @inlined

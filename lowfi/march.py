@@ -8,7 +8,9 @@ from lowfi import state as slot
 from lowfi.accuracy import error_ratio
 from lowfi.dormand_prince import STABLE_RADIUS, STAGES, attempt, interpolate
 from lowfi.events import SOONEST, SURVEY_SIZE, felt, first_event, on_rail, same_law, survey
+from lowfi.grip import GRIP_SIZE, let_go
 from lowfi.limits import fastest_rate
+from lowfi.regrip import grasp, regrip
 from lowfi.sample import observe, rearmost_edge
 from scenes.jit import inlined, kernel
 from scenes.memory import zeros
@@ -36,8 +38,8 @@ class Plan(NamedTuple):
 
 
 class Loop(NamedTuple):
-    """What evolves: states at the ends of the last step, its stages, surveys of its ends, faces on the rail and those felt in the last step,
-    clock and counts."""
+    """What evolves: states at the ends of the last step, its stages, surveys of its ends, faces on the rail, those felt in the last
+    step and their grips in it (None where friction does not stick), clock and counts."""
 
     start: np.ndarray
     end: np.ndarray
@@ -46,6 +48,7 @@ class Loop(NamedTuple):
     after: np.ndarray
     engaged: np.ndarray
     active: np.ndarray
+    grip: np.ndarray | None
     clock: np.ndarray
     count: np.ndarray
     work: np.ndarray
@@ -55,8 +58,9 @@ def ready(system, state: np.ndarray, first_step: float) -> Loop:
     """A loop about to take its first sample of ``system`` at ``state`` (STATE_SIZE,), and its first step of ``first_step`` (s)."""
     faces = system.faces.shape[0]
     state_, survey_ = (slot.STATE_SIZE,), (faces, SURVEY_SIZE)
+    grip = zeros((faces, GRIP_SIZE)) if system.sticking is not None else None
     loop = Loop(zeros(state_), zeros(state_), zeros((STAGES, slot.STATE_SIZE)), zeros(survey_), zeros(survey_),
-                np.zeros(faces, dtype=np.bool_), np.zeros(faces, dtype=np.bool_), zeros((CLOCK_SIZE,)),
+                np.zeros(faces, dtype=np.bool_), np.zeros(faces, dtype=np.bool_), grip, zeros((CLOCK_SIZE,)),
                 np.zeros(COUNT_SIZE, dtype=np.int64), zeros(state_))
     reset(system, state, first_step, loop)
     return loop
@@ -75,9 +79,37 @@ def reset(system, state, first_step, loop):
     loop.engaged[:] = False
     loop.active[:] = False
     loop.stages[:] = 0.0
+    loop.before[:] = 0.0
     loop.after[:] = 0.0
-    survey(system.contact, system.faces, system.platform, system.payload, state, loop.after)
+    _let_go(loop.grip)
+    _survey(system, loop)
     on_rail(system.contact, system.rail_start, system.rail_end, loop.after, loop.engaged)
+    _regrip(system, loop)
+
+
+@inlined
+def _let_go(grip):
+    if grip is not None:
+        for i in range(grip.shape[0]):
+            let_go(grip[i])
+
+
+@inlined
+def _survey(system, loop):
+    survey(system.contact, system.sticking, system.faces, system.platform, system.payload, loop.grip, loop.end, loop.after)
+
+
+@inlined
+def _regrip(system, loop):
+    """As the step after ``loop.end`` begins."""
+    return regrip(system.contact, system.sticking, system.payload, system.platform, system.faces, loop.engaged, loop.active,
+                  loop.grip, loop.before, loop.after, loop.end)
+
+
+@inlined
+def _fastest_rate(system, loop, state, ahead):
+    return fastest_rate(system.contact, system.friction, system.sticking, system.faces, system.platform, system.payload,
+                        loop.active, loop.grip, state, ahead)
 
 
 @kernel
@@ -96,7 +128,7 @@ def march(system, plan, tolerance, loop, last, until_passed, rows, forces):
             slot.copy(loop.end, loop.work, slot.STATE_SIZE)
         else:
             interpolate(clock[SIZE], (time - clock[BEGAN]) / clock[SIZE], loop.start, loop.stages, slot.STATE_SIZE, loop.work)
-        if not observe(system, loop.engaged, loop.work, rows[number], forces[number]):
+        if not observe(system, loop.engaged, loop.grip, loop.work, rows[number], forces[number]):
             return NOT_FINITE
         count[TAKEN] += 1
         if until_passed and rearmost_edge(system.faces, system.platform, rows[number]) > system.rail_end:
@@ -120,7 +152,7 @@ def step(system, plan, tolerance, loop):
         dt = stop - start if reaches else dt
         if start + dt == start or not dt > 0.0:
             return False
-        attempt(system, loop.active, stretch, start, dt, fresh, loop.start, loop.stages, loop.end)
+        attempt(system, loop.active, loop.grip, stretch, start, dt, fresh, loop.start, loop.stages, loop.end)
         count[EVALUATIONS] += STAGES if fresh else STAGES - 1
         fresh = False
         ratio = error_ratio(tolerance, system.payload, system.platform, dt, loop.stages, loop.end, loop.work)
@@ -128,18 +160,18 @@ def step(system, plan, tolerance, loop):
             count[REJECTED] += 1
             clock[WANTED] = dt * (max(_SHRINK, _SAFETY * ratio**-0.2) if ratio < np.inf else _SHRINK)
             continue
-        clock[RATE] = fastest_rate(system.contact, system.friction, system.faces, system.platform, system.payload, loop.active,
-                                   loop.end, 0.0)
+        clock[RATE] = _fastest_rate(system, loop, loop.end, 0.0)
         limit = STABLE_RADIUS / max(rate, clock[RATE])
         if dt > limit * (1.0 + 1e-12):
             count[REJECTED] += 1
             clock[WANTED] = _SAFETY * limit
             continue
-        survey(system.contact, system.faces, system.platform, system.payload, loop.end, loop.after)
+        _survey(system, loop)
         smooth = ratio <= _SPARE and same_law(loop.before, loop.after, loop.active)
         span, face = _land(system, loop, dt)
         if face >= 0:  # it touches as the step begins, by rounding on the wrong side
             loop.active[face] = fresh = True
+            grasp(system.contact, system.sticking, system.payload, system.platform, system.faces, loop.grip, face, loop.start)
             continue
         if span < 1.0 and not smooth and not (landings > 0 and span > 1.0 - _NEAR_END) and landings < _LANDINGS:
             landings, ceiling = landings + 1, span * dt * (1.0 + 0.2 * _NEAR_END)
@@ -159,8 +191,7 @@ def _foreseen(system, loop, dt):
     for felt_now in loop.active:
         touching = touching or felt_now
     while touching:
-        limit = STABLE_RADIUS / fastest_rate(system.contact, system.friction, system.faces, system.platform, system.payload, loop.active,
-                                             loop.start, 0.7 * dt)
+        limit = STABLE_RADIUS / _fastest_rate(system, loop, loop.start, 0.7 * dt)
         touching = dt > limit
         dt = max(0.7 * dt, limit) if touching else dt
     return dt
@@ -171,8 +202,9 @@ def _land(system, loop, dt):
     """Cut the step at its first event: the fraction kept, with ``loop.end`` and its survey there, or a face to be felt from the start."""
     span = 1.0
     for _ in range(_LANDINGS):
-        theta, face = first_event(system.contact, system.payload, system.platform, system.faces, (system.rail_start, system.rail_end),
-                                  loop.engaged, loop.before, loop.after, dt, span, loop.start, loop.stages, loop.work)
+        theta, face = first_event(system.contact, system.sticking, system.payload, system.platform, system.faces,
+                                  (system.rail_start, system.rail_end), loop.engaged, loop.grip, loop.before, loop.after, dt, span,
+                                  loop.start, loop.stages, loop.work)
         if theta >= 1.0 - 1e-9:
             return span, -1
         if theta * span <= SOONEST or loop.clock[BEGAN] + 0.01 * theta * span * dt == loop.clock[BEGAN]:
@@ -180,7 +212,7 @@ def _land(system, loop, dt):
         span *= theta
         loop.count[EVENTS] += 1
         interpolate(dt, span, loop.start, loop.stages, slot.STATE_SIZE, loop.end)
-        survey(system.contact, system.faces, system.platform, system.payload, loop.end, loop.after)
+        _survey(system, loop)
     return span, -1
 
 
@@ -195,13 +227,14 @@ def _begin(system, plan, loop):
         count[SEGMENT] += 1
     changed, energy = on_rail(system.contact, system.rail_start, system.rail_end, loop.after, loop.engaged)
     loop.start[slot.RELEASED] += energy
+    regripped, lost = _regrip(system, loop)
+    loop.start[slot.FRICTION] += lost
     for i in range(loop.engaged.size):
         slot.copy(loop.after[i], loop.before[i], SURVEY_SIZE)
     slot.copy(loop.stages[STAGES - 1], loop.stages[0], slot.STATE_SIZE)
-    if felt(loop.after, loop.engaged, loop.active):
+    if felt(loop.after, loop.engaged, loop.active) or regripped:
         changed = True
-        clock[RATE] = fastest_rate(system.contact, system.friction, system.faces, system.platform, system.payload, loop.active,
-                                   loop.start, 0.0)
+        clock[RATE] = _fastest_rate(system, loop, loop.start, 0.0)
     return changed or fresh or clock[SPAN] < 1.0
 
 

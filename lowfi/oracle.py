@@ -14,7 +14,7 @@ from lowfi.system import build
 from scenes import model as models
 from scenes import rotation
 from scenes.effects import contact as law
-from scenes.effects.friction import coefficient_over_speed
+from scenes.effects.friction import coefficient_over_speed, require_two_step
 from scenes.effects.gravity import acceleration
 from scenes.effects.thrust_law import magnitude
 from scenes.jit import inlined, njit
@@ -45,7 +45,11 @@ def solve(scene: Scene, steps_per_sample: int, samples: int | None = None, inter
 
 
 def prepared(scene: Scene, steps_per_sample: int, samples: int, interval: float) -> tuple[tuple, np.ndarray]:
-    """Arguments of ``integrate`` but the last, and the last: rows (samples + 1, 26) of which only the first is filled."""
+    """Arguments of ``integrate`` but the last, and the last: rows (samples + 1, 26) of which only the first is filled.
+
+    Raises SceneError for the law of friction that sticks.
+    """
+    require_two_step(scene)
     model = models.build(scene)
     inertias = (model.payload.inertia, model.platform.inertia if model.platform is not None else np.eye(3))
     rows = np.zeros((samples + 1, _SIZE))

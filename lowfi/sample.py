@@ -2,11 +2,12 @@
 
 import numpy as np
 
+from lowfi import grip as grips
 from lowfi import state as slot
 from lowfi.events import stored
 from lowfi.state import IMPULSE, MOMENT, PAYLOAD, PLACE, PLATFORM, VELOCITY, WORK, WORK_SIZE, Motion
 from lowfi.system import HALF_LENGTH
-from lowfi.touch import along, load, penetration, relative_pose
+from lowfi.touch import along, load, pad_point, penetration, relative_pose
 from scenes import rotation
 from scenes.jit import inlined, kernel
 
@@ -18,7 +19,7 @@ SAMPLE_SIZE = GIVEN + 6
 
 
 @kernel
-def observe(system, engaged, state, row, forces):
+def observe(system, engaged, grip, state, row, forces):
     """Fill ``row`` (SAMPLE_SIZE,) and ``forces`` (f,3) N on the payload in scene axes; False where a number is not finite."""
     payload = system.payload
     body, base = slot.motion(payload.mass, payload.inverse_inertia, state, PAYLOAD), slot.frame(system.platform, state)
@@ -26,7 +27,8 @@ def observe(system, engaged, state, row, forces):
     _place(state, body, base, row)
     _body(payload.mass, state[:PLATFORM], body, row)
     _platform(system.platform, state, base, row)
-    row[STORED] = _press(system.contact, system.friction, system.faces, system.platform, engaged, body, base, forces)
+    row[STORED] = _press(system.contact, system.friction, system.sticking, system.faces, system.platform, engaged, grip, body, base,
+                         forces)
     slot.copy(state[WORK:], row[WORKS:], WORK_SIZE)
     slot.copy(state[IMPULSE:], row[GIVEN:], 6)
     total = 0.0
@@ -107,7 +109,7 @@ def _body(mass, state, body, row):
 
 
 @kernel
-def _press(laws, friction, faces, platform, engaged, body, base, forces):
+def _press(laws, friction, sticking, faces, platform, engaged, grip, body, base, forces):
     """Fill ``forces``; the energy (J) stored in all faces."""
     energy = 0.0
     forces[:] = 0.0
@@ -121,4 +123,24 @@ def _press(laws, friction, faces, platform, engaged, body, base, forces):
                     energy += stored(laws, p)
                     for j in range(3):
                         forces[i, j] = face.normal[j] + face.drag[j]
+                    _add_grip(sticking, grip, i, faces, face, base, forces[i])
+        energy += _in_grips(sticking, grip, faces, body, base)
+    return energy
+
+
+@kernel
+def _add_grip(sticking, grip, number, faces, face, base, force):
+    if sticking is not None:
+        drag, _ = grips.traction(sticking, grip[number], faces[number], face, base)
+        for j in range(3):
+            force[j] += drag[j]
+
+
+@kernel
+def _in_grips(sticking, grip, faces, body, base):
+    """Energy (J) in the springs of all faces."""
+    energy = 0.0
+    if sticking is not None:
+        for i in range(faces.shape[0]):
+            energy += grips.kept(sticking, grip[i], faces[i], pad_point(faces[i], body), base)
     return energy

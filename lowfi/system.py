@@ -10,6 +10,7 @@ import numpy as np
 from scenes.effects.contact import Laws
 from scenes.effects.friction import Friction
 from scenes.effects.gravity import Gravity
+from scenes.effects.sticking import Sticking
 from scenes.effects.thrust_law import Thrust
 from scenes.effects.thrust_offset import ThrustOffset
 from scenes.model import Faces, Model
@@ -39,6 +40,7 @@ class System(NamedTuple):
     thrust_offset: ThrustOffset | None
     contact: Laws | None
     friction: Friction | None
+    sticking: Sticking | None
     gravity: Gravity | None
     ledger: bool | None
 
@@ -47,7 +49,13 @@ def build(model: Model, ledger: bool = True) -> System:
     """Records of ``model`` as the kernels take them. Without a ``ledger`` no work, loss or impulse is integrated."""
     return System(_body(model.payload), _body(model.platform) if model.platform is not None else None, _table(model.faces),
                   float(model.rail_start), float(model.rail_end), model.thrust, model.reacts_on_platform, model.thrust_offset,
-                  model.contact, model.friction, model.gravity, True if ledger else None)
+                  model.contact, _if(model.friction, Friction), _if(model.friction, Sticking), model.gravity,
+                  True if ledger else None)
+
+
+def _if(record, kind: type):
+    """``record`` if it is of this kind: each law of friction has a field of its own, so that only it is compiled."""
+    return record if isinstance(record, kind) else None
 
 
 def _body(record) -> Body:

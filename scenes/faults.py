@@ -27,7 +27,7 @@ class SceneError(ValueError):
 
 
 # Pydantic puts the chosen variant into the location: ("thrust", "gaussian", "width") is the key thrust.width.
-_VARIANTS = ("thrust", "contact", "rail")
+_VARIANTS = ("thrust", "contact", "friction", "rail")
 _FILED = (("rail", "mesh"), ("rail", "geometry"))  # variants chosen by the presence of a key, which the user may not have meant
 _WORDS = {"extra_forbidden": "no such key", "missing": "this key", "model_type": "a table", "model_attributes_type": "a table",
           "dict_type": "a table", "tuple_type": "a list", "list_type": "a list", "string_type": "text",

@@ -14,6 +14,7 @@ from scenes.effects.friction import Friction
 from scenes.effects.gravity import Gravity
 from scenes.effects.initial import Initial
 from scenes.effects.platform import Platform
+from scenes.effects.sticking import Sticking
 from scenes.scene import Scene
 
 
@@ -55,7 +56,7 @@ class Model(NamedTuple):
     thrust_offset: thrust_offset.ThrustOffset | None
     contact: contact.Laws | None
     penalty: float | None
-    friction: Friction | None
+    friction: Friction | Sticking | None
     platform: Platform | None
     gravity: Gravity | None
     initial: Initial

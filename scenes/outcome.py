@@ -3,7 +3,7 @@
 * **Exit**: first instant at which the trailing edge of the last pad face is past the rail end.
 * **Settled window**: 2 ms from the later of exit + 1 ms and thrust below 0.1 % of its peak; settled values are means over it.
 * **Jammed**: after thrust fell below 1 % of its peak, or under constant thrust, relative axial speed below the friction
-  transition speed (10 mm/s without friction) for 5 ms.
+  transition speed (10 mm/s where friction has none) for 5 ms.
 """
 
 from typing import NamedTuple
@@ -13,6 +13,7 @@ from scipy.interpolate import CubicSpline
 
 from scenes import rotation, spline
 from scenes.effects import thrust
+from scenes.effects.friction import Friction
 from scenes.jit import kernel
 from scenes.scene import Scene
 
@@ -71,7 +72,7 @@ def milestones(scene: Scene, model) -> Milestones:
 
 def jam_speed(model) -> float:
     """Relative axial speed (m/s) below which a payload may be jammed."""
-    return model.friction.static_speed if model.friction else 0.01
+    return model.friction.static_speed if isinstance(model.friction, Friction) else 0.01
 
 
 def relative_motion(motion) -> dict[str, np.ndarray]:

@@ -6,21 +6,26 @@ With s = |v| the sliding speed, v_s the static and v_d the dynamic transition sp
     mu(s) = mu_s + (mu_d - mu_s) x^2 (3 - 2 x),  x = (s - v_s)/(v_d - v_s)   v_s < s < v_d
     mu(s) = mu_d                                                    s >= v_d
 
-The first branch is the cubic step from -mu_s at -v_s to mu_s at v_s. The force is ``-mu(s) N v/s``. Absent table: none.
+The first branch is the cubic step from -mu_s at -v_s to mu_s at v_s. The force is ``-mu(s) N v/s``. Absent table: none. Beside it
+stands ``law = "sticking"`` (``scenes.effects.sticking``), under which nothing creeps.
 """
 
-from typing import NamedTuple
+from typing import Annotated, Any, Literal, NamedTuple, Union
 
-from pydantic import ValidationInfo, field_validator
+from pydantic import BeforeValidator, Field, ValidationInfo, field_validator
 
+from scenes.effects.sticking import StickingTable
+from scenes.faults import Fault, SceneError
 from scenes.jit import njit
 from scenes.table import Table
 from scenes.units import NonNegativeNumber, PositiveVelocity
 
 
-class FrictionTable(Table):
+class TwoStepTable(Table):
     """``[friction]``: coefficients (dimensionless) and transition speeds (m/s)."""
 
+    # The law of every table that names none; left out of what is written, so that such a scene keeps its hash.
+    law: Literal["two-step"] = Field("two-step", exclude=True)
     static: NonNegativeNumber
     dynamic: NonNegativeNumber
     static_speed: PositiveVelocity
@@ -36,6 +41,19 @@ class FrictionTable(Table):
     def record(self) -> "Friction":
         """Kernel record."""
         return Friction(self.static, self.dynamic, self.static_speed, self.dynamic_speed)
+
+
+def require_two_step(scene) -> None:
+    """For a solver that knows no other law. Raises SceneError where ``scene`` asks for one."""
+    if scene.friction is not None and scene.friction.law != "two-step":
+        raise SceneError([Fault(scene.name, "friction.law", repr(scene.friction.law), "'two-step', the one law this solver knows")])
+
+
+def _with_law(raw: Any) -> Any:
+    return {"law": "two-step"} | raw if isinstance(raw, dict) else raw
+
+
+FrictionTable = Annotated[Union[TwoStepTable, StickingTable], Field(discriminator="law"), BeforeValidator(_with_law)]
 
 
 class Friction(NamedTuple):

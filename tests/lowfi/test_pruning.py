@@ -18,8 +18,9 @@ def evaluate(scene):
     built = model.build(scene)
     records, begin = system.build(built), state.initial(built)
     felt = np.ones(16, dtype=np.bool_)
-    equations.derivative(records, felt, 0.0, begin, np.empty_like(begin))
-    limits.fastest_rate(records.contact, records.friction, records.faces, records.platform, records.payload, felt, begin, 0.0)
+    equations.derivative(records, felt, None, 0.0, begin, np.empty_like(begin))
+    limits.fastest_rate(records.contact, records.friction, None, records.faces, records.platform, records.payload, felt, None,
+                        begin, 0.0)
     return len(coefficient_over_speed.signatures)
 reference = load("reference")
 print(evaluate(reference.replace({"friction": None, "platform": None})), evaluate(reference.replace({"platform": None})))
@@ -37,6 +38,6 @@ def test_pruned_kernels_know_no_friction(tmp_path):
 
 @pytest.mark.parametrize("absent", [(), ("friction", "platform", "contact", "thrust_offset")])
 def test_compiled_effects_are_those_of_the_scene(absent):
-    """Read from the machine code: contact and with it friction, platform and offset are there or not; gravity never."""
+    """Read from the machine code: contact, with it friction, platform and offset are there or not; gravity and sticking never."""
     found = lowfi.compiled_effects(load("reference").replace({name: None for name in absent}))
-    assert found == {name: name not in absent and name != "gravity" for name in found}
+    assert found == {name: name not in (*absent, "gravity", "sticking") for name in found}

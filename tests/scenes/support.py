@@ -19,6 +19,7 @@ SMALL = {
 }
 CONTACT = {"law": "impact", "clearance": "0.1 mm", "stiffness": "70000 N/mm**1.5", "damping": "60 N*s/mm", "damping_depth": "0.3 mm"}
 FRICTION = {"static": 0.2, "dynamic": 0.1, "static_speed": "10 mm/s", "dynamic_speed": "20 mm/s"}
+STICKING = {"law": "sticking", "static": 0.4, "dynamic": 0.3, "stiffness": "1e4 N/mm", "damping": "10 N*s/mm"}
 
 
 def small(**tables) -> dict:

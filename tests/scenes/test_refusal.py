@@ -3,7 +3,7 @@
 import pytest
 
 from scenes import SceneError, load, parse
-from tests.scenes.support import CONTACT, FRICTION, small
+from tests.scenes.support import CONTACT, FRICTION, STICKING, small
 
 pytestmark = pytest.mark.case("X19")
 
@@ -148,6 +148,10 @@ def test_missing_tables(table):
     ({"pads": [{"position": ["0 m"] * 3, "normals": ["+y", "+y"]}]}, "pads.0.normals"),
     ({"pads": [{"position": ["0 m"] * 3, "normals": ["+x"]}]}, "pads.0.normals.0"), ({"contact": CONTACT | {"law": "hertz"}}, "contact.law"),
     ({"contact": CONTACT | {"exponent": 2.0}}, "contact.stiffness"), ({"contact": CONTACT | {"exponent": "x"}}, "contact.exponent"),
+    ({"friction": FRICTION | {"law": "sticky"}}, "friction.law"), ({"friction": STICKING | {"dynamic": 0.5}}, "friction.dynamic"),
+    ({"friction": STICKING | {"static_speed": "1 mm/s"}}, "friction.static_speed"),
+    ({"friction": STICKING | {"stiffness": "1 N/mm**2"}}, "friction.stiffness"),
+    ({"friction": STICKING | {"capture_speed": "0.1 nm/s"}}, "friction.capture_speed"),
     ({"gravity": {"w": "1 m/s**2"}}, "gravity.w"), ({"frictoin": FRICTION}, "frictoin"),
     ({"provenance": {"payload.mas": "paper"}}, "provenance.payload.mas"), ({"agreement": {"fitted": ["a"]}}, "agreement.fitted"),
     ({"conditions": {"a": {}}, "agreement": {"fitted": ["a"], "held_out": ["a"]}}, "agreement.held_out"),

@@ -1,0 +1,35 @@
+"""The table of the law that sticks, beside the two-step law that is meant where a table names none."""
+
+import pytest
+
+from scenes import load, model, outcome, parse
+from scenes.effects.friction import Friction
+from scenes.effects.sticking import Sticking
+from tests.scenes.support import CONTACT, FRICTION, STICKING, small
+
+
+def test_record():
+    found = model.build(parse(small(contact=CONTACT, friction=STICKING)))
+    assert found.friction == pytest.approx(Sticking(0.4, 0.3, 1e7, 1e4, 1e-6))
+    assert outcome.jam_speed(found) == 0.01
+
+
+def test_a_table_without_a_law_is_two_step():
+    """Named or not, it is one scene: same records, same hash, same file."""
+    silent, named = (parse(small(contact=CONTACT, friction=table)) for table in (FRICTION, FRICTION | {"law": "two-step"}))
+    assert silent.hash == named.hash and silent.resolved() == named.resolved()
+    assert isinstance(model.build(named).friction, Friction)
+    assert "law" not in silent.resolved()["friction"]
+
+
+def test_resolved_scene_reads_back():
+    scene = load("reference").replace({"friction": STICKING})
+    again = parse(scene.resolved(), bare_numbers_are_si=True)
+    assert again.hash == scene.hash != load("reference").hash
+    assert again.friction == scene.friction
+
+
+def test_one_law_becomes_the_other_by_its_keys():
+    scene = load("reference").replace({"friction.law": "sticking", "friction.stiffness": 1e7, "friction.damping": 0.0,
+                                       "friction.static_speed": "absent", "friction.dynamic_speed": "absent"})
+    assert scene.friction.static == 0.2 and scene.friction.capture_speed == 1e-6
