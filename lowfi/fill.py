@@ -1,9 +1,9 @@
-"""Runs an ensemble into its store: what is missing there, chunk by chunk, in threads."""
+"""Runs an ensemble into its store: what is missing there, chunk by chunk, in threads of this machine or on a cluster."""
 
 from collections import deque
 from typing import Any, Callable, Iterable, Iterator, Mapping, Sequence
 
-from lowfi import columns
+from lowfi import cluster, columns
 from lowfi.batch import Case, Family
 from lowfi.ensemble import PIECE, completed
 from lowfi.request import Ensemble
@@ -12,9 +12,9 @@ from lowfi.store import Chunk, Store
 _Rows = Sequence[Mapping[str, Any]]
 
 
-def fill(ensemble: Ensemble, store: Store, workers: int | None = None,
+def fill(ensemble: Ensemble, store: Store, workers: int | None = None, scheduler: str | None = None,
          progress: Callable[[int], None] | None = None) -> int:
-    """Run what ``store`` lacks, ``workers`` threads at a time; how many cases that were.
+    """Run what ``store`` lacks, ``workers`` threads at a time or on the Dask cluster at ``scheduler``; how many cases that were.
 
     ``progress`` is called with the number of cases stored. Raises StoreError when it cannot go on; what is stored stays, and the next
     call goes on from there.
@@ -25,7 +25,7 @@ def fill(ensemble: Ensemble, store: Store, workers: int | None = None,
         return 0
     asked = ((number, ensemble.source.rows(*store.bounds(number))) for number in pending)
     stored = store.asked - missing
-    for chunk in _here(ensemble, asked, workers):
+    for chunk in cluster.made(ensemble, store, asked, scheduler) if scheduler else _here(ensemble, asked, workers):
         store.write(chunk)
         stored += len(chunk.rows)
         if progress:
