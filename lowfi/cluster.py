@@ -11,7 +11,7 @@ from typing import Any, Iterable, Iterator, Mapping, NamedTuple, Sequence
 from lowfi import columns
 from lowfi.batch import Family
 from lowfi.columns import Columns
-from lowfi.ensemble import PIECE
+from lowfi.ensemble import PIECE, in_order
 from lowfi.numerics import Numerics
 from lowfi.request import Ensemble, code
 from lowfi.store import Chunk, Store, StoreError
@@ -47,10 +47,11 @@ def made(ensemble: Ensemble, store: Store, asked: Iterable[tuple[int, _Rows]], s
         client.wait_for_workers(1, timeout=PATIENCE)
         yield from _made(client, Recipe(ensemble.key, code(), ensemble.scene, ensemble.calibration, ensemble.numerics), iter(asked))
     except TimeoutError as error:
-        raise StoreError(f"no worker came to the scheduler {scheduler} in {PATIENCE:g} s; start one with: dask worker {scheduler}") from error
+        raise StoreError(f"no worker came to {scheduler} in {PATIENCE:g} s; start one with: dask worker {scheduler}") from error
     except (OSError, RuntimeError, distributed.CancelledError, distributed.KilledWorker) as error:
         what = "the cluster failed" if client.status == "running" else "lost the scheduler"
-        raise StoreError(f"{what} at {scheduler} ({type(error).__name__}: {' '.join(str(error).split())}); {store.progress()}") from error
+        reason = f"{type(error).__name__}: {' '.join(str(error).split())}"
+        raise StoreError(f"{what} at {scheduler} ({reason}); {store.progress()}") from error
     finally:
         client.close(timeout=1.0)
 
@@ -83,7 +84,7 @@ def run_rows(recipe: Recipe, rows: _Rows) -> tuple[Columns, list[str]]:
         raise RuntimeError(f"this worker has other {' and '.join(other)} than the process that asks")
     family = _family(recipe)
     pieces = (rows[begin:begin + PIECE] for begin in range(0, len(rows), PIECE))
-    cases = [case for piece in pieces for _, case in sorted((pair for job in family.jobs(piece) for pair in job()), key=lambda pair: pair[0])]
+    cases = [case for piece in pieces for case in in_order(job() for job in family.jobs(piece))]
     return columns.of(cases), [case.message for case in cases]
 
 

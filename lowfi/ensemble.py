@@ -67,13 +67,14 @@ def completed(family: Family, pieces: Iterable[Sequence[Mapping[str, Any]]], wor
             # Setting up holds the interpreter lock, stepping does not: one thread prepares what the others run.
             waiting.append([pool.submit(job) for job in family.jobs(rows)])
             while len(waiting) > count:
-                yield _collected(waiting.popleft())
+                yield in_order(future.result() for future in waiting.popleft())
         while waiting:
-            yield _collected(waiting.popleft())
+            yield in_order(future.result() for future in waiting.popleft())
 
 
-def _collected(futures) -> list[Case]:
-    return [case for _, case in sorted((pair for future in futures for pair in future.result()), key=lambda pair: pair[0])]
+def in_order(found: Iterable[list[tuple[int, Case]]]) -> list[Case]:
+    """Cases of a piece from what its jobs found, pairs of a row's number and its case."""
+    return [case for _, case in sorted(chain.from_iterable(found), key=lambda pair: pair[0])]
 
 
 def _workers(workers: int | None) -> int:

@@ -156,9 +156,9 @@ class Store:
         found = Columns(*(self._arrays[name][begin:end] for name in Columns._fields))
         return found, np.array([place[begin:end] for place in self._inputs]).reshape(len(self.names), -1).T
 
-    def column(self, name: str) -> np.ndarray:
-        """One of the results of all cases."""
-        return self._arrays[name][:]
+    def column(self, name: str, begin: int = 0, end: int | None = None) -> np.ndarray:
+        """One of the results of the cases ``begin`` to ``end`` - 1, absent: of all."""
+        return self._arrays[name][begin:end]
 
     def done(self) -> int:
         """Cases that are stored."""

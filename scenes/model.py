@@ -16,7 +16,8 @@ from scenes.effects.initial import Initial
 from scenes.effects.platform import Platform
 from scenes.scene import Scene
 
-_REUSED = ("payload", "pads", "rail", "thrust", "initial", "contact", "friction", "platform")  # tables of a scene whose records may be kept
+# Tables of a scene whose records may be kept.
+_REUSED = ("payload", "pads", "rail", "thrust", "initial", "contact", "friction", "platform")
 
 
 class Payload(NamedTuple):

@@ -266,16 +266,21 @@ def run(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = None
 
 @app.command()
 def ensemble(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = None,
-             vary: Annotated[str, typer.Option("--vary", metavar="NAME_OR_FILE", help="Distributions: a .toml file, or from the catalogue.")] = "paper",
-             table: Annotated[Optional[Path], typer.Option("--table", metavar="FILE", help="CSV table of cases, in place of distributions.")] = None,
-             cases: Annotated[Optional[int], typer.Option("--cases", metavar="N", min=1, help="Number of cases; default: as the file says.")] = None,
-             seed: Annotated[Optional[int], typer.Option("--seed", metavar="N", min=0, help="Seed of all draws; default: as the file says.")] = None,
-             sampling: Annotated[Optional[Sampling], typer.Option("--sampling", help="How points are drawn; default: as the file says.")] = None,
+             vary: Annotated[str, typer.Option("--vary", metavar="NAME_OR_FILE",
+                             help="Distributions: a .toml file, or from the catalogue.")] = "paper",
+             table: Annotated[Optional[Path], typer.Option("--table", metavar="FILE",
+                              help="CSV table of cases, in place of distributions.")] = None,
+             cases: Annotated[Optional[int], typer.Option("--cases", metavar="N", min=1,
+                              help="Number of cases; default: as the file says.")] = None,
+             seed: Annotated[Optional[int], typer.Option("--seed", metavar="N", min=0,
+                             help="Seed of all draws; default: as the file says.")] = None,
+             sampling: Annotated[Optional[Sampling], typer.Option("--sampling",
+                                 help="How points are drawn; default: as the file says.")] = None,
              store: Annotated[Optional[Path], typer.Option("--store", metavar="DIR",
                               help="Folder of the results; default: one of its own for every ensemble.")] = None,
              case: Annotated[Optional[int], typer.Option("--case", metavar="N", min=0, help="Run case N alone and print it.")] = None,
-             tolerance: Annotated[float, typer.Option("--tolerance", metavar="X", help="Relative error of a step; 1e-2 keeps 95 % of the "
-                                  "reference cases to 0.2 % of their rate, 1e-4 to 0.1 %.")] = 1e-2,
+             tolerance: Annotated[float, typer.Option("--tolerance", metavar="X", help="Relative error of a step; 1e-2 keeps 95 % of "
+                                  "20 reference cases to 0.2 % of their rate, 1e-4 to 0.1 %.")] = 1e-2,
              calibration: Annotated[Optional[Path], typer.Option(metavar="FILE", help="calibration.toml for the surrogate.")] = None,
              scheduler: Annotated[Optional[str], typer.Option("--scheduler", metavar="ADDRESS",
                                   help="Dask scheduler whose workers run the cases, such as tcp://node1:8786.")] = None,

@@ -1,5 +1,7 @@
 """What an ensemble says of the state a payload leaves with: counts, quantiles with their bounds, and how it was drawn, in words."""
 
+from typing import Callable
+
 import numpy as np
 
 from lowfi import columns
@@ -11,9 +13,9 @@ from studies import order_statistics
 SHARES = (0.05, 0.5, 0.95, 0.99, 0.9973)
 CONFIDENCE = 0.95
 _SHOWN = 5  # failed cases that are printed; the store lists all
-_VALUES = {"rate_deg_s": lambda store: np.degrees(np.linalg.norm(store.column("rate"), axis=1)),
-           "lateral_velocity_mm_s": lambda store: 1e3 * store.column("lateral_velocity"),
-           "direction_error_deg": lambda store: np.degrees(store.column("direction_error"))}
+_VALUES = {"rate_deg_s": ("rate", lambda rate: np.degrees(np.linalg.norm(rate, axis=1))),
+           "lateral_velocity_mm_s": ("lateral_velocity", lambda speed: 1e3 * speed),
+           "direction_error_deg": ("direction_error", np.degrees)}
 _LABELS = {"rate_deg_s": "|rate|, deg/s", "lateral_velocity_mm_s": "across, mm/s", "direction_error_deg": "off axis, deg"}
 
 
@@ -21,12 +23,18 @@ def summary(ensemble: Ensemble, store: Store) -> dict:
     """Counts, and quantiles of the settled values with what bounds them. ``failed`` has the reasons when no case is ok."""
     status, settled, failures = store.column("status"), np.isfinite(store.column("exit_time")), store.failures()
     counts, why = columns.counts(status), _no_bounds(ensemble.source)
+    values = {name: _values(store, *what)[settled] for name, what in _VALUES.items()} if settled.any() else {}
     return {"counts": counts, "statuses": {name: int((status == code).sum()) for code, name in enumerate(columns.STATUSES)},
             "settled": int(settled.sum()), "confidence": CONFIDENCE, "bounds": why or "order statistics of independent draws",
-            "quantiles": {name: _quantiles(read(store)[settled], why is None) for name, read in _VALUES.items()} if settled.any() else {},
+            "quantiles": {name: _quantiles(found, why is None) for name, found in values.items()},
             "cases": ensemble.source.identity, "provenance": _provenance(ensemble.source), "numerics": ensemble.numerics.as_dict(),
             "failures": failures[:_SHOWN], "digest": store.digest(),
-            "failed": [f"case {item['case']}: {item['status']}: {item['reason']}" for item in failures[:_SHOWN]] if not counts["ok"] else []}
+            "failed": [] if counts["ok"] else [f"case {item['case']}: {item['status']}: {item['reason']}" for item in failures[:_SHOWN]]}
+
+
+def _values(store: Store, name: str, of: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
+    """A function of a result, chunk by chunk: whole vectors of ten million cases would not fit beside each other."""
+    return np.concatenate([of(store.column(name, *store.bounds(number))) for number in range(len(store))])
 
 
 def _no_bounds(source) -> str | None:
@@ -62,7 +70,8 @@ def lines(found: dict) -> list[str]:
     said += [f"  {_LABELS[name]:13} " + "   ".join(map(_quantile, rows)) for name, rows in found["quantiles"].items()]
     said.append(f"  bounds        {found['confidence']:.0%} confidence: {found['bounds']}")
     speed = f", {run_['cpu_ms_per_case']:.3f} ms of processor time per case" if "cpu_ms_per_case" in run_ else ""
-    said.append(f"  took          {run_['wall_s']:.3g} s for {run_['cases']:,} cases{speed}; {run_['peak_memory_bytes'] / 1e6:.0f} MB of memory at most")
+    memory = f"{run_['peak_memory_bytes'] / 1e6:.0f} MB of memory at most"
+    said.append(f"  took          {run_['wall_s']:.3g} s for {run_['cases']:,} cases{speed}; {memory}")
     return [*said, f"  store         {found['store']}"]
 
 

@@ -44,7 +44,8 @@ def request(study: Study, asked: Asked, calibration: Calibration | None = None) 
     changed = {name: value for name in ("cases", "seed", "sampling") if (value := getattr(asked, name)) is not None}
     if asked.table is not None:
         if changed:
-            raise SceneError([Fault("--table", name, str(value), "nothing, since the table lists its cases") for name, value in changed.items()])
+            expected = "nothing, since the table lists its cases"
+            raise SceneError([Fault("--table", name, str(value), expected) for name, value in changed.items()])
         source: Any = TableFile(asked.table)
     else:
         source = Drawn(uncertainty.load(asked.vary, study.scene, **changed))
@@ -69,11 +70,12 @@ def run(study: Study, asked: Asked, calibration: Calibration | None = None) -> d
             board.finished(label, f"{new:,} run in {wall:.3g} s" if new else "all of them stored before")
     except StoreError as fault:
         raise StudyError(str(fault)) from fault
+    said = ensemble_summary.summary(ensemble, store)
     cost = {"cases": new, "wall_s": wall, "peak_memory_bytes": 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss,
             "scheduler": asked.scheduler}
     if new and not asked.scheduler:
         cost["cpu_ms_per_case"] = 1e3 * spent / new
-    found = {"stage": "ensemble", "scene": study.scene.name, "store": str(path), **ensemble_summary.summary(ensemble, store), "run": cost,
+    found = {"stage": "ensemble", "scene": study.scene.name, "store": str(path), **said, "run": cost,
              "hardware": machine.describe()}
     write_json(study.path("ensemble.json"), found)
     return found
