@@ -289,7 +289,7 @@ def ensemble(scene: SceneName = "reference", out: Out = Path("out"), set_: Set =
 
     A file of distributions says what varies; --cases, --seed and --sampling may say otherwise:
 
-      [vary."payload.mass"]
+      \\[vary."payload.mass"]
 
       distribution = "normal"
 

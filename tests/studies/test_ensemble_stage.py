@@ -79,3 +79,8 @@ def test_a_full_disk_is_exit_code_1_and_a_message(tmp_path, monkeypatch):
     store, = (tmp_path / "reference").glob("ensemble-*")
     (store / "cases.zarr" / "zarr.json").write_text("{")
     assert call("--cases", 20, "--out", tmp_path).exit_code == 1
+
+
+def test_help_shows_a_file_of_distributions_as_it_is_written():
+    """A table's name in square brackets would pass for markup and vanish."""
+    assert '[vary."payload.mass"]' in call("--help").stdout
