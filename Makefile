@@ -12,7 +12,7 @@ ASKED = --scene $(SCENE) --out $(OUT)
 READY = .venv/.ready
 
 .DEFAULT_GOAL := help
-.PHONY: help mesh highfi lowfi calibrate compare cost stability ablation report view pictures convergence full-report bench test test-slow clean
+.PHONY: help mesh highfi lowfi calibrate compare cost stability ablation ensemble report view pictures convergence full-report bench test test-slow clean
 
 help: ## print this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## /{printf "  make %-12s %s\n", $$1, $$2}' Makefile
@@ -41,6 +41,9 @@ stability: $(READY) ## hard cases, with the weaker methods that fail on them
 
 ablation: $(READY) ## what each effect changes and costs
 	$(TIPOFF) ablation $(ASKED)
+
+ensemble: $(READY) ## 10,000 varied cases of the surrogate: what rates to expect (CASES=1000000 for a million)
+	$(TIPOFF) ensemble $(ASKED) $(if $(CASES),--cases $(CASES))
 
 bench: $(READY) ## speed of the solvers against what one would write today: OUT/bench
 	$(TIPOFF) bench --out $(OUT)
@@ -77,7 +80,7 @@ $(READY): requirements.lock pyproject.toml
 	@$(PYTHON) -c 'import ensurepip, venv' 2>/dev/null || \
 	  { echo "$(PYTHON) cannot make an environment. On Debian and Ubuntu, as root: apt-get install python3-venv" >&2; exit 1; }
 	@.venv/bin/python -m pip --version >/dev/null 2>&1 || \
-	  { echo "making .venv (about 0.9 GB, a minute or two)"; $(PYTHON) -m venv --clear .venv; }
+	  { echo "making .venv (about 1 GB, a minute or two)"; $(PYTHON) -m venv --clear .venv; }
 	.venv/bin/python -m pip install --quiet --disable-pip-version-check -r requirements.lock
 	.venv/bin/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation --editable .
 	@.venv/bin/python -m studies.doctor

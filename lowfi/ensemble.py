@@ -1,22 +1,27 @@
 """Many runs at once in threads: kernels release the interpreter lock, and runs share nothing, so the worker count changes no bit."""
 
 import os
+from collections import deque
 from concurrent.futures import ThreadPoolExecutor
-from typing import Any, Mapping, Sequence
+from itertools import chain
+from pathlib import Path
+from typing import Any, Iterable, Iterator, Mapping, Sequence
 
 import numpy as np
 import xarray
 
-from lowfi import batch
-from lowfi.batch import Case
+from lowfi import columns
+from lowfi.batch import Case, Family
 from lowfi.numerics import Numerics
+from lowfi.rows import Drawn, Listed
 from lowfi.run import run
 from scenes.calibration import Calibration
 from scenes.scene import Scene
 from scenes.trajectory import Trajectory
+from scenes.uncertainty import Uncertainty
 
 _AXES = ("x", "y", "z")
-_CHUNK = 256  # cases set up together: enough for the calls to cost nothing, few enough for memory to stay flat
+PIECE = 256  # cases set up together: enough for the calls to cost nothing, few enough for memory to stay flat
 
 
 def curves(scenes: Sequence[Scene], numerics: Numerics | None = None, workers: int | None = None) -> list[Trajectory]:
@@ -25,56 +30,61 @@ def curves(scenes: Sequence[Scene], numerics: Numerics | None = None, workers: i
         return list(pool.map(lambda scene: run(scene, numerics=numerics), scenes))
 
 
-def run_many(scene: Scene, table: Sequence[Mapping[str, Any]], calibration: Calibration | None = None,
-             workers: int | None = None, numerics: Numerics | None = None) -> xarray.Dataset:
-    """Run ``scene`` once per row of ``table``, a row being dotted overrides as in ``Scene.replace``.
+def run_many(scene: Scene, table: Sequence[Mapping[str, Any]] | Uncertainty, calibration: Calibration | None = None,
+             workers: int | None = None, store: str | Path | None = None, numerics: Numerics | None = None) -> xarray.Dataset:
+    """Run ``scene`` once per row of ``table``, a row being dotted overrides as in ``Scene.replace``, or per draw of an Uncertainty.
 
     The values are those of ``lowfi.run`` to the last bit; no curves are kept. A row the scene refuses has the status ``refused`` and the
-    reason as its message; the others run. Settled values are NaN where a run has none. ``wall_s`` of a case is its share of the chunk it
-    ran in. The attributes count ``asked = ok + refused + failed``, failed being the diverged.
+    reason as its message; the others run. Settled values are NaN where a run has none. ``wall_s`` of a case is its share of the piece it
+    ran in. The attributes count ``asked = ok + refused + failed``, failed being the diverged. With a ``store``, a folder, cases go
+    there chunk by chunk and what it holds already is not run again (``lowfi.fill``, which needs no room for all results); it has no
+    ``wall_s``.
     """
-    table, chosen, cases = list(table), numerics or Numerics(), []
-    family = batch.Family(scene, calibration, chosen)
-    count = _workers(workers)
+    source, numerics = Drawn(table) if isinstance(table, Uncertainty) else Listed(table), numerics or Numerics()
+    if store is not None:
+        return _stored(scene, source, calibration, numerics, workers, store)
+    pieces = (source.rows(begin, min(begin + PIECE, source.asked)) for begin in range(0, source.asked, PIECE))
+    cases = list(chain.from_iterable(completed(Family(scene, calibration, numerics), pieces, workers)))
+    shares = np.array([case.wall_s for case in cases], dtype=float)
+    return _dataset(columns.of(cases), [case.message for case in cases]).assign(wall_s=("case", shares, {"units": "s"}))
+
+
+def _stored(scene, source, calibration, numerics, workers, path) -> xarray.Dataset:
+    from lowfi.fill import fill
+    from lowfi.request import Ensemble
+
+    ensemble = Ensemble(scene, source, calibration, numerics)
+    store = ensemble.store(path)
+    fill(ensemble, store, workers)
+    return _dataset(*store.results())
+
+
+def completed(family: Family, pieces: Iterable[Sequence[Mapping[str, Any]]], workers: int | None = None) -> Iterator[list[Case]]:
+    """Cases of each of ``pieces`` of rows, in their order; a piece is taken when a thread is free for it soon."""
+    count, waiting = _workers(workers), deque()
     with ThreadPoolExecutor(count) as pool:
-        waiting = []
-        for begin in range(0, len(table), _CHUNK):
+        for rows in pieces:
             # Setting up holds the interpreter lock, stepping does not: one thread prepares what the others run.
-            waiting.append([pool.submit(job) for job in family.jobs(table[begin:begin + _CHUNK])])
+            waiting.append([pool.submit(job) for job in family.jobs(rows)])
             while len(waiting) > count:
-                cases += _collected(waiting.pop(0))
-        for futures in waiting:
-            cases += _collected(futures)
-    return _dataset(cases)
+                yield in_order(future.result() for future in waiting.popleft())
+        while waiting:
+            yield in_order(future.result() for future in waiting.popleft())
 
 
-def _collected(futures) -> list[Case]:
-    return [case for _, case in sorted((pair for future in futures for pair in future.result()), key=lambda pair: pair[0])]
+def in_order(found: Iterable[list[tuple[int, Case]]]) -> list[Case]:
+    """Cases of a piece from what its jobs found, pairs of a row's number and its case."""
+    return [case for _, case in sorted(chain.from_iterable(found), key=lambda pair: pair[0])]
 
 
 def _workers(workers: int | None) -> int:
     return workers or os.cpu_count() or 1
 
 
-def _dataset(cases: list[Case]) -> xarray.Dataset:
-    def settled(name: str, size: tuple[int, ...]) -> np.ndarray:
-        values = np.full((len(cases), *size), np.nan)
-        for index, case in enumerate(cases):
-            value = getattr(case.outcome, name)
-            if value is not None:
-                values[index] = value
-        return values
-
-    statuses = [case.status for case in cases]
-    refused, failed = statuses.count("refused"), statuses.count("diverged")
-    counts = {"asked": len(cases), "ok": len(cases) - refused - failed, "refused": refused, "failed": failed}
+def _dataset(found: columns.Columns, messages: list[str]) -> xarray.Dataset:
+    dimensions = {name: ("case", "axis") if name in columns.VECTORS else "case" for name in columns.UNITS}
     variables = {
-        "status": ("case", np.array(statuses, dtype=object)), "message": ("case", np.array([c.message for c in cases], dtype=object)),
-        "exit_time": ("case", settled("exit_time", ()), {"units": "s"}),
-        "velocity": (("case", "axis"), settled("velocity", (3,)), {"units": "m/s"}),
-        "rate": (("case", "axis"), settled("rate", (3,)), {"units": "rad/s"}),
-        "lateral_velocity": ("case", settled("lateral_velocity", ()), {"units": "m/s"}),
-        "direction_error": ("case", settled("direction_error", ()), {"units": "rad"}),
-        "steps": ("case", np.array([case.steps for case in cases], dtype=int)), "wall_s": ("case", np.array([case.wall_s for case in cases], dtype=float), {"units": "s"}),
-    }
-    return xarray.Dataset(variables, {"case": np.arange(len(cases)), "axis": list(_AXES)}, attrs=counts)
+        "status": ("case", np.array(columns.STATUSES, dtype=object)[found.status]), "message": ("case", np.array(messages, dtype=object)),
+        **{name: (dimensions[name], getattr(found, name), {"units": unit}) for name, unit in columns.UNITS.items()},
+        "steps": ("case", found.steps)}
+    return xarray.Dataset(variables, {"case": np.arange(len(messages)), "axis": list(_AXES)}, attrs=columns.counts(found.status))

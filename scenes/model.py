@@ -17,6 +17,9 @@ from scenes.effects.platform import Platform
 from scenes.effects.sticking import Sticking
 from scenes.scene import Scene
 
+# Tables of a scene whose records may be kept.
+_REUSED = ("payload", "pads", "rail", "thrust", "initial", "contact", "friction", "platform")
+
 
 class Payload(NamedTuple):
     """Mass (kg), inertia about the mass centre (3,3), its inverse, and the mass centre at rest in scene axes (m)."""
@@ -78,10 +81,10 @@ def build(scene: Scene) -> Model:
 
 def built(scene: Scene, known: Built | None = None) -> Built:
     """Records of ``scene``; those that come from the very tables of a ``known`` scene are taken from there."""
-    old = known.scene if known else None
+    same = {name for name in _REUSED if getattr(known.scene, name) is getattr(scene, name)} if known else set()
 
     def kept(*names: str) -> bool:
-        return old is not None and all(getattr(old, name) is getattr(scene, name) for name in names)
+        return same.issuperset(names)
 
     offset = scene.mass_offset.eccentricity.offset() if scene.mass_offset else (0.0, 0.0, 0.0)
     platform = known.model.platform if kept("platform") else scene.platform.record() if scene.platform else None

@@ -1,6 +1,7 @@
 """Dotted keys such as ``thrust_offset.misalignment.axial`` or ``pads.0.relief``: set, dropped, and checked against the tables."""
 
-from typing import Any, Iterator, Mapping, get_args, get_origin
+from types import UnionType
+from typing import Annotated, Any, Iterator, Mapping, Union, get_args, get_origin
 
 from scenes.table import Table
 
@@ -30,9 +31,30 @@ def is_key(annotation: Any, key: str) -> bool:
     return bool(inner) and (not rest or any(is_key(item, rest) for item in inner))
 
 
+def unit(annotation: Any, key: str) -> str | None:
+    """SI unit of the number that a table of type ``annotation`` holds under the dotted ``key``.
+
+    Empty where it depends on other keys (a contact stiffness on its exponent), None where there is no number.
+    """
+    part, _, rest = key.partition(".")
+    found = [unit(item, rest) if rest else _unit(item) for item in _inside(annotation, part)]
+    return next((item for item in found if item is not None), None)
+
+
+def _unit(annotation: Any) -> str | None:
+    if annotation is float:
+        return ""
+    if get_origin(annotation) not in (Annotated, Union, UnionType):
+        return None
+    known = [item.json_schema_extra["unit"] for item in get_args(annotation) if getattr(item, "json_schema_extra", None)]
+    found = known + [_unit(item) for item in get_args(annotation)]
+    return next((item for item in found if item is not None), None)
+
+
 def _inside(annotation: Any, part: str) -> list:
     if isinstance(annotation, type) and issubclass(annotation, Table):
-        return [annotation.model_fields[part].annotation] if part in annotation.model_fields else []
+        field = annotation.model_fields.get(part)
+        return [Annotated[field.annotation, field]] if field else []
     if get_origin(annotation) in (list, tuple):
         return list(get_args(annotation)[:1]) if part.isdigit() else []
     if get_origin(annotation) is dict:

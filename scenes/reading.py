@@ -42,7 +42,7 @@ def _inherit(path: Path, user_file: str, chain: tuple[Path, ...]) -> dict:
     key = "file" if not chain else "extends"
     if path.resolve() in chain:
         raise SceneError([Fault(user_file, key, str(path), "files that do not extend each other in a circle")])
-    raw = _toml(path, user_file, key)
+    raw = toml(path, user_file, key)
     for name, entry in _FILES:
         table = raw.get(name)
         if isinstance(table, dict) and isinstance(table.get(entry), str) and table[entry] != "absent":
@@ -60,7 +60,8 @@ def _inherit(path: Path, user_file: str, chain: tuple[Path, ...]) -> dict:
     return _merged(inherited, raw)
 
 
-def _toml(path: Path, user_file: str, key: str) -> dict:
+def toml(path: Path, user_file: str, key: str = "file") -> dict:
+    """Content of a TOML file. Raises SceneError, filed under ``key`` of the file the user gave."""
     inherited = "" if key == "file" else f"{path}: "
     try:
         with open(path, "rb") as stream:

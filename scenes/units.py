@@ -59,7 +59,7 @@ def parse(value: Any, unit: str, bare_numbers_are_si: bool) -> float:
     """
     if isinstance(value, str):
         return to_si(value, unit)
-    if isinstance(value, bool) or not isinstance(value, Real):
+    if type(value) is not float and (isinstance(value, bool) or not isinstance(value, Real)):  # abstract types are slow to ask
         raise ValueError(named(unit))
     if not math.isfinite(value):
         raise ValueError(f"{named(unit)}, neither NaN nor infinite")

@@ -10,7 +10,7 @@ from studies.study import FAILED, Study
 
 def run(study: Study, condition: str, fidelity: str, calibration: Path | None = None, quiet: bool = False) -> dict:
     """The run's result as a stage would hold it; prints it unless ``quiet``. Raises SceneError for an unreadable calibration."""
-    asked = study.highfi(condition) if fidelity == "highfi" else study.lowfi(condition, _constants(calibration))
+    asked = study.highfi(condition) if fidelity == "highfi" else study.lowfi(condition, constants(calibration))
     found = study.store.get(asked)
     result = row(condition, found, study.relative(study.store.path(asked)))
     if not quiet:
@@ -39,7 +39,8 @@ def lines(result: dict, fidelity: str, study: Study) -> list[str]:
     return said
 
 
-def _constants(path: Path | None) -> Calibration | None:
+def constants(path: Path | None) -> Calibration | None:
+    """The calibration in a file, or None without a file. Raises SceneError for one that cannot be read."""
     if path is None:
         return None
     try:

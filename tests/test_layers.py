@@ -167,11 +167,12 @@ def test_make_targets_are_phony():
 def test_lock_holds_every_dependency():
     """The project is installed with --no-deps, so what the lock forgets is missing in a fresh clone."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
-    asked = project["dependencies"] + project["optional-dependencies"]["test"]
+    extras = project["optional-dependencies"]
+    asked = project["dependencies"] + extras["test"] + extras["ensemble"] + extras["cluster"]
     pinned = set(re.findall(r"^([A-Za-z0-9_.-]+)==", (ROOT / "requirements.lock").read_text(), re.MULTILINE))
     normal = {re.sub(r"[-_.]+", "-", name).lower() for name in pinned}
     assert {re.match(r"[A-Za-z0-9_.-]+", name).group().lower() for name in asked} <= normal
     # The extra for pictures has a lock of its own, beside the first one and not against it.
     added = set(re.findall(r"^([A-Za-z0-9_.-]+)==", (ROOT / "requirements-view.lock").read_text(), re.MULTILINE))
-    assert {re.match(r"[A-Za-z0-9_.-]+", name).group() for name in project["optional-dependencies"]["view"]} <= added
+    assert {re.match(r"[A-Za-z0-9_.-]+", name).group() for name in extras["view"]} <= added
     assert not added & pinned

@@ -1,0 +1,45 @@
+"""Results of many cases as columns of arrays, one row per case: what an ensemble keeps, in memory and on disk."""
+
+from typing import NamedTuple, Sequence
+
+import numpy as np
+
+from lowfi.batch import Case
+
+STATUSES = ("exited", "time_limit", "jammed", "diverged", "refused")  # a status is stored as its place in this list
+UNITS = {"exit_time": "s", "velocity": "m/s", "rate": "rad/s", "lateral_velocity": "m/s", "direction_error": "rad"}
+VECTORS = ("velocity", "rate")
+
+
+class Columns(NamedTuple):
+    """``status`` (n,) as a place in STATUSES, exit_time (n,) s, velocity (n,3) m/s, rate (n,3) rad/s, lateral_velocity (n,) m/s,
+    direction_error (n,) rad, NaN in cases that did not settle, and ``steps`` (n,)."""
+
+    status: np.ndarray
+    exit_time: np.ndarray
+    velocity: np.ndarray
+    rate: np.ndarray
+    lateral_velocity: np.ndarray
+    direction_error: np.ndarray
+    steps: np.ndarray
+
+
+def of(cases: Sequence[Case]) -> Columns:
+    """Columns of ``cases``."""
+
+    def settled(name: str) -> np.ndarray:
+        values = np.full((len(cases), 3) if name in VECTORS else len(cases), np.nan)
+        for index, case in enumerate(cases):
+            value = getattr(case.outcome, name)
+            if value is not None:
+                values[index] = value
+        return values
+
+    status = np.array([STATUSES.index(case.status) for case in cases], dtype=np.int8)
+    return Columns(status, *map(settled, UNITS), np.array([case.steps for case in cases], dtype=np.int64))
+
+
+def counts(status: np.ndarray) -> dict[str, int]:
+    """``asked = ok + refused + failed`` of the statuses (n,); failed are the diverged."""
+    refused, failed = (int((status == STATUSES.index(name)).sum()) for name in ("refused", "diverged"))
+    return {"asked": len(status), "ok": len(status) - refused - failed, "refused": refused, "failed": failed}

@@ -1,0 +1,52 @@
+"""What an ensemble is asked for: the scene, where its cases come from, and everything else the numbers depend on."""
+
+from functools import lru_cache
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any, Mapping, NamedTuple
+
+from lowfi import store as stores
+from lowfi.batch import Case, Family
+from lowfi.ensemble import completed
+from lowfi.numerics import Numerics
+from scenes.calibration import Calibration
+from scenes.files import content_hash, source_hash
+from scenes.scene import Scene
+
+_LIBRARIES = ("numpy", "scipy", "numba", "llvmlite")  # whose version may change the last bits of a result
+
+
+class Ensemble(NamedTuple):
+    """A scene, where its cases come from (``lowfi.rows``, ``lowfi.table``), calibrated constants or none, and numerics."""
+
+    scene: Scene
+    source: Any
+    calibration: Calibration | None
+    numerics: Numerics
+
+    def identity(self) -> dict:
+        """Everything the numbers depend on, as JSON."""
+        return {"scene": self.scene.hash, "cases": self.source.identity, "numerics": self.numerics.as_dict(),
+                "calibration": self.calibration.constants if self.calibration else {}, "chunk": stores.CHUNK} | code()
+
+    @property
+    def key(self) -> str:
+        """Hexadecimal digest of the identity."""
+        return content_hash(self.identity())
+
+    def store(self, path: str | Path) -> stores.Store:
+        """The store of this ensemble at ``path``, made when there is none. Raises StoreError."""
+        rerun = "case n has the inputs stored under n, and is drawn again from seed and n alone: tipoff ensemble ... --case n"
+        return stores.Store(path, self.source.asked, self.source.keys, self.identity(), {"scene": self.scene.resolved(), "rerun": rerun})
+
+    def case(self, number: int) -> tuple[Mapping[str, Any], Case]:
+        """Inputs and result of one case, run alone, to the same bits."""
+        row, = self.source.rows(number, number + 1)
+        (found,), = completed(Family(self.scene, self.calibration, self.numerics), [[row]], workers=1)
+        return row, found
+
+
+@lru_cache  # the sources do not change while the program runs
+def code() -> dict:
+    """Digest of the sources and versions of the libraries that make the numbers."""
+    return {"code": source_hash("scenes", "lowfi"), "versions": {name: version(name) for name in _LIBRARIES}}

@@ -1,0 +1,117 @@
+"""Stage ``ensemble``: many varied cases of the surrogate into a store, and what they say of the rates a payload leaves with."""
+
+import resource
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from lowfi import columns
+from lowfi.fill import fill
+from lowfi.numerics import Numerics
+from lowfi.request import Ensemble
+from lowfi.rows import Drawn
+from lowfi.store import StoreError
+from lowfi.table import TableFile
+from scenes import uncertainty
+from scenes.calibration import Calibration
+from scenes.faults import Fault, SceneError
+from scenes.files import write_json
+from studies import ensemble_summary, machine
+from studies.progress import Board, say
+from studies.study import Study, StudyError
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What ``tipoff ensemble`` is given beside the scene; None: as the file of distributions says, or the default."""
+
+    vary: str = uncertainty.DEFAULT
+    table: Path | None = None
+    cases: int | None = None
+    seed: int | None = None
+    sampling: str | None = None
+    store: Path | None = None
+    tolerance: float = 1e-2
+    scheduler: str | None = None
+    workers: int | None = None
+
+
+def request(study: Study, asked: Asked, calibration: Calibration | None = None) -> Ensemble:
+    """The ensemble that is ``asked`` for. Raises SceneError for bad input."""
+    changed = {name: value for name in ("cases", "seed", "sampling") if (value := getattr(asked, name)) is not None}
+    if asked.table is not None:
+        if changed:
+            expected = "nothing, since the table lists its cases"
+            raise SceneError([Fault("--table", name, str(value), expected) for name, value in changed.items()])
+        source: Any = TableFile(asked.table)
+    else:
+        source = Drawn(uncertainty.load(asked.vary, study.scene, **changed))
+    try:
+        return Ensemble(study.scene, source, calibration, Numerics(relative_tolerance=asked.tolerance))
+    except ValueError as fault:
+        raise SceneError([Fault("--tolerance", "numerics", str(asked.tolerance), str(fault))]) from None
+
+
+def run(study: Study, asked: Asked, calibration: Calibration | None = None) -> dict:
+    """Run what the store lacks; the summary, also written as ``ensemble.json``. Raises StudyError when the run cannot go on."""
+    ensemble = request(study, asked, calibration)
+    try:
+        store = ensemble.store(path := _path(study, asked, ensemble))
+        ensemble.case(0)  # compiles, or loads the kernels from disk, before any clock runs
+        began, processor = time.perf_counter(), time.process_time()
+        with Board("ensemble", 1) as board:
+            label = f"{store.asked:,} cases"
+            report = board.callback(label)
+            new = fill(ensemble, store, asked.workers, asked.scheduler, lambda stored: report(stored / store.asked))
+            wall, spent = time.perf_counter() - began, time.process_time() - processor
+            board.finished(label, f"{new:,} run in {wall:.3g} s" if new else "all of them stored before")
+    except StoreError as fault:
+        raise StudyError(str(fault)) from fault
+    said = ensemble_summary.summary(ensemble, store)
+    cost = {"cases": new, "wall_s": wall, "peak_memory_bytes": 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss,
+            "scheduler": asked.scheduler}
+    if new and not asked.scheduler:
+        cost["cpu_ms_per_case"] = 1e3 * spent / new
+    found = {"stage": "ensemble", "scene": study.scene.name, "store": str(path), **said, "run": cost,
+             "hardware": machine.describe()}
+    write_json(study.path("ensemble.json"), found)
+    return found
+
+
+def _path(study: Study, asked: Asked, ensemble: Ensemble) -> Path:
+    """The store: where it was asked for, else one of its own for every ensemble."""
+    return asked.store or study.path(f"ensemble-{ensemble.key[:8]}")
+
+
+def case(study: Study, asked: Asked, number: int, calibration: Calibration | None = None) -> dict:
+    """One case run alone, and whether its store, if there is one, holds the same bits."""
+    ensemble = request(study, asked, calibration)
+    if not 0 <= number < ensemble.source.asked:
+        raise SceneError([Fault("--case", "number", str(number), f"0 to {ensemble.source.asked - 1}")])
+    row, found = ensemble.case(number)
+    result = {"case": number, "inputs": {key: str(value) for key, value in row.items()}, "status": found.status, "message": found.message,
+              "steps": found.steps, **found.outcome._asdict(), "stored": None}
+    path = _path(study, asked, ensemble)
+    if path.exists():
+        try:
+            stored = ensemble.store(path).read(number, number + 1)[0]
+        except StoreError as fault:
+            raise StudyError(str(fault)) from fault
+        alone = columns.of([found])
+        if stored.status[0] >= 0:
+            result["stored"] = all(np.array_equal(a, b, equal_nan=a.dtype.kind == "f") for a, b in zip(stored, alone))
+    return result
+
+
+def case_lines(found: dict) -> list[str]:
+    """One case in words and units."""
+    said = [f"case {found['case']}: {found['status']}" + (f" ({found['message']})" if found["message"] else "")]
+    said += [f"  {key} = {value}" for key, value in found["inputs"].items()]
+    if found["rate"] is not None:
+        said.append("  velocity      " + ", ".join(f"{value:.17g}" for value in found["velocity"]) + " m/s (x, y, z)")
+        said.append("  rate          " + ", ".join(f"{value:.17g}" for value in found["rate"]) + " rad/s (x, y, z)")
+    kept = {None: "no stored result to compare with", True: "the stored result has the same bits", False: "THE STORED RESULT DIFFERS"}
+    return [*said, f"  {kept[found['stored']]}"]

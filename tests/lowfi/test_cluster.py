@@ -1,0 +1,90 @@
+"""The chunks of an ensemble on a real Dask cluster of processes: the bits of one process, also when a worker is killed half-way."""
+
+import os
+import signal
+import sys
+
+import pytest
+
+import lowfi
+from lowfi import cluster
+from lowfi import store as stores
+from lowfi.fill import fill
+from lowfi.request import Ensemble
+from lowfi.rows import Drawn
+from lowfi.store import StoreError
+from scenes import load, uncertainty
+
+pytest.importorskip("zarr")
+distributed = pytest.importorskip("distributed")
+CASES, CHUNK = 480, 20
+
+
+@pytest.fixture(autouse=True)
+def small_chunks(monkeypatch):
+    monkeypatch.setattr(stores, "CHUNK", CHUNK)
+
+
+def ensemble() -> Ensemble:
+    scene = load("reference")
+    return Ensemble(scene, Drawn(uncertainty.load("paper", scene, cases=CASES)), None, lowfi.Numerics(relative_tolerance=1e-2))
+
+
+def local_cluster(workers: int):
+    return distributed.LocalCluster(n_workers=workers, threads_per_worker=1, processes=True, dashboard_address=None)
+
+
+def test_a_worker_that_is_killed_changes_no_bit(tmp_path):
+    asked = ensemble()
+    here = asked.store(tmp_path / "here")
+    fill(asked, here)
+    with local_cluster(2) as workers:
+        pids = [worker.pid for worker in workers.workers.values()]
+        told, there = [], asked.store(tmp_path / "there")
+
+        def kill_one(stored: int) -> None:
+            told.append(stored)
+            if len(told) == 3:
+                os.kill(pids[0], signal.SIGKILL)
+
+        assert fill(asked, there, scheduler=workers.scheduler_address, progress=kill_one) == CASES
+        assert len(told) == CASES // CHUNK and told[-1] == CASES
+        assert pids[0] not in [worker.pid for worker in workers.workers.values()]
+    assert there.pending() == [] and there.digest() == here.digest()
+
+
+def test_a_lost_scheduler_ends_with_a_message_and_a_store_that_resumes(tmp_path):
+    asked = ensemble()
+    store = asked.store(tmp_path / "store")
+    workers = local_cluster(1)
+
+    def lose(stored: int) -> None:
+        if stored == 3 * CHUNK:
+            workers.close()
+
+    with pytest.raises(StoreError, match=r"lost the scheduler .*cases are stored, and the same command goes on from there"):
+        fill(asked, store, scheduler=workers.scheduler_address, progress=lose)
+    kept = CASES - len(store.pending()) * CHUNK
+    assert 3 * CHUNK <= kept < CASES
+    assert fill(asked, store) == CASES - kept
+    one = asked.store(tmp_path / "one")
+    fill(asked, one)
+    assert store.digest() == one.digest()
+
+
+def test_no_scheduler_and_no_dask_say_what_is_missing(tmp_path, monkeypatch):
+    asked = ensemble()
+    store = asked.store(tmp_path / "store")
+    monkeypatch.setattr(cluster, "PATIENCE", 0.2)
+    with pytest.raises(StoreError, match="no Dask scheduler answers at tcp://127.0.0.1:9"):
+        fill(asked, store, scheduler="tcp://127.0.0.1:9")
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    with pytest.raises(StoreError, match=r"tipoff\[cluster\]"):
+        fill(asked, store, scheduler="tcp://127.0.0.1:9")
+
+
+def test_a_worker_of_other_sources_is_refused():
+    asked = ensemble()
+    recipe = cluster.Recipe(asked.key, {"code": "other", "versions": {}}, asked.scene, None, asked.numerics)
+    with pytest.raises(RuntimeError, match="other code and versions"):
+        cluster.run_rows(recipe, asked.source.rows(0, 1))

@@ -1,0 +1,60 @@
+"""Tables of cases in CSV files: units in a line or in the cells, bad cells for the scene to refuse, bad headers at once."""
+
+import numpy as np
+import pytest
+
+from lowfi.rows import numbers
+from lowfi.table import TableFile
+from scenes.faults import SceneError
+from scenes.units import to_si
+
+AXIAL, MASS = "thrust_offset.misalignment.axial", "payload.mass"
+
+
+def table(folder, *lines: str) -> TableFile:
+    path = folder / "cases.csv"
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    return TableFile(path)
+
+
+def test_units_in_a_line_or_in_the_cells_are_the_same_bits(tmp_path):
+    texts = [f"{value:.6g}" for value in np.random.default_rng(1).uniform(0.0, 1.0, 200)]
+    line = table(tmp_path, f"{AXIAL},{MASS}", "deg,g", *(f"{text},{9000 + n}" for n, text in enumerate(texts)))
+    cells = table(tmp_path, f"{AXIAL}, {MASS}", *(f"{text} deg, {9000 + n} g" for n, text in enumerate(texts)))
+    assert line.asked == cells.asked == 200 and line.identity == cells.identity
+    assert line.rows(7, 9) == cells.rows(7, 9) == [{AXIAL: to_si(f"{texts[n]} deg", "rad"), MASS: to_si(f"{9000 + n} g", "kg")} for n in (7, 8)]
+
+
+def test_odd_cells_stay_text_and_empty_ones_are_left_out(tmp_path):
+    found = table(tmp_path, f"{AXIAL},{MASS},friction", "deg,kg,", "0.1,,", "x,9.9,absent", "nan,9.9,", "0.2", "0.3,9.9,,7", "")
+    assert found.asked == 5
+    rows = found.rows(0, 5)
+    assert rows[0] == {AXIAL: to_si("0.1 deg", "rad")}
+    assert rows[1] == {AXIAL: "x", MASS: 9.9, "friction": "absent"}
+    assert rows[2][AXIAL] == "nan"
+    assert rows[3][MASS] == rows[3]["friction"] == "a missing cell"
+    assert rows[4]["cells beyond the header"] == "7"
+    inputs = numbers(found.keys, rows)
+    assert inputs.shape == (5, 3) and np.isnan(inputs[1, [0, 2]]).all() and inputs[1, 1] == 9.9
+
+
+def test_a_bare_number_is_no_quantity(tmp_path):
+    """In a file every number of a dimension carries its unit: 0.1 alone is left for the scene to refuse."""
+    assert table(tmp_path, AXIAL, "0.1").rows(0, 1) == [{AXIAL: "0.1"}]
+    assert table(tmp_path, "friction.static", "0.1").rows(0, 1) == [{"friction.static": 0.1}]
+
+
+@pytest.mark.parametrize("lines, words", [
+    ((f"{MASS},payload.weight,{MASS}", "kg,kg,kg"), ["payload.weight", "twice"]),
+    ((f"{MASS},{AXIAL}", "m,deg"), [MASS, "'m'"]),
+    (("",), ["header"]),
+])
+def test_a_bad_header_is_refused_at_once(tmp_path, lines, words):
+    with pytest.raises(SceneError) as refused:
+        table(tmp_path, *lines)
+    assert all(word in str(refused.value) for word in words)
+
+
+def test_a_missing_file_is_named(tmp_path):
+    with pytest.raises(SceneError, match="cases.csv"):
+        TableFile(tmp_path / "cases.csv")
