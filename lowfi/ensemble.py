@@ -5,10 +5,9 @@ from collections import deque
 from concurrent.futures import ThreadPoolExecutor
 from itertools import chain
 from pathlib import Path
-from typing import Any, Iterable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Iterable, Iterator, Mapping, Sequence
 
 import numpy as np
-import xarray
 
 from lowfi import columns
 from lowfi.batch import Case, Family
@@ -19,6 +18,9 @@ from scenes.calibration import Calibration
 from scenes.scene import Scene
 from scenes.trajectory import Trajectory
 from scenes.uncertainty import Uncertainty
+
+if TYPE_CHECKING:
+    import xarray
 
 _AXES = ("x", "y", "z")
 PIECE = 256  # cases set up together: enough for the calls to cost nothing, few enough for memory to stay flat
@@ -31,7 +33,7 @@ def curves(scenes: Sequence[Scene], numerics: Numerics | None = None, workers: i
 
 
 def run_many(scene: Scene, table: Sequence[Mapping[str, Any]] | Uncertainty, calibration: Calibration | None = None,
-             workers: int | None = None, store: str | Path | None = None, numerics: Numerics | None = None) -> xarray.Dataset:
+             workers: int | None = None, store: str | Path | None = None, numerics: Numerics | None = None) -> "xarray.Dataset":
     """Run ``scene`` once per row of ``table``, a row being dotted overrides as in ``Scene.replace``, or per draw of an Uncertainty.
 
     The values are those of ``lowfi.run`` to the last bit; no curves are kept. A row the scene refuses has the status ``refused`` and the
@@ -49,7 +51,7 @@ def run_many(scene: Scene, table: Sequence[Mapping[str, Any]] | Uncertainty, cal
     return _dataset(columns.of(cases), [case.message for case in cases]).assign(wall_s=("case", shares, {"units": "s"}))
 
 
-def _stored(scene, source, calibration, numerics, workers, path) -> xarray.Dataset:
+def _stored(scene, source, calibration, numerics, workers, path) -> "xarray.Dataset":
     from lowfi.fill import fill
     from lowfi.request import Ensemble
 
@@ -81,7 +83,9 @@ def _workers(workers: int | None) -> int:
     return workers or os.cpu_count() or 1
 
 
-def _dataset(found: columns.Columns, messages: list[str]) -> xarray.Dataset:
+def _dataset(found: columns.Columns, messages: list[str]) -> "xarray.Dataset":
+    import xarray  # slow to load, and a single run does without
+
     dimensions = {name: ("case", "axis") if name in columns.VECTORS else "case" for name in columns.UNITS}
     variables = {
         "status": ("case", np.array(columns.STATUSES, dtype=object)[found.status]), "message": ("case", np.array(messages, dtype=object)),

@@ -9,7 +9,7 @@ hypercube exists as a whole only, and is held in memory.
 import warnings
 
 import numpy as np
-from scipy.stats import qmc
+import scipy  # its parts load when they are first used
 
 from scenes.faults import Fault, SceneError
 from scenes.uncertainty import Uncertainty
@@ -33,12 +33,12 @@ class Points:
             if uncertainty.cases * self._size > MOST_HELD:
                 raise SceneError([Fault("vary", "sampling", f"latin-hypercube of {uncertainty.cases:,} cases and {self._size} keys",
                                         f"at most {MOST_HELD // self._size:,} cases, for it is held in memory, or random or sobol")])
-            self._held = qmc.LatinHypercube(self._size, rng=np.random.default_rng(self._seed)).random(uncertainty.cases)
+            self._held = scipy.stats.qmc.LatinHypercube(self._size, rng=np.random.default_rng(self._seed)).random(uncertainty.cases)
         if uncertainty.sampling == "sobol":
-            if self._size > qmc.Sobol.MAXDIM or uncertainty.cases > 2**_SOBOL_BITS:
+            if self._size > scipy.stats.qmc.Sobol.MAXDIM or uncertainty.cases > 2**_SOBOL_BITS:
                 raise SceneError([Fault("vary", "sampling", f"sobol of {uncertainty.cases:,} cases and {self._size:,} keys",
-                                        f"at most {2**_SOBOL_BITS:,} cases and {qmc.Sobol.MAXDIM:,} keys")])
-            self._engine = qmc.Sobol(self._size, bits=_SOBOL_BITS, rng=np.random.default_rng(self._seed))
+                                        f"at most {2**_SOBOL_BITS:,} cases and {scipy.stats.qmc.Sobol.MAXDIM:,} keys")])
+            self._engine = scipy.stats.qmc.Sobol(self._size, bits=_SOBOL_BITS, rng=np.random.default_rng(self._seed))
 
     def draw(self, begin: int, end: int) -> np.ndarray:
         """Points (end - begin, d) of the cases ``begin`` to ``end`` - 1."""

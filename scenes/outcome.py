@@ -9,7 +9,7 @@
 from typing import NamedTuple
 
 import numpy as np
-from scipy.interpolate import CubicSpline
+import scipy  # its parts load when they are first used
 
 from scenes import rotation, spline
 from scenes.effects import thrust
@@ -146,7 +146,7 @@ def mean(time: np.ndarray, values: np.ndarray, start: float, end: float) -> np.n
     first, last = np.searchsorted(time, [start, end])
     near = slice(max(first - AROUND, 0), last + AROUND)
     if time[near].size < 4:
-        return CubicSpline(time[near], values[near]).integrate(start, end) / (end - start)
+        return scipy.interpolate.CubicSpline(time[near], values[near]).integrate(start, end) / (end - start)
     found, points = np.empty(3), time[near].size
     average(time[near], values[near], start, end, np.empty(points), np.empty((points, 3)), found)
     return found

@@ -10,12 +10,15 @@ import math
 from dataclasses import dataclass, field, fields
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray
 
 from scenes import ledger, outcome
 from scenes.files import replacing
+
+if TYPE_CHECKING:
+    import xarray
 
 STATUSES = ("exited", "time_limit", "jammed", "diverged", "refused")
 _VECTOR = ("x", "y", "z")
@@ -110,8 +113,10 @@ class Trajectory:
             lost = [".".join(path) for path, number in _numbers(plain) if not math.isfinite(number)]
             raise ValueError(f"{', '.join(lost)}: NaN or inf, which no result may hold (None says that there is no value)")
 
-    def to_xarray(self) -> xarray.Dataset:
+    def to_xarray(self) -> "xarray.Dataset":
         """Labelled copy with units as attributes; motion relative to the platform is added."""
+        import xarray  # slow to load, and a run that writes no file does without
+
         variables = {name: (dims, getattr(self, name), {"units": _UNITS[name]}) for name, dims in _DIMENSIONS.items()}
         relative = outcome.relative_motion(self)
         for name, unit in (("relative_position", "m"), ("relative_velocity", "m/s"), ("relative_rate", "rad/s")):
@@ -135,6 +140,8 @@ class Trajectory:
     @classmethod
     def load(cls, path: str | Path) -> "Trajectory":
         """Read what ``save`` wrote. Raises FileNotFoundError, or OSError for a damaged or foreign file."""
+        import xarray
+
         if not Path(path).is_file():
             raise FileNotFoundError(f"{path}: no such trajectory file")
         try:

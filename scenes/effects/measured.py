@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import curve_fit
+import scipy  # its parts load when they are first used
 
 
 class MeasuredCurve(NamedTuple):
@@ -72,7 +72,7 @@ def fit_gaussian(curve: MeasuredCurve) -> GaussianFit:
     width = math.sqrt(max(np.trapezoid(force * (time - centre) ** 2, time) / total, np.diff(time).min() ** 2))
     start = (total / (width * math.sqrt(2.0 * math.pi)), centre, width)
     try:
-        (peak, centre, width), _ = curve_fit(gaussian, time, force, p0=start, maxfev=20000)
+        (peak, centre, width), _ = scipy.optimize.curve_fit(gaussian, time, force, p0=start, maxfev=20000)
     except RuntimeError as error:
         raise ValueError("a curve that a Gaussian fits (least squares did not converge)") from error
     peak, centre, width = float(peak), float(centre), abs(float(width))
