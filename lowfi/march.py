@@ -24,7 +24,9 @@ BEGAN, NOW, SIZE, SPAN, WANTED, RATE, LIMIT, LIMIT_USED, FRICTION_POWER, DAMPING
 SEGMENT, STEPS, REJECTED, EVENTS, EVALUATIONS, TAKEN, COUNT_SIZE = range(7)
 _SAFETY, _SHRINK, _GROW = 0.9, 0.2, 5.0
 _SPARE = 0.1  # largest error ratio at which a step may be cut by interpolation, whose error is some times larger
-_NEAR_END = 1e-3  # last share of a step in which a change of law cannot be felt: its effect goes with the square
+# Last share of a step in which a change of law cannot be felt: its effect goes with the square. Of the energy of a pad that springs
+# back freely in one step the ledger misses the square of it.
+_NEAR_END = 1e-4
 _LANDINGS = 40  # cuts of one step
 
 

@@ -61,3 +61,11 @@ def machine_code(kernel, arguments: tuple) -> bytes:
         raise RuntimeError(f"no compiled {kernel.__name__} in {cache.cache_path}")
     (_, _, (code, _)), *_ = stored
     return code
+
+
+def contains(code: bytes, function) -> bool:
+    """Whether object ``code`` holds the compiled ``function``, called or inlined: Numba leaves one symbol for each, in which module and
+    name stand with their lengths, so that no other name can be taken for it."""
+    python = function.py_func
+    parts = (*python.__module__.split("."), *python.__qualname__.split("."))
+    return ("NumbaEnv" + "".join(f"{len(part)}{part}" for part in parts) + "B").encode() in code

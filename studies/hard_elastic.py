@@ -7,7 +7,7 @@ import numpy as np
 from scenes.scene import Scene, load
 from studies import weaker_methods as weaker
 from studies.agreement import settled_change
-from studies.hard_cases import Verdict, verdict
+from studies.hard_cases import Stability, Verdict, verdict
 
 _SIZE = 0.016
 
@@ -74,15 +74,16 @@ def step_above_the_limit() -> Verdict:
     return verdict("step above the critical one", "highfi", "growth of the displacement over 400 steps at 0.9 of the limit",
                    rail.leapfrog(0.9 * rail.limit, 400)[0], 10.0, "the same loop, unchecked, at 1.05 x the limit",
                    rail.leapfrog(1.05 * rail.limit, 400)[0], f"{len(refused)} of 3 longer steps refused",
-                   holds=len(refused) == 3)
+                   holds=len(refused) == 3, stable=Stability(0.9 * rail.limit, rail.limit))
 
 
 def long_vibration() -> Verdict:
     """A ringing rail over 20,000 steps: central differences keep its energy, an explicit method of the same cost does not."""
     rail = _Rail()
     step = 0.9 * rail.limit
-    return verdict("ringing rail, 20,000 steps", "highfi", "relative change of the energy", rail.leapfrog(step, 20000)[1], 1e-9,
-                   "explicit Euler, same step, 50 steps", rail.euler(step, 50))
+    drift = rail.leapfrog(step, 20000)[1]
+    return verdict("ringing rail, 20,000 steps", "highfi", "relative change of the energy", drift, 1e-9,
+                   "explicit Euler, same step, 50 steps", rail.euler(step, 50), stable=Stability(step, rail.limit, drift))
 
 
 def sliding_over_facets() -> Verdict:
@@ -94,7 +95,8 @@ def sliding_over_facets() -> Verdict:
     with ThreadPoolExecutor() as pool:
         fine, usual, poor = pool.map(lambda numerics: highfi.run(scene, numerics, threads=1), choices)
     return verdict("pads slide over facet borders", "highfi", "settled rates against 10 x 10 points per facet (deg/s)",
-                   settled_change(fine, usual), 0.1, "one contact point per facet", settled_change(fine, poor))
+                   settled_change(fine, usual), 0.1, "one contact point per facet", settled_change(fine, poor),
+                   stable=Stability(usual.cost["dt_s"], usual.cost["dt_limit_s"], usual.checks["energy_error"]))
 
 
 CASES = {"step_above_the_limit": step_above_the_limit, "long_vibration": long_vibration, "sliding_over_facets": sliding_over_facets}

@@ -28,6 +28,7 @@ tr.bad td:last-child { font-weight: 600; }
 tr.bad td:last-child::before { content: "\\2717\\00a0"; }
 tr.doubt td:last-child { font-style: italic; }
 .none { color: #9aa1a9; }
+.small { color: var(--soft); font-size: 12px; }
 .figures { display: flex; flex-wrap: wrap; gap: 14px; margin: 18px 0; }
 .figures div { border: 1px solid var(--rule); border-radius: 6px; padding: 10px 16px; min-width: 150px; }
 .figures b { display: block; font-size: 22px; font-variant-numeric: tabular-nums; }

@@ -70,3 +70,9 @@ def recoil(impulse: float, payload: float, platform: float, inertia: float, offs
     v, base, rate = impulse / payload, -impulse / platform, -impulse * offset / inertia
     return {"payload": v, "platform": base, "rate": rate, "closing": v - base - rate * offset,
             "energy": 0.5 * (payload * v**2 + platform * base**2 + inertia * rate**2)}
+
+
+def elastic_impact(mass: float, other: float, v: float) -> tuple[float, float]:
+    """Speeds (m/s) of a body at ``v`` and of ``other`` (kg) at rest after an impact without loss: v (m - M)/(m + M), 2 v m/(m + M)
+    (momentum and energy)."""
+    return v * (mass - other) / (mass + other), 2.0 * v * mass / (mass + other)

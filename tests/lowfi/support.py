@@ -2,6 +2,10 @@
 
 import lowfi
 import scenes
+from lowfi import march, plan, state
+from lowfi.run import Run
+from scenes import rotation
+from tests import turning
 
 G = 9.80665
 PAPER_PAD = {"law": "impact", "clearance": 1e-5, "exponent": 1.5, "stiffness": 70000.0 * 1000.0**1.5, "damping": 60000.0,
@@ -29,6 +33,30 @@ def scene(duration: float, interval: float, mass: float = 20.0, inertia: dict | 
 def numerics(tolerance: float) -> lowfi.Numerics:
     """The tolerance under test; the floor is low, so that it acts on slow bodies too."""
     return lowfi.Numerics(relative_tolerance=tolerance, speed_floor=1e-4)
+
+
+def unwatched(asked: scenes.Scene, numerics: lowfi.Numerics, change=None) -> Run:
+    """A run over the scene's whole duration, from its state at ignition or what ``change`` makes of it: nobody looks for an exit or
+    a jam on the way."""
+    run = Run(asked, numerics)
+    if change is not None:
+        run.loop = march.ready(run.system, change(state.initial(run.model)), plan.first_step(run.plan))
+    run.left = True
+    run.begin()
+    run.march(None)
+    return run
+
+
+def turned_state(start, turn: tuple, bodies=(state.PAYLOAD, state.PLATFORM)):
+    """State with some of its bodies turned about the scene's origin by the quaternion ``turn``."""
+    new = start.copy()
+    for body in bodies:
+        for slot in (state.PLACE, state.VELOCITY, state.MOMENT):
+            vector = slice(body + slot, body + slot + 3)
+            new[vector] = turning.turned(start[vector], turn)
+        first = body + state.QUATERNION
+        new[first:first + 4] = rotation.product(turn, tuple(start[first:first + 4]))
+    return new
 
 
 def drop(contact: dict, tolerance: float, duration: float, v: float = 0.05, mass: float = 20.0, pads: list | None = None,

@@ -4,10 +4,11 @@ import math
 
 import pytest
 
+import lowfi
 from lowfi import state, touch
 from scenes.effects import contact as law
 from tests.exact import contact as exact
-from tests.lowfi.support import PAPER_PAD, close, drop, scene
+from tests.lowfi.support import G, PAPER_PAD, close, drop, numerics, scene
 
 K = PAPER_PAD["stiffness"]
 TWO_TOLERANCES = pytest.mark.parametrize("tolerance", [1e-7, 1e-9])
@@ -25,6 +26,12 @@ def test_impact_spot_values(p_mm, closing, force):
     found = touch.load(law.laws(record), None, None, face, p_mm * 1e-3, body, state.Motion(zero, zero, turn, zero)).normal[2]
     assert found == pytest.approx(exact.impact_force(K, 1.5, 60000.0, 3e-4, p_mm * 1e-3, closing / 1e3), rel=1e-9, abs=1e-12)
     assert found == pytest.approx(force, abs=5e-4)
+    # Controls: without the cut-off the law pulls while the pad opens fast; with its damping there at once, not by the cubic step, it
+    # is off where the pad is shallow.
+    uncut = sum(law.impact(record, p_mm * 1e-3, closing / 1e3))
+    assert uncut < -5.0 if closing < 0.0 else uncut == pytest.approx(force, abs=5e-4)
+    if 0.0 < closing and p_mm < 0.3:
+        assert K * (p_mm * 1e-3) ** 1.5 + 60000.0 * closing / 1e3 > force + 500.0
 
 
 @pytest.mark.case("O21")
@@ -36,6 +43,10 @@ def test_impact_collision(tolerance, damping):
     found, run = drop(PAPER_PAD | {"damping": damping}, tolerance, 3.6e-3)
     close(found, expected, 1e-4)
     assert run.checks["energy_error"] <= 1e-6
+    # Control: explicit Euler, 360 steps to the contact, misses the restitution by ten times the tolerance.
+    euler = exact.explicit_euler_restitution(lambda p, q: exact.impact_force(K, 1.5, damping, 3e-4, max(p, 0.0), q), 20.0, 0.05,
+                                             1e-5)
+    assert abs(euler / expected["restitution"] - 1.0) > 1e-3
 
 
 @pytest.mark.case("O22")
@@ -48,6 +59,9 @@ def test_undamped_power_law(tolerance, n):
     found, _ = drop(PAPER_PAD | {"exponent": n, "stiffness": k, "damping": 0.0}, tolerance, expected["duration"])
     close(found, expected, 1e-5)
     assert found["restitution"] == pytest.approx(1.0, abs=1e-6)
+    # Control: explicit Euler with a thousand steps to the contact still gains energy.
+    euler = exact.explicit_euler_restitution(lambda p, _: k * max(p, 0.0) ** n, 20.0, 0.05, expected["duration"] / 1000)
+    assert euler > 1.0 + 1e-3
 
 
 @pytest.mark.case("X1")
@@ -114,3 +128,17 @@ def test_flat_drop_on_eight_pads(tolerance):
     assert exact.explicit_euler_restitution(lambda p, _: 8 * 7e7 * p, 20.0, 0.05, 1e-4) > 1.5
 
 
+@pytest.mark.case("O31")
+@TWO_TOLERANCES
+@pytest.mark.parametrize("k, duration", [(7e7, 1.679252e-3), (2.8e8, 0.839626e-3)])
+def test_penalty_converges(tolerance, k, duration):
+    """On a linear pad T = pi sqrt(m / k), and N / k at rest: four times the stiffness, half the time, a quarter of the depth."""
+    pad = {"law": "linear", "clearance": 1e-5, "stiffness": k, "damping": 0.0}
+    assert math.pi * math.sqrt(20.0 / k) == pytest.approx(duration, rel=1e-6)
+    found, _ = drop(pad, tolerance, duration, gravity={"z": 0.0})
+    assert found["duration"] == pytest.approx(duration, rel=1e-4)
+    damped = pad | {"clearance": 0.0, "damping": 2.0 * math.sqrt(20.0 * k)}
+    resting = lowfi.run(scene(0.05, 1e-3, contact=damped, gravity={"z": -G}, initial={"velocity": {"x": 1.0}}),
+                        numerics=numerics(tolerance))
+    assert resting.status == "time_limit"
+    assert -resting.position[-1, 2] == pytest.approx(20.0 * G / k, rel=1e-4)

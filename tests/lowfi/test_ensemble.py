@@ -11,6 +11,7 @@ from studies.bench_lowfi import varied
 ROWS = [{"thrust_offset.misalignment.radial": f"{angle} deg"} for angle in (5, 25, 45, 65)]
 
 
+@pytest.mark.case("X19")
 def test_bad_rows_are_refused_alone():
     rows = [ROWS[0], {"payload.mass": -1.0}, {"contact.clearence": 1e-4}, {"thrust.peak": 1e200, "thrust_offset.misalignment.axial": 0.0}, ROWS[1]]
     found = lowfi.run_many(load("reference"), rows, workers=2)
@@ -20,6 +21,7 @@ def test_bad_rows_are_refused_alone():
     assert np.isfinite(found.rate.values[[0, 4]]).all() and np.isnan(found.rate.values[1:4]).all()
 
 
+@pytest.mark.case("X20")
 def test_same_bits_for_any_worker_count():
     one, three = (lowfi.run_many(load("sensitive"), ROWS, workers=count) for count in (1, 3))
     for name in ("rate", "velocity", "exit_time", "steps"):

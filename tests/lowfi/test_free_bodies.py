@@ -7,6 +7,7 @@ import pytest
 
 import lowfi
 from tests.exact import rigid as exact
+from tests.exact.thrust import kept_by_cut
 from tests.lowfi.support import numerics, scene
 
 CENTRED = {"eccentricity": {"axial": 0.0}}  # a table without effect, so that all these scenes share one compiled kernel
@@ -16,6 +17,15 @@ def spin(inertia: tuple, rate: tuple, duration: float, tolerance: float, interva
     """A free body with principal ``inertia`` (kg m2) started at ``rate`` (rad/s, body axes)."""
     return lowfi.run(scene(duration, interval, inertia=dict(zip(("xx", "yy", "zz"), inertia)), thrust_offset=CENTRED,
                            initial={"velocity": {"x": 1.0}, "rate": dict(zip("xyz", rate))}), numerics=numerics(tolerance))
+
+
+def euler_rates(inertia: tuple, start: tuple, step: float, count: int) -> np.ndarray:
+    """Control: rates (count + 1, 3) of the free body by explicit Euler on I w' = -w x I w."""
+    rates = [np.array(start)]
+    for _ in range(count):
+        w = rates[-1]
+        rates.append(w + step * np.cross(inertia * w, w) / inertia)
+    return np.array(rates)
 
 
 @pytest.mark.case("O34")
@@ -30,6 +40,8 @@ def test_free_rotation(tolerance, error):
     q = run.quaternion[-1] * -np.sign(run.quaternion[-1, 0])
     assert q == pytest.approx([-0.7685141217, 0.0384838400, 0.0223194370, -0.6382843266], abs=error)
     assert abs(np.linalg.norm(run.quaternion, axis=1) - 1.0).max() <= 1e-12
+    # Control: explicit Euler at a millisecond a step is off by a thousand times the looser tolerance.
+    assert abs(euler_rates(inertia, start, 1e-3, 10000)[-1] - run.rate[-1]).max() > 1e-3
     if tolerance == 1e-12:
         momentum = np.linalg.norm(run.rate * inertia, axis=1)
         energy = 0.5 * (run.rate**2 * inertia).sum(axis=1)
@@ -50,12 +62,8 @@ def test_flip_about_the_middle_axis(tolerance):
     assert (quarter, half) == pytest.approx((3.041335, 6.082670), abs=1e-6)
     assert zeros == pytest.approx(quarter + half * np.arange(3), abs=1e-5)
     # Control: explicit Euler at the sampling step is late by a hundred times the tolerance.
-    w, dt, passed = np.array(start), 0.002, []
-    for step in range(8000):
-        old, w = w, w + dt * np.array([(inertia[1] - inertia[2]) * w[1] * w[2] / inertia[0],
-                                       (inertia[2] - inertia[0]) * w[2] * w[0] / inertia[1],
-                                       (inertia[0] - inertia[1]) * w[0] * w[1] / inertia[2]])
-        passed += [step * dt] if old[1] * w[1] < 0.0 else []
+    late = euler_rates(inertia, start, 0.002, 8000)[:, 1]
+    passed = 0.002 * np.flatnonzero(late[:-1] * late[1:] < 0.0)
     assert abs(passed[1] - quarter - half) > 1e-3
 
 
@@ -76,6 +84,9 @@ def test_axisymmetric_precession(tolerance):
     turned = np.unwrap(np.arctan2(across @ np.cross(along, start), across @ start))
     assert turned == pytest.approx(space * run.time, abs=1e-7)
     assert (body, space, math.degrees(cone)) == pytest.approx((-2.0, 2.009975, 5.710593), abs=1e-6)
+    # Control: explicit Euler at a millisecond a step lets the wobble grow.
+    wobble = euler_rates((0.3, 0.6, 0.6), (4.0, 0.2, 0.0), 1e-3, 3000)[-1, 1:]
+    assert np.hypot(*wobble) / 0.2 > 1.0 + 1e-3
 
 
 @pytest.mark.case("O37")
@@ -93,19 +104,24 @@ def test_body_fixed_thrust(tolerance, error):
 
 
 @pytest.mark.case("O38")
+@pytest.mark.parametrize("tolerance", [2e-7, 1e-9])
 @pytest.mark.parametrize("pulse, error", [(1e-6, 1e-5), (1e-10, 1e-9)])
 @pytest.mark.parametrize("clock, expected", [(0.0, (-0.067341, 0.019414, -2.501026)), (35.0, (-0.107637, 1.581236, -2.059856))])
-def test_short_impulse(pulse, error, clock, expected):
+def test_short_impulse(tolerance, pulse, error, clock, expected):
     """I^-1 (r x J) for an impulse that is short, and in the limit."""
     inertia = {"xx": 0.30, "yy": 0.55, "zz": 0.60, "xy": 0.010, "xz": -0.008, "yz": 0.004}
     tilt, phi = math.radians(0.1), math.radians(clock)
     run = lowfi.run(scene(4.0 * pulse, pulse, inertia=inertia, thrust_offset={"misalignment": {"axial": tilt, "radial": phi}},
-                          thrust={"kind": "constant", "force": 100.0 / pulse, "duration": pulse, "arm": 0.15}))
+                          thrust={"kind": "constant", "force": 100.0 / pulse, "duration": pulse, "arm": 0.15}),
+                    numerics=lowfi.Numerics(relative_tolerance=tolerance))
     tensor = np.array([[0.30, 0.010, -0.008], [0.010, 0.55, 0.004], [-0.008, 0.004, 0.60]])
     push = 100.0 * np.array([math.cos(tilt), math.sin(tilt) * math.cos(phi), math.sin(tilt) * math.sin(phi)])
     limit = exact.impulsive_rate(tensor, np.array([-0.15, 0.0, 0.0]), push)
     assert np.degrees(limit) == pytest.approx(expected, abs=1e-6)
     assert abs(run.rate[-1] - limit).max() <= error * abs(limit).max()
+    # Control: without the products of inertia the payload would not roll at all, which is off by more than a thousand tolerances.
+    plain = exact.impulsive_rate(np.diag(np.diag(tensor)), np.array([-0.15, 0.0, 0.0]), push)
+    assert plain[0] == 0.0 and abs(plain - limit).max() > 0.01 * abs(limit).max()
 
 
 @pytest.mark.case("O39")
@@ -123,6 +139,8 @@ def test_recoil_of_a_free_platform(tolerance):
     assert run.platform_rate[-1] == pytest.approx([0.0, 0.0, expected["rate"]], rel=1e-6, abs=1e-12)
     closing = run.velocity[-1, 0] - run.platform_velocity[-1, 0] + run.platform_rate[-1, 2] * -0.3
     assert closing == pytest.approx(expected["closing"], rel=1e-6)
+    # Control: without the turning of the platform the two would part more slowly, by a seventh.
+    assert abs((run.velocity[-1, 0] - run.platform_velocity[-1, 0]) / closing - 1.0) > 0.1
     kinetic = run.energy[-1, 2]
     assert kinetic == pytest.approx(expected["energy"], rel=1e-6)
     assert run.checks["linear_momentum_error"] <= 1e-12 and run.checks["angular_momentum_error"] <= 1e-12
@@ -130,11 +148,12 @@ def test_recoil_of_a_free_platform(tolerance):
 
 
 @pytest.mark.case("X11")
+@pytest.mark.parametrize("tolerance", [2e-7, 1e-9])
 @pytest.mark.parametrize("width", [1e-5, 0.1])
-def test_no_pulse_is_jumped_over(width):
+def test_no_pulse_is_jumped_over(width, tolerance):
     """J/m = 5 m/s, whether the Gaussian lasts 20 us or half a second."""
     thrust = {"kind": "gaussian", "impulse": 100.0, "width": width, "centre": 0.8}
-    run = lowfi.run(scene(1.6, 0.01, thrust=thrust, thrust_offset=CENTRED))
+    run = lowfi.run(scene(1.6, 0.01, thrust=thrust, thrust_offset=CENTRED), numerics=lowfi.Numerics(relative_tolerance=tolerance))
     assert run.velocity[-1, 0] == pytest.approx(5.0, rel=1e-5)
     assert run.cost["steps"] < 400
     if width < 0.01:  # control: steps of one sample that do not know the pulse find no impulse like it
@@ -152,3 +171,15 @@ def test_steps_stop_at_the_corners_of_the_thrust(tolerance):
     assert run.velocity[-1, 0] == pytest.approx(5.1875, rel=1e-6)
     # Control: the midpoint rule on steps of 1 ms misses the corners.
     assert abs(sum(12500.0 * 1e-3 for i in range(20) if 0.00123 <= (i + 0.5) * 1e-3 < 0.00953) / 20.0 - 5.1875) > 0.1
+
+
+@pytest.mark.case("O41")
+@pytest.mark.parametrize("tolerance", [2e-7, 1e-9])
+@pytest.mark.parametrize("rescale, speed", [(False, 4.986501), (True, 5.0)])
+def test_cut_gaussian(rescale, speed, tolerance):
+    """100 N s with sigma 4 ms cut at 3 sigma: 4.986501 m/s, or 5 when rescaled; the result says which."""
+    thrust = {"kind": "gaussian", "impulse": 100.0, "width": 4e-3, "centre": 0.02, "cutoff": 3.0, "rescale": rescale}
+    run = lowfi.run(scene(0.05, 1e-3, thrust=thrust, thrust_offset=CENTRED), numerics=lowfi.Numerics(relative_tolerance=tolerance))
+    assert 5.0 * (1.0 if rescale else kept_by_cut(3.0)) == pytest.approx(speed, rel=1e-7)
+    assert run.velocity[-1, 0] == pytest.approx(speed, rel=1e-6)
+    assert (run.scene["thrust"]["cutoff"], run.scene["thrust"]["rescale"]) == (3.0, rescale)

@@ -35,6 +35,7 @@ def test_stable_on_the_whole_half_disc():
     assert growth(1.1 * pair.STABLE_RADIUS) > 1.0
 
 
+@pytest.mark.case("X19")
 @pytest.mark.parametrize("bad", [{"relative_tolerance": 0.0}, {"relative_tolerance": float("nan")}, {"speed_floor": -1.0},
                                  {"maximum_steps": 0}, {"relative_tolerance": 1.0, "speed_floor": float("inf")}])
 def test_bad_numerics_are_refused(bad):

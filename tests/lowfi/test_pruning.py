@@ -7,8 +7,12 @@ import sys
 import pytest
 
 import lowfi
+from lowfi.compiled import LAWS
 from scenes import load
 
+# How the effects that the reference scene lacks are added; a law that sticks stands in the place of the other.
+ADDED = {"gravity": {"gravity.z": -9.80665},
+         "sticking": {"friction": {"law": "sticking", "static": 0.2, "dynamic": 0.2, "stiffness": 1e7, "damping": 1e4}}}
 COUNT = """
 import numpy as np
 from lowfi import equations, limits, state, system
@@ -36,8 +40,18 @@ def test_pruned_kernels_know_no_friction(tmp_path):
     assert without == 0 and with_friction > 0
 
 
-@pytest.mark.parametrize("absent", [(), ("friction", "platform", "contact", "thrust_offset")])
-def test_compiled_effects_are_those_of_the_scene(absent):
-    """Read from the machine code: contact, with it friction, platform and offset are there or not; gravity and sticking never."""
-    found = lowfi.compiled_effects(load("reference").replace({name: None for name in absent}))
-    assert found == {name: name not in (*absent, "gravity", "sticking") for name in found}
+@pytest.mark.parametrize("effect", LAWS)
+def test_one_absent_effect_is_not_compiled(effect):
+    """Read from the machine code: what the scene has is there, what it has not is not, and one change changes nothing else. Without contact
+    there is no friction either."""
+    base = load("reference")
+    present = lowfi.compiled_effects(base)
+    assert present == {name: name not in ADDED for name in LAWS}
+    changed = lowfi.compiled_effects(base.replace(ADDED.get(effect, {effect: None})))
+    also = {"friction"} if effect in ("contact", "sticking") else set()
+    assert changed == {name: not value if name == effect or name in also else value for name, value in present.items()}
+
+
+def test_without_any_effect_nothing_of_them_is_compiled():
+    found = lowfi.compiled_effects(load("reference").replace({name: None for name in ("friction", "platform", "contact", "thrust_offset")}))
+    assert not any(found.values())

@@ -12,7 +12,7 @@ from lowfi import Numerics, march, state
 from lowfi.run import Run
 from scenes import rotation
 from tests import turning
-from tests.lowfi.support import corners, scene
+from tests.lowfi.support import corners, scene, turned_state
 
 RATE, OFFSET, ARM = (0.5, 0.003, -0.002), 1.2e-4, (0.1, 1.2e-4, 1.2e-4)
 ISOTROPIC = {"xx": 4.9, "yy": 4.9, "zz": 4.9}
@@ -34,14 +34,7 @@ def ejected(tolerance: float, turn=None, bodies=(state.PAYLOAD, state.PLATFORM))
     """The run, its bodies turned beforehand about the scene's origin by the quaternion ``turn``."""
     run = Run(TURNING, Numerics(relative_tolerance=tolerance))
     if turn:
-        start = state.initial(run.model)
-        for body in bodies:
-            for slot in (state.PLACE, state.VELOCITY, state.MOMENT):
-                vector = slice(body + slot, body + slot + 3)
-                start[vector] = turning.turned(start[vector], turn)
-            first = body + state.QUATERNION
-            start[first:first + 4] = rotation.product(turn, tuple(start[first:first + 4]))
-        run.loop = march.ready(run.system, start, run.interval)
+        run.loop = march.ready(run.system, turned_state(state.initial(run.model), turn, bodies), run.interval)
     run.marks = run.marks._replace(settled_thrust=0.0)  # what is left of the thrust does not keep the payload from settling
     run.begin()
     run.march(None)

@@ -8,6 +8,9 @@ from pathlib import Path
 
 import pytest
 
+from scenes import rotation
+from scenes.jit import contains
+
 ROOT = Path(__file__).resolve().parents[2]
 CALLER = "from highfi.callee import value\nfrom scenes.jit import njit\n\n\n@njit\ndef doubled():\n    return 2.0 * value()\n"
 CALLEE = "from scenes.jit import njit\n\n\n@njit\ndef value():\n    return {}\n"
@@ -68,3 +71,12 @@ def test_any_change_of_a_source_changes_the_digest(project):
     digests = run.stdout.split()
     assert len(digests) == 6, run.stderr
     assert len(set(digests)) == 6
+
+
+def test_code_names_whole_functions_only():
+    """A name that begins, ends or contains another one is not taken for it, and neither is the same name in another module."""
+    code = b"..._ZN08NumbaEnv6scenes8rotation6rotateB2v1B52c8tJ..."
+    assert contains(code, rotation.rotate)
+    assert not contains(code, rotation.unrotate) and not contains(code.replace(b"8rotation", b"6motion"), rotation.rotate)
+    assert b"rotat" in code and not contains(code, rotation.matrix)
+    assert not contains(code.replace(b"6rotateB", b"9rotated_byB"), rotation.rotate)

@@ -1,0 +1,47 @@
+"""X20: a run that is put away at 37 % and taken up by another program ends in the same bits."""
+
+import numpy as np
+import pytest
+
+import lowfi
+from lowfi import Numerics, march
+from lowfi.run import Run
+from scenes import load
+
+ASKED = load("sensitive").condition("phi35")
+ARRAYS = ("time", "position", "velocity", "quaternion", "rate", "platform_position", "platform_velocity", "platform_rate",
+          "pad_force", "energy", "transverse_energy")
+
+
+def put_away(tolerance: float, last: int, path) -> Run:
+    """A run that was stopped at sample ``last``, made anew from the scene and the arrays in a file."""
+    numerics = Numerics(relative_tolerance=tolerance)
+    run = Run(ASKED, numerics)
+    run.begin()
+    run._advance(last)
+    assert run.taken == last + 1
+    np.savez(path, rows=run.rows, forces=run.forces, **run.loop._asdict())
+    kept, other = np.load(path), Run(ASKED, numerics)
+    other.loop = march.Loop(*(kept[name] for name in march.Loop._fields))
+    other.rows, other.forces, other.taken = kept["rows"], kept["forces"], last + 1
+    return other
+
+
+@pytest.mark.case("X20")
+@pytest.mark.parametrize("tolerance", [2e-7, 1e-9])
+def test_resumed_run_ends_in_the_same_bits(tolerance, tmp_path):
+    whole = lowfi.run(ASKED, numerics=Numerics(relative_tolerance=tolerance))
+    last = round(0.37 * (whole.time.size - 1))
+    run = put_away(tolerance, last, tmp_path / "run.npz")
+    run.march(None)
+    resumed = run.trajectory()
+    assert resumed.status == whole.status == "exited" and resumed.outcome == whole.outcome
+    assert all(np.array_equal(getattr(resumed, name), getattr(whole, name)) for name in ARRAYS)
+    # Control: with the state alone kept, and not the size of the next step and the stages, it ends elsewhere.
+    poor = put_away(tolerance, last, tmp_path / "run.npz")
+    fresh = march.ready(poor.system, poor.loop.end, poor.interval)
+    fresh.clock[march.NOW], fresh.count[march.TAKEN] = poor.loop.clock[march.NOW], last + 1
+    fresh.count[march.SEGMENT] = poor.loop.count[march.SEGMENT]
+    poor.loop = fresh
+    poor.march(None)
+    assert poor.taken == len(whole.time) and not np.array_equal(poor.trajectory().rate, whole.rate)

@@ -1,0 +1,38 @@
+"""The table of hard cases of the surrogate: every line holds, its control fails, and its step and drift are real figures."""
+
+import pytest
+
+from studies import hard_contacts, hard_guides, hard_thrusts
+from studies.report.tables import stability
+
+CASES = {**hard_contacts.CASES, **hard_guides.CASES, **hard_thrusts.CASES}
+CHEAP = [name for name in CASES if name != "turning_platform"]  # which takes seconds, and is run with the pipeline
+
+
+@pytest.fixture(scope="module")
+def verdicts():
+    return {name: CASES[name]() for name in CHEAP}
+
+
+@pytest.mark.parametrize("name", CHEAP)
+def test_case_holds_and_its_control_fails(verdicts, name):
+    found = verdicts[name]
+    assert found.held, found
+    assert found.control_failed, found
+    assert found.energy_drift <= 1e-6
+    if found.critical_step_s is not None:
+        assert 0.0 < found.largest_step_s < found.critical_step_s
+
+
+def test_table_shows_steps_in_microseconds(verdicts):
+    page = stability({"cases": [found._asdict() for found in verdicts.values()]})
+    assert "7.56" in page and "largest step (µs)" in page and page.count("<tr") == len(CHEAP) + 1
+    assert page.count('class="good"') == len(CHEAP)
+
+
+def test_a_case_that_does_not_hold_is_marked(verdicts):
+    """Control: one wrong figure, one control that holds too."""
+    missed = verdicts["stiff_pad"]._replace(held=False)
+    useless = verdicts["stiff_pad"]._replace(control_failed=False)
+    page = stability({"cases": [missed._asdict(), useless._asdict()]})
+    assert page.count('class="bad"') == 2 and "not held" in page and "the simpler one holds too" in page
