@@ -215,7 +215,7 @@ def ablation(document: dict) -> Html:
              ", ".join(row["compiled"]) or "none") for row in document["rows"]]
     return section("ablation", "Only what the scene calls for", table(heads, rows), caption(
         f"Condition {document['condition']}; reference on {1e3 * document['element_size_m']:g} mm elements, surrogate uncalibrated. "
-        "Times are processor times, without compilation. The first line of each model has every effect on, those the scene lacks with "
+        "Times, without compilation: of a whole run of the reference, of the time loop of the surrogate. The first line of each model has every effect on, those the scene lacks with "
         "small values; each further line takes one away."))
 
 

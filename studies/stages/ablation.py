@@ -55,7 +55,7 @@ def run(study: Study) -> dict:
 
 
 def _reference(study: Study, name: str, lines: dict[str, dict]):
-    """Runs on the coarse mesh; their processor time is the thread's own, so runs side by side do not disturb it."""
+    """Runs on the coarse mesh, and the processor time of each: the thread's own, so runs side by side do not disturb it."""
     asked = [study.coarse(name, overrides, _tag(line))
              for line, overrides in lines.items()]
     runs = study.store.fill("ablation, highfi", asked)
@@ -63,11 +63,12 @@ def _reference(study: Study, name: str, lines: dict[str, dict]):
 
 
 def _surrogate(study: Study, name: str, lines: dict[str, dict]):
+    """Runs by turns, and the median time of their loops: set-up and judging, the same for all, would hide what an effect costs."""
     asked = [study.lowfi(name, None, overrides, tag=_tag(line)) for line, overrides in lines.items()]
     for item in asked:
         warm_up(item)
     rounds = [[timed(item) for item in asked] for _ in range(study.settings.lowfi_repeats)]
-    times = [statistics.median(processor for _, _, processor in repeats) for repeats in zip(*rounds)]
+    times = [statistics.median(run.cost["kernel_s"] for run, _, _ in repeats) for repeats in zip(*rounds)]
     return asked, [run for run, _, _ in rounds[0]], times
 
 
