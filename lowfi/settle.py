@@ -136,7 +136,8 @@ def _one(system, plan, tolerance, ends, edges, loop, room, result):
     exit_at = _exit(system, edges, exit_rows[:kept], past - _NEAR, _NEAR, interval, columns, room.slopes)
     window = max(exit_at + outcome.SETTLE_DELAY, ends.settled_thrust)
     last = min(last, int(np.ceil((window + outcome.SETTLE_WINDOW) / interval)) + 2)
-    first = max(int((window / interval)) - _NEAR - 2, 0)  # two more than the spline needs, for the exit is found once more
+    every = outcome.thinning(interval)
+    first = last - every * ((last - int(window / interval) + 2) // every + _NEAR)  # more than the spline needs, for the exit is found once more
     stored = 0
     while number <= last:
         while clock[NOW] < number * interval:
@@ -147,40 +148,40 @@ def _one(system, plan, tolerance, ends, edges, loop, room, result):
         if kept < 2 * _NEAR:
             _sample(system, loop, number * interval, exit_rows[kept])
             kept += 1
-        if number >= first:
+        if number >= first and (last - number) % every == 0:
             if stored == room.window.shape[0]:
                 return LEFT_OPEN
             _sample_payload(system, loop, number * interval, room.window[stored])
             stored += 1
         number += 1
-    first = last - stored + 1
+    first = last - every * (stored - 1)
     exit_at = _exit(system, edges, exit_rows[:kept], past - _NEAR, _NEAR, interval, columns, room.slopes)
-    return _judge(exit_at, max(exit_at + outcome.SETTLE_DELAY, ends.settled_thrust), first, room.window[:stored], interval, columns, room.slopes,
-                  result)
+    return _judge(exit_at, max(exit_at + outcome.SETTLE_DELAY, ends.settled_thrust), first, every, room.window[:stored], interval, columns,
+                  room.slopes, result)
 
 
 @kernel
-def _judge(exit_at, start, first, rows, interval, columns, slopes, result):
-    """The settled values of samples ``rows``, the first of which is number ``first``."""
+def _judge(exit_at, start, first, every, rows, interval, columns, slopes, result):
+    """The settled values of samples ``rows``, which are those of number ``first`` and each ``every``-th after it."""
     end, stored = start + outcome.SETTLE_WINDOW, rows.shape[0]
-    if (first + stored - 1) * interval < end * (1.0 - 1e-12):
+    last = first + every * (stored - 1)
+    if last * interval < end * (1.0 - 1e-12):
         return LEFT_OPEN
-    begin, stop = 0, stored
-    while begin < stored and (first + begin) * interval < start:
-        begin += 1
-    for i in range(stored):
-        if (first + stored - 1 - i) * interval >= end:
-            stop = stored - 1 - i
-    if begin < _NEAR:
-        return LEFT_OPEN
-    begin, stop = begin - _NEAR, min(stop + _NEAR, stored)
-    count = stop - begin
+    inside, beyond = int(start / interval), int(end / interval)  # first samples in the window and past it
+    while inside * interval < start:
+        inside += 1
+    while beyond * interval < end:
+        beyond += 1
+    if min(beyond + _NEAR - 1, last) != last or inside - _NEAR * every < first:
+        return LEFT_OPEN  # the exit, found once more, asks for other samples
+    begin = -(-(inside - _NEAR * every - first) // every)
+    count = stored - begin
     if count < 4:
         return LEFT_OPEN
     time, work, slope = columns[0, :count], columns[1, :count], slopes[:count]
     for i in range(count):
-        time[i] = (first + begin + i) * interval
-    kept = rows[begin:stop]
+        time[i] = (first + every * (begin + i)) * interval
+    kept = rows[begin:]
     outcome.average(time, kept[:, slot.VELOCITY:slot.VELOCITY + 3], start, end, work, slope, result[VELOCITY:])
     outcome.average(time, kept[:, MEASURED:MEASURED + 3], start, end, work, slope, result[RATE:])
     result[EXIT], result[WINDOW] = exit_at, start

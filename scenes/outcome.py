@@ -20,6 +20,7 @@ from scenes.scene import Scene
 AROUND = 3  # samples on either side that a spline sees beyond what it is asked about
 SETTLE_DELAY = 1e-3
 SETTLE_WINDOW = 2e-3
+SETTLE_PIECES = 10  # a free body turns so little in the window that more pieces of a spline change nothing
 JAM_DURATION = 5e-3
 
 
@@ -141,10 +142,17 @@ def window_start(exit_at: float, marks: Milestones) -> float:
     return max(exit_at + SETTLE_DELAY, marks.settled_thrust)
 
 
+@kernel
+def thinning(interval):
+    """Every how many samples, ``interval`` (s) apart, a mean over the settled window is read from."""
+    return max(1, int(SETTLE_WINDOW / (SETTLE_PIECES * interval) + 1e-9))
+
+
 def mean(time: np.ndarray, values: np.ndarray, start: float, end: float) -> np.ndarray:
     """Mean over start..end (s) of samples (n,3), by the integral of a cubic spline."""
     first, last = np.searchsorted(time, [start, end])
-    near = slice(max(first - AROUND, 0), last + AROUND)
+    every = thinning(time[1] - time[0])
+    near = np.arange(min(last + AROUND, time.size) - 1, max(first - AROUND * every, 0) - 1, -every)[::-1]
     if time[near].size < 4:
         return scipy.interpolate.CubicSpline(time[near], values[near]).integrate(start, end) / (end - start)
     found, points = np.empty(3), time[near].size
