@@ -16,10 +16,10 @@ _APART = {"name", "description", "conditions", "provenance", "agreement", "pads"
 
 
 def values(table_: BaseModel, prefix: str = "") -> Iterator[tuple[str, Any, str, bool]]:
-    """(dotted key, value, SI unit, whether the file states it) of every field that holds a value."""
+    """(dotted key, value, SI unit, whether the file states it) of every field that holds a value and is written with the scene."""
     for name, field in type(table_).model_fields.items():
         value, key = getattr(table_, name), f"{prefix}{name}"
-        if value is None or (not prefix and name in _APART):
+        if value is None or field.exclude or (not prefix and name in _APART):
             continue
         if isinstance(value, BaseModel):
             yield from values(value, key + ".")
