@@ -14,6 +14,7 @@ from skfem.quadrature import get_quadrature
 _DEGREE = {3: 2, 6: 4, 12: 6, 16: 8, 19: 9, 25: 10, 33: 12, 42: 14, 61: 17, 73: 19}
 INSIDE = 1e-6  # how far outside its facet, in local coordinates, a point may seem to lie
 _NEWTON = 20
+_ARRIVED = 1e-14  # in local coordinates, a step that changes nothing
 _FAR = 3.0  # local coordinates beyond which the way back to the facet is not looked for
 
 
@@ -42,18 +43,24 @@ def normals(nodes: np.ndarray) -> np.ndarray:
     return across / np.linalg.norm(across, axis=1, keepdims=True)
 
 
-def weights(nodes: np.ndarray, target: np.ndarray) -> np.ndarray | None:
-    """Values (k,) of the nodal functions at ``target`` (2,) in a facet that a plane shows with nodes (k,2), by Newton's rule; None
-    where it lies outside."""
-    square = len(nodes) == 4
-    functions, place = (_square_functions, np.zeros(2)) if square else (_triangle_functions, np.full(2, 1.0 / 3.0))
+def weights(nodes: np.ndarray, target: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Values (p,k) of the nodal functions at each ``target`` (p,2) in the facet that a plane shows with nodes (p,k,2), by Newton's
+    rule, and whether it lies inside (p,)."""
+    square = nodes.shape[1] == 4
+    functions, middle = (_square_functions, 0.0) if square else (_triangle_functions, 1.0 / 3.0)
+    place = np.full(target.shape, middle)
     for _ in range(_NEWTON):
-        values, slopes = functions(place[:, None])
-        place = (place + np.linalg.solve((slopes[:, 0] @ nodes).T, target - values[0] @ nodes)).clip(-_FAR, _FAR)
-    values = functions(place[:, None])[0][0]
-    outside = np.abs(place).max() - 1.0 if square else -min(*place, 1.0 - place.sum())
-    missed = np.abs(values @ nodes - target).max() / np.ptp(nodes, axis=0).max()  # outside a curved facet there may be no way to it
-    return values if max(outside, missed) < INSIDE else None
+        values, slopes = functions(place.T)
+        missing = target - np.einsum("pa,pai->pi", values, nodes)
+        step = np.linalg.solve(np.einsum("dpa,pai->pid", slopes, nodes), missing[:, :, None])[:, :, 0]
+        place = (place + step).clip(-_FAR, _FAR)
+        if np.abs(step).max(initial=0.0) < _ARRIVED:
+            break
+    values = functions(place.T)[0]
+    outside = np.abs(place).max(axis=1) - 1.0 if square else -np.minimum(place.min(axis=1), 1.0 - place.sum(axis=1))
+    # Outside a curved facet there may be no way to the target.
+    missed = np.abs(np.einsum("pa,pai->pi", values, nodes) - target).max(axis=1) / np.ptp(nodes, axis=1).max(axis=1)
+    return values, np.maximum(outside, missed) < INSIDE
 
 
 def gauss(nodes: np.ndarray, quadrature: int) -> tuple[np.ndarray, np.ndarray]:

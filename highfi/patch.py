@@ -89,10 +89,10 @@ def _spots(points: np.ndarray, facets: np.ndarray, axis: int,
     found = []
     for target in np.stack(np.meshgrid(*(place + offsets for place in middle), indexing="ij"), axis=-1).reshape(-1, 2):
         around = np.flatnonzero(((low < target) & (target < high)).all(axis=1))
-        spots = ((facets[facet], weights) for facet in around if (weights := geometry.weights(plane[facet], target)) is not None)
-        if (spot := next(spots, None)) is None:
+        values, inside = geometry.weights(plane[around], np.broadcast_to(target, (around.size, 2)))
+        if not inside.any():
             return None
-        found.append(spot)
+        found.append((facets[around[inside.argmax()]], values[inside.argmax()]))
     return found
 
 

@@ -9,10 +9,13 @@ Axial power is each force's X component times the X velocity of the mass centre 
 from lowfi import grip as grips
 from lowfi import state as slot
 from lowfi.state import IMPULSE, MOMENT, PAYLOAD, PLACE, PLATFORM, QUATERNION, TURN, VELOCITY
-from lowfi.touch import load, penetration, relative_pose
+from lowfi.touch import load, penetration, relative_pose, relative_velocity
+from lowfi.walls.loads import drive
+from lowfi.walls.loads import load as wall_load
+from lowfi.walls.solution import solve
 from scenes import rotation
 from scenes.effects.thrust_law import magnitude
-from scenes.jit import inlined
+from scenes.jit import inlined, kernel
 
 
 @inlined
@@ -26,6 +29,7 @@ def derivative(system, active, grip, time, state, out):
     add_gravity(system.gravity, system.payload, system.platform, system.ledger, body, base, out)
     add_contact(system.contact, system.friction, system.sticking, system.faces, system.platform, system.ledger, active, grip, body,
                 base, out)
+    add_walls(system.walls, system.friction, system.faces, system.platform, system.ledger, active, body, base, out)
     move(system.payload.mass, state[:PLATFORM], body, out[:PLATFORM])
     move_platform(system.platform, state, base, out)
 
@@ -147,6 +151,31 @@ def add_contact(laws, friction, sticking, faces, platform, ledger, active, grip,
                     face = load(laws, friction, platform, faces[i], p, body, base)
                     _press(face, friction, platform, ledger, body, base, out)
                     _grip(sticking, grip, i, faces, face, platform, ledger, body, base, out)
+
+
+@kernel
+def add_walls(walls, friction, faces, platform, ledger, active, body, base, out):
+    if walls is not None:
+        place, turn = relative_pose(platform, body, base)
+        for rail in range(walls.members.shape[0]):
+            count = solve(walls, faces, rail, active, place, turn)
+            for k in range(count):
+                face = walls.room.order[k]
+                if walls.room.force[face, 0] > 0.0:
+                    _press(wall_load(walls, friction, platform, faces, face, body, base), friction, platform, ledger, body, base, out)
+            if count > 0:
+                _drive(walls, count, platform, ledger, body, base, out)
+
+
+@inlined
+def _drive(walls, count, platform, ledger, body, base, out):
+    """Add what the walls do along the rail, at the payload's mass centre."""
+    pull, fading = drive(walls, count)
+    force = rotation.rotate(base.turn, (pull, 0.0, 0.0))
+    _pair(platform, ledger, force, body.place, out)
+    if ledger is not None:
+        out[slot.RELEASED] += fading * rotation.unrotate(base.turn, relative_velocity(platform, body, base, body.place))[0]
+        out[slot.CONTACT_AXIAL] += force[0] * _axial_speed(platform, body, base)
 
 
 @inlined

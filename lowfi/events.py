@@ -13,6 +13,8 @@ from lowfi import grip as grips
 from lowfi import state as slot
 from lowfi.dormand_prince import interpolate
 from lowfi.touch import along, approach, load, penetration, relative_motion, relative_pose
+from lowfi.walls.survey import depth as depth_in_wall
+from lowfi.walls.survey import survey as survey_walls
 from scenes.effects.contact import stored_energy
 from scenes.jit import inlined
 
@@ -26,9 +28,11 @@ MODE, DEPTH, CLOSING, PULL, ALONG, MARGIN, SURVEY_SIZE = 0, 1, 2, 3, 4, 5, 6
 
 
 @inlined
-def survey(laws, sticking, faces, platform, payload, grip, state, out):
+def survey(laws, walls, sticking, faces, platform, payload, active, grip, state, out):
     """Fill ``out`` (f, SURVEY_SIZE) with mode, penetration (m), its rate (m/s), pull, X (m) and margin of grip of every face. The
-    mode of a face off the rail is the one it would have there."""
+    mode of a face off the rail is the one it would have there. Walls that give way ask which faces are ``active`` (f,)."""
+    if walls is not None:
+        survey_walls(walls, faces, platform, payload, active, state, (OPEN, PRESSING, MODE, DEPTH, CLOSING, ALONG), out)
     if laws is not None:
         body, base = slot.motion(payload.mass, payload.inverse_inertia, state, slot.PAYLOAD), slot.frame(platform, state)
         place, turn = relative_pose(platform, body, base)
@@ -65,7 +69,8 @@ def _pull(face):
 
 
 @inlined
-def first_event(laws, sticking, payload, platform, faces, rail, engaged, grip, before, after, dt, span, start, stages, work):
+def first_event(laws, walls, sticking, payload, platform, faces, rail, engaged, active, grip, before, after, dt, span, start, stages,
+                work):
     """Fraction (0..1] of the first ``span`` of a step at which it must end, and the face to blame; ``before`` and ``after`` survey the
     ends of that part.
 
@@ -84,25 +89,35 @@ def first_event(laws, sticking, payload, platform, faces, rail, engaged, grip, b
             for kind in (DEPTH, PULL, ALONG):
                 level = _level(rail, engaged[i], kind, before[i], after[i])
                 if not np.isnan(level):
-                    theta = _locate(laws, sticking, grips.row_of(sticking, grip, i), payload, platform, faces[i], kind, before[i],
-                                    after[i], level, dt, span, start, stages, work)
+                    theta = _locate(laws, walls, sticking, grips.row_of(sticking, grip, i), payload, platform, faces, i, active, kind,
+                                    before[i], after[i], level, dt, span, start, stages, work)
                     if theta < first and (theta > SOONEST or (kind == DEPTH and after[i, DEPTH] > 0.0)):
                         first, blamed = theta, i
-        first, blamed = _change_of_grip(laws, sticking, payload, platform, faces, engaged, grip, before, after, dt, span, start,
-                                        stages, work, first, blamed)
+        first, blamed = _change_of_grip(laws, walls, sticking, payload, platform, faces, engaged, active, grip, before, after, dt,
+                                        span, start, stages, work, first, blamed)
+    if walls is not None:
+        for i in range(engaged.size):
+            theta = 1.0
+            if engaged[i] and not active[i] and after[i, DEPTH] > BEYOND > before[i, DEPTH]:
+                theta = _locate(laws, walls, sticking, None, payload, platform, faces, i, active, DEPTH, before[i], after[i], BEYOND, dt,
+                                span, start, stages, work)
+            elif engaged[i] and not active[i] and after[i, MODE] == OPEN:
+                theta = _grazing(before[i, DEPTH], after[i, DEPTH], span * dt * before[i, CLOSING], span * dt * after[i, CLOSING])
+            if theta < first:
+                first, blamed = theta, i
     return first, blamed
 
 
 @inlined
-def _change_of_grip(laws, sticking, payload, platform, faces, engaged, grip, before, after, dt, span, start, stages, work, first,
-                    blamed):
+def _change_of_grip(laws, walls, sticking, payload, platform, faces, engaged, active, grip, before, after, dt, span, start, stages,
+                    work, first, blamed):
     """``first`` and ``blamed``, or the fraction at which a face slips or stops before, and that face."""
     if sticking is not None:
         for i in range(engaged.size):
             level = grips.last_margin(grip[i], before[i, MARGIN])
             if engaged[i] and before[i, MODE] != OPEN and before[i, MARGIN] > level > after[i, MARGIN]:
-                theta = _locate(laws, sticking, grip[i], payload, platform, faces[i], MARGIN, before[i], after[i], level, dt, span,
-                                start, stages, work)
+                theta = _locate(laws, walls, sticking, grip[i], payload, platform, faces, i, active, MARGIN, before[i], after[i], level,
+                                dt, span, start, stages, work)
                 if SOONEST < theta < first:
                     first, blamed = theta, i
     return first, blamed
@@ -137,20 +152,36 @@ def _edge(rail_start, rail_end, engaged, before, after):
 
 
 @inlined
-def _gauge(laws, sticking, row, payload, platform, face, kind, state):
-    """Quantity ``kind`` of ``face`` at ``state``."""
+def _gauge(laws, walls, sticking, row, payload, platform, faces, number, active, kind, state):
+    """Quantity ``kind`` of face ``number`` at ``state``."""
     body, base = slot.motion(payload.mass, payload.inverse_inertia, state, slot.PAYLOAD), slot.frame(platform, state)
     place, turn = relative_pose(platform, body, base)
+    if walls is not None:
+        return depth_in_wall(walls, faces, number, active, place, turn)
+    return _gauge_at_law(laws, sticking, row, platform, faces[number], kind, place, turn, body, base)
+
+
+@inlined
+def _gauge_at_law(laws, sticking, row, platform, face, kind, place, turn, body, base):
     if kind == ALONG:
         return along(face, place, turn)
     p = penetration(face, place, turn)
     if kind == MARGIN:
         return _margin(laws, sticking, row, platform, face, p, body, base)
-    return p if kind == DEPTH else _pull(load(laws, None, platform, face, max(p, 0.0), body, base))
+    return p if kind == DEPTH else _pull_at(laws, platform, face, p, body, base)
 
 
 @inlined
-def _locate(laws, sticking, row, payload, platform, face, kind, before, after, level, dt, span, start, stages, work):
+def _pull_at(laws, platform, face, p, body, base):
+    pull = 1.0
+    if laws is not None:
+        pull = _pull(load(laws, None, platform, face, max(p, 0.0), body, base))
+    return pull
+
+
+@inlined
+def _locate(laws, walls, sticking, row, payload, platform, faces, number, active, kind, before, after, level, dt, span, start, stages,
+            work):
     """Fraction of the first ``span`` of a step at which the quantity passes ``level``; ``before`` and ``after`` survey its ends."""
     low, high, side = 0.0, 1.0, 0
     f_low, f_high = before[kind] - level, after[kind] - level
@@ -160,7 +191,7 @@ def _locate(laws, sticking, row, payload, platform, face, kind, before, after, l
         theta = _cubic_root(f_low, f_high, span * dt * before[CLOSING], span * dt * after[CLOSING], theta)
     for _ in range(60):
         interpolate(dt, span * theta, start, stages, slot.DYNAMIC_SIZE, work)
-        f = _gauge(laws, sticking, row, payload, platform, face, kind, work) - level
+        f = _gauge(laws, walls, sticking, row, payload, platform, faces, number, active, kind, work) - level
         if abs(f) < close or high - low < 1e-14:
             return theta
         if f * f_high > 0.0:

@@ -56,12 +56,13 @@ def _face(laws, friction, platform, payload, face, p, body, base):
     unit = law.parts(laws.impact, laws.hunt_crossley, laws.linear, p, 1.0)
     across = inverse_mass(platform, payload, body, base, now.point, n)
     stiffness = abs(more[0] + more[1] - now.raw) / (_NUDGE * p) * across
-    damping = unit[1] * across + _friction_damping(friction, now, platform, payload, body, base, n)
+    damping = unit[1] * across + friction_damping(friction, now, platform, payload, body, base, n)
     return stiffness, damping
 
 
 @inlined
-def _friction_damping(friction, now, platform, payload, body, base, n):
+def friction_damping(friction, now, platform, payload, body, base, n):
+    """Contribution of a face's friction to C (1/s)."""
     damping = 0.0
     if friction is not None:
         speed = np.sqrt(rotation.dot(now.slip, now.slip)) + _NUDGE * friction.static_speed

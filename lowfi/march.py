@@ -7,11 +7,13 @@ import numpy as np
 from lowfi import state as slot
 from lowfi.accuracy import error_ratio
 from lowfi.dormand_prince import STABLE_RADIUS, STAGES, attempt, interpolate
-from lowfi.events import SOONEST, SURVEY_SIZE, felt, first_event, on_rail, same_law, survey
+from lowfi.events import ALONG, SOONEST, SURVEY_SIZE, felt, first_event, on_rail, same_law, survey
 from lowfi.grip import GRIP_SIZE, let_go
 from lowfi.limits import fastest_rate
 from lowfi.regrip import grasp, regrip
 from lowfi.sample import observe, rearmost_edge
+from lowfi.walls.limit import stiffness_and_damping
+from lowfi.walls.survey import on_walls
 from scenes.jit import inlined, kernel
 from scenes.memory import zeros
 
@@ -78,6 +80,7 @@ def reset(system, state, first_step, loop):
     clock[FRICTION_POWER] = clock[DAMPING_POWER] = -np.inf
     slot.copy(state, loop.start, slot.STATE_SIZE)
     slot.copy(state, loop.end, slot.STATE_SIZE)
+    _flatten(system.walls)
     loop.engaged[:] = False
     loop.active[:] = False
     loop.stages[:] = 0.0
@@ -86,7 +89,23 @@ def reset(system, state, first_step, loop):
     _let_go(loop.grip)
     _survey(system, loop)
     on_rail(system.contact, system.rail_start, system.rail_end, loop.after, loop.engaged)
+    _on_walls(system.walls, loop)
     _regrip(system, loop)
+
+
+@inlined
+def _flatten(walls):
+    """Forget the displacement that the walls had last."""
+    if walls is not None:
+        walls.room.displacement[:] = 0.0
+
+
+@inlined
+def _on_walls(walls, loop):
+    changed = False
+    if walls is not None:
+        changed = on_walls(walls, ALONG, loop.after, loop.engaged)
+    return changed
 
 
 @inlined
@@ -98,7 +117,8 @@ def _let_go(grip):
 
 @inlined
 def _survey(system, loop):
-    survey(system.contact, system.sticking, system.faces, system.platform, system.payload, loop.grip, loop.end, loop.after)
+    survey(system.contact, system.walls, system.sticking, system.faces, system.platform, system.payload, loop.active, loop.grip, loop.end,
+           loop.after)
 
 
 @inlined
@@ -110,8 +130,18 @@ def _regrip(system, loop):
 
 @inlined
 def _fastest_rate(system, loop, state, ahead):
-    return fastest_rate(system.contact, system.friction, system.sticking, system.faces, system.platform, system.payload,
+    rate = fastest_rate(system.contact, system.friction, system.sticking, system.faces, system.platform, system.payload,
                         loop.active, loop.grip, state, ahead)
+    return max(rate, _rate_on_walls(system.walls, system, loop, state))
+
+
+@inlined
+def _rate_on_walls(walls, system, loop, state):
+    rate = 0.0
+    if walls is not None:
+        stiffness, damping = stiffness_and_damping(walls, system.friction, system.faces, system.platform, system.payload, loop.active, state)
+        rate = 0.5 * damping + np.sqrt(0.25 * damping * damping + stiffness)
+    return rate
 
 
 @kernel
@@ -130,7 +160,9 @@ def march(system, plan, tolerance, loop, last, until_passed, rows, forces):
             slot.copy(loop.end, loop.work, slot.STATE_SIZE)
         else:
             interpolate(clock[SIZE], (time - clock[BEGAN]) / clock[SIZE], loop.start, loop.stages, slot.STATE_SIZE, loop.work)
-        if not observe(system, loop.engaged, loop.grip, loop.work, rows[number], forces[number]):
+        # Before the first step nothing is felt yet, and every face may press.
+        felt_ = loop.active if count[STEPS] > 0 else loop.engaged
+        if not observe(system, loop.engaged, felt_, loop.grip, loop.work, rows[number], forces[number]):
             return NOT_FINITE
         count[TAKEN] += 1
         if until_passed and rearmost_edge(system.faces, system.platform, rows[number]) > system.rail_end:
@@ -204,9 +236,9 @@ def _land(system, loop, dt):
     """Cut the step at its first event: the fraction kept, with ``loop.end`` and its survey there, or a face to be felt from the start."""
     span = 1.0
     for _ in range(_LANDINGS):
-        theta, face = first_event(system.contact, system.sticking, system.payload, system.platform, system.faces,
-                                  (system.rail_start, system.rail_end), loop.engaged, loop.grip, loop.before, loop.after, dt, span,
-                                  loop.start, loop.stages, loop.work)
+        theta, face = first_event(system.contact, system.walls, system.sticking, system.payload, system.platform, system.faces,
+                                  (system.rail_start, system.rail_end), loop.engaged, loop.active, loop.grip, loop.before, loop.after,
+                                  dt, span, loop.start, loop.stages, loop.work)
         if theta >= 1.0 - 1e-9:
             return span, -1
         if theta * span <= SOONEST or loop.clock[BEGAN] + 0.01 * theta * span * dt == loop.clock[BEGAN]:
@@ -228,6 +260,7 @@ def _begin(system, plan, loop):
     if fresh:
         count[SEGMENT] += 1
     changed, energy = on_rail(system.contact, system.rail_start, system.rail_end, loop.after, loop.engaged)
+    changed = _on_walls(system.walls, loop) or changed
     loop.start[slot.RELEASED] += energy
     regripped, lost = _regrip(system, loop)
     loop.start[slot.FRICTION] += lost

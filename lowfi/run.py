@@ -9,12 +9,15 @@ from lowfi import balance, march, plan, state, system
 from lowfi.accuracy import Tolerance
 from lowfi.march import EVALUATIONS, EVENTS, LIMIT, LIMIT_USED, NOW, REJECTED, STEPS, TAKEN
 from lowfi.numerics import Numerics
+from lowfi.walls import record as wall_record
 from lowfi.sample import SAMPLE_SIZE, relative_axial_speed
 from scenes import model as models
 from scenes import outcome
 from scenes.calibration import Calibration
+from scenes.effects.friction import require_two_step
 from scenes.scene import Scene
 from scenes.trajectory import Trajectory
+from scenes.walls import Walls
 
 _REASONS = {march.UNDERFLOW: "no step is short enough: the state is no longer finite or its equations too stiff",
             march.NOT_FINITE: "a value became infinite",
@@ -23,17 +26,18 @@ _BEYOND_WINDOW = 2  # samples past the settled window, for the spline that avera
 
 
 def run(scene: Scene, calibration: Calibration | None = None, numerics: Numerics | None = None,
-        progress: Callable[[float], None] | None = None) -> Trajectory:
+        progress: Callable[[float], None] | None = None, walls: Walls | None = None) -> Trajectory:
     """Solve ``scene`` with rigid rails until the settled window is complete, a jam, or the scene's duration.
 
-    ``calibration`` replaces the scene's contact and friction constants. ``progress`` is called with the fraction of the duration
-    done. Raises SceneError before any stepping; what goes wrong later is the status of the result.
+    ``calibration`` replaces the scene's contact and friction constants. With ``walls`` the pads press walls that give way, through the
+    penalty of the reference, in place of the contact law. ``progress`` is called with the fraction of the duration done. Raises
+    SceneError before any stepping; what goes wrong later is the status of the result.
     """
     began, cpu = clock.perf_counter(), clock.thread_time()
     scene = calibration.apply(scene) if calibration else scene
     known = len(march.march.overloads)
     setting_up = clock.perf_counter()
-    run_ = Run(scene, numerics or Numerics())
+    run_ = Run(scene, numerics or Numerics(), walls)
     run_.begin()
     compile_s = clock.perf_counter() - setting_up if len(march.march.overloads) > known else 0.0
     compile_cpu = clock.thread_time()
@@ -51,10 +55,19 @@ def end_of(scene: Scene) -> int:
     return max(1, round(scene.duration / scene.output.interval))
 
 
+def _under_pads(scene: Scene, model: models.Model, walls: Walls | None):
+    """Record of ``walls`` for the kernels; None without contact. Raises SceneError for walls of another rail, and the law that sticks."""
+    if walls is None or model.contact is None:
+        return None
+    walls.require(scene)
+    require_two_step(scene)
+    return wall_record.build(walls, model)
+
+
 class Run:
     """State of a run in progress and its samples."""
 
-    def __init__(self, scene: Scene, numerics: Numerics):
+    def __init__(self, scene: Scene, numerics: Numerics, walls: Walls | None = None):
         self.scene, self.numerics = scene, numerics
         self.model = model = models.build(scene)
         self.marks = outcome.milestones(scene, model)
@@ -63,7 +76,7 @@ class Run:
         self.plan = plan.make(model, self.interval, self.end * self.interval, numerics)
         reach = float(np.sqrt((model.faces.centre**2).sum(axis=1).max()))
         self.tolerance = Tolerance(numerics.relative_tolerance, numerics.speed_floor, reach)
-        self.system = system.build(model)
+        self.system = system.build(model, walls=_under_pads(scene, model, walls))
         self.loop = march.ready(self.system, state.initial(model), plan.first_step(self.plan))
         self.rows, self.forces = np.zeros((self.end + 1, SAMPLE_SIZE)), np.zeros((self.end + 1, model.faces.axis.size, 3))
         self.taken, self.left, self.message = 0, False, ""

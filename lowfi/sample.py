@@ -8,6 +8,9 @@ from lowfi.events import stored
 from lowfi.state import IMPULSE, MOMENT, PAYLOAD, PLACE, PLATFORM, VELOCITY, WORK, WORK_SIZE, Motion
 from lowfi.system import HALF_LENGTH
 from lowfi.touch import along, load, pad_point, penetration, relative_pose
+from lowfi.walls.loads import energy as wall_energy
+from lowfi.walls.loads import load as wall_load
+from lowfi.walls.solution import solve
 from scenes import rotation
 from scenes.jit import inlined, kernel
 
@@ -19,8 +22,9 @@ SAMPLE_SIZE = GIVEN + 6
 
 
 @kernel
-def observe(system, engaged, grip, state, row, forces):
-    """Fill ``row`` (SAMPLE_SIZE,) and ``forces`` (f,3) N on the payload in scene axes; False where a number is not finite."""
+def observe(system, engaged, active, grip, state, row, forces):
+    """Fill ``row`` (SAMPLE_SIZE,) and ``forces`` (f,3) N on the payload in scene axes; False where a number is not finite. Walls that give
+    way are pressed by the ``active`` faces (f,)."""
     payload = system.payload
     body, base = slot.motion(payload.mass, payload.inverse_inertia, state, PAYLOAD), slot.frame(system.platform, state)
     row[:] = 0.0
@@ -29,6 +33,7 @@ def observe(system, engaged, grip, state, row, forces):
     _platform(system.platform, state, base, row)
     row[STORED] = _press(system.contact, system.friction, system.sticking, system.faces, system.platform, engaged, grip, body, base,
                          forces)
+    row[STORED] += _press_walls(system.walls, system.friction, system.faces, system.platform, active, body, base, forces)
     slot.copy(state[WORK:], row[WORKS:], WORK_SIZE)
     slot.copy(state[IMPULSE:], row[GIVEN:], 6)
     total = 0.0
@@ -125,6 +130,24 @@ def _press(laws, friction, sticking, faces, platform, engaged, grip, body, base,
                         forces[i, j] = face.normal[j] + face.drag[j]
                     _add_grip(sticking, grip, i, faces, face, base, forces[i])
         energy += _in_grips(sticking, grip, faces, body, base)
+    return energy
+
+
+@kernel
+def _press_walls(walls, friction, faces, platform, active, body, base, forces):
+    """The same on walls that give way."""
+    energy = 0.0
+    if walls is not None:
+        place, turn = relative_pose(platform, body, base)
+        for rail in range(walls.members.shape[0]):
+            count = solve(walls, faces, rail, active, place, turn)
+            energy += wall_energy(walls, count)
+            for k in range(count):
+                i = walls.room.order[k]
+                if walls.room.force[i, 0] > 0.0:
+                    face = wall_load(walls, friction, platform, faces, i, body, base)
+                    for j in range(3):
+                        forces[i, j] = face.normal[j] + face.drag[j]
     return energy
 
 

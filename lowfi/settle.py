@@ -82,7 +82,7 @@ def settle(common, plan, relative, floor, ends, cases, first_step, loop, room, r
 @kernel
 def _system(common, cases, n):
     return System(Body(cases.mass[n], cases.inverse_inertia[n]), common.platform, cases.faces[n], common.rail_start, common.rail_end,
-                  common.thrust, common.reacts_on_platform, _offset(cases.direction, cases.arm, n), common.contact, common.friction,
+                  common.thrust, common.reacts_on_platform, _offset(cases.direction, cases.arm, n), common.contact, common.walls, common.friction,
                   common.sticking, common.gravity, common.ledger)
 
 

@@ -3,7 +3,7 @@
 Faces are one table, because every array in a record makes each kernel that passes the record on longer to compile.
 """
 
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -14,6 +14,9 @@ from scenes.effects.sticking import Sticking
 from scenes.effects.thrust_law import Thrust
 from scenes.effects.thrust_offset import ThrustOffset
 from scenes.model import Faces, Model
+
+if TYPE_CHECKING:
+    from lowfi.walls.record import Walls
 
 # Columns of the table of faces: centre in payload body axes (m); outward normal's y and z and the wall's distance along it (m), in
 # platform axes; half the length (m).
@@ -28,7 +31,8 @@ class Body(NamedTuple):
 
 
 class System(NamedTuple):
-    """All records of one run; None where an effect, or the ledger, is absent. faces (f, FACE_SIZE); rail_start and rail_end (m) as in ``Model``."""
+    """All records of one run; None where an effect, or the ledger, is absent. faces (f, FACE_SIZE); rail_start and rail_end (m) as in
+    ``Model``. Where walls give way they stand in the place of the contact law."""
 
     payload: Body
     platform: Body | None
@@ -39,17 +43,19 @@ class System(NamedTuple):
     reacts_on_platform: bool
     thrust_offset: ThrustOffset | None
     contact: Laws | None
+    walls: "Walls | None"
     friction: Friction | None
     sticking: Sticking | None
     gravity: Gravity | None
     ledger: bool | None
 
 
-def build(model: Model, ledger: bool = True) -> System:
-    """Records of ``model`` as the kernels take them. Without a ``ledger`` no work, loss or impulse is integrated."""
+def build(model: Model, ledger: bool = True, walls: "Walls | None" = None) -> System:
+    """Records of ``model`` as the kernels take them, with a contact law at rigid walls or with ``walls`` that give way. Without a
+    ``ledger`` no work, loss or impulse is integrated."""
     return System(_body(model.payload), _body(model.platform) if model.platform is not None else None, _table(model.faces),
                   float(model.rail_start), float(model.rail_end), model.thrust, model.reacts_on_platform, model.thrust_offset,
-                  model.contact, _if(model.friction, Friction), _if(model.friction, Sticking), model.gravity,
+                  model.contact if walls is None else None, walls, _if(model.friction, Friction), _if(model.friction, Sticking), model.gravity,
                   True if ledger else None)
 
 

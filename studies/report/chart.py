@@ -40,7 +40,7 @@ class Line:
 
 @dataclass(frozen=True)
 class Panel:
-    """One set of axes; ``band`` shades y below a value, with a text."""
+    """One set of axes; ``band`` shades y below a value, with a text, ``spans`` stretches of x."""
 
     title: str
     x_label: str
@@ -48,6 +48,7 @@ class Panel:
     lines: list[Line]
     log: bool = False
     band: tuple[float, str] | None = None
+    spans: tuple[tuple[float, float], ...] = ()
 
 
 @dataclass(frozen=True)
@@ -87,6 +88,8 @@ def to_html(chart: Chart) -> str:
         x_kind, y_kind = map(_log_axis, _limits(panel)) if panel.log else ({}, {})
         figure.update_xaxes(title_text=panel.x_label, **x_kind, **place)
         figure.update_yaxes(title_text=panel.y_label, **y_kind, **place)
+        for low, high in panel.spans:
+            figure.add_vrect(x0=low, x1=high, fillcolor=GREY, opacity=0.16, line_width=0, **place)
         if panel.band:
             figure.add_hrect(y0=_limits(panel)[1][0] if panel.log else 0.0, y1=panel.band[0], fillcolor=GREY, opacity=0.16,
                              line_width=0, **place)
@@ -139,6 +142,8 @@ def _dress(axes, panel: Panel) -> None:
         axes.set_ylim(_limits(panel)[1])
         axes.xaxis.set_minor_formatter("")
         axes.yaxis.set_minor_formatter("")
+    for low, high in panel.spans:
+        axes.axvspan(low, high, color=GREY, alpha=0.16, linewidth=0)
     if panel.band:
         axes.axhspan(_limits(panel)[1][0] if panel.log else 0.0, panel.band[0], color=GREY, alpha=0.16, linewidth=0)
         axes.annotate(panel.band[1], (0.98, 0.02), xycoords="axes fraction", ha="right", va="bottom", fontsize=8)

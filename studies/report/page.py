@@ -8,14 +8,14 @@ from pathlib import Path
 from scenes.scene import Scene
 from scenes.trajectory import versions
 from studies import machine
-from studies.report import convergence, figures, inputs, stress, tables
+from studies.report import compliance, convergence, figures, inputs, stress, tables
 from studies.report.chart import Chart, to_html, to_png
 from studies.report.figures import Runs
 from studies.report.markup import Html, caption, code, number, paragraph, section, table
 from studies.report.promises import promises, render
 from studies.report.style import CSS
 
-_CONTENTS = (("answer", "Answer"), ("scene", "Scene"), ("mesh", "Mesh"), ("thrust", "Thrust"), ("figure6", "Curves"),
+_CONTENTS = (("answer", "Answer"), ("scene", "Scene"), ("mesh", "Mesh"), ("compliance", "Compliance"), ("thrust", "Thrust"), ("figure6", "Curves"),
              ("contact-forces", "Contact"), ("energy", "Energy"), ("stress", "Stress"), ("calibration", "Calibration"),
              ("agreement-section", "Agreement"), ("speedup", "Speed"), ("cost", "Cost"), ("convergence", "Convergence"),
              ("bench", "Solvers"), ("stability", "Hard cases"),
@@ -33,7 +33,7 @@ class Page:
         """The whole page; writes every figure as PNG on the way."""
         from plotly.offline import get_plotlyjs
 
-        body = "".join([self._answer(), self._scene(), self._mesh(), self._thrust(), self._curves(), self._contact(), self._energy(), self._stress(),
+        body = "".join([self._answer(), self._scene(), self._mesh(), self._compliance(), self._thrust(), self._curves(), self._contact(), self._energy(), self._stress(),
                         self._of("calibration", "calibration", "Calibration", tables.calibration, "calibrate"),
                         self._of("agreement", "agreement-section", "Agreement with the reference", tables.agreement, "compare"),
                         self._of("agreement", "speedup", "Speed", lambda found: tables.speedup(found["speedup"]), "compare"),
@@ -108,6 +108,14 @@ class Page:
         warned = "".join(f'<div class="notice">{escape(line)}</div>' for line in found["warnings"])
         return section("mesh", "Mesh", Html(f'<img alt="mesh of the rails" src="data:image/png;base64,{image}">'), caption(words),
                        table(("surface", "facets", "area (mm²)"), areas), warned)
+
+    def _compliance(self) -> Html:
+        found = self.documents.get("mesh") or {}
+        if not found.get("compliance"):
+            return Html("")
+        words = compliance.WORDS.format(size=1e3 * found["element_size_m"])
+        return section("compliance", "Rail compliance", self._figure(compliance.picture(found["compliance"]), words),
+                       compliance.table(found["compliance"]))
 
     def _thrust(self) -> Html:
         return section("thrust", "Thrust", self._figure(figures.thrust_curve(self.scene), "Thrust as both models apply it."),

@@ -49,9 +49,9 @@ def test_weights_of_a_point_are_those_of_the_place_it_was_made_from(corners):
     shape, _ = facets.gauss(np.column_stack([corners, np.zeros(len(corners))])[None], 6)
     for _ in range(20):
         nodes = corners + 0.05 * random.standard_normal(corners.shape)
-        for expected in shape:
-            assert facets.weights(nodes, expected @ nodes) == pytest.approx(expected, abs=1e-12)
-        assert facets.weights(nodes, facets.hull(nodes[None])[0].max(axis=0) + 0.01) is None
+        found, inside = facets.weights(np.broadcast_to(nodes, (len(shape), *nodes.shape)), shape @ nodes)
+        assert inside.all() and found == pytest.approx(shape, abs=1e-12)
+        assert not facets.weights(nodes[None], facets.hull(nodes[None]).max(axis=1) + 0.01)[1].any()
 
 
 def rail(bulge: float, divisions=(2, 1, 2)) -> RailMesh:

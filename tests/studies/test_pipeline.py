@@ -17,7 +17,7 @@ ROW = {"condition", "velocity_relative_l2", "rate_relative_l2", "iso18571", "set
        "floor_deg_s", "floor_l2", "reference_uncertainty_deg_s"}
 RUN = {"condition", "status", "wall_s", "compile_s", "steps", "dt_s", "energy_error", "transverse_energy_error", "linear_momentum_error",
        "angular_momentum_error", "settled", "trajectory"}
-SECTIONS = ("answer", "scene", "mesh", "thrust", "figure6", "contact-forces", "energy", "stress", "calibration", "agreement", "speedup", "cost",
+SECTIONS = ("answer", "scene", "mesh", "compliance", "thrust", "figure6", "contact-forces", "energy", "stress", "calibration", "agreement", "speedup", "cost",
             "stability", "ablation", "promises", "colophon")
 
 
@@ -120,4 +120,4 @@ def test_page_is_whole_and_self_contained(pipeline):
     assert "Not made yet" not in page and "BROKEN" not in page
     assert page.count("/*! For license information") <= 1 and 'src="http' not in page
     figures = {path.name for path in (pipeline[0] / "figures").glob("*.png")}
-    assert {"mesh.png", "thrust.png", "figure6.png", "contact-forces.png", "energy-ledgers.png", "cost.png"} <= figures
+    assert {"mesh.png", "compliance.png", "thrust.png", "figure6.png", "contact-forces.png", "energy-ledgers.png", "cost.png"} <= figures

@@ -1,0 +1,155 @@
+"""Static compliance of the rail walls along the track of the pads, from the stiffness of the reference.
+
+    C_iajb = 1/(A_i A_j) integral over faces i and j of phi_a n_i . K^-1 . n_j phi_b,    F = G_i^-1 C_ij G_j^-1,   G_i = 1/A_i integral phi_a phi_b dA
+
+C is the displacement of the wall under pad face i, averaged with pattern a, caused by the pressure pattern b under face j: with the
+pattern 1 the mean displacement under a unit force. F is the flexibility of ``scenes.walls``: displacement and pressure are both
+taken for the polynomials phi nearest to them. K is that of the whole rail, clamped at its mounts, so faces on one rail press each
+other's walls too. Inertia is left out. Both are symmetric (Maxwell and Betti).
+"""
+
+from typing import NamedTuple, Sequence
+
+import numpy as np
+from scipy.sparse import coo_array, csc_array
+from scipy.sparse.linalg import splu
+
+from highfi import assembly, pieces, surface
+from highfi.mesh import MeshError, RailMesh
+from highfi.numerics import Numerics
+from highfi.pressure import Pressed, pressed
+from highfi.run import prepare
+from scenes import model as scene_model
+from scenes.rail import MaterialTable
+from scenes.scene import Scene
+from scenes.walls import PATTERNS, Walls, digest
+
+_BATCH = 64  # loads solved for at once; bounds the memory
+_DIGITS = 9  # of a place in m: faces whose places agree in them share one solution
+_SPACING = 4e-3  # m between stations; what mounts and ends change takes a leg or so
+_SINGULAR = 1e-6  # of the largest eigenvalue of G: patterns that hardly differ on what wall there is
+
+
+class Compliance(NamedTuple):
+    """travel (s,) m of the payload along X since ignition; matrix (s,f,p,f,p) m/N between f pad faces and p patterns, zero between
+    faces on different rails; gram (s,f,p,p), zero where a face has no wall; rail (f,) the number of the rail under each, -1 without;
+    half (f,2) m, half the size of each face along xi and eta, negative where eta runs against the axis. Near an end of the rail
+    a face stays at the last place where all of it is on the rail."""
+
+    travel: np.ndarray
+    matrix: np.ndarray
+    gram: np.ndarray
+    rail: np.ndarray
+    half: np.ndarray
+
+
+def walls(scene: Scene, element_size: float, spacing: float = _SPACING) -> Walls:
+    """Flexibility of the rails of ``scene`` in elements of about ``element_size`` (m), at stations about ``spacing`` (m) apart from
+    ignition until the last pad begins to leave.
+
+    Raises SceneError or MeshError.
+    """
+    faces = scene_model.built(scene).nominal
+    way = scene.rail.end - faces.half_length - faces.centre[:, 0]
+    stations = np.linspace(0.0, way.max(), int(np.ceil(way.max() / spacing)) + 1)
+    found = along(scene, element_size, stations, PATTERNS)
+    inverse = np.linalg.pinv(found.gram, rcond=_SINGULAR, hermitian=True)
+    flexibility = np.einsum("siab,sibjc,sjcd->siajd", inverse, found.matrix, inverse, optimize=True)
+    return Walls(stations, flexibility, found.rail, found.half, digest(scene))
+
+
+def along(scene: Scene, element_size: float, travel: Sequence[float], patterns: int = PATTERNS) -> Compliance:
+    """Compliance of the rails of ``scene`` in elements of about ``element_size`` (m), the payload aligned and moved by each
+    ``travel`` (m) from its place at ignition.
+
+    Faces are those of ``scenes.model.Faces``. Raises SceneError or MeshError, ValueError for a number of patterns there is not.
+    """
+    nominal = scene_model.built(scene).nominal
+    origin = np.array(scene.platform.record().mass_centre if scene.platform else (0.0, 0.0, 0.0))
+    in_scene_axes = nominal._replace(wall=nominal.wall + origin[nominal.axis])
+    mesh = prepare(scene, Numerics(element_size=element_size))
+    return of_mesh(mesh, scene.rail.material, in_scene_axes, (scene.rail.start, scene.rail.end), travel, patterns)
+
+
+def of_mesh(mesh: RailMesh, material: MaterialTable, faces: scene_model.Faces, reach: tuple[float, float], travel: Sequence[float],
+            patterns: int = PATTERNS) -> Compliance:
+    """The same for a mesh whose points are in the axes of ``faces.centre`` and ``faces.wall``, between the X (m) of ``reach``.
+
+    Raises MeshError where a rail under a face has no mount, ValueError for a number of patterns there is not.
+    """
+    if not 1 <= patterns <= PATTERNS:
+        raise ValueError(f"patterns: given {patterns!r}, expected 1 to {PATTERNS}")
+    travel, count, pattern = np.asarray(travel, dtype=float), faces.axis.size, np.arange(patterns)
+    across = faces.centre[np.arange(count), 3 - faces.axis]
+    half = np.column_stack([faces.half_length, np.where(across >= 0.0, 1.0, -1.0) * faces.half_width])
+    matrix, gram = np.zeros((travel.size, count, patterns, count, patterns)), np.zeros((travel.size, count, patterns, patterns))
+    rail_of = np.full(count, -1)
+    for rail, images in pieces.distinct(mesh):
+        patches = _Patches(rail, patterns)
+        places = [patches.under(faces, half, signs, reach, travel) for signs in images]
+        if not patches.found:
+            continue
+        # One more that answers nothing is what a face without a wall, number -1, points at.
+        between = np.pad(patches.solved(material), [(0, 1), (0, 0), (0, 1), (0, 0)])
+        grams = np.array([patch.gram for patch in patches.found] + [np.zeros((patterns, patterns))])
+        for number in places:
+            gram += grams[number]
+            matrix += between[number[:, :, None, None, None], pattern[:, None, None], number[:, None, None, :, None], pattern]
+            rail_of[(number >= 0).any(axis=0)] = rail_of.max() + 1
+    return Compliance(travel, matrix, gram, rail_of, half)
+
+
+class _Patches:
+    """All different places of one rail that some face of it, or of a mirror image of it, presses."""
+
+    def __init__(self, rail: RailMesh, patterns: int):
+        self._rail, self._patterns = rail, patterns
+        self._facets = np.concatenate([group for name, group in sorted(rail.surfaces.items()) if name.startswith("contact")])
+        self._number: dict[tuple, int] = {}
+        self._direction: list[tuple[int, float]] = []  # axis and sign of the pressure
+        self.found: list[Pressed] = []
+
+    def under(self, faces: scene_model.Faces, half: np.ndarray, signs: np.ndarray, reach: tuple[float, float],
+              travel: np.ndarray) -> np.ndarray:
+        """Number (s,f) of the place under each face, -1 where it has none; the rail stands where its image by ``signs`` is."""
+        axis, across = faces.axis, 3 - faces.axis
+        seen = faces._replace(centre=faces.centre * signs, sign=faces.sign * signs[axis], wall=faces.wall * signs[axis])
+        number = np.full((travel.size, axis.size), -1)
+        for face in range(axis.size):
+            wall = self._facets[surface.in_reach(self._rail.points[self._facets], seen, face)]
+            size = half[face] * [1.0, signs[across[face]]]
+            for station, moved in enumerate(travel if wall.size else ()):
+                x = np.clip(seen.centre[face, 0] + moved, reach[0] + size[0], reach[1] - size[0])
+                middle = np.array([x, seen.centre[face, across[face]]])
+                key = (axis[face], seen.sign[face], *np.round([*middle, *size, seen.wall[face]], _DIGITS))
+                if key not in self._number:
+                    patch = pressed(self._rail.points, wall, across[face], middle, size, self._patterns)
+                    self._number[key] = -1 if patch is None else len(self.found)
+                    if patch is not None:
+                        self.found.append(patch)
+                        self._direction.append((axis[face], seen.sign[face]))
+                number[station, face] = self._number[key]
+        return number
+
+    def solved(self, material: MaterialTable) -> np.ndarray:
+        """Displacement (m,p,m,p) in m of all places under the loads of all, normals of the faces positive."""
+        operator = assembly.build(self._rail, material.density, material.youngs_modulus, material.poisson_ratio)
+        if operator.free.all():
+            raise MeshError("a rail that pads press has no mount: nothing holds it")
+        free = np.repeat(operator.free, 3)
+        # A positive definite matrix needs no pivoting, and an ordering for symmetric ones keeps its factors sparse.
+        factor = splu(csc_array(assembly.sparse(operator)[free][:, free]), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0,
+                      options={"SymmetricMode": True})
+        loads = self._loads()[free]
+        answer = [loads.T @ factor.solve(loads[:, start:start + _BATCH].toarray()) for start in range(0, loads.shape[1], _BATCH)]
+        return np.concatenate(answer, axis=1).reshape(2 * (len(self.found), self._patterns))
+
+    def _loads(self) -> csc_array:
+        """Nodal loads (3n,mp) of all patterns at all places."""
+        rows, columns, values = [], [], []
+        for number, (patch, (axis, sign)) in enumerate(zip(self.found, self._direction)):
+            rows.append(np.broadcast_to(3 * patch.node + axis, patch.load.shape).ravel())
+            columns.append(np.repeat(number * self._patterns + np.arange(self._patterns), patch.node.size))
+            values.append(sign * patch.load.ravel())
+        shape = (3 * len(self._rail.points), len(self.found) * self._patterns)
+        return csc_array(coo_array((np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))), shape=shape))

@@ -1,0 +1,151 @@
+"""Pressure of one crowned pad face on its wall, cell by cell.
+
+With the lever (p_0, a, b) of the rigid face and the displacement U of its wall (``scenes.walls``), in the middle of each cell::
+
+    p = p_0 + a xi + b eta - relief (xi^4 + eta^4) - sum_a U_a phi_a(xi', eta),   pressure = penalty max(0, p)
+
+where xi' = xi + shift is the place on the wall, and the crown is its mean over the cell. Of a row of cells that hangs over an end of
+the rail only the part over the wall counts.
+"""
+
+import numpy as np
+
+from lowfi.system import NORMAL_Y, NORMAL_Z
+from lowfi.touch import penetration
+from lowfi.walls.record import BY_ETA, BY_XI, DEPTH, MIDDLE, SHIFT
+from scenes.jit import inlined, kernel
+
+
+@inlined
+def reaches(walls, face, middle):
+    """Whether any part of the face with its middle at X = ``middle`` (m) is over a wall."""
+    half = walls.half[face, 0]
+    return middle + half > walls.start and middle - half < walls.end
+
+
+@inlined
+def take_lever(walls, faces, face, place, turn):
+    """Fill the face's lever for the payload's pose in platform axes."""
+    lever, half = walls.room.lever[face], walls.half[face]
+    y, z = faces[face, NORMAL_Y], faces[face, NORMAL_Z]
+    lever[DEPTH] = penetration(faces[face], place, turn)
+    lever[BY_XI] = half[0] * (y * turn[3] + z * turn[6])
+    lever[BY_ETA] = half[1] * (y * turn[5] + z * turn[7])  # a face along y is wide along z, and the other way round
+    middle = place[0] + faces[face, 0]
+    lever[MIDDLE] = middle
+    lever[SHIFT] = (middle - min(max(middle, walls.start + half[0]), walls.end - half[0])) / half[0]
+
+
+@inlined
+def cover(walls, half, middle, xi):
+    """Share of the row of cells at ``xi`` that is over the wall."""
+    wide = 1.0 / walls.node.size
+    low, high = max((walls.start - middle) / half, xi - wide), min((walls.end - middle) / half, xi + wide)
+    return max(0.0, high - low) / (2.0 * wide)
+
+
+@inlined
+def _parting(walls, half, middle, xi):
+    """What a metre of way takes from the cover of a row of cells: only one that an end of the rail cuts loses or gains any."""
+    wide, end, start = 1.0 / walls.node.size, (walls.end - middle) / half, (walls.start - middle) / half
+    lost = 0.0
+    if abs(end - xi) < wide:
+        lost += 0.5 / (wide * half)
+    if abs(start - xi) < wide:
+        lost -= 0.5 / (wide * half)
+    return lost
+
+
+@inlined
+def row_depth(walls, face, xi, displacement):
+    """Coefficients of 1, eta and eta^2 in p (m) along the row of cells at ``xi``, without the crown across it."""
+    lever, u = walls.room.lever[face], displacement
+    x = xi + lever[SHIFT]
+    return (lever[DEPTH] + lever[BY_XI] * xi - u[0] - x * (u[1] + x * u[3]), lever[BY_ETA] - u[2] - x * u[4], -u[5])
+
+
+@kernel
+def press(walls, face):
+    """Fill the face's force (p,) N and its moments, sums over the pressed cells of penalty dA xi'^i eta^j."""
+    force, moment, lever = walls.room.force[face], walls.room.moment[face], walls.room.lever[face]
+    relief, half = walls.relief[face], walls.half[face]
+    count = walls.node.size
+    stiffness = walls.penalty * 4.0 * half[0] * abs(half[1]) / (count * count)
+    force[:] = 0.0
+    moment[:] = 0.0
+    for row in range(count):
+        xi = walls.node[row]
+        weight = stiffness * cover(walls, half[0], lever[MIDDLE], xi)
+        if weight > 0.0:
+            level, tilt, bend = row_depth(walls, face, xi, walls.room.displacement[face])
+            level -= relief * walls.crown[row]
+            f0, f1, f2 = 0.0, 0.0, 0.0
+            m0, m1, m2, m3, m4 = 0.0, 0.0, 0.0, 0.0, 0.0
+            for column in range(count):
+                eta = walls.node[column]
+                p = level + eta * (tilt + eta * bend) - relief * walls.crown[column]
+                if p > 0.0:
+                    square = eta * eta
+                    f0, f1, f2 = f0 + p, f1 + p * eta, f2 + p * square
+                    m0, m1, m2, m3, m4 = m0 + 1.0, m1 + eta, m2 + square, m3 + eta * square, m4 + square * square
+            if m0 > 0.0:
+                x = xi + lever[SHIFT]
+                _add_force(force, weight, x, f0, f1, f2)
+                _add_moments(moment, weight, x, (m0, m1, m2, m3, m4))
+
+
+@inlined
+def _add_force(force, weight, x, f0, f1, f2):
+    force[0] += weight * f0
+    force[1] += weight * x * f0
+    force[2] += weight * f1
+    force[3] += weight * x * x * f0
+    force[4] += weight * x * f1
+    force[5] += weight * f2
+
+
+@inlined
+def _add_moments(moment, weight, x, sums):
+    power = weight
+    for i in range(5):
+        for j in range(5 - i):
+            moment[i, j] += power * sums[j]
+        power *= x
+
+
+@kernel
+def deepest(walls, face, displacement):
+    """Largest p (m) of all cells over the wall."""
+    lever, relief, half = walls.room.lever[face], walls.relief[face], walls.half[face]
+    largest = -np.inf
+    for row in range(walls.node.size):
+        xi = walls.node[row]
+        if cover(walls, half[0], lever[MIDDLE], xi) > 0.0:
+            level, tilt, bend = row_depth(walls, face, xi, displacement)
+            for column in range(walls.node.size):
+                eta = walls.node[column]
+                p = level + eta * (tilt + eta * bend) - relief * (walls.crown[row] + walls.crown[column])
+                largest = max(largest, p)
+    return largest
+
+
+@kernel
+def stored(walls, face):
+    """Energy (J) in the penalty of the face, and what of it is lost per metre that the pad moves on, over an end of the rail."""
+    lever, relief, half = walls.room.lever[face], walls.relief[face], walls.half[face]
+    count = walls.node.size
+    stiffness = walls.penalty * 4.0 * half[0] * abs(half[1]) / (count * count)
+    energy, fading = 0.0, 0.0
+    for row in range(count):
+        xi = walls.node[row]
+        share = cover(walls, half[0], lever[MIDDLE], xi)
+        if share > 0.0:
+            level, tilt, bend = row_depth(walls, face, xi, walls.room.displacement[face])
+            squares = 0.0
+            for column in range(count):
+                eta = walls.node[column]
+                p = max(0.0, level + eta * (tilt + eta * bend) - relief * (walls.crown[row] + walls.crown[column]))
+                squares += p * p
+            energy += 0.5 * stiffness * share * squares
+            fading += _parting(walls, half[0], lever[MIDDLE], xi) * 0.5 * stiffness * squares
+    return energy, fading

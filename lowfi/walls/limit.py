@@ -1,0 +1,135 @@
+"""The proven step limit on walls that give way: stiffness and damping of the faces of each rail (``lowfi.limits`` has the bound).
+
+With the tangent T = K (1 + F K)^-1 of ``lowfi.walls.solution`` and the wrenches g of depth, tilt along and tilt across of each rigid
+face, the linearised springs are sum_ab T_ab g_a g_b', and the trace over both bodies bounds what they can do::
+
+    K = sum over rails of sum_ab T_ab (g_a . M^-1 g_b)
+"""
+
+from lowfi import state as slot
+from lowfi.limits import friction_damping
+from lowfi.touch import outward, relative_pose
+from lowfi.walls.loads import load
+from lowfi.walls.record import SHIFT
+from lowfi.walls.solution import eliminate, fill_matrix, solve, stiffness
+from lowfi.system import NORMAL_Y
+from scenes import rotation
+from scenes.jit import inlined, kernel
+from scenes.walls import PATTERNS
+
+_RIGID = 3  # depth, tilt along, tilt across
+
+
+@kernel
+def stiffness_and_damping(walls, friction, faces, platform, payload, active, state):
+    """Traces K (1/s2) and C (1/s) of all faces that are ``active`` (f,) at ``state``."""
+    body, base = slot.motion(payload.mass, payload.inverse_inertia, state, slot.PAYLOAD), slot.frame(platform, state)
+    place, turn = relative_pose(platform, body, base)
+    springs, dampers = 0.0, 0.0
+    for rail in range(walls.members.shape[0]):
+        count = solve(walls, faces, rail, active, place, turn)
+        for i in range(count):
+            face = walls.room.order[i]
+            if walls.room.force[face, 0] > 0.0:
+                now = load(walls, friction, platform, faces, face, body, base)
+                dampers += friction_damping(friction, now, platform, payload, body, base, outward(faces[face], base))
+        if count > 0:
+            _tangent(walls, count)
+            springs += _trace(walls, faces, platform, payload, count, body, base)
+    return springs, dampers
+
+
+@kernel
+def _tangent(walls, count):
+    """Fill ``right`` with dP (w,) by a unit of each rigid motion, as the wall follows."""
+    room = walls.room
+    fill_matrix(room, count)
+    wide = count * PATTERNS
+    for row in range(wide):
+        for j in range(count):
+            face = room.order[j]
+            for rigid in range(_RIGID):
+                total = 0.0
+                for c in range(PATTERNS):
+                    column = j * PATTERNS + c
+                    total += room.flexibility[row, column] * _reaction(room, face, c, rigid)
+                room.right[row, j * _RIGID + rigid] = total
+    # dU = (1 + F K)^-1 F K e, dP = K (e - dU)
+    eliminate(room.matrix, room.right, wide, count * _RIGID)
+
+
+@inlined
+def _reaction(room, face, a, rigid):
+    """dP_a by a unit of a rigid motion on a wall at rest: xi of the pad is xi' - shift."""
+    value = stiffness(room.moment[face], a, rigid)
+    if rigid == 1:
+        value -= room.lever[face, SHIFT] * stiffness(room.moment[face], a, 0)
+    return value
+
+
+@kernel
+def _answer(room, i, rigid, column):
+    """Generalised force of rigid motion ``rigid`` on face i of the order, by a unit of motion number ``column``."""
+    face = room.order[i]
+    total = _own(room, face, rigid, column % _RIGID) if column // _RIGID == i else 0.0
+    for c in range(PATTERNS):
+        total -= _reaction(room, face, c, rigid) * room.right[i * PATTERNS + c, column]
+    return total
+
+
+@inlined
+def _own(room, face, rigid, other):
+    value = _reaction(room, face, rigid, other)
+    if rigid == 1:
+        value -= room.lever[face, SHIFT] * _reaction(room, face, 0, other)
+    return value
+
+
+@kernel
+def _trace(walls, faces, platform, payload, count, body, base):
+    total = 0.0
+    for i in range(count):
+        for a in range(_RIGID):
+            first = _wrench(walls, faces, walls.room.order[i], a, body, base)
+            for j in range(count):
+                for b in range(_RIGID):
+                    second = _wrench(walls, faces, walls.room.order[j], b, body, base)
+                    total += _answer(walls.room, i, a, j * _RIGID + b) * _met(platform, payload, body, base, first, second)
+    return abs(total)
+
+
+@inlined
+def _wrench(walls, faces, face, rigid, body, base):
+    """Force, a point it acts at (m), and couple that belong to a rigid motion of the face."""
+    n = outward(faces[face], base)
+    arm = rotation.rotate(body.turn, (faces[face, 0], faces[face, 1], faces[face, 2]))
+    point = (body.place[0] + arm[0], body.place[1] + arm[1], body.place[2] + arm[2])
+    if rigid == 0:
+        return n, point, (0.0, 0.0, 0.0)
+    half = walls.half[face, rigid - 1]
+    edge = (half, 0.0, 0.0)
+    if rigid == 2:
+        edge = (0.0, half, 0.0) if faces[face, NORMAL_Y] == 0.0 else (0.0, 0.0, half)
+    return (0.0, 0.0, 0.0), point, rotation.cross(rotation.rotate(body.turn, edge), n)
+
+
+@kernel
+def _met(platform, payload, body, base, first, second):
+    """g_a . M^-1 g_b of two wrenches on both bodies."""
+    total = _of_body(payload.mass, payload.inverse_inertia, body, first, second)
+    if platform is not None:
+        total += _of_body(platform.mass, platform.inverse_inertia, base, first, second)
+    return total
+
+
+@inlined
+def _of_body(mass, inverse_inertia, body, first, second):
+    a, b = _moment(body, first), _moment(body, second)
+    return rotation.dot(first[0], second[0]) / mass + rotation.dot(a, rotation.angular_velocity(body.turn, inverse_inertia, b))
+
+
+@inlined
+def _moment(body, wrench):
+    p, q = wrench[1], body.place
+    swing = rotation.cross((p[0] - q[0], p[1] - q[1], p[2] - q[2]), wrench[0])
+    return (swing[0] + wrench[2][0], swing[1] + wrench[2][1], swing[2] + wrench[2][2])

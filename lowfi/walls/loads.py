@@ -1,0 +1,68 @@
+"""Forces of walls that give way on the payload, from the gradient of one potential::
+
+    E = sum over cells of penalty dA max(0, p)^2 / 2 + P' F P / 2
+
+With the pose of the payload they are: P_1 against the normal, at the centre of pressure, and along X, as the rail is softer or stiffer
+ahead and as its bent wall slopes (xi' moves with the pad where a face hangs over an end)::
+
+    X = P' F' P / 2 + sum of pressure d(xi')/dx du/dxi'
+
+which acts on payload and platform at the payload's mass centre, since that is the place whose way counts. Energy still under the part
+of a pad that leaves the wall is lost.
+"""
+
+from lowfi.system import NORMAL_Y
+from lowfi.touch import Load, friction_force, outward, relative_velocity
+from lowfi.walls.cells import stored
+from lowfi.walls.record import SHIFT
+from scenes import rotation
+from scenes.jit import kernel
+from scenes.walls import PATTERNS
+
+
+@kernel
+def load(walls, friction, platform, faces, face, body, base):
+    """Load of a pressed face, after ``solve``; the wall's own velocity is left out."""
+    room = walls.room
+    force, shift, half = room.force[face], room.lever[face, SHIFT], walls.half[face]
+    across = half[1] * force[2] / force[0]
+    wide_along_y = faces[face, NORMAL_Y] == 0.0  # the normal is along z
+    arm = rotation.rotate(body.turn, (faces[face, 0] + half[0] * (force[1] / force[0] - shift),
+                                      faces[face, 1] + (across if wide_along_y else 0.0), faces[face, 2] + (0.0 if wide_along_y else across)))
+    point = (body.place[0] + arm[0], body.place[1] + arm[1], body.place[2] + arm[2])
+    n, u = outward(faces[face], base), relative_velocity(platform, body, base, point)
+    closing = rotation.dot(u, n)
+    slip = (u[0] - closing * n[0], u[1] - closing * n[1], u[2] - closing * n[2])
+    return Load(point, (-force[0] * n[0], -force[0] * n[1], -force[0] * n[2]), friction_force(friction, force[0], slip), slip, closing,
+                force[0], force[0])
+
+
+@kernel
+def drive(walls, count):
+    """Force (N) along the rail on the payload by the ``count`` faces solved for, and the energy (J/m) its way takes from the wall."""
+    room, pull, fading = walls.room, 0.0, 0.0
+    for i in range(count):
+        face = room.order[i]
+        u, force = room.displacement[face], room.force[face]
+        if room.lever[face, SHIFT] != 0.0:
+            pull += (u[1] * force[0] + 2.0 * u[3] * force[1] + u[4] * force[2]) / walls.half[face, 0]
+            fading += stored(walls, face)[1]
+        for a in range(PATTERNS):
+            total = 0.0
+            for j in range(count):
+                for b in range(PATTERNS):
+                    total += room.slope[i * PATTERNS + a, j * PATTERNS + b] * room.force[room.order[j], b]
+            pull += 0.5 * force[a] * total
+    return pull, fading
+
+
+@kernel
+def energy(walls, count):
+    """Energy (J) in walls and penalty under the ``count`` faces solved for: P' F P is P' U."""
+    total = 0.0
+    for i in range(count):
+        face = walls.room.order[i]
+        total += stored(walls, face)[0]
+        for a in range(PATTERNS):
+            total += 0.5 * walls.room.force[face, a] * walls.room.displacement[face, a]
+    return total

@@ -1,0 +1,73 @@
+"""How the walls of a rail give way under the pads: data found once for a rail and its pads, which the rigid surrogate can stand on.
+
+On pad face i, with xi along the rail and eta across it in [-1, 1], a pressure p moves the wall away from the payload by u::
+
+    u_i = sum_a U_ia phi_a(xi, eta),   P_jb = integral over face j of p phi_b dA,   U_ia = sum_jb F_iajb(travel) P_jb
+    phi = 1, xi, eta, xi^2, xi eta, eta^2
+
+F is symmetric and positive definite: the flexibility of linear statics, at every place the pads come to. Near an end of the rail a face
+keeps the last place where all of it has a wall under it, and xi goes on from there.
+"""
+
+import zipfile
+from dataclasses import dataclass, fields
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+from scenes.faults import Fault, SceneError
+from scenes.files import content_hash, replacing
+from scenes.scene import Scene
+
+PATTERNS = 6  # phi: all products of powers of xi and eta up to the second degree
+POWERS = np.array([[0, 0], [1, 0], [0, 1], [2, 0], [1, 1], [0, 2]])  # of xi and eta
+
+
+@dataclass(frozen=True, eq=False)
+class Walls:
+    """travel (s,) m of the payload along X since ignition, evenly spaced; flexibility (s,f,p,f,p) m/N; rail (f,) number of the rail
+    each face is on; half (f,2) m, half the size of each face along xi and eta, negative where eta runs against the axis;
+    made_for, digest of the rail and pads."""
+
+    travel: np.ndarray
+    flexibility: np.ndarray
+    rail: np.ndarray
+    half: np.ndarray
+    made_for: str
+
+    @cached_property
+    def cubic(self) -> np.ndarray:
+        """Flexibility (s-1,f,f,p,p,4) between stations: coefficients of the rising powers of the way (m) from the one before."""
+        from scipy.interpolate import CubicSpline
+
+        by_power = CubicSpline(self.travel, self.flexibility).c[::-1]  # (4,s-1,f,p,f,p)
+        return np.ascontiguousarray(by_power.transpose(1, 2, 4, 3, 5, 0))
+
+    def require(self, scene: Scene) -> None:
+        """Raises SceneError where ``scene`` has another rail or other pads than these walls were found for."""
+        if self.made_for != digest(scene):
+            raise SceneError([Fault(scene.name, "rail", "another rail, or other pads", "those the walls were found for: find them anew")])
+
+    def save(self, path: str | Path) -> None:
+        """Write atomically, as arrays."""
+        with replacing(path) as temporary, open(temporary, "wb") as stream:
+            np.savez_compressed(stream, **{field.name: getattr(self, field.name) for field in fields(self)})
+
+    @classmethod
+    def load(cls, path: str | Path) -> "Walls":
+        """Read what ``save`` wrote. Raises FileNotFoundError, or ValueError for a damaged or foreign file."""
+        try:
+            with np.load(path, allow_pickle=False) as found:
+                arrays = {field.name: found[field.name] for field in fields(cls)}
+        except (zipfile.BadZipFile, KeyError, EOFError, ValueError) as error:
+            raise ValueError(f"{path}: not a file of walls ({error})") from error
+        return cls(**arrays | {"made_for": str(arrays["made_for"])})
+
+
+def digest(scene: Scene) -> str:
+    """Hexadecimal digest of what walls depend on. The clearance is not part of it: it moves pads over a leg by a hundredth of its width."""
+    described = scene.model_dump(mode="json", include={"rail", "pads"})
+    described["rail"] |= scene.rail.contents()
+    described["rail"].pop("damping", None)  # statics
+    return content_hash(described)
