@@ -9,8 +9,9 @@ F is symmetric and positive definite: the flexibility of linear statics, at ever
 keeps the last place where all of it has a wall under it, and xi goes on from there.
 """
 
+import hashlib
 import zipfile
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -22,6 +23,10 @@ from scenes.scene import Scene
 
 PATTERNS = 6  # phi: all products of powers of xi and eta up to the second degree
 POWERS = np.array([[0, 0], [1, 0], [0, 1], [2, 0], [1, 1], [0, 2]])  # of xi and eta
+
+# Means over a face of products of two patterns: the mean of xi^n is 1 / (n + 1) for even n.
+_TOGETHER = POWERS[:, None] + POWERS
+GRAM = np.where((_TOGETHER % 2 == 0).all(axis=2), 1.0 / (_TOGETHER + 1.0).prod(axis=2), 0.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,6 +48,30 @@ class Walls:
 
         by_power = CubicSpline(self.travel, self.flexibility).c[::-1]  # (4,s-1,f,p,f,p)
         return np.ascontiguousarray(by_power.transpose(1, 2, 4, 3, 5, 0))
+
+    @cached_property
+    def hash(self) -> str:
+        """Hexadecimal SHA-256 of all of it."""
+        digest = hashlib.sha256(self.made_for.encode())
+        for array in (self.travel, self.flexibility, self.rail, self.half):
+            digest.update(np.ascontiguousarray(array).tobytes())
+        return digest.hexdigest()
+
+    def compliance(self) -> np.ndarray:
+        """Mean displacement (s,f,f) in m/N of each face under a unit force spread evenly over each."""
+        return (GRAM @ self.flexibility.transpose(0, 1, 3, 2, 4) @ GRAM)[..., 0, 0]
+
+    def restricted(self, patterns: int = PATTERNS, coupled: bool = True) -> "Walls":
+        """The same walls with the first so many patterns of pressure and displacement only, and, unless ``coupled``, each face by itself:
+        what a simpler model knows of them."""
+        kept = np.arange(PATTERNS) < patterns
+        blocks = (GRAM @ self.flexibility.transpose(0, 1, 3, 2, 4) @ GRAM)[..., kept, :][..., kept]
+        inverse = np.linalg.inv(GRAM[np.ix_(kept, kept)])
+        flexibility = np.zeros_like(self.flexibility)
+        flexibility[:, :, :patterns, :, :patterns] = (inverse @ blocks @ inverse).transpose(0, 1, 3, 2, 4)
+        if not coupled:
+            flexibility *= np.eye(len(self.rail))[None, :, None, :, None]
+        return replace(self, flexibility=flexibility)
 
     def require(self, scene: Scene) -> None:
         """Raises SceneError where ``scene`` has another rail or other pads than these walls were found for."""

@@ -1,6 +1,6 @@
 """Results of runs, kept by content: ``out/<scene>/<fidelity>/<label>-<key>.nc``.
 
-    key = SHA-256(physical inputs of the scene, numerics, calibrated constants, sources of every package below the fidelity)
+    key = SHA-256(physical inputs of the scene, numerics, calibrated constants, walls, sources of every package below the fidelity)
 
 A run whose file is there is loaded, any other is made and written atomically; so what was interrupted goes on where it
 stopped, and a changed input or source is never answered with an old result. A run of the reference in progress is kept beside it as
@@ -18,6 +18,7 @@ from scenes.calibration import Calibration
 from scenes.files import content_hash, discard, source_hash
 from scenes.scene import Scene
 from scenes.trajectory import Trajectory
+from scenes.walls import Walls
 from studies.progress import Board, say
 
 SOURCES = {"highfi": ("scenes", "meshes", "highfi"), "lowfi": ("scenes", "lowfi")}
@@ -33,12 +34,13 @@ class Run:
     scene: Scene
     numerics: Any
     calibration: Calibration | None = None
+    walls: Walls | None = None
 
     @property
     def key(self) -> str:
         """Hexadecimal digest of everything the result depends on."""
         constants = self.calibration.constants if self.calibration else None
-        return content_hash(self.fidelity, self.scene.hash, asdict(self.numerics), constants,
+        return content_hash(self.fidelity, self.scene.hash, asdict(self.numerics), constants, self.walls.hash if self.walls else None,
                             code_hash(*SOURCES[self.fidelity]))
 
 
@@ -51,7 +53,7 @@ def execute(run: Run, progress: Callable[[float], None] | None = None, threads: 
         return highfi.run(run.scene, numerics=run.numerics, progress=progress, threads=threads, **kept)
     import lowfi
 
-    return lowfi.run(run.scene, calibration=run.calibration, numerics=run.numerics, progress=progress)
+    return lowfi.run(run.scene, calibration=run.calibration, numerics=run.numerics, progress=progress, walls=run.walls)
 
 
 def prepare(run: Run) -> None:

@@ -16,6 +16,7 @@ from scenes.faults import Fault, SceneError
 from scenes.files import content_hash, write_json
 from scenes.scene import Scene
 from scenes.trajectory import Trajectory
+from scenes.walls import Walls
 from studies.progress import say
 from studies.settings import Settings
 from studies.store import Run, Store, code_hash
@@ -73,13 +74,13 @@ class Study:
         return self.highfi(name, overrides, f"{tag}-coarse", self.settings.coarse_size, **numerics)
 
     def lowfi(self, name: str, calibration: Calibration | None = None, overrides: dict | None = None, tag: str = "",
-              **numerics: Any) -> Run:
-        """A surrogate run of condition ``name``, with the scene's own contact constants unless calibrated."""
+              walls: Walls | None = None, **numerics: Any) -> Run:
+        """A surrogate run of condition ``name``, with the scene's own contact constants unless calibrated, or on ``walls``."""
         import lowfi
 
-        label = f"{name}{tag}{'-calibrated' if calibration else ''}"
+        label = f"{name}{tag}{'-calibrated' if calibration else ''}{'-walls' if walls else ''}"
         numbers = _numerics(lowfi.Numerics, **numerics)
-        return Run("lowfi", label, self.condition(name).replace(overrides or {}), numbers, calibration)
+        return Run("lowfi", label, self.condition(name).replace(overrides or {}), numbers, calibration, walls)
 
     def path(self, name: str) -> Path:
         """A file in the folder of this scene."""

@@ -31,19 +31,26 @@ def warm_up(run: Run) -> None:
     execute(replace(run, scene=run.scene.replace({"duration": min(run.scene.duration, 1e-3)})))
 
 
-def speedup(highfi: Run, lowfi: Run, highfi_repeats: int, lowfi_repeats: int,
-            progress: Callable[[float], None] = lambda fraction: None) -> dict:
-    """Speed of both on one case; ``lowfi_repeats`` surrogate runs follow each of the ``highfi_repeats`` reference runs."""
-    warm_up(highfi)
-    warm_up(lowfi)
-    slow, fast = [], []
+def speedups(highfi: Run, surrogates: dict[str, Run], highfi_repeats: int, lowfi_repeats: int,
+             progress: Callable[[float], None] = lambda fraction: None) -> dict[str, dict]:
+    """Speed of the reference and of each surrogate on one case; ``lowfi_repeats`` runs of each surrogate follow each of the
+    ``highfi_repeats`` reference runs."""
+    for run in (highfi, *surrogates.values()):
+        warm_up(run)
+    slow: list = []
+    fast: dict[str, list] = {name: [] for name in surrogates}
     for repeat in range(highfi_repeats):
         slow.append(timed(highfi))
-        fast += [timed(lowfi) for _ in range(lowfi_repeats)]
+        for name, run in surrogates.items():
+            fast[name] += [timed(run) for _ in range(lowfi_repeats)]
         progress((repeat + 1) / highfi_repeats)
+    return {name: _speedup(highfi.label, slow, found) for name, found in fast.items()}
+
+
+def _speedup(condition: str, slow: list, fast: list) -> dict:
     slow_wall, fast_wall = [wall for _, wall, _ in slow], [wall for _, wall, _ in fast]
     slow_median, fast_median = statistics.median(slow_wall), statistics.median(fast_wall)
-    return {"condition": highfi.label, "ratio": slow_median / fast_median,
+    return {"condition": condition, "ratio": slow_median / fast_median,
             "low": min(slow_wall) / max(fast_wall), "high": max(slow_wall) / min(fast_wall),
             "highfi_wall_s": slow_median, "lowfi_wall_s": fast_median,
             "highfi_wall_range_s": [min(slow_wall), max(slow_wall)], "lowfi_wall_range_s": [min(fast_wall), max(fast_wall)],

@@ -18,12 +18,13 @@ _POINTS = 500  # kept of each line on the page
 _GAP = 106.0  # px between rows: an axis label, and the title below it
 _FONT = 'system-ui, "Segoe UI", Roboto, "Liberation Sans", sans-serif'
 _INK, _RULE = "#24292f", "#e3e6ea"
-_PLOTLY_DASH = {"-": "solid", "--": "dash", ":": "dot", "": "solid"}
+_PLOTLY_DASH = {"-": "solid", "--": "dash", "-.": "dashdot", ":": "dot", "": "solid"}
+_PLOTLY_MARKER = {"o": "circle", "s": "square", "^": "triangle-up", "v": "triangle-down", "D": "diamond", "": "circle"}
 
 
 @dataclass(frozen=True)
 class Line:
-    """One curve (x, y); ``dash`` as in matplotlib, "" for markers only; ``marker`` "o", "s", "^" or "". ``group`` shares a
+    """One curve (x, y); ``dash`` as in matplotlib, "" for markers only; ``marker`` "o", "s", "^", "v", "D" or "". ``group`` shares a
     legend entry; ``labels`` are texts at the points."""
 
     x: Sequence[float]
@@ -82,7 +83,7 @@ def to_html(chart: Chart) -> str:
                 x=x, y=y, name=line.name, legendgroup=line.name, opacity=line.opacity, text=list(line.labels) or None,
                 showlegend=line.legend and line.name not in shown, mode=_mode(line), textposition="top center",
                 line={"color": line.colour, "width": line.width, "dash": _PLOTLY_DASH[line.dash]},
-                marker={"symbol": {"o": "circle", "s": "square", "^": "triangle-up", "": "circle"}[line.marker], "size": 9}),
+                marker={"symbol": _PLOTLY_MARKER[line.marker], "size": 9}),
                 **place)
             shown |= {line.name} if line.legend else set()
         x_kind, y_kind = map(_log_axis, _limits(panel)) if panel.log else ({}, {})

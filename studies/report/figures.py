@@ -15,16 +15,19 @@ _MILLISECONDS = "time after ignition (ms)"
 
 
 class Runs(NamedTuple):
-    """Trajectories by condition: the reference, and the surrogate before and after calibration (empty where there are none)."""
+    """Trajectories by condition: the reference, the surrogate before and after calibration, and on walls that give way (empty where
+    there are none)."""
 
     highfi: dict[str, Trajectory]
     uncalibrated: dict[str, Trajectory]
     calibrated: dict[str, Trajectory]
+    compliant: dict[str, Trajectory]
 
 
 # In the order of the legend. Width, dash, opacity: the reference is a broad pale line under the thin ones of the surrogate.
-_STYLES = {"highfi": ("finite elements", 5.0, "-", 0.35), "calibrated": ("surrogate, calibrated", 1.5, "-", 1.0),
-           "uncalibrated": ("surrogate, uncalibrated", 1.1, ":", 0.9)}
+_STYLES = {"highfi": ("finite elements", 5.0, "-", 0.35), "compliant": ("surrogate, compliant walls", 1.5, "-", 1.0),
+           "calibrated": ("surrogate, calibrated", 1.2, "--", 0.9), "uncalibrated": ("surrogate, uncalibrated", 1.1, ":", 0.9)}
+_COLOURS = {"highfi": NAVY, "compliant": VERMILION, "calibrated": AMBER}
 
 
 def thrust_curve(scene: Scene) -> Chart:
@@ -36,7 +39,7 @@ def thrust_curve(scene: Scene) -> Chart:
 
 
 def figure6(runs: Runs, conditions: list[str]) -> Chart:
-    """The paper's Figure 6: v_x, then the three rates of each fitted condition, both models."""
+    """The paper's Figure 6: v_x, then the three rates of each fitted condition, all models."""
     shades = dict(zip(conditions, (NAVY, VERMILION, AMBER, TEAL, GREY) * 4))
     speed = [_line(run.time, run.velocity[:, 0], shades[name], kind, legend=False)
              for kind in _STYLES for name, run in getattr(runs, kind).items() if name in shades]
@@ -55,12 +58,12 @@ def _line(time, values, colour: str, kind: str, name: str = "", legend: bool = T
 
 
 def contact_forces(scene: Scene, runs: Runs, condition: str) -> Chart:
-    """Force on every pad that is ever touched, both models, one condition."""
+    """Force on every pad that is ever touched, all models but the uncalibrated one, one condition."""
     forces = {kind: (found[condition].time, np.linalg.norm(by_pad(scene, found[condition].pad_force), axis=2))
-              for kind, found in runs._asdict().items() if condition in found and kind != "uncalibrated"}
+              for kind in _COLOURS if condition in (found := getattr(runs, kind))}
     loaded = sorted({int(pad) for _, force in forces.values() for pad in np.flatnonzero(force.max(axis=0) > 1.0)})
     panels = [Panel(_pad_title(scene, pad), _MILLISECONDS, "force (N)", [
-        Line(1e3 * time, force[:, pad], _STYLES[kind][0], NAVY if kind == "highfi" else VERMILION, *_STYLES[kind][1:])
+        Line(1e3 * time, force[:, pad], _STYLES[kind][0], _COLOURS[kind], *_STYLES[kind][1:])
         for kind, (time, force) in forces.items()]) for pad in loaded]
     return Chart("contact-forces", panels, columns=2 if len(panels) > 1 else 1, height=250)
 
@@ -74,9 +77,9 @@ _LEDGER_COLOURS = dict(zip(ledger.ENTRIES, (NAVY, GREY, VERMILION, AMBER, TEAL, 
 
 
 def energy_ledgers(runs: Runs, condition: str) -> Chart:
-    """Every entry of both ledgers that is not zero, with the residual, both models, one condition."""
+    """Every entry of both ledgers that is not zero, with the residual, all models but the uncalibrated one, one condition."""
     panels = []
-    for kind in ("highfi", "calibrated"):
+    for kind in _COLOURS:
         run = getattr(runs, kind).get(condition)
         if run is None:
             continue
@@ -92,8 +95,9 @@ def energy_ledgers(runs: Runs, condition: str) -> Chart:
 def cost_picture(cost: dict) -> Chart:
     """Error against wall time, one line per model, with the band of the reference's own uncertainty; and the part of the
     surrogate's error that a tighter tolerance can buy off."""
-    look = {"finite elements": (NAVY, "s", "-"), "surrogate, uncalibrated": (AMBER, "^", ":"),
-            "surrogate, calibrated": (VERMILION, "o", "-")}
+    looks = (("s", "-"), ("^", ":"), ("o", "--"), ("v", "-."), ("D", "-"))
+    models = dict.fromkeys(point["model"] for point in cost["points"])
+    look = {model: (colour, *rest) for model, colour, rest in zip(models, (NAVY, GREY, AMBER, TEAL, VERMILION), looks)}
     band = (cost["band_deg_s"], "the reference's own uncertainty") if cost["band_deg_s"] else None
     panels = []
     for title, error, shaded in (("against the finest mesh", "error_deg_s", band),

@@ -36,7 +36,7 @@ class Page:
         body = "".join([self._answer(), self._scene(), self._mesh(), self._compliance(), self._thrust(), self._curves(), self._contact(), self._energy(), self._stress(),
                         self._of("calibration", "calibration", "Calibration", tables.calibration, "calibrate"),
                         self._of("agreement", "agreement-section", "Agreement with the reference", tables.agreement, "compare"),
-                        self._of("agreement", "speedup", "Speed", lambda found: tables.speedup(found["speedup"]), "compare"),
+                        self._of("agreement", "speedup", "Speed", tables.speedups, "compare"),
                         self._of("cost", "cost", "What accuracy costs", self._cost, "cost"), self._convergence(), self._bench(),
                         self._of("stability", "stability", "Hard cases", tables.stability, "stability"),
                         self._of("ablation", "ablation", "Only what the scene calls for", tables.ablation, "ablation"),
@@ -69,7 +69,7 @@ class Page:
     def _answer(self) -> Html:
         """The settled velocities and rates, which is what the reader came for."""
         agreement = self.documents.get("agreement") or {}
-        uncertain = {row["condition"]: row for group in ("fitted", "held_out") for row in agreement.get(group, [])}
+        uncertain = {row["condition"]: row for row in agreement.get("compliant", [])}
         rows = []
         for found in self._rows()["highfi"]:
             settled, row = found["settled"], uncertain.get(found["condition"], {})
@@ -79,7 +79,7 @@ class Page:
                          *([f"{value:+.3f}" for value in rate] if rate else [None] * 3),
                          number(row.get("reference_uncertainty_deg_s"), 2), number(row.get("settled_rate_error_deg_s"), 2)))
         boxes = ""
-        if speed := agreement.get("speedup"):
+        if speed := agreement.get("speedup_compliant"):
             facts = ((f"{speed['highfi_wall_s']:.3g} s", "one reference run"), (f"{1e3 * speed['lowfi_wall_s']:.3g} ms", "one surrogate run"),
                      (f"{speed['ratio']:,.0f} ×", f"faster ({speed['low']:,.0f} to {speed['high']:,.0f})"))
             boxes = '<div class="figures">' + "".join(f"<div><b>{value}</b><span>{words}</span></div>" for value, words in facts) + "</div>"
@@ -90,7 +90,7 @@ class Page:
              "y rate (deg/s)", "z rate (deg/s)", "reference ± (deg/s)", "surrogate error (deg/s)"), rows), caption(
             "Settled values of the finite-element reference: means over 2 ms after exit and burnout, velocity in initial scene axes, "
             "rates inertial in payload body axes. Reference ± is what refining mesh, step or penalty still changes; surrogate error the "
-            "largest axis error of the calibrated surrogate on the same condition."))
+            "largest axis error of the surrogate on compliant walls, to which nothing was fitted, on the same condition."))
 
     def _scene(self) -> Html:
         return section("scene", "Scene", inputs.scene_tables(self.scene))
@@ -110,7 +110,7 @@ class Page:
                        table(("surface", "facets", "area (mm²)"), areas), warned)
 
     def _compliance(self) -> Html:
-        found = self.documents.get("mesh") or {}
+        found = self.documents.get("walls") or {}
         if not found.get("compliance"):
             return Html("")
         words = compliance.WORDS.format(size=1e3 * found["element_size_m"])
@@ -125,10 +125,10 @@ class Page:
         names = [name for name in self.scene.agreement.fitted if name in self.runs.highfi] or list(self.runs.highfi)[:5]
         if not names:
             return section("figure6", "Velocity and rates", self._missing("highfi", "highfi"))
-        words = ("The paper's Figure 6 for this scene. Broad pale lines: finite elements. Thin lines: the calibrated surrogate. Dotted: the "
-                 "surrogate before calibration. Rates are inertial, in payload body axes. "
-                 + ("" if self.runs.calibrated else "The calibrated surrogate is missing."))
-        return section("figure6", "Velocity and rates, both models", self._figure(figures.figure6(self.runs, names), words))
+        words = ("The paper's Figure 6 for this scene. Broad pale lines: finite elements. Thin lines: the surrogate on walls that give way as "
+                 "statics has them, nothing fitted. Dashed: the calibrated surrogate. Dotted: before calibration. Rates are inertial, in "
+                 "payload body axes. " + ("" if self.runs.calibrated else "The other surrogates are missing."))
+        return section("figure6", "Velocity and rates, all models", self._figure(figures.figure6(self.runs, names), words))
 
     def _condition(self) -> str | None:
         preferred = [*self.scene.agreement.refined, *self.scene.agreement.fitted, *self.runs.highfi]

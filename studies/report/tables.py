@@ -8,12 +8,7 @@ _FLOOR = "Floor: what ±{change:g} µm of clearance changes in either model. "
 
 
 def agreement(document: dict) -> Html:
-    """The agreement table, calibrated rows first, with floor and reference uncertainty beside every claim."""
-    rows, kinds = [], []
-    for group in ("fitted", "held_out"):
-        for row in document[group]:
-            rows.append(_agreement_row(row))
-            kinds.append("doubt" if not row["reference_converged"] else "good" if row["passes"] else "bad")
+    """The agreement tables, the surrogate on compliant walls first, with floor and reference uncertainty beside every claim."""
     heads = ("condition", "role", "rate L2 (%)", "floor L2 (%)", Html("v<sub>x</sub> L2 (%)"), "settled error (deg/s)",
              "error x, y, z (deg/s)", "floor (deg/s)", "reference ± (deg/s)", "ISO 18571", "S-G magnitude (%)", "S-G phase (%)",
              "verdict")
@@ -24,24 +19,44 @@ def agreement(document: dict) -> Html:
               f"four times the penalty; above {document['converged_deg_s']:g} deg/s no agreement is claimed. A star marks a value measured on other "
               "conditions, of which the largest is taken. ISO 18571 is the mean rating of the three rates (1 is perfect); Sprague "
               "and Geers over the three rates together.")
-    before = [_agreement_row(row) for row in document["uncalibrated"]]
     calibrated = [*document["fitted"], *document["held_out"]]
-    return section("agreement-section", "Agreement with the reference", _summary(document),
-                   table(heads, rows, "agreement", kinds, dense=True), caption(legend), _further(calibrated),
-                   fold("the same before calibration", table(heads, before, dense=True)), _evidence(document))
+    return section("agreement-section", "Agreement with the reference",
+                   paragraph("On walls that give way as the statics of the rail has them, nothing fitted: " + _summary(document, "compliant")),
+                   _judged(heads, document["compliant"], "agreement"), caption(legend), _further(document["compliant"]), _simpler(document),
+                   paragraph("One spring and damper per pad face, calibrated on the fitted conditions: " + _summary(document, "fitted")
+                             + "; " + _summary(document, "held_out")),
+                   _judged(heads, calibrated, "agreement-calibrated"), _further(calibrated),
+                   fold("the same before calibration", _judged(heads, document["uncalibrated"], "agreement-uncalibrated")),
+                   _evidence(document))
 
 
-def _summary(document: dict) -> Html:
-    sentences = []
-    for group, words in (("fitted", "fitted"), ("held_out", "held-out")):
-        rows = document[group]
-        if not rows:
-            continue
-        passed = sum(row["passes"] for row in rows)
-        doubtful = sum(not row["reference_converged"] for row in rows)
-        sentences.append(f"{passed} of {len(rows)} {words} conditions pass all three gates"
-                         + _free(rows) + (f" ({doubtful} of {len(rows)} with a reference that is not converged)" if doubtful else ""))
-    return paragraph("; ".join(sentences) + ".")
+def _judged(heads: tuple, rows: list[dict], name: str) -> Html:
+    kinds = ["doubt" if not row["reference_converged"] else "good" if row["passes"] else "bad" for row in rows]
+    return table(heads, [_agreement_row(row) for row in rows], name, kinds, dense=True)
+
+
+def _simpler(document: dict) -> Html:
+    """What each part of the walls' flexibility is worth."""
+    found = document["simpler"]
+    names = list(dict.fromkeys(item["condition"] for item in found))
+    rows = []
+    for words in dict.fromkeys(item["walls"] for item in found):
+        own = {item["condition"]: item for item in found if item["walls"] == words}
+        rows.append((words, *(_errors(own[name]) for name in names)))
+    rows.append(("all", *(_errors(row) for name in names for row in document["compliant"] if row["condition"] == name)))
+    return fold("what the parts of the flexibility are worth: rate L2 (%) and settled error (deg/s) when the surrogate knows less",
+                table(("walls", *names), rows, dense=True))
+
+
+def _errors(row: dict) -> str:
+    return f"{percent(row['rate_relative_l2'])}; {number(row['settled_rate_error_deg_s'], 2)}"
+
+
+def _summary(document: dict, group: str) -> str:
+    rows, words = document[group], {"fitted": "fitted ", "held_out": "held-out "}.get(group, "")
+    passed, doubtful = sum(row["passes"] for row in rows), sum(not row["reference_converged"] for row in rows)
+    return (f"{passed} of {len(rows)} {words}conditions pass all three gates" + _free(rows)
+            + (f" ({doubtful} of {len(rows)} with a reference that is not converged)" if doubtful else ""))
 
 
 def _free(rows: list[dict]) -> str:
@@ -111,9 +126,17 @@ def calibration(document: dict) -> Html:
                    fold("information matrix of the scaled constants", table(("", *document["parameters"]), information)))
 
 
-def speedup(found: dict) -> Html:
-    """The two wall times on one machine, their ratio and its scatter."""
+def speedups(document: dict) -> Html:
+    """Wall times of the reference and of two surrogates on one machine, their ratios and the scatter."""
+    found = document["speedup_compliant"]
     machine = found["hardware"]
+    return section("speedup", "Speed", paragraph("The surrogate on compliant walls:"), _speedup(found), paragraph("The calibrated surrogate:"),
+                   _speedup(document["speedup"]), caption(
+        f"Condition {found['condition']}, all models by turns in one go, all included but compilation, on {machine['processor']}, "
+        f"{machine['cores']} cores, {machine['memory_gib']} GiB, Python {machine['python']}."))
+
+
+def _speedup(found: dict) -> Html:
     rows = [("wall time of one reference run", f"{found['highfi_wall_s']:.4g} s", f"{found['highfi_repeats']} repeats, "
              f"{_range(found['highfi_wall_range_s'])} s, {found['elements']:,} elements"),
             ("wall time of one surrogate run", f"{1e3 * found['lowfi_wall_s']:.4g} ms", f"{found['lowfi_repeats']} repeats, "
@@ -121,9 +144,7 @@ def speedup(found: dict) -> Html:
             ("ratio of wall times", f"{found['ratio']:,.0f}", f"{found['low']:,.0f} to {found['high']:,.0f} over all pairs of repeats"),
             ("ratio of kernels alone", _whole(found["kernel_ratio"]), "time loops only, without set-up and output"),
             ("ratio of processor times", _whole(found["cpu_ratio"]), "of the whole process")]
-    return section("speedup", "Speed", table(("", "value", "how measured"), rows), caption(
-        f"Condition {found['condition']}, both models by turns in one go, all included but compilation, on {machine['processor']}, "
-        f"{machine['cores']} cores, {machine['memory_gib']} GiB, Python {machine['python']}."))
+    return table(("", "value", "how measured"), rows)
 
 
 def _range(values: list[float]) -> str:
@@ -138,7 +159,12 @@ def cost(document: dict) -> Html:
     """Error against wall time, as numbers."""
     rows = [(p["model"], p["numerics"], f"{p['wall_s']:.3g}", "the yardstick" if p["error_deg_s"] is None else number(p["error_deg_s"]),
              number(p["integration_error_deg_s"]), "best at its price" if p["pareto"] else "") for p in document["points"]]
-    return table(("model", "numerics", "wall time (s)", "error (deg/s)", "of which time integration (deg/s)", ""), rows)
+    same = [(m["model"], f"{m['numerics']}, {1e3 * m['wall_s']:.3g} ms", number(m["error_deg_s"]), f"{m['mesh']}, {m['mesh_wall_s']:.3g} s",
+             "the yardstick" if m["mesh_error_deg_s"] is None else number(m["mesh_error_deg_s"]), f"{m['ratio']:,.0f}")
+            for m in document["matched"]]
+    return Html(table(("model", "numerics", "wall time (s)", "error (deg/s)", "of which time integration (deg/s)", ""), rows)
+                + paragraph("What the same accuracy costs with finite elements: the coarsest mesh no less exact than the best of each surrogate.")
+                + table(("surrogate", "at its best", "error (deg/s)", "mesh", "error (deg/s)", "times as long"), same))
 
 
 def stability(document: dict) -> Html:

@@ -1,73 +1,102 @@
-"""Stage ``compare``: agreement of the surrogate with the reference, uncalibrated and calibrated, on conditions it was fitted to
-and on conditions it never saw, beside the floor and the uncertainty of the reference; and the speed-up."""
+"""Stage ``compare``: agreement of the surrogates with the reference, on conditions one was fitted to and on conditions none ever saw,
+beside the floor and the uncertainty of the reference; and the speed-up."""
 
 from dataclasses import asdict
+from functools import partial
 from pathlib import Path
+from typing import Callable, NamedTuple
 
 from scenes.calibration import Calibration
-from studies import agreement
+from scenes.trajectory import Trajectory
+from scenes.walls import PATTERNS, Walls
+from studies import agreement, metrics
 from studies.agreement import Context, Spread, spread
 from studies.progress import Board
-from studies.stages import calibrate
+from studies.stages import calibrate, walls
 from studies.store import SOURCES, Run
 from studies.study import Study, require_success
-from studies.timing import speedup
+from studies.timing import speedups
 
 SOURCES_USED = (*SOURCES["highfi"], *SOURCES["lowfi"], "calibrate")
+_SIMPLER = {"mean pressure of each face by itself": (1, False), "mean pressure": (1, True), "pressure and its tilt": (3, True),
+            "all, each face by itself": (PATTERNS, False)}
+
+
+class Rung(NamedTuple):
+    """A surrogate to judge: its name in result files, what the report calls it, its constants, and the walls of each condition."""
+
+    name: str
+    title: str
+    calibration: Calibration | None = None
+    walls: dict[str, Walls | None] = {}
+
+    def ask(self, study: Study, condition: str, overrides: dict | None = None, tag: str = "", **numerics) -> Run:
+        """The run of a condition."""
+        return study.lowfi(condition, self.calibration, overrides, tag, self.walls.get(condition), **numerics)
+
+
+def rungs(study: Study) -> list[Rung]:
+    """The surrogates of a scene, from the plainest up: with its own constants, with calibrated ones, and on walls that give way as
+    statics has them, where nothing is fitted."""
+    return [Rung("uncalibrated", "surrogate, uncalibrated"), Rung("calibrated", "surrogate, calibrated", calibrate.load(study)),
+            Rung("compliant", "surrogate, compliant walls", walls=walls.under(study, study.conditions))]
 
 
 def run(study: Study) -> dict:
-    """``uncalibrated``, ``fitted``, ``held_out`` rows, ``floor`` and ``refinement`` as measured, ``speedup``."""
+    """``uncalibrated``, ``fitted``, ``held_out`` and ``compliant`` rows, ``floor`` and ``refinement`` as measured, ``speedup`` of the
+    calibrated and of the compliant surrogate, ``simpler`` walls."""
     study.fitted()
-    calibration = calibrate.load(study)
+    _, calibrated, compliant = ladder = rungs(study)
 
     def make() -> tuple[dict, list[Path]]:
-        highfi, plain, fitted = _runs(study, calibration)
-        context = {kind: Context(_floors(study, cause), _refinements(study)) for kind, cause in
-                   (("uncalibrated", None), ("calibrated", calibration))}
-        roles = {"fitted": study.scene.agreement.fitted, "held_out": study.scene.agreement.held_out}
-        rows = {role: [agreement.row(name, role, highfi[name], fitted[name], context["calibrated"]) for name in names]
-                for role, names in roles.items()}
-        before = [agreement.row(name, role, highfi[name], plain[name], context["uncalibrated"])
-                  for role, names in roles.items() for name in names]
-        floors = _unique([*context["uncalibrated"].floors, *context["calibrated"].floors])
-        return {"uncalibrated": before, **rows, "gates": agreement.GATES, "converged_deg_s": agreement.CONVERGED_DEG_S,
-                "clearance_change_m": study.settings.clearance_change, "floor": [asdict(item) for item in floors],
-                "refinement": [asdict(item) for item in context["calibrated"].refinements],
-                "speedup": _speedup(study, calibration)}, []
+        asked = {name: study.highfi(name) for name in study.conditions}
+        highfi = dict(zip(asked, study.store.fill("highfi", list(asked.values()))))
+        require_success(highfi, "compare")
+        changes, floor = _refinements(study), _floors(study, "reference", study.coarse)
+        own = {rung.name: _floors(study, rung.title, partial(rung.ask, study)) for rung in ladder}
+        rows = {rung.name: _rows(study, rung, highfi, Context([*floor, *own[rung.name]], changes)) for rung in ladder}
+        groups = {role: [row for row in rows["calibrated"] if row["role"] == role] for role in ("fitted", "held_out")}
+        return {"uncalibrated": rows["uncalibrated"], **groups, "compliant": rows["compliant"], "gates": agreement.GATES,
+                "converged_deg_s": agreement.CONVERGED_DEG_S, "clearance_change_m": study.settings.clearance_change,
+                "floor": [asdict(item) for item in sum(own.values(), floor)], "refinement": [asdict(item) for item in changes],
+                "simpler": _simpler(study, compliant, highfi),
+                **dict(zip(("speedup", "speedup_compliant"), _speedups(study, [calibrated, compliant])))}, []
 
-    return study.stage("agreement", study.key(SOURCES_USED, calibration.constants, agreement.GATES), make)
-
-
-def calibrated_runs(study: Study, calibration: Calibration | None) -> dict[str, Run]:
-    """The surrogate's run of every condition."""
-    return {name: study.lowfi(name, calibration) for name in study.conditions}
+    return study.stage("agreement", study.key(SOURCES_USED, calibrated.calibration.constants, agreement.GATES), make)
 
 
-def _runs(study: Study, calibration: Calibration):
-    asked = {name: study.highfi(name) for name in study.conditions}
-    highfi = dict(zip(asked, study.store.fill("highfi", list(asked.values()))))
-    require_success(highfi, "compare")
-    surrogate = []
-    for title, constants in (("lowfi", None), ("lowfi, calibrated", calibration)):
-        wanted = calibrated_runs(study, constants)
-        surrogate.append(dict(zip(wanted, study.store.fill(title, list(wanted.values())))))
-    return highfi, *surrogate
+def _rows(study: Study, rung: Rung, highfi: dict[str, Trajectory], context: Context) -> list[dict]:
+    """Agreement of one surrogate on every condition."""
+    wanted = {name: rung.ask(study, name) for name in study.conditions}
+    found = dict(zip(wanted, study.store.fill(rung.title, list(wanted.values()))))
+    return [agreement.row(name, role, highfi[name], found[name], context)
+            for role in ("fitted", "held_out") for name in getattr(study.scene.agreement, role)]
 
 
-def _floors(study: Study, calibration: Calibration | None) -> list[Spread]:
-    """Spread of both models under +-1 um of clearance, on the conditions the scene names for it."""
+def _simpler(study: Study, compliant: Rung, highfi: dict[str, Trajectory]) -> list[dict]:
+    """What each part of the walls' flexibility is worth: the errors of surrogates that know less of it."""
+    found = []
+    for words, (patterns, coupled) in _SIMPLER.items():
+        rung = compliant._replace(walls={name: known and known.restricted(patterns, coupled) for name, known in compliant.walls.items()})
+        wanted = [rung.ask(study, name, tag=f"-{patterns}{'' if coupled else '-apart'}") for name in study.conditions]
+        for name, result in zip(study.conditions, study.store.fill(f"walls: {words}", wanted)):
+            difference = metrics.compare(highfi[name], result)
+            found.append({"walls": words, "condition": name, "rate_relative_l2": difference.rate_relative_l2,
+                          "settled_rate_error_deg_s": difference.settled_rate_error_deg_s})
+    return found
+
+
+def _floors(study: Study, model: str, ask: Callable[..., Run]) -> list[Spread]:
+    """Spread of one model under +-1 um of clearance, on the conditions the scene names for it."""
     if study.scene.contact is None:
         return []
-    model = "calibrated surrogate" if calibration else "uncalibrated surrogate"
+    groups = {name: [ask(name)] + [ask(name, overrides={"contact.clearance": clearance}, tag=f"-clearance-{sign}")
+                                   for sign, clearance in clearances(study)] for name in study.scene.agreement.floor}
+    runs = study.store.fill(f"floor, {model}", [run for group in groups.values() for run in group])
     found = []
-    for label, ask in (("reference", study.coarse), (model, _surrogate(study, calibration))):
-        groups = {name: [ask(name)] + [ask(name, overrides={"contact.clearance": clearance}, tag=f"-clearance-{sign}")
-                                       for sign, clearance in clearances(study)] for name in study.scene.agreement.floor}
-        runs = study.store.fill(f"floor, {label}", [run for group in groups.values() for run in group])
-        for name, group in groups.items():
-            nominal, *changed = [runs.pop(0) for _ in group]
-            found.append(spread(name, label, "clearance", nominal, changed))
+    for name, group in groups.items():
+        nominal, *changed = [runs.pop(0) for _ in group]
+        found.append(spread(name, model, "clearance", nominal, changed))
     return found
 
 
@@ -75,13 +104,6 @@ def clearances(study: Study) -> list[tuple[str, float]]:
     """The perturbed clearances (m) that are physical: a closed gap is only opened."""
     nominal, change = study.scene.contact.clearance, study.settings.clearance_change
     return [(sign, value) for sign, value in (("plus", nominal + change), ("minus", nominal - change)) if value >= 0.0]
-
-
-def _surrogate(study: Study, calibration: Calibration | None):
-    def ask(name: str, overrides: dict | None = None, tag: str = "") -> Run:
-        return study.lowfi(name, calibration, overrides, tag)
-
-    return ask
 
 
 def _refinements(study: Study) -> list[Spread]:
@@ -106,15 +128,10 @@ def refined(study: Study, name: str) -> dict[str, Run]:
     return runs
 
 
-def _speedup(study: Study, calibration: Calibration) -> dict:
-    name = study.fitted()[0]
-    settings = study.settings
+def _speedups(study: Study, ladder: list[Rung]) -> list[dict]:
+    name, settings = study.fitted()[0], study.settings
     with Board("speed-up", 1) as board:
-        found = speedup(study.highfi(name), study.lowfi(name, calibration), settings.highfi_repeats, settings.lowfi_repeats,
-                        board.callback("speed-up"))
-        board.finished("speed-up", f"{found['ratio']:,.0f} times")
-    return found | {"condition": name}
-
-
-def _unique(spreads: list[Spread]) -> list[Spread]:
-    return list(dict.fromkeys(spreads))
+        found = speedups(study.highfi(name), {rung.name: rung.ask(study, name) for rung in ladder}, settings.highfi_repeats,
+                         settings.lowfi_repeats, board.callback("speed-up"))
+        board.finished("speed-up", " and ".join(f"{item['ratio']:,.0f} times" for item in found.values()))
+    return [item | {"condition": name} for item in found.values()]

@@ -10,24 +10,30 @@ from pathlib import Path
 
 from scenes.trajectory import Trajectory
 from studies import agreement, machine
-from studies.stages import calibrate
-from studies.stages.compare import SOURCES_USED, refined
+from studies.stages.compare import SOURCES_USED, Rung, refined, rungs
 from studies.study import Study
 from studies.timing import timed, warm_up
 
 
+STIFFNESS_ALONG = "surrogate, stiffness along the rail"  # mean pressure, each face by itself
+FINITE_ELEMENTS = "finite elements"
+
+
 def run(study: Study) -> dict:
-    """``points``: model, numerics, error_deg_s, wall_s, pareto; ``band_deg_s``: uncertainty of the yardstick."""
+    """``points``: model, numerics, error_deg_s, wall_s, pareto; ``band_deg_s``: uncertainty of the yardstick; ``matched``."""
     name = (study.scene.agreement.refined or study.fitted())[0]
-    calibration = calibrate.load(study)
+    ladder = rungs(study)
+    ladder.insert(2, ladder[2]._replace(title=STIFFNESS_ALONG, walls={
+        key: known and known.restricted(1, coupled=False) for key, known in ladder[2].walls.items()}))
 
     def make() -> tuple[dict, list[Path]]:
         finest, band, points = _reference_points(study, name)
-        for model, constants in (("surrogate, uncalibrated", None), ("surrogate, calibrated", calibration)):
-            points += _surrogate_points(study, name, model, constants, finest)
-        return {"condition": name, "band_deg_s": band, "points": marked(points), "hardware": machine.describe()}, []
+        for rung in ladder:
+            points += _surrogate_points(study, name, rung, finest)
+        return {"condition": name, "band_deg_s": band, "points": marked(points), "matched": matched(points),
+                "hardware": machine.describe()}, []
 
-    return study.stage("cost", study.key(SOURCES_USED, name, calibration.constants), make)
+    return study.stage("cost", study.key(SOURCES_USED, name, ladder[1].calibration.constants), make)
 
 
 def _reference_points(study: Study, name: str) -> tuple[Trajectory, float | None, list[dict]]:
@@ -38,23 +44,40 @@ def _reference_points(study: Study, name: str) -> tuple[Trajectory, float | None
              *refined(study, name).values()]
     coarsest, coarse, finest, *changed = study.store.fill("cost, meshes", asked)
     band = agreement.largest(agreement.settled_change(coarse, run) for run in (finest, *changed))
-    points = [{"model": "finite elements", "numerics": f"{1e3 * size:g} mm, {found.cost['elements']} elements",
+    points = [{"model": FINITE_ELEMENTS, "numerics": f"{1e3 * size:g} mm, {found.cost['elements']} elements",
                "error_deg_s": None if found is finest else agreement.settled_change(finest, found),
                "integration_error_deg_s": None, "wall_s": found.cost["wall_s"], "status": found.status}
               for size, found in zip(sizes, (coarsest, coarse, finest))]
     return finest, band, points
 
 
-def _surrogate_points(study: Study, name: str, model: str, calibration, finest: Trajectory) -> list[dict]:
+def _surrogate_points(study: Study, name: str, rung: Rung, finest: Trajectory) -> list[dict]:
     tolerances = sorted(study.settings.tolerances)
-    asked = [study.lowfi(name, calibration, relative_tolerance=tolerance) for tolerance in tolerances]
+    asked = [rung.ask(study, name, relative_tolerance=tolerance) for tolerance in tolerances]
     warm_up(asked[0])
     measured = [[timed(run) for _ in range(study.settings.lowfi_repeats)] for run in asked]
     runs = [repeats[0][0] for repeats in measured]
-    return [{"model": model, "numerics": f"tolerance {tolerance:g}", "error_deg_s": agreement.settled_change(finest, found),
+    return [{"model": rung.title, "numerics": f"tolerance {tolerance:g}", "error_deg_s": agreement.settled_change(finest, found),
              "integration_error_deg_s": agreement.settled_change(runs[0], found) if found is not runs[0] else None,
              "wall_s": statistics.median(wall for _, wall, _ in repeats), "status": found.status}
             for tolerance, found, repeats in reversed(list(zip(tolerances, runs, measured)))]
+
+
+def matched(points: list[dict]) -> list[dict]:
+    """For the best point of each surrogate: the cheapest mesh that is as exact, and how many times longer it takes. The finest mesh, the
+    yardstick, is as exact as anything can be told to be."""
+    meshes = [point for point in points if point["model"] == FINITE_ELEMENTS]
+    found = []
+    for model in dict.fromkeys(point["model"] for point in points if point["model"] != FINITE_ELEMENTS):
+        known = [point for point in points if point["model"] == model and point["error_deg_s"] is not None]
+        if known:
+            best = min(known, key=lambda point: (point["error_deg_s"], point["wall_s"]))
+            as_exact = [mesh for mesh in meshes if (mesh["error_deg_s"] or 0.0) <= best["error_deg_s"]]
+            mesh = min(as_exact, key=lambda point: point["wall_s"])
+            found.append({"model": model, "numerics": best["numerics"], "error_deg_s": best["error_deg_s"], "wall_s": best["wall_s"],
+                          "mesh": mesh["numerics"], "mesh_error_deg_s": mesh["error_deg_s"], "mesh_wall_s": mesh["wall_s"],
+                          "ratio": mesh["wall_s"] / best["wall_s"]})
+    return found
 
 
 def marked(points: list[dict]) -> list[dict]:

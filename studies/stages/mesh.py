@@ -1,4 +1,4 @@
-"""Stage ``mesh``: the rails as the reference will use them, with their size, quality, a picture, and how far their walls give way."""
+"""Stage ``mesh``: the rails as the reference will use them, with their size, quality and a picture."""
 
 from pathlib import Path
 
@@ -11,14 +11,13 @@ from studies.study import Study
 
 
 def run(study: Study) -> dict:
-    """Elements, nodes, named surfaces with area, quality, compliance, and the mesh as ``mesh.vtu``."""
+    """Elements, nodes, named surfaces with area, quality, and the mesh as ``mesh.vtu``."""
     name = next(iter(study.conditions))
     asked = study.highfi(name)
 
     def make() -> tuple[dict, list[Path]]:
         import highfi
         from highfi import cells as checks
-        from studies.compliance import under_a_pad
 
         mesh = highfi.prepare(asked.scene, asked.numerics)
         for warning in mesh.warnings:
@@ -36,7 +35,6 @@ def run(study: Study) -> dict:
                 "nodes": len(mesh.points),
                 "shortest_edge_m": float(lengths.min()), "longest_edge_m": float(lengths.max()),
                 "smallest_scaled_jacobian": float(scaled.min()), "warnings": list(mesh.warnings),
-                "compliance": under_a_pad(asked.scene, asked.numerics.element_size, mesh),
                 "surfaces": surfaces, "mesh": study.relative(path), "picture": study.relative(picture)}, [path, picture]
 
     return study.stage("mesh", study.key(SOURCES["highfi"], asked.key), make)

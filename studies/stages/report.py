@@ -4,15 +4,15 @@ of a benchmark that are there already."""
 from pathlib import Path
 from typing import Callable
 
-from scenes.calibration import Calibration
 from scenes.files import content_hash, write_text
 from studies import bench
-from studies.stages import ablation, calibrate, compare, convergence, cost, mesh, runs, stability, view
+from studies.stages import ablation, calibrate, compare, convergence, cost, mesh, runs, stability, view, walls
 from studies.store import Run
 from studies.study import Study, StudyError
 
 STAGES: dict[str, Callable[[Study], dict]] = {
     "mesh": mesh.run, "highfi": lambda study: runs.run(study, "highfi"), "lowfi": lambda study: runs.run(study, "lowfi"),
+    "walls": walls.run,
     "calibration": calibrate.run, "agreement": compare.run, "cost": cost.run, "stability": stability.run, "ablation": ablation.run}
 
 
@@ -49,10 +49,10 @@ def _failed(documents: dict, problems: dict[str, str]) -> list[str]:
 def _trajectories(study: Study, documents: dict):
     from studies.report.figures import Runs
 
-    highfi = {name: study.highfi(name) for name in study.conditions}
-    plain = {name: study.lowfi(name) for name in study.conditions}
-    fitted = compare.calibrated_runs(study, Calibration.load(study.path(calibrate.FILE))) if documents["calibration"] else {}
-    return Runs(*(_stored(study, asked) for asked in (highfi, plain, fitted)))
+    asked = [{name: ask(name) for name in study.conditions} for ask in (study.highfi, study.lowfi)]
+    ladder = compare.rungs(study)[1:] if documents["agreement"] else []
+    asked += [{name: rung.ask(study, name) for name in study.conditions} for rung in ladder]
+    return Runs(*(_stored(study, runs) for runs in asked), *[{}] * (len(Runs._fields) - len(asked)))
 
 
 def _stored(study: Study, asked: dict[str, Run]) -> dict:
