@@ -2,7 +2,8 @@
 
 from highfi.checkpoint import CheckpointError
 from highfi.compiled import compiled_effects
+from highfi.compliance import walls
 from highfi.numerics import Numerics
 from highfi.run import prepare, run
 
-__all__ = ["CheckpointError", "Numerics", "compiled_effects", "prepare", "run"]
+__all__ = ["CheckpointError", "Numerics", "compiled_effects", "prepare", "run", "walls"]

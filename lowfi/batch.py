@@ -8,6 +8,7 @@ import numpy as np
 from lowfi import march, plan, settle, state, system
 from lowfi.numerics import Numerics
 from lowfi.run import end_of, run
+from lowfi.walls import record as wall_record
 from scenes import model as models
 from scenes import outcome
 from scenes.calibration import Calibration
@@ -15,6 +16,7 @@ from scenes.faults import SceneError
 from scenes.model import Built
 from scenes.scene import Scene
 from scenes.variation import Variations
+from scenes.walls import Walls
 
 _STATUS = {settle.EXITED: "exited", settle.TIME_LIMIT: "time_limit"}
 
@@ -42,8 +44,8 @@ class _Group(NamedTuple):
 class Family:
     """The cases of one scene. A row is run by the kernel of its group, or, where that leaves it open, by ``lowfi.run``."""
 
-    def __init__(self, scene: Scene, calibration: Calibration | None, numerics: Numerics):
-        self.scene, self.calibration, self.numerics = scene, calibration, numerics
+    def __init__(self, scene: Scene, calibration: Calibration | None, numerics: Numerics, walls: Walls | None = None):
+        self.scene, self.calibration, self.numerics, self.walls = scene, calibration, numerics, walls
         self.calibrated = calibration.apply(scene) if calibration else scene
         self.touched = {key.partition(".")[0] for key in calibration.constants} if calibration else set()
         self.variations = Variations(self.calibrated)
@@ -61,6 +63,7 @@ class Family:
                 continue
             try:
                 built = models.built(self.variations.of(row), self.base)
+                self._require_walls(built.scene)
             except SceneError as error:
                 alone.append((number, Case("refused", str(error), outcome.Outcome(), 0, 0.0)))
                 continue
@@ -69,6 +72,11 @@ class Family:
             group.cases.append(built.model)
         found = [lambda group=group: self._settled(group) for group in groups.values()]
         return found + [lambda pair=pair: [(pair[0], pair[1] if isinstance(pair[1], Case) else self._whole(pair[1]))] for pair in alone]
+
+    def _require_walls(self, scene: Scene) -> None:
+        base = self.base.scene
+        if self.walls is not None and not (scene.rail is base.rail and scene.pads is base.pads):
+            self.walls.require(scene)
 
     def _group(self, groups: dict, built: Built) -> _Group:
         scene, model = built.scene, built.model
@@ -98,7 +106,8 @@ class Family:
 
     def _kernel(self, group: _Group) -> Callable[[], np.ndarray]:
         model, planned, marks = group.built.model, group.plan, group.marks
-        common, first = system.build(model, ledger=False), plan.first_step(planned)
+        under_pads = wall_record.under_pads(group.built.scene, model, self.walls)
+        common, first = system.build(model, ledger=False, walls=under_pads), plan.first_step(planned)
         ends = settle.Ends(end_of(group.built.scene), marks.settled_thrust, marks.spent_thrust, marks.constant_thrust, marks.jam_speed,
                            max(1, round(outcome.JAM_DURATION / planned.interval)))
         loop, room, cases = march.ready(common, state.initial(model), first), settle.scratch(planned.interval), _stacked(common, group)
@@ -129,7 +138,7 @@ class Family:
 
     def _whole(self, row: Mapping[str, Any]) -> Case:
         try:
-            found = run(self.scene.replace(row), calibration=self.calibration, numerics=self.numerics)
+            found = run(self.scene.replace(row), calibration=self.calibration, numerics=self.numerics, walls=self.walls)
         except SceneError as error:
             return Case("refused", str(error), outcome.Outcome(), 0, 0.0)
         return Case(found.status, found.message, found.outcome, found.cost["steps"], found.cost["wall_s"])

@@ -17,6 +17,7 @@ from lowfi.request import Ensemble, code
 from lowfi.store import Chunk, Store, StoreError
 from scenes.calibration import Calibration
 from scenes.scene import Scene
+from scenes.walls import Walls
 
 PATIENCE = 30.0  # s for a scheduler to answer, and for its first worker to come
 _AHEAD = 2  # chunks per worker thread that are on their way: one runs, the next waits for it
@@ -34,6 +35,7 @@ class Recipe(NamedTuple):
     scene: Scene
     calibration: Calibration | None
     numerics: Numerics
+    walls: Walls | None = None
 
 
 def made(ensemble: Ensemble, store: Store, asked: Iterable[tuple[int, _Rows]], scheduler: str) -> Iterator[Chunk]:
@@ -45,7 +47,8 @@ def made(ensemble: Ensemble, store: Store, asked: Iterable[tuple[int, _Rows]], s
         raise StoreError(f"no Dask scheduler answers at {scheduler} ({error}); start one with: dask scheduler") from error
     try:
         client.wait_for_workers(1, timeout=PATIENCE)
-        yield from _made(client, Recipe(ensemble.key, code(), ensemble.scene, ensemble.calibration, ensemble.numerics), iter(asked))
+        yield from _made(client, Recipe(ensemble.key, code(), ensemble.scene, ensemble.calibration, ensemble.numerics,
+                                       ensemble.walls), iter(asked))
     except TimeoutError as error:
         raise StoreError(f"no worker came to {scheduler} in {PATIENCE:g} s; start one with: dask worker {scheduler}") from error
     except (OSError, RuntimeError, distributed.CancelledError, distributed.KilledWorker) as error:
@@ -91,7 +94,7 @@ def run_rows(recipe: Recipe, rows: _Rows) -> tuple[Columns, list[str]]:
 def _family(recipe: Recipe) -> Family:
     """The family of a recipe, kept from chunk to chunk; one per thread, for it changes while it sets up a case."""
     if getattr(_kept, "key", None) != recipe.key:
-        _kept.key, _kept.family = recipe.key, Family(recipe.scene, recipe.calibration, recipe.numerics)
+        _kept.key, _kept.family = recipe.key, Family(recipe.scene, recipe.calibration, recipe.numerics, recipe.walls)
     return _kept.family
 
 

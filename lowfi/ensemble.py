@@ -18,6 +18,7 @@ from scenes.calibration import Calibration
 from scenes.scene import Scene
 from scenes.trajectory import Trajectory
 from scenes.uncertainty import Uncertainty
+from scenes.walls import Walls
 
 if TYPE_CHECKING:
     import xarray
@@ -33,10 +34,11 @@ def curves(scenes: Sequence[Scene], numerics: Numerics | None = None, workers: i
 
 
 def run_many(scene: Scene, table: Sequence[Mapping[str, Any]] | Uncertainty, calibration: Calibration | None = None,
-             workers: int | None = None, store: str | Path | None = None, numerics: Numerics | None = None) -> "xarray.Dataset":
+             workers: int | None = None, store: str | Path | None = None, numerics: Numerics | None = None,
+             walls: Walls | None = None) -> "xarray.Dataset":
     """Run ``scene`` once per row of ``table``, a row being dotted overrides as in ``Scene.replace``, or per draw of an Uncertainty.
 
-    The values are those of ``lowfi.run`` to the last bit; no curves are kept. A row the scene refuses has the status ``refused`` and the
+    The values are those of ``lowfi.run`` to the last bit, with its ``calibration`` and ``walls``; no curves are kept. A row the scene refuses has the status ``refused`` and the
     reason as its message; the others run. Settled values are NaN where a run has none. ``wall_s`` of a case is its share of the piece it
     ran in. The attributes count ``asked = ok + refused + failed``, failed being the diverged. With a ``store``, a folder, cases go
     there chunk by chunk and what it holds already is not run again (``lowfi.fill``, which needs no room for all results); it has no
@@ -44,18 +46,18 @@ def run_many(scene: Scene, table: Sequence[Mapping[str, Any]] | Uncertainty, cal
     """
     source, numerics = Drawn(table) if isinstance(table, Uncertainty) else Listed(table), numerics or Numerics()
     if store is not None:
-        return _stored(scene, source, calibration, numerics, workers, store)
+        from lowfi.request import Ensemble
+
+        return _stored(Ensemble(scene, source, calibration, numerics, walls), workers, store)
     pieces = (source.rows(begin, min(begin + PIECE, source.asked)) for begin in range(0, source.asked, PIECE))
-    cases = list(chain.from_iterable(completed(Family(scene, calibration, numerics), pieces, workers)))
+    cases = list(chain.from_iterable(completed(Family(scene, calibration, numerics, walls), pieces, workers)))
     shares = np.array([case.wall_s for case in cases], dtype=float)
     return _dataset(columns.of(cases), [case.message for case in cases]).assign(wall_s=("case", shares, {"units": "s"}))
 
 
-def _stored(scene, source, calibration, numerics, workers, path) -> "xarray.Dataset":
+def _stored(ensemble, workers, path) -> "xarray.Dataset":
     from lowfi.fill import fill
-    from lowfi.request import Ensemble
 
-    ensemble = Ensemble(scene, source, calibration, numerics)
     store = ensemble.store(path)
     fill(ensemble, store, workers)
     return _dataset(*store.results())

@@ -4,7 +4,7 @@ from collections import deque
 from typing import Any, Callable, Iterable, Iterator, Mapping, Sequence
 
 from lowfi import cluster, columns
-from lowfi.batch import Case, Family
+from lowfi.batch import Case
 from lowfi.ensemble import PIECE, completed
 from lowfi.request import Ensemble
 from lowfi.store import Chunk, Store
@@ -42,7 +42,7 @@ def _here(ensemble: Ensemble, asked: Iterable[tuple[int, _Rows]], workers: int |
             yield from (rows[begin:begin + PIECE] for begin in range(0, len(rows), PIECE))
 
     cases: list[Case] = []
-    for found in completed(Family(ensemble.scene, ensemble.calibration, ensemble.numerics), pieces(), workers):
+    for found in completed(ensemble.family(), pieces(), workers):
         cases += found
         if len(cases) == len(begun[0][1]):
             number, rows = begun.popleft()

@@ -12,22 +12,30 @@ from lowfi.numerics import Numerics
 from scenes.calibration import Calibration
 from scenes.files import content_hash, source_hash
 from scenes.scene import Scene
+from scenes.walls import Walls
 
 _LIBRARIES = ("numpy", "scipy", "numba", "llvmlite")  # whose version may change the last bits of a result
 
 
 class Ensemble(NamedTuple):
-    """A scene, where its cases come from (``lowfi.rows``, ``lowfi.table``), calibrated constants or none, and numerics."""
+    """A scene, where its cases come from (``lowfi.rows``, ``lowfi.table``), calibrated constants or none, numerics, and walls that give
+    way or none."""
 
     scene: Scene
     source: Any
     calibration: Calibration | None
     numerics: Numerics
+    walls: Walls | None = None
+
+    def family(self) -> Family:
+        """What sets up its cases."""
+        return Family(self.scene, self.calibration, self.numerics, self.walls)
 
     def identity(self) -> dict:
         """Everything the numbers depend on, as JSON."""
         return {"scene": self.scene.hash, "cases": self.source.identity, "numerics": self.numerics.as_dict(),
-                "calibration": self.calibration.constants if self.calibration else {}, "chunk": stores.CHUNK} | code()
+                "calibration": self.calibration.constants if self.calibration else {}, "walls": self.walls.hash if self.walls else "",
+                "chunk": stores.CHUNK} | code()
 
     @property
     def key(self) -> str:
@@ -42,7 +50,7 @@ class Ensemble(NamedTuple):
     def case(self, number: int) -> tuple[Mapping[str, Any], Case]:
         """Inputs and result of one case, run alone, to the same bits."""
         row, = self.source.rows(number, number + 1)
-        (found,), = completed(Family(self.scene, self.calibration, self.numerics), [[row]], workers=1)
+        (found,), = completed(self.family(), [[row]], workers=1)
         return row, found
 
 

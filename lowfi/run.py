@@ -14,7 +14,6 @@ from lowfi.sample import SAMPLE_SIZE, relative_axial_speed
 from scenes import model as models
 from scenes import outcome
 from scenes.calibration import Calibration
-from scenes.effects.friction import require_two_step
 from scenes.scene import Scene
 from scenes.trajectory import Trajectory
 from scenes.walls import Walls
@@ -55,15 +54,6 @@ def end_of(scene: Scene) -> int:
     return max(1, round(scene.duration / scene.output.interval))
 
 
-def _under_pads(scene: Scene, model: models.Model, walls: Walls | None):
-    """Record of ``walls`` for the kernels; None without contact. Raises SceneError for walls of another rail, and the law that sticks."""
-    if walls is None or model.contact is None:
-        return None
-    walls.require(scene)
-    require_two_step(scene)
-    return wall_record.build(walls, model)
-
-
 class Run:
     """State of a run in progress and its samples."""
 
@@ -76,7 +66,7 @@ class Run:
         self.plan = plan.make(model, self.interval, self.end * self.interval, numerics)
         reach = float(np.sqrt((model.faces.centre**2).sum(axis=1).max()))
         self.tolerance = Tolerance(numerics.relative_tolerance, numerics.speed_floor, reach)
-        self.system = system.build(model, walls=_under_pads(scene, model, walls))
+        self.system = system.build(model, walls=wall_record.under_pads(scene, model, walls))
         self.loop = march.ready(self.system, state.initial(model), plan.first_step(self.plan))
         self.rows, self.forces = np.zeros((self.end + 1, SAMPLE_SIZE)), np.zeros((self.end + 1, model.faces.axis.size, 3))
         self.taken, self.left, self.message = 0, False, ""

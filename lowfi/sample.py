@@ -135,9 +135,10 @@ def _press(laws, friction, sticking, faces, platform, engaged, grip, body, base,
 
 @kernel
 def _press_walls(walls, friction, faces, platform, active, body, base, forces):
-    """The same on walls that give way."""
+    """The same on walls that give way. A sample leaves no trace: the next step begins with the displacement that the last one left."""
     energy = 0.0
     if walls is not None:
+        _keep(walls.room.displacement, walls.room.kept)
         place, turn = relative_pose(platform, body, base)
         for rail in range(walls.members.shape[0]):
             count = solve(walls, faces, rail, active, place, turn)
@@ -148,7 +149,14 @@ def _press_walls(walls, friction, faces, platform, active, body, base, forces):
                     face = wall_load(walls, friction, platform, faces, i, body, base)
                     for j in range(3):
                         forces[i, j] = face.normal[j] + face.drag[j]
+        _keep(walls.room.kept, walls.room.displacement)
     return energy
+
+
+@inlined
+def _keep(source, target):
+    for i in range(source.shape[0]):
+        slot.copy(source[i], target[i], source.shape[1])
 
 
 @kernel

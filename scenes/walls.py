@@ -49,6 +49,10 @@ class Walls:
         by_power = CubicSpline(self.travel, self.flexibility).c[::-1]  # (4,s-1,f,p,f,p)
         return np.ascontiguousarray(by_power.transpose(1, 2, 4, 3, 5, 0))
 
+    def __getstate__(self) -> dict:
+        """What goes to another process: not what it can make by itself."""
+        return {field.name: getattr(self, field.name) for field in fields(self)}
+
     @cached_property
     def hash(self) -> str:
         """Hexadecimal SHA-256 of all of it."""
@@ -81,7 +85,7 @@ class Walls:
     def save(self, path: str | Path) -> None:
         """Write atomically, as arrays."""
         with replacing(path) as temporary, open(temporary, "wb") as stream:
-            np.savez_compressed(stream, **{field.name: getattr(self, field.name) for field in fields(self)})
+            np.savez_compressed(stream, **self.__getstate__())
 
     @classmethod
     def load(cls, path: str | Path) -> "Walls":

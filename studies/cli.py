@@ -37,6 +37,8 @@ Set = Annotated[Optional[list[str]], typer.Option("--set", metavar="KEY=VALUE",
                 help='Override, repeatable: --set payload.mass="9 kg"; "absent" drops a table.')]
 Conditions = Annotated[Optional[list[str]], typer.Option("--condition", metavar="NAME",
                        help="Named condition of the scene, repeatable; default: all.")]
+OnWalls = Annotated[bool, typer.Option("--walls", help="Surrogate on walls that give way as the statics of the rail has them, found from "
+                                       "the reference's matrices in seconds, in place of a contact law to calibrate.")]
 Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON on standard output.")]
 ElementSize = Annotated[Optional[float], typer.Option("--element-size", metavar="MM", min=0.05,
                         help="Element size of the reference in mm.")]
@@ -187,6 +189,7 @@ def _stage(name: str, summary: str) -> None:
     app.command(name, help=summary)(command)
 
 
+_stage("walls", "How the rails give way under the pads, from the matrices of the reference; writes walls.json.")
 _stage("calibrate", "Fit the surrogate's contact constants to the reference; writes calibration.toml and calibration.json.")
 _stage("compare", "Agreement on fitted and held-out conditions beside the floor, and the speed-up; writes agreement.json.")
 _stage("cost", "What accuracy costs in time, both models; writes cost.json.")
@@ -251,6 +254,7 @@ def run(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = None
         condition: Annotated[str, typer.Option("--condition", metavar="NAME", help="Named condition.")] = "nominal",
         fidelity: Annotated[Fidelity, typer.Option(help="Which model.")] = Fidelity.lowfi,
         calibration: Annotated[Optional[Path], typer.Option(metavar="FILE", help="calibration.toml for the surrogate.")] = None,
+        walls: OnWalls = False,
         element_size: ElementSize = None, checkpoint_every: CheckpointEvery = None, resume: Resume = True,
         json_: Json = False) -> None:
     """Run one condition in one model and print what the payload leaves with."""
@@ -259,7 +263,7 @@ def run(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = None
         from studies import single
 
         study = _study(scene, out, set_, [condition], element_size, checkpoint_every=checkpoint_every, resume=resume)
-        return single.run(study, condition, fidelity.value, calibration, quiet=json_)
+        return single.run(study, condition, fidelity.value, calibration, walls, quiet=json_)
 
     _guarded(work, json_)
 
@@ -282,6 +286,7 @@ def ensemble(scene: SceneName = "reference", out: Out = Path("out"), set_: Set =
              tolerance: Annotated[float, typer.Option("--tolerance", metavar="X", help="Relative error of a step; 1e-2 keeps 95 % of "
                                   "20 reference cases to 0.2 % of their rate, 1e-4 to 0.1 %.")] = 1e-2,
              calibration: Annotated[Optional[Path], typer.Option(metavar="FILE", help="calibration.toml for the surrogate.")] = None,
+             walls: OnWalls = False,
              scheduler: Annotated[Optional[str], typer.Option("--scheduler", metavar="ADDRESS",
                                   help="Dask scheduler whose workers run the cases, such as tcp://node1:8786.")] = None,
              workers: Workers = None, json_: Json = False) -> None:
@@ -316,7 +321,7 @@ def ensemble(scene: SceneName = "reference", out: Out = Path("out"), set_: Set =
         from studies.single import constants
         from studies.stages import ensemble as stage
 
-        asked = stage.Asked(vary, table, cases, seed, sampling and sampling.value, store, tolerance, scheduler, workers)
+        asked = stage.Asked(vary, table, cases, seed, sampling and sampling.value, store, tolerance, scheduler, workers, walls)
         study, fitted = _study(scene, out, set_), constants(calibration)
         return stage.run(study, asked, fitted) if case is None else stage.case(study, asked, case, fitted)
 

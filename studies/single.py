@@ -4,13 +4,18 @@ from pathlib import Path
 
 from scenes.calibration import Calibration
 from scenes.faults import Fault, SceneError
+from studies.stages import walls
 from studies.stages.runs import row
 from studies.study import FAILED, Study
 
 
-def run(study: Study, condition: str, fidelity: str, calibration: Path | None = None, quiet: bool = False) -> dict:
+def run(study: Study, condition: str, fidelity: str, calibration: Path | None = None, on_walls: bool = False,
+        quiet: bool = False) -> dict:
     """The run's result as a stage would hold it; prints it unless ``quiet``. Raises SceneError for an unreadable calibration."""
-    asked = study.highfi(condition) if fidelity == "highfi" else study.lowfi(condition, constants(calibration))
+    asked = study.highfi(condition)
+    if fidelity == "lowfi":
+        under = walls.load(study, study.condition(condition)) if on_walls else None
+        asked = study.lowfi(condition, constants(calibration), walls=under)
     found = study.store.get(asked)
     result = row(condition, found, study.relative(study.store.path(asked)))
     if not quiet:

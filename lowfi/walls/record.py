@@ -5,8 +5,10 @@ from typing import NamedTuple
 import numpy as np
 
 from scenes import walls as data
+from scenes.effects.friction import require_two_step
 from scenes.memory import zeros
 from scenes.model import Model
+from scenes.scene import Scene
 
 CELLS = 10  # along each edge of a pad face
 # Columns of a face's lever: penetration (m) of its flat face at the middle, and per xi and eta; how far xi on the wall is ahead of
@@ -16,12 +18,13 @@ DEGREES = 5  # of the moments of pressed cells: products of two patterns reach t
 
 
 class Room(NamedTuple):
-    """Scratch of one run. lever (f, LEVER_SIZE); displacement (f,p) of the wall, kept as the next first guess; force (f,p);
-    moment (f, DEGREES, DEGREES) N/m; order (m,) faces solved for at once; and over those, w = m p: flexibility and its slope along
-    the travel (w,w), matrix (w,w), right (w, 3 m)."""
+    """Scratch of one run. lever (f, LEVER_SIZE); displacement (f,p) m of the walls, the next first guess, and the same ``kept`` aside;
+    force (f,p) N; moment (f, DEGREES, DEGREES) N/m; order (m,) faces solved for at once; and over those, w = m p: flexibility and its
+    slope along the travel (w,w), matrix (w,w), right (w, 3 m)."""
 
     lever: np.ndarray
     displacement: np.ndarray
+    kept: np.ndarray
     force: np.ndarray
     moment: np.ndarray
     order: np.ndarray
@@ -33,7 +36,7 @@ class Room(NamedTuple):
 
 class Walls(NamedTuple):
     """cubic (s-1,f,f,p,p,4): flexibility (m/N) between stations as powers of the way (m) from the one before, which stand ``spacing``
-    apart from the X ``origin`` (m) of the payload's mass centre at ignition on; members (r,m) faces on each rail, -1 for none;
+    apart from the X ``origin`` (m) of the first face at ignition on; members (r,m) faces on each rail, -1 for none;
     rail (f,) and half (f,2) as in ``scenes.walls``; relief (f,) m; penalty (N/m3); start and end (m) of the rail; node (n,) middle of
     the cells in xi and eta, and crown (n,) the means of xi^4 over them."""
 
@@ -52,6 +55,16 @@ class Walls(NamedTuple):
     room: Room
 
 
+def under_pads(scene: Scene, model: Model, found: data.Walls | None) -> Walls | None:
+    """Record of what was ``found`` for the kernels, None without contact. Raises SceneError for walls of another rail, and for the law of
+    friction that sticks."""
+    if found is None or model.contact is None:
+        return None
+    found.require(scene)
+    require_two_step(scene)
+    return build(found, model)
+
+
 def build(found: data.Walls, model: Model, cells: int = CELLS) -> Walls:
     """Record of ``found`` for the faces of ``model``."""
     platform = model.platform.mass_centre[0] if model.platform is not None else 0.0
@@ -62,13 +75,13 @@ def build(found: data.Walls, model: Model, cells: int = CELLS) -> Walls:
         row[:rail.size] = rail
     edges = np.linspace(-1.0, 1.0, cells + 1)
     crown = np.diff(edges**5) / (5.0 * np.diff(edges))
-    return Walls(found.cubic, float(model.payload.mass_centre[0] - platform), spacing, members, found.rail, found.half,
+    origin = float(model.faces.centre[0, 0] + model.payload.mass_centre[0] - platform)
+    return Walls(found.cubic, origin, spacing, members, found.rail, found.half,
                  model.faces.relief, float(model.penalty), float(model.rail_start), float(model.rail_end),
                  0.5 * (edges[1:] + edges[:-1]), crown, _room(model.faces.axis.size, members.shape[1]))
 
 
 def _room(faces: int, members: int) -> Room:
-    wide = members * data.PATTERNS
-    return Room(zeros((faces, LEVER_SIZE)), zeros((faces, data.PATTERNS)), zeros((faces, data.PATTERNS)),
-                zeros((faces, DEGREES, DEGREES)), np.zeros(members, dtype=np.int64), zeros((wide, wide)), zeros((wide, wide)),
-                zeros((wide, wide)), zeros((wide, 3 * members)))
+    wide, by_pattern = members * data.PATTERNS, (faces, data.PATTERNS)
+    return Room(zeros((faces, LEVER_SIZE)), zeros(by_pattern), zeros(by_pattern), zeros(by_pattern), zeros((faces, DEGREES, DEGREES)),
+                np.zeros(members, dtype=np.int64), zeros((wide, wide)), zeros((wide, wide)), zeros((wide, wide)), zeros((wide, 3 * members)))

@@ -32,7 +32,7 @@ def solve(walls, faces, rail, active, place, turn):
                 room.order[count] = face
                 count += 1
     if count > 0:
-        take_flexibility(walls, count, place[0])
+        take_flexibility(walls, count, place[0] + faces[0, 0])
         for correction in range(_MOST):
             if _correct(walls, count, 1.0 if correction < _CAREFUL else 0.5) < _ARRIVED:
                 break
@@ -41,7 +41,7 @@ def solve(walls, faces, rail, active, place, turn):
 
 @inlined
 def between_stations(walls, place):
-    """Number of the station before X = ``place`` (m) of the payload's mass centre, and the way (m) from it, inside the table."""
+    """Number of the station before X = ``place`` (m) of the first face, and the way (m) from it, inside the table."""
     way = min(max(place - walls.origin, 0.0), walls.spacing * walls.cubic.shape[0])
     station = min(int(way / walls.spacing), walls.cubic.shape[0] - 1)
     return station, way - station * walls.spacing

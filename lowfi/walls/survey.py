@@ -32,7 +32,7 @@ def _depth(walls, faces, face, count, active, place, turn):
     if count == 0 and highest < 0.0:
         return highest
     displacement = walls.room.displacement[face]
-    follow(walls, face, place[0], count, displacement)
+    follow(walls, face, place[0] + faces[0, 0], count, displacement)
     return deepest(walls, face, displacement)
 
 

@@ -21,12 +21,14 @@ from scenes.faults import Fault, SceneError
 from scenes.files import write_json
 from studies import ensemble_summary, machine
 from studies.progress import Board, say
+from studies.stages import walls
 from studies.study import Study, StudyError
 
 
 @dataclass(frozen=True)
 class Asked:
-    """What ``tipoff ensemble`` is given beside the scene; None: as the file of distributions says, or the default."""
+    """What ``tipoff ensemble`` is given beside the scene, ``walls`` that give way or not; None: as the file of distributions says, or the
+    default."""
 
     vary: str = uncertainty.DEFAULT
     table: Path | None = None
@@ -37,6 +39,7 @@ class Asked:
     tolerance: float = 1e-2
     scheduler: str | None = None
     workers: int | None = None
+    walls: bool = False
 
 
 def request(study: Study, asked: Asked, calibration: Calibration | None = None) -> Ensemble:
@@ -50,9 +53,10 @@ def request(study: Study, asked: Asked, calibration: Calibration | None = None) 
     else:
         source = Drawn(uncertainty.load(asked.vary, study.scene, **changed))
     try:
-        return Ensemble(study.scene, source, calibration, Numerics(relative_tolerance=asked.tolerance))
+        numerics = Numerics(relative_tolerance=asked.tolerance)
     except ValueError as fault:
         raise SceneError([Fault("--tolerance", "numerics", str(asked.tolerance), str(fault))]) from None
+    return Ensemble(study.scene, source, calibration, numerics, walls.load(study, study.scene) if asked.walls else None)
 
 
 def run(study: Study, asked: Asked, calibration: Calibration | None = None) -> dict:
