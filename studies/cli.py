@@ -83,7 +83,7 @@ def _study(scene: str, out: Path, overrides, conditions=None, element_size=None,
     if workers is not None:
         settings = replace(settings, workers=workers)
     if checkpoint_every is not None:
-        settings = replace(settings, checkpoint_every=_seconds("--checkpoint-every", checkpoint_every))
+        settings = replace(settings, checkpoint_every=_quantity("--checkpoint-every", checkpoint_every, "s"))
     study = Study(found, Path(out) / re.sub(r"[^\w.-]+", "-", found.name).strip("."), settings, tuple(conditions or ()))
     study.conditions  # a bad override or an unknown condition is a fault of the input, found before anything runs
     for warning in found.warnings:
@@ -91,17 +91,20 @@ def _study(scene: str, out: Path, overrides, conditions=None, element_size=None,
     return study
 
 
-def _seconds(option: str, text: str) -> float:
+def _quantity(option: str, text: str | None, unit: str) -> float | None:
+    """A quantity in ``unit``, zero or more; None without one."""
     from scenes.faults import Fault, SceneError
     from scenes.units import to_si
 
+    if text is None:
+        return None
     try:
-        time = to_si(text, "s")
+        value = to_si(text, unit)
     except ValueError as fault:
-        raise SceneError([Fault(option, "time", text, str(fault))]) from None
-    if time < 0.0:
-        raise SceneError([Fault(option, "time", text, "zero or more")])
-    return time
+        raise SceneError([Fault(option, "value", text, str(fault))]) from None
+    if value < 0.0:
+        raise SceneError([Fault(option, "value", text, "zero or more")])
+    return value
 
 
 def _guarded(work: Callable[[], dict], as_json: bool = False) -> dict:
@@ -255,6 +258,10 @@ def run(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = None
         fidelity: Annotated[Fidelity, typer.Option(help="Which model.")] = Fidelity.lowfi,
         calibration: Annotated[Optional[Path], typer.Option(metavar="FILE", help="calibration.toml for the surrogate.")] = None,
         walls: OnWalls = False,
+        accuracy: Annotated[Optional[str], typer.Option("--accuracy", metavar="RATE", help='Error of the settled rates to be kept, "0.1 '
+                                           'deg/s": takes the cheapest model that make cost found so exact.')] = None,
+        budget: Annotated[Optional[str], typer.Option("--budget", metavar="TIME", help='Wall time to be kept, "2 s": takes the most exact '
+                                         "model that make cost found so fast.")] = None,
         element_size: ElementSize = None, checkpoint_every: CheckpointEvery = None, resume: Resume = True,
         json_: Json = False) -> None:
     """Run one condition in one model and print what the payload leaves with."""
@@ -263,7 +270,10 @@ def run(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = None
         from studies import single
 
         study = _study(scene, out, set_, [condition], element_size, checkpoint_every=checkpoint_every, resume=resume)
-        return single.run(study, condition, fidelity.value, calibration, walls, quiet=json_)
+        if accuracy is None and budget is None:
+            return single.run(study, condition, fidelity.value, calibration, walls, quiet=json_)
+        limits = _quantity("--accuracy", accuracy, "deg/s"), _quantity("--budget", budget, "s")
+        return single.chosen(study, condition, *limits, quiet=json_)
 
     _guarded(work, json_)
 

@@ -4,8 +4,11 @@ from pathlib import Path
 
 from scenes.calibration import Calibration
 from scenes.faults import Fault, SceneError
-from studies.stages import walls
+from studies import choice
+from studies.progress import say
+from studies.stages import cost, walls
 from studies.stages.runs import row
+from studies.store import Run
 from studies.study import FAILED, Study
 
 
@@ -16,10 +19,26 @@ def run(study: Study, condition: str, fidelity: str, calibration: Path | None = 
     if fidelity == "lowfi":
         under = walls.load(study, study.condition(condition)) if on_walls else None
         asked = study.lowfi(condition, constants(calibration), walls=under)
+    return _made(study, condition, asked, quiet)
+
+
+def chosen(study: Study, condition: str, accuracy: float | None, budget: float | None, quiet: bool = False) -> dict:
+    """The same in the model that measured cost calls for; ``chosen`` says which and why. Raises StudyError when none fits."""
+    point = choice.choose(study, accuracy, budget)
+    say(point["why"])
+    if point["rung"] == "highfi":
+        asked = study.highfi(condition, element_size=point["setting"])
+    else:
+        rung = next(rung for rung in cost.surrogates(study) if rung.name == point["rung"])
+        asked = rung.ask(study, condition, relative_tolerance=point["setting"])
+    return _made(study, condition, asked, quiet) | {"chosen": point}
+
+
+def _made(study: Study, condition: str, asked: Run, quiet: bool) -> dict:
     found = study.store.get(asked)
     result = row(condition, found, study.relative(study.store.path(asked)))
     if not quiet:
-        print("\n".join(lines(result, fidelity, study)))
+        print("\n".join(lines(result, asked.fidelity, study)))
     return result | {"failed": [f"{condition}: {found.status}: {found.message}"] if found.status in FAILED else []}
 
 

@@ -14,8 +14,9 @@ _DIRECT, _CROSS = (NAVY, VERMILION, TEAL), (AMBER, GREY)
 def picture(found: dict) -> Chart:
     """Compliance over the place of the pad, mounts shaded; ``found`` is that part of mesh.json."""
     place = 1e3 * np.array(found["place_m"])
-    lines = [Line(place, 1e9 * np.array(values), f"{name} wall, pressed itself", colour, 2.0)
-             for (name, values), colour in zip(found["direct_m_per_n"].items(), _DIRECT)]
+    # The legs of a symmetric section give way alike: the first line is broad and pale, so that the next shows on it.
+    lines = [Line(place, 1e9 * np.array(values), f"{name} wall, pressed itself", colour, *look)
+             for (name, values), colour, look in zip(found["direct_m_per_n"].items(), _DIRECT, ((5.0, "-", 0.35), (1.5, "-"), (1.5, ":")))]
     lines += [Line(place, 1e9 * np.array(values), f"{' wall, pressing '.join(name.split())}", colour, 2.0, "--")
               for (name, values), colour in zip(found["cross_m_per_n"].items(), _CROSS)]
     mounts = tuple((1e3 * low, 1e3 * high) for low, high in found["mounts_m"])

@@ -20,8 +20,8 @@ class Runs(NamedTuple):
 
     highfi: dict[str, Trajectory]
     uncalibrated: dict[str, Trajectory]
-    calibrated: dict[str, Trajectory]
-    compliant: dict[str, Trajectory]
+    calibrated: dict[str, Trajectory] = {}
+    compliant: dict[str, Trajectory] = {}
 
 
 # In the order of the legend. Width, dash, opacity: the reference is a broad pale line under the thin ones of the surrogate.
@@ -110,8 +110,8 @@ def cost_picture(cost: dict) -> Chart:
 
 
 def _cost_line(points: list[dict], error: str, model: str, colour: str, marker: str, dash: str) -> Line:
-    """One model; tolerances are labelled only where they matter, in the panel of the time integration."""
+    """One model; tolerances are labelled only where they matter, in the panel of the time integration, and once for all models."""
     labels = [point["numerics"].split(",")[0].removeprefix("tolerance ") for point in points]
-    if "surrogate" in model and error == "error_deg_s":
+    if "surrogate" in model and (error == "error_deg_s" or "compliant" not in model):
         labels = [""] * len(labels)
     return Line([p["wall_s"] for p in points], [p[error] for p in points], model, colour, 1.6, dash, marker=marker, labels=tuple(labels))

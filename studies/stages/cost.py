@@ -20,20 +20,25 @@ FINITE_ELEMENTS = "finite elements"
 
 
 def run(study: Study) -> dict:
-    """``points``: model, numerics, error_deg_s, wall_s, pareto; ``band_deg_s``: uncertainty of the yardstick; ``matched``."""
+    """``points``: model, rung, numerics, setting (element size in m or relative tolerance), error_deg_s, wall_s, pareto; ``band_deg_s``: uncertainty of the yardstick; ``matched``."""
     name = (study.scene.agreement.refined or study.fitted())[0]
-    ladder = rungs(study)
-    ladder.insert(2, ladder[2]._replace(title=STIFFNESS_ALONG, walls={
-        key: known and known.restricted(1, coupled=False) for key, known in ladder[2].walls.items()}))
+    ladder = surrogates(study)
 
     def make() -> tuple[dict, list[Path]]:
         finest, band, points = _reference_points(study, name)
         for rung in ladder:
             points += _surrogate_points(study, name, rung, finest)
-        return {"condition": name, "band_deg_s": band, "points": marked(points), "matched": matched(points),
+        return {"condition": name, "scene_hash": study.scene.hash, "band_deg_s": band, "points": marked(points), "matched": matched(points),
                 "hardware": machine.describe()}, []
 
     return study.stage("cost", study.key(SOURCES_USED, name, ladder[1].calibration.constants), make)
+
+
+def surrogates(study: Study) -> list[Rung]:
+    """The rungs of the agreement study, and one more between them."""
+    plain, calibrated, compliant = rungs(study)
+    along = {name: known and known.restricted(1, coupled=False) for name, known in compliant.walls.items()}
+    return [plain, calibrated, compliant._replace(name="along", title=STIFFNESS_ALONG, walls=along), compliant]
 
 
 def _reference_points(study: Study, name: str) -> tuple[Trajectory, float | None, list[dict]]:
@@ -44,7 +49,7 @@ def _reference_points(study: Study, name: str) -> tuple[Trajectory, float | None
              *refined(study, name).values()]
     coarsest, coarse, finest, *changed = study.store.fill("cost, meshes", asked)
     band = agreement.largest(agreement.settled_change(coarse, run) for run in (finest, *changed))
-    points = [{"model": FINITE_ELEMENTS, "numerics": f"{1e3 * size:g} mm, {found.cost['elements']} elements",
+    points = [{"model": FINITE_ELEMENTS, "rung": "highfi", "setting": size, "numerics": f"{1e3 * size:g} mm, {found.cost['elements']} elements",
                "error_deg_s": None if found is finest else agreement.settled_change(finest, found),
                "integration_error_deg_s": None, "wall_s": found.cost["wall_s"], "status": found.status}
               for size, found in zip(sizes, (coarsest, coarse, finest))]
@@ -57,7 +62,7 @@ def _surrogate_points(study: Study, name: str, rung: Rung, finest: Trajectory) -
     warm_up(asked[0])
     measured = [[timed(run) for _ in range(study.settings.lowfi_repeats)] for run in asked]
     runs = [repeats[0][0] for repeats in measured]
-    return [{"model": rung.title, "numerics": f"tolerance {tolerance:g}", "error_deg_s": agreement.settled_change(finest, found),
+    return [{"model": rung.title, "rung": rung.name, "setting": tolerance, "numerics": f"tolerance {tolerance:g}", "error_deg_s": agreement.settled_change(finest, found),
              "integration_error_deg_s": agreement.settled_change(runs[0], found) if found is not runs[0] else None,
              "wall_s": statistics.median(wall for _, wall, _ in repeats), "status": found.status}
             for tolerance, found, repeats in reversed(list(zip(tolerances, runs, measured)))]

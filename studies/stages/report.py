@@ -50,9 +50,9 @@ def _trajectories(study: Study, documents: dict):
     from studies.report.figures import Runs
 
     asked = [{name: ask(name) for name in study.conditions} for ask in (study.highfi, study.lowfi)]
-    ladder = compare.rungs(study)[1:] if documents["agreement"] else []
-    asked += [{name: rung.ask(study, name) for name in study.conditions} for rung in ladder]
-    return Runs(*(_stored(study, runs) for runs in asked), *[{}] * (len(Runs._fields) - len(asked)))
+    if documents["agreement"]:
+        asked += [{name: rung.ask(study, name) for name in study.conditions} for rung in compare.rungs(study)[1:]]
+    return Runs(*(_stored(study, runs) for runs in asked))
 
 
 def _stored(study: Study, asked: dict[str, Run]) -> dict:

@@ -11,7 +11,6 @@ from highfi.compiled import LAWS as highfi_laws
 from lowfi.compiled import LAWS as lowfi_laws
 from scenes.scene import EFFECTS
 from studies import machine, weaker_methods
-from studies.agreement import Spread
 from studies.settings import Settings, defaults
 from studies.stages import ablation, compare, cost
 from studies.stages.mesh import area
@@ -79,11 +78,6 @@ def test_refinements_change_one_thing_each(tmp_path):
     assert runs["penalty"].scene.contact.penalty == 4.0 * coarse.scene.contact.penalty
     assert runs["penalty"].numerics == coarse.numerics
     assert runs["step"].scene.hash == coarse.scene.hash == nominal.scene.hash
-
-
-def test_spreads_told_once():
-    spread = Spread("phi15", "reference", "clearance", 0.1, 0.1)
-    assert compare._unique([spread, spread]) == [spread]
 
 
 def test_machine_is_described():
