@@ -30,6 +30,7 @@ from scenes.units import PositiveTime
 
 CATALOG = reading.CATALOG
 EFFECTS = ("thrust_offset", "mass_offset", "initial", "contact", "friction", "platform", "gravity", "rail.damping")
+NOMINAL = "nominal"  # the scene itself, named like a condition
 _BESIDE = ("conditions", "agreement", "provenance")
 _NOT_PHYSICS = {"name", "description", *_BESIDE}
 
@@ -74,7 +75,9 @@ class Scene(Table):
         return scene
 
     def condition(self, name: str) -> "Scene":
-        """The scene of one named condition. Raises SceneError for a name the scene does not have."""
+        """The scene of one named condition, or itself as ``NOMINAL``. Raises SceneError for a name the scene does not have."""
+        if name == NOMINAL and name not in self.conditions:
+            return self
         if name not in self.conditions:
             known = ", ".join(self.conditions) or "none are defined"
             raise SceneError([Fault(self._source, "conditions", repr(name), f"one of {known}")])

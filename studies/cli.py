@@ -9,11 +9,12 @@ import os
 import re
 import sys
 from dataclasses import replace
-from enum import Enum
 from pathlib import Path
 from typing import Annotated, Callable, Optional
 
 import typer
+
+from studies.options import (CheckpointEvery, Conditions, ElementSize, Fidelity, Json, Out, Resume, Sampling, SceneName, Set, Workers)
 
 EXAMPLES = """Examples:
 
@@ -30,37 +31,6 @@ EXAMPLES = """Examples:
 
 app = typer.Typer(no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False, rich_markup_mode="rich",
                   help="Which velocity and which angular rates does a payload leave its rail with?\n\n" + EXAMPLES)
-
-SceneName = Annotated[str, typer.Option("--scene", metavar="NAME_OR_FILE", help="Catalogue scene or path of a .toml file.")]
-Out = Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder that receives a folder per scene.")]
-Set = Annotated[Optional[list[str]], typer.Option("--set", metavar="KEY=VALUE",
-                help='Override, repeatable: --set payload.mass="9 kg"; "absent" drops a table.')]
-Conditions = Annotated[Optional[list[str]], typer.Option("--condition", metavar="NAME",
-                       help="Named condition of the scene, repeatable; default: all.")]
-Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON on standard output.")]
-ElementSize = Annotated[Optional[float], typer.Option("--element-size", metavar="MM", min=0.05,
-                        help="Element size of the reference in mm.")]
-Workers = Annotated[Optional[int], typer.Option("--workers", metavar="N", min=1, help="Runs side by side; default: all cores.")]
-
-CheckpointEvery = Annotated[Optional[str], typer.Option("--checkpoint-every", metavar="TIME",
-                            help='How often a run of the reference is kept beside its result-to-be: 30s, "5 min"; default: 60 s.')]
-Resume = Annotated[bool, typer.Option("--resume/--no-resume",
-                   help="Let a run of the reference that was interrupted go on from where it was kept last, to the same result.")]
-
-
-class Fidelity(str, Enum):
-    """The two models."""
-
-    highfi = "highfi"
-    lowfi = "lowfi"
-
-
-class Sampling(str, Enum):
-    """Ways to draw the cases of an ensemble."""
-
-    random = "random"
-    latin_hypercube = "latin-hypercube"
-    sobol = "sobol"
 
 
 def _study(scene: str, out: Path, overrides, conditions=None, element_size=None, workers=None, checkpoint_every=None,
@@ -117,7 +87,7 @@ def _guarded(work: Callable[[], dict], as_json: bool = False) -> dict:
         print("tipoff: stopped; what was finished is kept, and the same command goes on from there", file=sys.stderr, flush=True)
         os._exit(130)  # at once: files are complete at any moment, and a thread that compiles would hold the process for seconds
     except ValueError as fault:
-        if type(fault).__name__ not in ("MeshError", "StepError"):
+        if type(fault).__name__ not in ("MeshError", "StepError", "CalibrationError"):
             raise
         _stop(f"{type(fault).__name__}: {fault}", 2)
     if as_json:
@@ -187,7 +157,40 @@ def _stage(name: str, summary: str) -> None:
     app.command(name, help=summary)(command)
 
 
-_stage("calibrate", "Fit the surrogate's contact constants to the reference; writes calibration.toml and calibration.json.")
+@app.command()
+def calibrate(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = None,
+              reference: Annotated[Optional[list[str]], typer.Option("--reference", metavar="[NAME=]FILE", help="Curves of condition "
+                                   "NAME in a CSV file, in place of finite elements; repeatable.")] = None,
+              condition: Annotated[Optional[str], typer.Option("--condition", metavar="NAME", help="Condition of a file without NAME; "
+                                   "default: the scene itself.")] = None,
+              settled_from: Annotated[Optional[str], typer.Option("--settled-from", metavar="TIME", help="Begin of the 2 ms over which "
+                                      "settled rates of a file are means; default: its last 2 ms.")] = None,
+              element_size: ElementSize = None, workers: Workers = None, json_: Json = False) -> None:
+    """Fit the surrogate's contact constants to the reference; writes calibration.toml and calibration.json.
+
+    Curves of another code or of a test may take the place of the reference; curves/ then receives both files:
+
+      tipoff calibrate --reference phi15=test15.csv --reference phi60=test60.csv --settled-from "44 ms"
+
+    A file has the columns time, velocity_x (inertial, along the rail), rate_x, rate_y and rate_z (inertial, in payload body axes), from
+    ignition on, at any instants, with units in the header, rate_x \\[deg/s], or in the second line. Other columns are passed over.
+    """
+
+    def work() -> dict:
+        from studies.stages import calibrate as stage
+
+        start = None if settled_from is None else _seconds("--settled-from", settled_from)
+        files = stage.named(reference or [], condition, start)
+        study = _study(scene, out, set_, element_size=element_size, workers=workers)
+        return stage.from_files(study, files, start) if files else stage.run(study)
+
+    found = _guarded(work, json_)
+    if not json_ and reference:
+        from studies.stages import calibrate as stage
+
+        print("\n".join(stage.lines(found, Path(out) / found["scene"])))
+
+
 _stage("compare", "Agreement on fitted and held-out conditions beside the floor, and the speed-up; writes agreement.json.")
 _stage("cost", "What accuracy costs in time, both models; writes cost.json.")
 _stage("stability", "Hard cases, each with a simpler method that fails on it; writes stability.json.")

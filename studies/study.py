@@ -14,13 +14,12 @@ from typing import Any, Callable, Iterable
 from scenes.calibration import Calibration
 from scenes.faults import Fault, SceneError
 from scenes.files import content_hash, write_json
-from scenes.scene import Scene
+from scenes.scene import NOMINAL, Scene
 from scenes.trajectory import Trajectory
 from studies.progress import say
 from studies.settings import Settings
 from studies.store import Run, Store, code_hash
 
-NOMINAL = "nominal"
 FAILED = ("diverged", "refused")
 
 
@@ -52,7 +51,7 @@ class Study:
 
     def condition(self, name: str) -> Scene:
         """The scene of one condition. Raises SceneError for a name the scene does not have."""
-        return self.scene if name == NOMINAL else self.scene.condition(name)
+        return self.scene.condition(name)
 
     def fitted(self) -> list[str]:
         """Names of the fitted conditions. Raises SceneError when the scene names none."""

@@ -7,7 +7,7 @@ import pytest
 
 import calibrate
 import lowfi
-from calibrate import parameters
+from calibrate import Curves, parameters
 from calibrate.objective import Objective, targets
 from scenes import Calibration, SceneError
 from scenes.outcome import Outcome
@@ -36,7 +36,7 @@ def test_recovers_known_constants_from_a_wrong_start(fitted):
 def test_uncalibrated_start_is_far(fitted):
     """Control: the constants the fit started from are nowhere near."""
     free = parameters.free(scene())
-    objective = Objective(scene(), targets(scene(), own_curves()), free)
+    objective = Objective(scene(), targets(scene(), {name: Curves.from_trajectory(run) for name, run in own_curves().items()}), free)
     residuals = objective(np.array([item.share(item.read(scene())) for item in free]))
     assert residuals @ residuals > 1e-3
 
