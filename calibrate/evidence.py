@@ -9,8 +9,6 @@ from calibrate.curves import Curves
 from calibrate.objective import Parts, Target
 from calibrate.parameters import Parameter
 from calibrate.search import Found, Plan
-from scenes.effects import thrust
-from scenes.files import content_hash
 from scenes.scene import Scene
 
 _ON_BOUND = 1e-3  # share of the bounds within which a value counts as lying on one
@@ -47,27 +45,22 @@ def weak_directions(scene: Scene, free: list[Parameter], held: list[Parameter], 
     return sentences
 
 
-def validity(scene: Scene, references: dict[str, Curves]) -> dict[str, list[float]]:
+def valid(scene: Scene, references: dict[str, Curves]) -> dict[str, list[float]]:
     """Smallest and largest of what the constants were found for, over the conditions used (SI)."""
-    rows = [_ranges(scene.condition(name), reference) for name, reference in references.items()]
+    rows = [scene.condition(name).loads | {"exit_speed_m_s": reference.speed, "pad_force_peak_n": reference.pad_force}
+            for name, reference in references.items()]
     known = {key: [row[key] for row in rows if row[key] is not None] for key in rows[0]}
     return {key: [min(values), max(values)] for key, values in known.items() if values}
-
-
-def _ranges(scene: Scene, reference: Curves) -> dict[str, float | None]:
-    return {"thrust_peak_n": float(thrust.peak(scene.thrust.record(), scene.duration)),
-            "clearance_m": scene.contact.clearance, "exit_speed_m_s": reference.speed, "pad_force_peak_n": reference.pad_force}
 
 
 def provenance(scene: Scene, references: dict[str, Curves], constants: dict[str, float], found: Found, plan: Plan, seed: int,
                evaluations: int) -> dict[str, str]:
     """Where the constants come from, in words and hashes."""
-    geometry = scene.resolved()
     exponent = constants.get("contact.exponent", 1.0)
     ends = "; ".join(f"{value:.6g} at " + ", ".join(f"{share:.4f}" for share in shares) for value, shares in found.basins)
     return {
         "scene": scene.name, "scene_hash": scene.hash,
-        "geometry_hash": content_hash(geometry["pads"], geometry["rail"] | scene.rail.contents()),
+        "geometry_hash": scene.geometry_hash,
         "contact_law": f"{scene.contact.law}, k = {constants['contact.stiffness']:.6g} N/m^{exponent:.6g}",
         "references": ", ".join(f"{name}: {item.source}" for name, item in references.items()),
         "search": f"{plan.points} Sobol' points, {plan.starts} starts of CMA-ES, least squares; {evaluations} evaluations; seed {seed}",

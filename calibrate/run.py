@@ -51,7 +51,7 @@ def run(scene: Scene, references: dict[str, Trajectory | Curves], numerics=None,
         residuals={name: evidence.residuals(part, wanted[name]) for name, part in residuals.items()},
         conditions=list(curves),
         objective=found.value,
-        valid=evidence.validity(scene, curves),
+        valid=evidence.valid(scene, curves),
         provenance=evidence.provenance(scene, curves, constants, found, plan, seed, objective.evaluations + wide.evaluations),
     )
 

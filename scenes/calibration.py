@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from scenes import validity
 from scenes.files import write_text
 from scenes.scene import Scene
 
@@ -42,6 +43,10 @@ class Calibration:
         """``scene`` with the calibrated constants; constants of an effect the scene lacks are left out."""
         return scene.replace({key: value for key, value in self.constants.items()
                               if getattr(scene, key.split(".")[0], "unknown") is not None})
+
+    def outside(self, scene: Scene) -> list[str]:
+        """In words, where ``scene`` lies outside what the constants were found for: thrust, speed, clearance, rail, pads."""
+        return validity.outside(scene, self.valid, self.provenance.get("geometry_hash"))
 
     def save(self, path: str | Path) -> None:
         """Write TOML atomically. Raises ValueError for a NaN (an interval without an end is inf)."""

@@ -12,7 +12,7 @@ from typing import Annotated, Any, Mapping
 from pydantic import AfterValidator, Field, PrivateAttr, ValidationError
 
 from scenes import overrides as keys
-from scenes import plausibility, reading, roles
+from scenes import plausibility, reading, roles, validity
 from scenes.effects.contact import ContactTable
 from scenes.effects.friction import FrictionTable
 from scenes.effects.gravity import GravityTable
@@ -100,6 +100,16 @@ class Scene(Table):
         if measured:
             physics["thrust"].pop("file")
         return content_hash(physics, self.thrust.points() if measured else [])
+
+    @cached_property
+    def loads(self) -> dict[str, float]:
+        """Size of thrust, speed and clearance (SI): what calibrated constants may not be carried far from."""
+        return validity.loads(self)
+
+    @cached_property
+    def geometry_hash(self) -> str:
+        """SHA-256 of rail and pads."""
+        return validity.geometry(self)
 
     @cached_property
     def warnings(self) -> list[str]:

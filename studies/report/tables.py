@@ -27,7 +27,7 @@ def agreement(document: dict) -> Html:
     before = [_agreement_row(row) for row in document["uncalibrated"]]
     calibrated = [*document["fitted"], *document["held_out"]]
     return section("agreement-section", "Agreement with the reference", _summary(document),
-                   table(heads, rows, "agreement", kinds, dense=True), caption(legend), _further(calibrated),
+                   table(heads, rows, "agreement", kinds, dense=True), caption(legend), _outside(calibrated), _further(calibrated),
                    fold("the same before calibration", table(heads, before, dense=True)), _evidence(document))
 
 
@@ -42,6 +42,13 @@ def _summary(document: dict) -> Html:
         sentences.append(f"{passed} of {len(rows)} {words} conditions pass all three gates"
                          + _free(rows) + (f" ({doubtful} of {len(rows)} with a reference that is not converged)" if doubtful else ""))
     return paragraph("; ".join(sentences) + ".")
+
+
+def _outside(rows: list[dict]) -> Html:
+    """Conditions the constants were not found for; their agreement is that of an extrapolation."""
+    lines = "".join(f"<li>{escape(row['condition'])}: {escape('; '.join(row['outside_calibration']))}</li>"
+                    for row in rows if row["outside_calibration"])
+    return Html(f"<p>Outside what the constants were fitted for:</p><ul>{lines}</ul>" if lines else "")
 
 
 def _free(rows: list[dict]) -> str:

@@ -26,7 +26,8 @@ def run(study: Study) -> dict:
         context = {kind: Context(_floors(study, cause), _refinements(study)) for kind, cause in
                    (("uncalibrated", None), ("calibrated", calibration))}
         roles = {"fitted": study.scene.agreement.fitted, "held_out": study.scene.agreement.held_out}
-        rows = {role: [agreement.row(name, role, highfi[name], fitted[name], context["calibrated"]) for name in names]
+        rows = {role: [agreement.row(name, role, highfi[name], fitted[name], context["calibrated"])
+                       | {"outside_calibration": calibration.outside(study.condition(name))} for name in names]
                 for role, names in roles.items()}
         before = [agreement.row(name, role, highfi[name], plain[name], context["uncalibrated"])
                   for role, names in roles.items() for name in names]

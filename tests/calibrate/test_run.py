@@ -4,6 +4,7 @@ import dataclasses
 
 import numpy as np
 import pytest
+from typer.testing import CliRunner
 
 import calibrate
 import lowfi
@@ -11,6 +12,7 @@ from calibrate import Curves, parameters
 from calibrate.objective import Objective, targets
 from scenes import Calibration, SceneError
 from scenes.outcome import Outcome
+from studies.cli import app
 from tests.calibrate.support import CONDITIONS, SMALL, TRUTH, own_curves, scene
 
 
@@ -67,6 +69,23 @@ def test_travels_as_a_file_and_drives_the_surrogate(fitted, tmp_path):
     run, reference = lowfi.run(scene().condition("phi15"), read), own_curves()["phi15"]
     assert np.abs(np.subtract(run.outcome.rate, reference.outcome.rate)).max() < 1e-5
     assert read.provenance["geometry_hash"] == fitted.provenance["geometry_hash"]
+
+
+def test_a_run_outside_the_range_says_so_and_still_counts(fitted):
+    """Control: on a condition that was fitted nothing is said."""
+    asked = scene().condition("phi15")
+    assert lowfi.run(asked, fitted).message == ""
+    beyond = lowfi.run(asked.replace({"thrust.peak": "8 kN"}), fitted)
+    assert beyond.status == "exited"
+    assert "outside the calibration: thrust peak 8000 N, constants found at 6000 N" in beyond.message
+
+
+def test_the_command_prints_what_is_outside(fitted, tmp_path):
+    fitted.save(tmp_path / "c.toml")
+    said = [CliRunner().invoke(app, ["run", "--condition", "phi15", "--calibration", str(tmp_path / "c.toml"), "--out", str(tmp_path),
+                                     *change]).stdout for change in ([], ["--set", "contact.clearance=0.3 mm"])]
+    assert "outside" not in said[0] and "exited" in said[0]
+    assert "clearance 0.0003 m, constants found at 0.00025 m" in said[1]
 
 
 def test_same_seed_same_bits(fitted):
