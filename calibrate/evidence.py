@@ -6,6 +6,7 @@ import numpy as np
 
 from calibrate import information
 from calibrate.curves import Curves
+from calibrate.intervals import half_widths, independent
 from calibrate.objective import Parts, Target
 from calibrate.parameters import Parameter
 from calibrate.search import Found, Plan
@@ -37,12 +38,31 @@ def weak_directions(scene: Scene, free: list[Parameter], held: list[Parameter], 
         told = "at these constants it has no effect" if ratio < _NOTHING else (
             f"of its information {alone:.2g} only {left:.2g} is left when the others are fitted again, {ratio:.1e} of the largest eigenvalue")
         sentences.append(f"{item.name} held at {item.read(scene):.4g} {item.unit}: {told}")
-    for item, share in zip(free, shares):
-        if not _ON_BOUND < share < 1.0 - _ON_BOUND:
+    for item, share, bound in zip(free, shares, _on_bound(shares)):
+        if bound:
             side = "lower" if share < 0.5 else "upper"
             sentences.append(f"{item.name} lies on its {side} bound {item.value(round(float(share))):.4g} {item.unit}: physics, not the "
                              "curves, sets its value")
     return sentences
+
+
+def intervals(free: list[Parameter], shares: np.ndarray, matrix: np.ndarray, parts: list[Parts]) -> tuple[list[list[float]], float]:
+    """Interval of every free parameter (SI), and the number of independent residuals these rest on.
+
+    Without ends where the curves do not tell: in a weak direction, on a bound, or with an interval wider than the bounds, over which
+    no linear theory holds.
+    """
+    curves = [curve for part in parts for curve in (part.velocity, *part.rate.T)]
+    count = sum(map(independent, curves))
+    squares = sum(float(part.vector() @ part.vector()) for part in parts) / len(parts)  # the objective, to which the matrix belongs
+    half = half_widths(matrix, squares, count, [item.vector for item in information.weak(matrix)])
+    told = (half < 0.5) & ~_on_bound(shares)
+    return [[item.value(share - width), item.value(share + width)] if known else [-math.inf, math.inf]
+            for item, share, width, known in zip(free, shares.tolist(), half.tolist(), told)], count
+
+
+def _on_bound(shares: np.ndarray) -> np.ndarray:
+    return (shares <= _ON_BOUND) | (shares >= 1.0 - _ON_BOUND)
 
 
 def valid(scene: Scene, references: dict[str, Curves]) -> dict[str, list[float]]:
@@ -54,7 +74,7 @@ def valid(scene: Scene, references: dict[str, Curves]) -> dict[str, list[float]]
 
 
 def provenance(scene: Scene, references: dict[str, Curves], constants: dict[str, float], found: Found, plan: Plan, seed: int,
-               evaluations: int) -> dict[str, str]:
+               evaluations: int, count: float) -> dict[str, str]:
     """Where the constants come from, in words and hashes."""
     exponent = constants.get("contact.exponent", 1.0)
     ends = "; ".join(f"{value:.6g} at " + ", ".join(f"{share:.4f}" for share in shares) for value, shares in found.basins)
@@ -64,5 +84,6 @@ def provenance(scene: Scene, references: dict[str, Curves], constants: dict[str,
         "contact_law": f"{scene.contact.law}, k = {constants['contact.stiffness']:.6g} N/m^{exponent:.6g}",
         "references": ", ".join(f"{name}: {item.source}" for name, item in references.items()),
         "search": f"{plan.points} Sobol' points, {plan.starts} starts of CMA-ES, least squares; {evaluations} evaluations; seed {seed}",
+        "intervals": f"95 %, linear, from what the fit leaves, {count:.0f} independent residuals; model error is not in them",
         "basins": f"each start ended at objective and shares of the bounds: {ends}",
     }

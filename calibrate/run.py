@@ -37,7 +37,8 @@ def run(scene: Scene, references: dict[str, Trajectory | Curves], numerics=None,
         matrix = information(jacobian(wide, np.append(found.shares, _shares(held, scene))))
     values = objective.values(found.shares)
     constants = parameters.overrides(scene, values)
-    count = len(free)
+    inner = matrix[:len(free), :len(free)]
+    ends, count = evidence.intervals(free, found.shares, inner, list(residuals.values()))
     return Calibration(
         constants=constants,
         parameters=[item.name for item in free],
@@ -46,13 +47,15 @@ def run(scene: Scene, references: dict[str, Trajectory | Curves], numerics=None,
         lower=[item.lower for item in free],
         upper=[item.upper for item in free],
         justification=[item.justification for item in free],
-        information=matrix[:count, :count],
+        intervals=ends,
+        information=inner,
         weak_directions=evidence.weak_directions(scene, free, held, found.shares, matrix),
         residuals={name: evidence.residuals(part, wanted[name]) for name, part in residuals.items()},
         conditions=list(curves),
         objective=found.value,
         valid=evidence.valid(scene, curves),
-        provenance=evidence.provenance(scene, curves, constants, found, plan, seed, objective.evaluations + wide.evaluations),
+        provenance=evidence.provenance(scene, curves, constants, found, plan, seed, objective.evaluations + wide.evaluations,
+                                       count),
     )
 
 

@@ -19,7 +19,8 @@ class Calibration:
     """Constants found for a scene.
 
     ``constants`` are dotted overrides in SI, applied to a scene by ``apply``. ``parameters`` name the fitted coordinates
-    (with ``values``, ``lower``, ``upper`` bounds and ``justification``); ``information`` is the matrix (p,p) of the scaled
+    (with ``values``, their 95 % ``intervals``, infinite where the curves do not tell and without model error, ``lower``, ``upper``
+    bounds and ``justification``); ``information`` is the matrix (p,p) of the scaled
     parameters; ``weak_directions`` describe what the curves cannot tell; ``residuals`` are per condition; ``valid``
     holds the range of the conditions used.
     """
@@ -38,6 +39,7 @@ class Calibration:
     objective: float
     valid: dict[str, list[float]] = field(default_factory=dict)
     provenance: dict[str, str] = field(default_factory=dict)
+    intervals: list[list[float]] = field(default_factory=list)
 
     def apply(self, scene: Scene) -> Scene:
         """``scene`` with the calibrated constants; constants of an effect the scene lacks are left out."""

@@ -97,9 +97,9 @@ def _evidence(document: dict) -> Html:
 
 def calibration(document: dict) -> Html:
     """Fitted constants with bounds and reasons, what the curves cannot tell, residuals."""
-    rows = [(name, number(value, 5), unit, number(low, 4), number(high, 4), why) for name, value, unit, low, high, why in zip(
-        document["parameters"], document["values"], document["units"], document["lower"], document["upper"],
-        document["justification"])]
+    rows = [(name, number(value, 5), _interval(ends), unit, number(low, 4), number(high, 4), why)
+            for name, value, ends, unit, low, high, why in zip(*(document[key] for key in (
+                "parameters", "values", "intervals", "units", "lower", "upper", "justification")))]
     weak = "".join(f"<li>{escape(line)}</li>" for line in document["weak_directions"]) or "<li>none</li>"
     names = list(dict.fromkeys(key for found in document["residuals"].values() for key in found))
     residuals = [(condition, *(found.get(name) for name in names)) for condition, found in document["residuals"].items()]
@@ -108,7 +108,10 @@ def calibration(document: dict) -> Html:
     valid = [(code(key), *(number(value, 4) for value in span)) for key, span in document["valid"].items()]
     return section("calibration", "Calibration",
                    paragraph(f"Fitted to {', '.join(document['conditions'])} at once; objective {document['objective']:.4g}."),
-                   table(("constant", "value", "unit", "lower bound", "upper bound", "why free, why these bounds"), rows),
+                   table(("constant", "value", "95 % interval", "unit", "lower bound", "upper bound", "why free, why these bounds"), rows),
+                   caption("Intervals take what the fit leaves for scatter about a model that is right, and are linear. Model error is not in "
+                           "them: what the surrogate lacks moves its constants by more than they say. Not told: the curves do not fix the "
+                           "constant, and no interval is made up."),
                    Html(f"<h3>What the curves cannot tell</h3><ul>{weak}</ul>"),
                    fold("constants the surrogate then uses (SI)", table(("key", "value"), applied)),
                    fold("range of the conditions used (SI): outside it the constants are extrapolated",
@@ -116,6 +119,10 @@ def calibration(document: dict) -> Html:
                    fold("how they were found", table(("", ""), document["provenance"].items())),
                    fold("residuals per condition", table(("condition", *(name.replace("_", " ") for name in names)), residuals)),
                    fold("information matrix of the scaled constants", table(("", *document["parameters"]), information)))
+
+
+def _interval(ends: list[float | None]) -> Html | str:
+    return "not told" if None in ends else Html(f"{number(ends[0], 4)} to {number(ends[1], 4)}")
 
 
 def speedup(found: dict) -> Html:

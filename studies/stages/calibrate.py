@@ -4,6 +4,7 @@ Curves of another code or of a test may take the place of the reference. What is
 the other stages, which compare with the reference, do not replace it.
 """
 
+import math
 from pathlib import Path
 
 import numpy as np
@@ -96,16 +97,22 @@ def load(study: Study) -> Calibration:
 
 def lines(document: dict, folder: Path) -> list[str]:
     """The constants in words, what the curves cannot tell, and where the calibration lies."""
-    found = zip(document["parameters"], document["values"], document["units"])
-    said = [f"  {name:22}{value:.5g} {unit}" for name, value, unit in found]
+    found = zip(document["parameters"], document["values"], document["units"], document["intervals"])
+    said = [f"  {name:22}{value:.5g} {unit}, {interval(ends)}" for name, value, unit, ends in found]
     said += [f"  not told      {words}" for words in document["weak_directions"]]
     return [f"fitted to {', '.join(document['conditions'])}: objective {document['objective']:.4g}", *said,
             f"  calibration   {folder / document['calibration']}"]
 
 
+def interval(ends: list[float | None]) -> str:
+    """The 95 % interval of a constant in words; without ends the curves do not tell it."""
+    return "not told by the curves" if None in ends else f"{ends[0]:.4g} to {ends[1]:.4g}"
+
+
 def as_dict(found: Calibration) -> dict:
     """Plain values of a calibration."""
     return {"constants": found.constants, "parameters": found.parameters, "values": list(found.values),
+            "intervals": [[end if math.isfinite(end) else None for end in ends] for ends in found.intervals],
             "units": found.units, "lower": list(found.lower), "upper": list(found.upper),
             "justification": found.justification, "information": np.asarray(found.information).tolist(),
             "weak_directions": found.weak_directions, "residuals": found.residuals, "conditions": found.conditions,

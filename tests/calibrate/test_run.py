@@ -8,8 +8,8 @@ from typer.testing import CliRunner
 
 import calibrate
 import lowfi
-from calibrate import Curves, parameters
-from calibrate.objective import Objective, targets
+from calibrate import Curves, evidence, parameters
+from calibrate.objective import VELOCITY_WEIGHT, Objective, Parts, targets
 from scenes import Calibration, SceneError
 from scenes.outcome import Outcome
 from studies.cli import app
@@ -63,11 +63,35 @@ def test_values_lie_within_their_bounds_and_are_justified(fitted):
     assert fitted.valid["clearance_m"] == [0.25e-3, 0.25e-3] and fitted.valid["thrust_peak_n"][1] == pytest.approx(6000.0)
 
 
+def test_intervals_of_exact_curves_are_narrow_and_hold_the_values(fitted):
+    """Nothing scatters, so nothing but the search's last digits is left."""
+    for (low, high), value in zip(fitted.intervals, fitted.values):
+        assert low <= value <= high and high - low < 1e-4 * value
+    assert "model error is not in them" in fitted.provenance["intervals"]
+
+
+def test_no_interval_where_the_curves_do_not_tell():
+    """Noise of a hundredth: a told constant keeps its interval; one on its bound, one in a weak direction and one whose interval would
+    be wider than its bounds have none."""
+    noise = 0.01 / np.sqrt(800.0) * np.random.default_rng(1).standard_normal((200, 4))
+    part = Parts(noise[:, 0] / VELOCITY_WEIGHT, noise[:, 1:], np.zeros(3))
+    free = parameters.free(scene())
+    shares = np.array([0.5, 0.0, 0.5, 0.5])
+    found, count = evidence.intervals(free, shares, np.diag([1.0, 1.0, 1e-6, 1.0]), [part])
+    assert [np.isfinite(ends).all() for ends in found] == [True, False, False, True] and 600.0 < count <= 800.0
+    assert found[1] == [-np.inf, np.inf]
+    # s^2 = 1e-4/800 and a unit eigenvalue: 1.96 sd of the share, upon bounds of 0.05 to 0.5.
+    assert found[3][1] - found[3][0] == pytest.approx(2.0 * 1.96 * 0.45 * 0.01 / np.sqrt(count), rel=0.1)
+    loud = Parts(100.0 * part.velocity, 100.0 * part.rate, part.settled)
+    assert not np.isfinite(evidence.intervals(free, shares, 0.01 * np.eye(4), [loud])[0]).any()
+
+
 def test_travels_as_a_file_and_drives_the_surrogate(fitted, tmp_path):
     fitted.save(tmp_path / "calibration.toml")
     read = Calibration.load(tmp_path / "calibration.toml")
     run, reference = lowfi.run(scene().condition("phi15"), read), own_curves()["phi15"]
     assert np.abs(np.subtract(run.outcome.rate, reference.outcome.rate)).max() < 1e-5
+    assert read.intervals == fitted.intervals
     assert read.provenance["geometry_hash"] == fitted.provenance["geometry_hash"]
 
 

@@ -16,7 +16,8 @@ CALIBRATION = Calibration(
     values=[1 / 3, 1e-300], units=["1", "1"], lower=[-1e16, 0.0], upper=[float("inf"), 1.0],
     justification=['quoted "text"', "two\nlines, a \\ and a µ\x7f"], information=np.array([[1.0, 2e-17], [2e-17, 3.0]]),
     weak_directions=[], residuals={"phi15": {"l2": 0.01, "settled": -0.0}, "a \"b\".c": {}}, conditions=["phi15"], objective=5e-324,
-    valid={"thrust_offset.misalignment.axial": [0.0, 0.01]}, provenance={"code": "0"})
+    valid={"thrust_offset.misalignment.axial": [0.0, 0.01]}, provenance={"code": "0"},
+    intervals=[[0.25, 0.5], [float("-inf"), float("inf")]])
 
 
 def _as_lists(calibration):
