@@ -65,7 +65,7 @@ def _cell(row: list[str], place: int) -> str:
 
 def _unit_faults(source: str, name: str, unit: str | None, wanted: str) -> list[Fault]:
     if not unit:
-        return [Fault(source, name, "no unit", f'"{name} [{wanted}]" in the header or "{wanted}" in the second line, or another unit')]
+        return [Fault(source, name, "no unit", f'"{name} [{wanted}]" in the header or "{wanted}" in the second line, or the like')]
     try:
         units.to_si(f"1 {unit}", wanted)
     except ValueError as error:
@@ -88,7 +88,7 @@ def _values(place: int, lines: list[tuple[int, list[str]]]) -> tuple[np.ndarray,
 
 
 def _cell_faults(source: str, name: str, wrong: dict[str, list[int]]) -> list[Fault]:
-    return [Fault(source, name, f"{text} in {_listed(numbers)}", "a finite number in every line") for text, numbers in wrong.items()]
+    return [Fault(source, name, f"{text} in {_listed(numbers)}", "a finite number in each line") for text, numbers in wrong.items()]
 
 
 def _listed(numbers: list[int]) -> str:

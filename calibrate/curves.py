@@ -39,8 +39,8 @@ class Curves(NamedTuple):
         """Curves of a run that exited and settled."""
         start = run.outcome.window_start
         keep = _until(run.time, start)
-        return cls(run.time[keep], run.velocity[keep, 0], run.rate[keep], start, np.array(run.outcome.rate), run.outcome.velocity[0],
-                   f"{run.fidelity} {run.numerics}", float(np.linalg.norm(run.pad_force, axis=2).max()))
+        return cls(run.time[keep], run.velocity[keep, 0], run.rate[keep], start, np.array(run.outcome.rate),
+                   run.outcome.velocity[0], f"{run.fidelity} {run.numerics}", float(np.linalg.norm(run.pad_force, axis=2).max()))
 
     @classmethod
     def read_csv(cls, path: str | Path, settled_from: float | None = None) -> "Curves":
@@ -94,7 +94,7 @@ def _time_faults(source: str, time: np.ndarray, settled_from: float | None) -> l
     if latest < time[0] - _ROUNDING:
         found.append((f"a record of {_ms(time[-1] - time[0])}", f"at least the settled window of {_ms(SETTLE_WINDOW)}"))
     elif settled_from is not None and not time[0] <= settled_from <= latest + _ROUNDING:
-        found.append((f"settled from {_ms(settled_from)}", f"{_ms(time[0])} to {_ms(latest)}, so that {_ms(SETTLE_WINDOW)} are left"))
+        found.append((f"settled from {_ms(settled_from)}", f"{_ms(time[0])} to {_ms(latest)}, to leave {_ms(SETTLE_WINDOW)}"))
     return [Fault(source, "time", *fault) for fault in found]
 
 

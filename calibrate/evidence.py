@@ -49,8 +49,8 @@ def weak_directions(scene: Scene, free: list[Parameter], held: list[Parameter], 
 def intervals(free: list[Parameter], shares: np.ndarray, matrix: np.ndarray, parts: list[Parts]) -> tuple[list[list[float]], float]:
     """Interval of every free parameter (SI), and the number of independent residuals these rest on.
 
-    Without ends where the curves do not tell: in a weak direction, on a bound, or with an interval wider than the bounds, over which
-    no linear theory holds.
+    Without ends where the curves do not tell: in a weak direction, on a bound, or with an interval wider than the bounds, over
+    which no linear theory holds.
     """
     curves = [curve for part in parts for curve in (part.velocity, *part.rate.T)]
     count = sum(map(independent, curves))

@@ -6,8 +6,9 @@ This is the linear theory of least squares (Seber and Wild, Nonlinear Regression
 residuals: a curve sampled twice as often is no second experiment. With the autocorrelation rho_k of its residuals a curve of n
 samples counts as n / (1 + 2 sum rho_k), summed up to the first rho_k that is not positive.
 
-A direction the data leave open has no interval, and none is made up: parameters with a part in it get an infinite one. What the model
-cannot do is taken for scatter here. It shifts the constants, which no interval of this kind can know: model error is not in them.
+A direction the data leave open has no interval, and none is made up: parameters with a part in it get an infinite one. What the
+model cannot do is taken for scatter here. It shifts the constants, which no interval of this kind can know: model error is not in
+them.
 """
 
 from typing import Sequence

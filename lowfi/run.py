@@ -26,8 +26,9 @@ def run(scene: Scene, calibration: Calibration | None = None, numerics: Numerics
         progress: Callable[[float], None] | None = None) -> Trajectory:
     """Solve ``scene`` with rigid rails until the settled window is complete, a jam, or the scene's duration.
 
-    ``calibration`` replaces the scene's contact and friction constants; the message says where the scene lies outside what they were
-    found for. ``progress`` is called with the fraction of the duration done. Raises SceneError before any stepping; what goes wrong later is the status of the result.
+    ``calibration`` replaces the scene's contact and friction constants; the message says where the scene lies outside what they
+    were found for. ``progress`` is called with the fraction of the duration done. Raises SceneError before any stepping; what goes
+    wrong later is the status of the result.
     """
     began, cpu = clock.perf_counter(), clock.thread_time()
     outside = calibration.outside(scene) if calibration else []
@@ -120,8 +121,9 @@ class Run:
         status, result = outcome.judge(moved, self.marks)
         if self.message:
             status, result = "diverged", outcome.Outcome()
+        message = "; ".join(filter(None, [self.message, self._pressed_at_ignition(), *warnings]))
         return Trajectory(
-            fidelity="lowfi", status=status, message="; ".join(filter(None, [self.message, self._pressed_at_ignition(), *warnings])),
+            fidelity="lowfi", status=status, message=message,
             **moved._asdict(), pad_force=self.forces[:self.taken], energy=total, transverse_energy=across, outcome=result,
             checks=balance.checks(rows, moved, total, across, self.model.payload.mass, self.loop.clock), cost=self._cost(),
             scene=self.scene.resolved(), numerics=self.numerics.as_dict())

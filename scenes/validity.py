@@ -1,7 +1,7 @@
 """What constants were found for: size of the thrust, speed, clearance, rail and pads; and how far a scene lies from that.
 
-A contact law fitted at one load and speed is extrapolated at another. One run passes through every load below its peak, so a range may
-consist of one value; a scene is called outside where it leaves the range by more than ``MARGIN`` of its end.
+A contact law fitted at one load and speed is extrapolated at another. One run passes through every load below its peak, so a range
+may consist of one value; a scene is called outside where it leaves the range by more than ``MARGIN`` of its end.
 """
 
 from scenes.effects import thrust

@@ -14,7 +14,8 @@ from typing import Annotated, Callable, Optional
 
 import typer
 
-from studies.options import (CheckpointEvery, Conditions, ElementSize, Fidelity, Json, Out, Resume, Sampling, SceneName, Set, Workers)
+from studies.options import (CheckpointEvery, Conditions, ElementSize, Fidelity, Json, Out, Resume, Sampling, SceneName, Set,
+                             Workers)
 
 EXAMPLES = """Examples:
 
@@ -159,12 +160,12 @@ def _stage(name: str, summary: str) -> None:
 
 @app.command()
 def calibrate(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = None,
-              reference: Annotated[Optional[list[str]], typer.Option("--reference", metavar="[NAME=]FILE", help="Curves of condition "
-                                   "NAME in a CSV file, in place of finite elements; repeatable.")] = None,
-              condition: Annotated[Optional[str], typer.Option("--condition", metavar="NAME", help="Condition of a file without NAME; "
-                                   "default: the scene itself.")] = None,
-              settled_from: Annotated[Optional[str], typer.Option("--settled-from", metavar="TIME", help="Begin of the 2 ms over which "
-                                      "settled rates of a file are means; default: its last 2 ms.")] = None,
+              reference: Annotated[Optional[list[str]], typer.Option("--reference", metavar="[NAME=]FILE",
+                                   help="Curves of condition NAME in a CSV file, in place of finite elements; repeatable.")] = None,
+              condition: Annotated[Optional[str], typer.Option("--condition", metavar="NAME",
+                                   help="Condition of a file without NAME; default: the scene itself.")] = None,
+              settled_from: Annotated[Optional[str], typer.Option("--settled-from", metavar="TIME",
+                                      help="Begin of the 2 ms whose means are settled; default: the last of a file.")] = None,
               element_size: ElementSize = None, workers: Workers = None, json_: Json = False) -> None:
     """Fit the surrogate's contact constants to the reference; writes calibration.toml and calibration.json.
 
@@ -172,8 +173,8 @@ def calibrate(scene: SceneName = "reference", out: Out = Path("out"), set_: Set 
 
       tipoff calibrate --reference phi15=test15.csv --reference phi60=test60.csv --settled-from "44 ms"
 
-    A file has the columns time, velocity_x (inertial, along the rail), rate_x, rate_y and rate_z (inertial, in payload body axes), from
-    ignition on, at any instants, with units in the header, rate_x \\[deg/s], or in the second line. Other columns are passed over.
+    A file has the columns time, velocity_x (inertial, along the rail), rate_x, rate_y and rate_z (inertial, in payload body axes),
+    from ignition on, at any instants, with units in the header, rate_x \\[deg/s], or in the second line. Others are passed over.
     """
 
     def work() -> dict:

@@ -4,6 +4,9 @@ from html import escape
 
 from studies.report.markup import Html, caption, code, fold, number, paragraph, percent, section, table
 
+_INTERVALS = ("Intervals are linear and take what the fit leaves for scatter about a model that is right. Model error is not in "
+              "them: what the surrogate lacks may move its constants by more than they say. Not told: the curves do not fix the "
+              "constant, and no interval is made up.")
 _FLOOR = "Floor: what ±{change:g} µm of clearance changes in either model. "
 
 
@@ -108,10 +111,8 @@ def calibration(document: dict) -> Html:
     valid = [(code(key), *(number(value, 4) for value in span)) for key, span in document["valid"].items()]
     return section("calibration", "Calibration",
                    paragraph(f"Fitted to {', '.join(document['conditions'])} at once; objective {document['objective']:.4g}."),
-                   table(("constant", "value", "95 % interval", "unit", "lower bound", "upper bound", "why free, why these bounds"), rows),
-                   caption("Intervals take what the fit leaves for scatter about a model that is right, and are linear. Model error is not in "
-                           "them: what the surrogate lacks moves its constants by more than they say. Not told: the curves do not fix the "
-                           "constant, and no interval is made up."),
+                   table(("constant", "value", "95 % interval", "unit", "lower bound", "upper bound", "why free, why these bounds"),
+                         rows), caption(_INTERVALS),
                    Html(f"<h3>What the curves cannot tell</h3><ul>{weak}</ul>"),
                    fold("constants the surrogate then uses (SI)", table(("key", "value"), applied)),
                    fold("range of the conditions used (SI): outside it the constants are extrapolated",

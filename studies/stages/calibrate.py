@@ -1,7 +1,7 @@
 """Stage ``calibrate``: the surrogate's contact constants from the reference's curves of the fitted conditions, and nothing else.
 
-Curves of another code or of a test may take the place of the reference. What is fitted to them goes into a folder of its own, so that
-the other stages, which compare with the reference, do not replace it.
+Curves of another code or of a test may take the place of the reference. What is fitted to them goes into a folder of its own, so
+that the other stages, which compare with the reference, do not replace it.
 """
 
 import math

@@ -33,5 +33,6 @@ def write_curves(path: Path, run: scenes.Trajectory, keep: slice | np.ndarray = 
     """A CSV file of samples of a run in units of a test stand, as another code would write it, with a column nobody asked for."""
     columns = np.column_stack([1e3 * run.time, run.velocity[:, 0], np.degrees(run.rate), np.zeros(run.time.size)])[keep]
     lines = [",".join(f"{value:.12g}" for value in row) for row in columns]
-    path.write_text("\n".join(["time [ms], velocity_x [m/s], rate_x [deg/s], rate_y [deg/s], rate_z [deg/s], shock", *lines]) + "\n")
+    header = "time [ms], velocity_x [m/s], rate_x [deg/s], rate_y [deg/s], rate_z [deg/s], shock"
+    path.write_text("\n".join([header, *lines]) + "\n")
     return path

@@ -71,8 +71,8 @@ def test_intervals_of_exact_curves_are_narrow_and_hold_the_values(fitted):
 
 
 def test_no_interval_where_the_curves_do_not_tell():
-    """Noise of a hundredth: a told constant keeps its interval; one on its bound, one in a weak direction and one whose interval would
-    be wider than its bounds have none."""
+    """Noise of a hundredth: a told constant keeps its interval; one on its bound, one in a weak direction and one whose interval
+    would be wider than its bounds have none."""
     noise = 0.01 / np.sqrt(800.0) * np.random.default_rng(1).standard_normal((200, 4))
     part = Parts(noise[:, 0] / VELOCITY_WEIGHT, noise[:, 1:], np.zeros(3))
     free = parameters.free(scene())
@@ -106,8 +106,8 @@ def test_a_run_outside_the_range_says_so_and_still_counts(fitted):
 
 def test_the_command_prints_what_is_outside(fitted, tmp_path):
     fitted.save(tmp_path / "c.toml")
-    said = [CliRunner().invoke(app, ["run", "--condition", "phi15", "--calibration", str(tmp_path / "c.toml"), "--out", str(tmp_path),
-                                     *change]).stdout for change in ([], ["--set", "contact.clearance=0.3 mm"])]
+    asked = ["run", "--condition", "phi15", "--calibration", str(tmp_path / "c.toml"), "--out", str(tmp_path)]
+    said = [CliRunner().invoke(app, asked + change).stdout for change in ([], ["--set", "contact.clearance=0.3 mm"])]
     assert "outside" not in said[0] and "exited" in said[0]
     assert "clearance 0.0003 m, constants found at 0.00025 m" in said[1]
 
