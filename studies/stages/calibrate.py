@@ -98,7 +98,7 @@ def load(study: Study) -> Calibration:
 def lines(document: dict, folder: Path) -> list[str]:
     """The constants in words, what the curves cannot tell, and where the calibration lies."""
     found = zip(document["parameters"], document["values"], document["units"], document["intervals"])
-    said = [f"  {name:22}{value:.5g} {unit}, {interval(ends)}" for name, value, unit, ends in found]
+    said = [f"  {name:22}{value:.5g}{'' if unit == '1' else f' {unit}'}, {interval(ends)}" for name, value, unit, ends in found]
     said += [f"  not told      {words}" for words in document["weak_directions"]]
     return [f"fitted to {', '.join(document['conditions'])}: objective {document['objective']:.4g}", *said,
             f"  calibration   {folder / document['calibration']}"]

@@ -157,7 +157,7 @@ def test_command_fits_files_and_names_them(tmp_path, quick):
     result = call(*asked)
     assert result.exit_code == 0, result.output
     found = Calibration.load(tmp_path / "out" / "reference" / "curves" / "calibration.toml")
-    assert found.conditions == list(CONDITIONS) and "curves/calibration.toml" in result.stdout
+    assert found.conditions == list(CONDITIONS) and "curves/calibration.toml" in result.stdout and "contact.force" in result.stdout
     for path in (one, two):
         assert str(path) in found.provenance["references"]
         assert hashlib.sha256(path.read_bytes()).hexdigest() in found.provenance["references"]
