@@ -5,13 +5,12 @@ import math
 import numpy as np
 
 from calibrate import information
+from calibrate.curves import Curves
+from calibrate.intervals import half_widths, independent
 from calibrate.objective import Parts, Target
 from calibrate.parameters import Parameter
 from calibrate.search import Found, Plan
-from scenes.effects import thrust
-from scenes.files import content_hash
 from scenes.scene import Scene
-from scenes.trajectory import Trajectory
 
 _ON_BOUND = 1e-3  # share of the bounds within which a value counts as lying on one
 _NOTHING = 1e-12  # rounding of the information matrix, of its largest eigenvalue
@@ -39,38 +38,52 @@ def weak_directions(scene: Scene, free: list[Parameter], held: list[Parameter], 
         told = "at these constants it has no effect" if ratio < _NOTHING else (
             f"of its information {alone:.2g} only {left:.2g} is left when the others are fitted again, {ratio:.1e} of the largest eigenvalue")
         sentences.append(f"{item.name} held at {item.read(scene):.4g} {item.unit}: {told}")
-    for item, share in zip(free, shares):
-        if not _ON_BOUND < share < 1.0 - _ON_BOUND:
+    for item, share, bound in zip(free, shares, _on_bound(shares)):
+        if bound:
             side = "lower" if share < 0.5 else "upper"
             sentences.append(f"{item.name} lies on its {side} bound {item.value(round(float(share))):.4g} {item.unit}: physics, not the "
                              "curves, sets its value")
     return sentences
 
 
-def validity(scene: Scene, references: dict[str, Trajectory]) -> dict[str, list[float]]:
+def intervals(free: list[Parameter], shares: np.ndarray, matrix: np.ndarray, parts: list[Parts]) -> tuple[list[list[float]], float]:
+    """Interval of every free parameter (SI), and the number of independent residuals these rest on.
+
+    Without ends where the curves do not tell: in a weak direction, on a bound, or with an interval wider than the bounds, over
+    which no linear theory holds.
+    """
+    curves = [curve for part in parts for curve in (part.velocity, *part.rate.T)]
+    count = sum(map(independent, curves))
+    squares = sum(float(part.vector() @ part.vector()) for part in parts) / len(parts)  # the objective, to which the matrix belongs
+    half = half_widths(matrix, squares, count, [item.vector for item in information.weak(matrix)])
+    told = (half < 0.5) & ~_on_bound(shares)
+    return [[item.value(share - width), item.value(share + width)] if known else [-math.inf, math.inf]
+            for item, share, width, known in zip(free, shares.tolist(), half.tolist(), told)], count
+
+
+def _on_bound(shares: np.ndarray) -> np.ndarray:
+    return (shares <= _ON_BOUND) | (shares >= 1.0 - _ON_BOUND)
+
+
+def valid(scene: Scene, references: dict[str, Curves]) -> dict[str, list[float]]:
     """Smallest and largest of what the constants were found for, over the conditions used (SI)."""
-    rows = [_ranges(scene.condition(name), reference) for name, reference in references.items()]
-    return {key: [min(row[key] for row in rows), max(row[key] for row in rows)] for key in rows[0]}
+    rows = [scene.condition(name).loads | {"exit_speed_m_s": reference.speed, "pad_force_peak_n": reference.pad_force}
+            for name, reference in references.items()]
+    known = {key: [row[key] for row in rows if row[key] is not None] for key in rows[0]}
+    return {key: [min(values), max(values)] for key, values in known.items() if values}
 
 
-def _ranges(scene: Scene, reference: Trajectory) -> dict[str, float]:
-    return {"thrust_peak_n": float(thrust.peak(scene.thrust.record(), scene.duration)),
-            "clearance_m": scene.contact.clearance,
-            "exit_speed_m_s": float(reference.outcome.velocity[0]),
-            "pad_force_peak_n": float(np.linalg.norm(reference.pad_force, axis=2).max())}
-
-
-def provenance(scene: Scene, references: dict[str, Trajectory], constants: dict[str, float], found: Found, plan: Plan, seed: int,
-               evaluations: int) -> dict[str, str]:
+def provenance(scene: Scene, references: dict[str, Curves], constants: dict[str, float], found: Found, plan: Plan, seed: int,
+               evaluations: int, count: float) -> dict[str, str]:
     """Where the constants come from, in words and hashes."""
-    geometry = scene.resolved()
     exponent = constants.get("contact.exponent", 1.0)
     ends = "; ".join(f"{value:.6g} at " + ", ".join(f"{share:.4f}" for share in shares) for value, shares in found.basins)
     return {
         "scene": scene.name, "scene_hash": scene.hash,
-        "geometry_hash": content_hash(geometry["pads"], geometry["rail"] | scene.rail.contents()),
+        "geometry_hash": scene.geometry_hash,
         "contact_law": f"{scene.contact.law}, k = {constants['contact.stiffness']:.6g} N/m^{exponent:.6g}",
-        "references": ", ".join(f"{name}: {item.fidelity} {item.numerics}" for name, item in references.items()),
+        "references": ", ".join(f"{name}: {item.source}" for name, item in references.items()),
         "search": f"{plan.points} Sobol' points, {plan.starts} starts of CMA-ES, least squares; {evaluations} evaluations; seed {seed}",
+        "intervals": f"95 %, linear, from what the fit leaves, {count:.0f} independent residuals; model error is not in them",
         "basins": f"each start ended at objective and shares of the bounds: {ends}",
     }

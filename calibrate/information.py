@@ -5,7 +5,7 @@ objective grows, to second order, per unit of a direction, and eigenvalues of di
 change of a direction that the objective would notice as a relative ``noise`` is sqrt(noise^2 / eigenvalue).
 """
 
-from typing import Callable
+from typing import Callable, NamedTuple
 
 import numpy as np
 
@@ -32,16 +32,27 @@ def information(matrix: np.ndarray) -> np.ndarray:
     return 0.5 * (product + product.T)
 
 
-def weak_directions(matrix: np.ndarray, names: list[str]) -> list[str]:
-    """One sentence for every eigenvector of an information matrix the data hardly see, weakest first."""
+class Weak(NamedTuple):
+    """A direction the data hardly see: its eigenvalue, that over the largest, and the unit vector (p,)."""
+
+    eigenvalue: float
+    ratio: float
+    vector: np.ndarray
+
+
+def weak(matrix: np.ndarray) -> list[Weak]:
+    """Every eigenvector of an information matrix (p,p) the data hardly see, weakest first."""
     values, vectors = np.linalg.eigh(matrix)
-    largest = values[-1]
-    found = []
-    for value, vector in zip(values, vectors.T):
-        ratio = max(float(value), 0.0) / largest if largest > 0.0 else 0.0
-        if ratio < WEAK_RATIO or value < WEAK_EIGENVALUE:
-            found.append(f"{combination(vector, names)}: eigenvalue {max(value, 0.0):.2g}, {ratio:.1e} of the largest")
-    return found
+    values = np.maximum(values, 0.0)
+    ratios = values / values[-1] if values[-1] > 0.0 else values
+    found = [Weak(float(value), float(ratio), vector) for value, ratio, vector in zip(values, ratios, vectors.T)]
+    return [item for item in found if item.ratio < WEAK_RATIO or item.eigenvalue < WEAK_EIGENVALUE]
+
+
+def weak_directions(matrix: np.ndarray, names: list[str]) -> list[str]:
+    """One sentence for every weak direction."""
+    return [f"{combination(item.vector, names)}: eigenvalue {item.eigenvalue:.2g}, {item.ratio:.1e} of the largest"
+            for item in weak(matrix)]
 
 
 def left_alone(matrix: np.ndarray, index: int) -> float:

@@ -16,9 +16,9 @@ from typing import Callable, NamedTuple
 import numpy as np
 
 import lowfi
+from calibrate.curves import Curves
 from calibrate.faults import CalibrationError
 from calibrate.parameters import Parameter, overrides
-from scenes.outcome import SETTLE_WINDOW
 from scenes.scene import Scene
 from scenes.trajectory import Trajectory
 
@@ -40,18 +40,16 @@ class Target(NamedTuple):
     amplitudes: tuple[float, float, float]
 
 
-def target(scene: Scene, reference: Trajectory) -> Target:
-    """What a condition asks for, from ignition to the end of the reference's settled window."""
-    keep = reference.time <= (reference.outcome.window_start + SETTLE_WINDOW) * (1.0 + 1e-12)
-    time, velocity, rate = reference.time[keep], reference.velocity[keep, 0], reference.rate[keep]
+def target(scene: Scene, reference: Curves) -> Target:
+    """What a condition asks for."""
+    time, velocity, rate, settled = reference.time, reference.velocity, reference.rate, reference.settled
     weights = np.gradient(time)
     weights[[0, -1]] *= 0.5  # the trapezoidal rule
-    settled = np.array(reference.outcome.rate)
     amplitudes = np.sqrt(weights @ velocity**2), np.sqrt(weights @ (rate**2).sum(axis=1)), np.linalg.norm(settled)
     return Target(scene, time, velocity, rate, settled, weights, amplitudes)
 
 
-def targets(scene: Scene, references: dict[str, Trajectory]) -> dict[str, Target]:
+def targets(scene: Scene, references: dict[str, Curves]) -> dict[str, Target]:
     """Targets by condition, with small amplitudes raised. Raises CalibrationError when nothing moves or nothing turns."""
     found = {name: target(scene.condition(name), reference) for name, reference in references.items()}
     largest = np.max([item.amplitudes for item in found.values()], axis=0)

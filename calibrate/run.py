@@ -6,6 +6,7 @@ from typing import Callable
 import numpy as np
 
 from calibrate import evidence, faults, parameters
+from calibrate.curves import Curves
 from calibrate.information import information, jacobian
 from calibrate.objective import Objective, targets
 from calibrate.search import Plan, search
@@ -16,17 +17,18 @@ from scenes.trajectory import Trajectory
 WORKERS = 2
 
 
-def run(scene: Scene, references: dict[str, Trajectory], numerics=None, progress: Callable[[float], None] | None = None,
+def run(scene: Scene, references: dict[str, Trajectory | Curves], numerics=None, progress: Callable[[float], None] | None = None,
         seed: int = 0, plan: Plan | None = None) -> Calibration:
-    """Fit the surrogate's contact constants to ``references`` (condition name to reference run) of ``scene``.
+    """Fit the surrogate's contact constants to ``references`` (condition name to reference run or curves) of ``scene``.
 
     ``numerics`` are the surrogate's (lowfi.Numerics), ``progress`` is called with the fraction done, ``plan`` sizes the search; the
-    same seed gives the same bits. Raises CalibrationError for references that are missing, did not exit or do not turn, SceneError
-    for an unknown condition.
+    same seed gives the same bits. Raises CalibrationError for references that are missing, did not exit, are too short or do not
+    turn, SceneError for an unknown condition.
     """
     faults.check(scene, references)
+    curves = {name: item if isinstance(item, Curves) else Curves.from_trajectory(item) for name, item in references.items()}
     free, held, plan = parameters.free(scene), parameters.held(scene), plan or Plan()
-    wanted = targets(scene, references)
+    wanted = targets(scene, curves)
     with ThreadPoolExecutor(WORKERS) as pool:
         objective = Objective(scene, wanted, free, numerics, pool.map)
         found = search(objective, _shares(free, scene), plan, seed, progress)
@@ -35,7 +37,8 @@ def run(scene: Scene, references: dict[str, Trajectory], numerics=None, progress
         matrix = information(jacobian(wide, np.append(found.shares, _shares(held, scene))))
     values = objective.values(found.shares)
     constants = parameters.overrides(scene, values)
-    count = len(free)
+    inner = matrix[:len(free), :len(free)]
+    ends, count = evidence.intervals(free, found.shares, inner, list(residuals.values()))
     return Calibration(
         constants=constants,
         parameters=[item.name for item in free],
@@ -44,13 +47,15 @@ def run(scene: Scene, references: dict[str, Trajectory], numerics=None, progress
         lower=[item.lower for item in free],
         upper=[item.upper for item in free],
         justification=[item.justification for item in free],
-        information=matrix[:count, :count],
+        intervals=ends,
+        information=inner,
         weak_directions=evidence.weak_directions(scene, free, held, found.shares, matrix),
         residuals={name: evidence.residuals(part, wanted[name]) for name, part in residuals.items()},
-        conditions=list(references),
+        conditions=list(curves),
         objective=found.value,
-        valid=evidence.validity(scene, references),
-        provenance=evidence.provenance(scene, references, constants, found, plan, seed, objective.evaluations + wide.evaluations),
+        valid=evidence.valid(scene, curves),
+        provenance=evidence.provenance(scene, curves, constants, found, plan, seed, objective.evaluations + wide.evaluations,
+                                       count),
     )
 
 

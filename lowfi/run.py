@@ -1,7 +1,7 @@
 """One run of the surrogate: set-up, the sampled time loop, and the Trajectory it leaves."""
 
 import time as clock
-from typing import Callable
+from typing import Callable, Sequence
 
 import numpy as np
 
@@ -28,11 +28,13 @@ def run(scene: Scene, calibration: Calibration | None = None, numerics: Numerics
         progress: Callable[[float], None] | None = None, walls: Walls | None = None) -> Trajectory:
     """Solve ``scene`` with rigid rails until the settled window is complete, a jam, or the scene's duration.
 
-    ``calibration`` replaces the scene's contact and friction constants. With ``walls`` the pads press walls that give way, through the
-    penalty of the reference, in place of the contact law. ``progress`` is called with the fraction of the duration done. Raises
-    SceneError before any stepping; what goes wrong later is the status of the result.
+    ``calibration`` replaces the scene's contact and friction constants; the message says where the scene lies outside what they
+    were found for. With ``walls`` the pads press walls that give way, through the penalty of the reference, in place of the contact
+    law. ``progress`` is called with the fraction of the duration done. Raises SceneError before any stepping; what goes wrong later is
+    the status of the result.
     """
     began, cpu = clock.perf_counter(), clock.thread_time()
+    outside = calibration.outside(scene) if calibration else []
     scene = calibration.apply(scene) if calibration else scene
     known = len(march.march.overloads)
     setting_up = clock.perf_counter()
@@ -43,7 +45,7 @@ def run(scene: Scene, calibration: Calibration | None = None, numerics: Numerics
     marching = clock.perf_counter()
     run_.march(progress)
     kernel_s = clock.perf_counter() - marching
-    result = run_.trajectory()
+    result = run_.trajectory([f"outside the calibration: {words}" for words in outside])
     result.cost.update(wall_s=clock.perf_counter() - began - compile_s, compile_s=compile_s, kernel_s=kernel_s)
     result.cost["cpu_s"] = clock.thread_time() - (compile_cpu if compile_s else cpu)
     return result
@@ -115,15 +117,16 @@ class Run:
     def _motion(self, first: int = 0) -> outcome.Motion:
         return balance.motion(self.rows[first:self.taken], first, self.interval)
 
-    def trajectory(self) -> Trajectory:
-        """The result of the samples taken so far."""
+    def trajectory(self, warnings: Sequence[str] = ()) -> Trajectory:
+        """The result of the samples taken so far; its message also holds ``warnings``."""
         moved, rows = self._motion(), self.rows[:self.taken]
         total, across = balance.ledgers(rows)
         status, result = outcome.judge(moved, self.marks)
         if self.message:
             status, result = "diverged", outcome.Outcome()
+        message = "; ".join(filter(None, [self.message, self._pressed_at_ignition(), *warnings]))
         return Trajectory(
-            fidelity="lowfi", status=status, message="; ".join(filter(None, [self.message, self._pressed_at_ignition()])),
+            fidelity="lowfi", status=status, message=message,
             **moved._asdict(), pad_force=self.forces[:self.taken], energy=total, transverse_energy=across, outcome=result,
             checks=balance.checks(rows, moved, total, across, self.model.payload.mass, self.loop.clock), cost=self._cost(),
             scene=self.scene.resolved(), numerics=self.numerics.as_dict())

@@ -35,7 +35,7 @@ class TableFile:
                 self._columns = [array("d") for _ in self.keys]
                 wanted = [keys.unit(Scene, key) for key in self.keys]
                 second = next(lines, [])
-                if _are_units(second):
+                if units.are_units(second):
                     readers = [partial(_number, factor) for factor in _factors(str(path), self.keys, wanted, second)]
                 else:
                     readers = [partial(_quantity, unit) for unit in wanted]
@@ -77,12 +77,6 @@ def _header(path: str, header: list[str]) -> list[str]:
     if faults or not names:
         raise SceneError(faults or [Fault(path, "header", "nothing", "dotted keys of a scene")])
     return names
-
-
-def _are_units(line: list[str]) -> bool:
-    """Whether no cell is a value, and some cell says something."""
-    texts = [text.strip() for text in line if text.strip()]
-    return bool(texts) and not any(text[0] in "+-.0123456789" or text == "absent" for text in texts)
 
 
 def _factors(path: str, names: list[str], wanted: list[str | None], units_given: list[str]) -> list[float]:

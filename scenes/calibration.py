@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from scenes import validity
 from scenes.files import write_text
 from scenes.scene import Scene
 
@@ -18,7 +19,8 @@ class Calibration:
     """Constants found for a scene.
 
     ``constants`` are dotted overrides in SI, applied to a scene by ``apply``. ``parameters`` name the fitted coordinates
-    (with ``values``, ``lower``, ``upper`` bounds and ``justification``); ``information`` is the matrix (p,p) of the scaled
+    (with ``values``, their 95 % ``intervals``, infinite where the curves do not tell and without model error, ``lower``, ``upper``
+    bounds and ``justification``); ``information`` is the matrix (p,p) of the scaled
     parameters; ``weak_directions`` describe what the curves cannot tell; ``residuals`` are per condition; ``valid``
     holds the range of the conditions used.
     """
@@ -37,11 +39,16 @@ class Calibration:
     objective: float
     valid: dict[str, list[float]] = field(default_factory=dict)
     provenance: dict[str, str] = field(default_factory=dict)
+    intervals: list[list[float]] = field(default_factory=list)
 
     def apply(self, scene: Scene) -> Scene:
         """``scene`` with the calibrated constants; constants of an effect the scene lacks are left out."""
         return scene.replace({key: value for key, value in self.constants.items()
                               if getattr(scene, key.split(".")[0], "unknown") is not None})
+
+    def outside(self, scene: Scene) -> list[str]:
+        """In words, where ``scene`` lies outside what the constants were found for: thrust, speed, clearance, rail, pads."""
+        return validity.outside(scene, self.valid, self.provenance.get("geometry_hash"))
 
     def save(self, path: str | Path) -> None:
         """Write TOML atomically. Raises ValueError for a NaN (an interval without an end is inf)."""

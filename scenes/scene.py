@@ -12,7 +12,7 @@ from typing import Annotated, Any, Mapping
 from pydantic import AfterValidator, Field, PrivateAttr, ValidationError
 
 from scenes import overrides as keys
-from scenes import plausibility, reading, roles
+from scenes import plausibility, reading, roles, validity
 from scenes.effects.contact import ContactTable
 from scenes.effects.friction import FrictionTable
 from scenes.effects.gravity import GravityTable
@@ -30,6 +30,7 @@ from scenes.units import PositiveTime
 
 CATALOG = reading.CATALOG
 EFFECTS = ("thrust_offset", "mass_offset", "initial", "contact", "friction", "platform", "gravity", "rail.damping")
+NOMINAL = "nominal"  # the scene itself, named like a condition
 _BESIDE = ("conditions", "agreement", "provenance")
 _NOT_PHYSICS = {"name", "description", *_BESIDE}
 
@@ -74,7 +75,9 @@ class Scene(Table):
         return scene
 
     def condition(self, name: str) -> "Scene":
-        """The scene of one named condition. Raises SceneError for a name the scene does not have."""
+        """The scene of one named condition, or itself as ``NOMINAL``. Raises SceneError for a name the scene does not have."""
+        if name == NOMINAL and name not in self.conditions:
+            return self
         if name not in self.conditions:
             known = ", ".join(self.conditions) or "none are defined"
             raise SceneError([Fault(self._source, "conditions", repr(name), f"one of {known}")])
@@ -97,6 +100,16 @@ class Scene(Table):
         if measured:
             physics["thrust"].pop("file")
         return content_hash(physics, self.thrust.points() if measured else [])
+
+    @cached_property
+    def loads(self) -> dict[str, float]:
+        """Size of thrust, speed and clearance (SI): what calibrated constants may not be carried far from."""
+        return validity.loads(self)
+
+    @cached_property
+    def geometry_hash(self) -> str:
+        """SHA-256 of rail and pads."""
+        return validity.geometry(self)
 
     @cached_property
     def warnings(self) -> list[str]:

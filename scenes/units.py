@@ -8,7 +8,7 @@ import math
 import re
 from functools import lru_cache
 from numbers import Real
-from typing import Annotated, Any
+from typing import Annotated, Any, Iterable
 
 import pint
 from pydantic import BeforeValidator, Field, ValidationInfo
@@ -50,6 +50,12 @@ def to_si(text: str, unit: str) -> float:
 
 def _radians(quantity: pint.Quantity) -> float:
     return dict(quantity.to_root_units().unit_items()).get("radian", 0)
+
+
+def are_units(cells: Iterable[str]) -> bool:
+    """Whether a line of a table names units: no cell is a value, and some cell says something."""
+    texts = [text.strip() for text in cells if text.strip()]
+    return bool(texts) and not any(text[0] in "+-.0123456789" or text == "absent" for text in texts)
 
 
 def parse(value: Any, unit: str, bare_numbers_are_si: bool) -> float:

@@ -5,15 +5,14 @@ imported by the command that needs them, so that ``--help`` answers at once.
 """
 
 import json
-import os
-import re
-import sys
-from dataclasses import replace
-from enum import Enum
 from pathlib import Path
-from typing import Annotated, Callable, Optional
+from typing import Annotated, Optional
 
 import typer
+
+from studies.asked import guarded, quantity, stop, study_of
+from studies.options import (CheckpointEvery, Conditions, ElementSize, Fidelity, Json, OnWalls, Out, Resume, Sampling, SceneName, Set,
+                             Workers)
 
 EXAMPLES = """Examples:
 
@@ -31,111 +30,6 @@ EXAMPLES = """Examples:
 app = typer.Typer(no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False, rich_markup_mode="rich",
                   help="Which velocity and which angular rates does a payload leave its rail with?\n\n" + EXAMPLES)
 
-SceneName = Annotated[str, typer.Option("--scene", metavar="NAME_OR_FILE", help="Catalogue scene or path of a .toml file.")]
-Out = Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder that receives a folder per scene.")]
-Set = Annotated[Optional[list[str]], typer.Option("--set", metavar="KEY=VALUE",
-                help='Override, repeatable: --set payload.mass="9 kg"; "absent" drops a table.')]
-Conditions = Annotated[Optional[list[str]], typer.Option("--condition", metavar="NAME",
-                       help="Named condition of the scene, repeatable; default: all.")]
-OnWalls = Annotated[bool, typer.Option("--walls", help="Surrogate on walls that give way as the statics of the rail has them, found from "
-                                       "the reference's matrices in seconds, in place of a contact law to calibrate.")]
-Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON on standard output.")]
-ElementSize = Annotated[Optional[float], typer.Option("--element-size", metavar="MM", min=0.05,
-                        help="Element size of the reference in mm.")]
-Workers = Annotated[Optional[int], typer.Option("--workers", metavar="N", min=1, help="Runs side by side; default: all cores.")]
-
-CheckpointEvery = Annotated[Optional[str], typer.Option("--checkpoint-every", metavar="TIME",
-                            help='How often a run of the reference is kept beside its result-to-be: 30s, "5 min"; default: 60 s.')]
-Resume = Annotated[bool, typer.Option("--resume/--no-resume",
-                   help="Let a run of the reference that was interrupted go on from where it was kept last, to the same result.")]
-
-
-class Fidelity(str, Enum):
-    """The two models."""
-
-    highfi = "highfi"
-    lowfi = "lowfi"
-
-
-class Sampling(str, Enum):
-    """Ways to draw the cases of an ensemble."""
-
-    random = "random"
-    latin_hypercube = "latin-hypercube"
-    sobol = "sobol"
-
-
-def _study(scene: str, out: Path, overrides, conditions=None, element_size=None, workers=None, checkpoint_every=None,
-           resume=True):
-    import scenes
-    from scenes.faults import Fault, SceneError
-    from studies.progress import say
-    from studies.settings import defaults
-    from studies.study import Study
-
-    pairs = [item.partition("=") for item in overrides or []]
-    if wrong := [item for item, (_, equals, _) in zip(overrides or [], pairs) if not equals]:
-        raise SceneError([Fault("--set", item, "no value", "KEY=VALUE") for item in wrong])
-    found = scenes.load(scene).replace({key.strip(): value.strip() for key, _, value in pairs})
-    settings = replace(defaults(found.name), resume=resume)
-    if element_size is not None:
-        settings = replace(settings, element_size=1e-3 * element_size)
-    if workers is not None:
-        settings = replace(settings, workers=workers)
-    if checkpoint_every is not None:
-        settings = replace(settings, checkpoint_every=_quantity("--checkpoint-every", checkpoint_every, "s"))
-    study = Study(found, Path(out) / re.sub(r"[^\w.-]+", "-", found.name).strip("."), settings, tuple(conditions or ()))
-    study.conditions  # a bad override or an unknown condition is a fault of the input, found before anything runs
-    for warning in found.warnings:
-        say(f"implausible: {warning}")
-    return study
-
-
-def _quantity(option: str, text: str | None, unit: str) -> float | None:
-    """A quantity in ``unit``, zero or more; None without one."""
-    from scenes.faults import Fault, SceneError
-    from scenes.units import to_si
-
-    if text is None:
-        return None
-    try:
-        value = to_si(text, unit)
-    except ValueError as fault:
-        raise SceneError([Fault(option, "value", text, str(fault))]) from None
-    if value < 0.0:
-        raise SceneError([Fault(option, "value", text, "zero or more")])
-    return value
-
-
-def _guarded(work: Callable[[], dict], as_json: bool = False) -> dict:
-    """Run ``work``; turn bad input and failed runs into messages and exit codes."""
-    from scenes.faults import SceneError
-    from studies.study import StudyError
-
-    try:
-        result = work()
-    except SceneError as fault:
-        _stop(str(fault), 2)
-    except StudyError as fault:
-        _stop(str(fault), 1)
-    except KeyboardInterrupt:
-        print("tipoff: stopped; what was finished is kept, and the same command goes on from there", file=sys.stderr, flush=True)
-        os._exit(130)  # at once: files are complete at any moment, and a thread that compiles would hold the process for seconds
-    except ValueError as fault:
-        if type(fault).__name__ not in ("MeshError", "StepError"):
-            raise
-        _stop(f"{type(fault).__name__}: {fault}", 2)
-    if as_json:
-        print(json.dumps(result, indent=1))
-    if failed := result.get("failed"):
-        _stop("failed:\n  " + "\n  ".join(failed), 1)
-    return result
-
-
-def _stop(message: str, code: int) -> None:
-    print(f"tipoff: {message}", file=sys.stderr)
-    raise typer.Exit(code)
-
 
 @app.command()
 def mesh(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = None, element_size: ElementSize = None,
@@ -145,9 +39,9 @@ def mesh(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = Non
     def work() -> dict:
         from studies.stages import mesh as stage
 
-        return stage.run(_study(scene, out, set_, element_size=element_size))
+        return stage.run(study_of(scene, out, set_, element_size=element_size))
 
-    _guarded(work, json_)
+    guarded(work, json_)
 
 
 @app.command()
@@ -171,9 +65,9 @@ def _conditions(fidelity, json_, *asked) -> None:
     def work() -> dict:
         from studies.stages import runs
 
-        return runs.run(_study(*asked), fidelity)
+        return runs.run(study_of(*asked), fidelity)
 
-    _guarded(work, json_)
+    guarded(work, json_)
 
 
 def _stage(name: str, summary: str) -> None:
@@ -185,15 +79,48 @@ def _stage(name: str, summary: str) -> None:
             import importlib
 
             stage = importlib.import_module(f"studies.stages.{name}")
-            return stage.run(_study(scene, out, set_, element_size=element_size, workers=workers))
+            return stage.run(study_of(scene, out, set_, element_size=element_size, workers=workers))
 
-        _guarded(work, json_)
+        guarded(work, json_)
 
     app.command(name, help=summary)(command)
 
 
 _stage("walls", "How the rails give way under the pads, from the matrices of the reference; writes walls.json.")
-_stage("calibrate", "Fit the surrogate's contact constants to the reference; writes calibration.toml and calibration.json.")
+@app.command()
+def calibrate(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = None,
+              reference: Annotated[Optional[list[str]], typer.Option("--reference", metavar="[NAME=]FILE",
+                                   help="Curves of condition NAME in a CSV file, in place of finite elements; repeatable.")] = None,
+              condition: Annotated[Optional[str], typer.Option("--condition", metavar="NAME",
+                                   help="Condition of a file without NAME; default: the scene itself.")] = None,
+              settled_from: Annotated[Optional[str], typer.Option("--settled-from", metavar="TIME",
+                                      help="Begin of the 2 ms whose means are settled; default: the last of a file.")] = None,
+              element_size: ElementSize = None, workers: Workers = None, json_: Json = False) -> None:
+    """Fit the surrogate's contact constants to the reference; writes calibration.toml and calibration.json.
+
+    Curves of another code or of a test may take the place of the reference; curves/ then receives both files:
+
+      tipoff calibrate --reference phi15=test15.csv --reference phi60=test60.csv --settled-from "44 ms"
+
+    A file has the columns time, velocity_x (inertial, along the rail), rate_x, rate_y and rate_z (inertial, in payload body axes),
+    from ignition on, at any instants, with units in the header, rate_x \\[deg/s], or in the second line. Others are passed over.
+    """
+
+    def work() -> dict:
+        from studies.stages import calibrate as stage
+
+        start = quantity("--settled-from", settled_from, "s")
+        files = stage.named(reference or [], condition, start)
+        study = study_of(scene, out, set_, element_size=element_size, workers=workers)
+        return stage.from_files(study, files, start) if files else stage.run(study)
+
+    found = guarded(work, json_)
+    if not json_ and reference:
+        from studies.stages import calibrate as stage
+
+        print("\n".join(stage.lines(found, Path(out) / found["scene"])))
+
+
 _stage("compare", "Agreement on fitted and held-out conditions beside the floor, and the speed-up; writes agreement.json.")
 _stage("cost", "What accuracy costs in time, both models; writes cost.json.")
 _stage("stability", "Hard cases, each with a simpler method that fails on it; writes stability.json.")
@@ -210,9 +137,9 @@ def convergence(scene: SceneName = "reference", out: Out = Path("out"), set_: Se
     def work() -> dict:
         from studies.stages import convergence as stage
 
-        return stage.run(_study(scene, out, set_, element_size=element_size, workers=workers), condition)
+        return stage.run(study_of(scene, out, set_, element_size=element_size, workers=workers), condition)
 
-    found = _guarded(work, json_)
+    found = guarded(work, json_)
     if not json_:
         print("\n".join(found["summary"]))
 
@@ -241,9 +168,9 @@ def view(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = Non
     def work() -> dict:
         from studies.stages import view as stage
 
-        return stage.run(_study(scene, out, set_, element_size=element_size), condition, frames, exaggeration)
+        return stage.run(study_of(scene, out, set_, element_size=element_size), condition, frames, exaggeration)
 
-    found = _guarded(work, json_)
+    found = guarded(work, json_)
     if not json_:
         folder = Path(out) / found["scene"]
         print("\n".join(f"{folder / path}" for path in (found["collection"], *found["pictures"].values())))
@@ -269,13 +196,13 @@ def run(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = None
     def work() -> dict:
         from studies import single
 
-        study = _study(scene, out, set_, [condition], element_size, checkpoint_every=checkpoint_every, resume=resume)
+        study = study_of(scene, out, set_, [condition], element_size, checkpoint_every=checkpoint_every, resume=resume)
         if accuracy is None and budget is None:
             return single.run(study, condition, fidelity.value, calibration, walls, quiet=json_)
-        limits = _quantity("--accuracy", accuracy, "deg/s"), _quantity("--budget", budget, "s")
+        limits = quantity("--accuracy", accuracy, "deg/s"), quantity("--budget", budget, "s")
         return single.chosen(study, condition, *limits, quiet=json_)
 
-    _guarded(work, json_)
+    guarded(work, json_)
 
 
 @app.command()
@@ -332,10 +259,10 @@ def ensemble(scene: SceneName = "reference", out: Out = Path("out"), set_: Set =
         from studies.stages import ensemble as stage
 
         asked = stage.Asked(vary, table, cases, seed, sampling and sampling.value, store, tolerance, scheduler, workers, walls)
-        study, fitted = _study(scene, out, set_), constants(calibration)
+        study, fitted = study_of(scene, out, set_), constants(calibration)
         return stage.run(study, asked, fitted) if case is None else stage.case(study, asked, case, fitted)
 
-    found = _guarded(work, json_)
+    found = guarded(work, json_)
     if not json_:
         from studies import ensemble_summary
         from studies.stages import ensemble as stage
@@ -362,7 +289,7 @@ def bench(out: Out = Path("out"),
         solver = stage.run(out, tuple(1e-3 * size for size in element_size) if element_size else stage.SIZES, repeats, steps)
         return {**solver, "surrogate": surrogate}
 
-    _guarded(work, json_)
+    guarded(work, json_)
 
 
 @app.command("scenes")
@@ -379,7 +306,7 @@ def list_scenes(json_: Json = False) -> None:
         return {"scenes": {name: {"description": item.description, "conditions": list(item.conditions)}
                            for name, item in found.items()}}
 
-    _guarded(work, json_)
+    guarded(work, json_)
 
 
 @app.command()

@@ -39,8 +39,10 @@ class Run:
     @property
     def key(self) -> str:
         """Hexadecimal digest of everything the result depends on."""
-        constants = self.calibration.constants if self.calibration else None
-        return content_hash(self.fidelity, self.scene.hash, asdict(self.numerics), constants, self.walls.hash if self.walls else None,
+        fitted = self.calibration
+        # The range of the constants moves no number, but the warnings of a result are made from it.
+        used = [fitted.constants, fitted.valid, fitted.provenance.get("geometry_hash")] if fitted else None
+        return content_hash(self.fidelity, self.scene.hash, asdict(self.numerics), used, self.walls.hash if self.walls else None,
                             code_hash(*SOURCES[self.fidelity]))
 
 

@@ -14,14 +14,13 @@ from typing import Any, Callable, Iterable
 from scenes.calibration import Calibration
 from scenes.faults import Fault, SceneError
 from scenes.files import content_hash, write_json
-from scenes.scene import Scene
+from scenes.scene import NOMINAL, Scene
 from scenes.trajectory import Trajectory
 from scenes.walls import Walls
 from studies.progress import say
 from studies.settings import Settings
 from studies.store import Run, Store, code_hash
 
-NOMINAL = "nominal"
 FAILED = ("diverged", "refused")
 
 
@@ -53,7 +52,7 @@ class Study:
 
     def condition(self, name: str) -> Scene:
         """The scene of one condition. Raises SceneError for a name the scene does not have."""
-        return self.scene if name == NOMINAL else self.scene.condition(name)
+        return self.scene.condition(name)
 
     def fitted(self) -> list[str]:
         """Names of the fitted conditions. Raises SceneError when the scene names none."""

@@ -4,6 +4,9 @@ from html import escape
 
 from studies.report.markup import Html, caption, code, fold, number, paragraph, percent, section, table
 
+_INTERVALS = ("Intervals are linear and take what the fit leaves for scatter about a model that is right. Model error is not in "
+              "them: what the surrogate lacks may move its constants by more than they say. Not told: the curves do not fix the "
+              "constant, and no interval is made up.")
 _FLOOR = "Floor: what ±{change:g} µm of clearance changes in either model. "
 
 
@@ -25,7 +28,7 @@ def agreement(document: dict) -> Html:
                    _judged(heads, document["compliant"], "agreement"), caption(legend), _further(document["compliant"]), _simpler(document),
                    paragraph("One spring and damper per pad face, calibrated on the fitted conditions: " + _summary(document, "fitted")
                              + "; " + _summary(document, "held_out")),
-                   _judged(heads, calibrated, "agreement-calibrated"), _further(calibrated),
+                   _judged(heads, calibrated, "agreement-calibrated"), _outside(calibrated), _further(calibrated),
                    fold("the same before calibration", _judged(heads, document["uncalibrated"], "agreement-uncalibrated")),
                    _evidence(document))
 
@@ -57,6 +60,13 @@ def _summary(document: dict, group: str) -> str:
     passed, doubtful = sum(row["passes"] for row in rows), sum(not row["reference_converged"] for row in rows)
     return (f"{passed} of {len(rows)} {words}conditions pass all three gates" + _free(rows)
             + (f" ({doubtful} of {len(rows)} with a reference that is not converged)" if doubtful else ""))
+
+
+def _outside(rows: list[dict]) -> Html:
+    """Conditions the constants were not found for; their agreement is that of an extrapolation."""
+    lines = "".join(f"<li>{escape(row['condition'])}: {escape('; '.join(row['outside_calibration']))}</li>"
+                    for row in rows if row["outside_calibration"])
+    return Html(f"<p>Outside what the constants were fitted for:</p><ul>{lines}</ul>" if lines else "")
 
 
 def _free(rows: list[dict]) -> str:
@@ -105,9 +115,9 @@ def _evidence(document: dict) -> Html:
 
 def calibration(document: dict) -> Html:
     """Fitted constants with bounds and reasons, what the curves cannot tell, residuals."""
-    rows = [(name, number(value, 5), unit, number(low, 4), number(high, 4), why) for name, value, unit, low, high, why in zip(
-        document["parameters"], document["values"], document["units"], document["lower"], document["upper"],
-        document["justification"])]
+    rows = [(name, number(value, 5), _interval(ends), unit, number(low, 4), number(high, 4), why)
+            for name, value, ends, unit, low, high, why in zip(*(document[key] for key in (
+                "parameters", "values", "intervals", "units", "lower", "upper", "justification")))]
     weak = "".join(f"<li>{escape(line)}</li>" for line in document["weak_directions"]) or "<li>none</li>"
     names = list(dict.fromkeys(key for found in document["residuals"].values() for key in found))
     residuals = [(condition, *(found.get(name) for name in names)) for condition, found in document["residuals"].items()]
@@ -116,7 +126,8 @@ def calibration(document: dict) -> Html:
     valid = [(code(key), *(number(value, 4) for value in span)) for key, span in document["valid"].items()]
     return section("calibration", "Calibration",
                    paragraph(f"Fitted to {', '.join(document['conditions'])} at once; objective {document['objective']:.4g}."),
-                   table(("constant", "value", "unit", "lower bound", "upper bound", "why free, why these bounds"), rows),
+                   table(("constant", "value", "95 % interval", "unit", "lower bound", "upper bound", "why free, why these bounds"),
+                         rows), caption(_INTERVALS),
                    Html(f"<h3>What the curves cannot tell</h3><ul>{weak}</ul>"),
                    fold("constants the surrogate then uses (SI)", table(("key", "value"), applied)),
                    fold("range of the conditions used (SI): outside it the constants are extrapolated",
@@ -124,6 +135,10 @@ def calibration(document: dict) -> Html:
                    fold("how they were found", table(("", ""), document["provenance"].items())),
                    fold("residuals per condition", table(("condition", *(name.replace("_", " ") for name in names)), residuals)),
                    fold("information matrix of the scaled constants", table(("", *document["parameters"]), information)))
+
+
+def _interval(ends: list[float | None]) -> Html | str:
+    return "not told" if None in ends else Html(f"{number(ends[0], 4)} to {number(ends[1], 4)}")
 
 
 def speedups(document: dict) -> Html:

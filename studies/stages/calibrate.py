@@ -1,10 +1,17 @@
-"""Stage ``calibrate``: the surrogate's contact constants from the reference's curves of the fitted conditions, and nothing else."""
+"""Stage ``calibrate``: the surrogate's contact constants from the reference's curves of the fitted conditions, and nothing else.
 
+Curves of another code or of a test may take the place of the reference. What is fitted to them goes into a folder of its own, so
+that the other stages, which compare with the reference, do not replace it.
+"""
+
+import math
 from pathlib import Path
 
 import numpy as np
 
 from scenes.calibration import Calibration
+from scenes.faults import Fault, SceneError
+from scenes.scene import NOMINAL
 from studies.progress import Board
 from studies.store import SOURCES
 from studies.study import Study, StudyError, require_success
@@ -23,17 +30,63 @@ def run(study: Study) -> dict:
 
         references = dict(zip(names, study.store.fill("highfi", asked)))
         require_success(references, "calibrate")
-        with Board("calibrate", 1) as board:
-            try:
-                found = calibrate.run(study.scene, references, progress=board.callback("calibrate"))
-            except calibrate.CalibrationError as fault:
-                raise StudyError(f"cannot calibrate: {fault}") from None
-            board.finished("calibrate", f"objective {found.objective:.4g}")
-        path = study.path(FILE)
-        found.save(path)
-        return as_dict(found) | {"calibration": study.relative(path)}, [path]
+        try:
+            return _fitted(study, references, study.path(FILE))
+        except calibrate.CalibrationError as fault:
+            raise StudyError(f"cannot calibrate: {fault}") from None
 
     return study.stage("calibration", study.key(_SOURCES, [item.key for item in asked]), make)
+
+
+def named(references: list[str], condition: str | None, settled_from: float | None) -> list[tuple[str, str]]:
+    """(condition, path) of each ``NAME=FILE``; a file without a name is that of ``condition``, else of the scene itself.
+
+    Raises SceneError for options that no file is there for.
+    """
+    pairs = [item.partition("=") for item in references]
+    unnamed = [name for name, equals, _ in pairs if not equals]
+    idle = [("--condition", condition, "a file without a name")] if condition and not unnamed else []
+    idle += [("--settled-from", f"{settled_from:g} s", "a file")] if settled_from is not None and not pairs else []
+    if idle:
+        raise SceneError([Fault(option, given, "no --reference", f"{file} that it speaks of") for option, given, file in idle])
+    return [(name.strip(), path) if equals else (condition or NOMINAL, name) for name, equals, path in pairs]
+
+
+def from_files(study: Study, files: list[tuple[str, str]], settled_from: float | None = None) -> dict:
+    """The calibration as plain values, from CSV files (condition, path) as ``calibrate.Curves`` reads them, beside
+    ``curves/calibration.toml``.
+
+    Raises SceneError listing every fault of every file, CalibrationError for curves that do not fit the scene.
+    """
+    import calibrate
+
+    names, references = [name for name, _ in files], {}
+    faults = [Fault("--reference", name, "twice", "one file for a condition")
+              for name in dict.fromkeys(names) if names.count(name) > 1]
+    for name, path in files:
+        try:
+            study.condition(name)
+            references[name] = calibrate.Curves.read_csv(path, settled_from)
+        except SceneError as error:
+            faults += error.faults
+    if faults:
+        raise SceneError(faults)
+
+    def make() -> tuple[dict, list[Path]]:
+        return _fitted(study, references, study.path(f"curves/{FILE}"))
+
+    sources = {name: item.source for name, item in references.items()}
+    return study.stage("curves/calibration", study.key(_SOURCES, sources), make)
+
+
+def _fitted(study: Study, references: dict, path: Path) -> tuple[dict, list[Path]]:
+    import calibrate
+
+    with Board("calibrate", 1) as board:
+        found = calibrate.run(study.scene, references, progress=board.callback("calibrate"))
+        board.finished("calibrate", f"objective {found.objective:.4g}")
+    found.save(path)
+    return as_dict(found) | {"calibration": study.relative(path)}, [path]
 
 
 def load(study: Study) -> Calibration:
@@ -42,9 +95,24 @@ def load(study: Study) -> Calibration:
     return Calibration.load(study.path(FILE))
 
 
+def lines(document: dict, folder: Path) -> list[str]:
+    """The constants in words, what the curves cannot tell, and where the calibration lies."""
+    found = zip(document["parameters"], document["values"], document["units"], document["intervals"])
+    said = [f"  {name:22}{value:.5g}{'' if unit == '1' else f' {unit}'}, {interval(ends)}" for name, value, unit, ends in found]
+    said += [f"  not told      {words}" for words in document["weak_directions"]]
+    return [f"fitted to {', '.join(document['conditions'])}: objective {document['objective']:.4g}", *said,
+            f"  calibration   {folder / document['calibration']}"]
+
+
+def interval(ends: list[float | None]) -> str:
+    """The 95 % interval of a constant in words; without ends the curves do not tell it."""
+    return "not told by the curves" if None in ends else f"{ends[0]:.4g} to {ends[1]:.4g}"
+
+
 def as_dict(found: Calibration) -> dict:
     """Plain values of a calibration."""
     return {"constants": found.constants, "parameters": found.parameters, "values": list(found.values),
+            "intervals": [[end if math.isfinite(end) else None for end in ends] for ends in found.intervals],
             "units": found.units, "lower": list(found.lower), "upper": list(found.upper),
             "justification": found.justification, "information": np.asarray(found.information).tolist(),
             "weak_directions": found.weak_directions, "residuals": found.residuals, "conditions": found.conditions,

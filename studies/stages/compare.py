@@ -69,7 +69,8 @@ def _rows(study: Study, rung: Rung, highfi: dict[str, Trajectory], context: Cont
     """Agreement of one surrogate on every condition."""
     wanted = {name: rung.ask(study, name) for name in study.conditions}
     found = dict(zip(wanted, study.store.fill(rung.title, list(wanted.values()))))
-    return [agreement.row(name, role, highfi[name], found[name], context)
+    outside = rung.calibration.outside if rung.calibration else lambda scene: []
+    return [agreement.row(name, role, highfi[name], found[name], context) | {"outside_calibration": outside(study.condition(name))}
             for role in ("fitted", "held_out") for name in getattr(study.scene.agreement, role)]
 
 

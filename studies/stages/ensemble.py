@@ -52,6 +52,8 @@ def request(study: Study, asked: Asked, calibration: Calibration | None = None) 
         source: Any = TableFile(asked.table)
     else:
         source = Drawn(uncertainty.load(asked.vary, study.scene, **changed))
+    for words in calibration.outside(study.scene) if calibration else []:
+        say(f"the scene the cases vary is outside the calibration: {words}")
     try:
         numerics = Numerics(relative_tolerance=asked.tolerance)
     except ValueError as fault:

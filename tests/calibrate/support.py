@@ -1,6 +1,9 @@
 """Scenes whose constants are known, and a search small enough for a test."""
 
 import functools
+from pathlib import Path
+
+import numpy as np
 
 import lowfi
 import scenes
@@ -24,3 +27,12 @@ def scene() -> scenes.Scene:
 def own_curves() -> dict[str, scenes.Trajectory]:
     """The surrogate's own runs with the true constants."""
     return {name: lowfi.run(scene().replace(TRUTH).condition(name)) for name in CONDITIONS}
+
+
+def write_curves(path: Path, run: scenes.Trajectory, keep: slice | np.ndarray = slice(None)) -> Path:
+    """A CSV file of samples of a run in units of a test stand, as another code would write it, with a column nobody asked for."""
+    columns = np.column_stack([1e3 * run.time, run.velocity[:, 0], np.degrees(run.rate), np.zeros(run.time.size)])[keep]
+    lines = [",".join(f"{value:.12g}" for value in row) for row in columns]
+    header = "time [ms], velocity_x [m/s], rate_x [deg/s], rate_y [deg/s], rate_z [deg/s], shock"
+    path.write_text("\n".join([header, *lines]) + "\n")
+    return path

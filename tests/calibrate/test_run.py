@@ -4,13 +4,15 @@ import dataclasses
 
 import numpy as np
 import pytest
+from typer.testing import CliRunner
 
 import calibrate
 import lowfi
-from calibrate import parameters
-from calibrate.objective import Objective, targets
+from calibrate import Curves, evidence, parameters
+from calibrate.objective import VELOCITY_WEIGHT, Objective, Parts, targets
 from scenes import Calibration, SceneError
 from scenes.outcome import Outcome
+from studies.cli import app
 from tests.calibrate.support import CONDITIONS, SMALL, TRUTH, own_curves, scene
 
 
@@ -36,7 +38,7 @@ def test_recovers_known_constants_from_a_wrong_start(fitted):
 def test_uncalibrated_start_is_far(fitted):
     """Control: the constants the fit started from are nowhere near."""
     free = parameters.free(scene())
-    objective = Objective(scene(), targets(scene(), own_curves()), free)
+    objective = Objective(scene(), targets(scene(), {name: Curves.from_trajectory(run) for name, run in own_curves().items()}), free)
     residuals = objective(np.array([item.share(item.read(scene())) for item in free]))
     assert residuals @ residuals > 1e-3
 
@@ -61,12 +63,53 @@ def test_values_lie_within_their_bounds_and_are_justified(fitted):
     assert fitted.valid["clearance_m"] == [0.25e-3, 0.25e-3] and fitted.valid["thrust_peak_n"][1] == pytest.approx(6000.0)
 
 
+def test_intervals_of_exact_curves_are_narrow_and_hold_the_values(fitted):
+    """Nothing scatters, so nothing but the search's last digits is left."""
+    for (low, high), value in zip(fitted.intervals, fitted.values):
+        assert low <= value <= high and high - low < 1e-4 * value
+    assert "model error is not in them" in fitted.provenance["intervals"]
+
+
+def test_no_interval_where_the_curves_do_not_tell():
+    """Noise of a hundredth: a told constant keeps its interval; one on its bound, one in a weak direction and one whose interval
+    would be wider than its bounds have none."""
+    noise = 0.01 / np.sqrt(800.0) * np.random.default_rng(1).standard_normal((200, 4))
+    part = Parts(noise[:, 0] / VELOCITY_WEIGHT, noise[:, 1:], np.zeros(3))
+    free = parameters.free(scene())
+    shares = np.array([0.5, 0.0, 0.5, 0.5])
+    found, count = evidence.intervals(free, shares, np.diag([1.0, 1.0, 1e-6, 1.0]), [part])
+    assert [np.isfinite(ends).all() for ends in found] == [True, False, False, True] and 600.0 < count <= 800.0
+    assert found[1] == [-np.inf, np.inf]
+    # s^2 = 1e-4/800 and a unit eigenvalue: 1.96 sd of the share, upon bounds of 0.05 to 0.5.
+    assert found[3][1] - found[3][0] == pytest.approx(2.0 * 1.96 * 0.45 * 0.01 / np.sqrt(count), rel=0.1)
+    loud = Parts(100.0 * part.velocity, 100.0 * part.rate, part.settled)
+    assert not np.isfinite(evidence.intervals(free, shares, 0.01 * np.eye(4), [loud])[0]).any()
+
+
 def test_travels_as_a_file_and_drives_the_surrogate(fitted, tmp_path):
     fitted.save(tmp_path / "calibration.toml")
     read = Calibration.load(tmp_path / "calibration.toml")
     run, reference = lowfi.run(scene().condition("phi15"), read), own_curves()["phi15"]
     assert np.abs(np.subtract(run.outcome.rate, reference.outcome.rate)).max() < 1e-5
+    assert read.intervals == fitted.intervals
     assert read.provenance["geometry_hash"] == fitted.provenance["geometry_hash"]
+
+
+def test_a_run_outside_the_range_says_so_and_still_counts(fitted):
+    """Control: on a condition that was fitted nothing is said."""
+    asked = scene().condition("phi15")
+    assert lowfi.run(asked, fitted).message == ""
+    beyond = lowfi.run(asked.replace({"thrust.peak": "8 kN"}), fitted)
+    assert beyond.status == "exited"
+    assert "outside the calibration: thrust peak 8000 N, constants found at 6000 N" in beyond.message
+
+
+def test_the_command_prints_what_is_outside(fitted, tmp_path):
+    fitted.save(tmp_path / "c.toml")
+    asked = ["run", "--condition", "phi15", "--calibration", str(tmp_path / "c.toml"), "--out", str(tmp_path)]
+    said = [CliRunner().invoke(app, asked + change).stdout for change in ([], ["--set", "contact.clearance=0.3 mm"])]
+    assert "outside" not in said[0] and "exited" in said[0]
+    assert "clearance 0.0003 m, constants found at 0.00025 m" in said[1]
 
 
 def test_same_seed_same_bits(fitted):

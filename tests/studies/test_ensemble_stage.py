@@ -3,11 +3,16 @@
 import errno
 import json
 
+import numpy as np
 import pytest
 from typer.testing import CliRunner
 
 from lowfi import store as stores
+from scenes import Calibration, load
 from studies.cli import app
+from studies.settings import Settings
+from studies.stages import ensemble
+from studies.study import Study
 
 pytest.importorskip("zarr")
 
@@ -34,6 +39,20 @@ def test_default_errors_run_and_are_kept(tmp_path):
     alone = call("--cases", 300, "--out", tmp_path, "--case", 123)
     assert alone.exit_code == 0 and "the stored result has the same bits" in alone.stdout
     assert call("--cases", 300, "--out", tmp_path, "--case", 300).exit_code == 2
+
+
+def test_a_scene_outside_its_calibration_is_said_once(tmp_path):
+    """Control: the scene the constants were found for says nothing."""
+    scene = load("reference")
+    found = Calibration({}, [], [], [], [], [], [], np.empty((0, 0)), [], {}, [], 0.0,
+                        {key: [value, value] for key, value in scene.loads.items()}, {"geometry_hash": scene.geometry_hash})
+    for changed, count in ({}, 0), ({"thrust.peak": "9 kN"}, 3):
+        study = Study(scene.replace(changed), tmp_path, Settings())
+        with pytest.MonkeyPatch.context() as patch:
+            said = []
+            patch.setattr(ensemble, "say", said.append)
+            ensemble.request(study, ensemble.Asked(cases=8), found)
+        assert len(said) == count and all("outside the calibration" in words for words in said)
 
 
 def test_bad_rows_are_refused_alone(tmp_path):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import scenes
-from studies.report import figures, inputs
+from studies.report import figures, inputs, tables
 from studies.report.chart import Chart, Line, Panel, to_html, to_png
 from studies.report.figures import Runs
 from studies.report.markup import number, table
@@ -92,3 +92,19 @@ def test_figures_of_one_condition():
     runs = Runs({"phi15": flight(pad_force=force)}, {}, {"phi15": flight()})
     assert [panel.title for panel in figures.contact_forces(scene, runs, "phi15").panels] == ["pad 2 (rear, -y +z)"]
     assert len(figures.figure6(runs, ["phi15"]).panels) == 2
+
+
+def test_agreement_names_conditions_outside_the_calibration():
+    rows = [{"condition": "h1", "outside_calibration": []},
+            {"condition": "h2", "outside_calibration": ["clearance 1 m", "speed <2"]}]
+    assert "<li>h2: clearance 1 m; speed &lt;2</li>" in tables._outside(rows) and "h1" not in tables._outside(rows)
+    assert tables._outside(rows[:1]) == ""
+
+
+def test_calibration_shows_intervals_and_what_is_not_told():
+    document = {"parameters": ["contact.force", "contact.damping"], "values": [400.0, 0.0],
+                "intervals": [[350.0, 450.0], [None, None]], "units": ["N", "N*s/m"], "lower": [20.0, 0.0], "upper": [6720.0, 7000.0], "justification": ["a", "b"],
+                "weak_directions": [], "residuals": {}, "information": [[1.0, 0.0], [0.0, 0.0]], "constants": {}, "valid": {},
+                "provenance": {}, "conditions": ["phi15"], "objective": 1.0}
+    shown = tables.calibration(document)
+    assert ">350 to 450<" in shown and ">not told<" in shown and "Model error is not in them" in shown

@@ -1,0 +1,41 @@
+"""What constants were found for: size of the thrust, speed, clearance, rail and pads; and how far a scene lies from that.
+
+A contact law fitted at one load and speed is extrapolated at another. One run passes through every load below its peak, so a range
+may consist of one value; a scene is called outside where it leaves the range by more than ``MARGIN`` of its end.
+"""
+
+from scenes.effects import thrust
+from scenes.files import content_hash
+
+MARGIN = 0.1  # of the end of a range: scatter of production and 1 um of clearance are no other regime
+_WORDS = {"thrust_peak_n": ("thrust peak", "N"), "thrust_impulse_ns": ("thrust impulse", "N s"),
+          "thrust_speed_m_s": ("speed that the thrust gives", "m/s"), "clearance_m": ("clearance", "m")}
+
+
+def loads(scene) -> dict[str, float]:
+    """Peak (N) and impulse (N s) of the thrust, impulse over mass (m/s), and clearance (m) where the scene has any."""
+    record, duration = scene.thrust.record(), scene.duration
+    impulse = float(thrust.impulse(record, duration))
+    found = {"thrust_peak_n": float(thrust.peak(record, duration)), "thrust_impulse_ns": impulse,
+             "thrust_speed_m_s": impulse / scene.payload.mass}
+    return found | ({"clearance_m": scene.contact.clearance} if scene.contact is not None else {})
+
+
+def geometry(scene) -> str:
+    """Digest of rail and pads; a rail from a file counts by what the file holds."""
+    parts = scene.model_dump(mode="json", exclude_none=True, include={"pads", "rail"})
+    return content_hash(parts["pads"], parts["rail"] | scene.rail.contents())
+
+
+def outside(scene, valid: dict[str, list[float]], known_geometry: str | None) -> list[str]:
+    """Sentences on everything in which ``scene`` lies outside ranges ``valid``; what these do not speak of is not judged."""
+    found = []
+    for key, value in scene.loads.items():
+        low, high = valid.get(key, (value, value))
+        if not low - MARGIN * abs(low) <= value <= high + MARGIN * abs(high):
+            words, unit = _WORDS[key]
+            span = f"{low:.4g} {unit}" if low == high else f"{low:.4g} to {high:.4g} {unit}"
+            found.append(f"{words} {value:.4g} {unit}, constants found at {span}")
+    if known_geometry not in (None, scene.geometry_hash):
+        found.append("rail or pads are not those the constants were found for")
+    return found
