@@ -10,7 +10,7 @@ from typing import Annotated, Optional
 
 import typer
 
-from studies.asked import guarded, quantity, stop, study_of
+from studies.asked import guarded, quantity, study_of
 from studies.options import (CheckpointEvery, Conditions, ElementSize, Fidelity, Json, OnWalls, Out, Resume, Sampling, SceneName, Set,
                              Workers)
 
