@@ -8,11 +8,13 @@ from scipy.interpolate import CubicSpline
 
 import scenes
 from highfi import compliance
+from lowfi import equations, touch
 from lowfi import state as slot
 from lowfi import system as systems
 from lowfi.walls import record
 from scenes import model as models
 from scenes import rotation
+from scenes.jit import kernel
 from scenes.scene import Scene
 from scenes.walls import PATTERNS, POWERS, Walls, digest
 
@@ -76,6 +78,20 @@ def state_of(model, pose: Pose, twist: np.ndarray = np.zeros(12)) -> np.ndarray:
                                                  (slot.PLATFORM, model.platform, pose.base_place, pose.base_attitude, twist[6:])):
         slot._fill(state, first, body.mass, body.inertia, tuple(place), tuple(motion[:3]), attitude, tuple(motion[3:]))
     return state
+
+
+@kernel
+def seen_from_platform(platform, payload, state):
+    """Place (m) and rotation (nine numbers) of the payload in platform axes."""
+    body = slot.motion(payload.mass, payload.inverse_inertia, state, slot.PAYLOAD)
+    return touch.relative_pose(platform, body, slot.frame(platform, state))
+
+
+@kernel
+def add_walls(walls, friction, faces, platform, payload, active, state, out):
+    """What walls alone add to ``out``, the derivative of ``state``."""
+    body = slot.motion(payload.mass, payload.inverse_inertia, state, slot.PAYLOAD)
+    equations.add_walls(walls, friction, faces, platform, True, active, body, slot.frame(platform, state), out)
 
 
 def pressed(scene: Scene, walls: Walls):

@@ -15,17 +15,20 @@ from tests.lowfi.giving import reference_walls
 ADDED = {"gravity": {"gravity.z": -9.80665},
          "sticking": {"friction": {"law": "sticking", "static": 0.2, "dynamic": 0.2, "stiffness": 1e7, "damping": 1e4}}}
 COUNT = """
+import numba
 import numpy as np
 from lowfi import equations, limits, state, system
 from scenes import load, model
 from scenes.effects.friction import coefficient_over_speed
+@numba.njit
+def call(records, felt, begin, out):
+    equations.derivative(records, felt, None, 0.0, begin, out)
+    limits.fastest_rate(records.contact, records.friction, None, records.faces, records.platform, records.payload, felt, None,
+                        begin, 0.0)
 def evaluate(scene):
     built = model.build(scene)
     records, begin = system.build(built), state.initial(built)
-    felt = np.ones(16, dtype=np.bool_)
-    equations.derivative(records, felt, None, 0.0, begin, np.empty_like(begin))
-    limits.fastest_rate(records.contact, records.friction, None, records.faces, records.platform, records.payload, felt, None,
-                        begin, 0.0)
+    call(records, np.ones(16, dtype=np.bool_), begin, np.empty_like(begin))
     return len(coefficient_over_speed.signatures)
 reference = load("reference")
 print(evaluate(reference.replace({"friction": None, "platform": None})), evaluate(reference.replace({"platform": None})))

@@ -7,13 +7,13 @@ from scipy.sparse.linalg import splu
 from highfi import assembly, facets, pieces, surface
 from highfi.numerics import Numerics
 from highfi.run import prepare
-from lowfi import equations, touch
 from lowfi import state as slot
 from lowfi.walls import cells, limit, loads, record, solution
 from scenes import model as models
 from scenes import rotation
 from scenes.walls import PATTERNS
-from tests.lowfi.giving import REFERENCE, SMOOTH, flexibility_at, forces_of, pressed, reference_walls, relative, state_of
+from tests.lowfi.giving import (REFERENCE, SMOOTH, add_walls, flexibility_at, forces_of, pressed, reference_walls, relative,
+                                seen_from_platform, state_of)
 
 CLEARANCE = REFERENCE.contact.clearance
 # What the pads meet: way (m), way across beyond the clearance (m), attitude (rad).
@@ -38,15 +38,9 @@ def pose_of(model, name, base=((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))):
     return relative(model, travel, [CLEARANCE + way for way in beyond], attitude, *base)
 
 
-def seen_from_platform(system, model, pose):
-    state = state_of(model, pose)
-    body, base = slot.motion(system.payload.mass, system.payload.inverse_inertia, state, slot.PAYLOAD), slot.frame(system.platform, state)
-    return touch.relative_pose(system.platform, body, base)
-
-
 def solved(system, model, pose, rail, active=None):
     """Number of faces of a rail solved for at ``pose``, which ``system.walls.room`` then holds."""
-    place, turn = seen_from_platform(system, model, pose)
+    place, turn = seen_from_platform(system.platform, system.payload, state_of(model, pose))
     active = np.ones(len(system.faces), dtype=np.bool_) if active is None else active
     return solution.solve(system.walls, system.faces, rail, active, place, turn)
 
@@ -57,10 +51,8 @@ def energy(system, model, pose) -> float:
 
 def derivative(system, model, pose, twist):
     """What walls alone add to the derivative of the state at ``pose`` and ``twist``."""
-    state, out = state_of(model, pose, twist), np.zeros(slot.STATE_SIZE)
-    body, base = slot.motion(system.payload.mass, system.payload.inverse_inertia, state, slot.PAYLOAD), slot.frame(system.platform, state)
-    equations.add_walls(system.walls, system.friction, system.faces, system.platform, True, np.ones(len(system.faces), dtype=np.bool_),
-                        body, base, out)
+    out, every = np.zeros(slot.STATE_SIZE), np.ones(len(system.faces), dtype=np.bool_)
+    add_walls(system.walls, system.friction, system.faces, system.platform, system.payload, every, state_of(model, pose, twist), out)
     return out
 
 

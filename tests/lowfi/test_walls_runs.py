@@ -111,6 +111,8 @@ def test_ledgers_and_momentum(condition):
         assert checks["linear_momentum_error"] <= 1e-12 and checks["angular_momentum_error"] <= 1e-11
         assert checks["energy_error"] <= 1e-6 and checks["transverse_energy_error"] <= 1e-4
         assert checks["friction_power_max"] <= 0.0 and run.cost["limit_used"] <= 1.0 + 1e-9
+    again = lowfi.run(asked, walls=walls)
+    assert all(np.array_equal(getattr(again, name), getattr(coarse, name)) for name in ("velocity", "rate", "pad_force", "energy"))
     assert fine.checks["transverse_energy_error"] < 0.1 * coarse.checks["transverse_energy_error"]
     assert np.degrees(fine.outcome.rate) == pytest.approx(np.degrees(coarse.outcome.rate), abs=0.01)
     # Control: without the force along the rail the transverse ledger would miss hundreds of times as much.
