@@ -4,17 +4,25 @@ from lowfi import equations, grip, touch
 from lowfi.march import march
 from lowfi.numerics import Numerics
 from lowfi.run import Run
+from lowfi.walls import solution
 from scenes.effects.friction import coefficient_over_speed
 from scenes.jit import contains, machine_code
 from scenes.scene import Scene
+from scenes.walls import Walls
 
 # A function that only this effect calls. Mass offset and initial state are numbers without code; damping of the rails has no meaning here.
-LAWS = {"contact": touch.penetration, "friction": coefficient_over_speed, "sticking": grip.traction, "gravity": equations._weigh,
-        "platform": touch._relative_turn, "thrust_offset": equations._offset_line}
+LAWS = {"contact": touch.load, "walls": solution.solve, "friction": coefficient_over_speed,
+        "sticking": grip.traction, "gravity": equations._weigh, "platform": touch._relative_turn, "thrust_offset": equations._offset_line}
 
 
-def compiled_effects(scene: Scene, numerics: Numerics | None = None) -> dict[str, bool]:
-    """For each effect with code of its own, whether the kernel compiled for ``scene`` contains it."""
-    begun = Run(scene, numerics or Numerics())
-    code = machine_code(march, (begun.system, begun.plan, begun.tolerance, begun.loop, 0, True, begun.rows, begun.forces))
+def compiled_effects(scene: Scene, numerics: Numerics | None = None, walls: Walls | None = None) -> dict[str, bool]:
+    """For each effect with code of its own, whether the kernel compiled for ``scene``, on ``walls`` that give way or a contact law,
+    contains it."""
+    code = compiled_code(scene, numerics, walls)
     return {effect: contains(code, law) for effect, law in LAWS.items()}
+
+
+def compiled_code(scene: Scene, numerics: Numerics | None = None, walls: Walls | None = None) -> bytes:
+    """Object code of the time loop."""
+    begun = Run(scene, numerics or Numerics(), walls)
+    return machine_code(march, (begun.system, begun.plan, begun.tolerance, begun.loop, 0, True, begun.rows, begun.forces))

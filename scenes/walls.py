@@ -11,6 +11,7 @@ keeps the last place where all of it has a wall under it, and xi goes on from th
 
 import hashlib
 import zipfile
+import zlib
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from pathlib import Path
@@ -93,9 +94,22 @@ class Walls:
         try:
             with np.load(path, allow_pickle=False) as found:
                 arrays = {field.name: found[field.name] for field in fields(cls)}
-        except (zipfile.BadZipFile, KeyError, EOFError, ValueError) as error:
+            walls = cls(**arrays | {"made_for": str(arrays["made_for"])})
+            walls._require_whole()
+        except (zipfile.BadZipFile, zlib.error, KeyError, EOFError, TypeError, ValueError) as error:  # TypeError: a lone array
             raise ValueError(f"{path}: not a file of walls ({error})") from error
-        return cls(**arrays | {"made_for": str(arrays["made_for"])})
+        return walls
+
+    def _require_whole(self) -> None:
+        """Raises ValueError where shapes do not belong together or a number is not finite."""
+        stations, faces = self.travel.size, self.rail.size
+        expected = {"travel": (stations,), "flexibility": (stations, faces, PATTERNS, faces, PATTERNS), "rail": (faces,), "half": (faces, 2)}
+        for name, shape in expected.items():
+            array = getattr(self, name)
+            if array.shape != shape or not np.isfinite(array).all():
+                raise ValueError(f"{name}: given shape {array.shape}, expected finite numbers in the shape {shape}")
+        if stations < 2:
+            raise ValueError(f"travel: given {stations} stations, expected at least 2")
 
 
 def digest(scene: Scene) -> str:

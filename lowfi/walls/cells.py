@@ -4,16 +4,18 @@ With the lever (p_0, a, b) of the rigid face and the displacement U of its wall 
 
     p = p_0 + a xi + b eta - relief (xi^4 + eta^4) - sum_a U_a phi_a(xi', eta),   pressure = penalty max(0, p)
 
-where xi' = xi + shift is the place on the wall, and the crown is its mean over the cell. Of a row of cells that hangs over an end of
-the rail only the part over the wall counts.
+where xi' = xi + shift is the place on the wall, and the crown is its mean over the cell. Of rows of cells that hang over an end of
+the rail only the part over the wall counts, their sums taken as piecewise linear between the middles of the rows.
 """
 
 import numpy as np
 
 from lowfi.system import NORMAL_Y, NORMAL_Z
 from lowfi.touch import penetration
-from lowfi.walls.record import BY_ETA, BY_XI, DEPTH, MIDDLE, SHIFT
+from lowfi.walls.record import BY_ETA, BY_XI, DEPTH, DRIFT, MIDDLE, SHIFT
 from scenes.jit import inlined, kernel
+
+_EASED = 0.1  # in xi: where a pad comes to hang over an end, its place on the wall stops over so much way on either side
 
 
 @inlined
@@ -33,27 +35,38 @@ def take_lever(walls, faces, face, place, turn):
     lever[BY_ETA] = half[1] * (y * turn[5] + z * turn[7])  # a face along y is wide along z, and the other way round
     middle = place[0] + faces[face, 0]
     lever[MIDDLE] = middle
-    lever[SHIFT] = (middle - min(max(middle, walls.start + half[0]), walls.end - half[0])) / half[0]
+    over_end, by_end = _eased((middle - walls.end) / half[0] + 1.0)
+    over_start, by_start = _eased((walls.start - middle) / half[0] + 1.0)
+    lever[SHIFT], lever[DRIFT] = over_end - over_start, (by_end + by_start) / half[0]
 
 
 @inlined
-def cover(walls, half, middle, xi):
-    """Share of the row of cells at ``xi`` that is over the wall."""
-    wide = 1.0 / walls.node.size
-    low, high = max((walls.start - middle) / half, xi - wide), min((walls.end - middle) / half, xi + wide)
-    return max(0.0, high - low) / (2.0 * wide)
+def _eased(over):
+    """``over`` where above zero, else zero, with the corner rounded off, and its slope: a force along the rail goes with it."""
+    if abs(over) >= _EASED:
+        return max(over, 0.0), 1.0 if over > 0.0 else 0.0
+    return 0.25 * (over + _EASED)**2 / _EASED, 0.5 * (over + _EASED) / _EASED
 
 
 @inlined
-def _parting(walls, half, middle, xi):
-    """What a metre of way takes from the cover of a row of cells: only one that an end of the rail cuts loses or gains any."""
-    wide, end, start = 1.0 / walls.node.size, (walls.end - middle) / half, (walls.start - middle) / half
-    lost = 0.0
-    if abs(end - xi) < wide:
-        lost += 0.5 / (wide * half)
-    if abs(start - xi) < wide:
-        lost -= 0.5 / (wide * half)
-    return lost
+def cover(walls, half, middle, row):
+    """Share of a row of cells that is over the wall, and what a metre of way takes from it."""
+    behind_end, at_end = _behind(walls, row, (walls.end - middle) / half)
+    behind_start, at_start = _behind(walls, row, (walls.start - middle) / half)
+    return behind_end - behind_start, (at_end - at_start) / half
+
+
+@inlined
+def _behind(walls, row, xi):
+    """Share of a row of cells behind an end of the rail at ``xi``, and its slope: what two neighbouring rows hold changes evenly from
+    one's middle to the other's, so the rate at which energy is left behind does not jump."""
+    away = 0.5 * walls.node.size * (xi - walls.node[row])  # in cells
+    outermost = row == 0 if away < 0.0 else row == walls.node.size - 1
+    reach = 0.5 if outermost else 1.0
+    near = min(abs(away), reach)
+    part = near if outermost else near - 0.5 * near * near
+    slope = (1.0 if outermost else 1.0 - near) if near < reach else 0.0
+    return 0.5 + part if away > 0.0 else 0.5 - part, 0.5 * walls.node.size * slope
 
 
 @inlined
@@ -75,7 +88,7 @@ def press(walls, face):
     moment[:] = 0.0
     for row in range(count):
         xi = walls.node[row]
-        weight = stiffness * cover(walls, half[0], lever[MIDDLE], xi)
+        weight = stiffness * cover(walls, half[0], lever[MIDDLE], row)[0]
         if weight > 0.0:
             level, tilt, bend = row_depth(walls, face, xi, walls.room.displacement[face])
             level -= relief * walls.crown[row]
@@ -120,7 +133,7 @@ def deepest(walls, face, displacement):
     largest = -np.inf
     for row in range(walls.node.size):
         xi = walls.node[row]
-        if cover(walls, half[0], lever[MIDDLE], xi) > 0.0:
+        if cover(walls, half[0], lever[MIDDLE], row)[0] > 0.0:
             level, tilt, bend = row_depth(walls, face, xi, displacement)
             for column in range(walls.node.size):
                 eta = walls.node[column]
@@ -138,7 +151,7 @@ def stored(walls, face):
     energy, fading = 0.0, 0.0
     for row in range(count):
         xi = walls.node[row]
-        share = cover(walls, half[0], lever[MIDDLE], xi)
+        share, lost = cover(walls, half[0], lever[MIDDLE], row)
         if share > 0.0:
             level, tilt, bend = row_depth(walls, face, xi, walls.room.displacement[face])
             squares = 0.0
@@ -147,5 +160,5 @@ def stored(walls, face):
                 p = max(0.0, level + eta * (tilt + eta * bend) - relief * (walls.crown[row] + walls.crown[column]))
                 squares += p * p
             energy += 0.5 * stiffness * share * squares
-            fading += _parting(walls, half[0], lever[MIDDLE], xi) * 0.5 * stiffness * squares
+            fading += 0.5 * stiffness * lost * squares
     return energy, fading

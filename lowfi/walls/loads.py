@@ -14,7 +14,7 @@ of a pad that leaves the wall is lost.
 from lowfi.system import NORMAL_Y
 from lowfi.touch import Load, friction_force, outward, relative_velocity
 from lowfi.walls.cells import stored
-from lowfi.walls.record import SHIFT
+from lowfi.walls.record import DRIFT, SHIFT
 from scenes import rotation
 from scenes.jit import kernel
 from scenes.walls import PATTERNS
@@ -44,9 +44,8 @@ def drive(walls, count):
     for i in range(count):
         face = room.order[i]
         u, force = room.displacement[face], room.force[face]
-        if room.lever[face, SHIFT] != 0.0:
-            pull += (u[1] * force[0] + 2.0 * u[3] * force[1] + u[4] * force[2]) / walls.half[face, 0]
-            fading += stored(walls, face)[1]
+        pull += room.lever[face, DRIFT] * (u[1] * force[0] + 2.0 * u[3] * force[1] + u[4] * force[2])
+        fading += stored(walls, face)[1]
         for a in range(PATTERNS):
             total = 0.0
             for j in range(count):

@@ -12,8 +12,8 @@ from scenes.scene import Scene
 
 CELLS = 10  # along each edge of a pad face
 # Columns of a face's lever: penetration (m) of its flat face at the middle, and per xi and eta; how far xi on the wall is ahead of
-# xi on the pad; X (m) of the middle.
-DEPTH, BY_XI, BY_ETA, SHIFT, MIDDLE, LEVER_SIZE = range(6)
+# xi on the pad, and by how much more per metre of way; X (m) of the middle.
+DEPTH, BY_XI, BY_ETA, SHIFT, DRIFT, MIDDLE, LEVER_SIZE = range(7)
 DEGREES = 5  # of the moments of pressed cells: products of two patterns reach the fourth power
 
 

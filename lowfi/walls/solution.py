@@ -35,7 +35,8 @@ def solve(walls, faces, rail, active, place, turn):
         take_flexibility(walls, count, place[0] + faces[0, 0])
         for correction in range(_MOST):
             if _correct(walls, count, 1.0 if correction < _CAREFUL else 0.5) < _ARRIVED:
-                break
+                return count
+        room.force[:] = np.nan  # never seen; no step could stand on it
     return count
 
 

@@ -39,7 +39,8 @@ def pads(*middles, half_length=HALF):
 
 def elastic(modulus=MODULUS, poisson_ratio=0.0):
     """At a Poisson ratio of zero the clamp of a solid is that of beam theory."""
-    return MaterialTable(density=1.0, youngs_modulus=modulus, poisson_ratio=poisson_ratio)
+    return MaterialTable.model_validate({"density": 1.0, "youngs_modulus": modulus, "poisson_ratio": poisson_ratio},
+                                        context={"bare_numbers_are_si": True})
 
 
 def beam_theory(first, second):
@@ -134,11 +135,11 @@ def test_reciprocity_and_positive_definiteness(reference):
     assert sorted(np.unique(reference.rail, return_counts=True)[1]) == [4, 4, 4, 4]
 
 
-def test_rail_gives_way_between_mounts_and_most_at_its_end(reference):
+def test_rail_gives_way_between_mounts_and_at_its_end(reference):
     first, second, cross = direct_and_cross(reference)
     assert first == pytest.approx(second, rel=1e-6)  # the section is the same on both sides of its corner
     assert (cross < 0.0).all()  # pressing one leg pulls the other inwards
-    assert 1.2 * first[0] < first[1] < first[2]
+    assert 1.5 * first[0] < first[2] < first[1] / 1.5  # the last mount ends 8 mm before the rail
 
 
 def test_mirrored_rails_share_one_solution(monkeypatch):
@@ -156,6 +157,8 @@ def test_mirrored_rails_share_one_solution(monkeypatch):
 
 
 def test_compliance_converges_with_the_mesh(reference):
-    fine = compliance.along(scenes.load("reference"), 0.002, TRAVEL[:2], patterns=1)
-    for coarse, finer in zip(direct_and_cross(reference), direct_and_cross(fine)):
-        assert coarse[:2] == pytest.approx(finer, rel=0.1)
+    """The wall of 4 mm is one element thick: what 2 mm change is 5 % of the direct compliance, and half of what 4 mm changed."""
+    coarse, fine = (direct_and_cross(compliance.along(scenes.load("reference"), size, TRAVEL[:2], patterns=1)) for size in (0.008, 0.002))
+    for first, second, third in zip(coarse, direct_and_cross(reference), fine):
+        change = np.abs(third - second[:2])
+        assert (change < 0.06 * fine[0]).all() and (change < 0.6 * np.abs(second[:2] - first)).all()

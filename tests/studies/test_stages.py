@@ -39,7 +39,7 @@ def test_ablation_takes_every_effect_away_once():
     assert len(scene.replace(lines["no effect"]).absent_effects()) == len(EFFECTS) == 8
     assert "without friction" not in ablation.variants(scene.replace({"friction": None}))
     # Every effect with code of its own is looked for in the compiled kernels of both models; sticking is a second law of friction.
-    assert (set(lowfi_laws) - {"sticking"}) | {"mass_offset", "initial", "rail.damping"} == set(EFFECTS)
+    assert (set(lowfi_laws) - {"sticking", "walls"}) | {"mass_offset", "initial", "rail.damping"} == set(EFFECTS)
     assert set(highfi_laws) | {"mass_offset", "initial"} == set(EFFECTS)
 
 
