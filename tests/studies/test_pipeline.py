@@ -70,11 +70,22 @@ def test_agreement_holds_the_keys_other_tools_read(pipeline):
     found = result(pipeline[0], "agreement")
     assert [row["condition"] for row in found["fitted"]] == ["phi15", "phi60"]
     assert [row["condition"] for row in found["held_out"]] == ["h1", "h2"]
-    assert len(found["uncalibrated"]) == 4
-    assert all(ROW <= set(row) for group in ("uncalibrated", "fitted", "held_out") for row in found[group])
-    assert {"ratio", "low", "high", "highfi_wall_s", "lowfi_wall_s", "elements"} <= set(found["speedup"])
-    assert found["speedup"]["low"] <= found["speedup"]["ratio"] <= found["speedup"]["high"]
-    assert found["speedup"]["repeats_identical"]
+    assert len(found["uncalibrated"]) == len(found["compliant"]) == 4
+    assert all(ROW <= set(row) for group in ("uncalibrated", "fitted", "held_out", "compliant") for row in found[group])
+    for speed in (found["speedup"], found["speedup_compliant"]):
+        assert {"ratio", "low", "high", "highfi_wall_s", "lowfi_wall_s", "elements"} <= set(speed)
+        assert speed["low"] <= speed["ratio"] <= speed["high"]
+        assert speed["repeats_identical"]
+
+
+def test_walls_from_statics_need_no_calibration(pipeline):
+    """Closer than the fit even on what that was fitted to; control: walls known by their mean pressure alone are farther off."""
+    found = result(pipeline[0], "agreement")
+    fitted = {row["condition"]: row["rate_relative_l2"] for row in found["fitted"]}
+    compliant = {row["condition"]: row["rate_relative_l2"] for row in found["compliant"]}
+    simpler = {row["condition"]: row["rate_relative_l2"] for row in found["simpler"] if row["walls"] == "mean pressure"}
+    assert all(compliant[name] < 0.02 and compliant[name] < fitted[name] and compliant[name] < simpler[name] for name in fitted)
+    assert result(pipeline[0], "walls")["stations"] >= 2
 
 
 def test_calibration_brings_the_fitted_conditions_closer(pipeline):
@@ -101,8 +112,10 @@ def test_hard_cases_hold_and_their_controls_fail(pipeline):
 def test_cost_has_three_meshes_and_three_tolerances(pipeline):
     points = result(pipeline[0], "cost")["points"]
     counts = [sum(point["model"] == model for point in points)
-              for model in ("finite elements", "surrogate, uncalibrated", "surrogate, calibrated")]
+              for model in ("finite elements", "surrogate, uncalibrated", "surrogate, calibrated", "surrogate, stiffness along the rail",
+                            "surrogate, compliant walls")]
     assert all(count >= 3 for count in counts)
+    assert len(result(pipeline[0], "cost")["matched"]) == 4
     assert any(point["pareto"] for point in points)
 
 
