@@ -128,18 +128,16 @@ def _add_moments(moment, weight, x, sums):
 
 @kernel
 def deepest(walls, face, displacement):
-    """Largest p (m) of all cells over the wall."""
-    lever, relief, half = walls.room.lever[face], walls.relief[face], walls.half[face]
-    largest = -np.inf
+    """Largest p (m) of all cells, over the wall or where it would go on, and xi and eta of that cell."""
+    relief, largest, along, across = walls.relief[face], -np.inf, 0.0, 0.0
     for row in range(walls.node.size):
-        xi = walls.node[row]
-        if cover(walls, half[0], lever[MIDDLE], row)[0] > 0.0:
-            level, tilt, bend = row_depth(walls, face, xi, displacement)
-            for column in range(walls.node.size):
-                eta = walls.node[column]
-                p = level + eta * (tilt + eta * bend) - relief * (walls.crown[row] + walls.crown[column])
-                largest = max(largest, p)
-    return largest
+        level, tilt, bend = row_depth(walls, face, walls.node[row], displacement)
+        for column in range(walls.node.size):
+            eta = walls.node[column]
+            p = level + eta * (tilt + eta * bend) - relief * (walls.crown[row] + walls.crown[column])
+            if p > largest:
+                largest, along, across = p, walls.node[row], eta
+    return largest, along, across
 
 
 @kernel

@@ -1,11 +1,10 @@
 """Which faces press walls that give way, how deep, and which of them are over a wall at all."""
 
-import numpy as np
-
 from lowfi import state as slot
+from lowfi.system import NORMAL_Y, NORMAL_Z
 from lowfi.touch import approach, relative_motion, relative_pose
 from lowfi.walls.cells import deepest, reaches, take_lever
-from lowfi.walls.record import BY_ETA, BY_XI, DEPTH, MIDDLE
+from lowfi.walls.record import MIDDLE
 from lowfi.walls.solution import follow, solve
 from scenes.jit import inlined, kernel
 
@@ -15,25 +14,27 @@ def depth(walls, faces, face, active, place, turn):
     """Deepest penetration (m) of a face: negative across the gap, which other faces on the rail may narrow. ``active`` (f,) tells which
     faces press."""
     count = solve(walls, faces, walls.rail[face], active, place, turn)
-    return _depth(walls, faces, face, count, active, place, turn)
+    return _deepest(walls, faces, face, count, active, place, turn)[0]
 
 
 @kernel
-def _depth(walls, faces, face, count, active, place, turn):
-    """The same after ``solve``. A face that is far, and whose wall nothing moves, only tells how far at most."""
+def _deepest(walls, faces, face, count, active, place, turn):
+    """The same after ``solve``, and xi and eta of the deepest cell. A face past the end has the depth it would have there: else a touch
+    in the step in which it leaves would not be seen."""
     if not active[face]:
         take_lever(walls, faces, face, place, turn)
-    lever = walls.room.lever[face]
-    if not reaches(walls, face, lever[MIDDLE]):
-        return -np.inf
-    highest = lever[DEPTH] + abs(lever[BY_XI]) + abs(lever[BY_ETA])
-    if active[face]:
-        return deepest(walls, face, walls.room.displacement[face])
-    if count == 0 and highest < 0.0:
-        return highest
     displacement = walls.room.displacement[face]
-    follow(walls, face, place[0] + faces[0, 0], count, displacement)
+    if not (active[face] and reaches(walls, face, walls.room.lever[face, MIDDLE])):
+        follow(walls, face, place[0] + faces[0, 0], count, displacement)
     return deepest(walls, face, displacement)
+
+
+@inlined
+def _approach(walls, faces, face, xi, eta, drift, swing):
+    """Rate (m/s) at which a point of the face comes up to a wall at rest."""
+    y, z, half = faces[face, NORMAL_Y], faces[face, NORMAL_Z], walls.half[face]
+    turning = xi * half[0] * (y * swing[3] + z * swing[6]) + eta * half[1] * (y * swing[5] + z * swing[7])
+    return approach(faces[face], drift, swing) + turning
 
 
 @kernel
@@ -48,9 +49,10 @@ def survey(walls, faces, platform, payload, active, state, columns, out):
         for k in range(walls.members.shape[1]):
             face = walls.members[rail, k]
             if face >= 0:
-                p = _depth(walls, faces, face, count, active, place, turn)
+                p, xi, eta = _deepest(walls, faces, face, count, active, place, turn)
                 out[face, mode], out[face, penetration] = pressing if p > 0.0 else open_, p
-                out[face, closing], out[face, along] = approach(faces[face], drift, swing), walls.room.lever[face, MIDDLE]
+                out[face, closing] = _approach(walls, faces, face, xi, eta, drift, swing)
+                out[face, along] = walls.room.lever[face, MIDDLE]
 
 
 @inlined

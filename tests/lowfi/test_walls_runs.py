@@ -9,7 +9,7 @@ from highfi import compliance
 from lowfi import Numerics
 from lowfi.walls import loads
 from scenes import ledger, model as models
-from scenes.scene import parse
+from scenes.scene import load, parse
 from tests.lowfi.giving import REFERENCE, Pose, handmade, in_one_cell, pressed, reference_walls
 from tests.lowfi.support import RAIL, corners
 from tests.lowfi.test_walls import solved
@@ -104,7 +104,7 @@ def test_a_wall_pulled_into_touch(monkeypatch):
 def test_ledgers_and_momentum(condition):
     """As the user gets it, with pads that leave the rail's end under load (h7 to h9); residuals fall with the tolerance."""
     asked, walls = REFERENCE.condition(condition), reference_walls()
-    coarse, fine = (lowfi.run(asked, numerics=Numerics(relative_tolerance=tolerance), walls=walls) for tolerance in (2e-7, 1e-9))
+    coarse, fine = (lowfi.run(asked, numerics=Numerics(relative_tolerance=tolerance), walls=walls) for tolerance in (2e-7, 1e-10))
     for run in (coarse, fine):
         assert run.status == "exited"
         checks = run.checks
@@ -164,3 +164,12 @@ def test_no_step_above_the_proven_limit():
     assert run.status == "exited" and 0.9 < run.cost["limit_used"] <= 1.0 + 1e-9
     fine = lowfi.run(stiff, walls=reference_walls())
     assert np.degrees(run.outcome.rate) == pytest.approx(np.degrees(fine.outcome.rate), abs=0.1)
+
+
+@pytest.mark.parametrize("condition", ["phi0", "h7", "h9"])
+def test_no_touch_is_missed(condition):
+    """Narrow gaps and long steps: a pad that touches late in the step in which it leaves, or only with an edge, is felt as in short steps."""
+    asked = load("sensitive").condition(condition)
+    long, short = (lowfi.run(asked, numerics=Numerics(relative_tolerance=tolerance), walls=reference_walls()) for tolerance in (2e-7, 1e-9))
+    assert long.cost["steps"] < 0.4 * short.cost["steps"]
+    assert np.degrees(long.outcome.rate) == pytest.approx(np.degrees(short.outcome.rate), abs=0.02)
