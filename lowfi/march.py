@@ -13,7 +13,8 @@ from lowfi.limits import fastest_rate
 from lowfi.regrip import grasp, regrip
 from lowfi.sample import observe, rearmost_edge
 from lowfi.walls.limit import stiffness_and_damping
-from lowfi.walls.survey import on_walls
+from lowfi.walls.survey import energy as energy_on_walls
+from lowfi.walls.survey import on_walls, while_hanging
 from scenes.jit import inlined, kernel
 from scenes.memory import zeros
 
@@ -179,7 +180,8 @@ def step(system, plan, tolerance, loop):
     stop, rate, landings = plan.stops[segment], clock[RATE], 0
     # At a corner the thrust is the one of the stretch it is seen from.
     stretch = (np.nextafter(0.0 if segment == 0 else plan.stops[segment - 1], np.inf), np.nextafter(stop, -np.inf))
-    ceiling = _foreseen(system, loop, min(clock[WANTED], plan.caps[segment], STABLE_RADIUS / rate, stop - start))
+    ceiling = _foreseen(system, loop, min(clock[WANTED], plan.caps[segment], STABLE_RADIUS / rate, stop - start,
+                                          _while_hanging(system.walls, system, loop)))
     while True:
         dt = min(clock[WANTED], ceiling)
         reaches = start + dt * (1.0 + 1e-9) >= stop
@@ -216,6 +218,22 @@ def step(system, plan, tolerance, loop):
         else:
             _accept(loop.stages[STAGES - 1], clock, count, dt, stop if reaches else start + dt, ratio, limit)
         return True
+
+
+@inlined
+def _release(walls, system, loop, left, sign):
+    """Book what faces that ``left`` the walls took with them: the energy in the walls before less that after."""
+    if walls is not None:
+        if left:
+            loop.start[slot.RELEASED] += sign * energy_on_walls(walls, system.faces, system.platform, system.payload, loop.active, loop.start)
+
+
+@inlined
+def _while_hanging(walls, system, loop):
+    longest = np.inf
+    if walls is not None:
+        longest = while_hanging(walls, system.faces, system.platform, system.payload, loop.active, loop.start)
+    return longest
 
 
 @inlined
@@ -260,17 +278,19 @@ def _begin(system, plan, loop):
     if fresh:
         count[SEGMENT] += 1
     changed, energy = on_rail(system.contact, system.rail_start, system.rail_end, loop.after, loop.engaged)
-    changed = _on_walls(system.walls, loop) or changed
+    left = _on_walls(system.walls, loop)
     loop.start[slot.RELEASED] += energy
     regripped, lost = _regrip(system, loop)
     loop.start[slot.FRICTION] += lost
     for i in range(loop.engaged.size):
         slot.copy(loop.after[i], loop.before[i], SURVEY_SIZE)
     slot.copy(loop.stages[STAGES - 1], loop.stages[0], slot.STATE_SIZE)
+    _release(system.walls, system, loop, left, 1.0)
     if felt(loop.after, loop.engaged, loop.active) or regripped:
         changed = True
         clock[RATE] = _fastest_rate(system, loop, loop.start, 0.0)
-    return changed or fresh or clock[SPAN] < 1.0
+    _release(system.walls, system, loop, left, -1.0)
+    return changed or left or fresh or clock[SPAN] < 1.0
 
 
 @kernel

@@ -39,15 +39,13 @@ if "NUMBA_OPT" not in os.environ:
 
 numba.config.CACHE_DIR = str(_cache_directory())
 
-# error_model="numpy": division by zero gives inf, which reaches the status check, instead of an exception inside a kernel. Nobody takes
-# the address of a kernel, so none needs the wrapper that C would call.
-njit = functools.partial(numba.njit, cache=True, error_model="numpy", nogil=True, no_cfunc_wrapper=True)
+# error_model="numpy": division by zero gives inf, which reaches the status check, instead of an exception inside a kernel.
+njit = functools.partial(numba.njit, cache=True, error_model="numpy", nogil=True)
 # For kernels that neither make nor return arrays: without reference counts, which cost more than the arithmetic where records of
 # arrays are handed from function to function, and half the time to compile.
 kernel = functools.partial(njit, _nrt=False)
-# The same for what innermost loops call with whole records: each call would copy some hundred words of array headers. Python cannot call
-# them: the code that takes records of Python's apart is often longer than the function, and was a sixth of the time to compile.
-inlined = functools.partial(kernel, forceinline=True, no_cpython_wrapper=True)
+# The same for what innermost loops call with whole records: each call would copy some hundred words of array headers.
+inlined = functools.partial(kernel, forceinline=True)
 
 
 def machine_code(kernel, arguments: tuple) -> bytes:

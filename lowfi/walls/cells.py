@@ -15,13 +15,15 @@ from lowfi.touch import penetration
 from lowfi.walls.record import BY_ETA, BY_XI, DEPTH, DRIFT, MIDDLE, SHIFT
 from scenes.jit import inlined, kernel
 
+LAST_STRIP = 0.01  # of half a face
 _EASED = 0.1  # in xi: where a pad comes to hang over an end, its place on the wall stops over so much way on either side
 
 
 @inlined
 def reaches(walls, face, middle):
-    """Whether any part of the face with its middle at X = ``middle`` (m) is over a wall."""
-    half = walls.half[face, 0]
+    """Whether the face with its middle at X = ``middle`` (m) is over a wall, by more than a last strip: what is left of a loaded face
+    there is so stiff that no step could follow it."""
+    half = walls.half[face, 0] * (1.0 - LAST_STRIP)
     return middle + half > walls.start and middle - half < walls.end
 
 
@@ -35,13 +37,13 @@ def take_lever(walls, faces, face, place, turn):
     lever[BY_ETA] = half[1] * (y * turn[5] + z * turn[7])  # a face along y is wide along z, and the other way round
     middle = place[0] + faces[face, 0]
     lever[MIDDLE] = middle
-    over_end, by_end = _eased((middle - walls.end) / half[0] + 1.0)
-    over_start, by_start = _eased((walls.start - middle) / half[0] + 1.0)
+    over_end, by_end = eased((middle - walls.end) / half[0] + 1.0)
+    over_start, by_start = eased((walls.start - middle) / half[0] + 1.0)
     lever[SHIFT], lever[DRIFT] = over_end - over_start, (by_end + by_start) / half[0]
 
 
 @inlined
-def _eased(over):
+def eased(over):
     """``over`` where above zero, else zero, with the corner rounded off, and its slope: a force along the rail goes with it."""
     if abs(over) >= _EASED:
         return max(over, 0.0), 1.0 if over > 0.0 else 0.0

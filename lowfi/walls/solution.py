@@ -8,8 +8,7 @@ last correction is exact. The displacement of the solution before is the first g
 
 import numpy as np
 
-from lowfi.walls.cells import press, reaches, take_lever
-from lowfi.walls.record import MIDDLE
+from lowfi.walls.cells import eased, press, take_lever
 from scenes.jit import inlined, kernel
 from scenes.walls import PATTERNS, POWERS
 
@@ -21,16 +20,14 @@ _XI, _ETA = POWERS.T.copy()
 
 @kernel
 def solve(walls, faces, rail, active, place, turn):
-    """Number of ``active`` (f,) faces over the walls of ``rail``; ``walls.room`` holds them in ``order``, with lever, displacement
-    and force."""
+    """Number of ``active`` (f,) faces on ``rail``; ``walls.room`` holds them in ``order``, with lever, displacement and force."""
     room, count = walls.room, 0
     for slot in range(walls.members.shape[1]):
         face = walls.members[rail, slot]
         if face >= 0 and active[face]:
             take_lever(walls, faces, face, place, turn)
-            if reaches(walls, face, room.lever[face, MIDDLE]):
-                room.order[count] = face
-                count += 1
+            room.order[count] = face
+            count += 1
     if count > 0:
         take_flexibility(walls, count, place[0] + faces[0, 0])
         for correction in range(_MOST):
@@ -42,18 +39,22 @@ def solve(walls, faces, rail, active, place, turn):
 
 @inlined
 def between_stations(walls, place):
-    """Number of the station before X = ``place`` (m) of the first face, and the way (m) from it, inside the table."""
-    way = min(max(place - walls.origin, 0.0), walls.spacing * walls.cubic.shape[0])
+    """Number of the station before X = ``place`` (m) of the first face, the way (m) from it, inside the table, and by how much that
+    changes with the place: at the last station it stops as the places of pads on the wall do at the end of the rail."""
+    half = walls.half[0, 0]
+    over, rate = eased((place - walls.origin - walls.spacing * walls.cubic.shape[0]) / half)
+    way, changes = place - walls.origin - half * over, 1.0 - rate
+    if way < 0.0:
+        way, changes = 0.0, 0.0
     station = min(int(way / walls.spacing), walls.cubic.shape[0] - 1)
-    return station, way - station * walls.spacing
+    return station, way - station * walls.spacing, changes
 
 
 @kernel
 def take_flexibility(walls, count, place):
     """Fill flexibility and slope between the first ``count`` faces in order."""
     room = walls.room
-    station, s = between_stations(walls, place)
-    changes = 1.0 if 0.0 < place - walls.origin < walls.spacing * walls.cubic.shape[0] else 0.0  # beyond, all stays as it is
+    station, s, changes = between_stations(walls, place)
     for i in range(count):
         for j in range(count):
             block = walls.cubic[station, room.order[i], room.order[j]]
@@ -141,7 +142,7 @@ def eliminate(matrix, right, size, columns):
 def follow(walls, face, place, count, out):
     """Fill ``out`` (p,) with the displacement of the wall under a face that may not press, by the ``count`` faces solved for."""
     room = walls.room
-    station, s = between_stations(walls, place)
+    station, s, _ = between_stations(walls, place)
     for a in range(PATTERNS):
         out[a] = 0.0
         for j in range(count):

@@ -1,12 +1,17 @@
 """Which faces press walls that give way, how deep, and which of them are over a wall at all."""
 
+import numpy as np
+
 from lowfi import state as slot
 from lowfi.system import NORMAL_Y, NORMAL_Z
 from lowfi.touch import approach, relative_motion, relative_pose
-from lowfi.walls.cells import deepest, reaches, take_lever
-from lowfi.walls.record import MIDDLE
+from lowfi.walls.cells import LAST_STRIP, deepest, reaches, take_lever
+from lowfi.walls.loads import energy as energy_of_rail
+from lowfi.walls.record import MIDDLE, SHIFT
 from lowfi.walls.solution import follow, solve
 from scenes.jit import inlined, kernel
+
+_THERE = 1e-9  # m, how far beyond its aim a step goes
 
 
 @kernel
@@ -24,7 +29,7 @@ def _deepest(walls, faces, face, count, active, place, turn):
     if not active[face]:
         take_lever(walls, faces, face, place, turn)
     displacement = walls.room.displacement[face]
-    if not (active[face] and reaches(walls, face, walls.room.lever[face, MIDDLE])):
+    if not active[face]:
         follow(walls, face, place[0] + faces[0, 0], count, displacement)
     return deepest(walls, face, displacement)
 
@@ -53,6 +58,38 @@ def survey(walls, faces, platform, payload, active, state, columns, out):
                 out[face, mode], out[face, penetration] = pressing if p > 0.0 else open_, p
                 out[face, closing] = _approach(walls, faces, face, xi, eta, drift, swing)
                 out[face, along] = walls.room.lever[face, MIDDLE]
+
+
+@kernel
+def while_hanging(walls, faces, platform, payload, active, state):
+    """Longest step (s) where an ``active`` face (f,) comes to an end of the rail. The rate at which it leaves energy behind jumps as it
+    begins to hang over and bends with every row of cells that leaves, which no error estimate sees; and its last strip leaves at once.
+    So a step goes no farther than up to either, and a quarter of a cell at most."""
+    body, base = slot.motion(payload.mass, payload.inverse_inertia, state, slot.PAYLOAD), slot.frame(platform, state)
+    place, turn = relative_pose(platform, body, base)
+    drift, _ = relative_motion(platform, body, base, place, turn)
+    longest = np.inf
+    for face in range(active.size):
+        if active[face]:
+            take_lever(walls, faces, face, place, turn)
+            half, middle = walls.half[face, 0], walls.room.lever[face, MIDDLE]
+            ahead = walls.end - middle if drift[0] > 0.0 else middle - walls.start
+            way = np.inf if walls.room.lever[face, SHIFT] == 0.0 else 0.5 * half / walls.node.size
+            for to in (ahead - half, ahead + half * (1.0 - LAST_STRIP)):
+                way = min(way, to + _THERE) if to > 0.0 else way
+            longest = min(longest, way / abs(drift[0]))
+    return longest
+
+
+@kernel
+def energy(walls, faces, platform, payload, active, state):
+    """Energy (J) in all walls under the ``active`` faces (f,)."""
+    body, base = slot.motion(payload.mass, payload.inverse_inertia, state, slot.PAYLOAD), slot.frame(platform, state)
+    place, turn = relative_pose(platform, body, base)
+    total = 0.0
+    for rail in range(walls.members.shape[0]):
+        total += energy_of_rail(walls, solve(walls, faces, rail, active, place, turn))
+    return total
 
 
 @inlined

@@ -168,8 +168,9 @@ def test_no_step_above_the_proven_limit():
 
 @pytest.mark.parametrize("condition", ["phi0", "h7", "h9"])
 def test_no_touch_is_missed(condition):
-    """Narrow gaps and long steps: a pad that touches late in the step in which it leaves, or only with an edge, is felt as in short steps."""
+    """Narrow gaps and long steps: a pad that touches late in the step in which it leaves, or only with an edge, is felt as in short steps.
+    A touch that is missed is worth degrees; the error of the steps, on h7 grown by ten touches, hundredths."""
     asked = load("sensitive").condition(condition)
     long, short = (lowfi.run(asked, numerics=Numerics(relative_tolerance=tolerance), walls=reference_walls()) for tolerance in (2e-7, 1e-9))
     assert long.cost["steps"] < 0.4 * short.cost["steps"]
-    assert np.degrees(long.outcome.rate) == pytest.approx(np.degrees(short.outcome.rate), abs=0.02)
+    assert np.degrees(long.outcome.rate) == pytest.approx(np.degrees(short.outcome.rate), abs=0.1)
