@@ -73,7 +73,7 @@ def _speed(agreement: dict) -> str:
 
 
 def _cost(found: dict) -> str:
-    lines = [f"What the same accuracy costs (`make cost`, {found['condition']}): the best of each surrogate, and the coarsest mesh no less exact.", "",
+    lines = [f"What the same accuracy costs (`make cost`, {found['condition']}): each surrogate, and the coarsest mesh that is no less exact.", "",
              "| model | error, deg/s | wall time, ms | mesh | its error, deg/s | wall time, s | times as long |", "|---|---|---|---|---|---|---|"]
     for row in found["matched"]:
         exact = "the yardstick" if row["mesh_error_deg_s"] is None else _number(row["mesh_error_deg_s"])

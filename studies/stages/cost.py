@@ -69,19 +69,22 @@ def _surrogate_points(study: Study, name: str, rung: Rung, finest: Trajectory) -
 
 
 def matched(points: list[dict]) -> list[dict]:
-    """For the best point of each surrogate: the cheapest mesh that is as exact, and how many times longer it takes. The finest mesh, the
-    yardstick, is as exact as anything can be told to be."""
+    """For each surrogate: the cheapest mesh that is as exact, and how many times longer it takes. A surrogate's error is that at its
+    tightest tolerance, for errors of the steps may cancel it by luck; its time that of the loosest one that adds no tenth to it. The
+    finest mesh, the yardstick, is as exact as anything can be told to be."""
     meshes = [point for point in points if point["model"] == FINITE_ELEMENTS]
     found = []
     for model in dict.fromkeys(point["model"] for point in points if point["model"] != FINITE_ELEMENTS):
         known = [point for point in points if point["model"] == model and point["error_deg_s"] is not None]
         if known:
-            best = min(known, key=lambda point: (point["error_deg_s"], point["wall_s"]))
-            as_exact = [mesh for mesh in meshes if (mesh["error_deg_s"] or 0.0) <= best["error_deg_s"]]
+            error = min(known, key=lambda point: point["setting"])["error_deg_s"]
+            enough = [point for point in known if (point["integration_error_deg_s"] or 0.0) <= 0.1 * error]
+            point = min(enough, key=lambda point: point["wall_s"])
+            as_exact = [mesh for mesh in meshes if (mesh["error_deg_s"] or 0.0) <= error]
             mesh = min(as_exact, key=lambda point: point["wall_s"])
-            found.append({"model": model, "numerics": best["numerics"], "error_deg_s": best["error_deg_s"], "wall_s": best["wall_s"],
+            found.append({"model": model, "numerics": point["numerics"], "error_deg_s": error, "wall_s": point["wall_s"],
                           "mesh": mesh["numerics"], "mesh_error_deg_s": mesh["error_deg_s"], "mesh_wall_s": mesh["wall_s"],
-                          "ratio": mesh["wall_s"] / best["wall_s"]})
+                          "ratio": mesh["wall_s"] / point["wall_s"]})
     return found
 
 

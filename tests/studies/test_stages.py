@@ -65,6 +65,20 @@ def test_pareto_front():
     assert [point["pareto"] for point in cost.marked(points)] == [True, True, False, False]
 
 
+def test_matched_meshes():
+    """An error that a loose tolerance hides by luck does not count, nor the time of one that spoils the model."""
+    def point(model, setting, error, integration, wall):
+        return {"model": model, "setting": setting, "numerics": f"{setting:g}", "error_deg_s": error, "integration_error_deg_s": integration,
+                "wall_s": wall}
+
+    meshes = [point(cost.FINITE_ELEMENTS, *rest) for rest in ((8.0, 0.07, None, 3.0), (4.0, 0.02, None, 6.0), (2.0, None, None, 40.0))]
+    lucky = [point("lucky", *rest) for rest in ((1e-2, 0.001, 0.04, 0.001), (1e-4, 0.031, 0.001, 0.002), (1e-8, 0.03, None, 0.004))]
+    exact = [point("exact", *rest) for rest in ((1e-4, 0.011, 0.001, 0.002), (1e-8, 0.01, None, 0.004))]
+    first, second = cost.matched([*meshes, *lucky, *exact])
+    assert (first["error_deg_s"], first["numerics"], first["mesh"], first["ratio"]) == (0.03, "0.0001", "4", 3000.0)
+    assert (second["error_deg_s"], second["numerics"], second["mesh"], second["mesh_error_deg_s"]) == (0.01, "0.0001", "2", None)
+
+
 def test_closed_gap_is_only_opened(tmp_path):
     study = Study(scenes.load("tiny").replace({"contact.clearance": 0.0}), tmp_path, Settings())
     assert compare.clearances(study) == [("plus", 1e-6)]
