@@ -24,7 +24,8 @@ def agreement(document: dict) -> Html:
               "and Geers over the three rates together.")
     calibrated = [*document["fitted"], *document["held_out"]]
     return section("agreement-section", "Agreement with the reference",
-                   paragraph("On walls that give way as the statics of the rail has them, nothing fitted: " + _summary(document, "compliant")),
+                   paragraph("On walls that give way as the statics of the rail has them, nothing fitted (the role is that of the condition in "
+                             "the calibration of the other surrogates): " + _summary(document, "compliant")),
                    _judged(heads, document["compliant"], "agreement"), caption(legend), _further(document["compliant"]), _simpler(document),
                    paragraph("One spring and damper per pad face, calibrated on the fitted conditions: " + _summary(document, "fitted")
                              + "; " + _summary(document, "held_out")),
