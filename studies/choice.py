@@ -50,9 +50,9 @@ def _refusal(points: list[dict], accuracy: float | None, budget: float | None) -
     in_time = [point for point in points if _within(point["wall_s"], budget)]
     exact = [point for point in points if _within(point["trusted_deg_s"], accuracy)]
     if in_time:
-        nearest.append("most exact in that time: " + words(min(in_time, key=lambda p: (p["trusted_deg_s"], p["wall_s"]))))
+        nearest.append(("most exact of all: " if budget is None else "most exact in that time: ") + words(min(in_time, key=lambda p: (p["trusted_deg_s"], p["wall_s"]))))
     if exact:
-        nearest.append("cheapest that is so exact: " + words(min(exact, key=lambda p: p["wall_s"])))
+        nearest.append(("fastest of all: " if accuracy is None else "cheapest that is so exact: ") + words(min(exact, key=lambda p: p["wall_s"])))
     if not nearest:
         nearest = ["most exact of all: " + words(min(points, key=lambda p: p["trusted_deg_s"])),
                    "fastest of all: " + words(min(points, key=lambda p: p["wall_s"]))] if points else ["no model settled"]

@@ -48,6 +48,13 @@ def test_refusal_names_the_nearest(study):
     assert "cheapest that is so exact: compliant, - (0.05 deg/s, 0.003 s)" in str(fault.value)
 
 
+def test_refusal_of_one_limit_names_the_best_there_is(study):
+    with pytest.raises(StudyError, match="most exact of all: compliant fine, - "):
+        choose(study, accuracy=0.01)
+    with pytest.raises(StudyError, match="fastest of all: rigid, - "):
+        choose(study, budget=0.0015)
+
+
 def test_cost_of_another_scene_is_none(study):
     with pytest.raises(StudyError, match="tipoff cost --scene tiny"):
         choose(Study(study.scene.replace({"payload.mass": "8 kg"}), study.folder, Settings()), 0.1)
