@@ -1,14 +1,15 @@
 """Which model answers a question: the cheapest that reached an accuracy, or the most accurate within a time, as measured.
 
-A point of ``cost.json`` counts with its error against the finest mesh and the uncertainty of that mesh, of which the larger is what it
-can be trusted to; the finest mesh itself with its uncertainty.
+A point of ``cost.json`` counts with its error against the finest mesh and the uncertainty of that mesh, of which the larger is
+what it can be trusted to; the finest mesh itself with its uncertainty.
 """
 
 from studies.study import Study, StudyError, read
 
 
 def choose(study: Study, accuracy: float | None = None, budget: float | None = None) -> dict:
-    """The point of ``cost.json``, with ``trusted_deg_s`` and ``why`` in words, for an error of the settled rates of at most ``accuracy`` (deg/s) and a wall time of at most ``budget`` (s).
+    """The point of ``cost.json``, with ``trusted_deg_s`` and ``why`` in words, for an error of the settled rates of at most ``accuracy``
+    (deg/s) and a wall time of at most ``budget`` (s).
 
     Raises StudyError where nothing was measured for this scene, or where no model fits, with the nearest that does.
     """
@@ -50,9 +51,11 @@ def _refusal(points: list[dict], accuracy: float | None, budget: float | None) -
     in_time = [point for point in points if _within(point["wall_s"], budget)]
     exact = [point for point in points if _within(point["trusted_deg_s"], accuracy)]
     if in_time:
-        nearest.append(("most exact of all: " if budget is None else "most exact in that time: ") + words(min(in_time, key=lambda p: (p["trusted_deg_s"], p["wall_s"]))))
+        best = min(in_time, key=lambda point: (point["trusted_deg_s"], point["wall_s"]))
+        nearest.append(("most exact of all: " if budget is None else "most exact in that time: ") + words(best))
     if exact:
-        nearest.append(("fastest of all: " if accuracy is None else "cheapest that is so exact: ") + words(min(exact, key=lambda p: p["wall_s"])))
+        best = min(exact, key=lambda point: point["wall_s"])
+        nearest.append(("fastest of all: " if accuracy is None else "cheapest that is so exact: ") + words(best))
     if not nearest:
         nearest = ["most exact of all: " + words(min(points, key=lambda p: p["trusted_deg_s"])),
                    "fastest of all: " + words(min(points, key=lambda p: p["wall_s"]))] if points else ["no model settled"]
