@@ -1,6 +1,7 @@
 """Static compliance of the rail walls along the track of the pads, from the stiffness of the reference.
 
-    C_iajb = 1/(A_i A_j) integral over faces i and j of phi_a n_i . K^-1 . n_j phi_b,    F = G_i^-1 C_ij G_j^-1,   G_i = 1/A_i integral phi_a phi_b dA
+    C_iajb = 1/(A_i A_j) integral over faces i and j of phi_a n_i . K^-1 . n_j phi_b
+    F_ij = G_i^-1 C_ij G_j^-1,   G_i = 1/A_i integral phi_a phi_b dA
 
 C is the displacement of the wall under pad face i, averaged with pattern a, caused by the pressure pattern b under face j: with the
 pattern 1 the mean displacement under a unit force. F is the flexibility of ``scenes.walls``: displacement and pressure are both

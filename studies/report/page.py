@@ -33,7 +33,8 @@ class Page:
         """The whole page; writes every figure as PNG on the way."""
         from plotly.offline import get_plotlyjs
 
-        body = "".join([self._answer(), self._scene(), self._mesh(), self._compliance(), self._thrust(), self._curves(), self._contact(), self._energy(), self._stress(),
+        body = "".join([self._answer(), self._scene(), self._mesh(), self._compliance(), self._thrust(), self._curves(),
+                        self._contact(), self._energy(), self._stress(),
                         self._of("calibration", "calibration", "Calibration", tables.calibration, "calibrate"),
                         self._of("agreement", "agreement-section", "Agreement with the reference", tables.agreement, "compare"),
                         self._of("agreement", "speedup", "Speed", tables.speedups, "compare"),
@@ -162,7 +163,8 @@ class Page:
     def _cost(self, found: dict) -> Html:
         return section("cost", "What accuracy costs", self._figure(
             figures.cost_picture(found), f"Condition {found['condition']}. Error against the finest finite-element mesh, whose own "
-            "uncertainty is the band: an error inside it cannot be told from zero. Right: what a tighter tolerance can still buy. Labels: element size, tolerance."), tables.cost(found))
+            "uncertainty is the band: an error inside it cannot be told from zero. Right: what a tighter tolerance can still buy. Labels: element size, "
+            "tolerance."), tables.cost(found))
 
     def _bench(self) -> Html:
         """Both solvers against the loops one would write today, where a benchmark was run."""

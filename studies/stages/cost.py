@@ -20,7 +20,8 @@ FINITE_ELEMENTS = "finite elements"
 
 
 def run(study: Study) -> dict:
-    """``points``: model, rung, numerics, setting (element size in m or relative tolerance), error_deg_s, wall_s, pareto; ``band_deg_s``: uncertainty of the yardstick; ``matched``."""
+    """``points``: model, rung, numerics, setting (element size in m or relative tolerance), error_deg_s, wall_s, pareto;
+    ``band_deg_s``: uncertainty of the yardstick; ``matched``."""
     name = (study.scene.agreement.refined or study.fitted())[0]
     ladder = surrogates(study)
 
@@ -62,7 +63,8 @@ def _surrogate_points(study: Study, name: str, rung: Rung, finest: Trajectory) -
     warm_up(asked[0])
     measured = [[timed(run) for _ in range(study.settings.lowfi_repeats)] for run in asked]
     runs = [repeats[0][0] for repeats in measured]
-    return [{"model": rung.title, "rung": rung.name, "setting": tolerance, "numerics": f"tolerance {tolerance:g}", "error_deg_s": agreement.settled_change(finest, found),
+    return [{"model": rung.title, "rung": rung.name, "setting": tolerance, "numerics": f"tolerance {tolerance:g}",
+             "error_deg_s": agreement.settled_change(finest, found),
              "integration_error_deg_s": agreement.settled_change(runs[0], found) if found is not runs[0] else None,
              "wall_s": statistics.median(wall for _, wall, _ in repeats), "status": found.status}
             for tolerance, found, repeats in reversed(list(zip(tolerances, runs, measured)))]
