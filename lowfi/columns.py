@@ -7,13 +7,14 @@ import numpy as np
 from lowfi.batch import Case
 
 STATUSES = ("exited", "time_limit", "jammed", "diverged", "refused")  # a status is stored as its place in this list
-UNITS = {"exit_time": "s", "velocity": "m/s", "rate": "rad/s", "lateral_velocity": "m/s", "direction_error": "rad"}
-VECTORS = ("velocity", "rate")
+UNITS = {"exit_time": "s", "velocity": "m/s", "rate": "rad/s", "lateral_velocity": "m/s", "direction_error": "rad",
+         "exit_attitude": "rad"}
+VECTORS = ("velocity", "rate", "exit_attitude")
 
 
 class Columns(NamedTuple):
     """``status`` (n,) as a place in STATUSES, exit_time (n,) s, velocity (n,3) m/s, rate (n,3) rad/s, lateral_velocity (n,) m/s,
-    direction_error (n,) rad, NaN in cases that did not settle, and ``steps`` (n,)."""
+    direction_error (n,) rad, exit_attitude (n,3) rad as a rotation vector, NaN in cases that did not settle, and ``steps`` (n,)."""
 
     status: np.ndarray
     exit_time: np.ndarray
@@ -21,6 +22,7 @@ class Columns(NamedTuple):
     rate: np.ndarray
     lateral_velocity: np.ndarray
     direction_error: np.ndarray
+    exit_attitude: np.ndarray
     steps: np.ndarray
 
 

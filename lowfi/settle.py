@@ -21,9 +21,9 @@ from scenes.jit import inlined, kernel
 
 # What became of a case.
 LEFT_OPEN, EXITED, TIME_LIMIT = range(3)
-# Columns of the results: status, exit (s), start of the window (s), mean velocity (m/s) and rate (rad/s), counts.
-STATUS, EXIT, WINDOW, VELOCITY, RATE, TAKEN_STEPS, RIGHT_HAND_SIDES = 0, 1, 2, 3, 6, 9, 10
-RESULT_SIZE = 11
+# Columns of the results: status, exit (s), start of the window (s), mean velocity (m/s) and rate (rad/s), quaternion at exit, counts.
+STATUS, EXIT, WINDOW, VELOCITY, RATE, ATTITUDE, TAKEN_STEPS, RIGHT_HAND_SIDES = 0, 1, 2, 3, 6, 9, 13, 14
+RESULT_SIZE = 15
 ROW_SIZE = 26  # payload and platform: place, velocity, quaternion, rate
 _NEAR = outcome.AROUND
 _CLEARLY = 1.0 + 1e-6  # beyond the threshold by more than any rounding
@@ -156,6 +156,7 @@ def _one(system, plan, tolerance, ends, edges, loop, room, result):
         number += 1
     first = last - every * (stored - 1)
     exit_at = _exit(system, edges, exit_rows[:kept], past - _NEAR, _NEAR, interval, columns, room.slopes)
+    slot.copy(exit_rows[_NEAR, slot.QUATERNION:], result[ATTITUDE:], 4)
     return _judge(exit_at, max(exit_at + outcome.SETTLE_DELAY, ends.settled_thrust), first, every, room.window[:stored], interval, columns,
                   room.slopes, result)
 

@@ -197,15 +197,8 @@ def judge(motion, marks: Milestones) -> tuple[str, Outcome]:
                              mean(motion.time, motion.rate, start, end), motion.quaternion[index])
 
 
-def settled(exit_at: float, start: float, velocity: np.ndarray, rate: np.ndarray, attitude: np.ndarray | None = None) -> Outcome:
-    """Outcome of an exit at ``exit_at`` (s) with these means over the window from ``start`` (s), and the quaternion at exit if known."""
+def settled(exit_at: float, start: float, velocity: np.ndarray, rate: np.ndarray, attitude: np.ndarray) -> Outcome:
+    """Outcome of an exit at ``exit_at`` (s) with these means over the window from ``start`` (s), and the quaternion at exit."""
     lateral = float(np.hypot(velocity[1], velocity[2]))
     return Outcome(exit_at, start, velocity.tolist(), rate.tolist(), lateral, float(np.arctan2(lateral, velocity[0])),
-                   None if attitude is None else _rotation_vector(attitude))
-
-
-def _rotation_vector(q: np.ndarray) -> list[float]:
-    q = q if q[0] >= 0.0 else -q
-    sine = float(np.linalg.norm(q[1:]))
-    factor = 2.0 if sine < 1e-12 else 2.0 * np.arctan2(sine, q[0]) / sine
-    return (factor * q[1:]).tolist()
+                   rotation.vector(attitude.tolist()))

@@ -4,6 +4,8 @@ A matrix is nine numbers row by row. ``step`` advances a quaternion by a constan
 ``q <- exp(dt w / 2) q`` with w in inertial axes.
 """
 
+import math
+
 import numpy as np
 
 from scenes.jit import njit
@@ -87,6 +89,14 @@ def angular_velocity(m, inverse_inertia, momentum):
          j[1, 0] * b[0] + j[1, 1] * b[1] + j[1, 2] * b[2],
          j[2, 0] * b[0] + j[2, 1] * b[1] + j[2, 2] * b[2])
     return rotate(m, w)
+
+
+def vector(q) -> list[float]:
+    """Rotation vector (3,) rad, at most pi long, of the unit quaternion ``q``."""
+    w, x, y, z = q if q[0] >= 0.0 else [-part for part in q]
+    sine = math.hypot(x, y, z)
+    factor = 2.0 if sine < 1e-12 else 2.0 * math.atan2(sine, w) / sine
+    return [factor * x, factor * y, factor * z]
 
 
 def crosses(a: np.ndarray, b: np.ndarray) -> np.ndarray:

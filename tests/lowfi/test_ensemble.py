@@ -45,7 +45,7 @@ def test_same_bits_as_single_runs(rows):
         alone = lowfi.run(base.replace(row))
         case = found.isel(case=index)
         assert (str(case.status.values), str(case.message.values), int(case.steps)) == (alone.status, alone.message, alone.cost["steps"])
-        for name in ("rate", "velocity", "exit_time", "lateral_velocity", "direction_error"):
+        for name in ("rate", "velocity", "exit_time", "lateral_velocity", "direction_error", "exit_attitude"):
             expected = getattr(alone.outcome, name)
             assert np.array_equal(case[name].values, np.nan * case[name].values if expected is None else expected, equal_nan=True), (row, name)
 

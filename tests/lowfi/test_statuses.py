@@ -55,6 +55,6 @@ def test_tables_of_runs_hold_none_either():
     rows = [overrides for name, (overrides, numerics) in ENDS.items() if not numerics]
     found = lowfi.run_many(BASE, rows)
     assert found.status.values.tolist() == ["exited", "time_limit", "jammed", "diverged"]
-    for name in ("rate", "velocity", "exit_time", "lateral_velocity", "direction_error"):
+    for name in ("rate", "velocity", "exit_time", "lateral_velocity", "direction_error", "exit_attitude"):
         values = found[name].values
         assert np.isfinite(values[0]).all() and np.isnan(values[1:]).all(), name

@@ -81,3 +81,10 @@ def test_angular_velocity():
 def test_arrays_of_matrices():
     turns = Rotation.random(50, rng=np.random.default_rng(6))
     assert np.allclose(rotation.matrices(turns.as_quat(scalar_first=True)), turns.as_matrix(), atol=1e-15)
+
+
+@pytest.mark.parametrize("turn", [(0.0, 0.0, 0.0), (1e-14, -2e-14, 0.0), (0.3, -0.4, 1.2), (0.0, 0.0, -3.1)])
+def test_rotation_vector_is_the_inverse_of_the_exponential(turn):
+    q = np.array(rotation.exponential(turn))
+    assert rotation.vector(q) == pytest.approx(turn, rel=1e-13, abs=1e-300)
+    assert rotation.vector(-q) == pytest.approx(turn, rel=1e-13, abs=1e-300)  # the same attitude
