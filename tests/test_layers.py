@@ -168,7 +168,7 @@ def test_lock_holds_every_dependency():
     """The project is installed with --no-deps, so what the lock forgets is missing in a fresh clone."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
     extras = project["optional-dependencies"]
-    asked = project["dependencies"] + extras["test"] + extras["ensemble"] + extras["cluster"]
+    asked = project["dependencies"] + extras["test"] + extras["ensemble"] + extras["studies"] + extras["cluster"]
     pinned = set(re.findall(r"^([A-Za-z0-9_.-]+)==", (ROOT / "requirements.lock").read_text(), re.MULTILINE))
     normal = {re.sub(r"[-_.]+", "-", name).lower() for name in pinned}
     assert {re.match(r"[A-Za-z0-9_.-]+", name).group().lower() for name in asked} <= normal
