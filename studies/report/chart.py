@@ -1,4 +1,4 @@
-"""A figure described once and drawn twice: with plotly for the page, with matplotlib for a PNG.
+"""A figure described once and drawn twice: with plotly for the page, with matplotlib for PNG and SVG.
 
 Colours differ in lightness, and models differ in width and dash, so that figures read in grey and on paper.
 """
@@ -15,6 +15,7 @@ from scenes.files import replacing
 NAVY, VERMILION, AMBER, TEAL, GREY = "#1d3461", "#d1495b", "#e8a33d", "#2e8b7a", "#7a7f87"
 AXIS_COLOURS = {"x": NAVY, "y": VERMILION, "z": AMBER}
 _POINTS = 500  # kept of each line on the page
+_VECTORS = 5000  # points of a line in an SVG, beyond which it holds a picture of them
 _GAP = 106.0  # px between rows: an axis label, and the title below it
 _FONT = 'system-ui, "Segoe UI", Roboto, "Liberation Sans", sans-serif'
 _INK, _RULE = "#24292f", "#e3e6ea"
@@ -24,8 +25,7 @@ _PLOTLY_MARKER = {"o": "circle", "s": "square", "^": "triangle-up", "v": "triang
 
 @dataclass(frozen=True)
 class Line:
-    """One curve (x, y); ``dash`` as in matplotlib, "" for markers only; ``marker`` "o", "s", "^", "v", "D" or "". ``group`` shares a
-    legend entry; ``labels`` are texts at the points."""
+    """One curve (x, y); ``dash`` as in matplotlib, "" for markers only; ``marker`` "o", "s", "^", "v", "D" or ""; ``labels`` are texts at the points, ``size`` that of a marker (px)."""
 
     x: Sequence[float]
     y: Sequence[float]
@@ -37,6 +37,7 @@ class Line:
     marker: str = ""
     legend: bool = True
     labels: tuple[str, ...] = ()
+    size: float = 9.0
 
 
 @dataclass(frozen=True)
@@ -83,7 +84,7 @@ def to_html(chart: Chart) -> str:
                 x=x, y=y, name=line.name, legendgroup=line.name, opacity=line.opacity, text=list(line.labels) or None,
                 showlegend=line.legend and line.name not in shown, mode=_mode(line), textposition="top center",
                 line={"color": line.colour, "width": line.width, "dash": _PLOTLY_DASH[line.dash]},
-                marker={"symbol": _PLOTLY_MARKER[line.marker], "size": 9}),
+                marker={"symbol": _PLOTLY_MARKER[line.marker], "size": line.size}),
                 **place)
             shown |= {line.name} if line.legend else set()
         x_kind, y_kind = map(_log_axis, _limits(panel)) if panel.log else ({}, {})
@@ -106,20 +107,19 @@ def to_html(chart: Chart) -> str:
                           config={"displayModeBar": False, "responsive": True})
 
 
-def to_png(chart: Chart, path: Path) -> None:
-    """Draw the same with matplotlib, atomically."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
+def to_files(chart: Chart, folder: Path) -> list[Path]:
+    """Draw the same with matplotlib as PNG and SVG files called after the chart; their paths."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(4.1 * chart.columns + 1.4 if chart.columns > 1 else 8.0, chart.height / 96.0 * chart.rows + 0.9),
                     dpi=130, layout="constrained")
-    FigureCanvasAgg(figure)
     handles = {}
     for index, panel in enumerate(chart.panels):
         axes = figure.add_subplot(chart.rows, chart.columns, index + 1)
         for line in panel.lines:
             handle, = axes.plot(line.x, line.y, color=line.colour, linewidth=0.75 * line.width, linestyle=line.dash or "none",
-                                alpha=line.opacity, marker=line.marker or None, markersize=6)
+                                alpha=line.opacity, marker=line.marker or None, markersize=line.size * 2.0 / 3.0,
+                                rasterized=len(line.x) > _VECTORS)
             if line.legend:
                 handles.setdefault(line.name, handle)
             for x, y, label in zip(line.x, line.y, line.labels):
@@ -128,8 +128,19 @@ def to_png(chart: Chart, path: Path) -> None:
     if len(handles) > 1:
         figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=min(len(handles), 4), frameon=False,
                       fontsize=9)
-    with replacing(path) as temporary:
-        figure.savefig(temporary, format="png")
+    return save(figure, folder / chart.name)
+
+
+def save(figure, stem: Path) -> list[Path]:
+    """Write a figure of matplotlib to ``stem``.png and ``stem``.svg, each in one piece and the same bytes every time; their paths."""
+    import matplotlib
+
+    paths = [stem.with_name(f"{stem.name}.{kind}") for kind in ("png", "svg")]
+    with matplotlib.rc_context({"svg.hashsalt": stem.name}):
+        for path in paths:
+            with replacing(path) as temporary:
+                figure.savefig(temporary, format=path.suffix[1:], metadata={"Date": None} if path.suffix == ".svg" else None)
+    return paths
 
 
 def _dress(axes, panel: Panel) -> None:

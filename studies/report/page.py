@@ -8,8 +8,8 @@ from pathlib import Path
 from scenes.scene import Scene
 from scenes.trajectory import versions
 from studies import machine
-from studies.report import compliance, convergence, figures, inputs, stress, tables
-from studies.report.chart import Chart, to_html, to_png
+from studies.report import answers, compliance, convergence, figures, inputs, stress, tables
+from studies.report.chart import Chart, to_files, to_html
 from studies.report.figures import Runs
 from studies.report.markup import Html, caption, code, number, paragraph, section, table
 from studies.report.promises import promises, render
@@ -18,8 +18,8 @@ from studies.report.style import CSS
 _CONTENTS = (("answer", "Answer"), ("scene", "Scene"), ("mesh", "Mesh"), ("compliance", "Compliance"), ("thrust", "Thrust"), ("figure6", "Curves"),
              ("contact-forces", "Contact"), ("energy", "Energy"), ("stress", "Stress"), ("calibration", "Calibration"),
              ("agreement-section", "Agreement"), ("speedup", "Speed"), ("cost", "Cost"), ("convergence", "Convergence"),
-             ("bench", "Solvers"), ("stability", "Hard cases"),
-             ("ablation", "Ablation"), ("promises", "Promises"), ("colophon", "Origin"))
+             ("bench", "Solvers"), ("stability", "Hard cases"), ("ablation", "Ablation"),
+             *((item.name, item.link) for item in answers.ANSWERS), ("promises", "Promises"), ("colophon", "Origin"))
 
 
 class Page:
@@ -30,7 +30,7 @@ class Page:
         self.pictures: list[Path] = []
 
     def render(self) -> str:
-        """The whole page; writes every figure as PNG on the way."""
+        """The whole page; writes every figure as PNG and SVG on the way."""
         from plotly.offline import get_plotlyjs
 
         body = "".join([self._answer(), self._scene(), self._mesh(), self._compliance(), self._thrust(), self._curves(),
@@ -41,7 +41,7 @@ class Page:
                         self._of("cost", "cost", "What accuracy costs", self._cost, "cost"), self._convergence(), self._bench(),
                         self._of("stability", "stability", "Hard cases", tables.stability, "stability"),
                         self._of("ablation", "ablation", "Only what the scene calls for", tables.ablation, "ablation"),
-                        render(promises(self._rows(), self.documents)), self._colophon()])
+                        *map(self._study, answers.ANSWERS), render(promises(self._rows(), self.documents)), self._colophon()])
         links = "".join(f'<a href="#{name}">{title}</a>' for name, title in _CONTENTS if f'id="{name}"' in body)
         title = f"tipoff: {escape(self.scene.name)}"
         return (f'<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{title}</title>'
@@ -53,15 +53,17 @@ class Page:
         found = self.documents.get(stage)
         return draw(found) if found else section(identity, title, self._missing(stage, target))
 
+    def _study(self, answer: answers.Answer) -> Html:
+        found = self.documents.get(answer.name)
+        return section(answer.name, answer.title, answer.draw(found, self._figure) if found else self._missing(answer.name, answer.name))
+
     def _missing(self, stage: str, target: str) -> Html:
         if reason := self.problems.get(stage):
             return Html(f'<div class="notice">{escape(reason)}</div>')
         return Html(f'<div class="absent">Not made yet: {code(f"make {target} SCENE={self.scene.name}")} makes it.</div>')
 
     def _figure(self, chart: Chart, words: str) -> Html:
-        path = self.folder / "figures" / f"{chart.name}.png"
-        to_png(chart, path)
-        self.pictures.append(path)
+        self.pictures += to_files(chart, self.folder / "figures")
         return Html(to_html(chart) + caption(words))
 
     def _rows(self) -> dict[str, list[dict]]:

@@ -7,7 +7,7 @@ import pytest
 
 import scenes
 from studies.report import figures, inputs, tables
-from studies.report.chart import Chart, Line, Panel, to_html, to_png
+from studies.report.chart import Chart, Line, Panel, to_files, to_html
 from studies.report.figures import Runs
 from studies.report.markup import number, table
 from studies.report.page import Page
@@ -58,8 +58,10 @@ def test_chart_is_drawn_twice(tmp_path):
                                   (2e-3, "band"))], columns=2)
     html = to_html(chart)
     assert 'id="chart-twice"' in html and "square" in html and len(html) < 60_000
-    to_png(chart, tmp_path / "twice.png")
-    assert (tmp_path / "twice.png").read_bytes()[:4] == b"\x89PNG"
+    png, svg = to_files(chart, tmp_path)
+    drawn = svg.read_bytes()
+    assert png.read_bytes()[:4] == b"\x89PNG" and b"<svg" in drawn
+    assert to_files(chart, tmp_path)[1].read_bytes() == drawn
 
 
 def test_page_of_a_reference_alone_names_the_targets_that_make_the_rest(tmp_path):

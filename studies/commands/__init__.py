@@ -1,0 +1,1 @@
+"""Commands with options of their own, one file each: ``add(app)`` puts it under ``tipoff``."""

@@ -1,0 +1,86 @@
+"""Many cases of a scene on the surrogate that its studies use, kept in a store beside the results: what every study of tolerances asks.
+
+The surrogate is the calibrated one, with its constants laid over the scene, so that a case may vary them like any other number; or
+the one on walls that give way, to which nothing is fitted. A store that was left half filled is gone on with, and one that is whole is
+only read.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from lowfi import columns
+from lowfi.columns import Columns
+from lowfi.fill import fill
+from lowfi.numerics import Numerics
+from lowfi.request import Ensemble
+from lowfi.store import StoreError
+from scenes.calibration import Calibration
+from scenes.scene import Scene
+from scenes.walls import Walls
+from studies import regime
+from studies.progress import Board
+from studies.stages import calibrate
+from studies.stages import walls as wall_stage
+from studies.study import Study, StudyError
+
+TOLERANCE = 1e-2  # relative error of a step: 95 % of reference cases within 0.2 % of their rate
+
+
+class Surrogate(NamedTuple):
+    """A scene whose contact constants are the calibrated ones, the calibration they come from, and walls that give way or none.
+
+    A scene without contact has neither.
+    """
+
+    scene: Scene
+    calibration: Calibration | None
+    walls: Walls | None
+
+    def at(self, overrides: dict[str, Any]) -> "Surrogate":
+        """The same on a changed scene."""
+        return self._replace(scene=self.scene.replace(overrides))
+
+
+class Population(NamedTuple):
+    """``inputs`` (n,) by dotted key, SI; results as columns, NaN in cases that did not settle; whether a case is ``outside`` (n,) what the
+    calibration was made for; the folder of the store, and counts as ``lowfi.columns.counts`` gives them."""
+
+    inputs: dict[str, np.ndarray]
+    results: Columns
+    outside: np.ndarray
+    store: str
+    counts: dict[str, int]
+
+    @property
+    def settled(self) -> np.ndarray:
+        """Whether a case left the rail and settled (n,)."""
+        return np.isfinite(self.results.exit_time)
+
+
+def surrogate(study: Study, walls: bool = False, condition: str | None = None) -> Surrogate:
+    """The surrogate of a study on one of its conditions, or on the scene itself; calibrated, or found, where that was not done yet."""
+    scene = study.condition(condition) if condition else study.scene
+    if scene.contact is None:
+        return Surrogate(scene, None, None)
+    if walls:
+        return Surrogate(scene, None, wall_stage.load(study, scene))
+    fitted = calibrate.load(study)
+    return Surrogate(fitted.apply(scene), fitted, None)
+
+
+def run(study: Study, name: str, model: Surrogate, source, tolerance: float = TOLERANCE) -> Population:
+    """Every case of ``source`` (``lowfi.rows``), in a store called after ``name``. Raises StudyError when it cannot go on."""
+    ensemble = Ensemble(model.scene, source, None, Numerics(relative_tolerance=tolerance), model.walls)
+    path = study.path(f"{name}-{ensemble.key[:8]}")
+    try:
+        store = ensemble.store(path)
+        label = f"{name}, {store.asked:,} cases"
+        with Board(name, 1) as board:
+            report = board.callback(label)
+            fill(ensemble, store, study.settings.workers, progress=lambda stored: report(stored / store.asked))
+        results, inputs = store.read(0, store.asked)
+    except StoreError as fault:
+        raise StudyError(str(fault)) from fault
+    named = dict(zip(store.names, inputs.T))
+    return Population(named, results, regime.outside(model, named, store.asked), study.relative(path), columns.counts(results.status))

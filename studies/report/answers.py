@@ -1,0 +1,27 @@
+"""The engineer's answers on the page: a section for each study, from its own result, or the target that makes it."""
+
+from importlib import import_module
+from typing import Callable, NamedTuple
+
+from studies.report.chart import Chart
+from studies.report.markup import Html
+
+
+class Answer(NamedTuple):
+    """A study: ``name`` of its stage, result file, target and of its module here and in ``studies.stages``; ``title`` of its section and
+    ``link`` to it."""
+
+    name: str
+    title: str
+    link: str
+
+    def draw(self, found: dict, figure: Callable[[Chart, str], Html]) -> Html:
+        """What stands in its section; ``figure`` puts a chart and its caption on the page."""
+        return import_module(f"studies.report.{self.name}").draw(found, figure)
+
+    def stored(self, study) -> dict | None:
+        """Its result, if it was made from the present scene, code and settings."""
+        return import_module(f"studies.stages.{self.name}").stored(study)
+
+
+ANSWERS: tuple[Answer, ...] = ()
