@@ -24,4 +24,6 @@ class Answer(NamedTuple):
         return import_module(f"studies.stages.{self.name}").stored(study)
 
 
-ANSWERS: tuple[Answer, ...] = ()
+ANSWERS = (
+    Answer("paper", "The paper's own numbers", "Paper"),
+)

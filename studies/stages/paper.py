@@ -3,7 +3,6 @@
 Every search is kept as it ends, so that a stage that was stopped goes on with the next.
 """
 
-import json
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
@@ -43,15 +42,16 @@ def run(study: Study, asked: Asked = Asked()) -> dict:
         best = min(found, key=lambda item: (_misses(item), misfit_of(item)))
         path = study.path(SCENE)
         write_text(path, toml.scene(study.scene, inputs.values(best.shares), best.rates))
-        result = {"asked": {"starts": asked.starts, "plan": asked.plan._asdict()}, "admissible_deg_s": solutions.ADMISSIBLE,
+        result = {"asked": {"starts": asked.starts, "plan": _plain(asked.plan)}, "admissible_deg_s": solutions.ADMISSIBLE,
                   "negligible_deg_s": misfit.NEGLIGIBLE, "scatter_deg_s": misfit.SCATTER.tolist(),
                   "searches": [_summary(item) for item in found], "best": found.index(best), "inputs": _told(found, best),
                   "front": solutions.front(*np.vstack([item.front for item in found]).T).tolist(), "slips": published.slips(),
+                  "headline": published.headline(), "ours": _speed(study),
                   "scene_file": study.relative(path)}
         pictures = [file for chart in drawn.charts(result) for file in to_files(chart, study.path("figures"))]
         return result, [path, *pictures]
 
-    return study.stage(NAME, _key(study, asked), make)
+    return study.stage(NAME, content_hash(_key(study, asked), _speed(study)), make)
 
 
 def stored(study: Study) -> dict | None:
@@ -61,7 +61,7 @@ def stored(study: Study) -> dict | None:
         return None
     plan = found["asked"]["plan"]
     asked = Asked(found["asked"]["starts"], solutions.Plan(**plan | {"tolerances": tuple(plan["tolerances"])}))
-    return found if found["key"] == _key(study, asked) else None
+    return found if found["key"] == content_hash(_key(study, asked), _speed(study)) else None
 
 
 def require(scene: Scene) -> None:
@@ -127,8 +127,17 @@ def _told(found: list[solutions.Search], best: solutions.Search) -> list[dict]:
     return rows
 
 
+def _speed(study: Study) -> dict | None:
+    """What the agreement study measured of both fidelities, if it was made."""
+    return (read(study.path("agreement.json")) or {}).get("speedup")
+
+
 def _key(study: Study, asked: Asked) -> str:
-    return study.key(SOURCES["lowfi"], NAME, asked.starts, json.loads(json.dumps(asked.plan._asdict())))
+    return study.key(SOURCES["lowfi"], NAME, asked.starts, _plain(asked.plan))
+
+
+def _plain(plan: solutions.Plan) -> dict:
+    return plan._asdict() | {"tolerances": list(plan.tolerances)}
 
 
 def lines(found: dict) -> list[str]:
