@@ -25,5 +25,6 @@ class Answer(NamedTuple):
 
 
 ANSWERS = (
+    Answer("blind", "Agreement on conditions nobody chose", "Blind"),
     Answer("paper", "The paper's own numbers", "Paper"),
 )
