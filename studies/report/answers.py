@@ -24,4 +24,7 @@ class Answer(NamedTuple):
         return import_module(f"studies.stages.{self.name}").stored(study)
 
 
-ANSWERS: tuple[Answer, ...] = ()
+ANSWERS = (
+    Answer("blind", "Agreement on conditions nobody chose", "Blind"),
+    Answer("paper", "The paper's own numbers", "Paper"),
+)
