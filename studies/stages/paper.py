@@ -1,6 +1,6 @@
 """Stage ``paper``: what the inputs that the paper does not print must have been, and its tables beside those of the best set found.
 
-Every search is kept as it ends, so that a stage that was stopped goes on with the next.
+Every search is kept as it ends, so that a stage that was stopped goes on with the next, and more starts add to those there are.
 """
 
 from concurrent.futures import ThreadPoolExecutor
@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from scenes.faults import Fault, SceneError
-from scenes.files import content_hash, write_json, write_text
+from scenes.files import content_hash, source_hash, write_json, write_text
 from scenes.scene import Scene
 from studies import published
 from studies.inference import inputs, misfit, solutions, toml
@@ -23,6 +23,7 @@ from studies.study import Study, read
 NAME = "paper"
 SCENE = "paper_like.toml"
 STRESSES = (0.0, 1.0)  # without and with the rates that the paper calls negligible
+_SEARCHED = ("scenes", "lowfi", "studies/inference", "studies/published")  # a search outlives a change of anything else
 
 
 @dataclass(frozen=True)
@@ -85,7 +86,7 @@ def _searches(study: Study, asked: Asked) -> list[solutions.Search]:
 
         def one(stress: float, seed: int) -> solutions.Search:
             path = study.path(f"{NAME}/search-{stress:g}-{seed}.json")
-            key = content_hash(_key(study, asked), stress, seed)
+            key = content_hash(base.hash, source_hash(*_SEARCHED), _plain(asked.plan), stress, seed)
             kept = read(path)
             if kept and kept.get("key") == key:
                 return solutions.restored(kept)
