@@ -1,8 +1,12 @@
 """Sets of inputs that give the printed rates: many independent searches, everything admissible on their way, and what they trade.
 
-Each search draws points of the unit cube, follows the best of them with CMA-ES (Hansen) on the rough misfit of five runs, and then on
-the sum of squares of all 69 residuals of 23 runs, at a tighter tolerance. Rates are discontinuous in the inputs, since an impact more or less
-changes them by degrees per second, so that no gradient is asked for. A search that ends badly is shown like one that ends well.
+Rates are discontinuous in the inputs, since an impact more or less changes them by degrees per second, and smooth between. So a search
+
+1. draws points of the unit cube and follows the best of them with CMA-ES (Hansen) on the rough misfit of five runs, far and wide;
+2. goes down the basin it ended in by least squares, which there are few residuals for and many inputs;
+3. follows CMA-ES again from close by, since that basin has edges, and at last on the sum of squares of all 69 residuals of 23 runs.
+
+A search that ends badly is shown like one that ends well.
 
 Nine rates and fifty-four small deviations cannot tell twenty inputs. What is kept is therefore a set: every point of a search at which
 no printed rate is missed by more than ``ADMISSIBLE``, thinned; an input is told as far as the set is narrower than its bounds.
@@ -12,22 +16,30 @@ from typing import Callable, NamedTuple
 
 import cma
 import numpy as np
+from scipy.optimize import least_squares
 
+from calibrate.information import jacobian
 from studies.inference import misfit
 from studies.inference.inputs import UNKNOWNS
 
 ADMISSIBLE = 0.1  # deg/s: a third of what the paper calls negligible
 
 _POPULATION = 60  # of CMA-ES: with 20, its default here, searches end in basins a third worse
+_FAR, _NEAR, _CLOSE = 0.25, 0.05, 0.005  # its first steps, of the bounds
+_INSIDE = 1e-3  # of the bounds, for least squares cannot begin on one
+_FINE_COST = 5  # runs of a fine evaluation over those of a rough one
 
 
 class Plan(NamedTuple):
-    """Size of a search: ``points`` drawn, then evaluations of CMA-ES, ``rough`` ones of 5 runs and ``fine`` ones of 23; ``kept`` points of
-    each kind; tolerances of both (relative error of a step)."""
+    """Size of a search: ``points`` drawn; evaluations of CMA-ES far and wide, ``descents`` of least squares, evaluations of CMA-ES
+    ``near`` their end, all of 5 runs, and ``fine`` ones of 23; points ``kept``; tolerances of rough and fine runs (relative error of a
+    step)."""
 
     points: int = 400
-    rough: int = 30000
-    fine: int = 2000
+    rough: int = 20000
+    descents: int = 60
+    near: int = 12000
+    fine: int = 1200
     kept: int = 40
     tolerances: tuple[float, float] = (1e-3, 1e-5)
 
@@ -67,30 +79,34 @@ def run(launcher_of: Callable[[float], misfit.Launcher], stress: float, seed: in
     """One search; the same seed gives the same bits. ``launcher_of`` makes the surrogate for a tolerance; ``progress`` takes 0 to 1."""
     generator, seen, done = np.random.default_rng([seed, 7]), _Seen(), 0
     coarse, fine = map(launcher_of, plan.tolerances)
-    whole = plan.points + plan.rough + 5 * plan.fine  # a fine one costs about five times as much
+    whole = plan.points + plan.rough + plan.descents * (2 * len(UNKNOWNS) + 1) + plan.near + _FINE_COST * plan.fine
 
-    def report(cost: int) -> None:
+    def seen_rates(launcher: misfit.Launcher, shares: np.ndarray, cost: int) -> np.ndarray:
         nonlocal done
-        done += cost
+        rates, done = launcher.rates(shares), done + cost
+        seen.add(shares, rates)
         if progress:
             progress(min(1.0, done / whole))
+        return rates
 
     def rough(shares: np.ndarray) -> float:
-        rates = coarse.rates(shares)
-        seen.add(shares, rates)
-        report(1)
-        return misfit.rough(rates, stress)
+        return misfit.rough(seen_rates(coarse, shares, 1), stress)
+
+    def few(shares: np.ndarray) -> np.ndarray:
+        rates = seen_rates(coarse, shares, 1)
+        return np.append(misfit.nine(rates), stress * misfit.excess(rates)) / misfit.NEGLIGIBLE
 
     def exact(shares: np.ndarray) -> float:
-        rates = fine.rates(shares)
-        seen.add(shares, rates)
-        report(5)
+        rates = seen_rates(fine, shares, _FINE_COST)
         return float((misfit.residuals(rates, fine.changed(shares), stress) ** 2).sum())
 
     points = generator.random((plan.points, len(UNKNOWNS)))
     start = points[int(np.argmin([rough(point) for point in points]))]
-    near = _evolved(rough, start, 0.25, plan.rough, generator)
-    end = _evolved(exact, near, 0.01, plan.fine, generator)
+    far = _evolved(rough, start, _FAR, plan.rough, generator)
+    down = least_squares(few, np.clip(far, _INSIDE, 1.0 - _INSIDE), lambda x: jacobian(few, x), bounds=(0.0, 1.0), loss="soft_l1",
+                         max_nfev=plan.descents).x
+    near = _evolved(rough, down, _NEAR, plan.near, generator)
+    end = _evolved(exact, near, _CLOSE, plan.fine, generator)
     return Search(stress, seed, end, fine.rates(end), fine.changed(end), seen.admissible(plan.kept), front(seen.errors, seen.sizes))
 
 
