@@ -16,6 +16,7 @@ from studies.metrics import compare, settled_rate_errors
 GATES = {"rate_relative_l2": 0.05, "velocity_relative_l2": 0.001, "settled_rate_error_deg_s": 0.1}
 CONVERGED_DEG_S = 0.1
 NOT_CONVERGED = "reference not converged"
+FINITE_ELEMENTS = "finite elements"  # what results call that model, where surrogates stand beside it
 
 
 @dataclass(frozen=True)
