@@ -1,7 +1,8 @@
 """How a disturbance of one micrometre grows, and how long two curves can be compared before it has.
 
     s(t) = largest of |w'(t) - w(t)| over the axes and over the twins w', which start with every wall 1 um farther off or nearer
-    d_k  = mean of s over the free flight after contact k,     factor d_k / d_(k-1),     exponent ln(d_k / d_(k-1)) / (t_k - t_(k-1))
+    d_k  = mean of s over the free flight after contact k
+    factor d_k / d_(k-1),   exponent ln(d_k / d_(k-1)) / (t_k - t_(k-1)),   t_k the end of contact k
 
 Walls and not the payload are moved, because that is the disturbance of the floor: it meets every face whatever way the payload
 goes, and both models know it. Before the first contact nothing differs. The first one turns a length into a rate, d_1; every later
@@ -10,13 +11,13 @@ one adds such a part of its own, so that d_k up to k d_1 is no growth, and more 
 **Horizon**: the first instant at which s passes the gate of the settled rates and is not back below it after the same contact.
 Twins touch at different instants, so that s peaks while one of them is in contact and the other not yet; a peak that the contact
 takes back is a shift of time. Up to the horizon of the reference a curve can be compared with its own, from there on it is one of
-many that 1 um tells apart.
-**Sensitive**: 1 um moves a settled rate by more than the gate. **Chaotic**: sensitive, and d after the last of n contacts is more than
-n d_1, so that it is growth from contact to contact and not the first one alone that carries 1 um beyond the gate.
+many that 1 um tells apart. **Sensitive**: 1 um moves a settled rate by more than the gate. **Chaotic**: sensitive, and d after the
+last of n contacts is more than n d_1, so that it is growth from contact to contact and not the first one alone that carries 1 um
+beyond the gate.
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -63,7 +64,8 @@ class Growth:
     separation_deg_s: list[float]
 
 
-def growth(condition: str, model: str, nominal: Trajectory, twins: list[Trajectory], disturbance: float, gate: float = GATE) -> Growth:
+def growth(condition: str, model: str, nominal: Trajectory, twins: list[Trajectory], disturbance: float,
+           gate: float = GATE) -> Growth:
     """Growth of a ``disturbance`` (m) in one model, from runs that differ by it."""
     time = min((common_time(nominal, twin) for twin in twins), key=lambda each: each[-1])
     apart = separation(time, nominal, twins)
@@ -73,9 +75,10 @@ def growth(condition: str, model: str, nominal: Trajectory, twins: list[Trajecto
     changes = [settled_change(nominal, twin) for twin in twins]
     settled = None if None in changes else largest(changes)
     sensitive = None if settled is None else settled > gate
-    return Growth(condition, model, disturbance, touched, factor, exponent, settled, None if settled is None else settled / (1e6 * disturbance),
-                  horizon(time, apart, spans, gate), float(time[-1]), sensitive, sensitive and factor is not None and factor > len(touched),
-                  *_drawn(time, apart))
+    chaotic = sensitive and factor is not None and factor > len(touched)
+    return Growth(condition, model, disturbance, touched, factor, exponent, settled,
+                  None if settled is None else settled / (1e6 * disturbance), horizon(time, apart, spans, gate), float(time[-1]),
+                  sensitive, chaotic, *_drawn(time, apart))
 
 
 def separation(time: np.ndarray, nominal: Trajectory, twins: list[Trajectory]) -> np.ndarray:
@@ -119,7 +122,7 @@ def _after(time: np.ndarray, apart: np.ndarray, spans: list[tuple[int, int]]) ->
     for (first, after), following in zip(spans, [*(first for first, _ in spans[1:]), time.size]):
         free = apart[after:following] if following > after else apart[-1:]
         contact = Contact(float(time[first]), float(time[after - 1]), float(free.mean()))
-        found.append(Contact(contact.start_s, contact.end_s, contact.separation_deg_s, *_rate(found[-1], contact)) if found else contact)
+        found.append(replace(contact, **dict(zip(("factor", "exponent_per_s"), _rate(found[-1], contact)))) if found else contact)
     return found
 
 
@@ -139,4 +142,5 @@ def _loaded(run: Trajectory, time: np.ndarray) -> np.ndarray:
 
 def _drawn(time: np.ndarray, apart: np.ndarray) -> tuple[list[float], list[float]]:
     starts = np.unique(np.linspace(0, time.size, min(_DRAWN, time.size), endpoint=False).astype(int))
-    return [round(float(value), 7) for value in time[starts]], [float(f"{value:.4g}") for value in np.maximum.reduceat(apart, starts)]
+    largest_of_each = np.maximum.reduceat(apart, starts)
+    return [round(float(value), 7) for value in time[starts]], [float(f"{value:.4g}") for value in largest_of_each]

@@ -88,21 +88,25 @@ def _growth(found: list[dict]) -> list[str]:
     """One line a condition; nothing where nothing touches."""
     lines = [f"- {growth.sentence(item)} ({_number(item['settled_growth_deg_s_um'])} deg/s per µm)" for item in found
              if item["model"] == FINITE_ELEMENTS]
-    return ["\n".join(["How 1 µm of clearance grows in the reference, on the conditions of the floor and on those that are not converged:", "",
-                       *lines])] if lines else []
+    head = "How 1 µm of clearance grows in the reference, on the conditions of the floor and on those that are not converged:"
+    return ["\n".join([head, "", *lines])] if lines else []
 
 
 def _scaling(found: dict) -> str:
     """Exponents over elements and pads, and what all effects cost over none."""
-    over, finest = found["elements"], found["elements"]["finest"]
-    lines = ["How time grows, of one processor: t = c n^p with p", "", "| over | model | p of a run | p of a step |", "|---|---|---|---|",
-             f"| {over['points'][0]['n']:,} to {over['points'][-1]['n']:,} elements | {over['model']} | {scaling.power(over['run'])} | "
-             f"{scaling.power(over['step'])} |",
-             f"| the two finest meshes | {over['model']} | {scaling.power(finest['run'])} | {scaling.power(finest['step'])} |"]
-    lines += [f"| {law['points'][0]['n']} to {law['points'][-1]['n']} pads | {law['model']} | {scaling.power(law['run'])} | {scaling.power(law['step'])} |"
-              for law in found["pads"]]
+    over = found["elements"]
+    laws = [(f"{_ends(over)} elements", over), ("the two finest meshes", over["finest"] | {"model": over["model"]}),
+            *((f"{_ends(law)} pads", law) for law in found["pads"])]
+    lines = ["How time grows (`make cost`, one processor): t = c n^p. Expected over elements: 1 for a step, 4/3 for a run, whose steps",
+             "shorten too.", "", "| over | model | p of a run | p of a step |", "|---|---|---|---|"]
+    lines += [f"| {words} | {law['model']} | {scaling.exponent(law['run'])} | {scaling.exponent(law['step'])} |"
+              for words, law in laws]
     prices = "; ".join(f"{item['model']} {item['ratio']:.2f} times" for item in found["effects"])
-    return "\n".join([*lines, "", f"All effects over none: {prices}. Expected over elements: 1 for a step, 4/3 for a run, whose steps shorten too."])
+    return "\n".join([*lines, "", f"All effects over none take: {prices}."])
+
+
+def _ends(law: dict) -> str:
+    return f"{law['points'][0]['n']:,} to {law['points'][-1]['n']:,}"
 
 
 def _convergence(found: dict) -> str:

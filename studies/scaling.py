@@ -6,9 +6,9 @@ Elements: a step does the same for each of n elements, so p = 1 per step. A step
 element, so with all edges shrinking alike a run takes n^(1/3) times as many of them: p = 4/3. Less is found on coarse meshes, where
 much of a step is the same on any mesh, and where the thickness of a wall, one element from edge to edge, sets the step.
 
-Pads are taken away or added between the others of the same payload. Its motion is another then, and with it how often it touches, so
-what p tells is the price of pads in a run, and per step nearer to that of the pads themselves. Effects differ in what they are, so
-that no power of their number means anything: what counts is the price of each, and of all over none.
+Pads are taken away or added between the others of the same payload. Its motion is another then, and with it how often it touches,
+so that p of a run is the price of pads in that motion; per step it is nearer to the price of the pads themselves. Effects differ in
+what they are, so that no power of their number means anything: what counts is the price of each, and of all over none.
 
 Times are of one processor, without compilation, and as in the ablation study: of a whole run of the reference, of the time loop of the
 surrogate.
@@ -53,9 +53,10 @@ def elements(study: Study, name: str) -> dict:
     """Law over the elements of the reference's meshes, and between its two finest (``finest``). The runs are those of other
     stages, each median over the conditions that were run on a mesh, with one more mesh in between."""
     names = dict.fromkeys([name, *study.scene.agreement.fitted])
-    ask = {2.0 * study.settings.coarse_size: [study.highfi(name, element_size=2.0 * study.settings.coarse_size, tag="-coarsest")],
+    coarsest, between = 2.0 * study.settings.coarse_size, _BETWEEN * study.settings.element_size
+    ask = {coarsest: [study.highfi(name, element_size=coarsest, tag="-coarsest")],
            study.settings.coarse_size: [study.coarse(each) for each in names],
-           _BETWEEN * study.settings.element_size: [study.highfi(name, element_size=_BETWEEN * study.settings.element_size, tag="-between")],
+           between: [study.highfi(name, element_size=between, tag="-between")],
            study.settings.element_size: [study.highfi(each) for each in names]}
     runs = iter(study.store.fill("cost, elements", [run for asked in ask.values() for run in asked]))
     points = [_median([next(runs).cost for _ in asked], "cpu_s") | {"element_size_m": size} for size, asked in ask.items()]
@@ -75,7 +76,8 @@ def pads(study: Study, name: str) -> list[dict]:
     asked = {FINITE_ELEMENTS: [_coarsest(study, name, change, count) for count, change in variants.items()],
              SPRINGS: [study.lowfi(name, None, change, f"-pads-{count}") for count, change in variants.items()]}
     if study.scene.contact is not None:
-        asked[WALLS] = [study.lowfi(name, None, change, f"-pads-{count}", _walls(study, name, change)) for count, change in variants.items()]
+        asked[WALLS] = [study.lowfi(name, None, change, f"-pads-{count}", _walls(study, name, change))
+                        for count, change in variants.items()]
     with Board("cost, pads", len(asked)) as board:
         return [_over_pads(model, runs, list(variants), board) for model, runs in asked.items()]
 
@@ -108,8 +110,8 @@ def pad_variants(study: Study, name: str) -> dict[int, dict]:
 
 
 def with_pads(scene: Scene, count: int) -> dict | None:
-    """Override that leaves ``count`` pads: of the rear bands first, so that the exit stays where it is, and of a part of a band
-    those farthest apart; or more bands, evenly from the rear to the front one. None where bands do not go into it."""
+    """Override that leaves ``count`` pads: those of the rear, so that the exit stays where it is, and of a part of a band those
+    farthest apart; or more bands, evenly from the rear to the front one. None where bands do not go into it."""
     own = sorted((pad.model_dump(mode="json") for pad in scene.pads), key=lambda pad: pad["position"][0])
     places = sorted({pad["position"][0] for pad in own})
     rear = [pad for pad in own if pad["position"][0] == places[0]]
@@ -120,7 +122,8 @@ def with_pads(scene: Scene, count: int) -> dict | None:
     bands, left = divmod(count, len(rear))
     if left or len(places) < 2:
         return None
-    return {"pads": [pad | {"position": [float(x), *pad["position"][1:]]} for x in np.linspace(places[0], places[-1], bands) for pad in rear]}
+    return {"pads": [pad | {"position": [float(x), *pad["position"][1:]]}
+                     for x in np.linspace(places[0], places[-1], bands) for pad in rear]}
 
 
 def _possible(study: Study, name: str, change: dict, count: int) -> bool:
@@ -158,7 +161,8 @@ def effects(scene: Scene, ablation: dict) -> list[dict]:
                       "ratio": time["all effects"] / time["no effect"], "ladder": _ladder(time, len(without)),
                       "asked": [sum(effect not in scene.absent_effects() for effect in without), time["as the scene asks"]],
                       "effects": [{"effect": effect, "time_s": time["all effects"] - seconds,
-                                   "of_none": (time["all effects"] - seconds) / time["no effect"]} for effect, seconds in without.items()]})
+                                   "of_none": (time["all effects"] - seconds) / time["no effect"]}
+                                  for effect, seconds in without.items()]})
     return found
 
 

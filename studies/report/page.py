@@ -165,7 +165,8 @@ class Page:
             figures.cost_picture(found), f"Condition {found['condition']}. Error against the finest finite-element mesh, whose own "
             "uncertainty is the band: an error inside it cannot be told from zero. Right: what a tighter tolerance can still buy. Labels: element size, "
             "tolerance."), tables.cost(found), Html("<h3>How cost grows</h3>"),
-            self._figure(scaling.picture(found["scaling"]), scaling.WORDS.format(condition=found["condition"])), scaling.tables(found["scaling"]))
+            self._figure(scaling.picture(found["scaling"]), scaling.WORDS.format(condition=found["condition"])),
+            scaling.tables(found["scaling"]))
 
     def _growth(self) -> Html:
         """How 1 um grows, where anything touches; agreement reminds of its own stage."""

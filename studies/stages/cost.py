@@ -37,9 +37,9 @@ def run(study: Study) -> dict:
             points += _surrogate_points(study, name, rung, finest)
         growing = {"elements": scaling.elements(study, name), "pads": scaling.pads(study, name),
                    "effects": scaling.effects(study.condition(name), ablation.run(study))}
-        path = study.path(POINTS)
-        write_json(path, marked(points))
-        return {"condition": name, "scene_hash": study.scene.hash, "band_deg_s": band, "points": marked(points), "matched": matched(points),
+        path, points = study.path(POINTS), marked(points)
+        write_json(path, points)
+        return {"condition": name, "scene_hash": study.scene.hash, "band_deg_s": band, "points": points, "matched": matched(points),
                 "scaling": growing, "hardware": machine.describe()}, [path]
 
     return study.stage(NAME, study.key(SOURCES_USED, name, ladder[1].calibration.constants), make)

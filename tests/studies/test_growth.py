@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+import lowfi
+import scenes
 from studies.growth import GATE, contacts, growth, horizon
 from tests.studies.synthetic import flight
 
@@ -73,3 +75,14 @@ def test_run_that_did_not_settle_is_not_judged():
     lost = flight(status="time_limit")
     found = growth("c", "m", flight(), [lost], 1e-6)
     assert found.settled_separation_deg_s is None and found.sensitive is None and found.chaotic is None
+
+
+@pytest.mark.parametrize("condition, sensitive, chaotic", [("phi15", False, False), ("h7", True, False), ("h8", True, True)])
+def test_verdicts_of_the_surrogate_on_the_reference(condition, sensitive, chaotic):
+    """One light contact; hard ones that leave the separation about as the first made it; and four that amplify it in turn."""
+    scene = scenes.load("reference").condition(condition)
+    nominal, *twins = [lowfi.run(scene.replace({"contact.clearance": scene.contact.clearance + change}))
+                       for change in (0.0, 1e-6, -1e-6)]
+    found = growth(condition, "surrogate", nominal, twins, 1e-6)
+    assert (found.sensitive, found.chaotic) == (sensitive, chaotic)
+    assert (found.horizon_s is not None) == sensitive
