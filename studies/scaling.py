@@ -4,7 +4,8 @@
 
 Elements: a step does the same for each of n elements, so p = 1 per step. A step may be no longer than a wave takes through an
 element, so with all edges shrinking alike a run takes n^(1/3) times as many of them: p = 4/3. Less is found on coarse meshes, where
-much of a step is the same on any mesh, and where the thickness of a wall, one element from edge to edge, sets the step.
+much of a step is the same on any mesh (t = a + b n beside it says how much), and where the thickness of a wall, one element from
+edge to edge, sets the step.
 
 Pads are taken away or added between the others of the same payload. Its motion is another then, and with it how often it touches,
 so that p of a run is the price of pads in that motion; per step it is nearer to the price of the pads themselves. Effects differ in
@@ -30,7 +31,6 @@ from studies.timing import timed, warm_up
 
 SPRINGS, WALLS = "surrogate, springs", "surrogate, compliant walls"
 _TIME = {"highfi": "cpu_s", "lowfi": "kernel_s"}
-_BETWEEN = 1.5  # times the finest element size: one more mesh that costs little
 _SHARES = (0.125, 0.25, 0.5, 1.0, 2.0)  # of the scene's own number of pads
 _REPEATS = {"highfi": 2, "lowfi": 20}
 
@@ -39,6 +39,13 @@ def power_law(sizes: Sequence[float], times: Sequence[float]) -> dict:
     """``exponent`` p of t = c n^p and its ``standard_error``, which two points do not have."""
     line = linregress(np.log(sizes), np.log(times))
     return {"exponent": float(line.slope), "standard_error": float(line.stderr) if len(sizes) > 2 else None}
+
+
+def shares(sizes: Sequence[float], times: Sequence[float]) -> tuple[float, float]:
+    """a and b of t = a + b n, by least squares of the relative error."""
+    design = np.column_stack([1.0 / np.array(times), np.array(sizes) / np.array(times)])
+    fixed, each = np.linalg.lstsq(design, np.ones(len(times)))[0]
+    return float(fixed), float(each)
 
 
 def fitted(model: str, points: list[dict]) -> dict:
@@ -50,18 +57,18 @@ def fitted(model: str, points: list[dict]) -> dict:
 
 
 def elements(study: Study, name: str) -> dict:
-    """Law over the elements of the reference's meshes, and between its two finest (``finest``). The runs are those of other
-    stages, each median over the conditions that were run on a mesh, with one more mesh in between."""
+    """Law over the elements of the reference's meshes, and between its two finest (``finest``); and what a step takes on any mesh
+    with what each element adds (``fixed_s``, ``element_s``). The runs are those of other stages, medians over conditions."""
     names = dict.fromkeys([name, *study.scene.agreement.fitted])
-    coarsest, between = 2.0 * study.settings.coarse_size, _BETWEEN * study.settings.element_size
+    coarsest = 2.0 * study.settings.coarse_size
     ask = {coarsest: [study.highfi(name, element_size=coarsest, tag="-coarsest")],
            study.settings.coarse_size: [study.coarse(each) for each in names],
-           between: [study.highfi(name, element_size=between, tag="-between")],
            study.settings.element_size: [study.highfi(each) for each in names]}
     runs = iter(study.store.fill("cost, elements", [run for asked in ask.values() for run in asked]))
     points = [_median([next(runs).cost for _ in asked], "cpu_s") | {"element_size_m": size} for size, asked in ask.items()]
     law = fitted(FINITE_ELEMENTS, points)
-    return law | {"finest": {each: fitted(FINITE_ELEMENTS, points[-2:])[each] for each in ("run", "step")}}
+    fixed, each = shares([point["n"] for point in points], [point["step_s"] for point in law["points"]])
+    return law | {"finest": {of: fitted(FINITE_ELEMENTS, points[-2:])[of] for of in ("run", "step")}, "fixed_s": fixed, "element_s": each}
 
 
 def _median(costs: list[dict], time: str) -> dict:

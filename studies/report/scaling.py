@@ -51,7 +51,7 @@ def _ladder(item: dict) -> Line:
 def tables(found: dict) -> Html:
     """Exponents, the points they were fitted to, and the price of each effect."""
     return Html(paragraph("How cost grows: t = c n", Html("<sup>p</sup>"), ", the exponent p with its standard error.")
-                + _exponents(found) + caption(_EXPECTED) + _meshes(found["elements"]) + _pads(found["pads"])
+                + _exponents(found) + caption(_EXPECTED + _shares(found["elements"])) + _meshes(found["elements"]) + _pads(found["pads"])
                 + _prices(found["effects"]) + caption(_PRICES))
 
 
@@ -68,6 +68,10 @@ def _exponents(found: dict) -> Html:
     return table(("over", "model", "from", "to", "p of a run", "p of a step"), [
         (over, law["model"], f"{law['points'][0]['n']:,}", f"{law['points'][-1]['n']:,}", exponent(law["run"]), exponent(law["step"]))
         for over, law in laws])
+
+
+def _shares(law: dict) -> str:
+    return f" Here a step takes {1e6 * law['fixed_s']:.3g} µs on any mesh and {1e9 * law['element_s']:.3g} ns for each element."
 
 
 def _meshes(law: dict) -> Html:

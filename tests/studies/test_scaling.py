@@ -6,7 +6,7 @@ import pytest
 import scenes
 from scenes.model import build
 from studies.report import scaling as page
-from studies.scaling import SPRINGS, effects, fitted, power_law, with_pads
+from studies.scaling import SPRINGS, effects, fitted, power_law, shares, with_pads
 
 SIZES = [520, 2420, 4500, 19360]
 
@@ -31,6 +31,13 @@ def test_steps_and_runs_have_laws_of_their_own():
     law = fitted("m", points)
     assert law["step"]["exponent"] == pytest.approx(1.0) and law["run"]["exponent"] == pytest.approx(4.0 / 3.0)
     assert law["points"][0]["step_s"] == pytest.approx(520e-6)
+
+
+def test_what_is_the_same_on_any_mesh_is_told_from_the_elements():
+    """t = a + b n is recovered; control: the power law of the same points is off 1, the exponent of what the elements alone take."""
+    times = [40e-6 + 9e-9 * size for size in SIZES]
+    assert shares(SIZES, times) == pytest.approx((40e-6, 9e-9))
+    assert power_law(SIZES, times)["exponent"] < 0.6
 
 
 @pytest.mark.parametrize("count, bands", [(1, 1), (2, 1), (4, 1), (8, 2), (12, 3), (16, 4)])
@@ -79,7 +86,7 @@ def test_page_shows_exponents_with_their_errors():
     law = fitted(SPRINGS, [{"n": n, "steps": 10, "time_s": 1e-3 * n**0.5, "repeats": 1} for n in (1, 2, 4)])
     meshes = fitted("finite elements", [{"n": n, "steps": 10, "time_s": 1e-3 * n, "element_size_m": 1e-3, "repeats": 3} for n in SIZES])
     finest = {"run": {"exponent": 1.3, "standard_error": None}, "step": {"exponent": 0.9, "standard_error": None}}
-    found = {"elements": meshes | {"finest": finest}, "pads": [law], "effects": effects(scenes.load("tiny"), ABLATION)}
+    found = {"elements": meshes | {"finest": finest, "fixed_s": 4e-5, "element_s": 9e-9}, "pads": [law], "effects": effects(scenes.load("tiny"), ABLATION)}
     shown = page.tables(found)
     assert "0.50 ± 0.00" in shown and ">1.30<" in shown and "gravity alone" in shown
     assert [len(panel.lines) for panel in page.picture(found).panels] == [3, 2, 2]
