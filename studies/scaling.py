@@ -177,7 +177,7 @@ def _ladder(time: dict[str, float], count: int) -> list[dict]:
     """No further kernel is compiled for it: the sets of the ablation study that lie inside each other. Friction has nothing to rub on
     without contact, and no code."""
     rungs = [("none", 0, "no effect"), ("all but contact and friction", count - 2, "without contact"),
-             ("contact", count - 1, "without friction"), ("friction", count, "all effects")]
+             ("contact too", count - 1, "without friction"), ("friction too", count, "all effects")]
     if {"without contact", "without friction"} - set(time):
         rungs = [rungs[0], ("all", count, "all effects")]
     return [{"added": words, "on": on, "time_s": time[variant]} for words, on, variant in rungs]

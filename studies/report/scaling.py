@@ -4,7 +4,7 @@ import math
 
 from studies.agreement import FINITE_ELEMENTS
 from studies.report.chart import AMBER, NAVY, VERMILION, Chart, Line, Panel
-from studies.report.markup import Html, caption, number, paragraph, table
+from studies.report.markup import Html, caption, paragraph, table
 from studies.scaling import SPRINGS, WALLS
 
 WORDS = ("Time of one processor on {condition}: of a whole run of the reference, of the time loop of the surrogate. Left and "
@@ -81,20 +81,25 @@ def _meshes(law: dict) -> Html:
 
 
 def _pads(laws: list[dict]) -> Html:
-    rows = [(law["model"], *(Html(f"{number(1e3 * point['time_s'])}; {number(1e6 * point['step_s'])}") for point in law["points"]))
+    rows = [(law["model"], *(f"{_milliseconds(point['time_s'])}; {1e6 * point['step_s']:.3g}" for point in law["points"]))
             for law in laws]
-    return table(("time of a run (ms); of a step (µs)", *(f"{point['n']} pads" for point in laws[0]["points"])), rows)
+    return table(("pads: time of a run (ms); of a step (µs)", *(str(point["n"]) for point in laws[0]["points"])), rows)
 
 
 def _prices(found: list[dict]) -> Html:
     """Rungs of the ladder, then each effect alone; the models side by side."""
     first = found[0]
-    rungs = [(f"{'and ' if at else ''}{rung['added']}", rung["on"], *(_price(item["ladder"][at]["time_s"], item) for item in found))
+    rungs = [(rung["added"], rung["on"], *(_price(item["ladder"][at]["time_s"], item) for item in found))
              for at, rung in enumerate(first["ladder"])]
     alone = [(f"{one['effect'].replace('_', ' ')} alone", "", *(_price(item["effects"][at]["time_s"], item) for item in found))
              for at, one in enumerate(first["effects"])]
     return table(("effects", "on", *(f"{item['model']} (ms)" for item in found)), [*rungs, *alone])
 
 
-def _price(seconds: float, item: dict) -> Html:
-    return Html(f"{number(1e3 * seconds)} ({seconds / item['none_s']:.2f})")
+def _price(seconds: float, item: dict) -> str:
+    return f"{_milliseconds(seconds)} ({seconds / item['none_s']:.2f})"
+
+
+def _milliseconds(seconds: float) -> str:
+    """Three digits, or all before the point: models differ by three powers of ten."""
+    return f"{1e3 * seconds:,.0f}" if abs(seconds) >= 0.1 else f"{1e3 * seconds:.3g}"
