@@ -42,7 +42,7 @@ class Page:
                         self._of("stability", "stability", "Hard cases", tables.stability, "stability"),
                         self._of("ablation", "ablation", "Only what the scene calls for", tables.ablation, "ablation"),
                         render(promises(self._rows(), self.documents)), self._colophon()])
-        links = "".join(f'<a href="#{name}">{title}</a>' for name, title in _CONTENTS if f'id="{name}"' in body)
+        links = " ".join(f'<a href="#{name}">{title}</a>' for name, title in _CONTENTS if f'id="{name}"' in body)
         title = f"tipoff: {escape(self.scene.name)}"
         return (f'<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{title}</title>'
                 f'<meta name="viewport" content="width=device-width, initial-scale=1"><style>{CSS}</style>'
