@@ -102,8 +102,9 @@ def _scaling(found: dict) -> str:
     lines += [f"| {words} | {law['model']} | {scaling.exponent(law['run'])} | {scaling.exponent(law['step'])} |"
               for words, law in laws]
     prices = "; ".join(f"{item['model']} {item['ratio']:.2f} times" for item in found["effects"])
-    step = f"A step of the reference takes {1e6 * over['fixed_s']:.2g} µs on any mesh and {1e9 * over['element_s']:.2g} ns for each element."
-    return "\n".join([*lines, "", f"{step} All effects over none take: {prices}."])
+    step = "" if over["fixed_s"] is None else (f"A step of the reference takes {1e6 * over['fixed_s']:.2g} µs on any mesh and "
+                                               f"{1e9 * over['element_s']:.2g} ns for each element. ")
+    return "\n".join([*lines, "", f"{step}All effects over none take: {prices}."])
 
 
 def _ends(law: dict) -> str:

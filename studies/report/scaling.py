@@ -33,13 +33,15 @@ def picture(found: dict) -> Chart:
 
 
 def _law(law: dict) -> list[Line]:
-    """The points of one model, and the fitted line, which goes through their geometric means."""
+    """The points of one model, and the fitted line, which goes through their geometric means, where there is one."""
     colour, marker, dash = _LOOKS[law["model"]]
     sizes, times = ([point[key] for point in law["points"]] for key in ("n", "time_s"))
+    points = Line(sizes, times, law["model"], colour, 1.6, "", marker=marker)
+    if law["run"]["exponent"] is None:
+        return [points]
     size, time = (math.exp(sum(map(math.log, values)) / len(values)) for values in (sizes, times))
     fit = [time * (each / size)**law["run"]["exponent"] for each in sizes]
-    return [Line(sizes, times, law["model"], colour, 1.6, "", marker=marker),
-            Line(sizes, fit, law["model"], colour, 1.4, dash, legend=False)]
+    return [points, Line(sizes, fit, law["model"], colour, 1.4, dash, legend=False)]
 
 
 def _ladder(item: dict) -> Line:
@@ -56,8 +58,10 @@ def tables(found: dict) -> Html:
 
 
 def exponent(law: dict) -> str:
-    """An exponent with its standard error."""
+    """An exponent with its standard error; a dash where sizes do not differ."""
     error = law["standard_error"]
+    if law["exponent"] is None:
+        return "–"
     return f"{law['exponent']:.2f}" + ("" if error is None else f" ± {error:.2f}")
 
 
@@ -71,6 +75,8 @@ def _exponents(found: dict) -> Html:
 
 
 def _shares(law: dict) -> str:
+    if law["fixed_s"] is None:
+        return " The mesh is given, so there is but one."
     return f" Here a step takes {1e6 * law['fixed_s']:.3g} µs on any mesh and {1e9 * law['element_s']:.3g} ns for each element."
 
 

@@ -5,8 +5,11 @@ import pytest
 
 import scenes
 from scenes.model import build
+from studies import scaling
 from studies.report import scaling as page
 from studies.scaling import SPRINGS, effects, fitted, power_law, shares, with_pads
+from studies.settings import defaults
+from studies.study import Study
 
 SIZES = [520, 2420, 4500, 19360]
 
@@ -15,6 +18,16 @@ def test_exponent_of_an_exact_law():
     found = power_law(SIZES, [3e-4 * size**1.25 for size in SIZES])
     assert found["exponent"] == pytest.approx(1.25, rel=1e-12) and found["standard_error"] == pytest.approx(0.0, abs=1e-9)
     assert power_law(SIZES[:2], SIZES[:2])["standard_error"] is None
+
+
+def test_single_size_has_no_exponent():
+    """A mesh from a file is the same whatever element size is asked for; nor does the page or its picture stumble over it."""
+    points = [{"n": 500, "steps": 10, "time_s": time, "element_size_m": 1e-3, "repeats": 1} for time in (1.0, 1.1, 0.9)]
+    law, finest = fitted("finite elements", points), fitted("finite elements", points[-2:])
+    assert law["run"] == law["step"] == {"exponent": None, "standard_error": None} and shares([500] * 3, [1.0, 1.1, 0.9]) == (None, None)
+    found = {"elements": law | {"finest": {"run": finest["run"], "step": finest["step"]}, "fixed_s": None, "element_s": None},
+             "pads": [fitted(SPRINGS, points[:1])], "effects": effects(scenes.load("tiny"), ABLATION)}
+    assert "one." in page.tables(found) and [len(panel.lines) for panel in page.picture(found).panels] == [2, 1, 2]
 
 
 def test_standard_error_covers_the_scatter_it_is_made_of():
@@ -67,6 +80,15 @@ def test_numbers_that_make_no_bands_are_left_out():
 
 TIMES = {"all effects": 10.0, "without contact": 6.0, "without friction": 9.0, "without gravity": 10.5, "as the scene asks": 9.5,
          "no effect": 5.0}
+def test_mesh_from_a_file_is_not_run_ten_times(monkeypatch, tmp_path):
+    """Control: the built-in rail has a coarse mesh, and the reference is asked."""
+    monkeypatch.setattr(scaling, "_over_pads", lambda model, runs, counts, board: {"model": model, "counts": counts})
+    monkeypatch.setattr(scaling, "_walls", lambda study, name, change: None)
+    models = {name: [law["model"] for law in scaling.pads(Study(scenes.load(name), tmp_path, defaults(name)), "phi15")]
+              for name in ("channel", "tiny")}
+    assert models == {"channel": [SPRINGS, scaling.WALLS], "tiny": ["finite elements", SPRINGS, scaling.WALLS]}
+
+
 ABLATION = {"rows": [{"fidelity": fidelity, "variant": variant, "time_s": factor * seconds}
                      for fidelity, factor in (("highfi", 1e3), ("lowfi", 1.0)) for variant, seconds in TIMES.items()]}
 
