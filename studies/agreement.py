@@ -22,6 +22,7 @@ VELOCITY_LIMIT = 0.001
 CONVERGED_DEG_S = 0.1
 FLOOR_CAP_DEG_S = 0.1
 NOT_CONVERGED = "reference not converged"
+FINITE_ELEMENTS = "finite elements"  # what results call that model, where surrogates stand beside it
 
 
 def gates(scene: Scene) -> dict[str, float]:

@@ -1,6 +1,6 @@
 """Which model answers a question: the cheapest that reached an accuracy, or the most accurate within a time, as measured.
 
-A point of ``cost.json`` counts with its error against the finest mesh and the uncertainty of that mesh, of which the larger is
+A point of the cost study counts with its error against the finest mesh and the uncertainty of that mesh, of which the larger is
 what it can be trusted to; the finest mesh itself with its uncertainty.
 """
 
@@ -8,12 +8,12 @@ from studies.study import Study, StudyError, read
 
 
 def choose(study: Study, accuracy: float | None = None, budget: float | None = None) -> dict:
-    """The point of ``cost.json``, with ``trusted_deg_s`` and ``why`` in words, for an error of the settled rates of at most ``accuracy``
+    """The point of ``cost_study.json``, with ``trusted_deg_s`` and ``why`` in words, for an error of the settled rates of at most ``accuracy``
     (deg/s) and a wall time of at most ``budget`` (s).
 
     Raises StudyError where nothing was measured for this scene, or where no model fits, with the nearest that does.
     """
-    found = read(study.path("cost.json"))
+    found = read(study.path("cost_study.json"))
     if found is None or found.get("scene_hash") != study.scene.hash:
         raise StudyError(f"no cost was measured for this scene: run tipoff cost --scene {study.scene.name} first")
     points = trusted(found["points"], found["band_deg_s"])

@@ -123,7 +123,7 @@ def calibrate(scene: SceneName = "reference", out: Out = Path("out"), set_: Set 
 
 
 _stage("compare", "Agreement on fitted and held-out conditions beside the floor, and the speed-up; writes agreement.json.")
-_stage("cost", "What accuracy costs in time, both models; writes cost.json.")
+_stage("cost", "What accuracy costs in time, and how it grows with elements, pads, effects; writes cost.json and cost_study.json.")
 _stage("stability", "Hard cases, each with a simpler method that fails on it; writes stability.json.")
 _stage("ablation", "Every effect off, one at a time: time, rates, what is compiled; writes ablation.json.")
 

@@ -10,6 +10,8 @@ from pathlib import Path
 
 from scenes.files import write_text
 from studies import bench
+from studies.agreement import FINITE_ELEMENTS
+from studies.report import growth, scaling
 from studies.study import read
 
 _ROOT = Path(__file__).resolve().parent.parent
@@ -29,9 +31,9 @@ def main(folder: Path) -> None:
 def section(folder: Path) -> str:
     """Markdown of the agreement, the speed-up and the kept promises in ``folder``."""
     agreement, highfi, lowfi = (json.loads((folder / f"{name}.json").read_text()) for name in ("agreement", "highfi", "lowfi"))
-    parts = [_agreement(agreement), _speed(agreement), _promises(highfi, lowfi)]
-    if (found := read(folder / "cost.json")) is not None:
-        parts.append(_cost(found))
+    parts = [_agreement(agreement), *_growth(agreement["growth"]), _speed(agreement), _promises(highfi, lowfi)]
+    if (found := read(folder / "cost_study.json")) is not None:
+        parts += [_cost(found), _scaling(found["scaling"])]
     if (found := read(folder / "convergence.json")) is not None:
         parts.append(_convergence(found))
     if (found := bench.stored(folder.parent)) is not None:
@@ -80,6 +82,33 @@ def _cost(found: dict) -> str:
         lines.append(f"| {row['model']}, {row['numerics']} | {_number(row['error_deg_s'])} | {1e3 * row['wall_s']:.2g} | {row['mesh']} | "
                      f"{exact} | {row['mesh_wall_s']:.3g} | {row['ratio']:,.0f} |")
     return "\n".join(lines)
+
+
+def _growth(found: list[dict]) -> list[str]:
+    """One line a condition; nothing where nothing touches."""
+    lines = [f"- {growth.sentence(item)} ({_number(item['settled_growth_deg_s_um'])} deg/s per µm)" for item in found
+             if item["model"] == FINITE_ELEMENTS]
+    head = "How 1 µm of clearance grows in the reference, on the conditions of the floor and on those that are not converged:"
+    return ["\n".join([head, "", *lines])] if lines else []
+
+
+def _scaling(found: dict) -> str:
+    """Exponents over elements and pads, and what all effects cost over none."""
+    over = found["elements"]
+    laws = [(f"{_ends(over)} elements", over), ("the two finest meshes", over["finest"] | {"model": over["model"]}),
+            *((f"{_ends(law)} pads", law) for law in found["pads"])]
+    lines = ["How time grows (`make cost`, one processor): t = c n^p. Expected over elements: 1 for a step, 4/3 for a run, whose steps",
+             "shorten too.", "", "| over | model | p of a run | p of a step |", "|---|---|---|---|"]
+    lines += [f"| {words} | {law['model']} | {scaling.exponent(law['run'])} | {scaling.exponent(law['step'])} |"
+              for words, law in laws]
+    prices = "; ".join(f"{item['model']} {item['ratio']:.2f} times" for item in found["effects"])
+    step = "" if over["fixed_s"] is None else (f"A step of the reference takes {1e6 * over['fixed_s']:.2g} µs on any mesh and "
+                                               f"{1e9 * over['element_s']:.2g} ns for each element. ")
+    return "\n".join([*lines, "", f"{step}All effects over none take: {prices}."])
+
+
+def _ends(law: dict) -> str:
+    return f"{law['points'][0]['n']:,} to {law['points'][-1]['n']:,}"
 
 
 def _convergence(found: dict) -> str:

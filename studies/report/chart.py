@@ -42,7 +42,8 @@ class Line:
 
 @dataclass(frozen=True)
 class Panel:
-    """One set of axes; ``band`` shades y below a value, with a text, ``spans`` stretches of x."""
+    """One set of axes, both logarithmic or y alone; ``band`` shades y below a value, with a text, ``spans`` stretches of x;
+    ``ticks`` are labelled on a logarithmic x in place of whole decades."""
 
     title: str
     x_label: str
@@ -51,6 +52,13 @@ class Panel:
     log: bool = False
     band: tuple[float, str] | None = None
     spans: tuple[tuple[float, float], ...] = ()
+    log_y: bool = False
+    ticks: tuple[float, ...] = ()
+
+    @property
+    def steep(self) -> bool:
+        """Whether y is logarithmic."""
+        return self.log or self.log_y
 
 
 @dataclass(frozen=True)
@@ -87,13 +95,14 @@ def to_html(chart: Chart) -> str:
                 marker={"symbol": _PLOTLY_MARKER[line.marker], "size": line.size}),
                 **place)
             shown |= {line.name} if line.legend else set()
-        x_kind, y_kind = map(_log_axis, _limits(panel)) if panel.log else ({}, {})
+        x_kind = _log_axis(_across(panel), panel.ticks) if panel.log else {}
+        y_kind = _log_axis(_upwards(panel)) if panel.steep else {}
         figure.update_xaxes(title_text=panel.x_label, **x_kind, **place)
         figure.update_yaxes(title_text=panel.y_label, **y_kind, **place)
         for low, high in panel.spans:
             figure.add_vrect(x0=low, x1=high, fillcolor=GREY, opacity=0.16, line_width=0, **place)
         if panel.band:
-            figure.add_hrect(y0=_limits(panel)[1][0] if panel.log else 0.0, y1=panel.band[0], fillcolor=GREY, opacity=0.16,
+            figure.add_hrect(y0=_upwards(panel)[0] if panel.steep else 0.0, y1=panel.band[0], fillcolor=GREY, opacity=0.16,
                              line_width=0, **place)
             figure.add_annotation(text=panel.band[1], xref="x domain", yref="y domain", x=0.98, y=0.02, xanchor="right",
                                   yanchor="bottom", showarrow=False, **place)
@@ -149,15 +158,18 @@ def _dress(axes, panel: Panel) -> None:
     axes.set_ylabel(panel.y_label, fontsize=9.5, color=_INK)
     if panel.log:
         axes.set_xscale("log")
-        axes.set_yscale("log")
-        axes.set_xlim(_limits(panel)[0])
-        axes.set_ylim(_limits(panel)[1])
+        axes.set_xlim(_across(panel))
         axes.xaxis.set_minor_formatter("")
+        if panel.ticks:
+            axes.set_xticks(panel.ticks, [f"{value:g}" for value in panel.ticks])
+    if panel.steep:
+        axes.set_yscale("log")
+        axes.set_ylim(_upwards(panel))
         axes.yaxis.set_minor_formatter("")
     for low, high in panel.spans:
         axes.axvspan(low, high, color=GREY, alpha=0.16, linewidth=0)
     if panel.band:
-        axes.axhspan(_limits(panel)[1][0] if panel.log else 0.0, panel.band[0], color=GREY, alpha=0.16, linewidth=0)
+        axes.axhspan(_upwards(panel)[0] if panel.steep else 0.0, panel.band[0], color=GREY, alpha=0.16, linewidth=0)
         axes.annotate(panel.band[1], (0.98, 0.02), xycoords="axes fraction", ha="right", va="bottom", fontsize=8)
     axes.grid(color=_RULE, linewidth=0.8)
     axes.set_axisbelow(True)
@@ -165,16 +177,21 @@ def _dress(axes, panel: Panel) -> None:
     axes.tick_params(labelsize=8.5)
 
 
-def _log_axis(limits: tuple[float, float]) -> dict:
-    return {"type": "log", "range": [math.log10(value) for value in limits], "exponentformat": "power", "dtick": 1,
-            "minor_ticks": "outside"}
+def _log_axis(limits: tuple[float, float], ticks: Sequence[float] = ()) -> dict:
+    marks = {"tickvals": list(ticks)} if ticks else {"dtick": 1, "minor_ticks": "outside"}
+    return {"type": "log", "range": [math.log10(value) for value in limits], "exponentformat": "power", **marks}
 
 
-def _limits(panel: Panel) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Whole decades of x and y that hold every point and the band with some air, for logarithmic axes."""
-    x = [value for line in panel.lines for value in line.x]
-    y = [value for line in panel.lines for value in line.y] + ([panel.band[0]] if panel.band else [])
-    return _decades(x), _decades(y)
+def _across(panel: Panel) -> tuple[float, float]:
+    """Limits of a logarithmic x, whole decades that hold every point, or the ticks, with some air."""
+    if panel.ticks:
+        return min(panel.ticks) / 1.5, max(panel.ticks) * 1.5
+    return _decades([value for line in panel.lines for value in line.x])
+
+
+def _upwards(panel: Panel) -> tuple[float, float]:
+    """The same of y, with the band."""
+    return _decades([value for line in panel.lines for value in line.y] + ([panel.band[0]] if panel.band else []))
 
 
 def _decades(values: list[float]) -> tuple[float, float]:

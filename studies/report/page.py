@@ -8,7 +8,7 @@ from pathlib import Path
 from scenes.scene import Scene
 from scenes.trajectory import versions
 from studies import machine
-from studies.report import answers, compliance, convergence, figures, inputs, stress, tables
+from studies.report import answers, compliance, convergence, figures, growth, inputs, scaling, stress, tables
 from studies.report.chart import Chart, to_files, to_html
 from studies.report.figures import Runs
 from studies.report.markup import Html, caption, code, number, paragraph, section, table
@@ -17,8 +17,8 @@ from studies.report.style import CSS
 
 _CONTENTS = (("answer", "Answer"), ("scene", "Scene"), ("mesh", "Mesh"), ("compliance", "Compliance"), ("thrust", "Thrust"), ("figure6", "Curves"),
              ("contact-forces", "Contact"), ("energy", "Energy"), ("stress", "Stress"), ("calibration", "Calibration"),
-             ("agreement-section", "Agreement"), ("speedup", "Speed"), ("cost", "Cost"), ("convergence", "Convergence"),
-             ("bench", "Solvers"), ("stability", "Hard cases"), ("ablation", "Ablation"),
+             ("agreement-section", "Agreement"), ("growth-section", "Growth of 1 µm"), ("speedup", "Speed"), ("cost", "Cost"),
+             ("convergence", "Convergence"), ("bench", "Solvers"), ("stability", "Hard cases"), ("ablation", "Ablation"),
              *((item.name, item.link) for item in answers.ANSWERS), ("promises", "Promises"), ("colophon", "Origin"))
 
 
@@ -37,12 +37,12 @@ class Page:
                         self._contact(), self._energy(), self._stress(),
                         self._of("calibration", "calibration", "Calibration", tables.calibration, "calibrate"),
                         self._of("agreement", "agreement-section", "Agreement with the reference", tables.agreement, "compare"),
-                        self._of("agreement", "speedup", "Speed", tables.speedups, "compare"),
-                        self._of("cost", "cost", "What accuracy costs", self._cost, "cost"), self._convergence(), self._bench(),
+                        self._growth(), self._of("agreement", "speedup", "Speed", tables.speedups, "compare"),
+                        self._of("cost_study", "cost", "What accuracy costs", self._cost, "cost"), self._convergence(), self._bench(),
                         self._of("stability", "stability", "Hard cases", tables.stability, "stability"),
                         self._of("ablation", "ablation", "Only what the scene calls for", tables.ablation, "ablation"),
                         *map(self._study, answers.ANSWERS), render(promises(self._rows(), self.documents)), self._colophon()])
-        links = "".join(f'<a href="#{name}">{title}</a>' for name, title in _CONTENTS if f'id="{name}"' in body)
+        links = " ".join(f'<a href="#{name}">{title}</a>' for name, title in _CONTENTS if f'id="{name}"' in body)
         title = f"tipoff: {escape(self.scene.name)}"
         return (f'<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{title}</title>'
                 f'<meta name="viewport" content="width=device-width, initial-scale=1"><style>{CSS}</style>'
@@ -166,7 +166,16 @@ class Page:
         return section("cost", "What accuracy costs", self._figure(
             figures.cost_picture(found), f"Condition {found['condition']}. Error against the finest finite-element mesh, whose own "
             "uncertainty is the band: an error inside it cannot be told from zero. Right: what a tighter tolerance can still buy. Labels: element size, "
-            "tolerance."), tables.cost(found))
+            "tolerance."), tables.cost(found), Html("<h3>How cost grows</h3>"),
+            self._figure(scaling.picture(found["scaling"]), scaling.WORDS.format(condition=found["condition"])),
+            scaling.tables(found["scaling"]))
+
+    def _growth(self) -> Html:
+        """How 1 um grows, where anything touches; agreement reminds of its own stage."""
+        found = (self.documents.get("agreement") or {}).get("growth")
+        if not found:
+            return Html("")
+        return section("growth-section", "How 1 µm grows", self._figure(growth.picture(found), growth.WORDS), growth.tables(found))
 
     def _bench(self) -> Html:
         """Both solvers against the loops one would write today, where a benchmark was run."""

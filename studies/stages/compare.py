@@ -1,15 +1,15 @@
 """Stage ``compare``: agreement of the surrogates with the reference, on conditions one was fitted to and on conditions none ever saw,
-beside the floor and the uncertainty of the reference; and the speed-up."""
+beside the floor and the uncertainty of the reference; the growth of 1 um; and the speed-up."""
 
 from dataclasses import asdict
 from functools import partial
 from pathlib import Path
-from typing import Callable, NamedTuple
+from typing import Callable, Iterable, NamedTuple
 
 from scenes.calibration import Calibration
 from scenes.trajectory import Trajectory
 from scenes.walls import PATTERNS, Walls
-from studies import agreement, metrics
+from studies import agreement, growth, metrics
 from studies.agreement import Context, Spread, spread
 from studies.progress import Board
 from studies.stages import calibrate, walls
@@ -43,8 +43,8 @@ def rungs(study: Study) -> list[Rung]:
 
 
 def run(study: Study) -> dict:
-    """``uncalibrated``, ``fitted``, ``held_out`` and ``compliant`` rows, ``floor`` and ``refinement`` as measured, ``speedup`` of the
-    calibrated and of the compliant surrogate, ``simpler`` walls."""
+    """``uncalibrated``, ``fitted``, ``held_out`` and ``compliant`` rows, ``floor`` and ``refinement`` as measured, ``growth`` of 1 um,
+    ``speedup`` of the calibrated and of the compliant surrogate, ``simpler`` walls."""
     study.fitted()
     _, calibrated, compliant = ladder = rungs(study)
     gates = agreement.gates(study.scene)
@@ -60,6 +60,7 @@ def run(study: Study) -> dict:
         return {"uncalibrated": table["uncalibrated"], **groups, "compliant": table["compliant"], "gates": gates,
                 "converged_deg_s": agreement.CONVERGED_DEG_S, "clearance_change_m": study.settings.clearance_change,
                 "floor": [asdict(item) for item in sum(own.values(), floor)], "refinement": [asdict(item) for item in changes],
+                "growth": [asdict(item) for item in _growths(study, compliant, table["compliant"])],
                 "simpler": _simpler(study, compliant, highfi),
                 **dict(zip(("speedup", "speedup_compliant"), _speedups(study, [calibrated, compliant])))}, []
 
@@ -92,14 +93,28 @@ def floors(study: Study, model: str, ask: Callable[..., Run]) -> list[Spread]:
     """Spread of one model under +-1 um of clearance, on the conditions the scene names for it."""
     if study.scene.contact is None:
         return []
+    return [spread(name, model, "clearance", nominal, changed)
+            for name, (nominal, *changed) in _twins(study, f"floor, {model}", ask, study.scene.agreement.floor).items()]
+
+
+def _growths(study: Study, compliant: Rung, rows: list[dict]) -> list[growth.Growth]:
+    """How 1 um of clearance grows in both models, on the conditions of the floor and on those whose reference is not converged: that
+    they are chaotic may be why."""
+    if study.scene.contact is None:
+        return []
+    names = dict.fromkeys([*study.scene.agreement.floor, *(row["condition"] for row in rows if not row["reference_converged"])])
+    gate = agreement.gates(study.scene)["settled_rate_error_deg_s"]
+    return [growth.growth(name, model, nominal, changed, study.settings.clearance_change, gate)
+            for model, ask in ((agreement.FINITE_ELEMENTS, study.coarse), (compliant.title, partial(compliant.ask, study)))
+            for name, (nominal, *changed) in _twins(study, f"growth, {model}", ask, names).items()]
+
+
+def _twins(study: Study, title: str, ask: Callable[..., Run], names: Iterable[str]) -> dict[str, list[Trajectory]]:
+    """The run of each condition, and those that differ from it by 1 um of clearance."""
     groups = {name: [ask(name)] + [ask(name, overrides={"contact.clearance": clearance}, tag=f"-clearance-{sign}")
-                                   for sign, clearance in clearances(study)] for name in study.scene.agreement.floor}
-    runs = study.store.fill(f"floor, {model}", [run for group in groups.values() for run in group])
-    found = []
-    for name, group in groups.items():
-        nominal, *changed = [runs.pop(0) for _ in group]
-        found.append(spread(name, model, "clearance", nominal, changed))
-    return found
+                                   for sign, clearance in clearances(study)] for name in names}
+    runs = iter(study.store.fill(title, [run for group in groups.values() for run in group]))
+    return {name: [next(runs) for _ in group] for name, group in groups.items()}
 
 
 def clearances(study: Study) -> list[tuple[str, float]]:

@@ -1,27 +1,33 @@
-"""Stage ``cost``: what accuracy costs in time. Error of the settled rates against wall time, both fidelities on one condition.
+"""Stage ``cost``: what accuracy costs in time. Error of the settled rates against wall time, both fidelities on one condition; and
+how time grows with elements, pads and effects (``studies.scaling``).
 
 The yardstick is the finest finite-element mesh; its own uncertainty is the band below which no error can be told from zero.
 The surrogate's time-integration error, against its own tightest tolerance, stands beside its error against the yardstick: what
 remains when it is small is the model, and no tolerance can buy it.
+
+``cost.json`` is the bare list of points, ``cost_study.json`` the whole result.
 """
 
 import statistics
 from pathlib import Path
 
+from scenes.files import write_json
 from scenes.trajectory import Trajectory
-from studies import agreement, machine
+from studies import agreement, machine, scaling
+from studies.agreement import FINITE_ELEMENTS
+from studies.stages import ablation
 from studies.stages.compare import SOURCES_USED, Rung, refined, rungs
 from studies.study import Study
 from studies.timing import timed, warm_up
 
 
 STIFFNESS_ALONG = "surrogate, stiffness along the rail"  # mean pressure, each face by itself
-FINITE_ELEMENTS = "finite elements"
+NAME, POINTS = "cost_study", "cost.json"
 
 
 def run(study: Study) -> dict:
     """``points``: model, rung, numerics, setting (element size in m or relative tolerance), error_deg_s, wall_s, pareto;
-    ``band_deg_s``: uncertainty of the yardstick; ``matched``."""
+    ``band_deg_s``: uncertainty of the yardstick; ``matched``; ``scaling`` over ``elements``, ``pads`` and ``effects``."""
     name = (study.scene.agreement.refined or study.fitted())[0]
     ladder = surrogates(study)
 
@@ -29,10 +35,14 @@ def run(study: Study) -> dict:
         finest, band, points = _reference_points(study, name)
         for rung in ladder:
             points += _surrogate_points(study, name, rung, finest)
-        return {"condition": name, "scene_hash": study.scene.hash, "band_deg_s": band, "points": marked(points), "matched": matched(points),
-                "hardware": machine.describe()}, []
+        growing = {"elements": scaling.elements(study, name), "pads": scaling.pads(study, name),
+                   "effects": scaling.effects(study.condition(name), ablation.run(study))}
+        path, points = study.path(POINTS), marked(points)
+        write_json(path, points)
+        return {"condition": name, "scene_hash": study.scene.hash, "band_deg_s": band, "points": points, "matched": matched(points),
+                "scaling": growing, "hardware": machine.describe()}, [path]
 
-    return study.stage("cost", study.key(SOURCES_USED, name, ladder[1].calibration.constants), make)
+    return study.stage(NAME, study.key(SOURCES_USED, name, ladder[1].calibration.constants), make)
 
 
 def surrogates(study: Study) -> list[Rung]:

@@ -14,7 +14,7 @@ from studies.study import Study, StudyError
 STAGES: dict[str, Callable[[Study], dict]] = {
     "mesh": mesh.run, "highfi": lambda study: runs.run(study, "highfi"), "lowfi": lambda study: runs.run(study, "lowfi"),
     "walls": walls.run,
-    "calibration": calibrate.run, "agreement": compare.run, "cost": cost.run, "stability": stability.run, "ablation": ablation.run}
+    "calibration": calibrate.run, "agreement": compare.run, cost.NAME: cost.run, "stability": stability.run, "ablation": ablation.run}
 
 
 def run(study: Study) -> dict:

@@ -23,7 +23,7 @@ def study(tmp_path):
                "status": "diverged" if name == "lost" else "exited"} for name, error, wall in POINTS]
     found = Study(scene, tmp_path / "tiny", Settings())
     found.folder.mkdir()
-    found.path("cost.json").write_text(json.dumps({"scene_hash": scene.hash, "condition": "phi15", "band_deg_s": 0.02, "points": points}))
+    found.path("cost_study.json").write_text(json.dumps({"scene_hash": scene.hash, "condition": "phi15", "band_deg_s": 0.02, "points": points}))
     return found
 
 

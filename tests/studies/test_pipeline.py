@@ -9,6 +9,7 @@ from typer.testing import CliRunner
 from scenes.calibration import Calibration
 from scenes.trajectory import Trajectory
 from studies.cli import app
+from studies.report.answers import ANSWERS
 from studies.stages.report import STAGES
 from studies.stages import ablation
 
@@ -18,7 +19,7 @@ ROW = {"condition", "velocity_relative_l2", "rate_relative_l2", "iso18571", "set
        "floor_deg_s", "floor_l2", "reference_uncertainty_deg_s"}
 RUN = {"condition", "status", "wall_s", "compile_s", "steps", "dt_s", "energy_error", "transverse_energy_error", "linear_momentum_error",
        "angular_momentum_error", "settled", "trajectory"}
-SECTIONS = ("answer", "scene", "mesh", "compliance", "thrust", "figure6", "contact-forces", "energy", "stress", "calibration", "agreement", "speedup", "cost",
+SECTIONS = ("answer", "scene", "mesh", "compliance", "thrust", "figure6", "contact-forces", "energy", "stress", "calibration", "agreement", "growth-section", "speedup", "cost",
             "stability", "ablation", "promises", "colophon")
 
 
@@ -111,13 +112,38 @@ def test_hard_cases_hold_and_their_controls_fail(pipeline):
 
 
 def test_cost_has_three_meshes_and_three_tolerances(pipeline):
-    points = result(pipeline[0], "cost")["points"]
+    points = result(pipeline[0], "cost")
+    assert points == result(pipeline[0], "cost_study")["points"]
+    assert all({"model", "numerics", "error_deg_s", "wall_s", "pareto"} <= set(point) for point in points)
     counts = [sum(point["model"] == model for point in points)
               for model in ("finite elements", "surrogate, uncalibrated", "surrogate, calibrated", "surrogate, stiffness along the rail",
                             "surrogate, compliant walls")]
     assert all(count >= 3 for count in counts)
-    assert len(result(pipeline[0], "cost")["matched"]) == 4
+    assert len(result(pipeline[0], "cost_study")["matched"]) == 4
     assert any(point["pareto"] for point in points)
+
+
+def test_cost_grows_with_elements_and_hardly_with_pads(pipeline):
+    """Elements are the work of the reference on any mesh; pads only where they touch."""
+    found = result(pipeline[0], "cost_study")["scaling"]
+    assert [point["n"] for point in found["elements"]["points"]] == sorted(point["n"] for point in found["elements"]["points"])
+    assert found["elements"]["run"]["exponent"] > 0.0
+    assert [law["model"] for law in found["pads"]] == ["finite elements", "surrogate, springs", "surrogate, compliant walls"]
+    assert all([point["n"] for point in law["points"]] == [1, 2, 4, 8, 16] for law in found["pads"])
+    assert all(point["status"] == "exited" for law in found["pads"] for point in law["points"])
+    assert found["pads"][0]["run"]["exponent"] < 0.5
+    assert all(item["ratio"] > 0.0 for item in found["effects"])
+
+
+def test_growth_of_a_micrometre_in_both_models(pipeline):
+    """Both on the condition of the floor at least, whose figure it must repeat."""
+    found = result(pipeline[0], "agreement")
+    models = {(item["condition"], item["model"]): item for item in found["growth"]}
+    floor = {item["model"]: item["settled_rate_change_deg_s"] for item in found["floor"] if item["condition"] == "phi15"}
+    for model, named in (("finite elements", "reference"), ("surrogate, compliant walls", "surrogate, compliant walls")):
+        item = models["phi15", model]
+        assert item["settled_separation_deg_s"] == floor[named] and item["contacts"]
+        assert len(item["time_s"]) == len(item["separation_deg_s"]) and max(item["separation_deg_s"]) > 0.0
 
 
 def test_ablation_changes_rates_and_kernel(pipeline):
@@ -131,10 +157,10 @@ def test_ablation_changes_rates_and_kernel(pipeline):
 def test_page_is_whole_and_self_contained(pipeline):
     page = (pipeline[0] / "report.html").read_text()
     assert [name for name in SECTIONS if f'id="{name}"' not in page] == []
-    assert "Not made yet" not in page and "BROKEN" not in page
+    assert page.count("Not made yet") == len(ANSWERS) and "BROKEN" not in page
     assert page.count("/*! For license information") <= 1 and 'src="http' not in page
     figures = {path.name for path in (pipeline[0] / "figures").glob("*.png")}
-    assert {"mesh.png", "compliance.png", "thrust.png", "figure6.png", "contact-forces.png", "energy-ledgers.png", "cost.png"} <= figures
+    assert {"mesh.png", "compliance.png", "thrust.png", "figure6.png", "contact-forces.png", "energy-ledgers.png", "cost.png", "growth.png", "scaling.png"} <= figures
 
 
 def test_blind_conditions_are_judged_beside_what_was_made(pipeline):
