@@ -1,12 +1,12 @@
-"""Stage ``report``: every stage but ``convergence``, which takes minutes, then one page of their results, of a convergence study and
-of a benchmark that are there already."""
+"""Stage ``report``: every stage but ``convergence`` and ``posterior``, which take minutes, then one page of their results, of these two
+and of a benchmark where they are there already."""
 
 from pathlib import Path
 from typing import Callable
 
 from scenes.files import content_hash, write_text
 from studies import bench
-from studies.stages import ablation, calibrate, compare, convergence, cost, mesh, runs, stability, view, walls
+from studies.stages import ablation, calibrate, compare, convergence, cost, mesh, posterior, runs, stability, view, walls
 from studies.store import Run
 from studies.study import Study, StudyError
 
@@ -24,7 +24,7 @@ def run(study: Study) -> dict:
             documents[name] = stage(study)
         except StudyError as fault:
             documents[name], problems[name] = None, str(fault)
-    there = {convergence.NAME: convergence.stored(study), "bench": bench.stored(study.folder.parent),
+    there = {convergence.NAME: convergence.stored(study), posterior.NAME: posterior.stored(study), "bench": bench.stored(study.folder.parent),
              "view": view.stored(study)}
 
     def make() -> tuple[dict, list[Path]]:
