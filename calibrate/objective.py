@@ -96,7 +96,8 @@ class Objective:
 
     def __init__(self, scene: Scene, targets: dict[str, Target], parameters: list[Parameter], numerics=None, over: Callable = map,
                  run: Callable = lowfi.run):
-        self.scene, self.targets, self.parameters, self.numerics, self.over, self.run = scene, targets, parameters, numerics, over, run
+        self.scene, self.targets, self.parameters = scene, targets, parameters
+        self.numerics, self.over, self.run = numerics, over, run
         self.variations = {name: Variations(wanted.scene) for name, wanted in targets.items()}
         self.evaluations = 0
 

@@ -4,8 +4,8 @@
 
 The prior is uniform in the shares of the bounds, logarithmic for the parameters searched so. What a fit holds because the curves
 hardly know it varies here, over its bounds, so that nothing rests on the value it is held at. A constant whose posterior is as wide
-as its prior has been told nothing, and gets no interval. The fit weighs quantities by the accuracy that is wanted of them, the posterior
-by how wrong the surrogate is about each; so a calibrated value may lie outside its interval, which is then said.
+as its prior has been told nothing, and gets no interval. The fit weighs quantities by the accuracy that is wanted of them, the
+posterior by how wrong the surrogate is about each; so a calibrated value may lie outside its interval, which is then said.
 """
 
 from typing import Callable, NamedTuple
@@ -147,19 +147,20 @@ def told(items: list[Parameter], shares: np.ndarray, best: np.ndarray) -> dict:
     for item, ends, wide, found in zip(items, zip(low, high), spread, best):
         if wide >= UNTOLD:
             intervals.append(None)
-            notes.append(f"{item.name}: its posterior is its prior ({wide:.2f} of the prior's standard deviation): the curves do not "
-                         "tell it, and it has no interval")
+            notes.append(f"{item.name}: its posterior is its prior ({wide:.2f} of the prior's standard deviation): the curves do "
+                         "not tell it, and it has no interval")
             continue
         intervals.append(_values(item, ends))
         if bound := "lower" if ends[0] < _ON_BOUND else "upper" if ends[1] > 1.0 - _ON_BOUND else "":
             at = f"{getattr(item, bound):.4g}{'' if item.unit == '1' else f' {item.unit}'}"
             notes.append(f"{item.name}: the interval ends at its {bound} bound {at}, which physics sets, not the curves")
         elif not ends[0] <= found <= ends[1]:
-            notes.append(f"{item.name}: calibrated to {item.value(float(found)):.4g}, outside its interval: the fit weighs quantities by "
-                         "the accuracy wanted of them, the posterior by how wrong the surrogate is about each")
+            notes.append(f"{item.name}: calibrated to {item.value(float(found)):.4g}, outside its interval: the fit weighs "
+                         "quantities by the accuracy wanted of them, the posterior by how wrong the surrogate is about each")
     unit = (shares - shares.mean(axis=0)) / np.maximum(shares.std(axis=0), np.finfo(float).tiny)
     return {"parameters": [item.name for item in items], "units": [item.unit for item in items],
             "lower": [item.lower for item in items], "upper": [item.upper for item in items],
+            "logarithmic": [item.logarithmic for item in items],
             "best": [_values(item, [share])[0] for item, share in zip(items, best)],
             "median": [_values(item, [share])[0] for item, share in zip(items, middle)], "intervals": intervals,
             "spread": spread.tolist(), "notes": notes, "correlation": (unit.T @ unit / len(unit)).tolist()}

@@ -9,7 +9,8 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Posterior:
-    """Plain values in SI, lists over p ``parameters`` (``units``, ``lower``, ``upper`` bounds, ``best`` as calibrated, ``median``).
+    """Plain values in SI, lists over p ``parameters`` (``units``, ``lower`` and ``upper`` bounds, whether the prior is uniform in
+    the logarithm, ``best`` as calibrated, ``median``).
 
     ``intervals``: 95 %, with the discrepancy, None where the posterior is the prior; ``without``: linear ones that take every
     sample for independent noise. ``spread``: standard deviations over the prior's; ``notes``: sentences on what is not told;
@@ -23,6 +24,7 @@ class Posterior:
     units: list[str]
     lower: list[float]
     upper: list[float]
+    logarithmic: list[bool]
     best: list[float]
     median: list[float]
     intervals: list[list[float] | None]

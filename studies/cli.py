@@ -124,7 +124,7 @@ def calibrate(scene: SceneName = "reference", out: Out = Path("out"), set_: Set 
 @app.command()
 def posterior(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = None, element_size: ElementSize = None,
               workers: Workers = None, json_: Json = False) -> None:
-    """What the calibrated constants and the exit rates may be, given that the surrogate is wrong; takes minutes; writes posterior.json."""
+    """What the constants and the exit rates may be, given that the surrogate is wrong; takes minutes; writes posterior.json."""
 
     def work() -> dict:
         from studies.stages import posterior as stage

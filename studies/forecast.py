@@ -1,11 +1,11 @@
 """How long a calibration will take, said before it begins.
 
-    time = ceil(runs / at a time) * elements * steps * ns per element and step  +  evaluations * conditions * time of a surrogate's run
+    time = ceil(runs / at a time) * elements * steps * ns per element and step + evaluations * conditions * time of the surrogate
 
 Elements are counted without a mesh where the rail is the built-in section. Steps and nanoseconds come from runs of the reference
-that are stored, of this scene, else of one beside it, else from a benchmark; where nothing was measured typical figures stand in, and
-the line says so. It may be wrong by what other programs take, and by the time after the exit that a run leaves out. It may not cost
-what it tells: after a second it is given up.
+that are stored, of this scene, else of one beside it, else from a benchmark; where nothing was measured typical figures stand in,
+and the line says so. It may be wrong by what other programs take, and by the time after the exit that a run leaves out. It may not
+cost what it tells: after a second it is given up.
 """
 
 import importlib

@@ -34,7 +34,7 @@ def rates(posterior: calibrate.Posterior, scenes: Mapping[str, Scene], workers: 
 
 def row(condition: str, role: str, posterior: calibrate.Posterior, drawn: np.ndarray, reference: list[float] | None,
         seed: int = 0) -> dict:
-    """Intervals of one condition, in deg/s by axis, from settled rates (k,3) rad/s of every draw, and which hold the reference's."""
+    """Intervals of one condition (deg/s) by axis from settled rates (k,3) rad/s of every draw, and which hold the reference's."""
     settled = np.flatnonzero(np.isfinite(drawn).all(axis=1))
     wanted = None if reference is None else np.degrees(reference)
     found = {"condition": condition, "role": role, "settled": len(settled), "draws": len(drawn),

@@ -10,10 +10,10 @@ from studies.metrics import AXES
 from studies.report.chart import AMBER, GREY, NAVY, TEAL, VERMILION, Chart, Line, Panel
 from studies.report.markup import Html, caption, fold, number, paragraph, percent, table
 
-WORDS = ("Constants: log likelihood with the discrepancy integrated out, relative to its largest value, all other constants found "
-         "again (profile); marginal: logarithm of the share of draws per bin, likewise relative. Bars: 95 % intervals, triangles where "
-         "every sample is taken for independent noise about a model that is right. A flat line is a constant the curves do not tell. "
-         "Rates: the line is equality; broad bars: what the constants leave open; dotted ones: with the discrepancy.")
+WORDS = ("Constants: log likelihood with the discrepancy integrated out, relative to its largest value, all other constants "
+         "found again (profile); marginal: logarithm of the share of draws per bin, likewise relative. Bars: 95 % intervals, "
+         "triangles where every sample is taken for independent noise about a model that is right. A flat line is a constant the "
+         "curves do not tell. Rates: the line is equality; broad bars: what the constants leave open; dotted ones: with the discrepancy.")
 _LOWEST = -8.0  # of the log likelihood, drawn
 _BINS = 12
 _TITLES = dict(zip(AXES, ("roll rate", "y rate", "z rate")))
@@ -33,6 +33,7 @@ def tables(document: dict) -> Html:
                  document["spread"])]
     notes = "".join(f"<li>{escape(words)}</li>" for words in document["notes"]) or "<li>nothing: each constant has an interval</li>"
     doubts = "".join(f'<div class="notice">Not converged: {escape(words)}</div>' for words in document["chain"]["doubts"])
+    together = [(name, *(f"{value:+.2f}" for value in line)) for name, line in zip(document["parameters"], document["correlation"])]
     return Html("".join([
         doubts, table(("constant", "calibrated", "95 % with the discrepancy", "95 % if every sample were noise",
                        "95 % linear, as calibrated", "unit", "spread, of the prior's"), rows, "posterior-constants"),
@@ -41,21 +42,21 @@ def tables(document: dict) -> Html:
              table(("condition", "role", "axis", "reference", "median", "by the constants", "with the discrepancy", "holds it"),
                    list(_predicted(document["predicted"])), dense=True)),
         fold("the discrepancy, and how the draws were made", _errors(document), _chain(document["chain"])),
-        fold("correlations of the constants", table(("", *document["parameters"]), [
-            (name, *(f"{value:+.2f}" for value in line)) for name, line in zip(document["parameters"], document["correlation"])]))]))
+        fold("correlations of the constants", table(("", *document["parameters"]), together))]))
 
 
 def _constant(document: dict, index: int) -> Panel:
     name, unit = document["parameters"][index], document["units"][index]
     profile, samples = document["profile"][name], np.array(document["samples"][name])
-    counts, edges = np.histogram(samples, bins=_BINS)
-    there = counts > 0
+    logarithmic = document["logarithmic"][index]  # a prior uniform there is flat in bins that are equal there
+    counts, edges = np.histogram(np.log(samples) if logarithmic else samples, bins=_BINS)
+    there, middle = counts > 0, 0.5 * (edges[1:] + edges[:-1])
     marginal = np.log(counts[there] / counts.max())
     lines = [Line(profile["value"], np.maximum(profile["drop"], _LOWEST), "profile", NAVY, 2.0, marker="o"),
-             Line((0.5 * (edges[1:] + edges[:-1]))[there], marginal, "marginal", AMBER, 1.6, "--")]
+             Line((np.exp(middle) if logarithmic else middle)[there], marginal, "marginal", AMBER, 1.6, "--")]
     bars = ((document["intervals"][index], "95 % with the discrepancy", -DROP, VERMILION, "s"),
             (document["without"][index], "95 % if every sample were noise", -DROP - 0.8, GREY, "^"))
-    lines += [Line(ends, [height, height], words, colour, 2.4, marker=marker) for ends, words, height, colour, marker in bars if ends]
+    lines += [Line(ends, [height] * 2, words, colour, 2.4, marker=marker) for ends, words, height, colour, marker in bars if ends]
     return Panel(name, f"{name} ({unit})" if unit != "1" else name, "relative log likelihood", lines)
 
 
@@ -91,8 +92,8 @@ def _covered(found: dict) -> Html:
              f"interval, {item['parameter']} inside that of the constants alone (independent values: {item['band'][0]} to "
              f"{item['band'][1]})" for role, item in found.items() if item["values"]]
     return Html(paragraph("; ".join(parts) + ".") + caption(
-        "The three axes of a condition are not independent of each other, so the band is the narrowest there could be. Fitted conditions "
-        "were seen by the constants and by the size of the discrepancy; held-out ones by neither."))
+        "The three axes of a condition are not independent of each other, so the band is the narrowest there could be. Fitted "
+        "conditions were seen by the constants and by the size of the discrepancy; held-out ones by neither."))
 
 
 def _predicted(rows: list[dict]):
@@ -120,5 +121,5 @@ def _errors(document: dict) -> Html:
 def _chain(found: dict) -> Html:
     longest = math.ceil(max(found["autocorrelation_steps"]))
     return paragraph(f"{found['walkers']} walkers of {found['steps']} steps, the first quarter dropped; "
-                     f"{percent(found['accepted'], 2)} % of moves accepted; autocorrelation time up to {longest} steps, so {found['effective']:.0f} independent draws; "
-                     f"{found['evaluations']:,} evaluations; seed {found['seed']}.")
+                     f"{percent(found['accepted'], 2)} % of moves accepted; autocorrelation time up to {longest} steps, so "
+                     f"{found['effective']:.0f} independent draws; {found['evaluations']:,} evaluations; seed {found['seed']}.")

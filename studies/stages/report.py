@@ -1,5 +1,5 @@
-"""Stage ``report``: every stage but ``convergence`` and ``posterior``, which take minutes, then one page of their results, of these two
-and of a benchmark where they are there already."""
+"""Stage ``report``: every stage but ``convergence`` and ``posterior``, which take minutes, then one page of their results, of these
+two and of a benchmark where they are there already."""
 
 from pathlib import Path
 from typing import Callable
@@ -24,8 +24,8 @@ def run(study: Study) -> dict:
             documents[name] = stage(study)
         except StudyError as fault:
             documents[name], problems[name] = None, str(fault)
-    there = {convergence.NAME: convergence.stored(study), posterior.NAME: posterior.stored(study), "bench": bench.stored(study.folder.parent),
-             "view": view.stored(study)}
+    there = {convergence.NAME: convergence.stored(study), posterior.NAME: posterior.stored(study),
+             "bench": bench.stored(study.folder.parent), "view": view.stored(study)}
 
     def make() -> tuple[dict, list[Path]]:
         from studies.report.page import Page

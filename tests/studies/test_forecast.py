@@ -44,7 +44,7 @@ def test_the_line_counts_waves_of_runs():
 
 
 def test_time_follows_elements_steps_and_speed(tmp_path):
-    """A run of 170,000 steps at 10 ns on the 19,360 elements of 2 mm takes 32.9 s; 1 mm is eight times the elements, twice the steps."""
+    """170,000 steps at 10 ns on the 19,360 elements of 2 mm take 32.9 s; 1 mm is eight times the elements, twice the steps."""
     of = study(tmp_path)
     stored(of.folder / "highfi" / "phi0-coarse.nc", ns_per_element_step=10.0, elements=19360, steps=170_000)
     stored(of.folder / "lowfi" / "phi0.nc", wall_s=0.01)

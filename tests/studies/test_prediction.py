@@ -14,7 +14,7 @@ POSTERIOR = SimpleNamespace(settled_size=[[SIZE] * 3] * DRAWS, settled_freedom=F
 
 
 def rows(conditions: int) -> list[dict]:
-    """Surrogates whose constants scatter by 1 % of each rate, beside references with a discrepancy as large as the posterior says."""
+    """Surrogates whose constants scatter by 1 % of each rate, references with a discrepancy as large as the posterior says."""
     generator, found = np.random.default_rng(46), []
     for number in range(conditions):
         rate = 0.05 * generator.standard_normal(3)
@@ -31,8 +31,8 @@ def many() -> list[dict]:
 
 @pytest.mark.case("O45")
 def test_as_many_references_lie_inside_as_the_intervals_say(many):
-    """900 values, the axes independent here: 95 % of them within their 99.9 % band, for quantiles of 200 draws are rough. Control: what
-    the constants leave open holds few."""
+    """900 values, the axes independent here: 95 % of them within their 99.9 % band, for quantiles of 200 draws are rough. Control:
+    what the constants leave open holds few."""
     found = prediction.coverage(many)
     assert found["values"] == 900 and found["band"] == [842, 867]
     assert 831 <= found["total"] <= 876, found
@@ -55,10 +55,11 @@ def test_a_case_that_does_not_settle_is_counted_out():
 def document(predicted: list[dict]) -> dict:
     """What the stage writes, of two constants, one not told."""
     profile = {"value": [1.0, 2.0, 3.0], "drop": [-3.0, 0.0, -30.0]}
-    chain = {"doubts": ["<short>"], "walkers": 8, "steps": 90, "accepted": 0.3, "autocorrelation_steps": [9.0, 11.0], "effective": 65.0,
-             "evaluations": 720, "seed": 0}
-    return {"parameters": ["contact.force", "contact.damping_depth"], "units": ["N", "m"], "best": [2.0, 2.0],
-            "intervals": [[1.5, 2.5], None], "without": [[1.9, 2.1], None], "linear": [[1.8, 2.2]], "spread": [0.05, 0.99],
+    chain = {"doubts": ["<short>"], "walkers": 8, "steps": 90, "accepted": 0.3, "autocorrelation_steps": [9.0, 11.0],
+             "effective": 65.0, "evaluations": 720, "seed": 0}
+    return {"parameters": ["contact.force", "contact.damping_depth"], "units": ["N", "m"], "best": [2.0, 2.0], "logarithmic": [True, False],
+            "intervals": [[1.5, 2.5], None], "without": [[1.9, 2.1], None], "linear": [[1.8, 2.2]],
+            "spread": [0.05, 0.99],
             "notes": ["contact.damping_depth: its posterior is its prior"], "correlation": [[1.0, 0.1], [0.1, 1.0]],
             "profile": {"contact.force": profile, "contact.damping_depth": profile},
             "samples": {name: [1.0, 2.0, 2.0, 3.0] for name in ("contact.force", "contact.damping_depth")},
@@ -70,7 +71,8 @@ def test_page_shows_intervals_side_by_side_and_what_is_not_told():
     found = document(rows(4) + [prediction.row("still", "fitted", POSTERIOR, np.full((DRAWS, 3), np.nan), None)])
     shown = page.tables(found)
     assert ">1.5 to 2.5<" in shown and ">1.9 to 2.1<" in shown and ">1.8 to 2.2<" in shown and ">not told<" in shown
-    assert "its posterior is its prior" in shown and "Not converged: &lt;short&gt;" in shown and "of 12 settled rates of held-out" in shown
+    assert "its posterior is its prior" in shown and "Not converged: &lt;short&gt;" in shown
+    assert "of 12 settled rates of held-out" in shown
     chart = page.picture(found)
     assert [panel.title for panel in chart.panels] == ["contact.force", "contact.damping_depth", "roll rate", "y rate", "z rate"]
     assert min(min(line.y) for line in chart.panels[0].lines) >= -8.0
