@@ -20,8 +20,8 @@ _LOOK = 100  # steps between two looks at convergence
 class Plan(NamedTuple):
     """``walkers``, at least twice the parameters; at most ``steps`` of each, at least ``least``."""
 
-    walkers: int = 16
-    steps: int = 2000
+    walkers: int = 12
+    steps: int = 2600
     least: int = 400
 
 

@@ -60,7 +60,7 @@ def posterior(scene: Scene, references: dict[str, Trajectory | Curves], calibrat
     sampled = scene.replace({"output.interval": INTERVAL})
     objective = Objective(sampled, targets(sampled, curves), items, lowfi.Numerics(relative_tolerance=TOLERANCE), run=motion.run)
     left = list(objective.parts(best).values())
-    error = discrepancy.error(left)
+    error = discrepancy.error(left, [item.touches for item in curves.values()])
 
     def density(shares: np.ndarray) -> float:
         found = discrepancy.squares(list(objective.parts(shares).values()))

@@ -6,6 +6,7 @@ from html import escape
 import numpy as np
 
 from calibrate.profile import DROP
+from studies import prediction
 from studies.metrics import AXES
 from studies.report.chart import AMBER, GREY, NAVY, TEAL, VERMILION, Chart, Line, Panel
 from studies.report.markup import Html, caption, fold, number, paragraph, percent, table
@@ -61,7 +62,7 @@ def _constant(document: dict, index: int) -> Panel:
 
 
 def _rates(document: dict, axis: int) -> Panel:
-    known = [item for item in document["predicted"] if item["reference_deg_s"] and item["median_deg_s"]]
+    known = [item for item in document["predicted"] if item["touches"] and item["reference_deg_s"] and item["median_deg_s"]]
     reference = [item["reference_deg_s"][axis] for item in known]
     ends = [min(reference, default=0.0), max(reference, default=1.0)]
     lines = [Line(ends, ends, "equality", GREY, 1.2)]
@@ -90,17 +91,18 @@ def _interval(ends: list[float] | None) -> str | Html:
 def _covered(found: dict) -> Html:
     parts = [f"{item['total']} of {item['values']} settled rates of {role.replace('_', '-')} conditions lie inside their 95 % "
              f"interval, {item['parameter']} inside that of the constants alone (independent values: {item['band'][0]} to "
-             f"{item['band'][1]})" for role, item in found.items() if item["values"]]
+             f"{item['band'][1]})" + prediction.missed(item) for role, item in found.items() if item["values"]]
     return Html(paragraph("; ".join(parts) + ".") + caption(
         "The three axes of a condition are not independent of each other, so the band is the narrowest there could be. Fitted "
-        "conditions were seen by the constants and by the size of the discrepancy; held-out ones by neither."))
+        "conditions were seen by the constants and by the size of the discrepancy; held-out ones by neither. Conditions in which no "
+        "pad touches are not counted."))
 
 
 def _predicted(rows: list[dict]):
     for item in rows:
         for index, axis in enumerate(AXES):
             reference = item["reference_deg_s"] and f"{item['reference_deg_s'][index]:+.3f}"
-            head = (item["condition"], item["role"].replace("_", " "), axis, reference)
+            head = (item["condition"] + ("" if item["touches"] else " (no pad touches)"), item["role"].replace("_", " "), axis, reference)
             if item["median_deg_s"] is None:
                 yield *head, None, None, None, None
                 continue

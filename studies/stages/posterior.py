@@ -33,7 +33,8 @@ def run(study: Study) -> dict:
             board.finished("constants", _drawn(found.chain))
             scenes = {name: study.condition(name) for name in asked}
             rates = prediction.rates(found, scenes, study.settings.workers, board.callback("rates"))
-            rows = [prediction.row(name, roles[name], found, drawn, references[name].outcome.rate) for name, drawn in rates.items()]
+            rows = [prediction.row(name, roles[name], found, drawn, reference.outcome.rate, bool(reference.pad_force.any()))
+                    for (name, drawn), reference in zip(rates.items(), references.values())]
             covered = {role: prediction.coverage([row for row in rows if row["role"] == role]) for role in ("fitted", "held_out")}
             board.finished("rates", _covered(covered))
         return found.as_dict() | {"linear": calibrate.as_dict(calibration)["intervals"], "predicted": rows, "coverage": covered}, []
@@ -69,4 +70,5 @@ def _drawn(chain: dict) -> str:
 def _covered(found: dict) -> str:
     return "; ".join(f"{item['total']} of {item['values']} {role.replace('_', '-')} settled rates inside their 95 % interval, "
                      f"{item['parameter']} inside that of the constants alone (95 % band {item['band'][0]} to {item['band'][1]})"
+                     + prediction.missed(item)
                      for role, item in found.items() if item["values"])

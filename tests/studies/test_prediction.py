@@ -48,8 +48,11 @@ def test_a_case_that_does_not_settle_is_counted_out():
     assert none["settled"] == 0 and none["total_deg_s"] is None
     unknown = prediction.row("a", "fitted", POSTERIOR, drawn, None)
     assert unknown["total_holds"] is None and unknown["total_deg_s"] is not None
-    assert prediction.coverage([part, none, unknown])["values"] == 3
+    free = prediction.row("a", "fitted", POSTERIOR, drawn, [0.1, 0.1, 0.1], touches=False)
+    assert prediction.coverage([part, none, unknown, free])["values"] == 3
     assert prediction.coverage([])["values"] == 0
+    beside = prediction.row("b", "fitted", POSTERIOR, drawn, [0.1, 9.0, 0.1])
+    assert prediction.missed(prediction.coverage([part, beside])) == ", not in b (y)"
 
 
 def document(predicted: list[dict]) -> dict:
