@@ -69,8 +69,10 @@ def chosen(posterior: Posterior, count: int | None = None, seed: int = 0) -> np.
     return np.random.default_rng(seed).choice(there, count, replace=count > there)
 
 
-def disturbed(posterior: Posterior, rates: np.ndarray, numbers: np.ndarray, seed: int = 0) -> np.ndarray:
-    """Settled rates (k,...,3) of the draws ``numbers`` (k,) with the discrepancy added, as the reference might have them."""
+def disturbed(posterior: Posterior, rates: np.ndarray, numbers: np.ndarray | None = None, seed: int = 0) -> np.ndarray:
+    """Settled rates (k,...,3) of the draws ``numbers`` (k,), absent: all of them, with the discrepancy added, as the reference
+    might have them."""
+    numbers = chosen(posterior) if numbers is None else numbers
     size = np.array(posterior.settled_size)[numbers].reshape(len(numbers), *[1] * (rates.ndim - 2), 3)
     fresh = np.random.default_rng([seed, 2]).standard_t(posterior.settled_freedom, rates.shape)
     return rates + np.linalg.norm(rates, axis=-1, keepdims=True) * size * fresh
