@@ -53,7 +53,8 @@ def _constant(document: dict, index: int) -> Panel:
     counts, edges = np.histogram(np.log(samples) if logarithmic else samples, bins=_BINS)
     there, middle = counts > 0, 0.5 * (edges[1:] + edges[:-1])
     marginal = np.log(counts[there] / counts.max())
-    lines = [Line(profile["value"], np.maximum(profile["drop"], _LOWEST), "profile", NAVY, 2.0, marker="o"),
+    lines = [Line(profile["value"][::len(profile["value"]) - 1], [-DROP] * 2, "95 % limit of a profile", GREY, 1.0, ":"),
+             Line(profile["value"], np.maximum(profile["drop"], _LOWEST), "profile", NAVY, 2.0, marker="o"),
              Line((np.exp(middle) if logarithmic else middle)[there], marginal, "marginal", AMBER, 1.6, "--")]
     bars = ((document["intervals"][index], "95 % with the discrepancy", -DROP, VERMILION, "s"),
             (document["without"][index], "95 % if every sample were noise", -DROP - 0.8, GREY, "^"))
