@@ -18,9 +18,9 @@ def run(study: Study) -> dict:
     """The posterior as plain values, ``predicted`` rows by condition and ``coverage`` by role. Raises StudyError without emcee."""
     if importlib.util.find_spec("emcee") is None:
         raise StudyError("the posterior is drawn with emcee, which is not installed: pip install 'tipoff[studies]'")
-    roles = {name: role for role in ("held_out", "fitted") for name in getattr(study.scene.agreement, role)}
     fitted, calibration = study.fitted(), calibrate.load(study)
-    asked = {name: study.highfi(name) for name in reversed(roles)}
+    roles = dict.fromkeys([*fitted, *study.scene.agreement.held_out], "held_out") | dict.fromkeys(fitted, "fitted")
+    asked = {name: study.highfi(name) for name in roles}
 
     def make() -> tuple[dict, list[Path]]:
         import calibrate as fits

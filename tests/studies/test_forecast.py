@@ -47,7 +47,8 @@ def test_time_follows_elements_steps_and_speed(tmp_path):
     """170,000 steps at 10 ns on the 19,360 elements of 2 mm take 32.9 s; 1 mm is eight times the elements, twice the steps."""
     of = study(tmp_path)
     stored(of.folder / "highfi" / "phi0-coarse.nc", ns_per_element_step=10.0, elements=19360, steps=170_000)
-    stored(of.folder / "lowfi" / "phi0.nc", wall_s=0.01)
+    for name, seconds in (("first", 2.0), ("second", 0.01), ("second-walls-1", 0.001)):
+        stored(of.folder / "lowfi" / f"{name}.nc", wall_s=seconds)
     known = forecast.pace(of)
     assert known.ns == 10.0 and known.source == ""
     each, _ = forecast._reference(asked(of)[0], known)
