@@ -18,9 +18,11 @@ import numpy as np
 import lowfi
 from calibrate.curves import Curves
 from calibrate.faults import CalibrationError
+from calibrate.motion import Motion
 from calibrate.parameters import Parameter, overrides
 from scenes.scene import Scene
 from scenes.trajectory import Trajectory
+from scenes.variation import Variations
 
 VELOCITY_WEIGHT = 50.0
 SMALLEST_AMPLITUDE = 0.01
@@ -71,7 +73,7 @@ class Parts(NamedTuple):
         return np.concatenate([VELOCITY_WEIGHT * self.velocity, self.rate.ravel(), self.settled])
 
 
-def compare(target: Target, result: Trajectory) -> Parts:
+def compare(target: Target, result: Trajectory | Motion) -> Parts:
     """Residuals of a surrogate's run of the target's condition."""
     root = np.sqrt(target.weights)
     moving, turning, leaving = target.amplitudes
@@ -89,11 +91,14 @@ class Objective:
     """Residuals as a function of the parameters' shares (0..1 of their bounds); counts its evaluations.
 
     ``over`` applies a function to every condition, in order: ``map``, or that of a pool of threads, since the surrogate's kernels
-    release the interpreter. No bit of the result depends on the choice.
+    release the interpreter. No bit of the result depends on the choice. ``run`` is the surrogate, or ``calibrate.motion.run``.
     """
 
-    def __init__(self, scene: Scene, targets: dict[str, Target], parameters: list[Parameter], numerics=None, over: Callable = map):
-        self.scene, self.targets, self.parameters, self.numerics, self.over = scene, targets, parameters, numerics, over
+    def __init__(self, scene: Scene, targets: dict[str, Target], parameters: list[Parameter], numerics=None, over: Callable = map,
+                 run: Callable = lowfi.run):
+        self.scene, self.targets, self.parameters = scene, targets, parameters
+        self.numerics, self.over, self.run = numerics, over, run
+        self.variations = {name: Variations(wanted.scene) for name, wanted in targets.items()}
         self.evaluations = 0
 
     def values(self, shares: np.ndarray) -> dict[str, float]:
@@ -105,10 +110,10 @@ class Objective:
         self.evaluations += 1
         changed = overrides(self.scene, self.values(shares))
 
-        def one(wanted: Target) -> Parts:
-            return compare(wanted, lowfi.run(wanted.scene.replace(changed), numerics=self.numerics))
+        def one(name: str) -> Parts:
+            return compare(self.targets[name], self.run(self.variations[name].of(changed), numerics=self.numerics))
 
-        return dict(zip(self.targets, self.over(one, self.targets.values())))
+        return dict(zip(self.targets, self.over(one, self.targets)))
 
     def __call__(self, shares: np.ndarray) -> np.ndarray:
         """Residual vector r with J = r'r."""

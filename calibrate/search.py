@@ -45,8 +45,7 @@ def search(residuals: Callable[[np.ndarray], np.ndarray], first: np.ndarray, pla
 
     ``progress`` is called with the fraction of the evaluations done.
     """
-    each = plan.evaluations + plan.polish * (2 * first.size + 1)
-    counted = _Counted(residuals, plan.points + 1 + plan.starts * each, progress)
+    counted = _Counted(residuals, evaluations(first.size, plan), progress)
     points = np.vstack([np.clip(first, 0.0, 1.0), qmc.Sobol(first.size, rng=seed).random(plan.points)])
     values = np.array([counted.square(point) for point in points])
     generator = np.random.default_rng([seed, 1])
@@ -55,6 +54,12 @@ def search(residuals: Callable[[np.ndarray], np.ndarray], first: np.ndarray, pla
     if progress:
         progress(1.0)
     return Found(basins[0][1], basins[0][0], basins)
+
+
+def evaluations(parameters: int, plan: Plan | None = None) -> int:
+    """How many a search takes, about."""
+    plan = plan or Plan()
+    return plan.points + 1 + plan.starts * (plan.evaluations + plan.polish * (2 * parameters + 1))
 
 
 class _Counted:

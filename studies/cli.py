@@ -122,6 +122,23 @@ def calibrate(scene: SceneName = "reference", out: Out = Path("out"), set_: Set 
         print("\n".join(stage.lines(found, Path(out) / found["scene"])))
 
 
+@app.command()
+def posterior(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = None, element_size: ElementSize = None,
+              workers: Workers = None, json_: Json = False) -> None:
+    """What the constants and the exit rates may be, given that the surrogate is wrong; takes minutes; writes posterior.json."""
+
+    def work() -> dict:
+        from studies.stages import posterior as stage
+
+        return stage.run(study_of(scene, out, set_, element_size=element_size, workers=workers))
+
+    found = guarded(work, json_)
+    if not json_:
+        from studies.stages import posterior as stage
+
+        print("\n".join(stage.lines(found)))
+
+
 _stage("compare", "Agreement on fitted and held-out conditions beside the floor, and the speed-up; writes agreement.json.")
 _stage("cost", "What accuracy costs in time, and how it grows with elements, pads, effects; writes cost.json and cost_study.json.")
 _stage("stability", "Hard cases, each with a simpler method that fails on it; writes stability.json.")

@@ -8,7 +8,7 @@ from pathlib import Path
 from scenes.scene import Scene
 from scenes.trajectory import versions
 from studies import machine
-from studies.report import answers, compliance, convergence, figures, growth, inputs, scaling, stress, tables
+from studies.report import answers, compliance, convergence, figures, growth, inputs, posterior, scaling, stress, tables
 from studies.report.chart import Chart, to_files, to_html
 from studies.report.figures import Runs
 from studies.report.markup import Html, caption, code, number, paragraph, section, table
@@ -17,8 +17,8 @@ from studies.report.style import CSS
 
 _CONTENTS = (("answer", "Answer"), ("scene", "Scene"), ("mesh", "Mesh"), ("compliance", "Compliance"), ("thrust", "Thrust"), ("figure6", "Curves"),
              ("contact-forces", "Contact"), ("energy", "Energy"), ("stress", "Stress"), ("calibration", "Calibration"),
-             ("agreement-section", "Agreement"), ("growth-section", "Growth of 1 µm"), ("speedup", "Speed"), ("cost", "Cost"),
-             ("convergence", "Convergence"), ("bench", "Solvers"), ("stability", "Hard cases"), ("ablation", "Ablation"),
+             ("posterior", "Uncertainty"), ("agreement-section", "Agreement"), ("growth-section", "Growth of 1 µm"), ("speedup", "Speed"),
+             ("cost", "Cost"), ("convergence", "Convergence"), ("bench", "Solvers"), ("stability", "Hard cases"), ("ablation", "Ablation"),
              *((item.name, item.link) for item in answers.ANSWERS), ("promises", "Promises"), ("colophon", "Origin"))
 
 
@@ -35,7 +35,7 @@ class Page:
 
         body = "".join([self._answer(), self._scene(), self._mesh(), self._compliance(), self._thrust(), self._curves(),
                         self._contact(), self._energy(), self._stress(),
-                        self._of("calibration", "calibration", "Calibration", tables.calibration, "calibrate"),
+                        self._of("calibration", "calibration", "Calibration", tables.calibration, "calibrate"), self._posterior(),
                         self._of("agreement", "agreement-section", "Agreement with the reference", tables.agreement, "compare"),
                         self._growth(), self._of("agreement", "speedup", "Speed", tables.speedups, "compare"),
                         self._of("cost_study", "cost", "What accuracy costs", self._cost, "cost"), self._convergence(), self._bench(),
@@ -181,6 +181,12 @@ class Page:
         """Both solvers against the loops one would write today, where a benchmark was run."""
         found = self.documents.get("bench")
         return tables.bench(found["rows"], found["lowfi"]) if found else Html("")
+
+    def _posterior(self) -> Html:
+        """Nothing without its result: only `make posterior` spends the minutes it takes."""
+        found = self.documents.get("posterior")
+        return section("posterior", "What the constants may be", self._figure(posterior.picture(found), posterior.WORDS),
+                       posterior.tables(found)) if found else Html("")
 
     def _convergence(self) -> Html:
         """Nothing without its result, and no reminder either: only `make full-report` spends the minutes it takes."""

@@ -5,8 +5,8 @@ from html import escape
 from studies.report.markup import Html, caption, code, fold, number, paragraph, percent, section, table
 
 _INTERVALS = ("Intervals are linear and take what the fit leaves for scatter about a model that is right. Model error is not in "
-              "them: what the surrogate lacks may move its constants by more than they say. Not told: the curves do not fix the "
-              "constant, and no interval is made up.")
+              "them: what the surrogate lacks may move its constants by more than they say; make posterior takes that in. Not told: "
+              "the curves do not fix the constant, and no interval is made up.")
 _HEADS = ("condition", "role", "rate L2 (%)", "floor L2 (%)", Html("v<sub>x</sub> L2 (%)"), "settled error (deg/s)", "error x, y, z (deg/s)",
           "floor (deg/s)", "reference ± (deg/s)", "ISO 18571", "S-G magnitude (%)", "S-G phase (%)", "verdict")
 _FLOOR = "Floor: what ±{change:g} µm of clearance changes in either model. "

@@ -12,7 +12,8 @@ import numpy as np
 from scenes.calibration import Calibration
 from scenes.faults import Fault, SceneError
 from scenes.scene import NOMINAL
-from studies.progress import Board
+from studies import forecast
+from studies.progress import Board, say
 from studies.store import SOURCES
 from studies.study import Study, StudyError, require_success
 
@@ -28,6 +29,7 @@ def run(study: Study) -> dict:
     def make() -> tuple[dict, list[Path]]:
         import calibrate
 
+        say(f"  {forecast.calibration(study, asked)}")
         references = dict(zip(names, study.store.fill("highfi", asked)))
         require_success(references, "calibrate")
         try:

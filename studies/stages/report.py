@@ -1,5 +1,5 @@
-"""Stage ``report``: every stage but ``convergence``, which takes minutes, then one page of their results, and of what is there already:
-a convergence study, a benchmark, and the studies that answer an engineer's questions."""
+"""Stage ``report``: the stages that compare both models, then one page of their results, and of what is there already: the error of the
+reference, the posterior of the constants, a benchmark, and the studies that answer an engineer's questions."""
 
 from pathlib import Path
 from typing import Callable
@@ -7,7 +7,7 @@ from typing import Callable
 from scenes.files import content_hash, write_text
 from studies import bench
 from studies.report.answers import ANSWERS
-from studies.stages import ablation, calibrate, compare, convergence, cost, mesh, runs, stability, view, walls
+from studies.stages import ablation, calibrate, compare, convergence, cost, mesh, posterior, runs, stability, view, walls
 from studies.store import Run
 from studies.study import Study, StudyError
 
@@ -25,8 +25,8 @@ def run(study: Study) -> dict:
             documents[name] = stage(study)
         except StudyError as fault:
             documents[name], problems[name] = None, str(fault)
-    there = {convergence.NAME: convergence.stored(study), "bench": bench.stored(study.folder.parent),
-             "view": view.stored(study)} | {item.name: item.stored(study) for item in ANSWERS}
+    there = {convergence.NAME: convergence.stored(study), posterior.NAME: posterior.stored(study),
+             "bench": bench.stored(study.folder.parent), "view": view.stored(study)} | {item.name: item.stored(study) for item in ANSWERS}
 
     def make() -> tuple[dict, list[Path]]:
         from studies.report.page import Page

@@ -36,3 +36,12 @@ def write_curves(path: Path, run: scenes.Trajectory, keep: slice | np.ndarray = 
     header = "time [ms], velocity_x [m/s], rate_x [deg/s], rate_y [deg/s], rate_z [deg/s], shock"
     path.write_text("\n".join([header, *lines]) + "\n")
     return path
+
+
+def correlated(generator, samples: int, rho: float) -> np.ndarray:
+    """Noise of variance 1 whose neighbours are correlated by rho, begun in its steady state."""
+    fresh = generator.standard_normal(samples) * np.sqrt(1.0 - rho**2)
+    fresh[0] /= np.sqrt(1.0 - rho**2)
+    for i in range(1, samples):
+        fresh[i] += rho * fresh[i - 1]
+    return fresh

@@ -8,6 +8,7 @@ from scipy.stats import norm
 
 from calibrate import information, intervals
 from scenes.effects.contact import HuntCrossley, hunt_crossley
+from tests.calibrate.support import correlated
 from tests.exact.contact import hunt_crossley_restitution
 from tests.exact.friction import stopping
 
@@ -115,15 +116,6 @@ def test_intervals_hold_the_truth_as_often_as_they_say():
         naive += np.abs(error) <= norm.ppf(0.975) * intervals.deviations(matrix, squares / DEPTH.size)
     assert ((931 <= hits) & (hits <= 967)).all(), hits
     assert (naive < 931).all(), naive
-
-
-def correlated(generator, samples: int, rho: float) -> np.ndarray:
-    """Noise of variance 1 whose neighbours are correlated by rho, begun in its steady state."""
-    fresh = generator.standard_normal(samples) * np.sqrt(1.0 - rho**2)
-    fresh[0] /= np.sqrt(1.0 - rho**2)
-    for i in range(1, samples):
-        fresh[i] += rho * fresh[i - 1]
-    return fresh
 
 
 def test_samples_that_repeat_each_other_are_no_new_ones():

@@ -1,11 +1,15 @@
 """The whole pipeline on the scene made for it: one command, every result file, one page; and a second call that does nothing."""
 
 import json
+import sys
 import time
 
 import pytest
 from typer.testing import CliRunner
 
+import calibrate
+from calibrate.chain import Plan
+from calibrate.posterior import Effort
 from scenes.calibration import Calibration
 from scenes.trajectory import Trajectory
 from studies.cli import app
@@ -176,3 +180,22 @@ def test_blind_conditions_are_judged_beside_what_was_made(pipeline):
     from studies.report import blind
 
     assert "blind2" in blind.draw(kept, None)
+
+
+def test_posterior_carries_the_constants_to_the_rates_and_onto_the_page(pipeline):
+    """A chain far too short to trust, which it says; its section appears when its result is there."""
+    folder = pipeline[0]
+    asked = ["--scene", "tiny", "--out", str(folder.parent)]
+    assert 'id="posterior"' not in (folder / "report.html").read_text()
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(ablation, "EFFECTS", ("friction",))
+        patch.setattr(sys.modules["calibrate.posterior"], "Effort", lambda: Effort(Plan(12, 30, 30), 3, 4, 40))
+        made = CliRunner().invoke(app, ["posterior", *asked], catch_exceptions=False)
+        assert made.exit_code == 0 and "not converged" in made.stdout and "held-out settled rates inside" in made.stdout
+        assert CliRunner().invoke(app, ["report", *asked], catch_exceptions=False).exit_code == 0
+    found = result(folder, "posterior")
+    assert [row["condition"] for row in found["predicted"]] == ["phi15", "phi60", "h1", "h2"]
+    assert found["coverage"]["fitted"]["values"] == found["coverage"]["held_out"]["values"] == 6
+    assert len(calibrate.draws(calibrate.Posterior.load(folder / "posterior.json"))) == 40
+    page = (folder / "report.html").read_text()
+    assert 'id="posterior"' in page and "Not converged" in page and (folder / "figures" / "posterior.png").is_file()

@@ -1,0 +1,31 @@
+"""A run of the surrogate reduced to what residuals are made of: a posterior takes thousands, and nobody reads their ledgers."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from lowfi import balance
+from lowfi.numerics import Numerics
+from lowfi.run import Run
+from scenes import outcome
+from scenes.scene import Scene
+
+
+class Motion(NamedTuple):
+    """As in Trajectory: status, time (n,) s, velocity (n,3) m/s, rate (n,3) rad/s, outcome."""
+
+    status: str
+    time: np.ndarray
+    velocity: np.ndarray
+    rate: np.ndarray
+    outcome: outcome.Outcome
+
+
+def run(scene: Scene, numerics: Numerics | None = None) -> Motion:
+    """The motion of ``lowfi.run``, to the last bit."""
+    going = Run(scene, numerics or Numerics())
+    going.begin()
+    going.march(None)
+    moved = balance.motion(going.rows[:going.taken], 0, going.interval)
+    status, result = ("diverged", outcome.Outcome()) if going.message else outcome.judge(moved, going.marks)
+    return Motion(status, moved.time, moved.velocity, moved.rate, result)

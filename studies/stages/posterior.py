@@ -1,0 +1,74 @@
+"""Stage ``posterior``: what the calibrated constants may be, given that the surrogate is wrong, and what follows for the exit rates
+of every condition, fitted or held out."""
+
+import importlib.util
+from pathlib import Path
+
+from studies import prediction
+from studies.progress import Board, say
+from studies.stages import calibrate
+from studies.store import SOURCES
+from studies.study import Study, StudyError, read, require_success
+
+NAME = "posterior"
+_SOURCES = (*SOURCES["highfi"], *SOURCES["lowfi"], "calibrate")
+
+
+def run(study: Study) -> dict:
+    """The posterior as plain values, ``predicted`` rows by condition and ``coverage`` by role. Raises StudyError without emcee."""
+    if importlib.util.find_spec("emcee") is None:
+        raise StudyError("the posterior is drawn with emcee, which is not installed: pip install 'tipoff[studies]'")
+    fitted, calibration = study.fitted(), calibrate.load(study)
+    roles = dict.fromkeys([*fitted, *study.scene.agreement.held_out], "held_out") | dict.fromkeys(fitted, "fitted")
+    asked = {name: study.highfi(name) for name in roles}
+
+    def make() -> tuple[dict, list[Path]]:
+        import calibrate as fits
+
+        references = dict(zip(asked, study.store.fill("highfi", list(asked.values()))))
+        require_success(references, "draw a posterior")
+        with Board(NAME, 2) as board:
+            known = {name: references[name] for name in fitted}
+            found = fits.posterior(study.scene, known, calibration, board.callback("constants"))
+            board.finished("constants", _drawn(found.chain))
+            scenes = {name: study.condition(name) for name in asked}
+            rates = prediction.rates(found, scenes, study.settings.workers, board.callback("rates"))
+            rows = [prediction.row(name, roles[name], found, drawn, reference.outcome.rate, bool(reference.pad_force.any()))
+                    for (name, drawn), reference in zip(rates.items(), references.values())]
+            covered = {role: prediction.coverage([row for row in rows if row["role"] == role]) for role in ("fitted", "held_out")}
+            board.finished("rates", _covered(covered))
+        return found.as_dict() | {"linear": calibrate.as_dict(calibration)["intervals"], "predicted": rows, "coverage": covered}, []
+
+    document = study.stage(NAME, study.key(_SOURCES, calibration.constants, [item.key for item in asked.values()]), make)
+    for doubt in document["chain"]["doubts"]:
+        say(f"  not converged: {doubt}")
+    return document
+
+
+def stored(study: Study) -> dict | None:
+    """The result that is there already, or None."""
+    return read(study.path(f"{NAME}.json"))
+
+
+def lines(document: dict) -> list[str]:
+    """Intervals and coverage in words."""
+    columns = zip(*(document[key] for key in ("parameters", "best", "units", "intervals", "without")))
+    said = [f"  {name:22}{best:.4g}{'' if unit == '1' else f' {unit}'}, 95 % {_interval(ends)} (noise alone: {_interval(narrow)})"
+            for name, best, unit, ends, narrow in columns]
+    return [f"posterior of {document['scene']}: {_drawn(document['chain'])}", *said, *(f"  {words}" for words in document["notes"]),
+            *(f"  not converged: {words}" for words in document["chain"]["doubts"]), f"  {_covered(document['coverage'])}"]
+
+
+def _interval(ends: list[float] | None) -> str:
+    return "not told" if ends is None else f"{ends[0]:.4g} to {ends[1]:.4g}"
+
+
+def _drawn(chain: dict) -> str:
+    return f"{chain['effective']:.0f} independent draws in {chain['steps']} steps of {chain['walkers']} walkers"
+
+
+def _covered(found: dict) -> str:
+    return "; ".join(f"{item['total']} of {item['values']} {role.replace('_', '-')} settled rates inside their 95 % interval, "
+                     f"{item['parameter']} inside that of the constants alone (95 % band {item['band'][0]} to {item['band'][1]})"
+                     + prediction.missed(item)
+                     for role, item in found.items() if item["values"])

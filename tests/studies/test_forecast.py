@@ -1,0 +1,89 @@
+"""How long a calibration takes, said beforehand: from costs that are made up, and never at the price of a second."""
+
+import json
+import time
+from dataclasses import replace
+
+import h5py
+import pytest
+
+import scenes
+from studies import forecast
+from studies.settings import defaults
+from studies.study import Study
+
+
+def study(folder, **settings) -> Study:
+    return Study(scenes.load("reference"), folder / "reference", replace(defaults("reference"), workers=2, **settings))
+
+
+def asked(of: Study) -> list:
+    return [of.highfi(name) for name in of.fitted()]
+
+
+def stored(path, **cost):
+    """A run's file as the forecast sees it."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with h5py.File(path, "w") as file:
+        file.attrs["cost"], file.attrs["numerics"] = json.dumps(cost), json.dumps({"element_size": 0.002})
+
+
+@pytest.mark.parametrize("seconds, said", [(0.2, "1 s"), (7.4, "7 s"), (23.0, "25 s"), (96.0, "1 min 40 s"), (121.0, "2 min"),
+                                           (1900.0, "32 min"), (9000.0, "2.5 h")])
+def test_times_are_said_to_a_tenth(seconds, said):
+    assert forecast.span(seconds) == said
+
+
+def test_the_line_counts_waves_of_runs():
+    """Five runs of 33 s, two at a time, are three waves."""
+    assert forecast.words(5, 2, (33.0, ""), 20.0).startswith("5 reference runs to make, 2 at a time: about 1 min 40 s")
+    assert forecast.words(5, 2, (33.0, ""), 20.0).endswith("; then the search, about 20 s")
+    assert forecast.words(1, 1, (33.0, ""), 20.0).startswith("1 reference run to make: about 35 s")
+    assert forecast.words(0, 0, None, 20.0) == "no reference run to make; the search, about 20 s"
+    assert "not known" in forecast.words(2, 2, None, None)
+
+
+def test_time_follows_elements_steps_and_speed(tmp_path):
+    """170,000 steps at 10 ns on the 19,360 elements of 2 mm take 32.9 s; 1 mm is eight times the elements, twice the steps."""
+    of = study(tmp_path)
+    stored(of.folder / "highfi" / "phi0-coarse.nc", ns_per_element_step=10.0, elements=19360, steps=170_000)
+    for name, seconds in (("first", 2.0), ("second", 0.01), ("second-walls-1", 0.001)):
+        stored(of.folder / "lowfi" / f"{name}.nc", wall_s=seconds)
+    known = forecast.pace(of)
+    assert known.ns == 10.0 and known.source == ""
+    each, _ = forecast._reference(asked(of)[0], known)
+    assert each == pytest.approx(1e-8 * 19360 * 170_000)
+    finer, _ = forecast._reference(asked(study(tmp_path, element_size=0.001))[0], known)
+    assert finer == pytest.approx(16.0 * each)
+    line = forecast.calibration(of, asked(of))
+    assert "5 reference runs to make, 2 at a time: about 1 min 40 s" in line and "the search, about 30 s" in line
+    made = asked(of)[1]
+    stored(of.store.path(made), ns_per_element_step=10.0, elements=19360, steps=170_000)
+    assert "4 reference runs to make, 2 at a time: about 1 min 10 s" in forecast.calibration(of, asked(of))
+
+
+def test_speed_comes_from_the_nearest_measurement(tmp_path):
+    of = study(tmp_path)
+    assert "typical" in forecast.pace(of).source
+    (tmp_path / "bench").mkdir()
+    (tmp_path / "bench" / "highfi.json").write_text(json.dumps([{"element_size_m": 0.002, "ns_one_thread": 9.0},
+                                                                {"element_size_m": 0.0005, "ns_one_thread": 30.0}]))
+    assert forecast.pace(of).ns == 9.0 and "benchmark" in forecast.pace(of).source
+    stored(tmp_path / "other" / "highfi" / "a.nc", ns_per_element_step=20.0, elements=5, steps=7)
+    assert forecast.pace(of).ns == 20.0 and forecast.pace(of).steps is None and "other" in forecast.pace(of).source
+    (of.folder / "highfi").mkdir(parents=True)
+    (of.folder / "highfi" / "broken.nc").write_text("no file of this kind")
+    assert forecast.pace(of).ns == 20.0
+
+
+def test_a_slow_or_failing_look_delays_nothing(tmp_path, monkeypatch):
+    """Control: without the limit the line would take as long as the look."""
+    of = study(tmp_path)
+    forecast.calibration(of, asked(of))  # what is loaded once does not count
+    monkeypatch.setattr(forecast, "PATIENCE", 0.1)
+    monkeypatch.setattr(forecast, "pace", lambda study: time.sleep(1.5))
+    began = time.monotonic()
+    assert "not known" in forecast.calibration(of, asked(of))
+    assert time.monotonic() - began < 1.0
+    monkeypatch.setattr(forecast, "pace", lambda study: 1 / 0)
+    assert "not known" in forecast.calibration(of, asked(of))
