@@ -11,6 +11,7 @@ from typing import Annotated, Optional
 import typer
 
 from studies.asked import guarded, quantity, study_of
+from studies.commands import montecarlo
 from studies.options import (CheckpointEvery, Conditions, ElementSize, Fidelity, Json, OnWalls, Out, Resume, Sampling, SceneName, Set,
                              Workers)
 
@@ -316,6 +317,8 @@ def doctor() -> None:
 
     raise typer.Exit(check.main())
 
+
+montecarlo.add(app)
 
 if __name__ == "__main__":
     app()

@@ -42,7 +42,7 @@ class Line:
 
 @dataclass(frozen=True)
 class Panel:
-    """One set of axes; ``band`` shades y below a value, with a text, ``spans`` stretches of x."""
+    """One set of axes, logarithmic both or along ``log_x`` alone; ``band`` shades y below a value, with a text, ``spans`` stretches of x."""
 
     title: str
     x_label: str
@@ -51,6 +51,7 @@ class Panel:
     log: bool = False
     band: tuple[float, str] | None = None
     spans: tuple[tuple[float, float], ...] = ()
+    log_x: bool = False
 
 
 @dataclass(frozen=True)
@@ -87,7 +88,7 @@ def to_html(chart: Chart) -> str:
                 marker={"symbol": _PLOTLY_MARKER[line.marker], "size": line.size}),
                 **place)
             shown |= {line.name} if line.legend else set()
-        x_kind, y_kind = map(_log_axis, _limits(panel)) if panel.log else ({}, {})
+        x_kind, y_kind = map(_log_axis, _limits(panel)) if panel.log else ({"type": "log", "dtick": 1} if panel.log_x else {}, {})
         figure.update_xaxes(title_text=panel.x_label, **x_kind, **place)
         figure.update_yaxes(title_text=panel.y_label, **y_kind, **place)
         for low, high in panel.spans:
@@ -147,6 +148,8 @@ def _dress(axes, panel: Panel) -> None:
     axes.set_title(panel.title, fontsize=10.5, color=_INK)
     axes.set_xlabel(panel.x_label, fontsize=9.5, color=_INK)
     axes.set_ylabel(panel.y_label, fontsize=9.5, color=_INK)
+    if panel.log_x:
+        axes.set_xscale("log")
     if panel.log:
         axes.set_xscale("log")
         axes.set_yscale("log")

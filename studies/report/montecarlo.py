@@ -1,0 +1,124 @@
+"""Random errors on the page: distributions of the rates, tails, convergence, what the reading of the table changes, and both surrogates."""
+
+from html import escape
+
+import numpy as np
+
+from studies.report.chart import AMBER, GREY, NAVY, TEAL, VERMILION, Chart, Line, Panel
+from studies.report.markup import Html, caption, fold, number, paragraph, table
+
+_RATES = ("rate_x_deg_s", "rate_y_deg_s", "rate_z_deg_s")
+_LOOKS = {0.5: (NAVY, "-", "o"), 0.95: (VERMILION, "--", "s"), 0.99: (TEAL, "-.", "^")}
+
+
+def charts(found: dict) -> list[tuple[Chart, str]]:
+    """Each figure with its caption."""
+    made = [(_histograms(found), f"Densities of the settled rates. Broad pale: the first {found['paper_cases']:,} cases, as many as the paper "
+             "has in its Figure 9. Thin: all of them."),
+            (_convergence(found), "Left: quantiles of the total rate from the first cases, with their 95 % bounds from order statistics "
+             "(dotted). Right: half the width of these bounds; the grey line falls with the root of the number of cases.")]
+    if found["models"]:
+        made.append((_models(found["models"]), f"The same {found['models']['cases']:,} draws on calibrated springs and on walls that give way. On "
+                     "the grey line both agree; what lies off it is the uncertainty of the model."))
+    return made
+
+
+def draw(found: dict, figure) -> Html:
+    """What stands in the section."""
+    said = "".join(f"<li>{escape(line[0].upper() + line[1:])}.</li>" for line in found["summary"])
+    drawn = [figure(chart, words) for chart, words in charts(found)]
+    parts = [Html(f"<ul>{said}</ul>"), drawn[0], _quantities(found), _tails(found), drawn[1], _readings(found), *drawn[2:], _apart(found)]
+    parts.append(paragraph("The paper prints no number of its Monte Carlo study, only histograms (Figure 9) and that three drop tests lie "
+                           "within them, so there is none to set beside these."))
+    return Html("".join(parts))
+
+
+def _histograms(found: dict) -> Chart:
+    panels = []
+    for item in found["quantities"]:
+        if item["name"] not in (*_RATES, "rate_deg_s"):
+            continue
+        edges, bars = np.repeat(item["histogram"]["edges"], 2), item["histogram"]
+        outline = {name: np.concatenate([[0.0], np.repeat(bars[name], 2), [0.0]]) for name in ("first", "all")}
+        panels.append(Panel(item["label"], f"{item['label']} ({item['unit']})", f"density (1/({item['unit']}))", [
+            Line(edges, outline["first"], f"first {found['paper_cases']:,} cases", AMBER, 4.0, opacity=0.55),
+            Line(edges, outline["all"], f"all {found['counts']['asked']:,} cases", NAVY, 1.4)]))
+    return Chart("montecarlo-histograms", panels, columns=2, height=280)
+
+
+def _convergence(found: dict) -> Chart:
+    values, widths = [], []
+    for share, (colour, dash, marker) in _LOOKS.items():
+        rows = [row for row in found["convergence"] if row["share"] == share]
+        cases = [row["cases"] for row in rows]
+        values.append(Line(cases, [row["value"] for row in rows], f"{share:.0%} below", colour, 1.8, dash, marker=marker, size=6.0))
+        bounded = [row for row in rows if None not in (row["low"], row["high"])]
+        counts = [row["cases"] for row in bounded]
+        values += [Line(counts, [row[side] for row in bounded], "", colour, 1.0, ":", legend=False) for side in ("low", "high")]
+        halves = [0.5 * (row["high"] - row["low"]) for row in bounded]
+        widths.append(Line(counts, halves, f"{share:.0%} below", colour, 1.8, dash, marker=marker, size=6.0))
+        if halves:
+            widths.append(Line([counts[0], counts[-1]], [halves[-1] * (counts[-1] / count) ** 0.5 for count in (counts[0], counts[-1])],
+                               "falling as 1/√n", GREY, 1.0))
+    return Chart("montecarlo-convergence", [
+        Panel("Quantiles of the total rate", "cases", "total rate (deg/s)", values, log_x=True),
+        Panel("Half the width of the bounds", "cases", "half width (deg/s)", widths, log=True)], columns=2, height=320)
+
+
+def _models(models: dict) -> Chart:
+    panels = []
+    for name in _RATES:
+        pair, label = models["pairs"][name], next(row["label"] for row in models["quantities"] if row["name"] == name)
+        low, high = min(map(min, pair.values())), max(map(max, pair.values()))
+        panels.append(Panel(label, "on springs (deg/s)", "on walls (deg/s)", [
+            Line([low, high], [low, high], "both agree", GREY, 1.2),
+            Line(pair["springs"], pair["walls"], "a case", NAVY, dash="", marker="o", size=3.5, opacity=0.45)]))
+    return Chart("montecarlo-models", panels, columns=3, height=300)
+
+
+def _bounded(row: dict, digits: int = 3) -> str:
+    ends = ("–" if row[side] is None else f"{row[side]:.{digits}g}" for side in ("low", "high"))
+    return Html(f'{row["value"]:.{digits}g} <span class="small">{" to ".join(ends)}</span>')
+
+
+def _quantities(found: dict) -> Html:
+    heads = ("quantity", "unit", "cases", "mean", "sd", *(f"{100.0 * row['share']:g} % below" for row in found["quantities"][0]["quantiles"]))
+    rows = []
+    for item in found["quantities"]:
+        for cases, key in ((found["paper_cases"], "first"), (found["counts"]["asked"], "quantiles")):
+            whole = key == "quantiles"
+            rows.append((item["label"] if key == "first" else "", item["unit"] if key == "first" else "", f"{cases:,}",
+                         number(item["mean"]) if whole else "", f"{item['sd']:.4g} ± {item['sd_error']:.1g}" if whole else "",
+                         *(_bounded(row) for row in item[key])))
+    return Html(table(heads, rows, dense=True) + caption("Small: 95 % bounds from order statistics, which hold whatever the distribution is; "
+                                                         "a dash where the cases are too few for one."))
+
+
+def _tails(found: dict) -> Html:
+    rows = [(row["limit"], f"{row['above']:,} of {row['cases']:,}", number(row["share"]), f"{row['low']:.3g} to {row['high']:.3g}")
+            for row in found["tails"]]
+    return Html(table(("limit", "cases above", "probability of being above", "95 % bounds (Clopper and Pearson)"), rows) + caption(
+        "A rate about an axis counts by its magnitude. A case that did not settle counts as above every limit."))
+
+
+def _readings(found: dict) -> Html:
+    heads = ("reading of the paper's Table 3", *(f"sd about {axis}" for axis in "xyz"), "total, 50 % below", "95 %", "99 %", "99.73 %",
+             "distance", "by chance")
+    rows = []
+    for item in found["readings"]:
+        total = {row["share"]: row for row in item["rates"][-1]["quantiles"]}
+        rows.append((item["reading"] + (" (the same, drawn again)" if item["same"] else ""), *(number(rate["sd"]) for rate in item["rates"][:3]),
+                     *(_bounded(total[share]) for share in (0.5, 0.95, 0.99, 0.9973)), number(item["distance"]), number(item["chance"], 2)))
+    return Html("<h3>Does the reading matter?</h3>" + table(heads, rows, dense=True) + caption(
+        f"{found['readings'][0]['cases']:,} cases each, deg/s, drawn apart from the study's own. Distance: the largest between the distribution "
+        "functions of a rate here and in the study (Kolmogorov and Smirnov), with the chance of so large a one if there were no difference."))
+
+
+def _apart(found: dict) -> Html:
+    if not found["models"]:
+        return Html("")
+    rows = [(row["label"], row["unit"], number(row["root_mean_square"]), *(_bounded(each) for each in row["quantiles"]), number(row["most"]),
+             *(_bounded(row[name][place]) for place in (1, 2) for name in ("springs", "walls"))) for row in found["models"]["quantities"]]
+    heads = ("quantity", "unit", "difference, root mean square", "50 % of cases below", "95 %", "99 %", "largest", "95 % below, springs", "walls",
+             "99 % below, springs", "walls")
+    return fold("both surrogates on the same draws", table(heads, rows, dense=True))
