@@ -11,7 +11,7 @@ from typing import Annotated, Optional
 import typer
 
 from studies.asked import guarded, quantity, study_of
-from studies.commands import montecarlo
+from studies.commands import limits, montecarlo
 from studies.options import (CheckpointEvery, Conditions, ElementSize, Fidelity, Json, OnWalls, Out, Resume, Sampling, SceneName, Set,
                              Workers)
 
@@ -318,7 +318,8 @@ def doctor() -> None:
     raise typer.Exit(check.main())
 
 
-montecarlo.add(app)
+for command in (montecarlo, limits):
+    command.add(app)
 
 if __name__ == "__main__":
     app()

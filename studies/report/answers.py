@@ -26,4 +26,5 @@ class Answer(NamedTuple):
 
 ANSWERS: tuple[Answer, ...] = (
     Answer("montecarlo", "Random errors", "Random errors"),
+    Answer("limits", "Tolerances that keep limits", "Tolerances"),
 )
