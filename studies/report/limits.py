@@ -96,14 +96,16 @@ def _curves(found: dict) -> Chart:
         trials = [(size, count) for size, count in row["nominal"]["trials"] if size > 0.0]
         sizes, shares = [size for size, _ in trials], [count / found["cases"] for _, count in trials]
         upper = [exceedance.at_most(count, found["cases"], found["confidence"]) for _, count in trials]
-        top = max(*upper, 2.0 * (1.0 - found["probability"]))
-        lines = [Line(sizes, shares, "share of cases above", NAVY, 1.6, marker="o", size=5.0), Line(sizes, upper, "its upper bound", TEAL, 1.4, ":"),
+        seen = [(size, share) for size, share in zip(sizes, shares) if share > 0.0]  # none above has no place on a logarithmic axis
+        lines = [Line([size for size, _ in seen], [share for _, share in seen], "share of cases above", NAVY, 1.6, marker="o", size=5.0),
+                 Line(sizes, upper, "its upper bound", TEAL, 1.6, ":"),
                  Line([sizes[0], sizes[-1]], [1.0 - found["probability"]] * 2, "1 - p", GREY, 1.2, "-.")]
+        ends = [min(upper + [share for _, share in seen]), 1.0]
         if row["nominal"]["tolerance"] is not None:
-            lines.append(Line([row["nominal"]["tolerance"]] * 2, [0.0, top], "largest certified", VERMILION, 1.8))
+            lines.append(Line([row["nominal"]["tolerance"]] * 2, ends, "largest certified", VERMILION, 1.8))
         if row["advised"] and sizes[0] <= row["advised"]["tolerance"] <= sizes[-1]:
-            lines.append(Line([row["advised"]["tolerance"]] * 2, [0.0, top], "advised by the paper", AMBER, 1.8, "--"))
-        panels.append(Panel(row["words"].partition(",")[0], f"tolerance ({unit})", "share above a limit", lines, log_x=True))
+            lines.append(Line([row["advised"]["tolerance"]] * 2, ends, "advised by the paper", AMBER, 1.8, "--"))
+        panels.append(Panel(row["words"].partition(",")[0], f"tolerance ({unit})", "share above a limit", lines, log=True))
     return Chart("limits-curves", panels, columns=3, height=260)
 
 
