@@ -14,10 +14,11 @@ from lowfi import columns
 from lowfi.ensemble import PIECE, completed
 from lowfi.numerics import Numerics
 from lowfi.request import Ensemble
+from lowfi.rows import numbers
 from scenes.files import replacing
 from scenes.scene import Scene
 from scenes.uncertainty import Uncertainty
-from studies import population
+from studies import answers, population, regime
 from studies.derived import Derived, Numbers, around_zero, law
 from studies.population import Surrogate
 from studies.random_factors import ERRORS, pointing
@@ -60,7 +61,7 @@ def source(scene: Scene, tolerances: dict[str, float], cases: int, seed: int) ->
     """Cases of ``scene`` within ``tolerances`` (SI) by name of a factor."""
     turn, unit = law("uniform", low=0.0, high=2.0 * math.pi), around_zero(1.0, "redraw")
     drawn = {name: unit for name in (*ERRORS, CLEARANCE, FRICTION)} | {f"{name} angle": turn for name in ERRORS}
-    return Derived(Uncertainty(cases, seed, "random", drawn), lambda numbers: _overrides(scene, tolerances, numbers))
+    return Derived(Uncertainty(cases, seed, "random", drawn), lambda columns_: _overrides(scene, tolerances, columns_))
 
 
 def _overrides(scene: Scene, tolerances: dict[str, float], drawn: Numbers) -> Numbers:
@@ -78,7 +79,7 @@ def _overrides(scene: Scene, tolerances: dict[str, float], drawn: Numbers) -> Nu
 
 
 class Cases:
-    """Settled rates of ``model`` within ``tolerances`` times any scale, each scale run once and kept in a file."""
+    """Results of ``model`` within ``tolerances`` times any scale, each scale run once and kept in a file."""
 
     def __init__(self, study: Study, folder: str, model: Surrogate, tolerances: dict[str, float], cases: int, seed: int):
         self._study, self._folder, self._model, self._tolerances, self._cases, self._seed = study, folder, model, tolerances, cases, seed
@@ -89,11 +90,21 @@ class Cases:
         sizes = {name: scale * size for name, size in self._tolerances.items()}
         return source(self._model.scene, sizes, self._cases if scale > 0.0 else 1, self._seed)
 
-    def rates(self, scale: float) -> np.ndarray:
-        """Rates (n,3), deg/s; NaN in cases that did not settle."""
+    def values(self, scale: float) -> np.ndarray:
+        """The quantities (n,k) of ``answers.ALL``; NaN in cases that did not settle."""
         if scale not in self._known:
-            self._known[scale] = np.broadcast_to(self._run(scale), (self._cases, 3))
+            self._known[scale] = np.broadcast_to(self._run(scale), (self._cases, len(answers.ALL)))
         return self._known[scale]
+
+    def rates(self, scale: float) -> np.ndarray:
+        """Rates (n,3), deg/s."""
+        return self.values(scale)[:, :len(answers.RATES)]
+
+    def outside(self, scale: float) -> int:
+        """How many of the cases lie outside what the constants were found for."""
+        drawn = self.source(scale)
+        inputs = numbers(drawn.keys, drawn.rows(0, drawn.asked))
+        return int(regime.outside(self._model, dict(zip(drawn.keys, inputs.T)), drawn.asked).sum())
 
     def _run(self, scale: float) -> np.ndarray:
         drawn = self.source(scale)
@@ -105,7 +116,8 @@ class Cases:
             pass
         pieces = (drawn.rows(begin, min(begin + PIECE, drawn.asked)) for begin in range(0, drawn.asked, PIECE))
         found = [case for piece in completed(ensemble.family(), pieces, self._study.settings.workers) for case in piece]
-        rates = np.degrees(columns.of(found).rate)
+        results = columns.of(found)
+        values = np.column_stack([quantity.of(results) for quantity in answers.ALL])
         with replacing(path) as temporary:
-            np.save(temporary, rates)
-        return rates
+            np.save(temporary, values)
+        return values

@@ -4,7 +4,8 @@ from html import escape
 
 from studies import exceedance
 from studies.report.chart import AMBER, GREY, NAVY, TEAL, VERMILION, Chart, Line, Panel
-from studies.report.markup import Html, caption, number, paragraph, table
+from studies.report.markup import Html, caption, fold, number, paragraph, table
+from studies.report.montecarlo import bounded
 from studies.tolerance_search import ALL, FOUND, NONE, SMALL
 
 
@@ -29,7 +30,7 @@ def draw(found: dict, figure) -> Html:
             f"time, and the errors of the others are {others}; the last row scales a whole set. Certified: the upper bound of the probability that "
             f"any rate is above its limit is at most {1.0 - found['probability']:.4g} ({found['confidence']:.0%} confidence, {found['cases']:,} cases, "
             f"of which {found['allowed']:,} may be above). {_uncertain(found)}"),
-        *drawn, paragraph("The paper advises its tolerances where rates stop rising with the error; it names no limit and no probability.")]))
+        *drawn, _beside(found), paragraph("The paper advises its tolerances where rates stop rising with the error; it names no limit and no probability.")]))
 
 
 def _uncertain(found: dict) -> str:
@@ -87,6 +88,17 @@ def _table(found: dict) -> Html:
                      value(row["model"], row["most"]) if row["model"] else "", value(row["both"], row["most"]) if row["both"] else ""))
     return table(("tolerance of", "unit", "the paper advises", "there limits are kept in", "largest certified", "with other constants",
                   "with the model's error", "with the worst constants and the error"), rows)
+
+
+def _beside(found: dict) -> Html:
+    """Every quantity at the certified tolerances."""
+    rows = [row for row in found["rows"] if row["beside"]]
+    if not rows:
+        return Html("")
+    heads = ("at the certified tolerance of", *(f"{item['label']} ({item['unit']})" for item in rows[0]["beside"]), "outside the calibration")
+    body = [(row["words"], *(bounded(item) for item in row["beside"]), f"{row['outside']:,} cases") for row in rows]
+    return fold("every quantity at the certified tolerances", table(heads, body, dense=True) + caption(
+        f"What each stays below in magnitude in {100.0 * found['probability']:g} % of the cases; small: 95 % bounds."))
 
 
 def _curves(found: dict) -> Chart:

@@ -76,7 +76,8 @@ def _models(models: dict) -> Chart:
     return Chart("montecarlo-models", panels, columns=3, height=300)
 
 
-def _bounded(row: dict, digits: int = 3) -> str:
+def bounded(row: dict, digits: int = 3) -> str:
+    """A quantile with its bounds, small."""
     ends = ("–" if row[side] is None else f"{row[side]:.{digits}g}" for side in ("low", "high"))
     return Html(f'{row["value"]:.{digits}g} <span class="small">{" to ".join(ends)}</span>')
 
@@ -89,7 +90,7 @@ def _quantities(found: dict) -> Html:
             whole = key == "quantiles"
             rows.append((item["label"] if key == "first" else "", item["unit"] if key == "first" else "", f"{cases:,}",
                          number(item["mean"]) if whole else "", f"{item['sd']:.4g} ± {item['sd_error']:.1g}" if whole else "",
-                         *(_bounded(row) for row in item[key])))
+                         *(bounded(row) for row in item[key])))
     return Html(table(heads, rows, dense=True) + caption("Small: 95 % bounds from order statistics, which hold whatever the distribution is; "
                                                          "a dash where the cases are too few for one."))
 
@@ -108,7 +109,7 @@ def _readings(found: dict) -> Html:
     for item in found["readings"]:
         total = {row["share"]: row for row in item["rates"][-1]["quantiles"]}
         rows.append((item["reading"] + (" (the same, drawn again)" if item["same"] else ""), *(number(rate["sd"]) for rate in item["rates"][:3]),
-                     *(_bounded(total[share]) for share in (0.5, 0.95, 0.99, 0.9973)), number(item["distance"]), number(item["chance"], 2)))
+                     *(bounded(total[share]) for share in (0.5, 0.95, 0.99, 0.9973)), number(item["distance"]), number(item["chance"], 2)))
     return Html("<h3>Does the reading matter?</h3>" + table(heads, rows, dense=True) + caption(
         f"{found['readings'][0]['cases']:,} cases each, deg/s, drawn apart from the study's own. Distance: the largest between the distribution "
         "functions of a rate here and in the study (Kolmogorov and Smirnov), with the chance of so large a one if there were no difference."))
@@ -117,8 +118,8 @@ def _readings(found: dict) -> Html:
 def _apart(found: dict) -> Html:
     if not found["models"]:
         return Html("")
-    rows = [(row["label"], row["unit"], number(row["root_mean_square"]), *(_bounded(each) for each in row["quantiles"]), number(row["most"]),
-             *(_bounded(row[name][place]) for place in (1, 2) for name in ("springs", "walls"))) for row in found["models"]["quantities"]]
+    rows = [(row["label"], row["unit"], number(row["root_mean_square"]), *(bounded(each) for each in row["quantiles"]), number(row["most"]),
+             *(bounded(row[name][place]) for place in (1, 2) for name in ("springs", "walls"))) for row in found["models"]["quantities"]]
     heads = ("quantity", "unit", "difference, root mean square", "50 % of cases below", "95 %", "99 %", "largest", "95 % below, springs", "walls",
              "99 % below, springs", "walls")
     return fold("both surrogates on the same draws", table(heads, rows, dense=True))

@@ -11,7 +11,9 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Callable
 
-from studies import constants, exceedance, population, tolerance_cases
+import numpy as np
+
+from studies import answers, constants, exceedance, population, spread, tolerance_cases
 from studies import tolerance_search as search
 from studies.exceedance import Limit
 from studies.limit_inputs import Asked, checked
@@ -108,9 +110,11 @@ class _Answers:
         factor = self.factors.get(name) or Factor("all of them together, times", "1", 1.0 / _REACH, 1.0, 1.0 / _REACH)
         size = factor.most / factor.scale
         row = {"name": name, "words": factor.words, "unit": factor.unit, "most": size, "nominal": _told(found, size),
-               "advised": self._advised(tolerances, factor), "constants": None, "model": None, "both": None}
+               "advised": self._advised(tolerances, factor), "constants": None, "model": None, "both": None, "outside": None,
+               "beside": None}
         if found.scale is None:
             return row
+        row |= {"outside": self._of(tolerances).outside(found.scale), "beside": self._beside(self._of(tolerances).values(found.scale))}
         near = [self._near(tolerances, other, self.limits, found.scale) for other in self.others]
         if near:
             row["constants"] = [_told(item, size) for item in near]
@@ -121,6 +125,12 @@ class _Answers:
                 worst = min(range(len(near)), key=lambda place: near[place].scale or 0.0)
                 row["both"] = _told(self._near(tolerances, self.others[worst], shrunk, near[worst].scale or found.scale), size)
         return row
+
+    def _beside(self, values: np.ndarray) -> list[dict]:
+        """What every quantity stays below in magnitude with the probability asked for, where the rates keep their limits."""
+        settled = np.abs(values[np.isfinite(values).all(axis=1)])
+        return [{"name": item.name, "label": item.label, "unit": item.unit, **spread.quantiles(column, (self.asked.probability,))[0]}
+                for item, column in zip(answers.ALL, settled.T)]
 
     def _near(self, tolerances: dict[str, float], model: Surrogate | None, limits: list[Limit], start: float) -> Found:
         if any(limit.deg_s <= 0.0 for limit in limits):

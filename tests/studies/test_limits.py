@@ -21,7 +21,9 @@ from tests.studies import free_flight
 
 pytest.importorskip("zarr")
 LIMIT, PROBABILITY = 6.0, 0.9
-QUICK = Asked(limits=("6 deg/s",), probability=PROBABILITY)
+QUICK = Asked(limits=("6 deg/s",), probability=PROBABILITY, cases=120)
+FITTED = Calibration({}, [], [], [], [], [], [], np.zeros((0, 0)), [], {}, [], 0.0,
+                     valid={"thrust_peak_n": [free_flight.scene().thrust.peak] * 2})
 PER_UNIT = {"misalignment": np.radians(free_flight.RATE_PER_RADIAN), "thrust_eccentricity": 1e-3 * free_flight.RATE_PER_METRE,
             "mass_eccentricity": 1e-3 * free_flight.RATE_PER_METRE}  # deg/s per deg, mm, mm
 
@@ -35,7 +37,7 @@ def study(tmp_path_factory):
 def found(study):
     """Two draws of the constants make the arm 10 % longer and shorter, and the model is off by 1 deg/s."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(limits.population, "surrogate", lambda study, *_: Surrogate(study.scene, "fitted", None))
+        patch.setattr(limits.population, "surrogate", lambda study, *_: Surrogate(study.scene, FITTED, None))
         patch.setattr(limits.constants, "draws", lambda *_: ([{"thrust.arm": factor * free_flight.ARM} for factor in (0.9, 1.1)], ["arm"]))
         patch.setattr(limits.constants, "margin", lambda *_: constants.Margin(dict.fromkeys(("x", "y", "z", "total"), 1.0), "by decree"))
         return limits.run(study, QUICK)
@@ -58,6 +60,8 @@ def test_one_factor_alone_is_the_closed_form(study, found, name):
     row, exact = row_of(found, name)["nominal"], certified(study, name, found["cases"])
     # The search stops within 1.1 %; the rates themselves carry the step error of 1e-2 settings, a thousandth.
     assert 1.0 / 1.013 < row["tolerance"] / exact < 1.002 and not row["falls"] and not row["again"]
+    beside = {item["name"]: item for item in row_of(found, name)["beside"]}
+    assert beside["rate_deg_s"]["value"] < LIMIT and row_of(found, name)["outside"] == 0
     # The law itself: the share that is truly above at the certified size is no more than allowed, and no less than the rank of the draw
     # that lies on the limit lets it be, beta distributed (one chance in a thousand).
     above = stats.truncnorm(0.0, 3.0).sf(3.0 * LIMIT / (PER_UNIT[name] * row["tolerance"]))
@@ -98,6 +102,7 @@ def test_map_ends_at_the_single_tolerances_and_gives_one_up_for_the_other(found)
 def test_limits_that_none_or_every_tolerance_keeps_are_said(study, monkeypatch):
     """0.1 deg of misalignment alone is 2.7 deg/s: no eccentricity brings that below 2, unless the misalignment is taken away."""
     monkeypatch.setattr(limits, "_RAYS", 1)
+    monkeypatch.setattr("studies.report.chart.to_files", lambda *_: [])  # drawn in another test
     offset = Study(study.scene.replace({"thrust_offset.misalignment.axial": np.radians(0.1)}), study.folder, study.settings)
     for others, state in (("scene", "none"), ("zero", "found")):
         found = limits.run(offset, Asked(limits=("2 deg/s",), probability=PROBABILITY, cases=30, others=others))
