@@ -16,13 +16,14 @@ _TWO_SIDED_95 = 1.959963984540054  # standard deviations
 def draws(scene: Scene, fitted: Calibration, count: int, seed: int) -> tuple[list[dict[str, float]], list[str]]:
     """``count`` sets of overrides of ``scene``, and the names of the constants that differ in them.
 
-    Each is drawn by itself from the normal distribution of its 95 % interval, and inside it (a Latin hypercube). A constant without an
-    interval, which the curves do not tell, keeps its value.
+    Each is drawn by itself from the normal distribution of its 95 % interval, and inside it (a Latin hypercube). A constant without
+    an interval, which the curves do not tell, keeps its value.
     """
     from calibrate import parameters
 
     laws = {}
-    for name, value, (low, high), least, most in zip(fitted.parameters, fitted.values, fitted.intervals, fitted.lower, fitted.upper):
+    for name, value, (low, high), least, most in zip(fitted.parameters, fitted.values, fitted.intervals, fitted.lower,
+                                                     fitted.upper):
         low, high, sd = max(low, least), min(high, most), 0.5 * (high - low) / _TWO_SIDED_95
         if 0.0 < sd < float("inf"):
             laws[name] = law("truncated-normal", mean=value, sd=sd, low=low, high=high, rule="redraw")
@@ -35,8 +36,8 @@ def draws(scene: Scene, fitted: Calibration, count: int, seed: int) -> tuple[lis
 
 
 class Margin(NamedTuple):
-    """What the surrogate's settled rates were off by at most, deg/s: about each axis and in magnitude; None where nothing was measured.
-    ``said`` is where that is from."""
+    """What the surrogate's settled rates were off by at most, deg/s: about each axis and in magnitude; None where nothing was
+    measured. ``said`` is where that is from."""
 
     deg_s: dict[str, float] | None
     said: str

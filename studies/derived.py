@@ -1,4 +1,5 @@
-"""Cases of an ensemble whose overrides follow from draws, where one number drawn decides several inputs: a ``lowfi.rows`` of studies."""
+"""Cases of an ensemble whose overrides follow from draws, where one number drawn decides several inputs: a ``lowfi.rows`` of
+studies."""
 
 from typing import Callable
 
@@ -14,8 +15,9 @@ _TOLD = 16  # cases whose overrides stand for the way they were derived, in the 
 
 
 class Derived:
-    """``derive`` turns columns (n,) of the draws of ``uncertainty``, under the names of its ``vary``, which need be no keys of a scene,
-    into columns (n,) of overrides by dotted key, SI. It works case by case, so that a case has the same bits however cases are cut."""
+    """``derive`` turns columns (n,) of the draws of ``uncertainty``, under the names of its ``vary``, which need be no keys of a
+    scene, into columns (n,) of overrides by dotted key, SI. It works case by case, so that a case has the same bits however cases
+    are cut."""
 
     def __init__(self, uncertainty: Uncertainty, derive: Callable[[Numbers], Numbers]):
         self._points, self._vary, self._derive = Points(uncertainty), uncertainty.vary, derive

@@ -1,8 +1,8 @@
 """How often a rate is above a limit, and how sure that is.
 
-Of n independent cases, k above a limit leave for the probability of being above it the bounds of Clopper and Pearson (Biometrika 26,
-1934), quantiles of beta laws: beta(k, n - k + 1) below and beta(k + 1, n - k) above. They hold whatever the distribution is. A case that
-did not settle counts as above every limit.
+Of n independent cases, k above a limit leave for the probability of being above it the bounds of Clopper and Pearson (Biometrika
+26, 1934), quantiles of beta laws: beta(k, n - k + 1) below and beta(k + 1, n - k) above. They hold whatever the distribution is. A
+case that did not settle counts as above every limit.
 """
 
 from typing import NamedTuple, Sequence
@@ -72,7 +72,8 @@ def at_most(count: int, cases: int, confidence: float) -> float:
 
 
 def allowed(cases: int, probability: float, confidence: float) -> int | None:
-    """Most of ``cases`` that may be above a limit for the upper bound to be 1 - ``probability`` or less; None where not even zero is."""
+    """Most of ``cases`` that may be above a limit for the upper bound to be 1 - ``probability`` or less; None where not even zero
+    is."""
     if at_most(0, cases, confidence) > 1.0 - probability:
         return None
     fine, many = 0, min(int((1.0 - probability) * cases) + 1, cases)  # the share itself is below its bound

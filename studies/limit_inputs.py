@@ -7,15 +7,15 @@ from studies import exceedance, order_statistics
 from studies.checked import together
 from studies.exceedance import Limit
 
-TIMES_NEEDED = 10  # cases, of the fewest: 0.3 % instead of none may then be above at 99 %, and tolerances are not cut for want of cases
+TIMES_NEEDED = 10  # of the fewest cases: some may then be above, and tolerances are not cut for want of cases
 _MOST_DRAWS = 1000
 
 
 @dataclass(frozen=True)
 class Asked:
-    """``limits`` as ``exceedance.limits`` reads them, all of which a case must keep with ``probability``, to be shown with ``confidence``
-    from ``cases`` (None: ten times the fewest); the ``tolerances`` that are scaled together, advised or table3; errors that do not vary
-    as in the ``scene`` or ``zero``; ``draws`` of the calibrated constants."""
+    """``limits`` as ``exceedance.limits`` reads them, all of which a case must keep with ``probability``, to be shown with
+    ``confidence`` from ``cases`` (None: ten times the fewest); the ``tolerances`` that are scaled together, advised or table3;
+    errors that do not vary as in the ``scene`` or ``zero``; ``draws`` of the calibrated constants."""
 
     limits: tuple[str, ...] = ("5 deg/s",)
     probability: float = 0.99
@@ -56,6 +56,7 @@ def _cases(asked: Asked) -> int:
             return TIMES_NEEDED * needed
         if asked.cases >= needed:
             return asked.cases
-        faults.append(Fault("--cases", "value", f"{asked.cases:,}", f"{needed:,} or more: with fewer, none above the limits does not show "
+        faults.append(Fault("--cases", "value", f"{asked.cases:,}",
+                            f"{needed:,} or more: with fewer, none above the limits does not show "
                             f"{asked.probability:g} at a confidence of {asked.confidence:g}"))
     raise SceneError(faults)

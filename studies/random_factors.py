@@ -4,8 +4,8 @@
     half         |x| at the angle a
     components   one such x along y, another along z: the size follows Rayleigh's law, the angle is theirs
 
-Where every error has an angle of its own, signed and half are one law, since a + pi is as uniform as a; components are larger. Where
-all share one angle, thrust and mass eccentricity lie on one line, and only signs tell whether they add up or cancel.
+Where every error has an angle of its own, signed and half are one law, since a + pi is as uniform as a; components are larger.
+Where all share one angle, thrust and mass eccentricity lie on one line, and only signs tell whether they add up or cancel.
 """
 
 import math
@@ -23,8 +23,8 @@ VALUES, ANGLES, RULES = ("signed", "half", "components"), ("independent", "share
 
 
 class Error(NamedTuple):
-    """An error of assembly: the dotted key above ``axial`` and ``radial``, words for it, the three sigma of Table 3 (SI), and the unit it
-    is shown in with that unit's size (SI)."""
+    """An error of assembly: the dotted key above ``axial`` and ``radial``, words for it, the three sigma of Table 3 (SI), and the
+    unit it is shown in with that unit's size (SI)."""
 
     key: str
     words: str
@@ -39,8 +39,8 @@ ERRORS = {"misalignment": Error("thrust_offset.misalignment", "thrust misalignme
 
 
 class Reading(NamedTuple):
-    """How Table 3 is read: ``values`` and ``angles`` as above, the ``rule`` of truncation, and whether the place inside the clearance at
-    ignition is one more random factor."""
+    """How Table 3 is read: ``values`` and ``angles`` as above, the ``rule`` of truncation, and whether the place inside the
+    clearance at ignition is one more random factor."""
 
     values: str = "signed"
     angles: str = "independent"

@@ -1,4 +1,5 @@
-"""What independent cases say of a quantity: moments, quantiles with their bounds, histograms, and how sure all that is by their number."""
+"""What independent cases say of a quantity: moments, quantiles with their bounds, histograms, and how sure all that is by their
+number."""
 
 import math
 from typing import Sequence
@@ -20,7 +21,8 @@ def quantiles(values: np.ndarray, shares: Sequence[float] = SHARES) -> list[dict
 
 
 def moments(values: np.ndarray) -> dict:
-    """Mean, standard deviation, extremes, and the standard errors of the first two, from the moments of the values (n,) themselves."""
+    """Mean, standard deviation, extremes, and the standard errors of the first two, from the moments of the values (n,)
+    themselves."""
     count, mean, sd = values.size, float(values.mean()), float(values.std(ddof=1))
     fourth = float(((values - mean) ** 4).mean())
     error = math.sqrt(max(fourth - sd**4, 0.0) / count) / (2.0 * sd) if sd > 0.0 else 0.0
@@ -44,7 +46,7 @@ def convergence(values: np.ndarray, shares: Sequence[float]) -> list[dict]:
 
 
 def apart(one: Sequence[np.ndarray], other: Sequence[np.ndarray]) -> tuple[float, float]:
-    """Largest distance between the distributions of independent samples, quantity by quantity, and the chance of so large a one if none
-    differed (Kolmogorov and Smirnov; times the number of quantities, after Bonferroni)."""
+    """Largest distance between the distributions of independent samples, quantity by quantity, and the chance of so large a one if
+    none differed (Kolmogorov and Smirnov; times the number of quantities, after Bonferroni)."""
     tests = [ks_2samp(a, b, method="asymp") for a, b in zip(one, other, strict=True)]
     return max(float(test.statistic) for test in tests), min(1.0, len(tests) * min(float(test.pvalue) for test in tests))

@@ -1,8 +1,8 @@
-"""Cases within tolerances: an error of size T is normal about zero (or a number normal about its nominal value) with T for three sigma,
-redrawn beyond T, as parts that are inspected and sent back; an error of thrust or mass points anywhere around the axis.
+"""Cases within tolerances: an error of size T is normal about zero (or a number normal about its nominal value) with T for three
+sigma, redrawn beyond T, as parts that are inspected and sent back; an error of thrust or mass points anywhere around the axis.
 
-The draws of a case are the same whatever varies and however far, so that the rates of two sets of tolerances differ by what the sets
-differ in, not by chance.
+The draws of a case are the same whatever varies and however far, so that the rates of two sets of tolerances differ by what the
+sets differ in, not by chance.
 """
 
 import math
@@ -32,8 +32,8 @@ _REACH = 5.0  # times the advised tolerances: misalignments as far as the paper'
 
 
 class Factor(NamedTuple):
-    """A factor that may have a tolerance: words, the unit it is shown in with its size (SI), the largest tolerance searched (SI), and
-    the one that the paper advises (SI), if any."""
+    """A factor that may have a tolerance: words, the unit it is shown in with its size (SI), the largest tolerance searched (SI),
+    and the one that the paper advises (SI), if any."""
 
     words: str
     unit: str
@@ -44,7 +44,8 @@ class Factor(NamedTuple):
 
 def factors(scene: Scene) -> dict[str, Factor]:
     """Every factor that ``scene`` has, by name."""
-    found = {name: Factor(error.words, error.unit, error.scale, _REACH * ADVISED[name], ADVISED[name]) for name, error in ERRORS.items()}
+    found = {name: Factor(error.words, error.unit, error.scale, _REACH * ADVISED[name], ADVISED[name]) for name,
+             error in ERRORS.items()}
     if scene.contact is not None and scene.contact.clearance > 0.0:
         found[CLEARANCE] = Factor("clearance, about its nominal value", "mm", 1e-3, scene.contact.clearance, None)
     if scene.friction is not None and scene.friction.dynamic > 0.0:
@@ -82,7 +83,8 @@ class Cases:
     """Results of ``model`` within ``tolerances`` times any scale, each scale run once and kept in a file."""
 
     def __init__(self, study: Study, folder: str, model: Surrogate, tolerances: dict[str, float], cases: int, seed: int):
-        self._study, self._folder, self._model, self._tolerances, self._cases, self._seed = study, folder, model, tolerances, cases, seed
+        self._study, self._folder, self._model, self._tolerances = study, folder, model, tolerances
+        self._cases, self._seed = cases, seed
         self._known: dict[float, np.ndarray] = {}
 
     def source(self, scale: float) -> Derived:

@@ -1,14 +1,14 @@
 """The largest scale of a set of tolerances that is still certified, on the same draws at every scale.
 
-``above(s)`` counts the cases above a limit at scale s, and s is certified while the count is at most ``allowed``. Scales halved from
-``most`` down are all tried, so that it is seen, not assumed, whether the count grows with the scale; then the gap between the smallest
-scale that fails and the one tried before it is bisected. What passes again beyond the first failure is not used, but told.
+``above(s)`` counts the cases above a limit at scale s, and s is certified while the count is at most ``allowed``. Scales halved
+from ``most`` down are all tried, so that it is seen, not assumed, whether the count grows with the scale; then the gap between the
+smallest scale that fails and the one tried before it is bisected. What passes again beyond the first failure is not used, but told.
 """
 
 import math
 from typing import Callable, NamedTuple
 
-FOUND, ALL, SMALL, NONE = "found", "all", "small", "none"
+FOUND, ALL, SMALL, NONE, LOST = "found", "all", "small", "none", "lost"
 _HALVINGS, _REFINEMENTS = 7, 6  # down to 1/128, and to 1.1 %
 _STEP, _CLOSER = 1.25, 3  # near a known answer: factors of 1.25, then to 2.8 %
 
@@ -21,9 +21,9 @@ class Trial(NamedTuple):
 
 
 class Found(NamedTuple):
-    """``scale`` is the largest certified below the first that fails, ``fails``. ``state``: FOUND; ALL, nothing that was searched fails;
-    SMALL, even the smallest that was searched fails, though not zero; NONE, zero fails too. ``again``: scales that pass beyond a failure;
-    ``falls``: pairs of scales between which the count falls."""
+    """``scale`` is the largest certified below the first that fails, ``fails``. ``state``: FOUND; ALL, nothing that was searched
+    fails; SMALL, even the smallest that was searched fails, though not zero; NONE, zero fails too; LOST, nothing was searched, for
+    no limit is left."""
 
     state: str
     scale: float | None
@@ -34,7 +34,8 @@ class Found(NamedTuple):
     @property
     def again(self) -> list[float]:
         """Certified scales beyond the first that fails."""
-        return [trial.scale for trial in self.trials if self.fails is not None and trial.scale > self.fails and trial.above <= self.allowed]
+        return [trial.scale for trial in self.trials if self.fails is not None and trial.scale > self.fails
+                and trial.above <= self.allowed]
 
     @property
     def falls(self) -> list[tuple[float, float]]:

@@ -11,28 +11,31 @@ from studies.options import Json, OnWalls, Out, SceneName, Set, Workers
 
 Values = Enum("Values", {name: name for name in ("signed", "half", "components")}, type=str)
 Angles = Enum("Angles", {name: name for name in ("independent", "shared")}, type=str)
-Rule = Enum("Rule", {name: name for name in ("redraw", "clip", "none")}, type=str)
+Rules = Enum("Rules", {name: name for name in ("redraw", "clip", "none")}, type=str)
+
+Cases = Annotated[int, typer.Option("--cases", metavar="N", min=100, help="Number of cases.")]
+Seed = Annotated[int, typer.Option("--seed", metavar="N", min=0, help="Seed of all draws.")]
+Meaning = Annotated[Values, typer.Option("--reading", help="What a normal axial value is: signed, its size, or two components.")]
+Direction = Annotated[Angles, typer.Option("--angles", help="A radial angle for each error, or one that all share.")]
+Rule = Annotated[Rules, typer.Option("--rule", help="What becomes of a draw beyond three sigma.")]
+Initial = Annotated[bool, typer.Option("--initial", help="Draw the place inside the clearance at ignition too.")]
+Limit = Annotated[Optional[list[str]], typer.Option("--limit", metavar="[AXIS=]RATE", help='How often is a rate above it? "x=2 '
+                                                                                           'deg/s", or "5 deg/s" for the total; '
+                                                                                           'repeatable. Default: 5 deg/s for each '
+                                                                                           'and the total.')]
 
 
 def add(app: typer.Typer) -> None:
     """Put the command under ``app``."""
 
     @app.command()
-    def montecarlo(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = None,
-                   cases: Annotated[int, typer.Option("--cases", metavar="N", min=100, help="Number of cases.")] = 100_000,
-                   seed: Annotated[int, typer.Option("--seed", metavar="N", min=0, help="Seed of all draws.")] = 1,
-                   reading: Annotated[Values, typer.Option("--reading", help="What a normal axial value is: signed, its magnitude, or "
-                                      "two normal components.")] = Values.signed,
-                   angles: Annotated[Angles, typer.Option("--angles", help="A radial angle for each error, or one that all share.")]
-                   = Angles.independent,
-                   rule: Annotated[Rule, typer.Option("--rule", help="What becomes of a draw beyond three sigma.")] = Rule.redraw,
-                   initial: Annotated[bool, typer.Option("--initial", help="Draw the place inside the clearance at ignition too.")] = False,
-                   limit: Annotated[Optional[list[str]], typer.Option("--limit", metavar="[AXIS=]RATE", help='How often is a rate above it? '
-                                    '"x=2 deg/s", or "5 deg/s" for the total; repeatable. Default: 5 deg/s for each and the total.')] = None,
-                   walls: OnWalls = False, workers: Workers = None, json_: Json = False) -> None:
-        """Random errors of thrust and mass as in the paper's Table 3: rates, their tails, and how sure both are; writes montecarlo.json.
+    def montecarlo(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = None, cases: Cases = 100_000, seed: Seed = 1,
+                   reading: Meaning = Values.signed, angles: Direction = Angles.independent, rule: Rule = Rules.redraw,
+                   initial: Initial = False, limit: Limit = None, walls: OnWalls = False, workers: Workers = None,
+                   json_: Json = False) -> None:
+        """Random errors of thrust and mass as in the paper's Table 3: rates, tails, and how sure both are; writes montecarlo.json.
 
-        The first thousand cases are the paper's number. All readings of the table are compared, and both surrogates on the same draws.
+        The first thousand cases are the paper's number. All readings of the table are compared, and both surrogates on equal draws.
 
           tipoff montecarlo --cases 1000000 --limit "x=2 deg/s" --limit "8 deg/s"
 
@@ -49,4 +52,4 @@ def add(app: typer.Typer) -> None:
 
         found = guarded(work, json_)
         if not json_:
-            print("\n".join(found["summary"]))
+            print("\n".join([*found["findings"], *found["summary"]]))

@@ -2,8 +2,8 @@
 
 A set of tolerances is certified when the upper bound of the probability that some rate is above its limit (Clopper and Pearson, one
 side) is at most 1 - p. That is asked of each factor alone, the rest nominal; of a whole set, times a factor; and of pairs of
-misalignment and mass eccentricity. Two things are then told apart: the constants of the surrogate, by repeating the search for draws
-from their intervals, and the surrogate itself, by taking its measured error off every limit.
+misalignment and mass eccentricity. Two things are then told apart: the constants of the surrogate, by repeating the search for
+draws from their intervals, and the surrogate itself, by taking its measured error off every limit.
 """
 
 import math
@@ -33,8 +33,8 @@ _SOURCES = (*SOURCES["highfi"], *SOURCES["lowfi"], "calibrate")
 
 
 def run(study: Study, asked: Asked = Asked()) -> dict:
-    """``rows`` by factor and one of all together, ``map`` of two, ``summary`` in words. Raises SceneError for bad input, every fault
-    listed."""
+    """``rows`` by factor and one of all together, ``map`` of two, ``summary`` in words. Raises SceneError for bad input, every
+    fault listed."""
     limits, cases = checked(asked)
     model = population.surrogate(study, asked.walls, asked.condition)
     margin = constants.margin(study, asked.walls)
@@ -59,8 +59,11 @@ def stored(study: Study) -> dict | None:
 
 
 def _key(study: Study, asked: dict) -> str:
-    plain = asked | {"limits": list(asked["limits"])}
-    return study.key(_SOURCES, NAME, plain, constants.margin(study, asked["walls"]))
+    return study.key(_SOURCES, NAME, _plain(asked), constants.margin(study, asked["walls"]))
+
+
+def _plain(asked: dict) -> dict:
+    return asked | {"limits": list(asked["limits"])}
 
 
 class _Answers:
@@ -85,12 +88,11 @@ class _Answers:
         full[TOGETHER] = {name: _REACH * size for name, size in SETS[self.asked.tolerances].items()}
         searched = {name: self._search(tolerances) for name, tolerances in full.items()}
         rows = [self._row(name, tolerances, searched[name]) for name, tolerances in full.items()]
-        return {"asked": asdict(self.asked) | {"limits": list(self.asked.limits)}, "limits": [limit._asdict() for limit in self.limits],
-                "limits_said": [limit.words for limit in self.limits], "probability": self.asked.probability,
-                "confidence": self.asked.confidence, "cases": self.cases, "allowed": self.allowed, "set": SETS[self.asked.tolerances],
-                "surrogate": "no contact" if self.model.scene.contact is None else "walls that give way" if self.asked.walls
-                else "calibrated springs", "constants": {"draws": len(self.others), "drawn": self.drawn}, "margin": self.margin._asdict(),
-                "rows": rows, "map": self._map(full, searched), "evaluations": self.evaluations}
+        shown = {"limits_said": [limit.words for limit in self.limits], "probability": self.asked.probability,
+                 "confidence": self.asked.confidence, "cases": self.cases, "allowed": self.allowed, "surrogate": self.model.words,
+                 "constants": {"draws": len(self.others), "drawn": self.drawn}, "margin": self.margin._asdict()}
+        return {"asked": _plain(asdict(self.asked)), "limits": [limit._asdict() for limit in self.limits], **shown, "rows": rows,
+                "map": self._map(full, searched), "evaluations": self.evaluations}
 
     def _above(self, cases: Cases, limits: list[Limit]) -> Callable[[float], int]:
         def count(scale: float) -> int:
@@ -110,11 +112,11 @@ class _Answers:
         factor = self.factors.get(name) or Factor("all of them together, times", "1", 1.0 / _REACH, 1.0, 1.0 / _REACH)
         size = factor.most / factor.scale
         row = {"name": name, "words": factor.words, "unit": factor.unit, "most": size, "nominal": _told(found, size),
-               "advised": self._advised(tolerances, factor), "constants": None, "model": None, "both": None, "outside": None,
-               "beside": None}
+               "advised": self._advised(tolerances, factor), **dict.fromkeys(("constants", "model", "both", "outside", "beside"))}
         if found.scale is None:
             return row
-        row |= {"outside": self._of(tolerances).outside(found.scale), "beside": self._beside(self._of(tolerances).values(found.scale))}
+        cases = self._of(tolerances)
+        row |= {"outside": cases.outside(found.scale), "beside": self._beside(cases.values(found.scale))}
         near = [self._near(tolerances, other, self.limits, found.scale) for other in self.others]
         if near:
             row["constants"] = [_told(item, size) for item in near]
@@ -128,19 +130,21 @@ class _Answers:
 
     def _beside(self, values: np.ndarray) -> list[dict]:
         """What every quantity stays below in magnitude with the probability asked for, where the rates keep their limits."""
-        settled = np.abs(values[np.isfinite(values).all(axis=1)])
-        return [{"name": item.name, "label": item.label, "unit": item.unit, **spread.quantiles(column, (self.asked.probability,))[0]}
+        settled, share = np.abs(values[np.isfinite(values).all(axis=1)]), (self.asked.probability,)
+        return [{"name": item.name, "label": item.label, "unit": item.unit, **spread.quantiles(column, share)[0]}
                 for item, column in zip(answers.ALL, settled.T)]
 
     def _near(self, tolerances: dict[str, float], model: Surrogate | None, limits: list[Limit], start: float) -> Found:
         if any(limit.deg_s <= 0.0 for limit in limits):
-            return Found(search.NONE, None, None, [], self.allowed)
+            return Found(search.LOST, None, None, [], self.allowed)
         return search.near(self._above(self._of(tolerances, model), limits), self.allowed, start)
 
     def _shrunk(self) -> list[Limit] | None:
         """The limits less the error of the model; None where that is not known, or none."""
         known = self.margin.deg_s
-        return [Limit(limit.axis, limit.deg_s - known[limit.axis]) for limit in self.limits] if known and any(known.values()) else None
+        if not known or not any(known.values()):
+            return None
+        return [Limit(limit.axis, limit.deg_s - known[limit.axis]) for limit in self.limits]
 
     def _advised(self, tolerances: dict[str, float], factor: Factor) -> dict | None:
         """How often the limits are kept at the tolerance that the paper advises."""
@@ -166,7 +170,8 @@ class _Answers:
         units = [self.factors[name] for name in PAIR]
         return {"names": list(PAIR), "words": [factor.words for factor in units], "units": [factor.unit for factor in units],
                 "advised": [factor.advised / factor.scale for factor in units],
-                "points": [item | {"scale": [part / factor.scale for part, factor in zip(item["scale"], units)]} for item in points]}
+                "points": [item | {"scale": [part / factor.scale for part, factor in zip(item["scale"], units)]}
+                           for item in points]}
 
 
 def _told(found: Found, size: float) -> dict:

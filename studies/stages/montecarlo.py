@@ -1,7 +1,7 @@
 """Stage ``montecarlo``: the paper's random errors (Table 3) on the surrogate, its thousand cases and many more.
 
-Case n is drawn from the seed and n alone, so the paper's thousand are the first of however many there are. The paper prints no number
-of its own here: its Figure 9 shows histograms, and its text says that three drop tests lie within them.
+Case n is drawn from the seed and n alone, so the paper's thousand are the first of however many there are. The paper prints no
+number of its own here: its Figure 9 shows histograms, and its text says that three drop tests lie within them.
 """
 
 from dataclasses import asdict, dataclass
@@ -51,15 +51,15 @@ def run(study: Study, asked: Asked = Asked()) -> dict:
         model = population.surrogate(study, asked.walls)
         found = population.run(study, NAME, model, source)
         if not found.settled.any():
-            raise StudyError(f"no case settled: {found.counts['refused']:,} refused, {found.counts['failed']:,} failed; see {found.store}")
-        made = {"asked": _plain(asked), "reading": asked.reading.words, "surrogate": _surrogate(model), "store": found.store,
+            raise StudyError(f"no case settled, {found.counts['refused']:,} of them refused; the reasons are in {found.store}/done")
+        made = {"asked": _plain(asked), "reading": asked.reading.words, "surrogate": model.words, "store": found.store,
                 "counts": found.counts, "settled": int(found.settled.sum()), "outside": int(found.outside.sum()),
                 "confidence": spread.CONFIDENCE, "paper_cases": min(PAPER, asked.cases),
                 "quantities": [_quantity(item, found) for item in answers.ALL],
-                "tails": [_tail(limit, rates_of(found)) for limit in limits],
+                "tails": [_tail(limit, np.degrees(found.results.rate)) for limit in limits],
                 "convergence": spread.convergence(_settled(answers.TOTAL_RATE, found), _CONVERGING),
                 "readings": _readings(study, asked, model, found), "models": _models(study, asked, found)}
-        made["summary"] = _summary(made)
+        made |= {"findings": _findings(made), "summary": _numbers(made)}
         return made, [path for chart, _ in pictures.charts(made) for path in to_files(chart, study.path("figures"))]
 
     return study.stage(NAME, _key(study, _plain(asked)), make)
@@ -79,15 +79,6 @@ def _plain(asked: Asked) -> dict:
     return asdict(asked) | {"reading": asked.reading._asdict(), "limits": list(asked.limits)}
 
 
-def _surrogate(model: Surrogate) -> str:
-    return "calibrated springs" if model.calibration else "walls that give way" if model.walls else "no contact"
-
-
-def rates_of(found: Population) -> np.ndarray:
-    """Settled rates (n,3), deg/s; NaN in cases that did not settle."""
-    return np.degrees(found.results.rate)
-
-
 def _settled(quantity: answers.Quantity, found: Population) -> np.ndarray:
     return quantity.of(found.results)[found.settled]
 
@@ -95,13 +86,16 @@ def _settled(quantity: answers.Quantity, found: Population) -> np.ndarray:
 def _quantity(quantity: answers.Quantity, found: Population) -> dict:
     values = _settled(quantity, found)
     return {"name": quantity.name, "label": quantity.label, "unit": quantity.unit, **spread.moments(values),
-            "quantiles": spread.quantiles(values), "first": spread.quantiles(values[:PAPER]), "histogram": spread.histograms(values, PAPER)}
+            "quantiles": spread.quantiles(values), "first": spread.quantiles(values[:PAPER]),
+            "histogram": spread.histograms(values, PAPER)}
 
 
 def _tail(limit: exceedance.Limit, rates: np.ndarray) -> dict:
+    """How often ``rates`` (n,3), deg/s, are above ``limit``."""
     count = int(exceedance.above(rates, limit).sum())
     low, high = exceedance.bounds(count, len(rates), spread.CONFIDENCE)
-    return {"limit": limit.words, **limit._asdict(), "above": count, "cases": len(rates), "share": count / len(rates), "low": low, "high": high}
+    return {"limit": limit.words, **limit._asdict(), "above": count, "cases": len(rates), "share": count / len(rates),
+            "low": low, "high": high}
 
 
 def _readings(study: Study, asked: Asked, model: Surrogate, found: Population) -> list[dict]:
@@ -115,7 +109,8 @@ def _readings(study: Study, asked: Asked, model: Surrogate, found: Population) -
         other = population.run(study, f"{NAME}-reading", model, drawn)
         values = [_settled(item, other) for item in _RATES]
         distance, chance = spread.apart(here, values)
-        rows.append({"reading": reading.words, "same": reading == asked.reading, "cases": cases, "distance": distance, "chance": chance,
+        rows.append({"reading": reading.words, "same": reading == asked.reading, "cases": cases,
+                     "distance": distance, "chance": chance,
                      "rates": [{"name": item.name, **spread.moments(each), "quantiles": spread.quantiles(each)}
                                for item, each in zip(_RATES, values)]})
     return rows
@@ -134,7 +129,8 @@ def _models(study: Study, asked: Asked, found: Population) -> dict | None:
     for item in answers.ALL:
         one, two = item.of(found.results)[:cases][both], item.of(other.results)[both]
         apart = np.abs(two - one)
-        rows.append({"name": item.name, "label": item.label, "unit": item.unit, "root_mean_square": float(np.sqrt((apart**2).mean())),
+        rows.append({"name": item.name, "label": item.label, "unit": item.unit,
+                     "root_mean_square": float(np.sqrt((apart**2).mean())),
                      "quantiles": spread.quantiles(apart, (0.5, 0.95, 0.99)), "most": float(apart.max()),
                      **{name: spread.quantiles(values, (0.5, 0.95, 0.99)) for name, values in zip(names, (one, two))}})
     pairs = {item.name: {name: np.round(item.of(results)[:cases][both], 4).tolist()
@@ -143,18 +139,16 @@ def _models(study: Study, asked: Asked, found: Population) -> dict | None:
             "quantities": rows, "pairs": pairs}
 
 
-def _summary(made: dict) -> list[str]:
-    """What the study says, one line each."""
+def _findings(made: dict) -> list[str]:
+    """What was run and what it says beside its numbers, one line each."""
     counts, asked = made["counts"], made["asked"]
-    said = [f"{counts['asked']:,} cases on {made['surrogate']} = {counts['ok']:,} ok + {counts['refused']:,} refused + {counts['failed']:,} "
-            f"failed; {made['settled']:,} settled, {made['outside']:,} outside the calibration; seed {asked['seed']}", f"errors: {made['reading']}"]
-    for item in made["quantities"]:
-        row = next(row for row in item["quantiles"] if row["share"] == 0.99)
-        said.append(f"{item['label']}: sd {item['sd']:.4g} ± {item['sd_error']:.2g}, 99 % below {in_bounds(row)} {item['unit']}")
-    said += [f"{row['limit']}: above it in {row['above']:,} of {row['cases']:,}, probability {row['share']:.3g} "
-             f"[{row['low']:.3g}, {row['high']:.3g}]" for row in made["tails"]]
-    if told := [row for row in made["readings"] if row["chance"] < 0.01 and not row["same"]]:
-        said.append("readings that can be told from this one: " + "; ".join(f"{row['reading']} (distance {row['distance']:.3f})" for row in told))
+    said = [f"{counts['asked']:,} cases on {made['surrogate']} = {counts['ok']:,} ok + {counts['refused']:,} refused + "
+            f"{counts['failed']:,} failed; {made['settled']:,} settled, {made['outside']:,} outside the calibration; seed "
+            f"{asked['seed']}",
+            f"errors: {made['reading']}"]
+    others = [row for row in made["readings"] if row["chance"] < 0.01 and not row["same"]]
+    if told := "; ".join(f"{row['reading']} (distance {row['distance']:.3f})" for row in others):
+        said.append(f"readings that can be told from this one: {told}")
     else:
         said.append("no other reading of the table can be told from this one")
     if made["models"]:
@@ -164,7 +158,16 @@ def _summary(made: dict) -> list[str]:
     return said
 
 
-def in_bounds(row: dict) -> str:
-    """A quantile with its bounds in words."""
+def _numbers(made: dict) -> list[str]:
+    """The numbers in words and units."""
+    said = []
+    for item in made["quantities"]:
+        row = next(row for row in item["quantiles"] if row["share"] == 0.99)
+        said.append(f"{item['label']}: sd {item['sd']:.4g} ± {item['sd_error']:.2g}, 99 % below {_in_bounds(row)} {item['unit']}")
+    return said + [f"{row['limit']}: above it in {row['above']:,} of {row['cases']:,}, probability {row['share']:.3g} "
+                   f"[{row['low']:.3g}, {row['high']:.3g}]" for row in made["tails"]]
+
+
+def _in_bounds(row: dict) -> str:
     low, high = ("none" if row[side] is None else f"{row[side]:.4g}" for side in ("low", "high"))
     return f"{row['value']:.4g} [{low}, {high}]"

@@ -11,7 +11,8 @@ from studies.exceedance import Limit
 
 def test_limits_are_read_with_their_axis():
     assert exceedance.limits(["x=2 deg/s", " z = 0.1 rad/s", "5 deg/s", "total=6 deg/s"]) == [
-        Limit("x", pytest.approx(2.0)), Limit("z", pytest.approx(np.degrees(0.1))), Limit("total", pytest.approx(5.0)), Limit("total", pytest.approx(6.0))]
+        Limit("x", pytest.approx(2.0)), Limit("z", pytest.approx(np.degrees(0.1))), Limit("total", pytest.approx(5.0)),
+        Limit("total", pytest.approx(6.0))]
 
 
 def test_every_fault_of_every_limit_is_listed():

@@ -30,7 +30,8 @@ def plane(columns, name):
 
 
 @pytest.mark.parametrize("reading, law", [
-    (Reading(rule="none"), stats.halfnorm()), (Reading("half", rule="none"), stats.halfnorm()), (Reading("components", rule="none"), stats.rayleigh()),
+    (Reading(rule="none"), stats.halfnorm()), (Reading("half", rule="none"), stats.halfnorm()),
+    (Reading("components", rule="none"), stats.rayleigh()),
     (Reading(), stats.truncnorm(0.0, 3.0)), (Reading(angles="shared", rule="none"), stats.halfnorm())])
 def test_sizes_follow_the_law_of_their_reading(reading, law):
     """Control: the law of another reading is refused by the same test."""
@@ -84,7 +85,8 @@ def test_linear_tip_off_on_a_launch_without_contact(tmp_path):
     """sd of w_y: the half variances add up to 3.121965 deg/s. Control: components have twice the variance of one signed value."""
     scene = free_flight.scene()
     study, exact = Study(scene, tmp_path, Settings(workers=1)), 3.121965
-    sds = [size / 3.0 for size in (free_flight.RATE_PER_RADIAN * ERRORS["misalignment"].three_sigma, free_flight.RATE_PER_METRE * 0.6e-3,
+    sds = [size / 3.0 for size in (free_flight.RATE_PER_RADIAN * ERRORS["misalignment"].three_sigma,
+                                   free_flight.RATE_PER_METRE * 0.6e-3,
                                    free_flight.RATE_PER_METRE * 0.4e-3)]
     assert np.sqrt(0.5 * np.square(sds).sum()) == pytest.approx(exact, abs=1e-6)
     model = population.surrogate(study)

@@ -1,4 +1,5 @@
-"""The search for the largest certified scale: steps with a known place, every way to have no answer, and counts that do not grow."""
+"""The search for the largest certified scale: steps with a known place, every way to have no answer, and counts that do not
+grow."""
 
 import pytest
 
