@@ -11,7 +11,8 @@ from studies.tolerance_search import ALL, FOUND, NONE, SMALL
 _CURVES = ("Share of {cases:,} cases above a limit over the tolerance, the same draws at every tolerance. Dotted: its upper bound "
            "at {confidence:.0%} confidence, which may not be above the horizontal line, 1 - p. Vertical: the largest certified "
            "tolerance; dashed, what the paper advises.")
-_MAP = "Certified pairs lie on the side of the origin. The square is what the paper advises."
+_MAP = ("Both errors vary, and on an axis the other one is zero: certified pairs lie on the side of the origin. The square is what the "
+        "paper advises.")
 _TABLE = ("A tolerance is three sigma of a normal distribution, redrawn beyond it; errors point anywhere around the axis. One "
           "factor varies at a time, and the errors of the others are {others}; the last row scales a whole set. Certified: the "
           "upper bound of the probability that any rate is above its limit is at most {most:.4g} ({confidence:.0%} confidence, "
@@ -138,7 +139,7 @@ def _panel(row: dict, found: dict) -> Panel:
 
 def _map(found: dict) -> Chart:
     shown = found["map"]
-    x, y = zip(*(point["scale"] for point in shown["points"]))
+    x, y = zip(*(point["tolerances"] for point in shown["points"]))
     lines = [Line(x, y, f"largest certified pairs, p = {found['probability']:g}", NAVY, 1.8, marker="o", size=7.0),
              Line([shown["advised"][0]], [shown["advised"][1]], "advised by the paper", VERMILION, dash="", marker="s", size=10.0)]
     labels = [f"tolerance of {words} ({unit})" for words, unit in zip(shown["words"], shown["units"])]

@@ -92,7 +92,7 @@ class _Answers:
                  "confidence": self.asked.confidence, "cases": self.cases, "allowed": self.allowed, "surrogate": self.model.words,
                  "constants": {"draws": len(self.others), "drawn": self.drawn}, "margin": self.margin._asdict()}
         return {"asked": _plain(asdict(self.asked)), "limits": [limit._asdict() for limit in self.limits], **shown, "rows": rows,
-                "map": self._map(full, searched), "evaluations": self.evaluations}
+                "map": self._map(searched[PAIR[0]].scale or 0.1), "evaluations": self.evaluations}
 
     def _above(self, cases: Cases, limits: list[Limit]) -> Callable[[float], int]:
         def count(scale: float) -> int:
@@ -155,23 +155,24 @@ class _Answers:
         return {"tolerance": factor.advised / factor.scale, "above": count, "share": count / self.cases, "low": low, "high": high,
                 "certified": count <= self.allowed}
 
-    def _map(self, full: dict, searched: dict[str, Found]) -> dict | None:
-        """Certified pairs of two tolerances on rays between their axes; None where one of them alone has none."""
-        if any(searched[name].scale is None for name in PAIR):
-            return None
-        alone = [searched[name].scale * full[name][name] for name in PAIR]
-        points = [{"scale": [alone[0], 0.0], "state": searched[PAIR[0]].state}]
-        for number in range(1, _RAYS + 1):
+    def _map(self, start: float) -> dict | None:
+        """Certified pairs of two tolerances, on rays from one axis, where the other error is zero, to the other axis; each search
+        starts where the last one ended. None where there is no such pair."""
+        pair, points = [self.factors[name] for name in PAIR], []
+        for number in range(_RAYS + 2):
             angle = 0.5 * math.pi * number / (_RAYS + 1)
-            ray = {PAIR[0]: math.cos(angle) * alone[0], PAIR[1]: math.sin(angle) * alone[1]}
-            found = search.near(self._above(self._of(ray), self.limits), self.allowed, 1.0, 2.0)
-            points.append({"scale": [(found.scale or 0.0) * size for size in ray.values()], "state": found.state})
-        points.append({"scale": [0.0, alone[1]], "state": searched[PAIR[1]].state})
-        units = [self.factors[name] for name in PAIR]
-        return {"names": list(PAIR), "words": [factor.words for factor in units], "units": [factor.unit for factor in units],
-                "advised": [factor.advised / factor.scale for factor in units],
-                "points": [item | {"scale": [part / factor.scale for part, factor in zip(item["scale"], units)]}
-                           for item in points]}
+            shares = [round(part, 12) for part in (math.cos(angle), math.sin(angle))]
+            edge = 1.0 / max(shares)  # where the first of both is the largest that is searched
+            ray = {name: share * factor.most for name, share, factor in zip(PAIR, shares, pair)}
+            found = search.near(self._above(self._of(ray), self.limits), self.allowed, min(start, edge), edge)
+            if found.scale is not None:
+                start = found.scale
+                points.append({"tolerances": [start * share * factor.most / factor.scale for share, factor in zip(shares, pair)],
+                               "state": found.state})
+        if not points:
+            return None
+        return {"names": list(PAIR), "words": [factor.words for factor in pair], "units": [factor.unit for factor in pair],
+                "advised": [factor.advised / factor.scale for factor in pair], "points": points}
 
 
 def _told(found: Found, size: float) -> dict:

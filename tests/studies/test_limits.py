@@ -57,6 +57,17 @@ def certified(study, name, cases, limit=LIMIT):
     return limit / (PER_UNIT[name] * sizes[cases - 1 - allowed])
 
 
+def combined(study, tolerances, cases):
+    """Total rates (n,), deg/s, of all errors within ``tolerances`` (SI), none of the others."""
+    source = tolerance_cases.source(study.scene, dict.fromkeys(ADVISED, 0.0) | tolerances, cases, 1)
+    drawn = dict(zip(source.keys, numbers(source.keys, source.rows(0, cases)).T))
+    (t, a), (r, b), (m, c) = ((drawn[f"{error.key}.axial"], drawn[f"{error.key}.radial"])
+                              for error in tolerance_cases.ERRORS.values())
+    y = free_flight.RATE_PER_RADIAN * t * np.sin(a) + free_flight.RATE_PER_METRE * (r * np.cos(b) - m * np.cos(c))
+    z = free_flight.RATE_PER_RADIAN * t * np.cos(a) + free_flight.RATE_PER_METRE * (r * np.sin(b) - m * np.sin(c))
+    return np.hypot(y, z)
+
+
 @pytest.mark.parametrize("name", sorted(PER_UNIT))
 def test_one_factor_alone_is_the_closed_form(study, found, name):
     row, exact = row_of(found, name)["nominal"], certified(study, name, found["cases"])
@@ -86,34 +97,31 @@ def test_constants_and_the_model_s_error_scale_the_answer_as_the_equation_says(s
 def test_a_set_is_certified_where_its_rates_say_so(study, found):
     """Together: recomputed from the draws by one line for each case, at the certified multiple and just beyond it."""
     row, cases = row_of(found, "together"), found["cases"]
-    source = tolerance_cases.source(study.scene, ADVISED, cases, 1)
-    drawn = dict(zip(source.keys, numbers(source.keys, source.rows(0, cases)).T))
-    (t, a), (r, b), (m, c) = ((drawn[f"{error.key}.axial"], drawn[f"{error.key}.radial"])
-                              for error in tolerance_cases.ERRORS.values())
-    y = free_flight.RATE_PER_RADIAN * t * np.sin(a) + free_flight.RATE_PER_METRE * (r * np.cos(b) - m * np.cos(c))
-    z = free_flight.RATE_PER_RADIAN * t * np.cos(a) + free_flight.RATE_PER_METRE * (r * np.sin(b) - m * np.sin(c))
-    exact = LIMIT / np.sort(np.hypot(y, z))[cases - 1 - found["allowed"]]
-    assert 1.0 / 1.013 < row["nominal"]["tolerance"] / exact < 1.002
-    assert row["advised"]["above"] == int((np.hypot(y, z) > LIMIT).sum()) and row["advised"]["tolerance"] == 1.0
+    rates = combined(study, ADVISED, cases)
+    assert 1.0 / 1.013 < row["nominal"]["tolerance"] / (LIMIT / np.sort(rates)[cases - 1 - found["allowed"]]) < 1.002
+    assert row["advised"]["above"] == int((rates > LIMIT).sum()) and row["advised"]["tolerance"] == 1.0
 
 
-def test_map_ends_at_the_single_tolerances_and_gives_one_up_for_the_other(found):
-    points = np.array([point["scale"] for point in found["map"]["points"]])
-    assert points[0].tolist() == [row_of(found, "misalignment")["nominal"]["tolerance"], 0.0]
-    assert points[-1].tolist() == [0.0, row_of(found, "mass_eccentricity")["nominal"]["tolerance"]]
+def test_map_lies_where_the_rates_of_its_pairs_say_so(study, found):
+    """Each pair by one line for each draw: certified there, and no longer 2.8 % farther out; on the axes it is one error alone."""
+    for x, y in (point["tolerances"] for point in found["map"]["points"]):
+        exact = LIMIT / np.sort(combined(study, {"misalignment": np.radians(x), "mass_eccentricity": 1e-3 * y}, found["cases"]))[
+            found["cases"] - 1 - found["allowed"]]
+        assert 0.998 < exact < 1.03
+    points = np.array([point["tolerances"] for point in found["map"]["points"]])
+    assert points[0, 1] == points[-1, 0] == 0.0 and found["map"]["advised"] == pytest.approx([0.2, 0.2])
     assert (np.diff(points[:, 0]) < 0.0).all() and (np.diff(points[:, 1]) > 0.0).all()
-    assert found["map"]["advised"] == pytest.approx([0.2, 0.2])
 
 
 def test_limits_that_none_or_every_tolerance_keeps_are_said(study, monkeypatch):
-    """0.1 deg of misalignment alone is 2.7 deg/s: no eccentricity brings that below 2, unless the misalignment is taken away."""
+    """0.3 mm of thrust eccentricity alone are 3.1 deg/s: no misalignment brings that below 2, unless it is taken away."""
     monkeypatch.setattr(limits, "_RAYS", 1)
     monkeypatch.setattr("studies.report.chart.to_files", lambda *_: [])  # drawn in another test
-    offset = Study(study.scene.replace({"thrust_offset.misalignment.axial": np.radians(0.1)}), study.folder, study.settings)
+    offset = Study(study.scene.replace({"thrust_offset.eccentricity.axial": 0.3e-3}), study.folder, study.settings)
     for others, state in (("scene", "none"), ("zero", "found")):
         found = limits.run(offset, Asked(limits=("2 deg/s",), probability=PROBABILITY, cases=30, others=others))
-        assert row_of(found, "thrust_eccentricity")["nominal"]["state"] == state
-        assert row_of(found, "misalignment")["nominal"]["state"] == "found" and (found["map"] is None) == (state == "none")
+        assert row_of(found, "misalignment")["nominal"]["state"] == state and (found["map"] is None) == (state == "none")
+        assert row_of(found, "thrust_eccentricity")["nominal"]["state"] == "found"
         assert any("what is not varied is above a limit" in line for line in found["summary"]) == (state == "none")
     monkeypatch.setattr(limits.constants, "margin", lambda *_: constants.Margin(dict.fromkeys(("x", "y", "z", "total"), 1.0), ""))
     far = limits.run(offset, Asked(limits=("x=1 deg/s",), probability=PROBABILITY, cases=30))
