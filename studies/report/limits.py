@@ -11,8 +11,8 @@ from studies.tolerance_search import ALL, FOUND, NONE, SMALL
 _CURVES = ("Share of {cases:,} cases above a limit over the tolerance, the same draws at every tolerance. Dotted: its upper bound "
            "at {confidence:.0%} confidence, which may not be above the horizontal line, 1 - p. Vertical: the largest certified "
            "tolerance; dashed, what the paper advises.")
-_MAP = ("Both errors vary, and on an axis the other one is zero: certified pairs lie on the side of the origin. The square is what the "
-        "paper advises.")
+_MAP = ("Both errors vary, and on an axis the other one is zero: certified pairs lie on the side of the origin. The square is what "
+        "the paper advises.")
 _TABLE = ("A tolerance is three sigma of a normal distribution, redrawn beyond it; errors point anywhere around the axis. One "
           "factor varies at a time, and the errors of the others are {others}; the last row scales a whole set. Certified: the "
           "upper bound of the probability that any rate is above its limit is at most {most:.4g} ({confidence:.0%} confidence, "
