@@ -12,7 +12,7 @@ ASKED = --scene $(SCENE) --out $(OUT)
 READY = .venv/.ready
 
 .DEFAULT_GOAL := help
-.PHONY: help mesh highfi lowfi calibrate posterior compare cost stability ablation ensemble blind paper report view pictures convergence full-report bench test test-slow clean
+.PHONY: help mesh highfi lowfi calibrate posterior compare blind cost stability ablation ensemble montecarlo limits paper report view pictures convergence full-report bench test test-slow clean
 
 help: ## print this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## /{printf "  make %-12s %s\n", $$1, $$2}' Makefile
@@ -50,6 +50,12 @@ ensemble: $(READY) ## 10,000 varied cases of the surrogate: what rates to expect
 
 blind: $(READY) ## agreement on conditions drawn now, by a seed that nobody chose
 	$(TIPOFF) blind $(ASKED)
+
+montecarlo: $(READY) ## the paper's random errors, its 1,000 cases and 100,000 (CASES=1000000 for a million): rates, tails, readings
+	$(TIPOFF) montecarlo $(ASKED) $(if $(CASES),--cases $(CASES))
+
+limits: $(READY) ## tolerances that keep the rates below limits (LIMIT="5 deg/s" PROBABILITY=0.99), beside those the paper advises
+	$(TIPOFF) limits $(ASKED) $(if $(LIMIT),--limit "$(LIMIT)") $(if $(PROBABILITY),--probability $(PROBABILITY))
 
 paper: $(READY) ## what the paper's unpublished inputs must have been, its tables beside ours
 	$(TIPOFF) paper $(ASKED)

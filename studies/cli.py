@@ -337,6 +337,5 @@ def doctor() -> None:
 
     raise typer.Exit(check.main())
 
-
 if __name__ == "__main__":
     app()

@@ -37,6 +37,11 @@ class Surrogate(NamedTuple):
     calibration: Calibration | None
     walls: Walls | None
 
+    @property
+    def words(self) -> str:
+        """What pads touch, in words."""
+        return "calibrated springs" if self.calibration else "walls that give way" if self.walls else "no contact"
+
     def at(self, overrides: dict[str, Any]) -> "Surrogate":
         """The same on a changed scene."""
         return self._replace(scene=self.scene.replace(overrides))

@@ -26,5 +26,7 @@ class Answer(NamedTuple):
 
 ANSWERS = (
     Answer("blind", "Agreement on conditions nobody chose", "Blind"),
+    Answer("montecarlo", "Random errors", "Random errors"),
+    Answer("limits", "Tolerances that keep limits", "Tolerances"),
     Answer("paper", "The paper's own numbers", "Paper"),
 )

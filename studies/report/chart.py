@@ -42,7 +42,7 @@ class Line:
 
 @dataclass(frozen=True)
 class Panel:
-    """One set of axes, both logarithmic or y alone; ``band`` shades y below a value, with a text, ``spans`` stretches of x;
+    """One set of axes, both logarithmic, or x or y alone; ``band`` shades y below a value, with a text, ``spans`` stretches of x;
     ``ticks`` are labelled on a logarithmic x in place of whole decades."""
 
     title: str
@@ -52,6 +52,7 @@ class Panel:
     log: bool = False
     band: tuple[float, str] | None = None
     spans: tuple[tuple[float, float], ...] = ()
+    log_x: bool = False
     log_y: bool = False
     ticks: tuple[float, ...] = ()
 
@@ -95,7 +96,7 @@ def to_html(chart: Chart) -> str:
                 marker={"symbol": _PLOTLY_MARKER[line.marker], "size": line.size}),
                 **place)
             shown |= {line.name} if line.legend else set()
-        x_kind = _log_axis(_across(panel), panel.ticks) if panel.log else {}
+        x_kind = _log_axis(_across(panel), panel.ticks) if panel.log else {"type": "log", "dtick": 1} if panel.log_x else {}
         y_kind = _log_axis(_upwards(panel)) if panel.steep else {}
         figure.update_xaxes(title_text=panel.x_label, **x_kind, **place)
         figure.update_yaxes(title_text=panel.y_label, **y_kind, **place)
@@ -156,6 +157,8 @@ def _dress(axes, panel: Panel) -> None:
     axes.set_title(panel.title, fontsize=10.5, color=_INK)
     axes.set_xlabel(panel.x_label, fontsize=9.5, color=_INK)
     axes.set_ylabel(panel.y_label, fontsize=9.5, color=_INK)
+    if panel.log_x:
+        axes.set_xscale("log")
     if panel.log:
         axes.set_xscale("log")
         axes.set_xlim(_across(panel))

@@ -14,7 +14,7 @@ from studies.agreement import Context, Spread, spread
 from studies.progress import Board
 from studies.stages import calibrate, walls
 from studies.store import SOURCES, Run
-from studies.study import Study, require_success
+from studies.study import Study, read, require_success
 from studies.timing import speedups
 
 SOURCES_USED = (*SOURCES["highfi"], *SOURCES["lowfi"], "calibrate")
@@ -64,7 +64,17 @@ def run(study: Study) -> dict:
                 "simpler": _simpler(study, compliant, highfi),
                 **dict(zip(("speedup", "speedup_compliant"), _speedups(study, [calibrated, compliant])))}, []
 
-    return study.stage("agreement", study.key(SOURCES_USED, calibrated.calibration.constants, gates), make)
+    return study.stage("agreement", _key(study, calibrated.calibration.constants), make)
+
+
+def stored(study: Study) -> dict | None:
+    """The result, if it was made from the present scene, code, settings and calibration."""
+    found, calibration = read(study.path("agreement.json")), read(study.path("calibration.json"))
+    return found if found and calibration and found["key"] == _key(study, calibration["constants"]) else None
+
+
+def _key(study: Study, constants: dict) -> str:
+    return study.key(SOURCES_USED, constants, agreement.gates(study.scene))
 
 
 def rows(study: Study, rung: Rung, highfi: dict[str, Trajectory], context: Context) -> list[dict]:

@@ -161,7 +161,7 @@ def test_ablation_changes_rates_and_kernel(pipeline):
 def test_page_is_whole_and_self_contained(pipeline):
     page = (pipeline[0] / "report.html").read_text()
     assert [name for name in SECTIONS if f'id="{name}"' not in page] == []
-    assert page.count("Not made yet") == len(ANSWERS) and "BROKEN" not in page
+    assert page.count("Not made yet") == len(ANSWERS) and "BROKEN" not in page  # studies with targets of their own
     assert page.count("/*! For license information") <= 1 and 'src="http' not in page
     figures = {path.name for path in (pipeline[0] / "figures").glob("*.png")}
     assert {"mesh.png", "compliance.png", "thrust.png", "figure6.png", "contact-forces.png", "energy-ledgers.png", "cost.png", "growth.png", "scaling.png"} <= figures

@@ -1,0 +1,58 @@
+"""``tipoff limits``: the tolerances that keep rates below limits."""
+
+from enum import Enum
+from pathlib import Path
+from typing import Annotated, Optional
+
+import typer
+
+from studies.asked import guarded, study_of
+from studies.options import Json, OnWalls, Out, SceneName, Set, Workers
+
+Tolerances = Enum("Tolerances", {name: name for name in ("advised", "table3")}, type=str)
+Others = Enum("Others", {name: name for name in ("scene", "zero")}, type=str)
+
+Limit = Annotated[Optional[list[str]], typer.Option("--limit", metavar="[AXIS=]RATE", help='Limit of a rate, "x=2 deg/s", or of '
+                                                                                           'the total, "5 deg/s"; repeatable, and '
+                                                                                           'all are to be kept. Default: 5 deg/s '
+                                                                                           'for the total.')]
+Probability = Annotated[float, typer.Option("--probability", metavar="P", help="Share of launches that keep them.")]
+Confidence = Annotated[float, typer.Option("--confidence", metavar="C", help="Confidence with which that is shown.")]
+Cases = Annotated[Optional[int], typer.Option("--cases", metavar="N", min=1, help="Cases of each set of tolerances; default: ten "
+                                                                                  "times the fewest that can show it.")]
+Scaled = Annotated[Tolerances, typer.Option("--tolerances", help="What is scaled together: what the paper advises, or the ranges "
+                                                                 "of its Table 3.")]
+Fixed = Annotated[Others, typer.Option("--others", help="Errors that do not vary: as the scene has them, or zero.")]
+Draws = Annotated[int, typer.Option("--draws", metavar="N", help="Draws of the calibrated constants from their intervals.")]
+Condition = Annotated[Optional[str], typer.Option("--condition", metavar="NAME", help="Named condition; default: the scene.")]
+Seed = Annotated[int, typer.Option("--seed", metavar="N", min=0, help="Seed of all draws.")]
+
+
+def add(app: typer.Typer) -> None:
+    """Put the command under ``app``."""
+
+    @app.command()
+    def limits(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = None, limit: Limit = None,
+               probability: Probability = 0.99, confidence: Confidence = 0.95, cases: Cases = None,
+               tolerances: Scaled = Tolerances.advised, others: Fixed = Others.scene, draws: Draws = 8, condition: Condition = None,
+               seed: Seed = 1, walls: OnWalls = False, workers: Workers = None, json_: Json = False) -> None:
+        """Tolerances of thrust, mass, clearance and friction that keep the rates below limits at a probability; writes limits.json.
+
+        Each alone, all together, and misalignment against mass eccentricity; with what is not certain.
+
+          tipoff limits --limit "x=2 deg/s" --limit "5 deg/s" --probability 0.99
+
+          tipoff limits --limit "10 deg/s" --others zero --tolerances table3
+        """
+
+        def work() -> dict:
+            from studies.limit_inputs import Asked
+            from studies.stages import limits as stage
+
+            asked = Asked(tuple(limit or Asked.limits), probability, confidence, cases, seed, tolerances.value, others.value, draws,
+                          walls, condition)
+            return stage.run(study_of(scene, out, set_, workers=workers), asked)
+
+        found = guarded(work, json_)
+        if not json_:
+            print("\n".join(found["summary"]))

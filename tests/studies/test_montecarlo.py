@@ -1,0 +1,100 @@
+"""The study of random errors as a whole, on a launch without contact, where the distribution of the rates is known."""
+
+import json
+
+import numpy as np
+import pytest
+from scipy import stats
+from scipy.special import j0
+from typer.testing import CliRunner
+
+from studies import spread
+from studies.cli import app
+from studies.report import montecarlo as pictures
+from studies.settings import Settings
+from studies.stages import montecarlo
+from studies.stages.montecarlo import Asked
+from studies.study import Study
+from tests.studies import free_flight
+
+pytest.importorskip("zarr")
+
+
+@pytest.fixture(scope="module")
+def study(tmp_path_factory):
+    return Study(free_flight.scene(), tmp_path_factory.mktemp("out"), Settings(workers=2))
+
+
+@pytest.fixture(scope="module")
+def found(study):
+    return montecarlo.run(study, Asked(cases=1500, limits=("y=6 deg/s", "8 deg/s")))
+
+
+def test_what_is_written_is_whole_and_not_made_again(study, found, monkeypatch):
+    assert found["counts"] == {"asked": 1500, "ok": 1500, "refused": 0, "failed": 0} and found["surrogate"] == "no contact"
+    assert {"rate_x_deg_s", "rate_deg_s", "lateral_velocity_mm_s", "direction_error_deg", "attitude_z_deg"} <= {
+        item["name"] for item in found["quantities"]}
+    assert {f"figures/montecarlo-{name}.{kind}" for name in ("histograms", "convergence")
+            for kind in ("png", "svg")} == set(found["files"])
+    assert found["models"] is None and len(found["readings"]) == 7  # no walls and no clearance without contact
+    monkeypatch.setattr("studies.population.run", lambda *_: pytest.fail("made again"))
+    assert montecarlo.run(study, Asked(cases=1500, limits=("y=6 deg/s", "8 deg/s"))) == found == montecarlo.stored(study)
+    assert json.loads(study.path("montecarlo.json").read_text()) == found
+
+
+def test_the_first_thousand_are_the_paper_s_and_bounds_shrink_with_the_root_of_the_number(found):
+    item = found["quantities"][1]
+    first, whole = item["first"][2], item["quantiles"][2]
+    assert first["low"] < first["value"] < first["high"] and first != whole
+    rows = [row for row in found["convergence"] if row["share"] == 0.5]
+    assert [row["cases"] for row in rows] == [100, 200, 500, 1000, 1500]
+    halves = [0.5 * (row["high"] - row["low"]) for row in rows]
+    # The slope is -1/2; ranks are whole numbers and densities estimated, so single widths scatter by some 20 %.
+    assert np.polyfit(np.log([row["cases"] for row in rows]), np.log(halves), 1)[0] == pytest.approx(-0.5, abs=0.15)
+
+
+def test_tails_hold_the_probability_by_independent_quadrature(found):
+    """w_y is a sum of (normal cut at 3 sigma) times (cosine of a uniform angle): its tail from characteristic functions, on a
+    grid."""
+    grid = np.linspace(-3.0, 3.0, 601)
+    weights, frequency = stats.truncnorm(-3.0, 3.0).pdf(grid) * (grid[1] - grid[0]), np.linspace(1e-6, 12.0, 6000)
+    weights /= weights.sum()
+    transform = np.ones_like(frequency)
+    for sd in (free_flight.RATE_PER_RADIAN * np.radians(0.4) / 3.0, free_flight.RATE_PER_METRE * 0.2e-3,
+               free_flight.RATE_PER_METRE * 0.4e-3 / 3.0):
+        transform = transform * (weights[:, None] * j0(np.outer(grid, frequency) * sd)).sum(axis=0)
+    above = 1.0 - 2.0 / np.pi * np.trapezoid(transform * np.sin(6.0 * frequency) / frequency, frequency)
+    tail = found["tails"][0]
+    assert tail["limit"] == "rate about y 6 deg/s" and tail["low"] < above < tail["high"]
+    assert not tail["low"] < 1.5 * above < tail["high"]  # the bounds are narrow enough to say something
+
+
+def test_readings_that_are_one_law_cannot_be_told_apart_and_others_can(found):
+    rows = {row["reading"]: row for row in found["readings"]}
+    same, half = (rows[f"{kind} normal, three angles, redrawn beyond 3 sigma"] for kind in ("signed", "half"))
+    assert same["same"] and not half["same"] and min(same["chance"], half["chance"]) > 0.01
+    assert rows["two normal components, redrawn beyond 3 sigma"]["chance"] < 1e-6
+    assert rows["half normal, one angle, redrawn beyond 3 sigma"]["chance"] < 0.01
+
+
+def test_distance_of_two_samples_is_told_from_chance():
+    random = np.random.default_rng(1)
+    one, two = random.normal(size=(2, 2000))
+    assert spread.apart([one, one], [two, two])[1] > 0.05 and spread.apart([one], [two + 0.3])[1] < 1e-6
+    # Kolmogorov and Smirnov: two samples of three, one wholly above the other.
+    assert spread.apart([np.arange(3.0)], [np.arange(3.0) + 5.0])[0] == 1.0
+
+
+def test_section_of_the_page(found):
+    shown = pictures.draw(found, lambda chart, words: f"<figure>{chart.name}</figure>")
+    assert all(words in shown for words in ("montecarlo-histograms", "two normal components", "prints no number", "rate about y 6"))
+
+
+def test_bad_input_is_refused_and_nothing_written(tmp_path):
+    arguments = ["montecarlo", "--out", str(tmp_path / "out"), "--cases", "100"]
+    for more, words in ((["--limit", "w=1 deg/s", "--limit", "x=1 mm"], ("--limit", "w=1", "1 mm", "2 faults")),
+                        (["--reading", "components", "--angles", "shared", "--limit", "5 K"], ("--angles", "--limit", "2 faults")),
+                        (["--reading", "both"], ("components",))):
+        result = CliRunner().invoke(app, arguments + more)
+        assert result.exit_code == 2 and all(word in result.stderr for word in words) and "Traceback" not in result.output
+    assert not (tmp_path / "out").exists()
