@@ -337,5 +337,6 @@ def doctor() -> None:
 
     raise typer.Exit(check.main())
 
+
 if __name__ == "__main__":
     app()
