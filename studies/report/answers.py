@@ -24,4 +24,7 @@ class Answer(NamedTuple):
         return import_module(f"studies.stages.{self.name}").stored(study)
 
 
-ANSWERS: tuple[Answer, ...] = ()
+ANSWERS: tuple[Answer, ...] = (
+    Answer("sensitivity", "Which numbers the answer depends on", "Sensitivity"),
+    Answer("sweeps", "How large an error may be", "Sweeps"),
+)
