@@ -14,6 +14,7 @@ from scenes.scene import Scene
 from studies.population import TOLERANCE, Surrogate
 
 _LEAVES_UNDER_THRUST, _BURNS_OUT = 0.15, 0.001  # share of the impulse after the exit
+_ROUNDING = 1e-12  # of a difference of two equal impulses
 _MOST = 7  # doublings of the stretch
 
 
@@ -30,7 +31,8 @@ def exit_of(model: Surrogate) -> Exit | None:
     if time is None:
         return None
     record, duration = model.scene.thrust.record(), model.scene.duration
-    return Exit(time, 1.0 - thrust.impulse(record, time) / thrust.impulse(record, duration))
+    after = 1.0 - thrust.impulse(record, time) / thrust.impulse(record, duration)
+    return Exit(time, after if after > _ROUNDING else 0.0)
 
 
 def stretched(scene: Scene, factor: float) -> dict[str, float] | None:

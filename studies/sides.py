@@ -18,10 +18,12 @@ NONE = -1  # no face touched
 
 
 class Sides(NamedTuple):
-    """Number of the face that touched first and of the one with the largest impulse, (n,) each, ``NONE`` without contact."""
+    """Number of the face that touched first and of the one with the largest impulse, (n,) each, ``NONE`` without contact; settled rates
+    (n,3) in rad/s, NaN where a run did not settle."""
 
     first: np.ndarray
     most: np.ndarray
+    rate: np.ndarray
 
 
 def names(scene: Scene) -> list[str]:
@@ -34,16 +36,16 @@ def found(model: Surrogate, rows: list[dict[str, float]], workers: int, progress
     """Sides of every row of overrides of ``model.scene``."""
     numerics = Numerics(relative_tolerance=TOLERANCE)
 
-    def one(row: dict[str, float]) -> tuple[int, int]:
+    def one(row: dict[str, float]) -> tuple[int, int, list[float]]:
         run = lowfi.run(model.scene.replace(row), numerics=numerics, walls=model.walls)
-        return of(run.time, np.linalg.norm(run.pad_force, axis=2))
+        return *of(run.time, np.linalg.norm(run.pad_force, axis=2)), run.outcome.rate or [np.nan] * 3
 
-    pairs = []
+    seen = []
     with ThreadPoolExecutor(workers) as pool:
-        for pair in pool.map(one, rows):
-            pairs.append(pair)
-            progress(len(pairs) / len(rows))
-    return Sides(*np.array(pairs).T)
+        for item in pool.map(one, rows):
+            seen.append(item)
+            progress(len(seen) / len(rows))
+    return Sides(*map(np.array, zip(*seen)))
 
 
 def of(time: np.ndarray, force: np.ndarray) -> tuple[int, int]:
@@ -56,3 +58,15 @@ def of(time: np.ndarray, force: np.ndarray) -> tuple[int, int]:
     earliest = np.flatnonzero(began == began.min())
     first = earliest[np.argmax(force[began.min(), earliest])]
     return int(first), int(np.argmax(np.trapezoid(force, time, axis=0)))
+
+
+def jumps(walls: np.ndarray, rate: np.ndarray) -> tuple[float | None, float | None]:
+    """Median change of the rates (rad/s) between neighbours in size or direction: where ``walls`` (s,a), labels with the directions along
+    the second axis, differ between them, and where they do not. ``rate`` (s,a,3); None where there is no such pair."""
+    changed, moved = [], []
+    for one, other in ((np.s_[:-1], np.s_[1:]), (np.s_[:, :], (slice(None), np.arange(walls.shape[1]) - 1))):
+        changed.append((walls[one] != walls[other]).ravel())
+        moved.append(np.linalg.norm(rate[one] - rate[other], axis=2).ravel())
+    changed, moved = np.concatenate(changed), np.concatenate(moved)
+    told = np.isfinite(moved)
+    return tuple(float(np.median(moved[chosen & told])) if (chosen & told).any() else None for chosen in (changed, ~changed))

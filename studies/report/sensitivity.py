@@ -119,7 +119,7 @@ def _bars(sobol: dict, rates: list[dict]) -> Picture:
         axes.set_yticks(place, [name_of(sobol["inputs"][n]["key"]) for n in order], fontsize=8.5)
         axes.set_title(f"{item['label']}, sd {item['sd']:.3g} {item['unit']}", fontsize=10.5)
         axes.set_xlabel("Sobol' index", fontsize=9.5)
-        axes.set_xlim(min(0.0, float((values["first"] - values["first_half_width"]).min())), None)
+        axes.set_xlim(1.08 * min(0.0, float((values["first"] - values["first_half_width"])[order].min())), None)
         axes.grid(axis="x", color="#e3e6ea")
         axes.set_axisbelow(True)
         axes.spines[["top", "right"]].set_visible(False)

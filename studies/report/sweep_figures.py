@@ -23,8 +23,16 @@ def pictures(found: dict) -> list[tuple[Chart | Picture, str]]:
         if factor["sides"] is not None:
             drawn.append((_map(factor, given["faces"]), f"The same over size (radius, {factor['unit']}) and direction ({_ANGLE[factor['name']]}); the line "
                           "is a rate of zero. Below: the wall touched first and the wall that bore the largest impulse, of single runs in a "
-                          "coarser grid of directions; rates turn over where contact changes sides."))
+                          f"coarser grid of directions. {_jumping(factor['sides']['jumps_deg_s'])}"))
     return drawn
+
+
+def _jumping(jumps: list[float | None]) -> str:
+    """How far the rates move where contact changes sides, and elsewhere."""
+    if None in jumps:
+        return "Contact never changes sides." if jumps[0] is None else "Contact changes sides everywhere."
+    return (f"Between neighbours of that grid the rates move by {jumps[0]:.2g} deg/s (median) where another wall, or the other end of the payload, "
+            f"takes the largest impulse, and by {jumps[1]:.2g} deg/s elsewhere.")
 
 
 def _scatter(factor: dict) -> Chart:

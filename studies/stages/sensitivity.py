@@ -17,7 +17,6 @@ from studies.store import SOURCES
 from studies.study import Study, StudyError, read
 
 NAME = "sensitivity"
-POINTS = 512
 _SOURCES = (*SOURCES["highfi"], *SOURCES["lowfi"], "calibrate")
 _HALVINGS = 3  # smaller runs beside the whole one, for convergence
 _FINE = Numerics().relative_tolerance  # deviations of a thousandth are asked of a table
@@ -28,7 +27,7 @@ class Asked(NamedTuple):
     two), a seed, walls or springs."""
 
     vary: str | None = None
-    points: int = POINTS
+    points: int = 512
     seed: int = 1
     walls: bool = False
 

@@ -17,7 +17,6 @@ from studies.store import SOURCES
 from studies.study import Study, read
 
 NAME = "sweeps"
-ANGLES = 120
 JUDGED = (*answers.RATES, answers.TOTAL_RATE)  # quantities whose growth is judged
 _SOURCES = (*SOURCES["highfi"], *SOURCES["lowfi"], "calibrate")
 _FEWEST = 8  # directions: fewer tell no side from another
@@ -28,7 +27,7 @@ _DEPARTS = 0.05  # of the rate of a free payload: by more the rail has its say
 class Asked(NamedTuple):
     """What ``tipoff sweeps`` is given beside the scene: directions of each size, walls or springs."""
 
-    angles: int = ANGLES
+    angles: int = 120
     walls: bool = False
 
 
@@ -104,8 +103,11 @@ def _sides(study: Study, model: Surrogate, asked: Asked) -> tuple[list[str], lis
     with Board("which walls", 1) as board:
         seen = sides.found(model, rows, study.settings.workers, board.callback(f"which walls, {len(rows)} cases"))
     shape = len(FACTORS), len(SIZES), len(directions)
-    return sides.names(model.scene), [{"angles_deg": np.degrees(directions).tolist(), "first": first.tolist(), "most": most.tolist()}
-                                      for first, most in zip(seen.first.reshape(shape), seen.most.reshape(shape))]
+    names = sides.names(model.scene)
+    walls = np.array([*names, ""])  # the last for no face, which is -1
+    return names, [{"angles_deg": np.degrees(directions).tolist(), "first": first.tolist(), "most": most.tolist(),
+                    "jumps_deg_s": sides.jumps(walls[most], np.degrees(rate))}
+                   for first, most, rate in zip(seen.first.reshape(shape), seen.most.reshape(shape), seen.rate.reshape(*shape, 3))]
 
 
 def _plain(values: np.ndarray) -> list:
@@ -117,7 +119,7 @@ def _plain(values: np.ndarray) -> list:
 
 def summary(found: dict) -> list[str]:
     """What the study says, one line each."""
-    lines = []
+    lines, labels = [], {item.name: item.label for item in JUDGED}
     for launch in found["launches"]:
         how = "as given" if launch["stretch"] == 1.0 else f"thrust stretched by {launch['stretch']:g}"
         leaves = "never leaves without errors" if launch["exit_s"] is None else (
@@ -125,8 +127,7 @@ def summary(found: dict) -> list[str]:
         lines.append(f"{how}: {launch['cases']['asked']:,} cases, {launch['not_settled']:,} did not settle, {launch['outside']:,} outside the "
                      f"calibration; {leaves}")
         for factor in launch["factors"]:
-            told = "; ".join(f"{name[5:6] if len(name) > 10 else 'total'} {said(bent, factor['unit'])}"
-                             for name, bent in factor["growth"].items() if bent)
+            told = "; ".join(f"{labels[name]}: {said(bent, factor['unit'])}" for name, bent in factor["growth"].items() if bent)
             lines.append(f"{how}, {factor['label']} (the paper: plateau from {factor['paper']:g} {factor['unit']}): {told}")
     return lines
 
