@@ -1,8 +1,9 @@
-"""Whether a payload leaves its rail while the thrust still acts, and the same launcher with a thrust so long, or so short, that it is
-the other way round.
+"""Whether a payload leaves its rail while the thrust still acts, and the same launcher with a thrust so long, or so short, that it
+is the other way round.
 
-A thrust stretched by f keeps its impulse: force by 1/f, times by f. What acts after the exit turns a free payload, so its rate grows with
-the error however the rail limits the angle before; what burns out on the rail leaves it to the walls, whose clearance limits the angle.
+A thrust stretched by f keeps its impulse: force by 1/f, times by f. What acts after the exit turns a free payload, so its rate
+grows with the error however the rail limits the angle before; what burns out on the rail leaves it to the walls, whose clearance
+limits the angle.
 """
 
 from typing import NamedTuple
@@ -36,14 +37,16 @@ def exit_of(model: Surrogate) -> Exit | None:
 
 
 def stretched(scene: Scene, factor: float) -> dict[str, float] | None:
-    """Overrides (SI) that stretch the thrust, and the scene's duration with a longer one; None for a kind that has no such numbers."""
+    """Overrides (SI) that stretch the thrust, and the scene's duration with a longer one; None for a kind that has no such
+    numbers."""
     table = scene.thrust
     if table.kind == "constant":
-        found = {"thrust.force": table.force / factor, "thrust.start": table.start * factor, "thrust.duration": table.duration * factor}
+        found = {"thrust.force": table.force / factor, "thrust.start": table.start * factor,
+                 "thrust.duration": table.duration * factor}
     elif table.kind in ("gaussian", "gaussians"):
-        heads = ["thrust"] if table.kind == "gaussian" else [f"thrust.components.{number}" for number in range(len(table.components))]
         found = {}
-        for head, pulse in zip(heads, table.pulses()):
+        for number, pulse in enumerate(table.pulses()):
+            head = "thrust" if table.kind == "gaussian" else f"thrust.components.{number}"
             found |= {f"{head}.width": pulse.width * factor, f"{head}.centre": pulse.centre * factor}
             found |= {f"{head}.peak": pulse.peak / factor} if pulse.peak is not None else {}
     else:

@@ -1,8 +1,8 @@
 """Contact constants moved one at a time about those of a surrogate, laid out like Table 2 of the paper (``studies.published``).
 
-A deviation is absolute, w - w0, and relative, (w - w0)/w0; the relative one says nothing where w0 itself is nearly zero, which here means
-below a twentieth of the total rate of its condition. One micrometre of clearance stands beside them: no contact constant needs
-to be known better than that.
+A deviation is absolute, w - w0, and relative, (w - w0)/w0; the relative one says nothing where w0 itself is nearly zero, which here
+means below a twentieth of the total rate of its condition. One micrometre of clearance stands beside them: no contact constant
+needs to be known better than that.
 """
 
 from typing import NamedTuple, Sequence
@@ -14,14 +14,16 @@ from studies import published
 
 # Of Table 2: 66,000 and 74,000 about 70,000; 50 and 70 about 60; 0.25 and 0.35 about 0.30. The penalty is the stiffness of walls.
 _STIFFNESS, _DAMPING = 4.0 / 70.0, 10.0 / 60.0
-_MOVED = {"stiffness": ("k", _STIFFNESS), "damping": ("c", _DAMPING), "damping_depth": ("d", _DAMPING), "dissipation": ("a", _DAMPING)}
+_MOVED = {"stiffness": ("k", _STIFFNESS), "damping": ("c", _DAMPING), "damping_depth": ("d", _DAMPING),
+          "dissipation": ("a", _DAMPING)}
 _ON_WALLS = {"penalty": ("penalty", _STIFFNESS)}
 CLEARANCE = 1e-6  # m
 _NEARLY_ZERO = 0.05
 
 
 class Change(NamedTuple):
-    """A constant that is moved: its ``symbol``, whether it is ``raised`` (None: nothing is changed), by which ``share``, and overrides."""
+    """A constant that is moved: its ``symbol``, whether it is ``raised`` (None: nothing is changed), by which ``share``, and
+    overrides."""
 
     symbol: str
     raised: bool | None
@@ -30,7 +32,8 @@ class Change(NamedTuple):
 
 
 def changes(scene: Scene, walls: bool) -> list[Change]:
-    """What is moved in ``scene``, which has contact: nothing first, then each constant of its law down and up, then the clearance."""
+    """What is moved in ``scene``, which has contact: nothing first, then each constant of its law down and up, then the
+    clearance."""
     found = [Change("baseline", None, 0.0, {})]
     for name, (symbol, share) in (_ON_WALLS if walls else _MOVED).items():
         if (value := getattr(scene.contact, name, None)) is not None:

@@ -4,8 +4,8 @@ Thrust along the unit vector f through the point r (from the mass centre) leaves
 
     w = I^-1 J (r x f),   J = integral of F dt
 
-On the reference scene that is 26 deg/s per millimetre of arm: the line that the rail bends. Gyroscopic moments are left out: they are
-quadratic in the rates.
+On the reference scene that is 26 deg/s per millimetre of arm: the line that the rail bends. Gyroscopic moments are left out: they
+are quadratic in the rates.
 """
 
 from typing import NamedTuple
@@ -20,7 +20,8 @@ from scenes.variation import Variations
 
 
 class Factor(NamedTuple):
-    """A swept error: ``name``, words for it, dotted table of its size ``axial`` and direction ``radial``, its unit, and that in SI."""
+    """A swept error: ``name``, words for it, dotted table of its size ``axial`` and direction ``radial``, its unit, and that in
+    SI."""
 
     name: str
     label: str
@@ -30,7 +31,8 @@ class Factor(NamedTuple):
 
     def rows(self, sizes: np.ndarray, angles: np.ndarray) -> list[dict[str, float]]:
         """Overrides (SI) of every size (in ``unit``) at every angle (rad), sizes outermost."""
-        return [{f"{self.table}.axial": float(size) * self.si, f"{self.table}.radial": float(angle)} for size in sizes for angle in angles]
+        return [{f"{self.table}.axial": float(size) * self.si, f"{self.table}.radial": float(angle)}
+                for size in sizes for angle in angles]
 
 
 FACTORS = (Factor("misalignment", "thrust misalignment", "thrust_offset.misalignment", "deg", np.pi / 180.0),

@@ -5,9 +5,9 @@ With V the variance of y over all inputs, x_i one of them and x_~i all others::
     first order  S_i = V[E(y | x_i)] / V           what would go if x_i were known
     total        T_i = E[V(y | x_~i)] / V           what would stay if all but x_i were known
 
-n base points take n (d + 2) cases: A, A with column i from B for each of the d inputs, and B. S_i is estimated by
-mean(B (A_B,i - A))/V and T_i by mean((A - A_B,i)^2)/(2 V) (Saltelli et al., Comput. Phys. Commun. 181, 2010); their intervals are of
-a bootstrap over base points. The points are a scrambled Sobol' sequence, of which the first half is one again.
+n base points take n (d + 2) cases: A, A with column i from B for each of the d inputs, and B. S_i is estimated by mean(B (A_B,i -
+A))/V and T_i by mean((A - A_B,i)^2)/(2 V) (Saltelli et al., Comput. Phys. Commun. 181, 2010); their intervals are of a bootstrap
+over base points. The points are a scrambled Sobol' sequence, of which the first half is one again.
 """
 
 from typing import Any, NamedTuple

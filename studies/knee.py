@@ -6,15 +6,15 @@
     plateau        g = a + b min(s, k)                   growth up to k, then none
     knee           g = a + b s + c max(s - k, 0)          growth up to k, then another one
 
-Each is fitted by least squares, k and h by scanning. The law with the smallest corrected information criterion (Hurvich and Tsai, Biometrika 76,
-1989) is taken::
+Each is fitted by least squares, k and h by scanning. The law with the smallest corrected information criterion (Hurvich and Tsai,
+Biometrika 76, 1989) is taken::
 
     AICc = n ln(RSS/n) + 2 K + 2 K (K + 1)/(n - K - 1),   K = constants + 1
 
-so a bend must earn its constants. Residuals below a five hundredth of the largest rate, what cases are exact to, count as that, so
-that rounding chooses no law. The interval of k is a percentile bootstrap: angles are drawn again with replacement, the largest rate taken
-over those, and the chosen law fitted anew. The maximum of so many angles can only fall when they are drawn again, so the interval
-speaks of where the bend is, not of how high the curve.
+so a bend must earn its constants. Residuals below a five hundredth of the largest rate, what many cases are exact to, count as
+that, so that errors of integration choose no law. The interval of k is a percentile bootstrap: angles are drawn again with
+replacement, the largest rate taken over those, and the chosen law fitted anew. The maximum of so many angles can only fall when
+they are drawn again, so the interval speaks of where the bend is, not of how high the curve.
 """
 
 from typing import NamedTuple
@@ -24,16 +24,16 @@ import numpy as np
 RESAMPLES = 400
 LAWS = ("proportional", "straight", "levelling", "plateau", "knee")
 MISFIT = 0.1  # rms residual over the largest value, above which no law tells the curve
-LEVEL = 0.1  # change beyond a knee, over the value there, below which it is a plateau
-_RESOLUTION = 2e-3  # of the largest value: what a case at the tolerance of ``studies.population`` is exact to
+LEVEL = 0.1  # what may be left to grow: beyond a knee, over the value there; of the height a levelling curve tends to
+_RESOLUTION = 2e-3  # of the largest value: what 95 % of cases are exact to at the coarsest tolerance, lowfi.Numerics
 _LEAST = 6  # sizes; with fewer, AICc of the knee law has no denominator
 _SCANNED = 121
 
 
 class Growth(NamedTuple):
-    """What became of growth. ``law`` chosen; ``verdict`` in words; ``knee`` with the ends of its 95 % interval, None where the law has none;
-    slopes before and after it (or the only one); ``misfit``, rms residual over the largest value; ``plateau_share`` of resamples whose
-    verdict is a plateau; AICc by law."""
+    """What became of growth. ``law`` chosen; ``verdict`` in words; ``knee`` with the ends of its 95 % interval, None where the law
+    has none; slopes before and after it (or the only one); ``misfit``, rms residual over the largest value; ``plateau_share`` of
+    resamples whose verdict is a plateau; AICc by law."""
 
     law: str
     verdict: str
@@ -48,7 +48,8 @@ class Growth(NamedTuple):
 
 
 class _Fit(NamedTuple):
-    """The best of a law for curves (m,n): scanned constant (m,) or NaN, residual sums of squares (m,), linear constants (m,p), AICc (m,)."""
+    """The best of a law for curves (m,n): scanned constant (m,) or NaN, residual sums of squares (m,), linear constants (m,p), AICc
+    (m,)."""
 
     scanned: np.ndarray
     residual: np.ndarray
@@ -57,7 +58,8 @@ class _Fit(NamedTuple):
 
 
 def growth(sizes: np.ndarray, values: np.ndarray, seed: int = 1, resamples: int = RESAMPLES) -> Growth | None:
-    """How the largest of ``values`` (s,a), one column an angle, grows over ``sizes`` (s,) above zero. NaN where a case did not settle.
+    """How the largest of ``values`` (s,a), one column an angle, grows over ``sizes`` (s,) above zero. NaN where a case did not
+    settle.
 
     None where fewer than six sizes have a value, or all are zero.
     """
@@ -89,19 +91,16 @@ def largest(values: np.ndarray) -> np.ndarray:
 
 
 def _fitted(law: str, sizes: np.ndarray, curves: np.ndarray) -> _Fit:
-    """Least squares over the scanned constant, for all curves at once: residuals come from one projection for each of its values."""
-    scanned, constants = _scan(law, sizes)
-    best = None
-    for value, design in zip(scanned, constants):
-        solution = curves @ np.linalg.pinv(design).T
-        residual = ((curves - solution @ design.T) ** 2).sum(axis=1)
-        found = _Fit(np.full(len(curves), value), residual, solution, residual)
-        best = found if best is None else _Fit(*(np.where((residual < best.residual)[(slice(None),) + (None,) * (new.ndim - 1)], new, old)
-                                                 for new, old in zip(found, best)))
-    count, free = len(sizes), best.constants.shape[1] + (0 if np.isnan(scanned[0]) else 1) + 1
-    floor = count * (_RESOLUTION * curves.max(axis=1)) ** 2
-    criterion = count * np.log(np.maximum(best.residual, floor) / count) + 2.0 * free + 2.0 * free * (free + 1.0) / (count - free - 1.0)
-    return best._replace(criterion=criterion)
+    """Least squares, all curves at once, and of the values of a scanned constant the one that leaves least."""
+    scanned, designs = _scan(law, sizes)
+    constants = np.stack([curves @ np.linalg.pinv(design).T for design in designs])
+    residual = np.stack([((curves - found @ design.T) ** 2).sum(axis=1) for found, design in zip(constants, designs)])
+    best, all_curves = residual.argmin(axis=0), np.arange(len(curves))
+    count, free = len(sizes), constants.shape[2] + np.isfinite(scanned[0]) + 1
+    least = residual[best, all_curves]
+    counted = np.maximum(least / count, (_RESOLUTION * curves.max(axis=1)) ** 2)
+    criterion = count * np.log(counted) + 2.0 * free + 2.0 * free * (free + 1.0) / (count - free - 1.0)
+    return _Fit(scanned[best], least, constants[best, all_curves], criterion)
 
 
 def _scan(law: str, sizes: np.ndarray) -> tuple[np.ndarray, list[np.ndarray]]:
@@ -135,8 +134,11 @@ def _verdict(law: str, sizes: np.ndarray, fit: _Fit, curve: np.ndarray, index: i
     """One of the laws in words, or that none tells the curve."""
     if _misfit(fit, curve, index) > MISFIT:
         return "none of the laws"
+    if law == "levelling":
+        left = np.exp(-sizes[-1] / fit.scanned[index])  # of the way to the height it tends to
+        return "levels off without a knee" if left <= LEVEL else "no plateau, grows ever slower"
     if law != "knee":
-        return {"proportional": "no plateau, in proportion", "straight": "no plateau, straight", "levelling": "levels off without a knee"}.get(law, law)
+        return {"proportional": "no plateau, in proportion", "straight": "no plateau, straight"}.get(law, law)
     knee, (start, slope, more) = fit.scanned[index], fit.constants[index]
     there = start + slope * knee
     rise = (slope + more) * (sizes[-1] - knee)

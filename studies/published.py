@@ -16,8 +16,8 @@ _TABLE_2 = Path(__file__).parent / "data" / "table2_sensitivity.csv"
 
 
 class Changed(NamedTuple):
-    """A row of Table 2: the condition's number, ``symbol`` of the constant, whether it was raised (None: nothing was changed), and the
-    settled rates about x, y, z in deg/s."""
+    """A row of Table 2: the condition's number, ``symbol`` of the constant, whether it was raised (None: nothing was changed), and
+    the settled rates about x, y, z in deg/s."""
 
     condition: int
     symbol: str
@@ -34,5 +34,6 @@ def table_2() -> list[Changed]:
         place = row["condition"], row["parameter"]
         raised = None if row["parameter"] == "baseline" else place in seen  # the lower value comes first
         seen.add(place)
-        found.append(Changed(int(row["condition"]), row["parameter"], raised, tuple(float(row[f"omega_{axis}_deg_s"]) for axis in "xyz")))
+        rates = tuple(float(row[f"omega_{axis}_deg_s"]) for axis in "xyz")
+        found.append(Changed(int(row["condition"]), row["parameter"], raised, rates))
     return found

@@ -1,7 +1,8 @@
-"""Which pad faces a payload leaned on: the first that touched and the one that bore the largest impulse, of single runs with their curves.
+"""Which pad faces a payload leaned on: the first that touched and the one that bore the largest impulse, of single runs with their
+curves.
 
-An ensemble keeps no pad forces, so this takes runs of ``lowfi.run`` on a coarser grid of directions. A face is a wall the payload touches:
-its normal is that of the pad, so a face "-y" presses the wall at -y.
+An ensemble keeps no pad forces, so this takes runs of ``lowfi.run`` on a coarser grid of directions. A face is a wall the payload
+touches: its normal is that of the pad, so a face "-y" presses the wall at -y.
 """
 
 from concurrent.futures import ThreadPoolExecutor
@@ -18,8 +19,8 @@ NONE = -1  # no face touched
 
 
 class Sides(NamedTuple):
-    """Number of the face that touched first and of the one with the largest impulse, (n,) each, ``NONE`` without contact; settled rates
-    (n,3) in rad/s, NaN where a run did not settle."""
+    """Number of the face that touched first and of the one with the largest impulse, (n,) each, ``NONE`` without contact; settled
+    rates (n,3) in rad/s, NaN where a run did not settle."""
 
     first: np.ndarray
     most: np.ndarray
@@ -61,8 +62,8 @@ def of(time: np.ndarray, force: np.ndarray) -> tuple[int, int]:
 
 
 def jumps(walls: np.ndarray, rate: np.ndarray) -> tuple[float | None, float | None]:
-    """Median change of the rates (rad/s) between neighbours in size or direction: where ``walls`` (s,a), labels with the directions along
-    the second axis, differ between them, and where they do not. ``rate`` (s,a,3); None where there is no such pair."""
+    """Median change of the rates (rad/s) between neighbours in size or direction: where ``walls`` (s,a), labels with the directions
+    along the second axis, differ between them, and where they do not. ``rate`` (s,a,3); None where there is no such pair."""
     changed, moved = [], []
     for one, other in ((np.s_[:-1], np.s_[1:]), (np.s_[:, :], (slice(None), np.arange(walls.shape[1]) - 1))):
         changed.append((walls[one] != walls[other]).ravel())

@@ -1,12 +1,12 @@
 """What is not certain about a launcher, as a file says it (``data/tolerances.toml``), and from points of the unit cube to cases.
 
-Each key has a distribution of ``scenes.distributions``. Under ``[vary]`` it is that of the number itself, under ``[factor]`` that of a factor
-of the number the surrogate has. An offset that a scene holds as size r and angle a may be given by its components::
+Each key has a distribution of ``scenes.distributions``. Under ``[vary]`` it is that of the number itself, under ``[factor]`` that
+of a factor of the number the surrogate has. An offset that a scene holds as size r and angle a may be given by its components::
 
     misalignment  y = r cos a, z = r sin a        eccentricity  y = r sin a, z = r cos a        (angles as in ``scenes.effects``)
 
-so that independent normal components stand for a direction about which nothing is known. Where the exponent of a contact law varies,
-the force at the reference penetration p_r of the calibration stays: k' = k p_r^(e - e').
+so that independent normal components stand for a direction about which nothing is known. Where the exponent of a contact law
+varies, the force at the reference penetration p_r of the calibration stays: k' = k p_r^(e - e').
 """
 
 from functools import reduce
@@ -30,7 +30,8 @@ _SPRINGS = ("contact.stiffness", "contact.exponent", "contact.damping", "contact
 
 
 class Input(NamedTuple):
-    """A number that is not certain: its dotted key, whether its distribution is that of a factor, the number in the scene or None, unit (SI)."""
+    """A number that is not certain: its dotted key, whether its distribution is that of a factor, the number in the scene or None,
+    unit (SI)."""
 
     key: str
     is_factor: bool
@@ -68,9 +69,11 @@ def digest(path: str | Path) -> str:
 
 
 def load(path: str | Path, scene: Scene, walls: bool = False) -> Tolerances:
-    """What a file says of ``scene``, that of a surrogate with its constants or on ``walls``. Raises SceneError listing every fault."""
+    """What a file says of ``scene``, that of a surrogate with its constants or on ``walls``. Raises SceneError listing every
+    fault."""
     raw, source, faults, found, left_out = reading.toml(Path(path), str(path)), str(path), [], [], {}
-    faults += [Fault(source, key, "a key", f"one of description, {', '.join(_KINDS)}") for key in raw.keys() - {"description", *_KINDS}]
+    known = ("description", *_KINDS)
+    faults += [Fault(source, key, "no such key", f"one of {', '.join(known)}") for key in raw if key not in known]
     for kind, key, table in _tables(raw, source, faults):
         item = _input(source, kind, key, table, scene, faults)
         if item is None:
@@ -143,7 +146,9 @@ def _idle(item: Input, scene: Scene, walls: bool) -> str | None:
 def _number(scene: Scene, key: str) -> float | None:
     """The number under a dotted key, or None where the scene holds none."""
     def inside(table: Any, part: str) -> Any:
-        return table[int(part)] if part.isdigit() and isinstance(table, tuple) and int(part) < len(table) else getattr(table, part, None)
+        if isinstance(table, tuple):
+            return table[int(part)] if part.isdigit() and int(part) < len(table) else None
+        return getattr(table, part, None)
 
     return reduce(inside, key.split("."), scene)
 

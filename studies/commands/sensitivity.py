@@ -17,11 +17,12 @@ def add(app: typer.Typer) -> None:
 def sensitivity(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = None,
                 vary: Annotated[Optional[Path], typer.Option("--vary", metavar="FILE",
                                 help="What is not certain, as a .toml file; default: studies/data/tolerances.toml.")] = None,
-                points: Annotated[int, typer.Option("--points", metavar="N", help="Base points of the Sobol' indices, a power of two; "
-                                  "N times the inputs and two cases run.")] = 512,
+                points: Annotated[int, typer.Option("--points", metavar="N", help="Base points of the Sobol' indices, a power "
+                                  "of two; each takes one case an input, and two.")] = 512,
                 seed: Annotated[int, typer.Option("--seed", metavar="N", help="Seed of the points and of the bootstrap.")] = 1,
                 walls: OnWalls = False, element_size: ElementSize = None, workers: Workers = None, json_: Json = False) -> None:
-    """Which numbers the answer depends on: contact constants as in the paper's Table 2, and Sobol' indices; writes sensitivity.json.
+    """Which numbers the answer depends on: contact constants as in the paper's Table 2, and Sobol' indices; writes
+    sensitivity.json.
 
     A file of tolerances holds a distribution for the number itself, or for a factor of the number that the surrogate has:
 

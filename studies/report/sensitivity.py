@@ -12,10 +12,21 @@ _MOST = 3  # inputs whose convergence is drawn
 _DRAWN = 8  # inputs with bars
 _LINES = ((NAVY, "-", "o"), (VERMILION, "--", "s"), (AMBER, "-.", "^"))
 _NAMES = {"contact.stiffness": "contact stiffness", "contact.exponent": "contact exponent", "contact.damping": "contact damping",
-          "contact.damping_depth": "depth of full damping", "contact.penalty": "penalty of the walls", "contact.clearance": "clearance",
-          "friction.dynamic": "friction", "thrust_offset.misalignment": "misalignment", "thrust_offset.eccentricity": "thrust eccentricity",
-          "mass_offset.eccentricity": "mass eccentricity", "payload.inertia": "inertia", "thrust.peak": "thrust peak",
-          "initial.position": "initial position"}
+          "contact.damping_depth": "depth of full damping", "contact.penalty": "penalty of the walls",
+          "contact.clearance": "clearance", "friction.dynamic": "friction", "thrust.peak": "thrust peak",
+          "thrust_offset.misalignment": "misalignment", "thrust_offset.eccentricity": "thrust eccentricity",
+          "mass_offset.eccentricity": "mass eccentricity", "payload.inertia": "inertia", "initial.position": "initial position"}
+_BARS = ("First-order index (pale, hatched): the share of the variance that would go if this input were known. Total index (dark): "
+         "what would stay if all others were. The difference is what it does together with others. Whiskers: 95 %, bootstrap.")
+_MAP = ("Total indices of every quantity: a row of large numbers is an input worth a closer tolerance. Half widths of the 95 % "
+        "intervals are in sensitivity.json.")
+_CONVERGENCE = ("Total indices of the three largest inputs from the first parts of the same points: what more points would still "
+                "change.")
+_TABLE = ("A share says nothing of a rate that is nearly zero, here below a twentieth of the total, and is left out. The paper's "
+          "shares are computed from its Table 2; its text gives 0.26 % as the largest about z, its table 0.71 %. Its scene, and so "
+          "its rates, are not ours.")
+_HEADS = ("condition", "changed", "rates x, y, z (deg/s)", "moved by (deg/s)", "(%)", "paper: rates (deg/s)", "moved by (deg/s)",
+          "(%)")
 
 
 def name_of(key: str) -> str:
@@ -31,12 +42,7 @@ def pictures(found: dict) -> list[tuple[Chart | Picture, str]]:
     rates = [item for item in told if item["name"] in _RATES]
     if not rates:
         return []
-    return [(_bars(sobol, rates), "First-order index (pale, hatched): the share of the variance that would go if this input were known. Total index "
-             "(dark): what would stay if all others were. The difference is what it does together with others. Whiskers: 95 %, bootstrap."),
-            (_map(sobol, told), "Total indices of every quantity; a row of large numbers is an input worth a closer tolerance. Half widths of "
-             "the 95 % intervals are in sensitivity.json."),
-            (_convergence(sobol, rates), "Total indices of the three largest inputs from the first parts of the same points: what more "
-             "points would still change.")]
+    return [(_bars(sobol, rates), _BARS), (_map(sobol, told), _MAP), (_convergence(sobol, rates), _CONVERGENCE)]
 
 
 def draw(found: dict, figure: Callable[[Chart, str], Html]) -> Html:
@@ -53,15 +59,13 @@ def _beside_paper(item: dict, paper: dict) -> Html:
     theirs = {(row["condition"], row["symbol"], row["raised"]): row for row in paper["rows"]}
     rows = [(*_ours(row), *_theirs(theirs.get((row["condition"], row["symbol"], row["raised"])))) for row in item["rows"]]
     constants = ", ".join(f"{key} {value:.4g}" for key, value in item["constants_si"].items())
-    heads = ("condition", "changed", "rates x, y, z (deg/s)", "moved by (deg/s)", "(%)", "paper: rates (deg/s)", "moved by (deg/s)", "(%)")
     widest = [("largest", "", "", *_moved(item["largest"]), "", *_moved(paper["largest"])),
               ("largest", "clearance", "", *_moved(item["largest_clearance"]), "", "", "")]
     idle = [row["symbol"] for row in item["rows"] if row["raised"] and row["rate_deg_s"] and not any(row["absolute_deg_s"])]
     words = f" No change at all from {', '.join(dict.fromkeys(idle))}: at these constants it does nothing." if idle else ""
     return Html("".join([
-        paragraph(f"{item['title'].capitalize()}: {item['law']}, SI: {constants}.{words}"), table(heads, rows + widest, dense=True),
-        caption("A share says nothing of a rate that is nearly zero, here below a twentieth of the total, and is left out. The paper's shares are computed "
-                "from its Table 2; its text gives 0.26 % as the largest about z, its table 0.71 %. Its scene, and so its rates, are not ours.")]))
+        paragraph(f"{item['title'].capitalize()}: {item['law']}, SI: {constants}.{words}"),
+        table(_HEADS, rows + widest, dense=True), caption(_TABLE)]))
 
 
 def _ours(row: dict) -> tuple:
@@ -71,12 +75,14 @@ def _ours(row: dict) -> tuple:
         changed = "clearance +1 µm"
     else:
         changed = f"{row['symbol']} {'+' if row['raised'] else '-'}{100.0 * row['share']:.3g} %"
-    return row["condition"], changed, _triple(row["rate_deg_s"], "{:.3f}"), *(_moved(row) if row["raised"] is not None else ("", ""))
+    return row["condition"], changed, *_rates(row)
 
 
 def _theirs(row: dict | None) -> tuple:
-    if row is None:
-        return "", "", ""
+    return ("", "", "") if row is None else _rates(row)
+
+
+def _rates(row: dict) -> tuple:
     return _triple(row["rate_deg_s"], "{:.3f}"), *(_moved(row) if row["raised"] is not None else ("", ""))
 
 
@@ -97,8 +103,8 @@ def _inputs(sobol: dict) -> Html:
     spread = [(item["label"], f"{item['mean']:.3g}", f"{item['sd']:.3g}", item["unit"],
                percent(item["indices"] and sum(item["indices"]["first"]))) for item in sobol["quantities"]]
     return Html("".join([
-        paragraph("A base point with a case that does not settle is left out with all of its cases, so the indices hold for launches that "
-                  f"leave the rail: {sobol['used']:,} of {sobol['base_points']:,} were used."),
+        paragraph("A base point with a case that does not settle is left out with all of its cases, so the indices hold for "
+                  f"launches that leave the rail: {sobol['used']:,} of {sobol['base_points']:,} were used."),
         table(("quantity", "mean", "sd", "unit", "sum of first-order indices (%)"), spread),
         fold("what varied", table(("input", "distribution", "nominal", "95 % within", "unit", "provenance"), rows, dense=True),
              f"<p>Left out:</p><ul>{left}</ul>" if left else "")]))
@@ -112,8 +118,8 @@ def _bars(sobol: dict, rates: list[dict]) -> Picture:
         values = {name: np.array(values) for name, values in item["indices"].items()}
         order = np.argsort(values["total"])[::-1][:_DRAWN][::-1]
         place = np.arange(len(order))
-        axes.barh(place + 0.2, values["total"][order], 0.38, xerr=values["total_half_width"][order], color=NAVY, label="total", ecolor=GREY,
-                  capsize=2)
+        axes.barh(place + 0.2, values["total"][order], 0.38, xerr=values["total_half_width"][order], color=NAVY, label="total",
+                  ecolor=GREY, capsize=2)
         axes.barh(place - 0.2, values["first"][order], 0.38, xerr=values["first_half_width"][order], color="#d5dae0", hatch="//",
                   edgecolor=GREY, linewidth=0.5, label="first order", ecolor=GREY, capsize=2)
         axes.set_yticks(place, [name_of(sobol["inputs"][n]["key"]) for n in order], fontsize=8.5)

@@ -1,4 +1,5 @@
-"""Figures of the sweeps: rates over size and direction as in the paper's Figures 11, 13 and 15, where growth ends, and polar maps."""
+"""Figures of the sweeps: rates over size and direction as in the paper's Figures 11, 13 and 15, where growth ends, and polar
+maps."""
 
 import numpy as np
 
@@ -8,22 +9,27 @@ _LOOKS = {"rate_x_deg_s": ("x", "o", "-."), "rate_y_deg_s": ("y", "s", "-"), "ra
 _APART = 0.018  # of the axis, so that points of three axes at one size do not hide each other
 _WALLS = {"-y": NAVY, "+y": TEAL, "-z": AMBER, "+z": "#dfe3e8"}  # darker to lighter
 _FIGURES = {"misalignment": 11, "thrust_eccentricity": 13, "mass_eccentricity": 15}
-_ANGLE = {"misalignment": "phi, from +y towards +z", "thrust_eccentricity": "alpha, from +z towards +y", "mass_eccentricity": "beta, from +z towards +y"}
+_ANGLE = {"misalignment": "phi, from +y towards +z", "thrust_eccentricity": "alpha, from +z towards +y",
+          "mass_eccentricity": "beta, from +z towards +y"}
+_GROWTH = ("Largest rate over all directions against the size of the error; top as given, below with the thrust stretched. Grey "
+           "lines: a payload that no rail holds, w = I^-1 J (r x f). Shaded: the 95 % interval of a knee beyond which the rate "
+           "about y or z stays within a tenth. Dotted: where the paper sees its plateau.")
+_SCATTER = ("Settled rates of all cases, as in the paper's Figure {figure}: over the size (left) and over the direction {angle} "
+            "(right). Points of the three axes stand a little apart.")
+_MAP = ("The same over size (radius, {unit}) and direction ({angle}); the line is a rate of zero. Below: the wall touched first "
+        "and the wall that bore the largest impulse, of single runs in a coarser grid of directions. {jumps}")
 
 
 def pictures(found: dict) -> list[tuple[Chart | Picture, str]]:
     """Every figure of the study and its caption."""
     given = found["launches"][0]
-    drawn = [(_growth(found), "Largest rate over all directions against the size of the error; top as given, below with the thrust stretched. "
-              "Grey lines: a payload that no rail holds, w = I^-1 J (r x f). Shaded: the 95 % interval of a knee beyond which the rate about y or z "
-              "stays within a tenth. Dotted: where the paper sees its plateau.")]
+    drawn = [(_growth(found), _GROWTH)]
     for factor in given["factors"]:
-        drawn.append((_scatter(factor), f"Settled rates of all cases, as in the paper's Figure {_FIGURES[factor['name']]}: over the size (left) and over "
-                      f"the direction {_ANGLE[factor['name']]} (right). Points of the three axes stand a little apart."))
+        angle = _ANGLE[factor["name"]]
+        drawn.append((_scatter(factor), _SCATTER.format(figure=_FIGURES[factor["name"]], angle=angle)))
         if factor["sides"] is not None:
-            drawn.append((_map(factor, given["faces"]), f"The same over size (radius, {factor['unit']}) and direction ({_ANGLE[factor['name']]}); the line "
-                          "is a rate of zero. Below: the wall touched first and the wall that bore the largest impulse, of single runs in a "
-                          f"coarser grid of directions. {_jumping(factor['sides']['jumps_deg_s'])}"))
+            words = _MAP.format(unit=factor["unit"], angle=angle, jumps=_jumping(factor["sides"]["jumps_deg_s"]))
+            drawn.append((_map(factor, given["faces"]), words))
     return drawn
 
 
@@ -31,8 +37,8 @@ def _jumping(jumps: list[float | None]) -> str:
     """How far the rates move where contact changes sides, and elsewhere."""
     if None in jumps:
         return "Contact never changes sides." if jumps[0] is None else "Contact changes sides everywhere."
-    return (f"Between neighbours of that grid the rates move by {jumps[0]:.2g} deg/s (median) where another wall, or the other end of the payload, "
-            f"takes the largest impulse, and by {jumps[1]:.2g} deg/s elsewhere.")
+    return (f"Between neighbours of that grid the rates move by {jumps[0]:.2g} deg/s (median) where another wall, or the other end "
+            f"of the payload, takes the largest impulse, and by {jumps[1]:.2g} deg/s elsewhere.")
 
 
 def _scatter(factor: dict) -> Chart:
@@ -44,10 +50,11 @@ def _scatter(factor: dict) -> Chart:
         told = np.isfinite(rates)
         for lines, x, step in ((over_size, size, sizes[-1]), (over_angle, angle, 180.0 / len(angles))):
             shifted = x.ravel()[told] + (place - 1) * _APART * step
-            lines.append(Line(shifted, rates[told], f"rate about {axis}", AXIS_COLOURS[axis], dash="", marker=marker, size=3.5, opacity=0.65))
+            lines.append(Line(shifted, rates[told], f"rate about {axis}", AXIS_COLOURS[axis], dash="", marker=marker, size=3.5,
+                              opacity=0.65))
+    direction = f"direction {_ANGLE[factor['name']].split(',')[0]} (deg)"
     return Chart(f"sweep-{factor['name']}", [Panel("", f"{factor['label']} ({factor['unit']})", "settled rate (deg/s)", over_size),
-                                              Panel("", f"direction {_ANGLE[factor['name']].split(',')[0]} (deg)", "settled rate (deg/s)", over_angle)],
-                 columns=2, height=330)
+                                              Panel("", direction, "settled rate (deg/s)", over_angle)], columns=2, height=330)
 
 
 def _growth(found: dict) -> Chart:
@@ -92,10 +99,12 @@ def _map(factor: dict, faces: list[str]) -> Picture:
         place.grid(linewidth=0.3)
     axes[1, 2].set_axis_off()
     handles = [Patch(facecolor=colour, edgecolor=GREY, label=f"wall at {wall}") for wall, colour in _WALLS.items()]
-    handles += [Line2D([], [], linestyle="", marker="o", color="black", markerfacecolor="white", markersize=4, label="front pads (others: rear)"),
+    handles += [Line2D([], [], linestyle="", marker="o", color="black", markerfacecolor="white", markersize=4,
+                       label="front pads (others: rear)"),
                 Patch(facecolor="white", edgecolor=GREY, hatch="///", label="no contact")]
     axes[1, 2].legend(handles=handles, loc="center", frameon=False, fontsize=9)
-    figure.suptitle(f"{factor['label']}: radius 0 to {factor['sizes'][-1]:g} {factor['unit']}, direction {_ANGLE[factor['name']]}", fontsize=10.5)
+    figure.suptitle(f"{factor['label']}: radius 0 to {factor['sizes'][-1]:g} {factor['unit']}, direction {_ANGLE[factor['name']]}",
+                    fontsize=10.5)
     return Picture(f"map-{factor['name']}", figure)
 
 
@@ -103,7 +112,8 @@ def _edges(factor: dict, angles_deg: np.ndarray) -> tuple[np.ndarray, np.ndarray
     """Borders of the cells: angles (rad) and sizes."""
     step = 360.0 / len(angles_deg)
     sizes = np.array(factor["sizes"])
-    return np.radians(np.append(angles_deg, 360.0) - 0.5 * step), np.append(sizes - 0.5 * (sizes[1] - sizes[0]), sizes[-1] + 0.5 * (sizes[1] - sizes[0]))
+    half = 0.5 * (sizes[1] - sizes[0])
+    return np.radians(np.append(angles_deg, 360.0) - 0.5 * step), np.append(sizes - half, sizes[-1] + half)
 
 
 def _rate_map(figure, axes, factor: dict, name: str) -> None:
@@ -121,7 +131,8 @@ def _side_map(axes, factor: dict, faces: np.ndarray, angles_deg: np.ndarray, nam
 
     walls = list(_WALLS)
     code = np.array([walls.index(name.split()[1]) for name in names] + [len(walls)])[faces]  # the last for no contact, which is -1
-    axes.pcolormesh(*_edges(factor, angles_deg), code, cmap=ListedColormap([*_WALLS.values(), "white"]), vmin=-0.5, vmax=len(walls) + 0.5)
+    colours = ListedColormap([*_WALLS.values(), "white"])
+    axes.pcolormesh(*_edges(factor, angles_deg), code, cmap=colours, vmin=-0.5, vmax=len(walls) + 0.5)
     place, size = np.meshgrid(np.radians(angles_deg), factor["sizes"])
     front = np.array([name.startswith("front") for name in names] + [False])[faces]
     axes.plot(place[front], size[front], "o", color="black", markerfacecolor="white", markersize=3, markeredgewidth=0.6)

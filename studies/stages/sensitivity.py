@@ -1,5 +1,5 @@
-"""Stage ``sensitivity``: how much the answer depends on numbers nobody knows exactly. Contact constants moved one at a time, as in Table 2
-of the paper, and Sobol' indices over everything a file calls uncertain, which the paper could not afford."""
+"""Stage ``sensitivity``: how much the answer depends on numbers nobody knows exactly. Contact constants moved one at a time, as in
+Table 2 of the paper, and Sobol' indices over everything a file calls uncertain, which the paper could not afford."""
 
 from pathlib import Path
 from typing import NamedTuple
@@ -23,8 +23,8 @@ _FINE = Numerics().relative_tolerance  # deviations of a thousandth are asked of
 
 
 class Asked(NamedTuple):
-    """What ``tipoff sensitivity`` is given beside the scene: a file of tolerances or None for ``tolerances.DEFAULT``, base points (a power of
-    two), a seed, walls or springs."""
+    """What ``tipoff sensitivity`` is given beside the scene: a file of tolerances or None for ``tolerances.DEFAULT``, base points
+    (a power of two), a seed, walls or springs."""
 
     vary: str | None = None
     points: int = 512
@@ -96,7 +96,8 @@ def _table(study: Study, model: Surrogate) -> dict:
     table = [row for name, block in zip(names, rates) for row in contact_table.rows(name or study.scene.name, changed, block)]
     contact = model.scene.contact
     return {"law": contact.law, "constants_si": contact.model_dump(mode="json", exclude={"law"}), "rows": table,
-            "largest": contact_table.largest(table), "largest_clearance": contact_table.largest(table, ["clearance"]), "store": found.store}
+            "largest": contact_table.largest(table), "largest_clearance": contact_table.largest(table, ["clearance"]),
+            "store": found.store}
 
 
 def _paper() -> dict:
@@ -110,17 +111,18 @@ def _sobol(study: Study, model: Surrogate, asked: Asked) -> dict:
     found = population.run(study, NAME, model, Listed(spread.rows(indices.points(asked.points, inputs, asked.seed))))
     whole = indices.whole_blocks(found.settled, inputs)
     if whole.sum() < asked.points // 2:
-        raise StudyError(f"only {whole.sum()} of {asked.points} base points settled in each of their {inputs + 2} cases: too few to say "
-                         "anything of all; see the statuses in the store")
+        raise StudyError(f"only {whole.sum()} of {asked.points} base points settled in each of their {inputs + 2} cases: too few "
+                         "to say anything of all; see the statuses in the store")
     return {"inputs": [_described(item) for item in spread.inputs], "left_out": spread.left_out, "base_points": asked.points,
-            "used": int(whole.sum()), "cases": found.counts, "not_settled": int((~found.settled).sum()), "outside": int(found.outside.sum()),
-            "store": found.store, "quantities": [_quantity(item, found, inputs, asked) for item in answers.ALL]}
+            "used": int(whole.sum()), "cases": found.counts, "not_settled": int((~found.settled).sum()),
+            "outside": int(found.outside.sum()), "store": found.store,
+            "quantities": [_quantity(item, found, inputs, asked) for item in answers.ALL]}
 
 
 def _described(item: tolerances.Input) -> dict:
     low, high = np.sort(item.values(np.array([0.025, 0.975])))
-    return {"key": item.key, "unit": item.unit, "nominal": item.nominal, "low": float(low), "high": float(high), "factor": item.is_factor,
-            "distribution": item.distribution.distribution, "provenance": item.distribution.provenance}
+    return {"key": item.key, "unit": item.unit, "nominal": item.nominal, "low": float(low), "high": float(high),
+            "factor": item.is_factor, "distribution": item.distribution.distribution, "provenance": item.distribution.provenance}
 
 
 def _quantity(item: answers.Quantity, found: Population, inputs: int, asked: Asked) -> dict:
@@ -130,7 +132,8 @@ def _quantity(item: answers.Quantity, found: Population, inputs: int, asked: Ask
     series = [indices.indices(values[:size * (inputs + 2)], inputs, asked.seed) for size in sizes]
     settled = values[np.isfinite(values)]
     return {"name": item.name, "label": item.label, "unit": item.unit, "mean": float(settled.mean()), "sd": float(settled.std()),
-            "indices": _plain(series[-1]), "convergence": [{"base_points": size} | (_plain(one) or {}) for size, one in zip(sizes, series)]}
+            "indices": _plain(series[-1]),
+            "convergence": [{"base_points": size} | (_plain(one) or {}) for size, one in zip(sizes, series)]}
 
 
 def _plain(found: indices.Indices | None) -> dict | None:
@@ -140,8 +143,8 @@ def _plain(found: indices.Indices | None) -> dict | None:
 def summary(found: dict) -> list[str]:
     """What the study says, one line each."""
     paper = found["paper"]["largest"]
-    lines = [f"{table['title']}: moved one at a time, {_most(table['largest'])}; 1 um of clearance: {_most(table['largest_clearance'])}"
-             for table in found["tables"]]
+    lines = [f"{table['title']}: moved one at a time, {_most(table['largest'])}; 1 um of clearance: "
+             f"{_most(table['largest_clearance'])}" for table in found["tables"]]
     lines += [f"the paper's Table 2: {_most(paper)}"] if lines else []
     sobol = found["sobol"]
     lines.append(f"{sobol['cases']['asked']:,} cases of {len(sobol['inputs'])} inputs, {sobol['not_settled']:,} did not settle, "

@@ -8,8 +8,8 @@ from studies import contact_table, published
 
 
 def test_largest_deviations_of_the_paper():
-    """By hand from Table 2: x, condition 2, d 0.25; y, condition 4, d 0.25; z, condition 4, c 50. The text of the paper gives 0.26 % for z,
-    which is that of d 0.35."""
+    """By hand from Table 2: x, condition 2, d 0.25; y, condition 4, d 0.25; z, condition 4, c 50. The text of the paper gives 0.26
+    % for z, which is that of d 0.35."""
     table = contact_table.of_paper()
     assert len(table) == 21 and [row["condition"] for row in table[::7]] == list(published.CONDITIONS)
     found = contact_table.largest(table)

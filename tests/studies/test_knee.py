@@ -9,8 +9,9 @@ SIZES = np.arange(1, 11) / 10.0
 KNEE = 0.43
 LAWS = {"in proportion": lambda s: 12.0 * s, "straight": lambda s: 3.0 + 12.0 * s, "plateau": lambda s: 12.0 * np.minimum(s, KNEE),
         "slower": lambda s: 12.0 * np.minimum(s, KNEE) + 5.0 * np.maximum(s - KNEE, 0.0),
-        "faster": lambda s: 5.0 * s + 20.0 * np.maximum(s - KNEE, 0.0), "falls": lambda s: 12.0 * np.minimum(s, KNEE) - 4.0 * np.maximum(s - KNEE, 0.0),
-        "levels off": lambda s: 6.0 * -np.expm1(-s / 0.3)}
+        "faster": lambda s: 5.0 * s + 20.0 * np.maximum(s - KNEE, 0.0),
+        "falls": lambda s: 12.0 * np.minimum(s, KNEE) - 4.0 * np.maximum(s - KNEE, 0.0),
+        "levels off": lambda s: 6.0 * -np.expm1(-s / 0.3), "ever slower": lambda s: 6.0 * -np.expm1(-s / 0.8)}
 
 
 def rates(law, noise: float = 0.03, seed: int = 1) -> np.ndarray:
@@ -31,7 +32,8 @@ def test_a_plateau_is_found_where_it_begins(seed):
 @pytest.mark.parametrize("name", [name for name in LAWS if name != "plateau"])
 @pytest.mark.parametrize("noise", [0.0, 0.01])
 def test_no_other_law_passes_for_a_plateau(name, noise):
-    """With a scatter of 3 % "slower" is told by fewer constants as levelling off, so less is put on here than on the plateau above."""
+    """With a scatter of 3 % "slower" is told by fewer constants as levelling off, so less is put on here than on the plateau
+    above."""
     found = growth(SIZES, rates(LAWS[name], noise))
     assert name in found.verdict and found.plateau_share < 0.5
     if name in ("slower", "faster", "falls"):

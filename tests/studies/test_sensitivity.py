@@ -47,7 +47,8 @@ def tiny(tmp_path, monkeypatch):
     """Arguments of the command; the scene's own constants stand for a fit."""
     monkeypatch.setattr(population, "surrogate", lambda study, *_: Surrogate(study.scene, None, None))
     (tmp_path / "mine.toml").write_text(TOLERANCES)
-    return ["sensitivity", "--scene", "tiny", "--points", "64", "--workers", "1", "--vary", str(tmp_path / "mine.toml"), "--out", str(tmp_path / "out")]
+    return ["sensitivity", "--scene", "tiny", "--points", "64", "--workers", "1", "--vary", str(tmp_path / "mine.toml"),
+            "--out", str(tmp_path / "out")]
 
 
 def call(arguments):
@@ -62,11 +63,13 @@ def test_the_command(tiny, tmp_path, monkeypatch):
     assert [row["condition"] for row in table["rows"][::8]] == ["phi15", "phi35", "phi60"] and len(table["rows"]) == 24
     assert max(table["largest"]["absolute_deg_s"]) > 0.0 and max(table["largest_clearance"]["absolute_deg_s"]) > 0.0
     sobol = found["sobol"]
-    assert [item["key"] for item in sobol["inputs"]] == ["thrust_offset.misalignment.y", "thrust_offset.misalignment.z", "friction.dynamic"]
+    assert [item["key"] for item in sobol["inputs"]] == ["thrust_offset.misalignment.y", "thrust_offset.misalignment.z",
+                                                         "friction.dynamic"]
     assert sobol["inputs"][0]["provenance"] == "a guess" and "zero" in sobol["left_out"]["payload.inertia.yz"]
     about_z = next(item for item in sobol["quantities"] if item["name"] == "rate_z_deg_s")
     assert np.argmax(about_z["indices"]["total"]) == 0 and about_z["indices"]["total"][1] < 0.1
-    assert [step["base_points"] for step in about_z["convergence"]] == [8, 16, 32, 64] and about_z["convergence"][-1]["total"] == about_z["indices"]["total"]
+    assert [step["base_points"] for step in about_z["convergence"]] == [8, 16, 32, 64]
+    assert about_z["convergence"][-1]["total"] == about_z["indices"]["total"]
     assert {f"sensitivity-{name}.{kind}" for name in ("indices", "map", "convergence") for kind in ("png", "svg")} == {
         path.name for path in (tmp_path / "out" / "tiny" / "figures").iterdir()}
     drawn = section.draw(found, lambda chart, words: Html(chart.name))
@@ -98,16 +101,19 @@ def test_cases_that_do_not_settle(tiny, tmp_path, monkeypatch):
     assert all(item["indices"]["points"] == 62 for item in found["quantities"] if item["indices"])
     monkeypatch.setattr(population, "run", spoilt(np.arange(0, 320, 7)))
     with pytest.raises(StudyError, match="too few"):
-        sensitivity.run(Study(load("tiny"), tmp_path / "again", defaults("tiny")), sensitivity.Asked(str(tmp_path / "mine.toml"), 64))
+        study = Study(load("tiny"), tmp_path / "again", defaults("tiny"))
+        sensitivity.run(study, sensitivity.Asked(str(tmp_path / "mine.toml"), 64))
 
 
 def test_bad_input_is_listed_whole_and_nothing_written(tiny, tmp_path):
-    (tmp_path / "mine.toml").write_text(TOLERANCES.replace('low = "0.9"', 'low = "0.9 mm"').replace("misalignment.z", "misalignment.q")
-                                        .replace('"normal"', '"gauss"') + "\n[shift]\na = 1\n")
+    wrong = TOLERANCES
+    for right, slip in (('low = "0.9"', 'low = "0.9 mm"'), ("misalignment.z", "misalignment.q"), ('"normal"', '"gauss"')):
+        wrong = wrong.replace(right, slip)
+    (tmp_path / "mine.toml").write_text(wrong + "\n[shift]\na = 1\n")
     result = call([*tiny, "--points", "100", "--seed", "0"])
     assert result.exit_code == 2 and not (tmp_path / "out").exists()
-    for words in ("--points", "--seed", "factor.friction.dynamic.low", "factor.payload.inertia.yz.low", "vary.thrust_offset.misalignment.q",
-                  "'gauss'", "shift"):
+    for words in ("--points", "--seed", "factor.friction.dynamic.low", "factor.payload.inertia.yz.low",
+                  "vary.thrust_offset.misalignment.q", "'gauss'", "shift"):
         assert words in result.stderr
     (tmp_path / "mine.toml").write_text('[factor."payload.inertia.yz"]\ndistribution = "uniform"\nlow = "1"\nhigh = "2"\n')
     assert "at least one number that varies" in call(tiny).stderr

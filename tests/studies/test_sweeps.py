@@ -1,4 +1,5 @@
-"""Sweeps of the three errors: the exact line of a payload that touches nothing, and the whole stage with contact on a small scene."""
+"""Sweeps of the three errors: the exact line of a payload that touches nothing, and the whole stage with contact on a small
+scene."""
 
 import json
 import math
@@ -36,18 +37,21 @@ def by_hand(name: str, size: float, angle: float) -> np.ndarray:
 
 
 def test_without_contact_rates_are_the_moment_impulse_over_the_inertia(tmp_path, monkeypatch):
-    """Every factor in proportion, no plateau, whether the thrust burns out on the rail or not. Allowed are two parts in a thousand, what a case
-    is exact to, and the gyroscopic moment -w x I w, which the line by hand leaves out, all the way at its last value."""
+    """Every factor in proportion, no plateau, whether the thrust burns out on the rail or not. Allowed are two parts in a thousand,
+    what a case is exact to, and the gyroscopic moment -w x I w, which the line by hand leaves out, all the way at its last
+    value."""
     monkeypatch.setattr(sweeps.drawing, "pictures", lambda _: [])
     study = Study(load("reference").replace({"contact": None, "friction": None}), tmp_path / "reference", Settings(workers=1))
     found = sweeps.run(study, sweeps.Asked(angles=8))
     for launch in found["launches"]:
-        assert launch["cases"] == {"asked": 240, "ok": 240, "refused": 0, "failed": 0} and launch["not_settled"] == launch["outside"] == 0
+        assert launch["cases"] == {"asked": 240, "ok": 240, "refused": 0, "failed": 0}
+        assert launch["not_settled"] == launch["outside"] == 0
         for factor in launch["factors"]:
             assert factor["departs_from_free_at"] is None and factor.get("sides") is None
             exact = np.array([[by_hand(factor["name"], size, angle) for angle in factors.angles(8)] for size in factors.SIZES])
             turning = np.radians(exact)
-            gyroscopic = np.degrees(np.linalg.solve(TENSOR, np.cross(turning, turning @ TENSOR)[..., None])[..., 0]) * (launch["exit_s"] + 3e-3)
+            speeding = np.linalg.solve(TENSOR, np.cross(turning, turning @ TENSOR)[..., None])[..., 0]
+            gyroscopic = np.degrees(speeding) * (launch["exit_s"] + 3e-3)
             for axis, name in enumerate(factor["rates"]):
                 within = 2e-3 * np.linalg.norm(exact, axis=2) + abs(gyroscopic[..., axis])
                 assert (abs(np.array(factor["rates"][name]) - exact[..., axis]) <= within).all()
@@ -56,7 +60,8 @@ def test_without_contact_rates_are_the_moment_impulse_over_the_inertia(tmp_path,
                 assert factor["free"][name] == pytest.approx(abs(exact[..., axis]).max(axis=1), rel=1e-5)
                 bent = factor["growth"][name]
                 # Roll has a gyroscopic share that grows with the square of the size: 1.5 % of it, so it may bend a little.
-                assert bent["verdict"].startswith("no plateau" if axis == 0 else "no plateau, in proportion") and bent["plateau_share"] == 0.0
+                assert bent["verdict"].startswith("no plateau" if axis == 0 else "no plateau, in proportion")
+                assert bent["plateau_share"] == 0.0
                 assert bent["slope_before"] == pytest.approx(abs(exact[-1, :, axis]).max(), abs=allowed)
     assert found["launches"][0]["share_after_exit"] == 0.0 and found["launches"][1]["share_after_exit"] > 0.15
 
@@ -87,7 +92,8 @@ def test_sides_of_forces():
 
 
 def test_the_command_with_contact(tmp_path, monkeypatch):
-    """One factor of the scene made for tests, whose own constants stand for a fit: what it writes, and that it is not made twice."""
+    """One factor of the scene made for tests, whose own constants stand for a fit: what it writes, and that it is not made
+    twice."""
     for module in (sweeps, factors):
         monkeypatch.setattr(module, "FACTORS", factors.FACTORS[1:2])
     monkeypatch.setattr(population, "surrogate", lambda study, *_: Surrogate(study.scene, None, None))
@@ -105,8 +111,10 @@ def test_the_command_with_contact(tmp_path, monkeypatch):
     assert given["faces"][seen[4][0]] in ("rear +z", "front -z") and given["faces"][seen[4][2]] in ("rear +y", "front -y")
     assert sections.draw(found, lambda chart, words: Html(chart.name)).count("map-thrust_eccentricity") == 1
     assert {path.name for path in (tmp_path / "tiny" / "figures").iterdir()} == {
-        f"{name}.{kind}" for name in ("sweep-growth", "sweep-thrust_eccentricity", "map-thrust_eccentricity") for kind in ("png", "svg")}
+        f"{name}.{kind}" for name in ("sweep-growth", "sweep-thrust_eccentricity", "map-thrust_eccentricity")
+        for kind in ("png", "svg")}
     monkeypatch.setattr(population, "surrogate", lambda *_: pytest.fail("made again"))
     again = CliRunner().invoke(app, [*arguments, "--json"], catch_exceptions=False)
     assert json.loads(again.stdout) == found
-    assert CliRunner().invoke(app, [*arguments[:-1], str(tmp_path / "none"), "--angles", "4"]).exit_code == 2 and not (tmp_path / "none").exists()
+    too_few = CliRunner().invoke(app, [*arguments[:-1], str(tmp_path / "none"), "--angles", "4"])
+    assert too_few.exit_code == 2 and "--angles" in too_few.stderr and not (tmp_path / "none").exists()
