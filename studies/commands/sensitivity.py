@@ -18,7 +18,7 @@ def sensitivity(scene: SceneName = "reference", out: Out = Path("out"), set_: Se
                 vary: Annotated[Optional[Path], typer.Option("--vary", metavar="FILE",
                                 help="What is not certain, as a .toml file; default: studies/data/tolerances.toml.")] = None,
                 points: Annotated[int, typer.Option("--points", metavar="N", help="Base points of the Sobol' indices, a power "
-                                  "of two; each takes one case an input, and two.")] = 512,
+                                  "of two; each takes one case an input, and two.")] = 1024,
                 seed: Annotated[int, typer.Option("--seed", metavar="N", help="Seed of the points and of the bootstrap.")] = 1,
                 walls: OnWalls = False, element_size: ElementSize = None, workers: Workers = None, json_: Json = False) -> None:
     """Which numbers the answer depends on: contact constants as in the paper's Table 2, and Sobol' indices; writes

@@ -8,6 +8,7 @@ from studies.report.chart import AMBER, GREY, NAVY, VERMILION, Chart, Line, Pane
 from studies.report.markup import Html, caption, fold, number, paragraph, percent, table
 
 _RATES = ("rate_x_deg_s", "rate_y_deg_s", "rate_z_deg_s", "rate_deg_s")
+_STILL = 1e-6  # deg/s; the tables are of runs at a relative tolerance of 2e-7
 _MOST = 3  # inputs whose convergence is drawn
 _DRAWN = 8  # inputs with bars
 _LINES = ((NAVY, "-", "o"), (VERMILION, "--", "s"), (AMBER, "-.", "^"))
@@ -61,8 +62,9 @@ def _beside_paper(item: dict, paper: dict) -> Html:
     constants = ", ".join(f"{key} {value:.4g}" for key, value in item["constants_si"].items())
     widest = [("largest", "", "", *_moved(item["largest"]), "", *_moved(paper["largest"])),
               ("largest", "clearance", "", *_moved(item["largest_clearance"]), "", "", "")]
-    idle = [row["symbol"] for row in item["rows"] if row["raised"] and row["rate_deg_s"] and not any(row["absolute_deg_s"])]
-    words = f" No change at all from {', '.join(dict.fromkeys(idle))}: at these constants it does nothing." if idle else ""
+    symbols = dict.fromkeys(row["symbol"] for row in item["rows"] if row["raised"] is not None)
+    idle = [symbol for symbol in symbols if all(_still(row) for row in item["rows"] if row["symbol"] == symbol)]
+    words = f" Nothing moves with {' or '.join(idle)}: at these constants it has no effect." if idle else ""
     return Html("".join([
         paragraph(f"{item['title'].capitalize()}: {item['law']}, SI: {constants}.{words}"),
         table(_HEADS, rows + widest, dense=True), caption(_TABLE)]))
@@ -86,7 +88,14 @@ def _rates(row: dict) -> tuple:
     return _triple(row["rate_deg_s"], "{:.3f}"), *(_moved(row) if row["raised"] is not None else ("", ""))
 
 
+def _still(row: dict) -> bool:
+    """Whether nothing moved by more than errors of integration."""
+    return row["absolute_deg_s"] is not None and max(map(abs, row["absolute_deg_s"])) < _STILL
+
+
 def _moved(row: dict) -> tuple[str, str]:
+    if None not in (row["absolute_deg_s"] or [None]) and _still(row):
+        return "0", "0"
     relative = row["relative"] and [None if value is None else 100.0 * value for value in row["relative"]]
     return _triple(row["absolute_deg_s"], "{:.2g}"), _triple(relative, "{:.2g}")
 

@@ -27,7 +27,7 @@ class Asked(NamedTuple):
     (a power of two), a seed, walls or springs."""
 
     vary: str | None = None
-    points: int = 512
+    points: int = 1024
     seed: int = 1
     walls: bool = False
 
