@@ -12,7 +12,7 @@ ASKED = --scene $(SCENE) --out $(OUT)
 READY = .venv/.ready
 
 .DEFAULT_GOAL := help
-.PHONY: help mesh highfi lowfi calibrate posterior compare blind cost stability ablation ensemble montecarlo limits paper report view pictures convergence full-report bench test test-slow clean
+.PHONY: help mesh highfi lowfi calibrate posterior compare blind cost stability ablation ensemble sensitivity sweeps montecarlo limits paper report view pictures convergence full-report bench test test-slow clean
 
 help: ## print this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## /{printf "  make %-12s %s\n", $$1, $$2}' Makefile
@@ -50,6 +50,12 @@ ensemble: $(READY) ## 10,000 varied cases of the surrogate: what rates to expect
 
 blind: $(READY) ## agreement on conditions drawn now, by a seed that nobody chose
 	$(TIPOFF) blind $(ASKED)
+
+sensitivity: $(READY) ## which numbers the answer depends on: contact constants, Sobol' indices
+	$(TIPOFF) sensitivity $(ASKED)
+
+sweeps: $(READY) ## how large misalignment and eccentricities may be: 3,600 cases
+	$(TIPOFF) sweeps $(ASKED)
 
 montecarlo: $(READY) ## the paper's random errors, its 1,000 cases and 100,000 (CASES=1000000 for a million): rates, tails, readings
 	$(TIPOFF) montecarlo $(ASKED) $(if $(CASES),--cases $(CASES))

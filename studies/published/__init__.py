@@ -12,11 +12,24 @@ from typing import NamedTuple
 import numpy as np
 
 _FOLDER = Path(__file__).resolve().parent
-SENSITIVE = (2, 3, 4)  # conditions of Table 2
+CITATION = "Jin et al., Aerospace 2026, 13, 541"
+CONDITIONS = {"phi15": 2, "phi35": 3, "phi60": 4}  # of Table 2, by the name of the same misalignment in the catalogue
+SENSITIVE = tuple(CONDITIONS.values())
+PLATEAUS = {"misalignment": 0.4, "thrust_eccentricity": 0.6, "mass_eccentricity": 0.4}  # deg, mm, mm: sections 3.1 to 3.3
 CHANGES = (("k", 66000.0), ("k", 74000.0), ("c", 50.0), ("c", 70.0), ("d", 0.25), ("d", 0.35))  # its rows: N/mm^e, N s/mm, mm
 BASELINE = {"k": 70000.0, "c": 60.0, "d": 0.30}
 CLAIMED_DEVIATION = (2.73, 1.47, 0.26)  # %, largest of x, y and z on conditions 2 and 4, section 2.3
 NEGLIGIBLE = (1, 5)  # conditions whose rates the paper calls negligible; it prints none
+
+
+class Changed(NamedTuple):
+    """A row of Table 2: the condition's number, ``symbol`` of the constant, whether it was raised (None: nothing was changed), and
+    the settled rates about x, y, z in deg/s."""
+
+    condition: int
+    symbol: str
+    raised: bool | None
+    rates: tuple[float, float, float]
 
 
 class Sensitivity(NamedTuple):
@@ -43,12 +56,17 @@ def angles() -> dict[int, tuple[float, float]]:
 
 
 @cache
+def table_2() -> list[Changed]:
+    """The rows of Table 2 in their order."""
+    return [Changed(int(row["condition"]), row["parameter"], float(row["value"]) > BASELINE[row["parameter"]] if row["value"] else None,
+                    tuple(float(row[f"omega_{axis}_deg_s"]) for axis in "xyz")) for row in _rows("table2_sensitivity.csv")]
+
+
+@cache
 def sensitivity() -> Sensitivity:
     """Table 2."""
-    found = {(int(row["condition"]), row["parameter"], float(row["value"] or 0.0)): [float(row[f"omega_{axis}_deg_s"]) for axis in "xyz"]
-             for row in _rows("table2_sensitivity.csv")}
-    return Sensitivity(np.array([found[condition, "baseline", 0.0] for condition in SENSITIVE]),
-                       np.array([[found[condition, *change] for change in CHANGES] for condition in SENSITIVE]))
+    rates = np.array([row.rates for row in table_2()]).reshape(len(SENSITIVE), 1 + len(CHANGES), 3)
+    return Sensitivity(rates[:, 0], rates[:, 1:])
 
 
 @cache

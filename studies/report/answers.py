@@ -26,6 +26,8 @@ class Answer(NamedTuple):
 
 ANSWERS = (
     Answer("blind", "Agreement on conditions nobody chose", "Blind"),
+    Answer("sensitivity", "Which numbers the answer depends on", "Sensitivity"),
+    Answer("sweeps", "How large an error may be", "Sweeps"),
     Answer("montecarlo", "Random errors", "Random errors"),
     Answer("limits", "Tolerances that keep limits", "Tolerances"),
     Answer("paper", "The paper's own numbers", "Paper"),

@@ -3,10 +3,12 @@
 Colours differ in lightness, and models differ in width and dash, so that figures read in grey and on paper.
 """
 
+import base64
+import io
 import math
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Sequence
+from typing import Any, Sequence
 
 import numpy as np
 
@@ -77,8 +79,20 @@ class Chart:
         return -(-len(self.panels) // self.columns)
 
 
-def to_html(chart: Chart) -> str:
-    """A ``div`` that draws itself once plotly is on the page."""
+@dataclass(frozen=True)
+class Picture:
+    """A ``figure`` of matplotlib where a chart has no such kind: a map, bars. It stands on the page as an image."""
+
+    name: str
+    figure: Any
+
+
+def to_html(chart: Chart | Picture) -> str:
+    """A ``div`` that draws itself once plotly is on the page, or an image."""
+    if isinstance(chart, Picture):
+        stream = io.BytesIO()
+        chart.figure.savefig(stream, format="png")
+        return f'<img id="chart-{chart.name}" alt="{chart.name}" src="data:image/png;base64,{base64.b64encode(stream.getvalue()).decode()}">'
     import plotly.graph_objects as go
     from plotly.subplots import make_subplots
 
@@ -117,8 +131,10 @@ def to_html(chart: Chart) -> str:
                           config={"displayModeBar": False, "responsive": True})
 
 
-def to_files(chart: Chart, folder: Path) -> list[Path]:
+def to_files(chart: Chart | Picture, folder: Path) -> list[Path]:
     """Draw the same with matplotlib as PNG and SVG files called after the chart; their paths."""
+    if isinstance(chart, Picture):
+        return save(chart.figure, folder / chart.name)
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(4.1 * chart.columns + 1.4 if chart.columns > 1 else 8.0, chart.height / 96.0 * chart.rows + 0.9),

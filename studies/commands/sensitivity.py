@@ -1,0 +1,54 @@
+"""``tipoff sensitivity``."""
+
+from pathlib import Path
+from typing import Annotated, Optional
+
+import typer
+
+from studies.asked import guarded, study_of
+from studies.options import ElementSize, Json, OnWalls, Out, SceneName, Set, Workers
+
+
+def add(app: typer.Typer) -> None:
+    """Put the command under ``app``."""
+    app.command()(sensitivity)
+
+
+def sensitivity(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = None,
+                vary: Annotated[Optional[Path], typer.Option("--vary", metavar="FILE",
+                                help="What is not certain, as a .toml file; default: studies/data/tolerances.toml.")] = None,
+                points: Annotated[int, typer.Option("--points", metavar="N", help="Base points of the Sobol' indices, a power "
+                                  "of two; each takes one case an input, and two.")] = 1024,
+                seed: Annotated[int, typer.Option("--seed", metavar="N", help="Seed of the points and of the bootstrap.")] = 1,
+                walls: OnWalls = False, element_size: ElementSize = None, workers: Workers = None, json_: Json = False) -> None:
+    """Which numbers the answer depends on: contact constants as in the paper's Table 2, and Sobol' indices; writes
+    sensitivity.json.
+
+    A file of tolerances holds a distribution for the number itself, or for a factor of the number that the surrogate has:
+
+      \\[factor."friction.dynamic"]
+
+      distribution = "uniform"
+
+      low = "0.75"
+
+      high = "1.25"
+
+      \\[vary."thrust_offset.misalignment.y"]      y and z are components of an offset
+
+      distribution = "normal"
+
+      mean = "0 deg"
+
+      sd = "0.1 deg"
+    """
+
+    def work() -> dict:
+        from studies.stages import sensitivity as stage
+
+        study = study_of(scene, out, set_, element_size=element_size, workers=workers)
+        return stage.run(study, stage.Asked(vary and str(vary), points, seed, walls))
+
+    found = guarded(work, json_)
+    if not json_:
+        print("\n".join(found["summary"]))

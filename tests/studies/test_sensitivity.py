@@ -1,0 +1,120 @@
+"""The ``tipoff sensitivity`` command: tables, indices, figures, what bad input it refuses, and its section of the page."""
+
+import json
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from lowfi.columns import STATUSES
+from scenes import load
+from studies import population
+from studies.cli import app
+from studies.population import Surrogate
+from studies.report import sensitivity as section
+from studies.report.markup import Html
+from studies.settings import defaults
+from studies.stages import sensitivity
+from studies.study import Study, StudyError, read
+
+pytest.importorskip("zarr")
+TOLERANCES = """
+[vary."thrust_offset.misalignment.y"]
+distribution = "normal"
+mean = "0.1 deg"
+sd = "0.03 deg"
+provenance = "a guess"
+
+[vary."thrust_offset.misalignment.z"]
+distribution = "uniform"
+low = "0 deg"
+high = "0.001 deg"
+
+[factor."friction.dynamic"]
+distribution = "uniform"
+low = "0.9"
+high = "1.1"
+
+[factor."payload.inertia.yz"]
+distribution = "uniform"
+low = "0.9"
+high = "1.1"
+"""
+
+
+@pytest.fixture
+def tiny(tmp_path, monkeypatch):
+    """Arguments of the command; the scene's own constants stand for a fit."""
+    monkeypatch.setattr(population, "surrogate", lambda study, *_: Surrogate(study.scene, None, None))
+    (tmp_path / "mine.toml").write_text(TOLERANCES)
+    return ["sensitivity", "--scene", "tiny", "--points", "64", "--workers", "1", "--vary", str(tmp_path / "mine.toml"),
+            "--out", str(tmp_path / "out")]
+
+
+def call(arguments):
+    return CliRunner().invoke(app, arguments, catch_exceptions=False)
+
+
+def test_the_command(tiny, tmp_path, monkeypatch):
+    result = call(tiny)
+    assert result.exit_code == 0 and "320 cases of 3 inputs, 0 did not settle" in result.stdout
+    found = read(tmp_path / "out" / "tiny" / "sensitivity.json")
+    table, = found["tables"]  # nothing was calibrated, so no second one
+    assert [row["condition"] for row in table["rows"][::8]] == ["phi15", "phi35", "phi60"] and len(table["rows"]) == 24
+    assert max(table["largest"]["absolute_deg_s"]) > 0.0 and max(table["largest_clearance"]["absolute_deg_s"]) > 0.0
+    sobol = found["sobol"]
+    assert [item["key"] for item in sobol["inputs"]] == ["thrust_offset.misalignment.y", "thrust_offset.misalignment.z",
+                                                         "friction.dynamic"]
+    assert sobol["inputs"][0]["provenance"] == "a guess" and "zero" in sobol["left_out"]["payload.inertia.yz"]
+    about_z = next(item for item in sobol["quantities"] if item["name"] == "rate_z_deg_s")
+    assert np.argmax(about_z["indices"]["total"]) == 0 and about_z["indices"]["total"][1] < 0.1
+    assert [step["base_points"] for step in about_z["convergence"]] == [8, 16, 32, 64]
+    assert about_z["convergence"][-1]["total"] == about_z["indices"]["total"]
+    assert {f"sensitivity-{name}.{kind}" for name in ("indices", "map", "convergence") for kind in ("png", "svg")} == {
+        path.name for path in (tmp_path / "out" / "tiny" / "figures").iterdir()}
+    drawn = section.draw(found, lambda chart, words: Html(chart.name))
+    assert "misalignment y" in drawn and "-2.355, -2.554, 2.502" in drawn and "0.71 %" in drawn
+    assert sensitivity.stored(Study(load("tiny"), tmp_path / "out" / "tiny", defaults("tiny"))) == found
+    monkeypatch.setattr(population, "surrogate", lambda *_: pytest.fail("made again"))
+    assert json.loads(call([*tiny, "--json"]).stdout) == found
+    (tmp_path / "mine.toml").unlink()
+    assert sensitivity.stored(Study(load("tiny"), tmp_path / "out" / "tiny", defaults("tiny"))) is None
+
+
+def test_cases_that_do_not_settle(tiny, tmp_path, monkeypatch):
+    """Few of them are counted and left out with their base points; with too many nothing is said."""
+    run = population.run
+
+    def spoilt(cases):
+        def one(*arguments):
+            found = run(*arguments)
+            if found.counts["asked"] == 320:
+                for name in ("exit_time", "rate", "lateral_velocity", "direction_error", "exit_attitude"):
+                    getattr(found.results, name)[cases] = np.nan
+                found.results.status[cases] = STATUSES.index("jammed")
+            return found
+        return one
+
+    monkeypatch.setattr(population, "run", spoilt([0, 1, 7]))
+    found = json.loads(call([*tiny, "--json"]).stdout)["sobol"]
+    assert (found["not_settled"], found["used"], found["base_points"]) == (3, 62, 64)
+    assert all(item["indices"]["points"] == 62 for item in found["quantities"] if item["indices"])
+    monkeypatch.setattr(population, "run", spoilt(np.arange(0, 320, 7)))
+    with pytest.raises(StudyError, match="too few"):
+        study = Study(load("tiny"), tmp_path / "again", defaults("tiny"))
+        sensitivity.run(study, sensitivity.Asked(str(tmp_path / "mine.toml"), 64))
+
+
+def test_bad_input_is_listed_whole_and_nothing_written(tiny, tmp_path):
+    wrong = TOLERANCES
+    for right, slip in (('low = "0.9"', 'low = "0.9 mm"'), ("misalignment.z", "misalignment.q"), ('"normal"', '"gauss"')):
+        wrong = wrong.replace(right, slip)
+    (tmp_path / "mine.toml").write_text(wrong + "\n[shift]\na = 1\n")
+    result = call([*tiny, "--points", "100", "--seed", "0"])
+    assert result.exit_code == 2 and not (tmp_path / "out").exists()
+    for words in ("--points", "--seed", "factor.friction.dynamic.low", "factor.payload.inertia.yz.low",
+                  "vary.thrust_offset.misalignment.q", "'gauss'", "shift"):
+        assert words in result.stderr
+    (tmp_path / "mine.toml").write_text('[factor."payload.inertia.yz"]\ndistribution = "uniform"\nlow = "1"\nhigh = "2"\n')
+    assert "at least one number that varies" in call(tiny).stderr
+    assert call([*tiny[:-4], "--vary", str(tmp_path / "nowhere.toml"), "--out", str(tmp_path / "out")]).exit_code == 2
