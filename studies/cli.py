@@ -5,6 +5,7 @@ imported by the command that needs them, so that ``--help`` answers at once.
 """
 
 import json
+from importlib import import_module
 from pathlib import Path
 from typing import Annotated, Optional
 
@@ -290,6 +291,10 @@ def bench(out: Out = Path("out"),
         return {**solver, "surrogate": surrogate}
 
     guarded(work, json_)
+
+
+for _name in ("droptest",):
+    import_module(f"studies.commands.{_name}").add(app)
 
 
 @app.command("scenes")

@@ -15,7 +15,7 @@ from studies.cli import app
 from tests.studies.synthetic import flight
 
 ROOT = Path(__file__).resolve().parent.parent.parent
-STAGES = ("mesh", "highfi", "lowfi", "calibrate", "compare", "cost", "stability", "ablation", "convergence", "report", "view", "ensemble")
+STAGES = ("mesh", "highfi", "lowfi", "calibrate", "compare", "cost", "stability", "ablation", "convergence", "report", "view", "ensemble", "droptest")
 
 
 def call(*arguments):
