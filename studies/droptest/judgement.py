@@ -67,7 +67,12 @@ def p_distance(simulated: np.ndarray, value: np.ndarray) -> float:
 def distances(points: np.ndarray) -> np.ndarray:
     """Squared Mahalanobis distance (n,) of points (n,k) from their mean."""
     away = points - points.mean(axis=0)
-    return np.einsum("ni,ij,nj->n", away, np.linalg.inv(np.cov(points.T).reshape(points.shape[1], -1)), away)
+    return np.einsum("ni,ij,nj->n", away, _inverse(np.cov(points.T)), away)
+
+
+def _inverse(covariance: np.ndarray) -> np.ndarray:
+    """Of a component that never changes nothing can be asked: the inverse leaves it out."""
+    return np.linalg.pinv(covariance, hermitian=True)
 
 
 def combined(p: list[float]) -> float:
@@ -80,16 +85,18 @@ def p_spread(simulated: np.ndarray, changes: np.ndarray, uncertainties: np.ndarr
     """Two-sided p of the sum of squared distances of k tests (k,3) among sums over as many cases drawn at random, with each test's
     errors of measurement: small where the model is too narrow, and where it is too wide."""
     rng = np.random.default_rng([_SEED, len(changes)])
-    mean, inverse = simulated.mean(axis=0), np.linalg.inv(np.cov(simulated.T))
-
-    def total(points: np.ndarray) -> np.ndarray:
-        away = points - mean
-        return np.einsum("...ki,ij,...kj->...", away, inverse, away)
-
     drawn = simulated[rng.integers(len(simulated), size=(_SUBSETS, len(changes)))]
-    sums = total(drawn + uncertainties * rng.standard_normal(drawn.shape))
-    _, p = ranked(sums[:, None], np.array([total(changes)]))
+    drawn = drawn + uncertainties * rng.standard_normal(drawn.shape)
+    sums = spreads(np.concatenate([drawn, changes[None]]), simulated, uncertainties)
+    _, p = ranked(sums[:-1, None], sums[-1:])
     return float(p[0])
+
+
+def spreads(sets: np.ndarray, simulated: np.ndarray, uncertainties: np.ndarray | float = 0.0) -> np.ndarray:
+    """Sums (m,) of squared distances of m sets (m,k,3) of rates from the mean of cases (n,3) with errors of k tests (k,3)."""
+    covariance = np.cov(simulated.T) + np.diag(np.mean(np.square(uncertainties * np.ones(3)).reshape(-1, 3), axis=0))
+    away = sets - simulated.mean(axis=0)
+    return np.einsum("mki,ij,mkj->m", away, _inverse(covariance), away)
 
 
 def region(points: np.ndarray, share: float = SHARE) -> tuple[np.ndarray, np.ndarray, float]:
@@ -104,4 +111,5 @@ def outline(centre: np.ndarray, covariance: np.ndarray, squared_radius: float, p
     """Closed curve (points,2) of an ellipse."""
     angle = np.linspace(0.0, 2.0 * np.pi, points)
     circle = np.sqrt(squared_radius) * np.column_stack([np.cos(angle), np.sin(angle)])
-    return centre + circle @ np.linalg.cholesky(covariance).T
+    size, axes = np.linalg.eigh(covariance)
+    return centre + circle * np.sqrt(np.maximum(size, 0.0)) @ axes.T

@@ -60,7 +60,7 @@ def joint(tests: list[dict], simulated: np.ndarray) -> dict:
     return {"together": {"p_distance": out, "p_spread": spread, "p": min(1.0, 2.0 * min(out, spread)),
                          "smallest_p": 1.0 / (len(simulated) + 1),
                          "inside_range": all(all(row["inside_range"]) for row in tests)},
-            "regions": regions, "power": power.table(len(simulated), len(tests))}
+            "regions": regions, "power": power.table(simulated, len(tests))}
 
 
 def summary(scene: str, found: dict) -> list[str]:
@@ -100,11 +100,13 @@ def _verdict(found: dict) -> list[str]:
     verdict = "do not contradict" if together["p"] > power.LEVEL else "contradict"
     inside = "all tests lie inside" if together["inside_range"] else "not all tests lie inside"
     rows = {row["factor"]: row for row in found["power"]}
-    passing, flagged = ([f"{100.0 * rows[factor][name]:.1f} %" for factor in (1.0, 3.0, 0.5)]
-                        for name in ("passes_one_axis", "flagged_by_spread"))
+    passing, flagged, seen = ([f"{100.0 * rows[factor][name]:.1f} %" for factor in (1.0, 3.0, 0.5)]
+                              for name in ("passes_one_axis", "flagged_by_spread", "flagged_in_cloud"))
     return [f"  together      the tests {verdict} the simulated distribution: p {together['p']:.3f}, twice the smaller of "
             f"{together['p_distance']:.3f} (so far out) and {together['p_spread']:.3f} (such a spread, two-sided)",
             f"  range         {inside} the range of the cases. {tests} tests pass that {passing[0]} of the time with a right "
-            f"model, {passing[1]} with one three times too wide, {passing[2]} with one half as wide as the truth (one axis): it is no "
-            "validation", f"  power         the spread of all components flags a model three times too wide {flagged[1]} of the time, one "
-            f"half as wide as the truth {flagged[2]}, a right one {flagged[0]} (normal distribution)"]
+            f"model, {passing[1]} with one three times too wide, {passing[2]} with one half as wide as the truth (one axis, normal "
+            "distribution): it is no validation",
+            f"  power         the spread of all components flags a model three times too wide {flagged[1]} of the time, one half "
+            f"as wide as the truth {flagged[2]}, a right one {flagged[0]} (normal distribution; in this cloud {seen[1]}, "
+            f"{seen[2]} and {seen[0]})"]

@@ -14,18 +14,20 @@ _LOOKS = ((VERMILION, "s"), (TEAL, "^"), (AMBER, "D"), (NAVY, "v"))
 _RATES = ("Rates in payload body axes, filtered forward and backward with the channel frequency class of each log. Shaded: the "
           "window at rest before release, the reference window in free fall and the settled window after exit; dotted uprights: "
           "release and ignition. Right: the same around ignition.")
-_CLOUD = ("Change of rate by ejection. Dots: simulated cases{shown}. Closed curve: the region that holds the next case with "
-          "{share:.0%} probability, an ellipse whose size comes from ranks and whose shape need not be that of the cloud. Symbols: "
-          "the tests, with bars of 95 % where these are wider than the symbol. Last: magnitudes, which need no angle about X.")
-_SIMULATED = Html('<div class="notice">SIMULATED logs, made by a sensor model: they show that the reduction works, and say nothing of '
-                  "a launcher.</div>")
+_CLOUD = ("Change of rate by ejection. Dots: simulated cases{shown}, which start at rest. Closed curve: the region that holds the "
+          "next case with {share:.0%} probability, an ellipse whose size comes from ranks and whose shape need not be that of the "
+          "cloud. Symbols: the tests, with bars of 95 % where these are wider than the symbol. Last: magnitudes, which need no angle "
+          "about X.")
+_SIMULATED = Html('<div class="notice">SIMULATED logs, made by a sensor model: they show that the reduction works, and say nothing '
+                  "of a launcher.</div>")
 
 
 def draw(found: dict, figure: Callable[[Chart, str], Html]) -> str:
     """Everything in the section."""
     rates, cloud = charts(found)
     notices = [_SIMULATED] if any(row["simulated"] for row in found["tests"]) else []
-    said = "".join(paragraph(line.strip()) for line in found["summary"][-3:])
+    verdict = (line.split(None, 1)[1] for line in found["summary"][-3:])
+    said = "".join(paragraph(f"{words[0].upper()}{words[1:]}.") for words in verdict)
     share, most = found["regions"][0]["share"], found["cases"]["settled"]
     shown = "" if len(found["cases"]["shown_deg_s"]) == most else f", the first {len(found['cases']['shown_deg_s']):,} of {most:,}"
     return "".join([*notices, figure(rates, _RATES), _changes(found), figure(cloud, _CLOUD.format(share=share, shown=shown)), said,
@@ -42,7 +44,7 @@ def _rates(row: dict) -> list[Panel]:
     ignition = row["ignition_s"]
     time, rate = np.array(row["curve"]["time_s"]), np.array(row["curve"]["rate_deg_s"])
     windows = [(begin - ignition, end - ignition) for begin, end in row["windows_s"].values()]
-    title = f"{row['test']}{', SIMULATED log' if row['simulated'] else ''}"
+    title = f"{row['test']}{', SIMULATED' if row['simulated'] else ''}; grey: rest, reference, settled"
     panels = []
     for words, factor, unit, begin, end in ((title, 1.0, "s", time[0], time[-1]),
                                             (f"{row['test']}, around ignition", 1e3, "ms", -0.1, 0.16)):
@@ -112,14 +114,15 @@ def _place(share: float, p: float) -> str:
 
 
 def _power(found: dict) -> Html:
-    columns = ("passes_one_axis", "passes_three_axes", "flagged_by_spread")
-    rows = [(f"{row['factor']:.3g}", *(f"{100.0 * row[name]:.2f}" for name in columns)) for row in found["power"]]
-    heads = ("model's spread over the truth's", "tests inside the range, one axis (%)", "three axes (%)",
-             "flagged by the spread (%)")
+    columns = ("passes_one_axis", "passes_three_axes", "passes_in_cloud", "flagged_by_spread", "flagged_in_cloud")
+    rows = [(f"{row['factor']:.3g}", *(None if row[name] is None else f"{100.0 * row[name]:.2f}" for name in columns))
+            for row in found["power"]]
+    heads = ("model's spread over the truth's", "tests inside the range, one axis (%)", "three axes (%)", "in this cloud (%)",
+             "flagged by the spread (%)", "in this cloud (%)")
     return Html(table(heads, rows) + caption(
         "How often so many tests pass if asked to lie inside the range of so many cases, and how often a two-sided 5 % test of "
         "their spread objects. The row of 1 is exact for any distribution, the others are for a normal one (Monte Carlo over the "
-        "range)."))
+        "range); in this cloud: for a truth that is the simulated cloud, shrunk or blown up about its mean."))
 
 
 def _budgets(found: dict) -> Html:

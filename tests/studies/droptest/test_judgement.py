@@ -92,6 +92,16 @@ def test_region_holds_the_next_draw():
     assert judgement.region(draws[:5], 0.95)[2] == np.inf
 
 
+def test_a_component_that_never_changes_asks_for_nothing():
+    """Control: the same cloud without it, in two components, gives the same p."""
+    rng = np.random.default_rng(6)
+    flat = rng.standard_normal((200, 3)) * [0.0, 1.0, 2.0]
+    test = np.array([0.0, 2.0, 1.0])
+    assert judgement.p_distance(flat, test) == judgement.p_distance(flat[:, 1:], test[1:])
+    edge = judgement.outline(*judgement.region(flat[:, :2]))
+    assert np.isfinite(edge).all() and np.ptp(edge[:, 0]) < 1e-6
+
+
 def test_fisher_joins_tests():
     """Two p of 1/2: chi^2 of four degrees at 4 ln 2."""
     assert judgement.combined([0.5, 0.5]) == pytest.approx(stats.chi2.sf(4.0 * np.log(2.0), 4))

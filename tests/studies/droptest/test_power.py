@@ -46,6 +46,19 @@ def test_power_of_the_spread_is_brute_force(factor):
 
 
 def test_table_has_a_row_for_every_factor():
-    rows = power.table(1000, 3)
+    rows = power.table(np.random.default_rng(3).standard_normal((1000, 3)), 3)
     assert [row["factor"] for row in rows] == list(power.FACTORS)
+    assert rows[2]["passes_in_cloud"] is None and rows[2]["passes_one_axis"] == power.inside_range(1000, 3)
     assert all(row["passes_three_axes"] == row["passes_one_axis"] ** 3 for row in rows)
+
+
+def test_in_a_normal_cloud_both_are_those_of_a_normal_distribution():
+    """And in a cloud of two thin rings they are not: the formulas are no more than an orientation."""
+    rng = np.random.default_rng(4)
+    normal = rng.standard_normal((4000, 3))
+    for factor in (0.5, 1.0, 2.0):
+        held, seen = power.in_cloud(normal, 3, factor)
+        assert seen == pytest.approx(power.flagged(3, factor), abs=0.03)
+        assert held == pytest.approx(1.0 if factor == 1.0 else power.inside_range_of(4000, 3, factor) ** 3, abs=0.05)
+    ring = normal / np.linalg.norm(normal, axis=1, keepdims=True) * rng.choice([1.0, 1.1], (4000, 1))
+    assert power.in_cloud(ring, 3, 2.0)[1] == 1.0 > power.flagged(3, 2.0) + 0.1

@@ -40,7 +40,8 @@ def test_shipped_logs_from_command_to_page(tmp_path, fitted):
     result = call("--cases", 200, "--out", tmp_path)
     assert result.exit_code == 0, result.output
     for words in ("3 drop tests against 200 settled of 200 cases of the surrogate, calibrated", "SIMULATED",
-                  "(SIMULATED log), CFC 60", "settling rule kept", "it is no validation", "100.0 % with one three times too wide", "7 samples clipped"):
+                  "(SIMULATED log), CFC 60", "settling rule kept", "it is no validation",
+                  "100.0 % with one three times too wide", "7 samples clipped"):
         assert words in result.stdout
     found = json.loads((tmp_path / "reference" / "droptest.json").read_text())
     assert found["simulated_logs"] and all(row["simulated"] and "SIMULATED" in row["description"] for row in found["tests"])
