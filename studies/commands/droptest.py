@@ -22,8 +22,7 @@ def droptest(logs: Annotated[Optional[list[Path]], typer.Argument(metavar="[LOG.
     """From logs of drop tests to rates with their uncertainty, and their place in the simulated distribution; writes droptest.json.
 
     A log is a CSV file with time, three rates and, if there are, accelerations and temperature. Beside it lies a sheet, a .toml
-    file with units, axes, calibration and its uncertainties: studies/droptest/logs/ holds three to copy from. The sheet is what the
-    command takes:
+    file with units, axes, calibration and its uncertainties; studies/droptest/logs/ holds three to copy from. Give the sheets:
 
       tipoff droptest test1.toml test2.toml test3.toml
 

@@ -49,8 +49,7 @@ def of(sheet: Sheet, log: Log, source: str) -> Drop:
 
 
 def _require_whole(log: Log, spans: Spans, source: str) -> None:
-    """No gap and no clipped rate in a window, nor clipped acceleration, by which the rate is compensated. Raises SceneError
-    else."""
+    """No gap in a window, no clipped rate, nor acceleration, by which the rate is compensated. Raises SceneError else."""
     faults = []
     for name in ("rest", "reference", "settled"):
         places = inside(log.time, getattr(spans, name))

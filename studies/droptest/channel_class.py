@@ -29,8 +29,7 @@ def coefficients(channel_class: float, rate: float) -> tuple[np.ndarray, np.ndar
 
 
 def filtered(values: np.ndarray, channel_class: float, interval: float) -> np.ndarray:
-    """``values`` (n, ...) sampled every ``interval`` (s), without phase shift; turned round at both ends, so that a straight line
-    stays."""
+    """``values`` (n, ...) sampled every ``interval`` (s), without phase; turned round at both ends: a straight line stays."""
     top, bottom = coefficients(channel_class, 1.0 / interval)
     pad = min(math.ceil(reach(channel_class) / interval), len(values) - 1)
     return scipy.signal.filtfilt(top, bottom, values, axis=0, padtype="odd", padlen=pad)

@@ -1,7 +1,10 @@
 """How tests sit among simulated cases, by ranks alone: no shape of the distribution is assumed.
 
-If a test is one more draw of the model, its place among N simulated ones is as likely to be any of N + 1, so that p = (r + 1) / (N
-+ 1), r simulated cases being at least as extreme, is uniform (Barnard 1963; conformal prediction). Exactly so when
+If a test is one more draw of the model, its place among N simulated ones is as likely to be any of N + 1, so that
+
+    p = (r + 1) / (N + 1),   r simulated cases being at least as extreme,
+
+is uniform (Barnard 1963; conformal prediction). Exactly so when
 
 * a case carries the same errors of measurement as the test: they are drawn for it from the test's uncertainty, and
 * extremeness treats all N + 1 alike: Mahalanobis distance from the mean of all, by the covariance of all, test included.
@@ -40,8 +43,7 @@ def standing(simulated: np.ndarray, change: np.ndarray, uncertainty: np.ndarray,
 
 
 def measured(simulated: np.ndarray, uncertainty: np.ndarray, number: int = 0) -> np.ndarray:
-    """Simulated cases (n,3) with errors of measurement of standard uncertainty (3,), drawn afresh for every test by its
-    ``number``."""
+    """Simulated cases (n,3) with errors of measurement of standard uncertainty (3,), drawn afresh for a test by its ``number``."""
     return simulated + uncertainty * np.random.default_rng([_SEED, number]).standard_normal(simulated.shape)
 
 
@@ -76,8 +78,7 @@ def _inverse(covariance: np.ndarray) -> np.ndarray:
 
 
 def combined(p: list[float]) -> float:
-    """Fisher's p that tests together are further out than the model has it. They share the simulated cases, which matters by
-    1/n."""
+    """Fisher's p that tests together are further out than the model has it; that they share n cases matters by 1/n."""
     return float(scipy.stats.combine_pvalues(p, method="fisher").pvalue)
 
 

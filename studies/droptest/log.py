@@ -26,9 +26,8 @@ _SHOWN = 5
 
 
 class Log(NamedTuple):
-    """time (n,) s, even; raw rate (n,3) rad/s, acceleration (n,3) m/s2 or None, in sensor axes; temperature (n,) K or None; samples
-    that are ``doubtful`` (n,) as they were not measured or the rate was clipped; those with ``clipped`` acceleration (n,);
-    ``notes``, words."""
+    """time (n,) s, even; raw rate (n,3) rad/s, acceleration (n,3) m/s2 or None, in sensor axes; temperature (n,) K or None;
+    samples that are ``doubtful`` (n,): not measured, or the rate clipped; those with ``clipped`` acceleration (n,); ``notes``."""
 
     time: np.ndarray
     rate: np.ndarray

@@ -5,8 +5,7 @@ k tests and n simulated cases of one distribution are exchangeable, so both ends
     P = n (n - 1) / ((n + k)(n + k - 1))
 
 whatever the distribution is. A model c times as wide as the truth passes with P = E[(F(c U) - F(c L))^k], L and U being the
-smallest and largest of n standard draws: here for a normal F, by Monte Carlo over L and U alone (their joint law is known, the
-inner power exact).
+smallest and largest of n standard draws: here for a normal F, by Monte Carlo over L and U alone, whose joint law is known.
 
 Beside it the test that asks for the right spread: sum of squared distances of k tests with m components, chi^2 of k m degrees of
 freedom under the right model, c^-2 times that under one c times as wide.
@@ -41,8 +40,7 @@ def inside_range_of(cases: int, tests: int, factor: float) -> float:
 
 
 def flagged(tests: int, factor: float, components: int = 3) -> float:
-    """Probability that the test for the right spread, two-sided at 5 %, objects to a normal model ``factor`` times as wide as the
-    truth."""
+    """Probability that the two-sided 5 % test of the spread objects to a normal model ``factor`` times as wide as the truth."""
     law = scipy.stats.chi2(tests * components)
     low, high = law.ppf(0.5 * LEVEL), law.ppf(1.0 - 0.5 * LEVEL)
     return float(law.cdf(factor**2 * low) + law.sf(factor**2 * high))

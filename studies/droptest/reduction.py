@@ -1,8 +1,7 @@
 """The change of rate by ejection, with a budget of its uncertainty in the manner of the GUM.
 
-    d = w_1 - w_0,   w_0 mean over the reference window,   w_1 straight line through the settled window, at the instant of
-    simulations u_c^2 = sum of the squares of the standard uncertainties below,   U = k u_c,   k = t(95 %, nu_eff) after Welch and
-    Satterthwaite
+    d = w_1 - w_0,   w_0 mean over the reference window,   w_1 line through the settled window, at the instant of simulations
+    u_c^2 = sum of squares of the standard uncertainties below,   U = k u_c,   k = t(95 %, nu_eff) (Welch, Satterthwaite)
 
 | part | standard uncertainty of component i | kind |
 |---|---|---|
@@ -93,8 +92,7 @@ def _systematic(sheet: Sheet, found: Calibrated, change: np.ndarray, weights: np
 
 
 def _quantised(resolution: float, sigma: np.ndarray, factor: float) -> np.ndarray:
-    """Rounding that noise of half a step spreads is averaged with it and seen in it; with less, a mean may be off by a whole
-    rounding."""
+    """Rounding that noise of half a step spreads is averaged with it; with less, a mean may be off by a whole rounding."""
     return np.where(sigma >= 0.5 * resolution, resolution * np.sqrt(factor / 12.0), resolution * np.sqrt(2.0 / 12.0))
 
 

@@ -13,7 +13,7 @@ _EVERY = 4  # samples: the curves of a result file are thinned where nothing hap
 _AROUND = 0.12  # s around ignition where they are not
 
 
-def test_row(number: int, drop: Drop, simulated: np.ndarray) -> dict:
+def row_of(number: int, drop: Drop, simulated: np.ndarray) -> dict:
     """One test among simulated rates (n,3) deg/s."""
     found, events, sheet = drop.reduced, drop.events, drop.sheet
     change, sure = np.degrees(found.change), np.degrees(found.combined)

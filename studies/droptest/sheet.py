@@ -66,8 +66,7 @@ class Units(Table):
 
 class GyroUncertainty(Table):
     """Standard uncertainties: ``bias_instability`` (rad/s) is B of IEEE 952, scale and ``misalignment`` (rad) are those of one
-    entry after calibration and mounting, ``g_sensitivity`` in rad s/m, ``temperature`` in rad/s/K. White noise is found in the log
-    itself."""
+    entry after calibration and mounting, ``g_sensitivity`` in rad s/m, ``temperature`` in rad/s/K. White noise is in the log."""
 
     bias_instability: NonNegativeRate
     scale: NonNegativeNumber
@@ -107,8 +106,7 @@ class Triggers(Table):
 
 class Windows(Table):
     """``exit`` (s after ignition) of the payload from its rail with its standard uncertainty; ``rest`` (s) before release during
-    which no rate may exceed ``rest_rate`` (rad/s); ``after_release`` (s) until the platform has calmed down; length of the
-    ``settled`` window (s)."""
+    which no rate may exceed ``rest_rate`` (rad/s); ``after_release`` (s) until it is calm; length of the ``settled`` window (s)."""
 
     exit: PositiveTime
     exit_uncertainty: PositiveTime = 1e-3

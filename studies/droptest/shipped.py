@@ -1,5 +1,4 @@
-"""The three logs that come with the package: SIMULATED, none was measured. ``python -m studies.droptest.shipped`` writes them
-again.
+"""The three logs that come with the package, all SIMULATED; ``python -m studies.droptest.shipped`` writes them again.
 
 Each is a case of the surrogate on the reference scene with its own contact constants (not the calibrated ones), offsets drawn from
 the catalogue's ``paper`` distributions with a seed that no study uses, dropped in ``studies.droptest.tower`` and felt by the unit

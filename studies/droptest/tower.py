@@ -21,8 +21,7 @@ from studies.droptest.events import GRAVITY
 class Tower(NamedTuple):
     """Lengths of the stages (s): ``hang``, ``fall`` until ignition, ``flight`` after it. ``swing`` (rad/s) and its frequency (Hz)
     while hanging; ``rate`` (3,) rad/s in free fall; ``kick`` (rad/s) by the release, its frequency (Hz) and decay (s); time in
-    which the release lets go (s); ``knock`` (m/s2) of the release, along X; ``up`` (3,) and place of the unit (3,) m in body
-    axes."""
+    which the release lets go (s); ``knock`` (m/s2) of the release, along X; ``up`` and the unit's ``place`` (m) in body axes."""
 
     hang: float = 1.25
     fall: float = 0.40
@@ -53,8 +52,7 @@ class Motion(NamedTuple):
 
 
 def drop(scene: Scene, tower: Tower, interval: float) -> Motion:
-    """A drop of ``scene`` sampled every ``interval`` (s). Raises ValueError where the payload does not leave its rail and
-    settle."""
+    """A drop of ``scene`` sampled every ``interval`` (s). Raises ValueError where the payload does not settle."""
     began = {f"initial.{body}.{axis}": float(value) for body in ("rate", "platform_rate") for axis, value in zip("xyz", tower.rate)}
     run = lowfi.run(scene.replace(began))
     if run.outcome.rate is None:

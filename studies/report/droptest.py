@@ -16,8 +16,8 @@ _RATES = ("Rates in payload body axes, filtered forward and backward with the ch
           "release and ignition. Right: the same around ignition.")
 _CLOUD = ("Change of rate by ejection. Dots: simulated cases{shown}, which start at rest. Closed curve: the region that holds the "
           "next case with {share:.0%} probability, an ellipse whose size comes from ranks and whose shape need not be that of the "
-          "cloud. Symbols: the tests, with bars of 95 % where these are wider than the symbol. Last: magnitudes, which need no angle "
-          "about X.")
+          "cloud. Symbols: the tests, with bars of 95 % where these are wider than the symbol. Last: magnitudes, which need no "
+          "angle about X.")
 _SIMULATED = Html('<div class="notice">SIMULATED logs, made by a sensor model: they show that the reduction works, and say nothing '
                   "of a launcher.</div>")
 

@@ -1,8 +1,7 @@
 """Stage ``droptest``: logs of drop tests against the distribution that the surrogate has for the same launcher.
 
 The simulated cases vary what the catalogue's ``paper`` distributions vary, and start at rest in free fall. How a test sits among
-them is told by ranks (``studies.droptest.judgement``), and what such a verdict is worth by the power of the test
-(``studies.droptest.power``).
+them is told by ranks (``studies.droptest.judgement``), what that is worth by its power (``studies.droptest.power``).
 """
 
 import hashlib
@@ -16,7 +15,7 @@ from scenes.faults import Fault, SceneError
 from studies import population
 from studies.droptest import shipped
 from studies.droptest.analysis import Drop, analyse
-from studies.droptest.results import joint, summary, test_row
+from studies.droptest.results import joint, summary, row_of
 from studies.population import Population
 from studies.store import SOURCES
 from studies.study import Study, StudyError, read
@@ -89,7 +88,7 @@ def result(study: Study, drops: list[Drop], cases: Population) -> dict:
     if settled.sum() < _FEWEST:
         raise StudyError(f"only {settled.sum()} of {settled.size} simulated cases left the rail and settled: too few")
     rates = np.degrees(cases.results.rate[settled])
-    tests = [test_row(number, drop, rates) for number, drop in enumerate(drops)]
+    tests = [row_of(number, drop, rates) for number, drop in enumerate(drops)]
     for row, drop in zip(tests, drops):
         row["notes"] += _doubts(study, drop, cases.results.exit_time[settled])
     return {"simulated_logs": all(drop.sheet.simulated for drop in drops), "tests": tests, **joint(tests, rates),

@@ -32,8 +32,7 @@ def test_coefficients_are_those_of_scipy(channel_class):
 
 @pytest.mark.parametrize("channel_class", CLASSES)
 def test_gain_at_its_corners_and_no_phase(channel_class):
-    """-6.02 dB at 2.0775 CFC exactly, -3.01 dB at 5/3 CFC but for the warping of the bilinear transform, which vanishes with the
-    step."""
+    """-6.02 dB at 2.0775 CFC exactly, -3.01 dB at 5/3 CFC but for the warping, which vanishes with the step."""
     rate = 200.0 * channel_class
     corner = response(channel_class, DESIGN * channel_class, rate)
     half_power = response(channel_class, 5.0 / 3.0 * channel_class, rate)
@@ -66,8 +65,7 @@ def decibels(over, rate_over_class):
 
 def test_gain_lies_in_the_corridor():
     """Control: the class itself as corner, a common mistake, leaves it. Sampled at its least rate the filter keeps the corridor up
-    to F_N and the upper limit beyond; close to half that rate it falls below the lower limit, as any filter by the bilinear
-    transform does."""
+    to F_N and the upper limit beyond; close to half that rate it falls below the lower one, as the bilinear transform has it."""
     over = np.geomspace(1e-3, 16.0, 400)
     low, high = corridor(over)
     found = decibels(over, 200.0)

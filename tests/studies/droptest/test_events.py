@@ -10,8 +10,7 @@ from tests.studies.droptest.synthetic import BURN, IGNITION, INTERVAL, RELEASE, 
 
 
 def knocked(noise, seed):
-    """A hoist that jerks (10 ms of almost no load), a latch that knocks along X harder than the thruster begins, and white noise
-    (m/s2)."""
+    """A hoist that jerks (10 ms of almost no load), a latch that knocks along X harder than thrust begins, and noise (m/s2)."""
     time, rate, force = motion([0.0] * 3, [0.1, 0.0, 0.0])
     jerk = (time > 0.4) & (time < 0.41)
     force[jerk, 2] = 1.0
@@ -28,8 +27,7 @@ def naive(found):
 
 @pytest.mark.parametrize("noise, close", [(0.0, 1), (0.05, 1), (0.5, 1), (2.0, 2)])
 def test_release_and_ignition_are_found_to_the_sample(noise, close):
-    """The thrust rises as a half sine, so that six standard deviations are felt asin(6 noise / 300) / pi of the burn after
-    ignition."""
+    """The thrust rises as a half sine, so that six standard deviations are felt asin(6 noise / 300) / pi of it late."""
     late = BURN / np.pi * np.arcsin(max(6.0 * noise, 1.0) / 300.0)
     for seed in range(10):
         found = knocked(noise, seed)

@@ -46,8 +46,7 @@ def test_smallest_p_and_percentiles_by_hand():
 
 
 def test_errors_of_measurement_belong_to_the_comparison():
-    """A narrow model and a poor sensor: with its errors laid on the cases p stays uniform. Control: without them the test looks far
-    out."""
+    """A narrow model and a poor sensor: with its errors laid on the cases p stays uniform. Control: not so without."""
     rng, sure, fair, unfair = np.random.default_rng(2), np.full(3, 2.0), [], []
     for number in range(400):
         cases = rng.standard_normal((60, 3))

@@ -17,8 +17,7 @@ def test_closed_form_is_the_count_of_orders(cases, tests):
 
 
 def test_three_tests_in_a_thousand_cases():
-    """99.4 % for a right model, all but certain for one three times too wide, and most of the time for one half as wide as the
-    truth."""
+    """99.4 % for a right model, all but certain for one three times too wide, and most of the time for one half as wide."""
     assert power.inside_range(1000, 3) == pytest.approx(1000 * 999 / (1003 * 1002), rel=1e-15)
     assert round(100 * power.inside_range(1000, 3), 1) == 99.4
     assert 1.0 - power.inside_range_of(1000, 3, 3.0) < 1e-6

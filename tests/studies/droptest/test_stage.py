@@ -91,8 +91,7 @@ def test_cases_that_do_not_settle_are_left_out_and_counted_and_too_few_are_refus
 
 @pytest.mark.parametrize("width, p", [(8.0, "do not contradict"), (0.05, "contradict"), (2000.0, "contradict")])
 def test_verdict_for_models_that_fit_that_are_too_narrow_and_too_wide(tmp_path, width, p):
-    """Three tests of one size, in a cloud of about that size, one far too small and one far too large; the range holds them in the
-    last too."""
+    """Three tests of one size, in a cloud of about that size, one far too small and one far too large; in its range they are."""
     study, drops = Study(load("reference"), tmp_path, Settings()), [stage.analyse(path) for path in shipped.sheets()]
     rates = np.random.default_rng(2).normal(0.0, width, (400, 3))
     found = stage.result(study, drops, population(rates)) | {"surrogate": "calibrated"}
