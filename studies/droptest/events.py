@@ -56,7 +56,7 @@ def find(sheet: Sheet, found: Calibrated, source: str) -> Events:
     felt = float(np.linalg.norm(hanging.mean(axis=0)))
     if abs(felt / GRAVITY - 1.0) > _AT_REST:
         raise SceneError([Fault(source, "units.acceleration", f"{felt:.4g} m/s2 at rest",
-                                f"{GRAVITY:.4g} m/s2 within {_AT_REST:.0%}: unit, scale or bias is wrong")])
+                                f"{GRAVITY:.4g} m/s2 within {100.0 * _AT_REST:g} %: unit, scale or bias is wrong")])
     return Events(float(found.time[release]), float(found.time[_ignition(found, interval, release, source)]), False)
 
 

@@ -89,7 +89,7 @@ def _test_lines(row: dict) -> list[str]:
     return [f"  {row['test']}{' (SIMULATED log)' if row['simulated'] else ''}, CFC {row['channel_class']}",
             f"    events        release {row['release_s']:.4f} s, ignition {row['ignition_s']:.4f} s; settling rule {rest}: "
             f"{row['rest_deg_s']:.2g} of {row['rest_limit_deg_s']:g} deg/s",
-            f"    change        {values} deg/s ({row['coverage']:.0%})",
+            f"    change        {values} deg/s ({100.0 * row['coverage']:g} %)",
             f"    uncertainty   largest standard parts, deg/s: {parts}",
             f"    percentiles   {places}; all three by distance p {row['p_distance']:.3f}",
             f"    any angle     {sizes} of the magnitudes", *(f"    note          {words}" for words in row["notes"])]

@@ -15,7 +15,7 @@ _RATES = ("Rates in payload body axes, filtered forward and backward with the ch
           "window at rest before release, the reference window in free fall and the settled window after exit; dotted uprights: "
           "release and ignition. Right: the same around ignition.")
 _CLOUD = ("Change of rate by ejection. Dots: simulated cases{shown}, which start at rest. Closed curve: the region that holds the "
-          "next case with {share:.0%} probability, an ellipse whose size comes from ranks and whose shape need not be that of the "
+          "next case with {share:g} % probability, an ellipse whose size comes from ranks and whose shape need not be that of the "
           "cloud. Symbols: the tests, with bars of 95 % where these are wider than the symbol. Last: magnitudes, which need no "
           "angle about X.")
 _SIMULATED = Html('<div class="notice">SIMULATED logs, made by a sensor model: they show that the reduction works, and say nothing '
@@ -30,7 +30,7 @@ def draw(found: dict, figure: Callable[[Chart, str], Html]) -> str:
     said = "".join(paragraph(f"{words[0].upper()}{words[1:]}.") for words in verdict)
     share, most = found["regions"][0]["share"], found["cases"]["settled"]
     shown = "" if len(found["cases"]["shown_deg_s"]) == most else f", the first {len(found['cases']['shown_deg_s']):,} of {most:,}"
-    return "".join([*notices, figure(rates, _RATES), _changes(found), figure(cloud, _CLOUD.format(share=share, shown=shown)), said,
+    return "".join([*notices, figure(rates, _RATES), _changes(found), figure(cloud, _CLOUD.format(share=100.0 * share, shown=shown)), said,
                     _standing(found), _power(found), _budgets(found), _notes(found)])
 
 
@@ -67,7 +67,7 @@ def _clouds(found: dict) -> list[Panel]:
         lines = [_dots(cases[:, pair])]
         if region["squared_radius"] is not None:
             edge = judgement.outline(np.array(region["centre_deg_s"]), np.array(region["covariance"]), region["squared_radius"])
-            lines.append(Line(*edge.T, f"{region['share']:.0%} prediction region", NAVY, 1.8))
+            lines.append(Line(*edge.T, f"{100.0 * region['share']:g} % prediction region", NAVY, 1.8))
         panels.append(Panel("", first, second, lines + _tests(found, lambda row: (
             np.array(row["change_deg_s"])[list(pair)], np.array(row["expanded_uncertainty_deg_s"])[list(pair)]))))
     sizes = judgement.magnitudes(cases)[:, :2]

@@ -107,7 +107,7 @@ def test_what_is_wrong_with_a_table_is_listed(tmp_path):
     ("channel_class = 60", "channel_class = 180", "at least 1800 Hz for CFC 180"),
     ("channel_class = 60", "channel_class = 100", "60, 180, 600 or 1000"),
     ('rate = "deg/s"', 'rate = "m/s"', "units.rate"), ('rate = "deg/s"', 'rate = "Hz"', "units.rate"),
-    ('acceleration = "m/s**2"', 'acceleration = "g_0"', "9.807 m/s2 within 5%"),
+    ('acceleration = "m/s**2"', 'acceleration = "g_0"', "9.807 m/s2 within 5 %"),
     ("[[0, 1, 0], [-1, 0, 0], [0, 0, 1]]", "[[0, 1, 0], [1, 0, 0], [0, 0, 1]]", "right-handed"),
     ("[[0, 1, 0], [-1, 0, 0], [0, 0, 1]]", "[[0, 1, 0], [-1, 0.1, 0], [0, 0, 1]]", "perpendicular"),
     ("[[0, 1, 0], [-1, 0, 0], [0, 0, 1]]", "[[0, -1, 0], [1, 0, 0], [0, 0, 1]]", "do the axes point so"),
