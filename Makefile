@@ -12,7 +12,7 @@ ASKED = --scene $(SCENE) --out $(OUT)
 READY = .venv/.ready
 
 .DEFAULT_GOAL := help
-.PHONY: help mesh highfi lowfi calibrate compare cost stability ablation ensemble droptest report view pictures convergence full-report bench test test-slow clean
+.PHONY: help mesh highfi lowfi calibrate compare cost stability ablation ensemble blind droptest paper report view pictures convergence full-report bench test test-slow clean
 
 help: ## print this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## /{printf "  make %-12s %s\n", $$1, $$2}' Makefile
@@ -47,6 +47,12 @@ ensemble: $(READY) ## 10,000 varied cases of the surrogate: what rates to expect
 
 droptest: $(READY) ## logs of drop tests (LOGS="a.toml b.toml"; default: simulated ones) among 1,000 simulated cases
 	$(TIPOFF) droptest $(LOGS) $(ASKED) $(if $(CASES),--cases $(CASES))
+
+blind: $(READY) ## agreement on conditions drawn now, by a seed that nobody chose
+	$(TIPOFF) blind $(ASKED)
+
+paper: $(READY) ## what the paper's unpublished inputs must have been, its tables beside ours
+	$(TIPOFF) paper $(ASKED)
 
 bench: $(READY) ## speed of the solvers against what one would write today: OUT/bench
 	$(TIPOFF) bench --out $(OUT)

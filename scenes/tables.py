@@ -1,12 +1,13 @@
 """The small tables every scene has: payload, pads, output, and what the agreement study fits and scores."""
 
+import math
 from typing import Annotated, Literal
 
 from pydantic import AfterValidator, field_validator
 
 from scenes.body import InertiaTensor
 from scenes.table import Table, at_least_one
-from scenes.units import Length, Mass, NonNegativeLength, PositiveLength, PositiveTime
+from scenes.units import Length, Mass, NonNegativeLength, PositiveLength, PositiveNumber, PositiveRate, PositiveTime
 
 Normal = Literal["+y", "-y", "+z", "-z"]
 
@@ -48,9 +49,12 @@ class OutputTable(Table):
 
 
 class AgreementTable(Table):
-    """``[agreement]``: conditions that are fitted, those only scored, those that give the floor and the refinement error."""
+    """``[agreement]``: conditions that are fitted, those only scored, those that give the floor and the refinement error; and up to which
+    relative L2 of the rates and error of a settled rate (rad/s) a surrogate is said to agree."""
 
     fitted: tuple[str, ...] = ()
     held_out: tuple[str, ...] = ()
     floor: tuple[str, ...] = ()
     refined: tuple[str, ...] = ()
+    rate_limit: PositiveNumber = 0.05
+    settled_limit: PositiveRate = math.radians(0.1)

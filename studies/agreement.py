@@ -4,18 +4,31 @@
 * **Reference uncertainty**: what coming from twice the element size, and there four times the penalty and half the step, change
   in the settled rates of the reference, each alone. Agreement is claimed only where the largest is at most 0.1 deg/s.
 
+* **Gates**: v_x within 0.1 %, rates and settled rates within the limits of the scene's ``[agreement]``; where twice the floor, taken as at
+  most 0.1 deg/s, is above the limit of the settled rates, that counts, for no model could be held to less.
+
 What the mesh changes is measured on every condition. The rest is measured on a few; the others take the largest of those and say
 so.
 """
 
+import math
 from dataclasses import dataclass
 
+from scenes.scene import Scene
 from scenes.trajectory import Trajectory
 from studies.metrics import compare, settled_rate_errors
 
-GATES = {"rate_relative_l2": 0.05, "velocity_relative_l2": 0.001, "settled_rate_error_deg_s": 0.1}
+VELOCITY_LIMIT = 0.001
 CONVERGED_DEG_S = 0.1
+FLOOR_CAP_DEG_S = 0.1
 NOT_CONVERGED = "reference not converged"
+
+
+def gates(scene: Scene) -> dict[str, float]:
+    """Limits of the metrics by name, before any floor."""
+    roles = scene.agreement
+    return {"rate_relative_l2": roles.rate_limit, "velocity_relative_l2": VELOCITY_LIMIT,
+            "settled_rate_error_deg_s": math.degrees(roles.settled_limit)}
 
 
 @dataclass(frozen=True)
@@ -50,10 +63,16 @@ def largest(values) -> float | None:
 
 @dataclass(frozen=True)
 class Context:
-    """What stands beside the metrics: spreads under ``clearance`` of both models, and of the reference under refinement."""
+    """What stands beside the metrics: spreads under ``clearance`` of both models, and of the reference under refinement; and the gates."""
 
     floors: list[Spread]
     refinements: list[Spread]
+    gates: dict[str, float]
+
+    def limits(self, floor_deg_s: float | None) -> dict[str, float]:
+        """The gates on a condition with this floor."""
+        settled = "settled_rate_error_deg_s"
+        return self.gates | {settled: max(self.gates[settled], 2.0 * min(floor_deg_s or 0.0, FLOOR_CAP_DEG_S))}
 
     def floor(self, condition: str) -> tuple[float | None, float | None, bool]:
         """Floor of the settled rates (deg/s) and of the rate L2, and whether it was measured on this very condition."""
@@ -83,7 +102,7 @@ def row(condition: str, role: str, reference: Trajectory, surrogate: Trajectory,
     difference = compare(reference, surrogate)
     floor_deg_s, floor_l2, floor_measured = context.floor(condition)
     uncertainty, causes, uncertainty_measured = context.uncertainty(condition)
-    gates = {name: gate(getattr(difference, name), limit) for name, limit in GATES.items()}
+    gates = {name: gate(getattr(difference, name), limit) for name, limit in context.limits(floor_deg_s).items()}
     converged = uncertainty is not None and uncertainty <= CONVERGED_DEG_S
     return {"condition": condition, "role": role, "reference_status": reference.status, "surrogate_status": surrogate.status,
             **difference.as_dict(), "floor_deg_s": floor_deg_s, "floor_l2": floor_l2, "floor_measured_here": floor_measured,

@@ -5,13 +5,13 @@ imported by the command that needs them, so that ``--help`` answers at once.
 """
 
 import json
-from importlib import import_module
 from pathlib import Path
 from typing import Annotated, Optional
 
 import typer
 
 from studies.asked import guarded, quantity, study_of
+from studies.commands import add_all
 from studies.options import (CheckpointEvery, Conditions, ElementSize, Fidelity, Json, OnWalls, Out, Resume, Sampling, SceneName, Set,
                              Workers)
 
@@ -271,6 +271,9 @@ def ensemble(scene: SceneName = "reference", out: Out = Path("out"), set_: Set =
         print("\n".join(stage.case_lines(found) if case is not None else ensemble_summary.lines(found)))
 
 
+add_all(app)
+
+
 @app.command()
 def bench(out: Out = Path("out"),
           element_size: Annotated[Optional[list[float]], typer.Option("--element-size", metavar="MM", min=0.05,
@@ -291,10 +294,6 @@ def bench(out: Out = Path("out"),
         return {**solver, "surrogate": surrogate}
 
     guarded(work, json_)
-
-
-for _name in ("droptest",):
-    import_module(f"studies.commands.{_name}").add(app)
 
 
 @app.command("scenes")

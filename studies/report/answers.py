@@ -24,4 +24,8 @@ class Answer(NamedTuple):
         return import_module(f"studies.stages.{self.name}").stored(study)
 
 
-ANSWERS: tuple[Answer, ...] = (Answer("droptest", "Drop tests", "Drop tests"),)
+ANSWERS = (
+    Answer("blind", "Agreement on conditions nobody chose", "Blind"),
+    Answer("droptest", "Drop tests", "Drop tests"),
+    Answer("paper", "The paper's own numbers", "Paper"),
+)

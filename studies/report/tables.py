@@ -7,17 +7,16 @@ from studies.report.markup import Html, caption, code, fold, number, paragraph, 
 _INTERVALS = ("Intervals are linear and take what the fit leaves for scatter about a model that is right. Model error is not in "
               "them: what the surrogate lacks may move its constants by more than they say. Not told: the curves do not fix the "
               "constant, and no interval is made up.")
+_HEADS = ("condition", "role", "rate L2 (%)", "floor L2 (%)", Html("v<sub>x</sub> L2 (%)"), "settled error (deg/s)", "error x, y, z (deg/s)",
+          "floor (deg/s)", "reference ± (deg/s)", "ISO 18571", "S-G magnitude (%)", "S-G phase (%)", "verdict")
 _FLOOR = "Floor: what ±{change:g} µm of clearance changes in either model. "
 
 
 def agreement(document: dict) -> Html:
     """The agreement tables, the surrogate on compliant walls first, with floor and reference uncertainty beside every claim."""
-    heads = ("condition", "role", "rate L2 (%)", "floor L2 (%)", Html("v<sub>x</sub> L2 (%)"), "settled error (deg/s)",
-             "error x, y, z (deg/s)", "floor (deg/s)", "reference ± (deg/s)", "ISO 18571", "S-G magnitude (%)", "S-G phase (%)",
-             "verdict")
     gates = document["gates"]
     legend = (f"Gates: rate L2 {percent(gates['rate_relative_l2'])} %, v_x L2 {percent(gates['velocity_relative_l2'])} %, settled error "
-              f"{gates['settled_rate_error_deg_s']:g} deg/s. " + _FLOOR.format(change=1e6 * document["clearance_change_m"])
+              f"{gates['settled_rate_error_deg_s']:g} deg/s, or twice the floor where that is more. " + _FLOOR.format(change=1e6 * document["clearance_change_m"])
               + "Reference ±: the largest change of its settled rates from twice the element size on, and there under half the step or "
               f"four times the penalty; above {document['converged_deg_s']:g} deg/s no agreement is claimed. A star marks a value measured on other "
               "conditions, of which the largest is taken. ISO 18571 is the mean rating of the three rates (1 is perfect); Sprague "
@@ -25,18 +24,19 @@ def agreement(document: dict) -> Html:
     calibrated = [*document["fitted"], *document["held_out"]]
     return section("agreement-section", "Agreement with the reference",
                    paragraph("On walls that give way as the statics of the rail has them, nothing fitted (the role is that of the condition in "
-                             "the calibration of the other surrogates): " + _summary(document, "compliant")),
-                   _judged(heads, document["compliant"], "agreement"), caption(legend), _further(document["compliant"]), _simpler(document),
-                   paragraph("One spring and damper per pad face, calibrated on the fitted conditions: " + _summary(document, "fitted")
-                             + "; " + _summary(document, "held_out")),
-                   _judged(heads, calibrated, "agreement-calibrated"), _outside(calibrated), _further(calibrated),
-                   fold("the same before calibration", _judged(heads, document["uncalibrated"], "agreement-uncalibrated")),
+                             "the calibration of the other surrogates): " + summary(document["compliant"])),
+                   judged(document["compliant"], "agreement"), caption(legend), _further(document["compliant"]), _simpler(document),
+                   paragraph("One spring and damper per pad face, calibrated on the fitted conditions: " + summary(document["fitted"], "fitted ")
+                             + "; " + summary(document["held_out"], "held-out ")),
+                   judged(calibrated, "agreement-calibrated"), _outside(calibrated), _further(calibrated),
+                   fold("the same before calibration", judged(document["uncalibrated"], "agreement-uncalibrated")),
                    _evidence(document))
 
 
-def _judged(heads: tuple, rows: list[dict], name: str) -> Html:
+def judged(rows: list[dict], name: str) -> Html:
+    """A table of agreement rows: good, bad, or of a reference that is not converged."""
     kinds = ["doubt" if not row["reference_converged"] else "good" if row["passes"] else "bad" for row in rows]
-    return table(heads, [_agreement_row(row) for row in rows], name, kinds, dense=True)
+    return table(_HEADS, [_agreement_row(row) for row in rows], name, kinds, dense=True)
 
 
 def _simpler(document: dict) -> Html:
@@ -56,8 +56,8 @@ def _errors(row: dict) -> str:
     return f"{percent(row['rate_relative_l2'])}; {number(row['settled_rate_error_deg_s'], 2)}"
 
 
-def _summary(document: dict, group: str) -> str:
-    rows, words = document[group], {"fitted": "fitted ", "held_out": "held-out "}.get(group, "")
+def summary(rows: list[dict], words: str = "") -> str:
+    """How many of the ``words`` conditions agree."""
     passed, doubtful = sum(row["passes"] for row in rows), sum(not row["reference_converged"] for row in rows)
     return (f"{passed} of {len(rows)} {words}conditions pass all three gates" + _free(rows)
             + (f" ({doubtful} of {len(rows)} with a reference that is not converged)" if doubtful else ""))

@@ -47,25 +47,26 @@ def run(study: Study) -> dict:
     calibrated and of the compliant surrogate, ``simpler`` walls."""
     study.fitted()
     _, calibrated, compliant = ladder = rungs(study)
+    gates = agreement.gates(study.scene)
 
     def make() -> tuple[dict, list[Path]]:
         asked = {name: study.highfi(name) for name in study.conditions}
         highfi = dict(zip(asked, study.store.fill("highfi", list(asked.values()))))
         require_success(highfi, "compare")
-        changes, floor = _refinements(study), _floors(study, "reference", study.coarse)
-        own = {rung.name: _floors(study, rung.title, partial(rung.ask, study)) for rung in ladder}
-        rows = {rung.name: _rows(study, rung, highfi, Context([*floor, *own[rung.name]], changes)) for rung in ladder}
-        groups = {role: [row for row in rows["calibrated"] if row["role"] == role] for role in ("fitted", "held_out")}
-        return {"uncalibrated": rows["uncalibrated"], **groups, "compliant": rows["compliant"], "gates": agreement.GATES,
+        changes, floor = refinements(study), floors(study, "reference", study.coarse)
+        own = {rung.name: floors(study, rung.title, partial(rung.ask, study)) for rung in ladder}
+        table = {rung.name: rows(study, rung, highfi, Context([*floor, *own[rung.name]], changes, gates)) for rung in ladder}
+        groups = {role: [row for row in table["calibrated"] if row["role"] == role] for role in ("fitted", "held_out")}
+        return {"uncalibrated": table["uncalibrated"], **groups, "compliant": table["compliant"], "gates": gates,
                 "converged_deg_s": agreement.CONVERGED_DEG_S, "clearance_change_m": study.settings.clearance_change,
                 "floor": [asdict(item) for item in sum(own.values(), floor)], "refinement": [asdict(item) for item in changes],
                 "simpler": _simpler(study, compliant, highfi),
                 **dict(zip(("speedup", "speedup_compliant"), _speedups(study, [calibrated, compliant])))}, []
 
-    return study.stage("agreement", study.key(SOURCES_USED, calibrated.calibration.constants, agreement.GATES), make)
+    return study.stage("agreement", study.key(SOURCES_USED, calibrated.calibration.constants, gates), make)
 
 
-def _rows(study: Study, rung: Rung, highfi: dict[str, Trajectory], context: Context) -> list[dict]:
+def rows(study: Study, rung: Rung, highfi: dict[str, Trajectory], context: Context) -> list[dict]:
     """Agreement of one surrogate on every condition."""
     wanted = {name: rung.ask(study, name) for name in study.conditions}
     found = dict(zip(wanted, study.store.fill(rung.title, list(wanted.values()))))
@@ -87,7 +88,7 @@ def _simpler(study: Study, compliant: Rung, highfi: dict[str, Trajectory]) -> li
     return found
 
 
-def _floors(study: Study, model: str, ask: Callable[..., Run]) -> list[Spread]:
+def floors(study: Study, model: str, ask: Callable[..., Run]) -> list[Spread]:
     """Spread of one model under +-1 um of clearance, on the conditions the scene names for it."""
     if study.scene.contact is None:
         return []
@@ -107,7 +108,7 @@ def clearances(study: Study) -> list[tuple[str, float]]:
     return [(sign, value) for sign, value in (("plus", nominal + change), ("minus", nominal - change)) if value >= 0.0]
 
 
-def _refinements(study: Study) -> list[Spread]:
+def refinements(study: Study) -> list[Spread]:
     """Spread of the reference under each refinement alone: the mesh from the coarse one to its own, on every condition, for one that
     is chaotic shows itself there; the others on the coarse one, where the scene asks for it."""
     found = []

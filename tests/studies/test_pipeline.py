@@ -135,3 +135,18 @@ def test_page_is_whole_and_self_contained(pipeline):
     assert page.count("/*! For license information") <= 1 and 'src="http' not in page
     figures = {path.name for path in (pipeline[0] / "figures").glob("*.png")}
     assert {"mesh.png", "compliance.png", "thrust.png", "figure6.png", "contact-forces.png", "energy-ledgers.png", "cost.png"} <= figures
+
+
+def test_blind_conditions_are_judged_beside_what_was_made(pipeline):
+    """Two conditions drawn afterwards, on the calibration and the walls of the pipeline, which are not made again."""
+    out = str(pipeline[0].parent)
+    fitted = (pipeline[0] / "calibration.toml").stat().st_mtime_ns
+    found = CliRunner().invoke(app, ["blind", "--scene", "tiny", "--out", out, "--cases", "2", "--seed", "5"], catch_exceptions=False)
+    assert found.exit_code == 0 and "2 conditions drawn with seed 5" in found.stdout
+    kept = result(pipeline[0], "blind")
+    assert [row["condition"] for row in kept["compliant"]] == ["blind1", "blind2"] == [row["condition"] for row in kept["calibrated"]]
+    assert all(ROW <= set(row) and row["role"] == "held_out" for row in kept["compliant"])
+    assert (pipeline[0] / "calibration.toml").stat().st_mtime_ns == fitted
+    from studies.report import blind
+
+    assert "blind2" in blind.draw(kept, None)

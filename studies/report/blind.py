@@ -1,0 +1,34 @@
+"""Agreement on conditions drawn by a seed that nobody chose, on the page."""
+
+import math
+from typing import Callable
+
+from studies.report import tables
+from studies.report.chart import Chart
+from studies.report.markup import Html, caption, fold, paragraph, table
+
+_WORDS = ("Drawn from the distributions \u201c{vary}\u201d with seed {seed}{origin}. Every condition has its own uncertainty of the reference by the "
+          "mesh; step, penalty and the floor are those of the first.")
+
+
+def draw(found: dict, figure: Callable[[Chart, str], Html]) -> Html:
+    """The section."""
+    origin = ", which follows from the sources and the scene: a change of the code draws others" if found["asked"]["seed"] is None else ""
+    words = _WORDS.format(vary=found["asked"]["vary"], seed=found["seed"], origin=origin)
+    return Html(paragraph("On compliant walls, nothing fitted: " + tables.summary(found["compliant"])) + tables.judged(found["compliant"], "blind-compliant")
+                + caption(words) + paragraph("Calibrated springs: " + tables.summary(found["calibrated"]))
+                + tables.judged(found["calibrated"], "blind-calibrated") + fold("What was drawn", _drawn(found["conditions"])))
+
+
+def _drawn(conditions: dict) -> Html:
+    keys = list(dict.fromkeys(key for row in conditions.values() for key in row))
+    rows = [(name, *(_value(key, row.get(key)) for key in keys)) for name, row in conditions.items()]
+    return table(("condition", *keys), rows, dense=True)
+
+
+def _value(key: str, value: float | None) -> str | None:
+    """Angles in degrees, lengths in mm; else SI."""
+    if value is None:
+        return None
+    angle = "misalignment" in key or key.endswith("radial")
+    return f"{math.degrees(value):.4g} deg" if angle else f"{1e3 * value:.4g} mm" if "eccentricity" in key else f"{value:.4g}"

@@ -1,0 +1,93 @@
+"""Stage ``blind``: agreement on conditions drawn after everything was settled, by a seed that nobody chose.
+
+Held-out conditions are known to whoever writes the surrogate. These are drawn from distributions of errors, and unless a seed is given
+it is that of the sources and the scene: any change of the code draws others.
+"""
+
+from dataclasses import asdict, dataclass, replace
+from functools import partial
+from pathlib import Path
+
+from lowfi.rows import Drawn
+from scenes import uncertainty
+from scenes.files import content_hash, source_hash
+from studies import agreement
+from studies.agreement import Context
+from studies.stages import calibrate, compare, walls
+from studies.store import SOURCES
+from studies.study import Study, read, require_success
+
+NAME = "blind"
+_CODE = ("scenes", "highfi", "lowfi", "calibrate")
+
+
+@dataclass(frozen=True)
+class Asked:
+    """``cases`` conditions from the distributions ``vary``; ``seed`` None: that of the code and the scene."""
+
+    cases: int = 8
+    vary: str = uncertainty.DEFAULT
+    seed: int | None = None
+
+
+def run(study: Study, asked: Asked = Asked()) -> dict:
+    """Rows of the ``calibrated`` surrogate and of that on ``compliant`` walls, as in the agreement study, and the conditions drawn."""
+    drawn = draw(study, asked)
+    ladder = [compare.Rung("calibrated", "surrogate, calibrated", calibrate.load(study)),
+              compare.Rung("compliant", "surrogate, compliant walls", walls=walls.under(drawn, drawn.conditions))]
+
+    def make() -> tuple[dict, list[Path]]:
+        wanted = {name: drawn.highfi(name) for name in drawn.conditions}
+        highfi = dict(zip(wanted, drawn.store.fill("highfi", list(wanted.values()))))
+        require_success(highfi, "judge blind conditions")
+        changes, floor, gates = compare.refinements(drawn), compare.floors(drawn, "reference", drawn.coarse), agreement.gates(study.scene)
+        rows = {}
+        for rung in ladder:
+            own = compare.floors(drawn, rung.title, partial(rung.ask, drawn))
+            rows[rung.name] = compare.rows(drawn, rung, highfi, Context([*floor, *own], changes, gates))
+        return {"asked": asdict(asked), "seed": seed_of(study, asked), "gates": gates, "converged_deg_s": agreement.CONVERGED_DEG_S,
+                "clearance_change_m": study.settings.clearance_change, "conditions": drawn.scene.conditions, **rows}, []
+
+    return study.stage(NAME, _key(study, drawn), make)
+
+
+def stored(study: Study) -> dict | None:
+    """The result, if it was made from the present scene, code and settings."""
+    found = read(study.path(f"{NAME}.json"))
+    return found if found and found["key"] == _key(study, draw(study, Asked(**found["asked"]))) else None
+
+
+def draw(study: Study, asked: Asked) -> Study:
+    """The study of the drawn conditions, in the same folder: all held out; floor and refinements other than the mesh on the first."""
+    source = Drawn(uncertainty.load(asked.vary, study.scene, cases=asked.cases, seed=seed_of(study, asked), sampling="random"))
+    conditions = {f"blind{number + 1}": row for number, row in enumerate(source.rows(0, asked.cases))}
+    names = list(conditions)
+    roles = {"agreement.fitted": [], "agreement.held_out": names, "agreement.floor": names[:1], "agreement.refined": names[:1]}
+    return replace(study, scene=study.scene.replace({"conditions": conditions, **roles}), only=())
+
+
+def seed_of(study: Study, asked: Asked) -> int:
+    """The seed of the draws."""
+    return asked.seed if asked.seed is not None else int(content_hash(source_hash(*_CODE), study.scene.hash)[:12], 16)
+
+
+def lines(found: dict) -> list[str]:
+    """The verdicts in words."""
+    said = [f"{len(found['conditions'])} conditions drawn with seed {found['seed']}"]
+    for name in ("calibrated", "compliant"):
+        said += [f"  {name:11} {row['condition']}: rate L2 {_percent(row['rate_relative_l2'])}, settled error "
+                 f"{_rate(row['settled_rate_error_deg_s'])} (reference within {_rate(row['reference_uncertainty_deg_s'])}): {row['verdict']}"
+                 for row in found[name]]
+    return said
+
+
+def _percent(value: float | None) -> str:
+    return "unknown" if value is None else f"{100.0 * value:.3g} %"
+
+
+def _rate(value: float | None) -> str:
+    return "unknown" if value is None else f"{value:.3g} deg/s"
+
+
+def _key(study: Study, drawn: Study) -> str:
+    return study.key((*SOURCES["highfi"], *SOURCES["lowfi"], "calibrate"), NAME, drawn.scene.conditions, agreement.gates(study.scene))

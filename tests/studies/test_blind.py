@@ -1,0 +1,39 @@
+"""Conditions that nobody chose: drawn by the seed of the code and the scene, never fitted."""
+
+from pathlib import Path
+
+import pytest
+
+import scenes
+from scenes.faults import SceneError
+from studies.settings import Settings
+from studies.stages import blind
+from studies.stages.blind import Asked
+from studies.study import Study
+
+
+def study_of(name: str = "reference") -> Study:
+    return Study(scenes.load(name), Path("nowhere"), Settings())
+
+
+def test_seed_is_that_of_code_and_scene(monkeypatch):
+    own = blind.seed_of(study_of(), Asked())
+    assert own == blind.seed_of(study_of(), Asked()) != blind.seed_of(study_of("sensitive"), Asked())
+    assert blind.seed_of(study_of(), Asked(seed=3)) == 3
+    monkeypatch.setattr(blind, "source_hash", lambda *names: "another line of code")
+    assert blind.seed_of(study_of(), Asked()) != own
+
+
+def test_drawn_conditions_are_all_held_out():
+    drawn = blind.draw(study_of(), Asked(cases=3, seed=1))
+    assert list(drawn.conditions) == ["blind1", "blind2", "blind3"] == list(drawn.scene.agreement.held_out)
+    assert drawn.scene.agreement.fitted == () and drawn.scene.agreement.floor == drawn.scene.agreement.refined == ("blind1",)
+    hashes = {scene.hash for scene in drawn.conditions.values()}
+    assert len(hashes) == 3 and hashes.isdisjoint(scene.hash for scene in study_of().conditions.values())
+    again = blind.draw(study_of(), Asked(cases=2, seed=1))
+    assert [scene.hash for scene in again.conditions.values()] == [drawn.condition(name).hash for name in ("blind1", "blind2")]
+
+
+def test_unknown_distributions_are_refused():
+    with pytest.raises(SceneError, match="one of"):
+        blind.draw(study_of(), Asked(vary="unheard"))
