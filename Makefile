@@ -12,7 +12,7 @@ ASKED = --scene $(SCENE) --out $(OUT)
 READY = .venv/.ready
 
 .DEFAULT_GOAL := help
-.PHONY: help mesh highfi lowfi calibrate posterior compare blind cost stability ablation ensemble sensitivity sweeps montecarlo limits paper report view pictures convergence full-report bench test test-slow clean
+.PHONY: help mesh highfi lowfi calibrate posterior compare blind cost stability ablation ensemble sensitivity sweeps montecarlo limits droptest paper report view pictures convergence full-report bench test test-slow clean
 
 help: ## print this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## /{printf "  make %-12s %s\n", $$1, $$2}' Makefile
@@ -47,6 +47,9 @@ ablation: $(READY) ## what each effect changes and costs
 
 ensemble: $(READY) ## 10,000 varied cases of the surrogate: what rates to expect (CASES=1000000 for a million)
 	$(TIPOFF) ensemble $(ASKED) $(if $(CASES),--cases $(CASES))
+
+droptest: $(READY) ## logs of drop tests (LOGS="a.toml b.toml"; default: simulated ones) among 1,000 simulated cases
+	$(TIPOFF) droptest $(LOGS) $(ASKED) $(if $(CASES),--cases $(CASES))
 
 blind: $(READY) ## agreement on conditions drawn now, by a seed that nobody chose
 	$(TIPOFF) blind $(ASKED)

@@ -30,5 +30,6 @@ ANSWERS = (
     Answer("sweeps", "How large an error may be", "Sweeps"),
     Answer("montecarlo", "Random errors", "Random errors"),
     Answer("limits", "Tolerances that keep limits", "Tolerances"),
+    Answer("droptest", "Drop tests", "Drop tests"),
     Answer("paper", "The paper's own numbers", "Paper"),
 )

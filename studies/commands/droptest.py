@@ -1,0 +1,39 @@
+"""``tipoff droptest``: what logs of drop tests say, and where they sit among simulated cases."""
+
+from pathlib import Path
+from typing import Annotated, Optional
+
+import typer
+
+from studies.asked import guarded, study_of
+from studies.options import Json, OnWalls, Out, SceneName, Set, Workers
+
+
+def add(app: typer.Typer) -> None:
+    """Put the command under ``tipoff``."""
+    app.command("droptest")(droptest)
+
+
+def droptest(logs: Annotated[Optional[list[Path]], typer.Argument(metavar="[LOG.toml]...",
+                             help="Sheets of logs; default: the three simulated ones that come with the package.")] = None,
+             scene: SceneName = "reference", out: Out = Path("out"), set_: Set = None,
+             cases: Annotated[int, typer.Option("--cases", metavar="N", min=50, help="Simulated cases to compare with.")] = 1000,
+             walls: OnWalls = False, workers: Workers = None, json_: Json = False) -> None:
+    """From logs of drop tests to rates with their uncertainty, and their place in the simulated distribution; writes droptest.json.
+
+    A log is a CSV file with time, three rates and, if there are, accelerations and temperature. Beside it lies a sheet, a .toml
+    file with units, axes, calibration and its uncertainties; studies/droptest/logs/ holds three to copy from. Give the sheets:
+
+      tipoff droptest test1.toml test2.toml test3.toml
+
+    The logs that come with the package are simulated by a sensor model, and say so wherever they appear.
+    """
+
+    def work() -> dict:
+        from studies.stages import droptest as stage
+
+        return stage.run(study_of(scene, out, set_, workers=workers), logs, cases, walls)
+
+    found = guarded(work, json_)
+    if not json_:
+        print("\n".join([*found["summary"], *(f"  figure        {Path(out) / found['scene'] / path}" for path in found["files"])]))

@@ -1,0 +1,165 @@
+"""The sheet of a log: a small TOML file beside the CSV file that says what the columns are and how sure the sensor is::
+
+    file = "drop1.csv"
+    channel_class = 60                         # CFC of SAE J211 and ISO 6487
+    axes = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]   # columns: the sensor's axes in payload body axes, right-handed
+
+    [columns]  [units]                         # names in the CSV and their units
+    [gyro]                                     # raw = (1 + scale_error) (1 + misalignment) w + bias + g_sensitivity f + temperature
+    [gyro.uncertainty]                         # standard uncertainties of these (GUM)
+    [accelerometer]  [events]  [windows]
+
+Quantities carry units, as in a scene; whatever is misspelt, missing or of another dimension is a fault.
+"""
+
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from pydantic import AfterValidator, ValidationError, model_validator
+
+from scenes import reading
+from scenes.faults import SceneError, faults_of
+from scenes.table import Table
+from scenes.units import (Acceleration, Angle, NonNegativeNumber, NonNegativeTime, Number, PositiveTime, Rate, quantity, to_si)
+
+NonNegativeRate, PositiveRate = quantity("rad/s", ge=0.0), quantity("rad/s", gt=0.0)
+PositiveAcceleration = quantity("m/s**2", gt=0.0)
+GSensitivity, GSensitivityError = quantity("rad*s/m"), quantity("rad*s/m", ge=0.0)
+Drift, DriftError = quantity("rad/s/K"), quantity("rad/s/K", ge=0.0)
+_SKEW = 1e-3  # how far typed direction cosines may be from orthonormal
+
+
+def _triple(kind: Any) -> Any:
+    return tuple[kind, kind, kind]
+
+
+def _matrix(kind: Any) -> Any:
+    return tuple[_triple(kind), _triple(kind), _triple(kind)]
+
+
+def _unit(si: str) -> Any:
+    def check(text: str) -> str:
+        to_si(f"1 {text}", si)
+        return text
+
+    return Annotated[str, AfterValidator(check)]
+
+
+class Columns(Table):
+    """Names of columns in the CSV file."""
+
+    time: str
+    rate: _triple(str)
+    acceleration: _triple(str) | None = None
+    temperature: str | None = None
+
+
+class Units(Table):
+    """Units of the columns."""
+
+    time: _unit("s")
+    rate: _unit("rad/s")
+    acceleration: _unit("m/s**2") | None = None
+    temperature: _unit("K") | None = None
+
+
+class GyroUncertainty(Table):
+    """Standard uncertainties: ``bias_instability`` (rad/s) is B of IEEE 952, scale and ``misalignment`` (rad) are those of one
+    entry after calibration and mounting, ``g_sensitivity`` in rad s/m, ``temperature`` in rad/s/K. White noise is in the log."""
+
+    bias_instability: NonNegativeRate
+    scale: NonNegativeNumber
+    misalignment: quantity("rad", ge=0.0)
+    g_sensitivity: GSensitivityError
+    temperature: DriftError = 0.0
+
+
+class Gyro(Table):
+    """Calibration of the gyros in sensor axes; zero where absent, except what clipping and quantisation are judged by."""
+
+    range: PositiveRate
+    resolution: NonNegativeRate
+    uncertainty: GyroUncertainty
+    bias: _triple(Rate) = (0.0,) * 3
+    scale_error: _triple(Number) = (0.0,) * 3
+    misalignment: _matrix(Angle) = ((0.0,) * 3,) * 3
+    g_sensitivity: _matrix(GSensitivity) = ((0.0,) * 3,) * 3
+    temperature: _triple(Drift) = (0.0,) * 3
+    reference_temperature: quantity("K") = 293.15
+
+
+class Accelerometer(Table):
+    """Calibration of the accelerometers in sensor axes."""
+
+    range: PositiveAcceleration
+    bias: _triple(Acceleration) = (0.0,) * 3
+    scale_error: _triple(Number) = (0.0,) * 3
+
+
+class Triggers(Table):
+    """Instants (s of the log) known from elsewhere, such as a trigger channel, in place of those found in the accelerations."""
+
+    release: quantity("s")
+    ignition: quantity("s")
+
+
+class Windows(Table):
+    """``exit`` (s after ignition) of the payload from its rail with its standard uncertainty; ``rest`` (s) before release during
+    which no rate may exceed ``rest_rate`` (rad/s); ``after_release`` (s) until it is calm; length of the ``settled`` window (s)."""
+
+    exit: PositiveTime
+    exit_uncertainty: PositiveTime = 1e-3
+    rest: PositiveTime = 1.0
+    rest_rate: PositiveRate = np.radians(0.5)
+    after_release: NonNegativeTime = 0.05
+    settled: PositiveTime = 0.1
+
+
+class Sheet(Table):
+    """All of it."""
+
+    file: str
+    channel_class: Literal[60, 180, 600, 1000]
+    axes: _matrix(Number)
+    columns: Columns
+    units: Units
+    gyro: Gyro
+    windows: Windows
+    accelerometer: Accelerometer | None = None
+    events: Triggers | None = None
+    description: str = ""
+    simulated: bool = False
+    scene: str | None = None
+
+    @model_validator(mode="after")
+    def _whole(self) -> "Sheet":
+        wrong = [f"{name} both in [columns] and in [units], or in neither" for name in ("acceleration", "temperature")
+                 if (getattr(self.columns, name) is None) != (getattr(self.units, name) is None)]
+        if self.columns.acceleration is None and self.events is None:
+            wrong.append("accelerations, in which release and ignition show, or [events] that says when they were")
+        if self.columns.acceleration is not None and self.accelerometer is None:
+            wrong.append("[accelerometer] with the range of the accelerations")
+        axes = np.array(self.axes)
+        if np.abs(axes.T @ axes - np.eye(3)).max() > _SKEW:
+            wrong.append("axes of unit length, perpendicular to each other")
+        elif np.linalg.det(axes) < 0.0:
+            wrong.append("right-handed axes")
+        if wrong:
+            raise ValueError("; ".join(wrong))
+        return self
+
+    @property
+    def mounting(self) -> np.ndarray:
+        """Rotation (3,3) from sensor to body axes: the one nearest to ``axes``, which were typed with a few digits."""
+        left, _, right = np.linalg.svd(np.array(self.axes))
+        return left @ right
+
+
+def load(path: str | Path) -> Sheet:
+    """Read a sheet. Raises SceneError listing every fault."""
+    raw = reading.toml(Path(path), str(path))
+    try:
+        return Sheet.model_validate(raw, context={})
+    except ValidationError as error:
+        raise SceneError(faults_of(error, str(path))) from error

@@ -1,0 +1,45 @@
+"""Release and ignition in closed-form drops across levels of noise, with knocks that a plain threshold falls for."""
+
+import numpy as np
+import pytest
+
+from studies.droptest import events
+from studies.droptest.calibrated import Calibrated
+from studies.droptest.events import GRAVITY
+from tests.studies.droptest.synthetic import BURN, IGNITION, INTERVAL, RELEASE, motion, sheet
+
+
+def knocked(noise, seed):
+    """A hoist that jerks (10 ms of almost no load), a latch that knocks along X harder than thrust begins, and noise (m/s2)."""
+    time, rate, force = motion([0.0] * 3, [0.1, 0.0, 0.0])
+    jerk = (time > 0.4) & (time < 0.41)
+    force[jerk, 2] = 1.0
+    latch = (time >= RELEASE + 0.1) & (time < RELEASE + 0.103)
+    force[latch, 0] += 40.0
+    return Calibrated(time, rate, force + noise * np.random.default_rng(seed).standard_normal(force.shape), None)
+
+
+def naive(found):
+    """The first sample below g/2, and the first after it that is pushed by 3 m/s2."""
+    release = int(np.argmax(np.linalg.norm(found.force, axis=1) < 0.5 * GRAVITY))
+    return found.time[release], found.time[release + int(np.argmax(found.force[release:, 0] > 3.0))]
+
+
+@pytest.mark.parametrize("noise, close", [(0.0, 1), (0.05, 1), (0.5, 1), (2.0, 2)])
+def test_release_and_ignition_are_found_to_the_sample(noise, close):
+    """The thrust rises as a half sine, so that six standard deviations are felt asin(6 noise / 300) / pi of it late."""
+    late = BURN / np.pi * np.arcsin(max(6.0 * noise, 1.0) / 300.0)
+    for seed in range(10):
+        found = knocked(noise, seed)
+        seen = events.find(sheet(), found, "test")
+        assert abs(seen.release - RELEASE) <= (close + 0.5) * INTERVAL
+        assert -1.5 * INTERVAL <= seen.ignition - IGNITION <= late + 2.5 * INTERVAL
+        release, ignition = naive(found)
+        assert release < RELEASE - 0.1 and ignition < IGNITION - 0.1  # the control falls for the jerk and the latch, or for noise
+
+
+def test_windows_keep_clear_of_what_stirs():
+    ask = sheet()
+    spans = events.spans(ask, knocked(0.0, 0), events.Events(RELEASE, IGNITION, True), "test")
+    assert spans.rest[1] < RELEASE < spans.reference[0] < spans.reference[1] < IGNITION < spans.settled[0] < spans.settled[1]
+    assert spans.instant == pytest.approx(IGNITION + ask.windows.exit + 2e-3)
