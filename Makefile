@@ -12,7 +12,7 @@ ASKED = --scene $(SCENE) --out $(OUT)
 READY = .venv/.ready
 
 .DEFAULT_GOAL := help
-.PHONY: help mesh highfi lowfi calibrate compare cost stability ablation ensemble report view pictures convergence full-report bench test test-slow clean
+.PHONY: help mesh highfi lowfi calibrate compare cost stability ablation ensemble flight report view pictures convergence full-report bench test test-slow clean
 
 help: ## print this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## /{printf "  make %-12s %s\n", $$1, $$2}' Makefile
@@ -44,6 +44,9 @@ ablation: $(READY) ## what each effect changes and costs
 
 ensemble: $(READY) ## 10,000 varied cases of the surrogate: what rates to expect (CASES=1000000 for a million)
 	$(TIPOFF) ensemble $(ASKED) $(if $(CASES),--cases $(CASES))
+
+flight: $(READY) ## after separation: miss of a target in orbit, pointing, coning, whether it touches again
+	$(TIPOFF) flight $(ASKED) $(if $(CASES),--cases $(CASES))
 
 bench: $(READY) ## speed of the solvers against what one would write today: OUT/bench
 	$(TIPOFF) bench --out $(OUT)

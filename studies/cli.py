@@ -11,6 +11,7 @@ from typing import Annotated, Optional
 import typer
 
 from studies.asked import guarded, quantity, study_of
+from studies.commands import flight
 from studies.options import (CheckpointEvery, Conditions, ElementSize, Fidelity, Json, OnWalls, Out, Resume, Sampling, SceneName, Set,
                              Workers)
 
@@ -268,6 +269,9 @@ def ensemble(scene: SceneName = "reference", out: Out = Path("out"), set_: Set =
         from studies.stages import ensemble as stage
 
         print("\n".join(stage.case_lines(found) if case is not None else ensemble_summary.lines(found)))
+
+
+flight.add(app)
 
 
 @app.command()

@@ -24,4 +24,6 @@ class Answer(NamedTuple):
         return import_module(f"studies.stages.{self.name}").stored(study)
 
 
-ANSWERS: tuple[Answer, ...] = ()
+ANSWERS: tuple[Answer, ...] = (
+    Answer("flight", "After separation", "Flight"),
+)
