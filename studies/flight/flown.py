@@ -26,7 +26,7 @@ class Flown(NamedTuple):
     ``limit`` (n,) s, when the pointing limit is first reached, infinite where it is not before the target; NaN for a target not passed.
     ``cone`` (n,2) rad, least and largest angle of the x axis from the angular momentum, ``coning`` (n,) rad/s, its mean rate about it; ``nutation`` (n,) s.
     ``clearance`` (n,) m, ``closest`` (n,) s, when that was; ``returns`` (n,) m, least gap between the spheres about both bodies once they
-    were farthest, infinite where they never turn back. NaN without boxes."""
+    were farthest, infinite where they come no nearer than the target was. NaN without boxes."""
 
     passes: np.ndarray
     miss: np.ndarray
@@ -197,4 +197,4 @@ def _kept(both: Pair) -> np.ndarray:
     far = np.linspace(0.0, 1.0, _SCAN) * flight.duration
     turned = far[spheres(np.broadcast_to(far, (len(away), _SCAN))).argmax(axis=1)]
     back, _ = boxes.least(spheres, turned, np.full(len(away), flight.duration), _SCAN // 4, 2)
-    return np.stack([clearance, closest, np.where(turned < flight.duration, back, np.inf)])
+    return np.stack([clearance, closest, np.where((turned < flight.duration) & (back < flight.range), back, np.inf)])

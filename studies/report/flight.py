@@ -91,7 +91,7 @@ def _scatter(found: dict) -> Chart:
               *_exceeded(many, "tip_off_miss_m", errors, "by errors alone", AMBER, "--")]
     marks = [Line(orbital_y[:1], orbital_z[:1], "without errors", VERMILION, 1.0, "", marker="o"), Line([0.0], [0.0], "target", "#000000", 1.0, "", marker="D")]
     return Chart("flight-miss", [
-        Panel(f"{len(y):,} cases in the plane of the target", "y (m)", "z (m)", [Line(y, z, "case", NAVY, 1.0, "", 0.35, marker="o", size=3.0), *marks]),
+        Panel(f"{len(y):,} of {many['settled']:,} cases in the plane of the target", "y (m)", "z (m)", [Line(y, z, "case", NAVY, 1.0, "", 0.35, marker="o", size=3.0), *marks]),
         Panel("cases that miss by more", "miss (m)", "share (%)", shares)], columns=2, height=360)
 
 

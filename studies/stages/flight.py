@@ -61,7 +61,10 @@ def run(study: Study, asked: Asked = Asked()) -> dict:
 def stored(study: Study) -> dict | None:
     """The result, if it was made from the present scene, code and settings."""
     found = read(study.path(f"{NAME}.json"))
-    return found if found and study.scene.flight and found["key"] == _key(study, Asked(**found["asked"])) else None
+    try:
+        return found if found and study.scene.flight and found["key"] == _key(study, Asked(**found["asked"])) else None
+    except SceneError:  # the file of distributions is gone, or says something else by now
+        return None
 
 
 def _key(study: Study, asked: Asked) -> str:

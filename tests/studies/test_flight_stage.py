@@ -11,8 +11,8 @@ from studies import population
 from studies.cli import app
 from studies.flight import summary
 from studies.population import Surrogate
+from studies.report import chart
 from studies.report import flight as section
-from studies.report.chart import to_html
 from studies.settings import Settings
 from studies.stages import flight
 from studies.study import Study
@@ -32,7 +32,7 @@ def call(*arguments):
     return CliRunner().invoke(app, ["flight", *(str(argument) for argument in arguments)])
 
 
-def test_conditions_and_cases_are_flown_and_kept(tmp_path, uncalibrated):
+def test_conditions_and_cases_are_flown_and_kept(tmp_path, uncalibrated, monkeypatch):
     asked = ("--condition", "phi35", "--condition", "phi60", "--cases", 60, "--out", tmp_path)
     first = call(*asked)
     assert first.exit_code == 0, first.output
@@ -58,6 +58,7 @@ def test_conditions_and_cases_are_flown_and_kept(tmp_path, uncalibrated):
 
     stamp = (folder / "flight.json").stat().st_mtime_ns
     assert call(*asked).exit_code == 0 and (folder / "flight.json").stat().st_mtime_ns == stamp  # nothing changed
+    monkeypatch.setattr(chart, "to_files", lambda *_: [])  # drawn once is enough
     further = json.loads(call(*asked, "--range", "1 km", "--json").stdout)
     assert further["flight"]["range_m"] == 1000.0 and further["conditions"][0]["flown"]["miss_m"] > 50.0 * row["miss_m"]
     assert further["cases"]["store"] == found["cases"]["store"]  # another flight of the same ejections
@@ -66,7 +67,9 @@ def test_conditions_and_cases_are_flown_and_kept(tmp_path, uncalibrated):
     assert flight.stored(study)["key"] == further["key"]
     assert flight.stored(Study(load("reference"), folder, Settings(), ("phi35", "phi60"))) is None
     assert flight.stored(Study(load("reference").replace({"flight": None}), folder, Settings())) is None
-    drawn = section.draw(found, lambda chart, words: to_html(chart) + words)
+    (folder / "flight.json").write_text(json.dumps(further | {"asked": further["asked"] | {"vary": "gone.toml"}}))
+    assert flight.stored(study) is None
+    drawn = section.draw(found, lambda drawing, words: chart.to_html(drawing) + words)
     assert 'id="chart-flight-miss"' in drawn and "misses by" not in drawn and "touch the platform again" in drawn
 
 
