@@ -67,6 +67,11 @@ def unknown_size(scene: Scene) -> str:
     return "" if _boxes(scene) else "flight.envelope lists no box of the platform, and its rails are given by a file"
 
 
+def unknown_rails(scene: Scene) -> bool:
+    """Whether the rails are given by a file, so that only ``flight.envelope`` can say where they are."""
+    return not isinstance(scene.rail, SectionTable)
+
+
 def _size(scene: Scene) -> tuple | None:
     return scene.flight.body or scene.payload.size
 
@@ -94,7 +99,7 @@ def _boxes(scene: Scene) -> list[tuple]:
     """Corners (low, high) of the platform's boxes in scene axes at ignition."""
     listed = [(box.low, box.high) for box in scene.flight.envelope]
     rail = scene.rail
-    if not isinstance(rail, SectionTable):
+    if unknown_rails(scene):
         return listed
     gap = rail.gap(scene.contact.clearance if scene.contact else 0.0)
     for corner in dict.fromkeys(pad.position[1:] for pad in scene.pads):

@@ -42,13 +42,14 @@ class Flown(NamedTuple):
 
 
 class Pair(NamedTuple):
-    """Payload and platform of n cases in free flight: states (n,6) in orbit axes, free rotations, the bodies, and the orbit."""
+    """Payload and platform of n cases in free flight: states (n,6) in orbit axes and free rotations, from their ``start`` on."""
 
     payload: np.ndarray
     platform: np.ndarray
     payload_turn: rotation.Free
     platform_turn: rotation.Free
     bodies: Bodies
+    start: Start
     flight: Flight
 
 
@@ -74,7 +75,7 @@ def pair(flight: Flight, bodies: Bodies, start: Start) -> Pair:
     return Pair(orbit.state(n, axes, start.place - bodies.origin, start.velocity),
                 orbit.state(n, axes, start.platform_place - bodies.origin, start.platform_velocity),
                 rotation.free(bodies.inertia, start.turn, start.rate), rotation.free(bodies.platform_inertia, start.platform_turn, start.platform_rate),
-                bodies, flight)
+                bodies, start, flight)
 
 
 def found(both: Pair) -> Flown:
@@ -93,12 +94,8 @@ def found(both: Pair) -> Flown:
 
 def _perfect(both: Pair) -> np.ndarray:
     """States (n,6) of payloads that leave the middle of the rail with the same velocity along the launch axis and none across."""
-    n, axes, along = both.flight.mean_motion, both.flight.axes, np.array([1.0, 0.0, 0.0])
-    turning = np.zeros((len(both.payload), 3, 3))
-    turning[:, 0, 1], turning[:, 1, 0] = -n, n
-    place = both.payload[:, :3] @ axes + both.bodies.origin
-    velocity = (both.payload[:, 3:] + np.einsum("nij,nj->ni", turning, both.payload[:, :3])) @ axes
-    return orbit.state(n, axes, place * along - both.bodies.origin, velocity * along)
+    along = np.array([1.0, 0.0, 0.0])
+    return orbit.state(both.flight.mean_motion, both.flight.axes, both.start.place * along - both.bodies.origin, both.start.velocity * along)
 
 
 def _passed(flight: Flight, apart: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -45,10 +45,11 @@ _JUDGED = ("miss_m", "tip_off_miss_m", "pointing_deg", "limit_s", "cone_largest_
 
 
 def orbit(scene: Scene) -> dict:
-    """The flight asked for, resolved; ``no_clearance`` says why none can be told, empty where it can."""
+    """The flight asked for, resolved; ``no_clearance`` says why none can be told, empty where it can; ``rails_listed`` whether the
+    rails are among the boxes only if the scene lists them."""
     flight = scene.flight.record()
     return {"mean_motion_rad_s": flight.mean_motion, "period_s": 2.0 * np.pi / flight.mean_motion, "duration_s": flight.duration,
-            "range_m": flight.range, "launch_axis": flight.axes[:, 0].tolist(), "no_clearance": bodies.unknown_size(scene),
+            "range_m": flight.range, "launch_axis": flight.axes[:, 0].tolist(), "no_clearance": bodies.unknown_size(scene), "rails_listed": bodies.unknown_rails(scene),
             "pointing_limit_deg": flight.pointing_limit and float(np.degrees(flight.pointing_limit))}
 
 
@@ -116,9 +117,16 @@ def lines(found: dict) -> list[str]:
     said += [f"  {words[name]:44} " + "  ".join(_quantile(row) for row in rows) for name, rows in many["quantiles"].items()]
     if many["touch"]:
         said.append(f"  touch again                                  {many['touch']['count']:,} of {many['touch']['of']:,}")
-    if flight["no_clearance"]:
-        said.append(f"  no clearance: {flight['no_clearance']}")
+    if doubt := doubts(flight):
+        said.append(f"  {doubt}")
     return [*said, f"  bounds: {many['confidence']:.0%} confidence, {many['bounds']}", f"  store {many['store']}, data {found['data']}"]
+
+
+def doubts(flight: dict) -> str:
+    """What is to be known of the clearance, given ``orbit``, or nothing."""
+    if flight["no_clearance"]:
+        return f"no clearance is told: {flight['no_clearance']}"
+    return "the rails are given by a file: the clearance counts them only as far as flight.envelope lists them" if flight["rails_listed"] else ""
 
 
 def _one(row: dict) -> str:

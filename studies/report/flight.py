@@ -3,7 +3,7 @@
 import math
 from typing import Callable
 
-from studies.flight.summary import QUANTITIES
+from studies.flight.summary import QUANTITIES, doubts
 from studies.report.chart import AMBER, GREY, NAVY, TEAL, VERMILION, Chart, Line, Panel
 from studies.report.markup import Html, caption, number, paragraph, table
 
@@ -23,8 +23,7 @@ def draw(found: dict, figure: Callable[[Chart, str], Html]) -> Html:
         paragraph(_words(found)), *(figure(drawing, words) for drawing, words in charts(found)),
         table(("condition", *(by_name[name] for name in _SHOWN), "x axis from angular momentum (deg)"), rows, dense=True),
         caption("Clearance below zero is depth of overlap: the boxes are the scene's, rigid and undeformed. A body that stood back from its pads by as "
-                "much would pass clear; flight.body says how large it is without them."
-                if not flight["no_clearance"] else f"No clearance is told: {flight['no_clearance']}."),
+                f"much would pass clear; flight.body says how large it is without them. {doubts(flight)}" if not flight["no_clearance"] else doubts(flight)),
         table(("quantity", *(f"{100.0 * share:.4g} %" for share in shares)),
               [(by_name[name], *map(_quantile, quantiles)) for name, quantiles in judged.items()], dense=True),
         caption(f"{counts['asked']:,} cases, {many['settled']:,} of them flown, {many['outside']:,} outside what the calibration was made for. Share of cases "
@@ -34,8 +33,7 @@ def draw(found: dict, figure: Callable[[Chart, str], Html]) -> Html:
 def charts(found: dict) -> list[tuple[Chart, str]]:
     """Charts with their captions."""
     curves, flight = found["curves"], found["flight"]
-    drawn = [(_paths(curves, flight), "Left: the way to the target, vertical in orbit axes at exit, sideways and up as the scene's y and z. The fall that all "
-              "shots have in common is the orbit's. Right: relative to the platform, orbit axes; at this scale the conditions can hardly be told apart."),
+    drawn = [(_paths(curves, flight), "Left: the way to the target, vertical in orbit axes at exit, sideways and up as the scene's y and z. XX Right: relative to the platform, orbit axes; at this scale the conditions can hardly be told apart."),
              (_axes(curves), "Left: the cone of the payload's x axis in inertial space, one round about its angular momentum, free rotation of the whole "
               "inertia tensor; distance from the middle is the angle from the launch axis, the marker the instant of passing the target. Right: "
               "that angle until the target is passed.")]
