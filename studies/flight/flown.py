@@ -14,6 +14,7 @@ from studies.flight import boxes, orbit, rotation
 from studies.flight.bodies import Bodies, Start
 
 _SCAN = 400  # instants at which a flight is looked at before an event is located between two of them
+_LOOKS = 60  # for a least distance, and as many twice more about the best: to 2e-5 of the time that is looked at
 _HALVINGS = 60
 _APPROACHES = 2000  # of the pointing limit, each by what is left of it over the rate
 _CLOSE = 1e-9  # rad
@@ -184,7 +185,7 @@ def clear_after(both: Pair) -> np.ndarray:
 def _kept(both: Pair) -> np.ndarray:
     """Least clearance (n,) m while the payload draws away, when (n,) s, and the least gap (n,) m between spheres if it comes back."""
     bodies, flight, away = both.bodies, both.flight, clear_after(both)
-    clearance, closest = boxes.least(lambda time: gap(both, time), np.zeros(len(away)), away, _SCAN // 2, 1)
+    clearance, closest = boxes.least(lambda time: gap(both, time), np.zeros(len(away)), away, _LOOKS, 2)
     reach = np.linalg.norm(abs(bodies.boxes) + bodies.box_halves, axis=2).max(axis=1)
     reach = reach + np.linalg.norm(bodies.half, axis=1) + np.linalg.norm(bodies.centre, axis=1)
 
@@ -193,5 +194,5 @@ def _kept(both: Pair) -> np.ndarray:
 
     far = np.linspace(0.0, 1.0, _SCAN) * flight.duration
     turned = far[spheres(np.broadcast_to(far, (len(away), _SCAN))).argmax(axis=1)]
-    back, _ = boxes.least(spheres, turned, np.full(len(away), flight.duration), _SCAN // 4, 2)
+    back, _ = boxes.least(spheres, turned, np.full(len(away), flight.duration), _LOOKS, 2)
     return np.stack([clearance, closest, np.where((turned < flight.duration) & (back < flight.range), back, np.inf)])
