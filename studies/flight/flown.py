@@ -24,7 +24,8 @@ _CHUNK = 250  # cases whose arrays are held at once
 class Flown(NamedTuple):
     """n cases. ``passes`` (n,) s, when the target is passed, ``miss`` (n,2) m in scene y and z there, and ``orbital`` (n,2) m, the part of it
     that a shot of the same axial velocity without any error has too; ``pointing`` (n,) rad, between payload x axis and launch axis, then;
-    ``limit`` (n,) s, when the pointing limit is first reached, infinite where it is not before the target; NaN for a target not passed.
+    ``limit`` (n,) s, when the pointing limit is first reached, infinite where it is not before the target, NaN where that stayed open. NaN
+    for a target not passed.
     ``cone`` (n,2) rad, least and largest angle of the x axis from the angular momentum, ``coning`` (n,) rad/s, its mean rate about it; ``nutation`` (n,) s.
     ``clearance`` (n,) m, ``closest`` (n,) s, when that was; ``returns`` (n,) m, least gap between the spheres about both bodies once they
     were farthest, infinite where they come no nearer than the target was. NaN without boxes."""

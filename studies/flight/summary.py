@@ -69,6 +69,7 @@ def cases(found: Flown, population: Population, uncertainty: Uncertainty) -> dic
             "store": population.store, "confidence": CONFIDENCE, "varied": uncertainty.resolved(),
             "bounds": "order statistics of independent draws" if independent else f"none: points of {uncertainty.sampling} depend on each other",
             "quantiles": {name: _quantiles(values[~np.isnan(values)], independent) for name, values in judged.items()},
+            "limit_open": 0 if np.isnan(found.limit).all() else int(np.isnan(found.limit).sum()),  # all: none was asked for
             "touch": _share(found.clearance[told] <= 0.0, independent), "not_reached": _share(~reached, independent),
             "points_m": [[float(f"{value:.6g}") for value in point] for point in np.hstack([found.miss, found.orbital])[reached][:_SCATTERED]]}
 
@@ -117,16 +118,20 @@ def lines(found: dict) -> list[str]:
     said += [f"  {words[name]:44} " + "  ".join(_quantile(row) for row in rows) for name, rows in many["quantiles"].items()]
     if many["touch"]:
         said.append(f"  touch again                                  {many['touch']['count']:,} of {many['touch']['of']:,}")
-    if doubt := doubts(flight):
+    if doubt := doubts(found):
         said.append(f"  {doubt}")
     return [*said, f"  bounds: {many['confidence']:.0%} confidence, {many['bounds']}", f"  store {many['store']}, data {found['data']}"]
 
 
-def doubts(flight: dict) -> str:
-    """What is to be known of the clearance, given ``orbit``, or nothing."""
-    if flight["no_clearance"]:
-        return f"no clearance is told: {flight['no_clearance']}"
-    return "the rails are given by a file: the clearance counts them only as far as flight.envelope lists them" if flight["rails_listed"] else ""
+def doubts(found: dict) -> str:
+    """What is to be known of the result beside its numbers, or nothing."""
+    flight, left = found["flight"], found["cases"]["limit_open"]
+    said = [f"no clearance is told: {flight['no_clearance']}"] if flight["no_clearance"] else []
+    if flight["rails_listed"]:
+        said.append("the rails are given by a file: the clearance counts them only as far as flight.envelope lists them")
+    if left:
+        said.append(f"whether {left:,} cases reach the pointing limit stayed open, and they are not counted")
+    return "; ".join(said)
 
 
 def _one(row: dict) -> str:

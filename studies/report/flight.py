@@ -23,7 +23,7 @@ def draw(found: dict, figure: Callable[[Chart, str], Html]) -> Html:
         paragraph(_words(found)), *(figure(drawing, words) for drawing, words in charts(found)),
         table(("condition", *(by_name[name] for name in _SHOWN), "x axis from angular momentum (deg)"), rows, dense=True),
         caption("Clearance below zero is depth of overlap: the boxes are the scene's, rigid and undeformed. A body that stood back from its pads by as "
-                f"much would pass clear; flight.body says how large it is without them. {doubts(flight)}" if not flight["no_clearance"] else doubts(flight)),
+                f"much would pass clear; flight.body says how large it is without them. {doubts(found)}" if not flight["no_clearance"] else doubts(found)),
         table(("quantity", *(f"{100.0 * share:.4g} %" for share in shares)),
               [(by_name[name], *map(_quantile, quantiles)) for name, quantiles in judged.items()], dense=True),
         caption(f"{counts['asked']:,} cases, {many['settled']:,} of them flown, {many['outside']:,} outside what the calibration was made for. Share of cases "

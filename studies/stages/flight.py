@@ -15,7 +15,7 @@ from studies import population
 from studies.flight import bodies, curves, flown, summary
 from studies.progress import Board
 from studies.store import SOURCES
-from studies.study import Study, read
+from studies.study import Study, StudyError, read
 
 NAME = "flight"
 _SOURCES = (*SOURCES["highfi"], *SOURCES["lowfi"], "calibrate")
@@ -106,6 +106,8 @@ def _cases(study: Study, asked: Asked, drawn: Drawn) -> tuple[dict, flown.Flown]
     model = population.surrogate(study, asked.walls)
     cases = population.run(study, NAME, model, drawn)
     which = np.flatnonzero(cases.settled)
+    if not len(which):
+        raise StudyError(f"none of {drawn.asked:,} cases left the rail and settled, so there is nothing to fly; store {cases.store}")
     variations, rows = Variations(model.scene), drawn.rows(0, drawn.asked)
     parted = bodies.bodies(variations.of(rows[number]) for number in which)
     with Board(NAME, 1) as board:

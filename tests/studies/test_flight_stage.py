@@ -73,6 +73,18 @@ def test_conditions_and_cases_are_flown_and_kept(tmp_path, uncalibrated, monkeyp
     assert 'id="chart-flight-miss"' in drawn and "misses by" not in drawn and "touch the platform again" in drawn
 
 
+def test_without_an_exit_there_is_no_flight(tmp_path, uncalibrated):
+    result = call("--condition", "phi35", "--cases", 4, "--set", "duration=20 ms", "--out", tmp_path)
+    assert result.exit_code == 1 and "none of 4 cases left the rail" in result.stderr and not (tmp_path / "reference" / "flight.json").exists()
+
+
+def test_what_is_to_be_doubted():
+    orbit = summary.orbit(load("channel"))
+    assert "given by a file" in summary.doubts({"flight": orbit, "cases": {"limit_open": 0}})
+    assert "3 cases" in summary.doubts({"flight": summary.orbit(load("reference")), "cases": {"limit_open": 3}})
+    assert summary.doubts({"flight": summary.orbit(load("reference")), "cases": {"limit_open": 0}}) == ""
+
+
 @pytest.mark.parametrize("arguments, words", [
     (["--set", "flight=absent"], '--set flight.altitude="500 km" --set flight.range="100 m"'), (["--range", "-5 m"], "flight.range"),
     (["--range", "5 kg"], "flight.range"), (["--altitude", "absent"], "one of altitude and mean_motion"),
