@@ -1,1 +1,1 @@
-"""After separation: free rotation, relative motion in orbit, clearance of boxes, and what they say of a payload that left its rail."""
+"""After separation: free rotation, relative motion in orbit, clearance of boxes, and what becomes of a payload."""

@@ -1,7 +1,8 @@
 """What flies: both bodies as their scene has them, the boxes they fill, and the state in which they part.
 
-The payload is a box of ``flight.body``, or else ``payload.size``, about its nominal mass centre. The platform is the boxes of ``flight.envelope``, and two for every
-built-in rail, along its legs; other rails are files, of which ``flight.envelope`` has to say where they lie.
+The payload is a box of ``flight.body``, or else ``payload.size``, about its nominal mass centre. The platform is the boxes of
+``flight.envelope``, and two for every built-in rail, along its legs; other rails are files, of which ``flight.envelope`` has to say
+where they lie.
 """
 
 from typing import Iterable, NamedTuple, Sequence
@@ -16,9 +17,10 @@ from scenes.scene import Scene
 
 
 class Bodies(NamedTuple):
-    """Of n cases, each about its own mass centre and in its own axes: inertia (n,3,3) kg m2 of payload and platform, half sizes (n,3) m and
-    centre (n,3) m of the payload's box, the platform's b boxes by centre and half sizes (n,b,3) m; and in scene axes the mass centre (n,3)
-    m of both together at ignition. The platform of a scene without one is the scene axes, at rest; without boxes b is zero."""
+    """Of n cases, each about its own mass centre and in its own axes: inertia (n,3,3) kg m2 of payload and platform, half sizes
+    (n,3) m and centre (n,3) m of the payload's box, the platform's b boxes by centre and half sizes (n,b,3) m; and in scene axes
+    the mass centre (n,3) m of both together at ignition. The platform of a scene without one is the scene axes, at rest; without
+    boxes b is zero."""
 
     inertia: np.ndarray
     platform_inertia: np.ndarray
@@ -30,8 +32,8 @@ class Bodies(NamedTuple):
 
 
 class Start(NamedTuple):
-    """n cases at exit, in scene axes: payload and platform by place (m), velocity (m/s), rates in body axes (rad/s), all (n,3), and attitude
-    (n,3,3), body to scene. Velocity and rate of the payload are the settled ones."""
+    """n cases at exit, in scene axes: payload and platform by place (m), velocity (m/s), rates in body axes (rad/s), all (n,3), and
+    attitude (n,3,3), body to scene. Velocity and rate of the payload are the settled ones."""
 
     place: np.ndarray
     velocity: np.ndarray
@@ -51,8 +53,8 @@ def bodies(scenes: Iterable[Scene]) -> Bodies:
 def start(found) -> Start:
     """State of settled cases from columns of results, or from anything with the same names (``of_outcomes``)."""
     attitude, platform = (Rotation.from_rotvec(part).as_matrix() for part in (found.exit_attitude, found.exit_platform_attitude))
-    return Start(found.exit_position, found.velocity, attitude, found.rate, found.exit_platform_position, found.exit_platform_velocity,
-                 platform, found.exit_platform_rate)
+    return Start(found.exit_position, found.velocity, attitude, found.rate, found.exit_platform_position,
+                 found.exit_platform_velocity, platform, found.exit_platform_rate)
 
 
 def of_outcomes(outcomes: Sequence[Outcome]) -> Outcome:
@@ -82,8 +84,9 @@ def _bodies(scene: Scene) -> tuple:
     place = np.array(platform.mass_centre if platform else (0.0, 0.0, 0.0))
     corners = np.zeros((0, 2, 3)) if unknown_size(scene) else np.array(_boxes(scene))
     low, high = corners.transpose(1, 0, 2)
-    return (tensor(scene.payload.inertia), platform.inertia if platform else np.eye(3), 0.5 * np.array(_size(scene) or np.zeros(3)), -offset,
-            0.5 * (low + high) - place, 0.5 * (high - low), _origin(scene, offset, place))
+    size = np.array(_size(scene) or np.zeros(3))
+    return (tensor(scene.payload.inertia), platform.inertia if platform else np.eye(3), 0.5 * size, -offset, 0.5 * (low + high) - place,
+            0.5 * (high - low), _origin(scene, offset, place))
 
 
 def _origin(scene: Scene, offset: np.ndarray, place: np.ndarray) -> np.ndarray:

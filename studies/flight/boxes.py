@@ -1,8 +1,8 @@
 """How far a turning box is from others: the largest separation on the 15 axes that can part two boxes (Gottschalk, Lin and Manocha,
 SIGGRAPH 1996), or on the three faces of one of them together, where more than one part them.
 
-Below zero it is the depth of overlap, exactly. Above zero it is exact where a corner is nearest to a face, an edge to an edge, or for boxes
-that are parallel, and else less than the distance: a box that is called clear is clear.
+Below zero it is the depth of overlap, exactly. Above zero it is exact where a corner is nearest to a face, an edge to an edge, or
+for boxes that are parallel, and else less than the distance: a box that is called clear is clear.
 """
 
 from typing import Callable
@@ -13,8 +13,8 @@ _PARALLEL = 1e-9  # sine of edges whose product is no axis: their faces tell wha
 
 
 def separation(turn: np.ndarray, centre: np.ndarray, half: np.ndarray, other: np.ndarray) -> np.ndarray:
-    """Separation (...) m of boxes of half sizes ``half`` (...,3), whose axes are the columns of ``turn`` (...,3,3) and whose centre lies at
-    ``centre`` (...,3), from boxes of half sizes ``other`` (...,3) about the origin and along the axes."""
+    """Separation (...) m of boxes of half sizes ``half`` (...,3), whose axes are the columns of ``turn`` (...,3,3) and whose centre
+    lies at ``centre`` (...,3), from boxes of half sizes ``other`` (...,3) about the origin and along the axes."""
     size = abs(turn)
     found = np.maximum(_faces(abs(centre) - other - np.einsum("...ij,...j->...i", size, half)),
                        _faces(abs(np.einsum("...i,...ij->...j", centre, turn)) - half - np.einsum("...ij,...i->...j", size, other)))
@@ -30,14 +30,15 @@ def separation(turn: np.ndarray, centre: np.ndarray, half: np.ndarray, other: np
 
 
 def _faces(apart: np.ndarray) -> np.ndarray:
-    """Separation (...) of what is ``apart`` (...,3) along three axes at right angles: the root of the sum of the squares of gaps."""
+    """Separation (...) of what is ``apart`` (...,3) along three axes at right angles: the length of the gap."""
     largest = apart.max(axis=-1)
     return np.where(largest > 0.0, np.linalg.norm(np.maximum(apart, 0.0), axis=-1), largest)
 
 
-def least(of: Callable[[np.ndarray], np.ndarray], begin: np.ndarray, end: np.ndarray, points: int, rounds: int) -> tuple[np.ndarray, np.ndarray]:
-    """Least value (n,) of n functions ``of`` times (n,k) between ``begin`` and ``end`` (n,), and when: on ``points`` instants, then as often
-    as there are ``rounds`` on as many between the neighbours of the best."""
+def least(of: Callable[[np.ndarray], np.ndarray], begin: np.ndarray, end: np.ndarray, points: int,
+          rounds: int) -> tuple[np.ndarray, np.ndarray]:
+    """Least value (n,) of n functions ``of`` times (n,k) between ``begin`` and ``end`` (n,), and when: on ``points`` instants, then
+    as often as there are ``rounds`` on as many between the neighbours of the best."""
     rows, low, high = np.arange(len(begin)), begin, end
     for _ in range(1 + rounds):
         time = low[:, None] + (high - low)[:, None] * np.linspace(0.0, 1.0, points)

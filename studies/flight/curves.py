@@ -1,4 +1,4 @@
-"""Curves of one flight for its pictures: the axis, the pointing error, the paths and the clearance, short enough for a result file."""
+"""Curves of one flight for its pictures, short enough for a result file: axis, pointing error, paths and clearance."""
 
 import numpy as np
 
@@ -10,9 +10,10 @@ _NEAR = 5e-4  # m of clearance up to which it is shown
 
 
 def of(both: flown.Pair, found: flown.Flown) -> dict:
-    """Curves of the one case of ``both``: axis_deg, where the payload's x axis points in one round about its angular momentum, as its angle from
-    the launch axis along scene y and z, and where it does at the target; pointing_deg and to_target_m, places in scene axes that turn with
-    the orbit, at time_s; orbit_m, places in orbit axes relative to the platform; clearance_m at clearance_s."""
+    """Curves of the one case of ``both``: axis_deg, where the payload's x axis points in one round about its angular momentum, as
+    its angle from the launch axis along scene y and z, and where it does at the target; pointing_deg and to_target_m, places in
+    scene axes that turn with the orbit, at time_s; orbit_m, places in orbit axes relative to the platform; clearance_m at
+    clearance_s."""
     flight = both.flight
     ends = float(found.passes[0]) if np.isfinite(found.passes[0]) else flight.duration
     time, whole = (np.linspace(0.0, end, _POINTS)[None] for end in (ends, flight.duration))
@@ -25,7 +26,7 @@ def of(both: flown.Pair, found: flown.Flown) -> dict:
 
 
 def _axis(both: flown.Pair, time: np.ndarray) -> np.ndarray:
-    """Where the x axis points at ``time`` (1,k) s: its angle (deg) from the launch axis, in the direction along y and z (k,2) it leans to."""
+    """Where the x axis points at ``time`` (1,k) s: its angle (deg) from the launch axis, in the direction (k,2) it leans to."""
     axis = rotation.at(both.payload_turn, time)[0][0, :, :, 0]
     across = np.hypot(axis[:, 1], axis[:, 2])
     return np.degrees(flown.pointing_error(both, time)[0])[:, None] * axis[:, 1:] / np.where(across > 0.0, across, 1.0)[:, None]

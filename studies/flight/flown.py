@@ -1,8 +1,8 @@
 """Where a payload goes after its exit: what it misses its target by, where it points, and how far it keeps from the platform.
 
-Nothing acts but gravity, from the exit on. The settled velocity and rate are taken to hold from there, so thrust that is left at the exit
-counts as delivered; moments by gravity, drag and light are left out. The target is where ``scenes.effects.flight`` puts it, and the miss is
-measured when the payload passes the plane through it across the launch axis, in orbit axes.
+Nothing acts but gravity, from the exit on. The settled velocity and rate are taken to hold from there, so thrust that is left at
+the exit counts as delivered; moments by gravity, drag and light are left out. The target is where ``scenes.effects.flight`` puts
+it, and the miss is measured when the payload passes the plane through it across the launch axis, in orbit axes.
 """
 
 from typing import Callable, NamedTuple, Sequence
@@ -22,13 +22,13 @@ _CHUNK = 250  # cases whose arrays are held at once
 
 
 class Flown(NamedTuple):
-    """n cases. ``passes`` (n,) s, when the target is passed, ``miss`` (n,2) m in scene y and z there, and ``orbital`` (n,2) m, the part of it
-    that a shot of the same axial velocity without any error has too; ``pointing`` (n,) rad, between payload x axis and launch axis, then;
-    ``limit`` (n,) s, when the pointing limit is first reached, infinite where it is not before the target, NaN where that stayed open. NaN
-    for a target not passed.
-    ``cone`` (n,2) rad, least and largest angle of the x axis from the angular momentum, ``coning`` (n,) rad/s, its mean rate about it; ``nutation`` (n,) s.
-    ``clearance`` (n,) m, ``closest`` (n,) s, when that was; ``returns`` (n,) m, least gap between the spheres about both bodies once they
-    were farthest, infinite where they come no nearer than the target was. NaN without boxes."""
+    """n cases. ``passes`` (n,) s, when the target is passed, ``miss`` (n,2) m in scene y and z there, and ``orbital`` (n,2) m, the
+    part of it that a shot of the same axial velocity without any error has too; ``pointing`` (n,) rad, between payload x axis and
+    launch axis, then; ``limit`` (n,) s, when the pointing limit is first reached, infinite where it is not before the target, NaN
+    where that stayed open. NaN for a target not passed. ``cone`` (n,2) rad, least and largest angle of the x axis from the angular
+    momentum, ``coning`` (n,) rad/s, its mean rate about it; ``nutation`` (n,) s. ``clearance`` (n,) m, ``closest`` (n,) s, when
+    that was; ``returns`` (n,) m, least gap between the spheres about both bodies once they were farthest, infinite where they come
+    no nearer than the target was. NaN without boxes."""
 
     passes: np.ndarray
     miss: np.ndarray
@@ -76,32 +76,33 @@ def pair(flight: Flight, bodies: Bodies, start: Start) -> Pair:
     n, axes = flight.mean_motion, flight.axes
     return Pair(orbit.state(n, axes, start.place - bodies.origin, start.velocity),
                 orbit.state(n, axes, start.platform_place - bodies.origin, start.platform_velocity),
-                rotation.free(bodies.inertia, start.turn, start.rate), rotation.free(bodies.platform_inertia, start.platform_turn, start.platform_rate),
-                bodies, start, flight)
+                rotation.free(bodies.inertia, start.turn, start.rate),
+                rotation.free(bodies.platform_inertia, start.platform_turn, start.platform_rate), bodies, start, flight)
 
 
 def found(both: Pair) -> Flown:
     """What becomes of every pair."""
     flight, cases = both.flight, len(both.payload)
-    target = orbit.state(flight.mean_motion, flight.axes, np.array([[flight.range, 0.0, 0.0]]) - both.bodies.origin, np.zeros((1, 3)))
-    target[:, 3:] = 0.0  # at rest in orbit axes
+    target = np.zeros((cases, 6))  # at rest in orbit axes
+    target[:, :3] = (np.array([flight.range, 0.0, 0.0]) - both.bodies.origin) @ flight.axes.T
     passes, miss = _passed(flight, both.payload - target)
     _, orbital = _passed(flight, _perfect(both) - target)
     pointing = pointing_error(both, np.nan_to_num(passes)[:, None])[:, 0]
     least, largest, coning = cone(both.payload_turn)
     clearance, closest, returns = _kept(both) if both.bodies.boxes.shape[1] else np.full((3, cases), np.nan)
-    return Flown(passes, miss, orbital, np.where(np.isfinite(passes), pointing, np.nan), _limit(both, passes), np.stack([least, largest], axis=1),
-                 coning, rotation.nutation_period(both.payload_turn), clearance, closest, returns)
+    return Flown(passes, miss, orbital, np.where(np.isfinite(passes), pointing, np.nan), _limit(both, passes),
+                 np.stack([least, largest], axis=1), coning, rotation.nutation_period(both.payload_turn), clearance, closest, returns)
 
 
 def _perfect(both: Pair) -> np.ndarray:
     """States (n,6) of payloads that leave the middle of the rail with the same velocity along the launch axis and none across."""
-    along = np.array([1.0, 0.0, 0.0])
-    return orbit.state(both.flight.mean_motion, both.flight.axes, both.start.place * along - both.bodies.origin, both.start.velocity * along)
+    flight, along = both.flight, np.array([1.0, 0.0, 0.0])
+    return orbit.state(flight.mean_motion, flight.axes, both.start.place * along - both.bodies.origin, both.start.velocity * along)
 
 
 def _passed(flight: Flight, apart: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """When (n,) s payloads pass the plane of their target, given states (n,6) apart from it, and how far (n,2) m beside it; NaN for never."""
+    """When (n,) s payloads pass the plane of their target, given states (n,6) apart from it, and how far (n,2) m beside it, or
+    NaN."""
     along, across = flight.axes[:, 0], flight.axes[:, 1:]
 
     def short(time: np.ndarray) -> np.ndarray:
@@ -149,10 +150,10 @@ def _limit(both: Pair, passes: np.ndarray) -> np.ndarray:
 
 
 def cone(body: rotation.Free) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Least and largest angle (n,) rad of the body's x axis from its angular momentum, zero at rest, and its mean rate (n,) rad/s about it.
+    """Least and largest angle (n,) rad of the body's x axis from its angular momentum, and its mean rate (n,) rad/s about it.
 
-    Principal axis 3 goes round with the precession, and so does x where the momentum, as seen from the body, goes round x too; else the
-    body's turning about axis 3 takes x along.
+    Principal axis 3 goes round with the precession, and so does x where the momentum, as seen from the body, goes round x too; else
+    the body's turning about axis 3 takes x along.
     """
     period = rotation.nutation_period(body)
     _, rate = rotation.at(body, np.where(np.isfinite(period), period, 0.0)[:, None] * np.linspace(0.0, 1.0, _SCAN))
@@ -171,8 +172,9 @@ def gap(both: Pair, time: np.ndarray) -> np.ndarray:
     turn, frame = rotation.at(both.payload_turn, time)[0], rotation.at(both.platform_turn, time)[0]
     middle = np.einsum("nkji,nkj->nki", frame, apart + np.einsum("nkij,nj->nki", turn, bodies.centre))
     seen = frame.transpose(0, 1, 3, 2) @ turn
-    return np.min([boxes.separation(seen, middle - bodies.boxes[:, None, box], bodies.half[:, None], bodies.box_halves[:, None, box])
-                   for box in range(bodies.boxes.shape[1])], axis=0)
+    apart = [boxes.separation(seen, middle - bodies.boxes[:, None, box], bodies.half[:, None], bodies.box_halves[:, None, box])
+             for box in range(bodies.boxes.shape[1])]
+    return np.min(apart, axis=0)
 
 
 def clear_after(both: Pair) -> np.ndarray:
@@ -184,7 +186,7 @@ def clear_after(both: Pair) -> np.ndarray:
 
 
 def _kept(both: Pair) -> np.ndarray:
-    """Least clearance (n,) m while the payload draws away, when (n,) s, and the least gap (n,) m between spheres if it comes back."""
+    """Least clearance (n,) m while the payload draws away, when (n,) s, and the least gap (n,) m if it comes back."""
     bodies, flight, away = both.bodies, both.flight, clear_after(both)
     clearance, closest = boxes.least(lambda time: gap(both, time), np.zeros(len(away)), away, _LOOKS, 2)
     reach = np.linalg.norm(abs(bodies.boxes) + bodies.box_halves, axis=2).max(axis=1)

@@ -4,14 +4,16 @@ In orbit axes, x radially outwards, y along the flight, z along the orbit's norm
 
     x'' = 2 n y' + 3 n^2 x,     y'' = -2 n x',     z'' = -n^2 z
 
-Gravity is linear in the distance from the orbit; what that leaves out is of the size of the distance squared over the orbit's radius.
+Gravity is linear in the distance from the orbit; what that leaves out is of the size of the distance squared over the orbit's
+radius.
 """
 
 import numpy as np
 
 
 def transition(motion: float, time: np.ndarray) -> np.ndarray:
-    """Matrices (...,6,6) that take a state, place (m) and velocity (m/s) in orbit axes, on by ``time`` (s, any shape); ``motion`` rad/s."""
+    """Matrices (...,6,6) that take a state, place (m) and velocity (m/s) in orbit axes, on by ``time`` (...) s; ``motion``
+    rad/s."""
     n, angle = motion, motion * np.asarray(time, dtype=float)
     c, s = np.cos(angle), np.sin(angle)
     found = np.zeros((*angle.shape, 6, 6))
@@ -25,8 +27,8 @@ def transition(motion: float, time: np.ndarray) -> np.ndarray:
 
 
 def state(motion: float, axes: np.ndarray, place: np.ndarray, velocity: np.ndarray) -> np.ndarray:
-    """States (n,6) of bodies at ``place`` (n,3) m from a point on the orbit that fall freely with ``velocity`` (n,3) m/s against it, both
-    in axes that do not turn; ``axes`` (3,3) gives orbit components of these."""
+    """States (n,6) of bodies at ``place`` (n,3) m from a point on the orbit that fall freely with ``velocity`` (n,3) m/s against
+    it, both in axes that do not turn; ``axes`` (3,3) gives orbit components of these."""
     r, v = place @ axes.T, velocity @ axes.T
     turning = np.stack([-motion * r[:, 1], motion * r[:, 0], np.zeros(len(r))], axis=1)
     return np.concatenate([r, v - turning], axis=1)

@@ -1,12 +1,12 @@
-"""Free rotation of rigid bodies in closed form, of any inertia and for any time (Jacobi; Landau and Lifshitz, Mechanics, section 37).
+"""Free rotation of rigid bodies in closed form, of any inertia, for any time (Jacobi; Landau and Lifshitz, Mechanics, section 37).
 
-In principal axes, numbered so that axis 3 is the one that stays on its side of the angular momentum (L its size, T kinetic energy)::
+In principal axes, of which the third is the one that stays on its side of the angular momentum (L its size, T kinetic energy)::
 
     w = (a cn u, b sn u, c dn u),   u = u0 + lambda t,   lambda^2 = (I3 - I2)(L^2 - 2 T I1) / (I1 I2 I3)
 
-Axis 3 goes round the angular momentum by the angle, with Legendre's integral of the third kind at n = -I3 (I2 - I1) / (I1 (I3 - I2)) <= 0::
+Axis 3 goes round the angular momentum by an angle that takes Legendre's integral of the third kind::
 
-    phi(t) = L t / I3 + L (I3 - I1) / (I1 I3 lambda) (Pi(n; u) - Pi(n; u0))
+    phi(t) = L t / I3 + L (I3 - I1) / (I1 I3 lambda) (Pi(n; u) - Pi(n; u0)),     n = -I3 (I2 - I1) / (I1 (I3 - I2)) <= 0
 
 Pi comes from Carlson's R_F and R_J (DLMF 19.25.14). Nothing is stepped, so the error is that of the phase, rounding times its size.
 Near rotation about the middle axis the motion is unstable: what rounding leaves open grows there as exp(lambda t), as in nature.
@@ -22,9 +22,10 @@ _PARTED = 1e-13  # least relative distance of the moments: a body of revolution 
 
 
 class Free(NamedTuple):
-    """n free bodies: principal ``axes`` (n,3,3) as columns in body axes, ``moments`` (3,n,1) kg m2, ``amplitude`` (3,n,1) rad/s, and as
-    (n,1) ``speed`` lambda, ``phase`` u0, ``quarter`` period K of u, ``parameter`` m and its ``complement`` 1 - m, ``characteristic`` n,
-    ``momentum`` L, factor ``precession`` of Pi, and ``start``, Pi at u0; ``frame`` (n,3,3), inertial from axes at the momentum."""
+    """n free bodies: principal ``axes`` (n,3,3) as columns in body axes, ``moments`` (3,n,1) kg m2, ``amplitude`` (3,n,1) rad/s,
+    and as (n,1) ``speed`` lambda, ``phase`` u0, ``quarter`` period K of u, ``parameter`` m and its ``complement`` 1 - m,
+    ``characteristic`` n, ``momentum`` L, factor ``precession`` of Pi, and ``start``, Pi at u0; ``frame`` (n,3,3), inertial from
+    axes at the momentum."""
 
     axes: np.ndarray
     moments: np.ndarray
@@ -42,7 +43,7 @@ class Free(NamedTuple):
 
 
 def free(inertia: np.ndarray, turn: np.ndarray, rate: np.ndarray) -> Free:
-    """Bodies of ``inertia`` (n,3,3) kg m2 at attitude ``turn`` (n,3,3), body to inertial, and ``rate`` (n,3) rad/s in body axes now."""
+    """Bodies of ``inertia`` (n,3,3) kg m2 at attitude ``turn`` (n,3,3), body to inertial, and ``rate`` (n,3) rad/s in body axes."""
     axes, moments, (w1, w2, w3) = _principal(inertia, rate)
     i1, i2, i3 = moments
     d21, d31, d32, side = abs(i2 - i1), abs(i3 - i1), abs(i3 - i2), np.sign(i3 - i2)
@@ -53,14 +54,15 @@ def free(inertia: np.ndarray, turn: np.ndarray, rate: np.ndarray) -> Free:
     complement = np.where(moves, np.clip(d31 * apart / scale, 1e-30, 1.0), 1.0)
     parameter, quarter = np.minimum(d21 * outer / scale, 1.0), ellipkm1(complement)
     ahead = np.where(w3 < 0.0, -1.0, 1.0)
-    amplitude = np.stack([np.sqrt(outer / (i1 * d31)), ahead * side * np.sqrt(outer / (i2 * d32)), ahead * np.sqrt(inner / (i3 * d31))])
+    amplitude = np.stack([np.sqrt(outer / (i1 * d31)), ahead * side * np.sqrt(outer / (i2 * d32)),
+                          ahead * np.sqrt(inner / (i3 * d31))])
     angle = np.arctan2(y * ahead * side, x)
     halves = np.round(angle / np.pi)
     phase = np.clip(ellipkinc(angle - np.pi * halves, parameter), -quarter, quarter) + 2.0 * halves * quarter
     speed, momentum = np.sqrt(d32 * inner / (i1 * i2 * i3)), np.sqrt((i1 * w1) ** 2 + (i2 * w2) ** 2 + (i3 * w3) ** 2)
     precession = momentum * (i3 - i1) / (i1 * i3 * np.where(moves, speed, 1.0))
-    body = Free(axes, moments, amplitude, speed, phase, quarter, parameter, complement, -i3 * d21 / (i1 * d32), momentum, precession,
-                np.zeros_like(speed), axes)
+    body = Free(axes, moments, amplitude, speed, phase, quarter, parameter, complement, -i3 * d21 / (i1 * d32), momentum,
+                precession, np.zeros_like(speed), axes)
     body = body._replace(start=_course(body, phase)[-1])
     begin, _ = _at_momentum(body, np.zeros_like(speed))
     return body._replace(frame=turn @ axes @ begin[:, 0].transpose(0, 2, 1))
@@ -79,8 +81,8 @@ def precession_rate(body: Free) -> np.ndarray:
 
 
 def spin_rate(body: Free) -> np.ndarray:
-    """Mean rate (n,) rad/s at which the body turns about principal axis 3 beside that, counted about the angular momentum: once a nutation,
-    backwards where axis 3 has the largest moment."""
+    """Mean rate (n,) rad/s at which the body turns about principal axis 3 beside that, counted about the angular momentum: once a
+    nutation, backwards where axis 3 has the largest moment."""
     return -np.sign(body.moments[2] - body.moments[1])[:, 0] * 2.0 * np.pi / nutation_period(body)
 
 
@@ -90,8 +92,8 @@ def nutation_period(body: Free) -> np.ndarray:
 
 
 def _principal(inertia: np.ndarray, rate: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Right-handed principal axes, moments (3,n,1) and rates (3,n,1). The last axis has the largest moment or the smallest, whichever the
-    body turns about as told by the separatrix L^2 = 2 T I2."""
+    """Right-handed principal axes, moments (3,n,1) and rates (3,n,1). The last axis has the largest moment or the smallest,
+    whichever the body turns about as told by the separatrix L^2 = 2 T I2."""
     moments, axes = np.linalg.eigh(inertia)
     axes[:, :, 2] *= np.linalg.det(axes)[:, None]
     for above in (1, 2):
@@ -112,7 +114,8 @@ def _at_momentum(body: Free, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     precession = body.momentum * time / i3 + body.precession * (third - body.start)
     nutation = np.arctan2(np.hypot(i1 * a * cn, i2 * b * sn), i3 * c * dn)
     # Shares of the momentum across axis 3, without the size they have in common, which vanishes in rotation about that axis.
-    spin = np.arctan2(np.sqrt(i1 / abs(i3 - i1)) * cn, np.where(c < 0.0, -1.0, 1.0) * np.sign(i3 - i2) * np.sqrt(i2 / abs(i3 - i2)) * sn)
+    ahead = np.where(c < 0.0, -1.0, 1.0) * np.sign(i3 - i2)
+    spin = np.arctan2(np.sqrt(i1 / abs(i3 - i1)) * cn, ahead * np.sqrt(i2 / abs(i3 - i2)) * sn)
     return _euler(precession, nutation, spin), rate
 
 

@@ -1,4 +1,4 @@
-"""What flights amount to in the units an engineer reads: rows of one case, distributions over many, and the labelled data of both."""
+"""What flights amount to in the units an engineer reads: rows of one case, distributions over many, and data."""
 
 from typing import TYPE_CHECKING, Callable, NamedTuple
 
@@ -41,6 +41,9 @@ QUANTITIES = (
     Quantity("clearance_mm", "least clearance (mm)", lambda found: 1e3 * found.clearance),
     Quantity("closest_ms", "least clearance after (ms)", lambda found: 1e3 * found.closest),
     Quantity("returns_m", "comes back to (m)", lambda found: found.returns))
+_SIDES: dict[str, Callable[[Flown], np.ndarray]] = {
+    "miss_y_m": lambda found: found.miss[:, 0], "miss_z_m": lambda found: found.miss[:, 1],
+    "orbital_y_m": lambda found: found.orbital[:, 0], "orbital_z_m": lambda found: found.orbital[:, 1]}
 _JUDGED = ("miss_m", "tip_off_miss_m", "pointing_deg", "limit_s", "cone_largest_deg", "coning_deg_s", "clearance_mm", "returns_m")
 
 
@@ -49,29 +52,31 @@ def orbit(scene: Scene) -> dict:
     rails are among the boxes only if the scene lists them."""
     flight = scene.flight.record()
     return {"mean_motion_rad_s": flight.mean_motion, "period_s": 2.0 * np.pi / flight.mean_motion, "duration_s": flight.duration,
-            "range_m": flight.range, "launch_axis": flight.axes[:, 0].tolist(), "no_clearance": bodies.unknown_size(scene), "rails_listed": bodies.unknown_rails(scene),
+            "range_m": flight.range, "launch_axis": flight.axes[:, 0].tolist(), "no_clearance": bodies.unknown_size(scene),
+            "rails_listed": bodies.unknown_rails(scene),
             "pointing_limit_deg": flight.pointing_limit and float(np.degrees(flight.pointing_limit))}
 
 
 def row(found: Flown, case: int) -> dict:
     """One case; None for what has no value, or is never."""
     values = {item.name: float(item.of(found)[case]) for item in QUANTITIES}
-    sides = {"miss_y_m": found.miss[case, 0], "miss_z_m": found.miss[case, 1], "orbital_y_m": found.orbital[case, 0], "orbital_z_m": found.orbital[case, 1]}
-    return {name: float(value) if np.isfinite(value) else None for name, value in (values | sides).items()}
+    values |= {name: float(of(found)[case]) for name, of in _SIDES.items()}
+    return {name: value if np.isfinite(value) else None for name, value in values.items()}
 
 
 def cases(found: Flown, population: Population, uncertainty: Uncertainty) -> dict:
     """Counts, quantiles with bounds, how many touch again and how many never reach the target, and points to draw."""
     independent = uncertainty.sampling == "random"
     judged = {item.name: values for item in QUANTITIES if item.name in _JUDGED and np.isfinite(values := item.of(found)).any()}
-    told, reached = np.isfinite(found.clearance), np.isfinite(found.passes)
-    return {"counts": population.counts, "settled": int(population.settled.sum()), "outside": int(population.outside[population.settled].sum()),
-            "store": population.store, "confidence": CONFIDENCE, "varied": uncertainty.resolved(),
-            "bounds": "order statistics of independent draws" if independent else f"none: points of {uncertainty.sampling} depend on each other",
+    told, reached, settled = np.isfinite(found.clearance), np.isfinite(found.passes), population.settled
+    points = np.hstack([found.miss, found.orbital])[reached][:_SCATTERED]
+    why = "order statistics of independent draws" if independent else f"none: points of {uncertainty.sampling} depend on each other"
+    return {"counts": population.counts, "settled": int(settled.sum()), "outside": int(population.outside[settled].sum()),
+            "store": population.store, "confidence": CONFIDENCE, "varied": uncertainty.resolved(), "bounds": why,
             "quantiles": {name: _quantiles(values[~np.isnan(values)], independent) for name, values in judged.items()},
             "limit_open": 0 if np.isnan(found.limit).all() else int(np.isnan(found.limit).sum()),  # all: none was asked for
             "touch": _share(found.clearance[told] <= 0.0, independent), "not_reached": _share(~reached, independent),
-            "points_m": [[float(f"{value:.6g}") for value in point] for point in np.hstack([found.miss, found.orbital])[reached][:_SCATTERED]]}
+            "points_m": [[float(f"{value:.6g}") for value in point] for point in points]}
 
 
 def _quantiles(values: np.ndarray, independent: bool) -> list[dict]:
@@ -99,7 +104,7 @@ def dataset(names: list[str], single: Flown | None, many: Flown) -> "xarray.Data
     import xarray
 
     variables = {item.name: ("case", item.of(many)) for item in QUANTITIES}
-    variables |= {f"{side}_{axis}_m": ("case", getattr(many, side)[:, index]) for side in ("miss", "orbital") for index, axis in enumerate("yz")}
+    variables |= {name: ("case", of(many)) for name, of in _SIDES.items()}
     if single is not None:
         variables |= {f"condition_{item.name}": ("condition", item.of(single)) for item in QUANTITIES}
     return xarray.Dataset(variables, {"condition": names, "case": np.arange(len(many.passes))})
@@ -120,7 +125,8 @@ def lines(found: dict) -> list[str]:
         said.append(f"  touch again                                  {many['touch']['count']:,} of {many['touch']['of']:,}")
     if doubt := doubts(found):
         said.append(f"  {doubt}")
-    return [*said, f"  bounds: {many['confidence']:.0%} confidence, {many['bounds']}", f"  store {many['store']}, data {found['data']}"]
+    return [*said, f"  bounds: {many['confidence']:.0%} confidence, {many['bounds']}",
+            f"  store {many['store']}, data {found['data']}"]
 
 
 def doubts(found: dict) -> str:
@@ -135,12 +141,14 @@ def doubts(found: dict) -> str:
 
 
 def _one(row: dict) -> str:
-    target = "never passes the target" if row["miss_m"] is None else (f"misses by {row['miss_m']:.4g} m, {row['tip_off_miss_m']:.3g} m of it by errors, "
-                                                                     f"pointing {row['pointing_deg']:.3g} deg off")
+    target = "never passes the target"
+    if row["miss_m"] is not None:
+        target = (f"misses by {row['miss_m']:.4g} m, {row['tip_off_miss_m']:.3g} m of it by errors, "
+                  f"pointing {row['pointing_deg']:.3g} deg off")
     return target + ("" if row["clearance_mm"] is None else f"; clearance {row['clearance_mm']:.3g} mm")
 
 
 def _quantile(row: dict) -> str:
-    value, low, high = (f"{row[name]:.4g}" if row[name] is not None else words for name, words in (("value", "never"), ("low", "none"), ("high", "none")))
-    bounds = "" if row["low"] is None and row["high"] is None else f" [{low}, {high}]"
-    return f"{row['share']:.4g}: {value}{bounds}"
+    value, low, high = (None if row[name] is None else f"{row[name]:.4g}" for name in ("value", "low", "high"))
+    bounds = "" if low is None and high is None else f" [{low or 'none'}, {high or 'none'}]"
+    return f"{row['share']:.4g}: {value or 'never'}{bounds}"

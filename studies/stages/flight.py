@@ -1,4 +1,4 @@
-"""Stage ``flight``: what becomes of the payload after its exit, for every condition and for many cases with the errors of assembly."""
+"""Stage ``flight``: what becomes of the payload after its exit, for every condition and for many cases with errors."""
 
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -23,8 +23,8 @@ _SOURCES = (*SOURCES["highfi"], *SOURCES["lowfi"], "calibrate")
 
 @dataclass(frozen=True)
 class Asked:
-    """What ``tipoff flight`` is given beside the scene: distributions, how many cases and their seed, None as the file says, and whether
-    the surrogate stands on ``walls`` that give way."""
+    """What ``tipoff flight`` is given beside the scene: distributions, how many cases and their seed, None as the file says, and
+    whether the surrogate stands on ``walls`` that give way."""
 
     vary: str = uncertainty.DEFAULT
     cases: int | None = None
@@ -33,14 +33,14 @@ class Asked:
 
 
 def run(study: Study, asked: Asked = Asked()) -> dict:
-    """``conditions``, rows as ``studies.flight.summary`` has them; ``cases``, their distributions; ``curves`` of the first conditions.
-    Raises SceneError for a scene that says nothing of a flight."""
+    """``conditions``, rows as ``studies.flight.summary`` has them; ``cases``, their distributions; ``curves`` of the first
+    conditions. Raises SceneError for a scene that says nothing of a flight."""
     _require(study.conditions | {study.scene.name: study.scene})
     changed = {name: value for name, value in (("cases", asked.cases), ("seed", asked.seed)) if value is not None}
     drawn = Drawn(uncertainty.load(asked.vary, study.scene, **changed))
     if wrong := [key for key in drawn.keys if key.split(".")[0] == "flight"]:
-        raise SceneError([Fault(asked.vary, f"vary.{key}", "a distribution", "a key of the ejection: a flight is the same for all cases")
-                          for key in wrong])
+        expected = "a key of the ejection: a flight is the same for all cases"
+        raise SceneError([Fault(asked.vary, f"vary.{key}", "a distribution", expected) for key in wrong])
 
     def make() -> tuple[dict, list[Path]]:
         from studies.report import chart
@@ -50,8 +50,9 @@ def run(study: Study, asked: Asked = Asked()) -> dict:
         cases, many = _cases(study, asked, drawn)
         found = {"asked": asdict(asked), "flight": summary.orbit(study.scene), "conditions": rows, "curves": shapes, "cases": cases}
         data = study.path(f"{NAME}.nc")
+        labelled = summary.dataset([row["condition"] for row in rows if row["flown"]], single, many)
         with replacing(data) as temporary:
-            summary.dataset([row["condition"] for row in rows if row["flown"]], single, many).to_netcdf(temporary, engine="h5netcdf")
+            labelled.to_netcdf(temporary, engine="h5netcdf")
         pictures = [path for drawing, _ in page.charts(found) for path in chart.to_files(drawing, study.path("figures"))]
         return found | {"data": study.relative(data)}, [data, *pictures]
 
@@ -70,7 +71,8 @@ def stored(study: Study) -> dict | None:
 def _key(study: Study, asked: Asked) -> str:
     tables = {name: scene.flight and scene.flight.model_dump(mode="json") for name, scene in study.conditions.items()}
     varied = uncertainty.load(asked.vary, study.scene).resolved()
-    return study.key(_SOURCES, NAME, study.scene.flight.model_dump(mode="json"), tables, asdict(asked), varied, study.settings.element_size)
+    own = study.scene.flight.model_dump(mode="json")
+    return study.key(_SOURCES, NAME, own, tables, asdict(asked), varied, study.settings.element_size)
 
 
 def _require(scenes: dict[str, Scene]) -> None:
@@ -107,12 +109,12 @@ def _cases(study: Study, asked: Asked, drawn: Drawn) -> tuple[dict, flown.Flown]
     cases = population.run(study, NAME, model, drawn)
     which = np.flatnonzero(cases.settled)
     if not len(which):
-        raise StudyError(f"none of {drawn.asked:,} cases left the rail and settled, so there is nothing to fly; store {cases.store}")
+        raise StudyError(f"none of {drawn.asked:,} cases left the rail and settled: nothing flies; store {cases.store}")
     variations, rows = Variations(model.scene), drawn.rows(0, drawn.asked)
     parted = bodies.bodies(variations.of(rows[number]) for number in which)
     with Board(NAME, 1) as board:
         label = f"{len(which):,} flights"
-        many = flown.fly(study.scene.flight.record(), parted, bodies.start(type(cases.results)(*(part[which] for part in cases.results))),
-                         board.callback(label))
+        begin = bodies.start(type(cases.results)(*(part[which] for part in cases.results)))
+        many = flown.fly(study.scene.flight.record(), parted, begin, board.callback(label))
         board.finished(label, "flown")
     return summary.cases(many, cases, drawn.uncertainty), many

@@ -38,7 +38,8 @@ def test_a_box_that_is_called_clear_is_clear():
     ([0.0, 0.0, math.pi / 4.0], [0.15 + 0.4 / math.sqrt(2.0) + 0.02, 0.0, 0.0], 0.02),  # an edge before a face
     ([0.0, 0.0, math.pi / 4.0], [0.15 + 0.4 / math.sqrt(2.0) - 0.02, 0.0, 0.0], -0.02)])
 def test_known_separations(turn, centre, expected):
-    assert boxes.separation(Rotation.from_rotvec(turn).as_matrix(), np.array(centre), HALF, OTHER) == pytest.approx(expected, abs=1e-14)
+    found = boxes.separation(Rotation.from_rotvec(turn).as_matrix(), np.array(centre), HALF, OTHER)
+    assert found == pytest.approx(expected, abs=1e-14)
 
 
 def test_crossed_edges():

@@ -1,4 +1,4 @@
-"""Relative motion in orbit: the exponential of its equations, two bodies integrated side by side, and the cases every textbook has."""
+"""Relative motion in orbit: the exponential of its equations, two bodies integrated side by side, and known paths."""
 
 import math
 
@@ -40,7 +40,7 @@ def two_bodies(state, time):
 
 @pytest.mark.parametrize("time", [0.5, 2.0, 2.0 * math.pi])
 def test_error_falls_as_the_square_of_the_distance(time):
-    """Control: the straight line is wrong by as large a part however short the distance, so its error falls only as the distance."""
+    """Control: the straight line is wrong by as large a part however short the distance: its error falls as the distance."""
     state = np.array([0.3, -0.5, 0.2, 0.1, 0.4, -0.3])
     sizes = 2.0 ** -np.arange(6.0, 14.0)
     exact = np.array([two_bodies(size * state, time) for size in sizes])
@@ -59,7 +59,8 @@ def test_known_paths():
     assert closed[-1] == pytest.approx(closed[0], abs=1e-11)
     assert closed[2] == pytest.approx([0.0, -20.0, 0.0], abs=1e-11) and closed[4] == pytest.approx([-10.0, 0.0, -3.0], abs=1e-11)
     assert places([10.0, 0.0, 0.0, 0.0, 0.0, 0.0], PERIOD)[0, 1] == pytest.approx(-12.0 * math.pi * 10.0)  # control: it drifts away
-    assert places([0.0, 7.0, 0.0, 0.0, 0.0, 0.0], whole) == pytest.approx(np.tile([0.0, 7.0, 0.0], (9, 1)))  # on the same orbit: stays
+    same = places([0.0, 7.0, 0.0, 0.0, 0.0, 0.0], whole)  # behind each other: it stays
+    assert same == pytest.approx(np.tile([0.0, 7.0, 0.0], (9, 1)))
     assert places([0.0, 0.0, 0.0, 0.0, 2.0, 0.0], PERIOD)[0] == pytest.approx([0.0, -3.0 * 2.0 * PERIOD, 0.0], abs=1e-8)
     assert places([0.0, 0.0, 0.0, 2.0, 0.0, 5.0], PERIOD)[0] == pytest.approx([0.0, 0.0, 0.0], abs=1e-8)  # radially: it comes back
     assert places([0.0, 0.0, 0.0, 2.0, 0.0, 0.0], PERIOD / 2.0)[0] == pytest.approx([0.0, -8.0 / N, 0.0], abs=1e-8)
@@ -67,7 +68,8 @@ def test_known_paths():
 
 def test_free_fall_is_straight_but_for_the_gradient_of_gravity():
     """In the axes a scene has. Control: places left in orbit axes are off by the turning of these."""
-    axes = load("reference").replace({"flight.azimuth": "20 deg", "flight.elevation": "-50 deg", "flight.roll": "70 deg"}).flight.record().axes
+    angles = {"flight.azimuth": "20 deg", "flight.elevation": "-50 deg", "flight.roll": "70 deg"}
+    axes = load("reference").replace(angles).flight.record().axes
     assert axes @ axes.T == pytest.approx(np.eye(3), abs=1e-15) and np.linalg.det(axes) == pytest.approx(1.0)
     place, velocity, time = np.array([[0.3, -0.1, 0.2]]), np.array([[6.0, 0.02, -0.01]]), np.array([[0.0, 5.0, 10.0]])
     turned = orbit.places(N, orbit.state(N, axes, place, velocity), time)
@@ -77,8 +79,9 @@ def test_free_fall_is_straight_but_for_the_gradient_of_gravity():
     assert np.linalg.norm(turned @ axes - straight, axis=2)[0, -1] > 100.0 * off[-1] / 20.0
 
 
-@pytest.mark.parametrize("angles, expected", [({}, [0.0, 1.0, 0.0]), ({"azimuth": "90 deg"}, [0.0, 0.0, 1.0]), ({"elevation": "90 deg"}, [1.0, 0.0, 0.0]),
-                                              ({"azimuth": "180 deg"}, [0.0, -1.0, 0.0]), ({"roll": "90 deg"}, [0.0, 1.0, 0.0])])
+@pytest.mark.parametrize("angles, expected", [
+    ({}, [0.0, 1.0, 0.0]), ({"azimuth": "90 deg"}, [0.0, 0.0, 1.0]), ({"elevation": "90 deg"}, [1.0, 0.0, 0.0]),
+    ({"azimuth": "180 deg"}, [0.0, -1.0, 0.0]), ({"roll": "90 deg"}, [0.0, 1.0, 0.0])])
 def test_launch_axis(angles, expected):
     axes = load("reference").replace({f"flight.{key}": value for key, value in angles.items()}).flight.record().axes
     assert axes[:, 0] == pytest.approx(expected, abs=1e-15)

@@ -1,4 +1,4 @@
-"""Free rotation in closed form: published cases, an integrator as oracle, hours of tumbling, and the cases in which its formulas are 0 / 0."""
+"""Free rotation in closed form: published cases, an integrator as oracle, hours of tumbling, and where its formulas are 0 / 0."""
 
 import math
 
@@ -84,7 +84,8 @@ def _cases():
     rng = np.random.default_rng(1)
     axes = Rotation.from_rotvec([0.4, -1.0, 0.3]).as_matrix()
     yield "reference", INERTIA, [-0.07, -0.02, 0.06]
-    for name, moments in (("long", (0.4, 0.9, 0.9)), ("flat", (0.5, 0.5, 0.9)), ("sphere", (0.7, 0.7, 0.7)), ("any", (0.5, 0.7, 1.1))):
+    shapes = {"long": (0.4, 0.9, 0.9), "flat": (0.5, 0.5, 0.9), "sphere": (0.7, 0.7, 0.7), "any": (0.5, 0.7, 1.1)}
+    for name, moments in shapes.items():
         yield name, axes @ np.diag(moments) @ axes.T, rng.normal(size=3)
     for number, name in enumerate(("smallest", "middle", "largest")):
         yield f"about the {name}", axes @ np.diag((0.5, 0.7, 1.1)) @ axes.T, axes[:, number] * -1.3 + (0.001 if name == "middle" else 0.0)
@@ -93,8 +94,8 @@ def _cases():
 
 @pytest.mark.parametrize("name, inertia, rate", [pytest.param(*case, id=case[0]) for case in _cases()])
 def test_any_body_moves_as_integrated(name, inertia, rate):
-    """Dormand-Prince at 1e-13 a step. Near the middle axis the motion itself multiplies rounding by exp(lambda t), a thousandfold here;
-    turning over, a body of revolution keeps half the digits of moments that are equal."""
+    """Dormand-Prince at 1e-13 a step. Near the middle axis the motion itself multiplies rounding by exp(lambda t), a thousandfold
+    here; turning over, a body of revolution keeps half the digits of moments that are equal."""
     turn, rate = Rotation.from_rotvec([0.2, 0.5, -1.0]).as_matrix(), np.asarray(rate)
     inertia = 0.5 * (inertia + inertia.T)
     found = body(inertia, rate, turn)
@@ -106,7 +107,8 @@ def test_any_body_moves_as_integrated(name, inertia, rate):
 
 
 def test_hours():
-    """Two hours at once are an hour and an hour, and momentum and energy are what they were. Control: a fixed step of a second is lost."""
+    """Two hours at once are an hour and an hour, and momentum and energy are what they were. Control: steps of a second are
+    lost."""
     rate = np.array([-0.07, -0.02, 0.06])
     found = body(INERTIA, rate)
     time = np.linspace(0.0, 7200.0, 721)
