@@ -9,6 +9,7 @@ from typing import Callable
 
 import numpy as np
 
+_AGAIN = 16  # instants about the best of those before
 _PARALLEL = 1e-9  # sine of edges whose product is no axis: their faces tell what it would
 
 
@@ -38,11 +39,11 @@ def _faces(apart: np.ndarray) -> np.ndarray:
 def least(of: Callable[[np.ndarray], np.ndarray], begin: np.ndarray, end: np.ndarray, points: int,
           rounds: int) -> tuple[np.ndarray, np.ndarray]:
     """Least value (n,) of n functions ``of`` times (n,k) between ``begin`` and ``end`` (n,), and when: on ``points`` instants, then
-    as often as there are ``rounds`` on as many between the neighbours of the best."""
+    ``rounds`` times on fewer between the neighbours of the best."""
     rows, low, high = np.arange(len(begin)), begin, end
-    for _ in range(1 + rounds):
-        time = low[:, None] + (high - low)[:, None] * np.linspace(0.0, 1.0, points)
+    for count in (points, *[_AGAIN] * rounds):
+        time = low[:, None] + (high - low)[:, None] * np.linspace(0.0, 1.0, count)
         values = of(time)
         best = values.argmin(axis=1)
-        low, high = time[rows, np.maximum(best - 1, 0)], time[rows, np.minimum(best + 1, points - 1)]
+        low, high = time[rows, np.maximum(best - 1, 0)], time[rows, np.minimum(best + 1, count - 1)]
     return values[rows, best], time[rows, best]

@@ -14,7 +14,7 @@ from studies.flight import boxes, orbit, rotation
 from studies.flight.bodies import Bodies, Start
 
 _SCAN = 400  # instants at which a flight is looked at before an event is located between two of them
-_LOOKS = 60  # for a least distance, and as many twice more about the best: to 2e-5 of the time that is looked at
+_LOOKS = 120  # for a least distance, before the best is looked at more closely
 _HALVINGS = 60
 _APPROACHES = 2000  # of the pointing limit, each by what is left of it over the rate
 _CLOSE = 1e-9  # rad
@@ -178,11 +178,11 @@ def gap(both: Pair, time: np.ndarray) -> np.ndarray:
 
 
 def clear_after(both: Pair) -> np.ndarray:
-    """Time (n,) s by which the payload is a length of its own past all the platform, if it went straight on."""
+    """Time (n,) s from which on the sphere about the payload is past the front of the platform, so that the clearance only grows."""
     bodies, flight = both.bodies, both.flight
     along = (both.payload - both.platform) @ np.kron(np.eye(2), flight.axes[:, :1])
     front = (bodies.boxes + bodies.box_halves)[..., 0].max(axis=1)
-    return (front + 3.0 * np.linalg.norm(bodies.half, axis=1) - along[:, 0]) / along[:, 1]
+    return (front + np.linalg.norm(bodies.half, axis=1) + np.linalg.norm(bodies.centre, axis=1) - along[:, 0]) / along[:, 1]
 
 
 def _kept(both: Pair) -> np.ndarray:

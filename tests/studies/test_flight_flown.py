@@ -112,6 +112,20 @@ def test_cone_of_an_asymmetric_body(rate):
     assert found.coning[0] == pytest.approx((way[-1] - way[0]) / time[0, -1], rel=1e-6)
 
 
+def test_no_instant_is_closer_than_the_least():
+    """Of random exits from a body flush with its pads, 4,000 instants each; later there is none either."""
+    rng = np.random.default_rng(7)
+    scene, many = SCENE.replace({"flight.body": None}), 40
+    exits = start()._replace(velocity=np.array([6.0, 0.0, 0.0]) + 0.02 * rng.normal(size=(many, 3)), rate=0.1 * rng.normal(size=(many, 3)),
+                             place=np.array([0.196, 0.0, 0.0]) + 1e-4 * rng.normal(size=(many, 3)))
+    begin = bodies.Start(*(np.repeat(part, many, axis=0) if len(part) == 1 else part for part in exits))
+    both = flown.pair(scene.flight.record(), bodies.bodies([scene] * many), begin)
+    found, clear = flown.found(both), flown.clear_after(both)
+    dense = flown.gap(both, clear[:, None] * np.linspace(0.0, 1.0, 4001))
+    assert (found.clearance <= dense.min(axis=1) + 2e-7).all() and (found.clearance < 0.0).any() and (found.clearance > 0.0).any()
+    assert (flown.gap(both, clear[:, None] * np.array([1.0, 2.0, 10.0])) > 0.04).all()
+
+
 @pytest.mark.parametrize("rate, sideways", [(0.0, 0.0), (0.0, 0.1), (0.05, 0.0), (-0.1, 0.05), (2.0, 0.0), (0.0, 1.0)])
 def test_clearance_of_the_tail(rate, sideways):
     """The tail's corner passes the rail's end after t: gap - |v_y t - w t (half length)| there, with a gap of 5.25 mm. Controls:
