@@ -15,8 +15,8 @@ VECTORS = ("velocity", "rate", *(name for name in UNITS if name.startswith("exit
 
 class Columns(NamedTuple):
     """``status`` (n,) as a place in STATUSES, exit_time (n,) s, velocity (n,3) m/s, rate (n,3) rad/s, lateral_velocity (n,) m/s,
-    direction_error (n,) rad, at exit attitude (n,3) rad as a rotation vector and position (n,3) m of the payload and position, velocity,
-    attitude and rate (n,3) of the platform, NaN in cases that did not settle, and ``steps`` (n,)."""
+    direction_error (n,) rad, at exit attitude (n,3) rad as a rotation vector and position (n,3) m of the payload and position,
+    velocity, attitude and rate (n,3) of the platform, NaN in cases that did not settle, and ``steps`` (n,)."""
 
     status: np.ndarray
     exit_time: np.ndarray

@@ -67,8 +67,8 @@ def bodies(result: np.ndarray) -> list[np.ndarray]:
     """Of one row of results, at exit: position and quaternion of the payload, position, velocity, quaternion and rate of the platform."""
     row = result[AT_EXIT:AT_EXIT + ROW_SIZE]
     place, base, q = slot.PLACE, slot.PLATFORM, slot.QUATERNION
-    return [row[place:place + 3], row[q:q + 4], row[base:base + 3], row[base + slot.VELOCITY:base + slot.VELOCITY + 3], row[base + q:base + q + 4],
-            row[base + MEASURED:base + MEASURED + 3]]
+    speed, spin = base + slot.VELOCITY, base + MEASURED
+    return [row[place:place + 3], row[q:q + 4], row[base:base + 3], row[speed:speed + 3], row[base + q:base + q + 4], row[spin:spin + 3]]
 
 
 def scratch(interval: float) -> Scratch:

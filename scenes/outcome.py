@@ -206,7 +206,8 @@ def judge(motion, marks: Milestones) -> tuple[str, Outcome]:
 
 
 def settled(exit_at: float, start: float, velocity: np.ndarray, rate: np.ndarray, position: np.ndarray, attitude: np.ndarray,
-            platform_position: np.ndarray, platform_velocity: np.ndarray, platform_attitude: np.ndarray, platform_rate: np.ndarray) -> Outcome:
+            platform_position: np.ndarray, platform_velocity: np.ndarray, platform_attitude: np.ndarray,
+            platform_rate: np.ndarray) -> Outcome:
     """Outcome of an exit at ``exit_at`` (s) with these means over the window from ``start`` (s), and both bodies at exit, their attitudes
     as quaternions."""
     lateral = float(np.hypot(velocity[1], velocity[2]))

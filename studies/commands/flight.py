@@ -25,7 +25,7 @@ def flight(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = N
            walls: OnWalls = False, element_size: ElementSize = None, workers: Workers = None, json_: Json = False) -> None:
     """What becomes of the payload in orbit: miss of a target, pointing, coning, and whether it touches the platform again.
 
-    Every condition, and many cases with errors of assembly; writes flight.json, flight.nc and figures. The scene says where it flies:
+    Every condition, and many cases with errors of assembly; writes flight.json, flight.nc and figures. The scene says where:
 
       \\[flight]
 

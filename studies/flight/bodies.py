@@ -85,8 +85,9 @@ def _bodies(scene: Scene) -> tuple:
     corners = np.zeros((0, 2, 3)) if unknown_size(scene) else np.array(_boxes(scene))
     low, high = corners.transpose(1, 0, 2)
     size = np.array(_size(scene) or np.zeros(3))
-    return (tensor(scene.payload.inertia), platform.inertia if platform else np.eye(3), 0.5 * size, -offset, 0.5 * (low + high) - place,
-            0.5 * (high - low), _origin(scene, offset, place))
+    inertia = platform.inertia if platform else np.eye(3)
+    return (tensor(scene.payload.inertia), inertia, 0.5 * size, -offset, 0.5 * (low + high) - place, 0.5 * (high - low),
+            _origin(scene, offset, place))
 
 
 def _origin(scene: Scene, offset: np.ndarray, place: np.ndarray) -> np.ndarray:

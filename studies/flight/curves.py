@@ -20,8 +20,9 @@ def of(both: flown.Pair, found: flown.Flown) -> dict:
     around = np.linspace(0.0, 2.0 * np.pi / max(abs(float(found.coning[0])), 2.0 * np.pi / flight.duration), _POINTS)[None]
     path = orbit.places(flight.mean_motion, both.payload, time)[0] @ flight.axes + both.bodies.origin
     apart = orbit.places(flight.mean_motion, both.payload - both.platform, whole)[0]
-    return {"axis_deg": _plain(_axis(both, around)), "axis_at_target_deg": _plain(_axis(both, time[:, -1:])[0]), "time_s": _plain(time[0]),
-            "pointing_deg": _plain(np.degrees(flown.pointing_error(both, time)[0])), "to_target_m": _plain(path), "orbit_m": _plain(apart),
+    error = np.degrees(flown.pointing_error(both, time)[0])
+    return {"axis_deg": _plain(_axis(both, around)), "axis_at_target_deg": _plain(_axis(both, time[:, -1:])[0]),
+            "time_s": _plain(time[0]), "pointing_deg": _plain(error), "to_target_m": _plain(path), "orbit_m": _plain(apart),
             **_clearance(both)}
 
 

@@ -91,7 +91,8 @@ def found(both: Pair) -> Flown:
     least, largest, coning = cone(both.payload_turn)
     clearance, closest, returns = _kept(both) if both.bodies.boxes.shape[1] else np.full((3, cases), np.nan)
     return Flown(passes, miss, orbital, np.where(np.isfinite(passes), pointing, np.nan), _limit(both, passes),
-                 np.stack([least, largest], axis=1), coning, rotation.nutation_period(both.payload_turn), clearance, closest, returns)
+                 np.stack([least, largest], axis=1), coning, rotation.nutation_period(both.payload_turn), clearance, closest,
+                 returns)
 
 
 def _perfect(both: Pair) -> np.ndarray:

@@ -19,7 +19,8 @@ def transition(motion: float, time: np.ndarray) -> np.ndarray:
     found = np.zeros((*angle.shape, 6, 6))
     for (row, column), value in {
             (0, 0): 4.0 - 3.0 * c, (1, 0): 6.0 * (s - angle), (1, 1): 1.0, (2, 2): c,
-            (0, 3): s / n, (0, 4): 2.0 * (1.0 - c) / n, (1, 3): 2.0 * (c - 1.0) / n, (1, 4): (4.0 * s - 3.0 * angle) / n, (2, 5): s / n,
+            (0, 3): s / n, (0, 4): 2.0 * (1.0 - c) / n, (1, 3): 2.0 * (c - 1.0) / n, (1, 4): (4.0 * s - 3.0 * angle) / n,
+            (2, 5): s / n,
             (3, 0): 3.0 * n * s, (4, 0): 6.0 * n * (c - 1.0), (5, 2): -n * s,
             (3, 3): c, (3, 4): 2.0 * s, (4, 3): -2.0 * s, (4, 4): 4.0 * c - 3.0, (5, 5): c}.items():
         found[..., row, column] = value

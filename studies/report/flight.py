@@ -10,16 +10,16 @@ from studies.report.markup import Html, caption, number, paragraph, table
 _LOOKS = ((NAVY, "-", "o"), (VERMILION, "--", "s"), (AMBER, "-.", "^"), (TEAL, ":", "D"), (GREY, "-", "v"))
 _SHOWN = ("miss_m", "tip_off_miss_m", "passes_s", "pointing_deg", "limit_s", "coning_deg_s", "nutation_s", "clearance_mm",
           "closest_ms")
-_PATHS = ("Left and middle: the way to the target in orbit axes, sideways and up being the scene's y and z. The bend that all shots have in "
-          "common is the orbit's. Right: relative to the platform; at this scale the conditions can hardly be told apart.")
-_AXES = ("Left: the cone of the payload's x axis in inertial space, one round about its angular momentum, free rotation of the whole inertia "
-         "tensor; distance from the middle is the angle from the launch axis, the marker the instant of passing the target. Right: that "
-         "angle until the target is passed.")
+_PATHS = ("Left and middle: the way to the target in orbit axes, sideways and up being the scene's y and z. The bend that all "
+          "shots have in common is the orbit's. Right: relative to the platform; at this scale the conditions can hardly be told apart.")
+_AXES = ("Left: the cone of the payload's x axis in inertial space, one round about its angular momentum, free rotation of the "
+         "whole inertia tensor; distance from the middle is the angle from the launch axis, the marker the instant of passing the "
+         "target. Right: that angle until the target is passed.")
 _CLEARANCE = "Least distance between the payload's box and the boxes of platform and rails after exit; below zero they overlap."
-_SCATTER = ("Left: where cases pass the plane through the target. A shot without errors misses too, by what the orbit bends its way. Right: "
-            "share of cases that miss by more, in all and by their errors alone, with bounds of the quantiles.")
-_BOXES = ("Clearance below zero is depth of overlap: the boxes are the scene's, rigid and undeformed. A body that stood back from its pads "
-          "by as much would pass clear; flight.body says how large it is without them.")
+_SCATTER = ("Left: where cases pass the plane through the target. A shot without errors misses too, by what the orbit bends its "
+            "way. Right: share of cases that miss by more, in all and by their errors alone, with bounds of the quantiles.")
+_BOXES = ("Clearance below zero is depth of overlap: the boxes are the scene's, rigid and undeformed. A body that stood back "
+          "from its pads by as much would pass clear; flight.body says how large it is without them.")
 
 
 def draw(found: dict, figure: Callable[[Chart, str], Html]) -> Html:
@@ -35,8 +35,8 @@ def draw(found: dict, figure: Callable[[Chart, str], Html]) -> Html:
         caption(" ".join([_BOXES] * (not found["flight"]["no_clearance"]) + [doubts(found)])),
         table(("quantity", *(f"{100.0 * share:.4g} %" for share in shares)),
               [(by_name[name], *map(_quantile, quantiles)) for name, quantiles in judged.items()], dense=True),
-        caption(f"{many['counts']['asked']:,} cases, {many['settled']:,} of them flown, {many['outside']:,} outside what the calibration was "
-                f"made for. Share of cases below the value; in brackets its bounds at {many['confidence']:.0%} confidence "
+        caption(f"{many['counts']['asked']:,} cases, {many['settled']:,} of them flown, {many['outside']:,} outside what the "
+                f"calibration was made for. Share of cases below the value; in brackets its bounds at {many['confidence']:.0%} confidence "
                 f"({many['bounds']}). {_touching(many)}")]))
 
 
@@ -70,9 +70,10 @@ def _paths(curves: list[dict], flight: dict) -> Chart:
 
 
 def _axes(curves: list[dict]) -> Chart:
-    passed = [Line([curve["axis_at_target_deg"][0]], [curve["axis_at_target_deg"][1]], curve["condition"], colour, 1.0, "", marker=marker,
-                   legend=False) for curve, (colour, _, marker) in zip(curves, _LOOKS)]
-    around = _lines(curves, lambda curve: [row[0] for row in curve["axis_deg"]], lambda curve: [row[1] for row in curve["axis_deg"]])
+    ends = [curve["axis_at_target_deg"] for curve in curves]
+    passed = [Line([end[0]], [end[1]], curve["condition"], colour, 1.0, "", marker=marker, legend=False)
+              for curve, end, (colour, _, marker) in zip(curves, ends, _LOOKS)]
+    around = _lines(curves, lambda curve: list(zip(*curve["axis_deg"]))[0], lambda curve: list(zip(*curve["axis_deg"]))[1])
     angle = _lines(curves, lambda curve: curve["time_s"], lambda curve: curve["pointing_deg"])
     return Chart("flight-axis", [Panel("cone of the x axis", "towards y (deg)", "towards z (deg)", [*around, *passed]),
                                  Panel("pointing error", "time after exit (s)", "angle (deg)", angle)], columns=2, height=360)
@@ -112,8 +113,8 @@ def _words(found: dict) -> str:
     flight = found["flight"]
     limit = "" if flight["pointing_limit_deg"] is None else f" The pointing limit is {flight['pointing_limit_deg']:g} deg."
     model = "on walls that give way" if found["asked"]["walls"] else "calibrated"
-    return (f"A target {flight['range_m']:g} m along the launch axis, at rest beside a circular orbit of {flight['period_s'] / 60.0:.4g} "
-            f"min; surrogate {model}. Nothing acts after the exit but gravity.{limit}")
+    return (f"A target {flight['range_m']:g} m along the launch axis, at rest beside a circular orbit of "
+            f"{flight['period_s'] / 60.0:.4g} min; surrogate {model}. Nothing acts after the exit but gravity.{limit}")
 
 
 def _touching(many: dict) -> str:
