@@ -12,7 +12,7 @@ ASKED = --scene $(SCENE) --out $(OUT)
 READY = .venv/.ready
 
 .DEFAULT_GOAL := help
-.PHONY: help mesh highfi lowfi calibrate posterior compare blind cost stability ablation ensemble sensitivity sweeps montecarlo limits droptest paper report view pictures convergence full-report bench test test-slow clean
+.PHONY: help mesh highfi lowfi calibrate posterior compare blind cost stability ablation ensemble sensitivity sweeps montecarlo limits flight droptest paper report view pictures convergence full-report bench test test-slow clean
 
 help: ## print this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## /{printf "  make %-12s %s\n", $$1, $$2}' Makefile
@@ -68,6 +68,9 @@ limits: $(READY) ## tolerances that keep the rates below limits (LIMIT="5 deg/s"
 
 paper: $(READY) ## what the paper's unpublished inputs must have been, its tables beside ours
 	$(TIPOFF) paper $(ASKED)
+
+flight: $(READY) ## after separation: miss of a target in orbit, pointing, coning, whether it touches again
+	$(TIPOFF) flight $(ASKED) $(if $(CASES),--cases $(CASES))
 
 bench: $(READY) ## speed of the solvers against what one would write today: OUT/bench
 	$(TIPOFF) bench --out $(OUT)

@@ -133,7 +133,7 @@ class Family:
         found = outcome.Outcome()
         if status == settle.EXITED:
             found = outcome.settled(float(result[settle.EXIT]), float(result[settle.WINDOW]), result[settle.VELOCITY:settle.VELOCITY + 3],
-                                    result[settle.RATE:settle.RATE + 3], result[settle.ATTITUDE:settle.ATTITUDE + 4])
+                                    result[settle.RATE:settle.RATE + 3], *settle.bodies(result))
         return Case(_STATUS[status], "", found, int(result[settle.TAKEN_STEPS]), share)
 
     def _whole(self, row: Mapping[str, Any]) -> Case:

@@ -8,13 +8,15 @@ from lowfi.batch import Case
 
 STATUSES = ("exited", "time_limit", "jammed", "diverged", "refused")  # a status is stored as its place in this list
 UNITS = {"exit_time": "s", "velocity": "m/s", "rate": "rad/s", "lateral_velocity": "m/s", "direction_error": "rad",
-         "exit_attitude": "rad"}
-VECTORS = ("velocity", "rate", "exit_attitude")
+         "exit_attitude": "rad", "exit_position": "m", "exit_platform_position": "m", "exit_platform_velocity": "m/s",
+         "exit_platform_attitude": "rad", "exit_platform_rate": "rad/s"}
+VECTORS = ("velocity", "rate", *(name for name in UNITS if name.startswith("exit_") and name != "exit_time"))
 
 
 class Columns(NamedTuple):
     """``status`` (n,) as a place in STATUSES, exit_time (n,) s, velocity (n,3) m/s, rate (n,3) rad/s, lateral_velocity (n,) m/s,
-    direction_error (n,) rad, exit_attitude (n,3) rad as a rotation vector, NaN in cases that did not settle, and ``steps`` (n,)."""
+    direction_error (n,) rad, at exit attitude (n,3) rad as a rotation vector and position (n,3) m of the payload and position,
+    velocity, attitude and rate (n,3) of the platform, NaN in cases that did not settle, and ``steps`` (n,)."""
 
     status: np.ndarray
     exit_time: np.ndarray
@@ -23,6 +25,11 @@ class Columns(NamedTuple):
     lateral_velocity: np.ndarray
     direction_error: np.ndarray
     exit_attitude: np.ndarray
+    exit_position: np.ndarray
+    exit_platform_position: np.ndarray
+    exit_platform_velocity: np.ndarray
+    exit_platform_attitude: np.ndarray
+    exit_platform_rate: np.ndarray
     steps: np.ndarray
 
 

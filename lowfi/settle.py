@@ -21,10 +21,10 @@ from scenes.jit import inlined, kernel
 
 # What became of a case.
 LEFT_OPEN, EXITED, TIME_LIMIT = range(3)
-# Columns of the results: status, exit (s), start of the window (s), mean velocity (m/s) and rate (rad/s), quaternion at exit, counts.
-STATUS, EXIT, WINDOW, VELOCITY, RATE, ATTITUDE, TAKEN_STEPS, RIGHT_HAND_SIDES = 0, 1, 2, 3, 6, 9, 13, 14
-RESULT_SIZE = 15
 ROW_SIZE = 26  # payload and platform: place, velocity, quaternion, rate
+# Columns of the results: status, exit (s), start of the window (s), mean velocity (m/s) and rate (rad/s), the row at exit, counts.
+STATUS, EXIT, WINDOW, VELOCITY, RATE, AT_EXIT, TAKEN_STEPS, RIGHT_HAND_SIDES = 0, 1, 2, 3, 6, 9, 9 + ROW_SIZE, 10 + ROW_SIZE
+RESULT_SIZE = 11 + ROW_SIZE
 _NEAR = outcome.AROUND
 _CLEARLY = 1.0 + 1e-6  # beyond the threshold by more than any rounding
 
@@ -61,6 +61,14 @@ class Ends(NamedTuple):
     constant_thrust: bool
     jam_speed: float
     stride: int
+
+
+def bodies(result: np.ndarray) -> list[np.ndarray]:
+    """Of one row of results, at exit: position and quaternion of the payload, position, velocity, quaternion and rate of the platform."""
+    row = result[AT_EXIT:AT_EXIT + ROW_SIZE]
+    place, base, q = slot.PLACE, slot.PLATFORM, slot.QUATERNION
+    speed, spin = base + slot.VELOCITY, base + MEASURED
+    return [row[place:place + 3], row[q:q + 4], row[base:base + 3], row[speed:speed + 3], row[base + q:base + q + 4], row[spin:spin + 3]]
 
 
 def scratch(interval: float) -> Scratch:
@@ -156,7 +164,7 @@ def _one(system, plan, tolerance, ends, edges, loop, room, result):
         number += 1
     first = last - every * (stored - 1)
     exit_at = _exit(system, edges, exit_rows[:kept], past - _NEAR, _NEAR, interval, columns, room.slopes)
-    slot.copy(exit_rows[_NEAR, slot.QUATERNION:], result[ATTITUDE:], 4)
+    slot.copy(exit_rows[_NEAR], result[AT_EXIT:], ROW_SIZE)
     return _judge(exit_at, max(exit_at + outcome.SETTLE_DELAY, ends.settled_thrust), first, every, room.window[:stored], interval, columns,
                   room.slopes, result)
 

@@ -40,7 +40,8 @@ class Motion(NamedTuple):
 
 class Outcome(NamedTuple):
     """Exit time (s), settled window start (s), means over it: velocity (m/s), rate (rad/s); lateral velocity (m/s), direction
-    error of the velocity (rad) and attitude at exit as a rotation vector (rad). All None unless the payload exited and settled."""
+    error of the velocity (rad). At the first sample past the exit: attitude of the payload as a rotation vector (rad), its position (m),
+    and position (m), velocity (m/s), attitude (rad) and rate (rad/s) of the platform. All None unless the payload exited and settled."""
 
     exit_time: float | None = None
     window_start: float | None = None
@@ -49,6 +50,11 @@ class Outcome(NamedTuple):
     lateral_velocity: float | None = None
     direction_error: float | None = None
     exit_attitude: list[float] | None = None
+    exit_position: list[float] | None = None
+    exit_platform_position: list[float] | None = None
+    exit_platform_velocity: list[float] | None = None
+    exit_platform_attitude: list[float] | None = None
+    exit_platform_rate: list[float] | None = None
 
 
 class Milestones(NamedTuple):
@@ -193,12 +199,18 @@ def judge(motion, marks: Milestones) -> tuple[str, Outcome]:
     if motion.time[-1] < end * (1.0 - 1e-12):
         return "time_limit", Outcome(exit_time=exit_at)
     index = min(int(np.searchsorted(motion.time, exit_at)), motion.time.size - 1)
+    bodies = [part[index] for part in (motion.position, motion.quaternion, motion.platform_position, motion.platform_velocity,
+                                       motion.platform_quaternion, motion.platform_rate)]
     return "exited", settled(exit_at, start, mean(motion.time, motion.velocity, start, end),
-                             mean(motion.time, motion.rate, start, end), motion.quaternion[index])
+                             mean(motion.time, motion.rate, start, end), *bodies)
 
 
-def settled(exit_at: float, start: float, velocity: np.ndarray, rate: np.ndarray, attitude: np.ndarray) -> Outcome:
-    """Outcome of an exit at ``exit_at`` (s) with these means over the window from ``start`` (s), and the quaternion at exit."""
+def settled(exit_at: float, start: float, velocity: np.ndarray, rate: np.ndarray, position: np.ndarray, attitude: np.ndarray,
+            platform_position: np.ndarray, platform_velocity: np.ndarray, platform_attitude: np.ndarray,
+            platform_rate: np.ndarray) -> Outcome:
+    """Outcome of an exit at ``exit_at`` (s) with these means over the window from ``start`` (s), and both bodies at exit, their attitudes
+    as quaternions."""
     lateral = float(np.hypot(velocity[1], velocity[2]))
     return Outcome(exit_at, start, velocity.tolist(), rate.tolist(), lateral, float(np.arctan2(lateral, velocity[0])),
-                   rotation.vector(attitude.tolist()))
+                   rotation.vector(attitude.tolist()), position.tolist(), platform_position.tolist(), platform_velocity.tolist(),
+                   rotation.vector(platform_attitude.tolist()), platform_rate.tolist())

@@ -14,6 +14,7 @@ from pydantic import AfterValidator, Field, PrivateAttr, ValidationError
 from scenes import overrides as keys
 from scenes import plausibility, reading, roles, validity
 from scenes.effects.contact import ContactTable
+from scenes.effects.flight import FlightTable
 from scenes.effects.friction import FrictionTable
 from scenes.effects.gravity import GravityTable
 from scenes.effects.initial import InitialTable
@@ -32,7 +33,7 @@ CATALOG = reading.CATALOG
 EFFECTS = ("thrust_offset", "mass_offset", "initial", "contact", "friction", "platform", "gravity", "rail.damping")
 NOMINAL = "nominal"  # the scene itself, named like a condition
 _BESIDE = ("conditions", "agreement", "provenance")
-_NOT_PHYSICS = {"name", "description", *_BESIDE}
+_NOT_PHYSICS = {"name", "description", "flight", *_BESIDE}  # what comes after the exit changes nothing before it
 
 
 class Scene(Table):
@@ -52,6 +53,7 @@ class Scene(Table):
     friction: FrictionTable | None = None
     platform: PlatformTable | None = None
     gravity: GravityTable | None = None
+    flight: FlightTable | None = None
     output: OutputTable = OutputTable()
     agreement: AgreementTable = AgreementTable()
     conditions: dict[str, dict[str, Any]] = Field(default_factory=dict)

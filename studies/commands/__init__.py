@@ -4,7 +4,7 @@ from importlib import import_module
 
 import typer
 
-NAMES = ("blind", "sensitivity", "sweeps", "montecarlo", "limits", "droptest", "paper")
+NAMES = ("blind", "sensitivity", "sweeps", "montecarlo", "limits", "flight", "droptest", "paper")
 
 
 def add_all(app: typer.Typer) -> None:

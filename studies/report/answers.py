@@ -30,6 +30,7 @@ ANSWERS = (
     Answer("sweeps", "How large an error may be", "Sweeps"),
     Answer("montecarlo", "Random errors", "Random errors"),
     Answer("limits", "Tolerances that keep limits", "Tolerances"),
+    Answer("flight", "After separation", "Flight"),
     Answer("droptest", "Drop tests", "Drop tests"),
     Answer("paper", "The paper's own numbers", "Paper"),
 )

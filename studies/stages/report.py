@@ -38,7 +38,8 @@ def run(study: Study) -> dict:
 
     keys = {name: found and found["key"] for name, found in documents.items()}
     made_at = {name: study.path(f"{name}.json").read_text() for name, found in documents.items() if found}
-    key = content_hash(keys, content_hash(made_at), content_hash(there), problems, study.key(("scenes", "studies")))
+    shown = study.key(("scenes", "studies"), study.scene.resolved().get("flight"))
+    key = content_hash(keys, content_hash(made_at), content_hash(there), problems, shown)
     return study.stage("report", key, make)
 
 

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import lowfi
+from lowfi import columns
 from scenes import load
 from scenes.faults import SceneError
 from studies.bench_lowfi import varied
@@ -45,7 +46,7 @@ def test_same_bits_as_single_runs(rows):
         alone = lowfi.run(base.replace(row))
         case = found.isel(case=index)
         assert (str(case.status.values), str(case.message.values), int(case.steps)) == (alone.status, alone.message, alone.cost["steps"])
-        for name in ("rate", "velocity", "exit_time", "lateral_velocity", "direction_error", "exit_attitude"):
+        for name in columns.UNITS:
             expected = getattr(alone.outcome, name)
             assert np.array_equal(case[name].values, np.nan * case[name].values if expected is None else expected, equal_nan=True), (row, name)
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import lowfi
+from lowfi import columns
 from scenes import load
 
 BASE = load("reference").condition("phi15")
@@ -55,6 +56,6 @@ def test_tables_of_runs_hold_none_either():
     rows = [overrides for name, (overrides, numerics) in ENDS.items() if not numerics]
     found = lowfi.run_many(BASE, rows)
     assert found.status.values.tolist() == ["exited", "time_limit", "jammed", "diverged"]
-    for name in ("rate", "velocity", "exit_time", "lateral_velocity", "direction_error", "exit_attitude"):
+    for name in columns.UNITS:
         values = found[name].values
         assert np.isfinite(values[0]).all() and np.isnan(values[1:]).all(), name

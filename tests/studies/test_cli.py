@@ -16,7 +16,7 @@ from tests.studies.synthetic import flight
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 STAGES = ("mesh", "highfi", "lowfi", "calibrate", "compare", "cost", "stability", "ablation", "convergence", "report", "view", "ensemble",
-          "blind", "sensitivity", "sweeps", "montecarlo", "limits", "droptest", "paper")
+          "blind", "sensitivity", "sweeps", "montecarlo", "limits", "flight", "droptest", "paper")
 
 
 def call(*arguments):

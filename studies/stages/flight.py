@@ -1,0 +1,120 @@
+"""Stage ``flight``: what becomes of the payload after its exit, for every condition and for many cases with errors."""
+
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+import numpy as np
+
+from lowfi.rows import Drawn
+from scenes import uncertainty
+from scenes.faults import Fault, SceneError
+from scenes.files import replacing
+from scenes.scene import Scene
+from scenes.variation import Variations
+from studies import population
+from studies.flight import bodies, curves, flown, summary
+from studies.progress import Board
+from studies.store import SOURCES
+from studies.study import Study, StudyError, read
+
+NAME = "flight"
+_SOURCES = (*SOURCES["highfi"], *SOURCES["lowfi"], "calibrate")
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What ``tipoff flight`` is given beside the scene: distributions, how many cases and their seed, None as the file says, and
+    whether the surrogate stands on ``walls`` that give way."""
+
+    vary: str = uncertainty.DEFAULT
+    cases: int | None = None
+    seed: int | None = None
+    walls: bool = False
+
+
+def run(study: Study, asked: Asked = Asked()) -> dict:
+    """``conditions``, rows as ``studies.flight.summary`` has them; ``cases``, their distributions; ``curves`` of the first
+    conditions. Raises SceneError for a scene that says nothing of a flight."""
+    _require(study.conditions | {study.scene.name: study.scene})
+    changed = {name: value for name, value in (("cases", asked.cases), ("seed", asked.seed)) if value is not None}
+    drawn = Drawn(uncertainty.load(asked.vary, study.scene, **changed))
+    if wrong := [key for key in drawn.keys if key.split(".")[0] == "flight"]:
+        expected = "a key of the ejection: a flight is the same for all cases"
+        raise SceneError([Fault(asked.vary, f"vary.{key}", "a distribution", expected) for key in wrong])
+
+    def make() -> tuple[dict, list[Path]]:
+        from studies.report import chart
+        from studies.report import flight as page
+
+        rows, shapes, single = _conditions(study, asked)
+        cases, many = _cases(study, asked, drawn)
+        found = {"asked": asdict(asked), "flight": summary.orbit(study.scene), "conditions": rows, "curves": shapes, "cases": cases}
+        data = study.path(f"{NAME}.nc")
+        labelled = summary.dataset([row["condition"] for row in rows if row["flown"]], single, many)
+        with replacing(data) as temporary:
+            labelled.to_netcdf(temporary, engine="h5netcdf")
+        pictures = [path for drawing, _ in page.charts(found) for path in chart.to_files(drawing, study.path("figures"))]
+        return found | {"data": study.relative(data)}, [data, *pictures]
+
+    return study.stage(NAME, _key(study, asked), make)
+
+
+def stored(study: Study) -> dict | None:
+    """The result, if it was made from the present scene, code and settings."""
+    found = read(study.path(f"{NAME}.json"))
+    try:
+        return found if found and study.scene.flight and found["key"] == _key(study, Asked(**found["asked"])) else None
+    except SceneError:  # the file of distributions is gone, or says something else by now
+        return None
+
+
+def _key(study: Study, asked: Asked) -> str:
+    tables = {name: scene.flight and scene.flight.model_dump(mode="json") for name, scene in study.conditions.items()}
+    varied = uncertainty.load(asked.vary, study.scene).resolved()
+    own = study.scene.flight.model_dump(mode="json")
+    return study.key(_SOURCES, NAME, own, tables, asdict(asked), varied, study.settings.element_size)
+
+
+def _require(scenes: dict[str, Scene]) -> None:
+    expected = 'a table [flight], or --set flight.altitude="500 km" --set flight.range="100 m"'
+    faults = [Fault(name, "flight", "nothing", expected) for name, scene in scenes.items() if scene.flight is None]
+    faults += [Fault(name, "gravity", "a table", "none beside [flight]: scene axes in orbit fall freely")
+               for name, scene in scenes.items() if scene.flight and scene.gravity]
+    if faults:
+        raise SceneError(faults)
+
+
+def _conditions(study: Study, asked: Asked) -> tuple[list[dict], list[dict], flown.Flown | None]:
+    """A row for every condition, curves of the first that settled, and what was found for all that did."""
+    runs = []
+    for name in study.conditions:
+        model = population.surrogate(study, asked.walls, name)
+        runs.append(study.lowfi(name, model.calibration, walls=model.walls))
+    ended = dict(zip(study.conditions, study.store.fill(NAME, runs)))
+    settled = [name for name, found in ended.items() if found.outcome.rate is not None]
+    pairs = {name: flown.pair(study.conditions[name].flight.record(), bodies.bodies([study.conditions[name]]),
+                              bodies.start(bodies.of_outcomes([ended[name].outcome]))) for name in settled}
+    single = [flown.found(both) for both in pairs.values()]
+    values = dict(zip(settled, single))
+    rows = [{"condition": name, "status": ended[name].status, "flown": summary.row(values[name], 0) if name in values else None}
+            for name in ended]
+    first = [name for name in study.scene.agreement.fitted if name in pairs] or settled
+    shapes = [{"condition": name, **curves.of(pairs[name], values[name])} for name in first[:curves.SHOWN]]
+    return rows, shapes, flown.joined(single) if single else None
+
+
+def _cases(study: Study, asked: Asked, drawn: Drawn) -> tuple[dict, flown.Flown]:
+    """Distributions over the cases of ``drawn``, and what was found for each that settled."""
+    model = population.surrogate(study, asked.walls)
+    cases = population.run(study, NAME, model, drawn)
+    which = np.flatnonzero(cases.settled)
+    if not len(which):
+        raise StudyError(f"none of {drawn.asked:,} cases left the rail and settled: nothing flies; store {cases.store}")
+    variations, rows = Variations(model.scene), drawn.rows(0, drawn.asked)
+    parted = bodies.bodies(variations.of(rows[number]) for number in which)
+    with Board(NAME, 1) as board:
+        label = f"{len(which):,} flights"
+        begin = bodies.start(type(cases.results)(*(part[which] for part in cases.results)))
+        many = flown.fly(study.scene.flight.record(), parted, begin, board.callback(label))
+        board.finished(label, "flown")
+    return summary.cases(many, cases, drawn.uncertainty), many

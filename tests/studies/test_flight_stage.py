@@ -1,0 +1,108 @@
+"""``tipoff flight``: what it writes, what it takes from options, what it refuses, and its section of the page."""
+
+import json
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from scenes import load
+from studies import population
+from studies.cli import app
+from studies.flight import summary
+from studies.population import Surrogate
+from studies.report import chart
+from studies.report import flight as section
+from studies.settings import Settings
+from studies.stages import flight
+from studies.study import Study
+
+pytest.importorskip("zarr")
+xarray = pytest.importorskip("xarray")
+
+
+@pytest.fixture
+def uncalibrated(monkeypatch):
+    """The surrogate with the constants of the scene, which no reference has to be run for."""
+    def surrogate(study, walls=False, condition=None):
+        return Surrogate(study.condition(condition) if condition else study.scene, None, None)
+
+    monkeypatch.setattr(population, "surrogate", surrogate)
+
+
+def call(*arguments):
+    return CliRunner().invoke(app, ["flight", *(str(argument) for argument in arguments)])
+
+
+def test_conditions_and_cases_are_flown_and_kept(tmp_path, uncalibrated, monkeypatch):
+    asked = ("--condition", "phi35", "--condition", "phi60", "--cases", 60, "--out", tmp_path)
+    first = call(*asked)
+    assert first.exit_code == 0, first.output
+    assert "60 cases = 60 ok + 0 refused + 0 failed" in first.stdout and "of it by errors" in first.stdout
+    folder = tmp_path / "reference"
+    found = json.loads((folder / "flight.json").read_text())
+    assert [item["condition"] for item in found["conditions"]] == ["phi35", "phi60"]
+    assert [item["condition"] for item in found["curves"]] == ["phi35", "phi60"]
+    row, curve = found["conditions"][0]["flown"], found["curves"][0]
+    assert row["miss_m"] == pytest.approx(np.hypot(row["miss_y_m"], row["miss_z_m"]))
+    assert row["miss_m"] > 10.0 * row["tip_off_miss_m"] > 0.0  # the orbit bends the way of all
+    assert curve["pointing_deg"][-1] == pytest.approx(row["pointing_deg"], rel=1e-5)
+    assert curve["to_target_m"][-1] == pytest.approx([100.0, row["miss_y_m"], row["miss_z_m"]], rel=1e-4)
+    assert min(curve["clearance_m"]) == pytest.approx(1e-3 * row["clearance_mm"], abs=1e-5)
+    median = found["cases"]["quantiles"]["miss_m"][summary.SHARES.index(0.5)]
+    assert median["low"] < median["value"] < median["high"]
+    assert found["cases"]["touch"]["of"] == 60 and found["cases"]["not_reached"]["count"] == 0
+    with xarray.open_dataset(folder / found["data"], engine="h5netcdf") as data:
+        assert data.miss_m.shape == (60,) and data.condition.values.tolist() == ["phi35", "phi60"]
+        assert np.median(data.miss_m) == pytest.approx(median["value"], rel=0.02)
+        assert float(data.condition_miss_m[0]) == pytest.approx(row["miss_m"])
+    assert sorted(path.name for path in (folder / "figures").glob("flight-*.svg")) == [
+        "flight-axis.svg", "flight-clearance.svg", "flight-miss.svg", "flight-path.svg"]
+
+    stamp = (folder / "flight.json").stat().st_mtime_ns
+    assert call(*asked).exit_code == 0 and (folder / "flight.json").stat().st_mtime_ns == stamp  # nothing changed
+    monkeypatch.setattr(chart, "to_files", lambda *_: [])  # drawn once is enough
+    further = json.loads(call(*asked, "--range", "1 km", "--json").stdout)
+    assert further["flight"]["range_m"] == 1000.0 and further["conditions"][0]["flown"]["miss_m"] > 50.0 * row["miss_m"]
+    assert further["cases"]["store"] == found["cases"]["store"]  # another flight of the same ejections
+
+    study = Study(load("reference").replace({"flight.range": "1 km"}), folder, Settings(), ("phi35", "phi60"))
+    assert flight.stored(study)["key"] == further["key"]
+    assert flight.stored(Study(load("reference"), folder, Settings(), ("phi35", "phi60"))) is None
+    assert flight.stored(Study(load("reference").replace({"flight": None}), folder, Settings())) is None
+    (folder / "flight.json").write_text(json.dumps(further | {"asked": further["asked"] | {"vary": "gone.toml"}}))
+    assert flight.stored(study) is None
+    drawn = section.draw(found, lambda drawing, words: chart.to_html(drawing) + words)
+    assert 'id="chart-flight-miss"' in drawn and "misses by" not in drawn and "touch the platform again" in drawn
+
+
+def test_without_an_exit_there_is_no_flight(tmp_path, uncalibrated):
+    result = call("--condition", "phi35", "--cases", 4, "--set", "duration=20 ms", "--out", tmp_path)
+    assert result.exit_code == 1 and "none of 4 cases left the rail" in result.stderr
+    assert not (tmp_path / "reference" / "flight.json").exists()
+
+
+def test_what_is_to_be_doubted():
+    orbit = summary.orbit(load("channel"))
+    assert "given by a file" in summary.doubts({"flight": orbit, "cases": {"limit_open": 0}})
+    assert "3 cases" in summary.doubts({"flight": summary.orbit(load("reference")), "cases": {"limit_open": 3}})
+    assert summary.doubts({"flight": summary.orbit(load("reference")), "cases": {"limit_open": 0}}) == ""
+
+
+@pytest.mark.parametrize("arguments, words", [
+    (["--set", "flight=absent"], '--set flight.altitude="500 km" --set flight.range="100 m"'), (["--range", "-5 m"], "flight.range"),
+    (["--range", "5 kg"], "flight.range"), (["--altitude", "absent"], "one of altitude and mean_motion"),
+    (["--set", "flight.mean_motion=1e-3 rad/s"], "one of altitude and mean_motion"), (["--set", "gravity.z=-9.81 m/s**2"], "fall freely"),
+    (["--set", "flight.envelope.0.high.0=-2 m"], "a corner nowhere below low"), (["--vary", "nothing"], "paper")])
+def test_bad_input_is_refused_and_nothing_written(tmp_path, arguments, words):
+    result = call("--out", tmp_path / "out", *arguments)
+    assert result.exit_code == 2, result.output
+    assert words in result.stderr and "Traceback" not in result.output
+    assert not (tmp_path / "out").exists()
+
+
+def test_the_flight_itself_does_not_vary(tmp_path):
+    errors = tmp_path / "errors.toml"
+    errors.write_text('cases = 8\n[vary."flight.azimuth"]\ndistribution = "uniform"\nlow = "0 deg"\nhigh = "1 deg"\n')
+    result = call("--out", tmp_path / "out", "--vary", errors)
+    assert result.exit_code == 2 and "vary.flight.azimuth" in result.stderr and not (tmp_path / "out").exists()
