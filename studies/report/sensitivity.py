@@ -4,14 +4,13 @@ from typing import Callable, Sequence
 
 import numpy as np
 
-from studies.report.chart import AMBER, GREY, NAVY, VERMILION, Chart, Line, Panel, Picture
+from studies.report.chart import AMBER, GREY, NAVY, TEAL, VERMILION, Chart, Line, Panel, Picture
 from studies.report.markup import Html, caption, fold, number, paragraph, percent, table
 
 _RATES = ("rate_x_deg_s", "rate_y_deg_s", "rate_z_deg_s", "rate_deg_s")
 _STILL = 1e-6  # deg/s; the tables are of runs at a relative tolerance of 2e-7
-_MOST = 3  # inputs whose convergence is drawn
 _DRAWN = 8  # inputs with bars
-_LINES = ((NAVY, "-", "o"), (VERMILION, "--", "s"), (AMBER, "-.", "^"))
+_LINES = ((NAVY, "-", "o"), (VERMILION, "--", "s"), (AMBER, "-.", "^"), (TEAL, ":", "D"))  # of inputs whose convergence is drawn
 _NAMES = {"contact.stiffness": "contact stiffness", "contact.exponent": "contact exponent", "contact.damping": "contact damping",
           "contact.damping_depth": "depth of full damping", "contact.penalty": "penalty of the walls",
           "contact.clearance": "clearance", "friction.dynamic": "friction", "thrust.peak": "thrust peak",
@@ -21,7 +20,7 @@ _BARS = ("First-order index (pale, hatched): the share of the variance that woul
          "what would stay if all others were. The difference is what it does together with others. Whiskers: 95 %, bootstrap.")
 _MAP = ("Total indices of every quantity: a row of large numbers is an input worth a closer tolerance. Half widths of the 95 % "
         "intervals are in sensitivity.json.")
-_CONVERGENCE = ("Total indices of the three largest inputs from the first parts of the same points: what more points would still "
+_CONVERGENCE = ("Total indices of the four largest inputs from the first parts of the same points: what more points would still "
                 "change.")
 _TABLE = ("A share says nothing of a rate that is nearly zero, here below a twentieth of the total, and is left out. The paper's "
           "shares are computed from its Table 2; its text gives 0.26 % as the largest about z, its table 0.71 %. Its scene, and so "
@@ -49,7 +48,8 @@ def pictures(found: dict) -> list[tuple[Chart | Picture, str]]:
 def draw(found: dict, figure: Callable[[Chart, str], Html]) -> Html:
     """The section: tables of contact constants, then indices."""
     drawn = "".join(figure(*item) for item in pictures(found))
-    said = "".join(f"<li>{line[0].upper()}{line[1:]}.</li>" for line in found["summary"])
+    # What a quantity depends on most is in the map; the words of the command line would only repeat it.
+    said = "".join(f"<li>{line[0].upper()}{line[1:]}.</li>" for line in found["summary"] if "total index" not in line)
     tables = "".join(_beside_paper(item, found["paper"]) for item in found["tables"])
     return Html("".join([f"<ul>{said}</ul>", "<h3>Contact constants, one at a time</h3>" if tables else "", tables,
                          "<h3>Everything at once</h3>", drawn, _inputs(found["sobol"])]))
@@ -115,6 +115,7 @@ def _inputs(sobol: dict) -> Html:
         paragraph("A base point with a case that does not settle is left out with all of its cases, so the indices hold for "
                   f"launches that leave the rail: {sobol['used']:,} of {sobol['base_points']:,} were used."),
         table(("quantity", "mean", "sd", "unit", "sum of first-order indices (%)"), spread),
+        caption("The sum is what goes by knowing each input alone; below zero it is error of sampling (see the whiskers)."),
         fold("what varied", table(("input", "distribution", "nominal", "95 % within", "unit", "provenance"), rows, dense=True),
              f"<p>Left out:</p><ul>{left}</ul>" if left else "")]))
 
@@ -159,13 +160,13 @@ def _map(sobol: dict, told: list[dict]) -> Picture:
 
 
 def _convergence(sobol: dict, rates: list[dict]) -> Chart:
+    """The same inputs in every panel: those with the largest indices over all of them."""
+    most = np.argsort(np.mean([item["indices"]["total"] for item in rates], axis=0))[::-1][:len(_LINES)]
     panels = []
     for item in rates:
-        order = np.argsort(item["indices"]["total"])[::-1][:_MOST]
         steps = [step for step in item["convergence"] if "total" in step]
         lines = [Line([step["base_points"] for step in steps], [step["total"][n] for step in steps],
-                      f"{('largest', 'second', 'third')[place]} input", colour, 1.6, dash, marker=marker,
-                      labels=(*[""] * (len(steps) - 1), name_of(sobol["inputs"][n]["key"])))
-                 for place, (n, (colour, dash, marker)) in enumerate(zip(order, _LINES))]
+                      name_of(sobol["inputs"][n]["key"]), colour, 1.6, dash, marker=marker)
+                 for n, (colour, dash, marker) in zip(most, _LINES)]
         panels.append(Panel(item["label"], "base points", "total Sobol' index", lines))
     return Chart("sensitivity-convergence", panels, columns=2, height=280)
