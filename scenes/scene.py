@@ -14,6 +14,7 @@ from pydantic import AfterValidator, Field, PrivateAttr, ValidationError
 from scenes import overrides as keys
 from scenes import plausibility, reading, roles, validity
 from scenes.effects.contact import ContactTable
+from scenes.effects.flexibility import FlexibilityTable
 from scenes.effects.friction import FrictionTable
 from scenes.effects.gravity import GravityTable
 from scenes.effects.initial import InitialTable
@@ -29,7 +30,7 @@ from scenes.tables import AgreementTable, OutputTable, PadTable, PayloadTable
 from scenes.units import PositiveTime
 
 CATALOG = reading.CATALOG
-EFFECTS = ("thrust_offset", "mass_offset", "initial", "contact", "friction", "platform", "gravity", "rail.damping")
+EFFECTS = ("thrust_offset", "mass_offset", "initial", "contact", "friction", "platform", "gravity", "rail.damping", "flexibility")
 NOMINAL = "nominal"  # the scene itself, named like a condition
 _BESIDE = ("conditions", "agreement", "provenance")
 _NOT_PHYSICS = {"name", "description", *_BESIDE}
@@ -52,6 +53,7 @@ class Scene(Table):
     friction: FrictionTable | None = None
     platform: PlatformTable | None = None
     gravity: GravityTable | None = None
+    flexibility: FlexibilityTable | None = None
     output: OutputTable = OutputTable()
     agreement: AgreementTable = AgreementTable()
     conditions: dict[str, dict[str, Any]] = Field(default_factory=dict)
