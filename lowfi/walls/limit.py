@@ -5,15 +5,15 @@ face, the linearised springs are sum_ab T_ab g_a g_b', and the trace over both b
 
     K = sum over rails of sum_ab T_ab (g_a . M^-1 g_b)
 
-Modes add a diagonal of omega^2 and d to the matrices, which raises their spectra by the largest of each (Weyl), and the trace of
-what contact does to them, W' T W.
+Modes of rails that move or are pressed add a diagonal of omega^2 and d to the matrices, which raises their spectra by the largest of
+each (Weyl), and the trace of what contact does to them, W' T W.
 """
 
 from lowfi import state as slot
 from lowfi.limits import friction_damping
 from lowfi.touch import outward, relative_pose
 from lowfi.walls.loads import load
-from lowfi.walls.modes import bounds
+from lowfi.walls.modes import fastest
 from lowfi.walls.record import SHIFT
 from lowfi.walls.solution import eliminate, fill_matrix, solve, stiffness
 from lowfi.system import NORMAL_Y
@@ -29,9 +29,11 @@ def stiffness_and_damping(walls, friction, faces, platform, payload, active, sta
     """Traces K (1/s2) and C (1/s) of all faces that are ``active`` (f,) at ``state``."""
     body, base = slot.motion(payload.mass, payload.inverse_inertia, state, slot.PAYLOAD), slot.frame(platform, state)
     place, turn = relative_pose(platform, body, base)
-    springs, dampers = bounds(walls.modes)
+    springs, dampers, square, drag = 0.0, 0.0, 0.0, 0.0
     for rail in range(walls.members.shape[0]):
         count = solve(walls, faces, rail, active, place, turn, state)
+        by_rail = fastest(walls.modes, rail, count > 0, state)
+        square, drag = max(square, by_rail[0]), max(drag, by_rail[1])
         for i in range(count):
             face = walls.room.order[i]
             if walls.room.force[face, 0] > 0.0:
@@ -40,7 +42,7 @@ def stiffness_and_damping(walls, friction, faces, platform, payload, active, sta
         if count > 0:
             columns = _tangent(walls, count)
             springs += _trace(walls, faces, platform, payload, count, body, base) + _trace_of_modes(walls.modes, walls.room, count, columns)
-    return springs, dampers
+    return springs + square, dampers + drag
 
 
 @kernel

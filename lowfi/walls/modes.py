@@ -102,11 +102,15 @@ def energies(modes, state):
 
 
 @inlined
-def bounds(modes):
-    """Largest omega^2 (1/s2) and d (1/s) of all modes: bounds of what rails do that nothing touches."""
+def fastest(modes, rail, pressed, state):
+    """Largest omega^2 (1/s2) and d (1/s) of the modes of a rail; zero while it is at rest and nothing has pressed it, for then it stays so."""
     square, drag = 0.0, 0.0
     if modes is not None:
-        for rail in range(modes.square.shape[0]):
-            for i in range(modes.square.shape[1]):
-                square, drag = max(square, modes.square[rail, i]), max(drag, modes.drag[rail, i])
+        count = modes.square.shape[1]
+        first, rates = STATE_SIZE + rail * count, STATE_SIZE + modes.square.size + rail * count
+        moving = pressed
+        for i in range(count):
+            moving = moving or state[first + i] != 0.0 or state[rates + i] != 0.0
+        for i in range(count if moving else 0):
+            square, drag = max(square, modes.square[rail, i]), max(drag, modes.drag[rail, i])
     return square, drag

@@ -116,6 +116,13 @@ def test_no_modes_are_the_walls_of_statics():
     assert plain.cost["steps"] == none.cost["steps"]
 
 
+def test_rails_that_nothing_touches_take_no_time():
+    """No pad touches in h5: not a step more, and the bits of a run without modes."""
+    asked, walls = REFERENCE.condition("h5"), reference_walls()
+    plain, modes = (lowfi.run(scene, walls=walls) for scene in (asked, asked.replace({"flexibility.modes": 4})))
+    assert modes.cost["steps"] == plain.cost["steps"] and np.array_equal(modes.rate, plain.rate)
+
+
 def test_walls_and_modes_of_different_rails_are_refused():
     walls = reference_walls()
     with pytest.raises(ValueError, match="give way more than the whole wall"):
