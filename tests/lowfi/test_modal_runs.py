@@ -132,15 +132,16 @@ def work_of_modes(scene, walls, run, states) -> float:
 
 
 def test_rails_without_inertia_are_the_walls_of_statics():
-    """Frequencies to infinity at the same statics: what vibration changes falls with their square."""
+    """Frequencies to infinity at the same statics: what vibration changes falls with their square, four times for twice as fast, and
+    touches at another phase of it may hide a little of that."""
     asked, walls = REFERENCE.condition("phi60"), reference_walls()
     static = lowfi.run(asked, numerics=TIGHT, walls=walls).outcome.rate
     change = []
-    for lighter in (1.0, 4.0, 16.0):
+    for lighter in (1.0, 2.0, 4.0):
         faster = replace(walls, frequency=lighter * walls.frequency, shape=lighter * walls.shape)
         change.append(np.abs(np.subtract(lowfi.run(asked.replace(MODES), numerics=TIGHT, walls=faster).outcome.rate, static)).max())
-    assert change[1] < change[0] / 4.0 and change[2] < change[1] / 4.0
-    assert np.degrees(change[0]) > 1e-4  # control: inertia does something
+    assert change[1] < change[0] / 3.0 and change[2] < change[1] / 3.0
+    assert np.degrees(change[0]) > 1e-3  # control: inertia does something
 
 
 @pytest.mark.slow
