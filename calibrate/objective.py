@@ -108,7 +108,8 @@ class Objective:
     def parts(self, shares: np.ndarray) -> dict[str, Parts]:
         """Residuals by condition."""
         self.evaluations += 1
-        changed = overrides(self.scene, self.values(shares))
+        # Springs stand on rails that do not bend, whatever else the scene asks of them.
+        changed = overrides(self.scene, self.values(shares)) | {"flexibility": None}
 
         def one(name: str) -> Parts:
             return compare(self.targets[name], self.run(self.variations[name].of(changed), numerics=self.numerics))

@@ -7,6 +7,11 @@ C is the displacement of the wall under pad face i, averaged with pattern a, cau
 pattern 1 the mean displacement under a unit force. F is the flexibility of ``scenes.walls``: displacement and pressure are both
 taken for the polynomials phi nearest to them. K is that of the whole rail, clamped at its mounts, so faces on one rail press each
 other's walls too. Inertia is left out. Both are symmetric (Maxwell and Betti).
+
+The modes psi_m of the same rail (``highfi.vibration``) are seen under the faces in the same patterns, so that a full set of them makes
+up C::
+
+    V_iam = 1/A_i integral over face i of phi_a n_i . psi_m,   W = G^-1 V,   C = sum_m V_m V_m' / omega_m^2
 """
 
 from typing import NamedTuple, Sequence
@@ -15,12 +20,13 @@ import numpy as np
 from scipy.sparse import coo_array, csc_array
 from scipy.sparse.linalg import splu
 
-from highfi import assembly, pieces, surface
+from highfi import assembly, pieces, surface, vibration
 from highfi.mesh import MeshError, RailMesh
 from highfi.numerics import Numerics
 from highfi.pressure import Pressed, pressed
 from highfi.run import prepare
 from scenes import model as scene_model
+from scenes.effects.flexibility import MOST
 from scenes.rail import MaterialTable
 from scenes.scene import Scene
 from scenes.walls import PATTERNS, Walls, digest
@@ -34,49 +40,52 @@ _SINGULAR = 1e-6  # of the largest eigenvalue of G: patterns that hardly differ 
 class Compliance(NamedTuple):
     """travel (s,) m of the payload along X since ignition; matrix (s,f,p,f,p) m/N between f pad faces and p patterns, zero between
     faces on different rails; gram (s,f,p,p), zero where a face has no wall; rail (f,) the number of the rail under each, -1 without;
-    half (f,2) m, half the size of each face along xi and eta, negative where eta runs against the axis. Near an end of the rail
-    a face stays at the last place where all of it is on the rail."""
+    half (f,2) m, half the size of each face along xi and eta, negative where eta runs against the axis; frequency (r,n) rad/s of the
+    modes of each rail and their shape V (s,f,p,n) 1/kg^0.5. Near an end of the rail a face stays at the last place where all of it is
+    on the rail."""
 
     travel: np.ndarray
     matrix: np.ndarray
     gram: np.ndarray
     rail: np.ndarray
     half: np.ndarray
+    frequency: np.ndarray
+    shape: np.ndarray
 
 
-def walls(scene: Scene, element_size: float, spacing: float = _SPACING) -> Walls:
-    """Flexibility of the rails of ``scene`` in elements of about ``element_size`` (m), at stations about ``spacing`` (m) apart from
-    ignition until the last pad begins to leave.
+def walls(scene: Scene, element_size: float, spacing: float = _SPACING, modes: int = MOST) -> Walls:
+    """Flexibility and lowest ``modes`` of the rails of ``scene`` in elements of about ``element_size`` (m), at stations about ``spacing``
+    (m) apart from ignition until the last pad begins to leave.
 
     Raises SceneError or MeshError.
     """
     faces = scene_model.built(scene).nominal
     way = scene.rail.end - faces.half_length - faces.centre[:, 0]
     stations = np.linspace(0.0, way.max(), int(np.ceil(way.max() / spacing)) + 1)
-    found = along(scene, element_size, stations, PATTERNS)
+    found = along(scene, element_size, stations, PATTERNS, modes)
     inverse = np.linalg.pinv(found.gram, rcond=_SINGULAR, hermitian=True)
     flexibility = np.einsum("siab,sibjc,sjcd->siajd", inverse, found.matrix, inverse, optimize=True)
-    return Walls(stations, flexibility, found.rail, found.half, digest(scene))
+    return Walls(stations, flexibility, found.rail, found.half, found.frequency, inverse @ found.shape, digest(scene))
 
 
-def along(scene: Scene, element_size: float, travel: Sequence[float], patterns: int = PATTERNS) -> Compliance:
+def along(scene: Scene, element_size: float, travel: Sequence[float], patterns: int = PATTERNS, modes: int = 0) -> Compliance:
     """Compliance of the rails of ``scene`` in elements of about ``element_size`` (m), the payload aligned and moved by each
     ``travel`` (m) from its place at ignition.
 
-    Faces are those of ``scenes.model.Faces``. Raises SceneError or MeshError, ValueError for a number of patterns there is not.
+    Faces are those of ``scenes.model.Faces``. Raises SceneError or MeshError, ValueError for a number of patterns or modes there is not.
     """
     nominal = scene_model.built(scene).nominal
     origin = np.array(scene.platform.record().mass_centre if scene.platform else (0.0, 0.0, 0.0))
     in_scene_axes = nominal._replace(wall=nominal.wall + origin[nominal.axis])
     mesh = prepare(scene, Numerics(element_size=element_size))
-    return of_mesh(mesh, scene.rail.material, in_scene_axes, (scene.rail.start, scene.rail.end), travel, patterns)
+    return of_mesh(mesh, scene.rail.material, in_scene_axes, (scene.rail.start, scene.rail.end), travel, patterns, modes)
 
 
 def of_mesh(mesh: RailMesh, material: MaterialTable, faces: scene_model.Faces, reach: tuple[float, float], travel: Sequence[float],
-            patterns: int = PATTERNS) -> Compliance:
+            patterns: int = PATTERNS, modes: int = 0) -> Compliance:
     """The same for a mesh whose points are in the axes of ``faces.centre`` and ``faces.wall``, between the X (m) of ``reach``.
 
-    Raises MeshError where a rail under a face has no mount, ValueError for a number of patterns there is not.
+    Raises MeshError where a rail under a face has no mount, ValueError for a number of patterns or modes there is not.
     """
     if not 1 <= patterns <= PATTERNS:
         raise ValueError(f"patterns: given {patterns!r}, expected 1 to {PATTERNS}")
@@ -84,20 +93,25 @@ def of_mesh(mesh: RailMesh, material: MaterialTable, faces: scene_model.Faces, r
     across = faces.centre[np.arange(count), 3 - faces.axis]
     half = np.column_stack([faces.half_length, np.where(across >= 0.0, 1.0, -1.0) * faces.half_width])
     matrix, gram = np.zeros((travel.size, count, patterns, count, patterns)), np.zeros((travel.size, count, patterns, patterns))
-    rail_of = np.full(count, -1)
+    rail_of, frequencies, shape = np.full(count, -1), [], np.zeros((travel.size, count, patterns, modes))
     for rail, images in pieces.distinct(mesh):
         patches = _Patches(rail, patterns)
         places = [patches.under(faces, half, signs, reach, travel) for signs in images]
         if not patches.found:
             continue
         # One more that answers nothing is what a face without a wall, number -1, points at.
-        between = np.pad(patches.solved(material), [(0, 1), (0, 0), (0, 1), (0, 0)])
+        answer, frequency, moved = patches.solved(material, modes)
+        between, moved = np.pad(answer, [(0, 1), (0, 0), (0, 1), (0, 0)]), np.pad(moved, [(0, 1), (0, 0), (0, 0)])
         grams = np.array([patch.gram for patch in patches.found] + [np.zeros((patterns, patterns))])
         for number in places:
             gram += grams[number]
             matrix += between[number[:, :, None, None, None], pattern[:, None, None], number[:, None, None, :, None], pattern]
-            rail_of[(number >= 0).any(axis=0)] = rail_of.max() + 1
-    return Compliance(travel, matrix, gram, rail_of, half)
+            shape += moved[number]
+            here = (number >= 0).any(axis=0)
+            if here.any():
+                rail_of[here] = len(frequencies)
+                frequencies.append(frequency)
+    return Compliance(travel, matrix, gram, rail_of, half, np.array(frequencies).reshape(len(frequencies), modes), shape)
 
 
 class _Patches:
@@ -132,18 +146,22 @@ class _Patches:
                 number[station, face] = self._number[key]
         return number
 
-    def solved(self, material: MaterialTable) -> np.ndarray:
-        """Displacement (m,p,m,p) in m of all places under the loads of all, normals of the faces positive."""
+    def solved(self, material: MaterialTable, modes: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Displacement (m,p,m,p) in m of all places under the loads of all, normals of the faces positive; frequencies (n,) rad/s of
+        the lowest modes and their displacement (m,p,n)."""
         operator = assembly.build(self._rail, material.density, material.youngs_modulus, material.poisson_ratio)
         if operator.free.all():
             raise MeshError("a rail that pads press has no mount: nothing holds it")
         free = np.repeat(operator.free, 3)
         # A positive definite matrix needs no pivoting, and an ordering for symmetric ones keeps its factors sparse.
-        factor = splu(csc_array(assembly.sparse(operator)[free][:, free]), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0,
+        stiffness = csc_array(assembly.sparse(operator)[free][:, free])
+        factor = splu(stiffness, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0,
                       options={"SymmetricMode": True})
         loads = self._loads()[free]
         answer = [loads.T @ factor.solve(loads[:, start:start + _BATCH].toarray()) for start in range(0, loads.shape[1], _BATCH)]
-        return np.concatenate(answer, axis=1).reshape(2 * (len(self.found), self._patterns))
+        frequency, shape = vibration.modes(stiffness, np.repeat(operator.mass, 3)[free], factor.solve, modes)
+        return (np.concatenate(answer, axis=1).reshape(2 * (len(self.found), self._patterns)), frequency,
+                (loads.T @ shape).reshape(len(self.found), self._patterns, modes))
 
     def _loads(self) -> csc_array:
         """Nodal loads (3n,mp) of all patterns at all places."""

@@ -6,7 +6,11 @@ from the mass centre and the step h, each body's ratio is the largest of::
     |e_v| across, reach |e_w|, |e_r| / h across, 2 reach |e_q| / h      over   rtol (floor + |v| across + reach |w|)
     |e_v| along X, |e_r| / h along X                                     over   rtol (floor + |v| along X)
 
-so that 6 m/s along the rail do not loosen what is asked of the millimetres per second across it.
+so that 6 m/s along the rail do not loosen what is asked of the millimetres per second across it. Modes of the rails are held by the
+energy they may be wrong by, as a speed of the payload's mass m. A step too long for the highest mode fails here, or at the proven
+limit before::
+
+    sqrt(sum over modes of (e_q'^2 + omega^2 e_q^2) / m)                 over   the first of these, of the payload
 """
 
 from typing import NamedTuple
@@ -14,7 +18,8 @@ from typing import NamedTuple
 import numpy as np
 
 from lowfi.dormand_prince import local_error
-from lowfi.state import BODY_SIZE, MOMENT, PLACE, PLATFORM, VELOCITY, quaternion, triple
+from lowfi.state import BODY_SIZE, MOMENT, PAYLOAD, PLACE, PLATFORM, VELOCITY, modal_size, motion, quaternion, triple
+from lowfi.walls.modes import energies
 from scenes import rotation
 from scenes.jit import inlined
 
@@ -28,11 +33,11 @@ class Tolerance(NamedTuple):
 
 
 @inlined
-def error_ratio(tolerance, payload, platform, dt, stages, end, error):
-    """Error of the step that led to ``end`` over what is allowed; NaN where anything is. ``error`` (DYNAMIC_SIZE,) is scratch."""
-    local_error(dt, stages, error)
+def error_ratio(tolerance, payload, platform, walls, dt, stages, end, error):
+    """Error of the step that led to ``end`` over what is allowed; NaN where anything is. ``error``, as long as ``end``, is scratch."""
+    local_error(dt, stages, modal_size(walls), error)
     ratio = _body_ratio(tolerance, payload.mass, payload.inverse_inertia, dt, error[:BODY_SIZE], end[:BODY_SIZE])
-    return worse(ratio, _platform_ratio(tolerance, platform, dt, error, end))
+    return worse(worse(ratio, _platform_ratio(tolerance, platform, dt, error, end)), _rail_ratio(tolerance, payload, walls, error, end))
 
 
 @inlined
@@ -46,6 +51,25 @@ def _platform_ratio(tolerance, platform, dt, error, end):
     ratio = 0.0
     if platform is not None:
         ratio = _body_ratio(tolerance, platform.mass, platform.inverse_inertia, dt, error[PLATFORM:], end[PLATFORM:])
+    return ratio
+
+
+@inlined
+def _rail_ratio(tolerance, payload, walls, error, end):
+    ratio = 0.0
+    if walls is not None:
+        ratio = _modal_ratio(tolerance, payload, walls.modes, error, end)
+    return ratio
+
+
+@inlined
+def _modal_ratio(tolerance, payload, modes, error, end):
+    ratio = 0.0
+    if modes is not None:
+        body = motion(payload.mass, payload.inverse_inertia, end, PAYLOAD)
+        across = tolerance.floor + np.hypot(body.velocity[1], body.velocity[2]) + tolerance.reach * np.sqrt(rotation.dot(body.rate, body.rate))
+        kinetic, strain = energies(modes, error)
+        ratio = np.sqrt(2.0 * (kinetic + strain) / payload.mass) / (across * tolerance.relative)
     return ratio
 
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from lowfi import state
 from lowfi.march import DAMPING_POWER, FRICTION_POWER
-from lowfi.sample import ANGULAR, AXIAL_KINETIC, GIVEN, KINETIC, LINEAR, RATE, STORED, WORKS
+from lowfi.sample import ANGULAR, AXIAL_KINETIC, GIVEN, KINETIC, LINEAR, RATE, STORED, STRAIN, WORKS
 from scenes import ledger, rotation
 from scenes.outcome import Motion
 
@@ -25,8 +25,9 @@ def ledgers(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
     total = np.zeros((len(rows), len(ledger.ENTRIES)))
     for name, values in (("thrust", work(state.THRUST)), ("gravity", work(state.GRAVITY)), ("kinetic", rows[:, KINETIC]),
-                         ("contact_stored", rows[:, STORED]), ("contact_damping", work(state.DAMPING)),
-                         ("friction", work(state.FRICTION)), ("released", work(state.RELEASED))):
+                         ("strain", rows[:, STRAIN]), ("contact_stored", rows[:, STORED]), ("contact_damping", work(state.DAMPING)),
+                         ("friction", work(state.FRICTION)), ("released", work(state.RELEASED)),
+                         ("structural_damping", work(state.STRUCTURAL))):
         total[:, _ENTRY[name]] = values
     across = total.copy()
     for name, values in (("thrust", work(state.THRUST_AXIAL)), ("gravity", work(state.GRAVITY_AXIAL)),

@@ -16,7 +16,7 @@ from scenes.faults import SceneError
 from scenes.model import Built
 from scenes.scene import Scene
 from scenes.variation import Variations
-from scenes.walls import Walls
+from scenes.walls import Walls, require_modes
 
 _STATUS = {settle.EXITED: "exited", settle.TIME_LIMIT: "time_limit"}
 
@@ -63,7 +63,7 @@ class Family:
                 continue
             try:
                 built = models.built(self.variations.of(row), self.base)
-                self._require_walls(built.scene)
+                self._require_walls(built)
             except SceneError as error:
                 alone.append((number, Case("refused", str(error), outcome.Outcome(), 0, 0.0)))
                 continue
@@ -73,15 +73,17 @@ class Family:
         found = [lambda group=group: self._settled(group) for group in groups.values()]
         return found + [lambda pair=pair: [(pair[0], pair[1] if isinstance(pair[1], Case) else self._whole(pair[1]))] for pair in alone]
 
-    def _require_walls(self, scene: Scene) -> None:
-        base = self.base.scene
+    def _require_walls(self, built: Built) -> None:
+        scene, base = built.scene, self.base.scene
+        if scene.flexibility is not base.flexibility:
+            require_modes(scene, self.walls)
         if self.walls is not None and not (scene.rail is base.rail and scene.pads is base.pads):
             self.walls.require(scene)
 
     def _group(self, groups: dict, built: Built) -> _Group:
         scene, model = built.scene, built.model
         key = (id(scene.thrust), scene.duration, id(scene.output), id(model.contact), id(model.friction), id(model.gravity),
-               id(model.platform), id(built.nominal), model.thrust_offset is None)
+               id(model.platform), id(built.nominal), model.thrust_offset is None, model.flexibility)
         if key not in groups:
             same = scene.thrust is self.base.scene.thrust and scene.duration == self.base.scene.duration
             marks = self.marks if same else outcome.milestones(scene, model)

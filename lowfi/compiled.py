@@ -4,14 +4,14 @@ from lowfi import equations, grip, touch
 from lowfi.march import march
 from lowfi.numerics import Numerics
 from lowfi.run import Run
-from lowfi.walls import solution
+from lowfi.walls import modes, solution
 from scenes.effects.friction import coefficient_over_speed
 from scenes.jit import contains, machine_code
 from scenes.scene import Scene
 from scenes.walls import Walls
 
-# A function that only this effect calls. Mass offset and initial state are numbers without code; damping of the rails has no meaning here.
-LAWS = {"contact": touch.load, "walls": solution.solve, "friction": coefficient_over_speed,
+# A function that only this effect calls. Mass offset and initial state are numbers without code, and so is the damping of rails that vibrate.
+LAWS = {"contact": touch.load, "walls": solution.solve, "flexibility": modes.swing, "friction": coefficient_over_speed,
         "sticking": grip.traction, "gravity": equations._weigh, "platform": touch._relative_turn, "thrust_offset": equations._offset_line}
 
 

@@ -10,7 +10,7 @@ whole half disc |z| <= STABLE_RADIUS, Re z <= 0: no linear mode, oscillating or 
 import numpy as np
 
 from lowfi.equations import derivative
-from lowfi.state import DYNAMIC_SIZE, STATE_SIZE, copy, normalise
+from lowfi.state import DYNAMIC_SIZE, STATE_SIZE, copy, modal_size, normalise
 from scenes.jit import inlined
 
 STAGES = 7
@@ -44,6 +44,7 @@ def attempt(system, active, grip, stretch, time, dt, fresh, start, stages, end):
     """
     for stage in range(0 if fresh else 1, STAGES):
         _combine(stage, dt, start, stages, end)
+        _combine_modes(stage, dt, start, stages, modal_size(system.walls), end)
         if stage == STAGES - 1:
             normalise(end)
         derivative(system, active, grip, min(max(time + NODES[stage] * dt, stretch[0]), stretch[1]), end, stages[stage])
@@ -77,20 +78,40 @@ def _combine(stage, h, y, k, out):
 
 
 @inlined
-def local_error(h, k, out):
-    """Difference of the two orders in every dynamic slot of ``out``."""
-    for j in range(DYNAMIC_SIZE):
-        out[j] = h * (ERROR[0] * k[0, j] + ERROR[2] * k[2, j] + ERROR[3] * k[3, j] + ERROR[4] * k[4, j] + ERROR[5] * k[5, j]
-                      + ERROR[6] * k[6, j])
+def _combine_modes(stage, h, y, k, modal, out):
+    """The same for the ``modal`` numbers of the rails' modes."""
+    for j in range(STATE_SIZE, STATE_SIZE + modal):
+        total = 0.0
+        for i in range(min(stage, STAGES - 1)):
+            total += MATRIX[stage, i] * k[i, j]
+        out[j] = y[j] + h * total
 
 
 @inlined
-def interpolate(dt, theta, start, stages, size, out):
-    """The first ``size`` slots of the state at ``theta`` in 0..1 of a step."""
+def local_error(h, k, modal, out):
+    """Difference of the two orders in every dynamic slot of ``out``, and in those of ``modal`` numbers of modes."""
+    for j in range(DYNAMIC_SIZE):
+        out[j] = _difference(h, k, j)
+    for j in range(STATE_SIZE, STATE_SIZE + modal):
+        out[j] = _difference(h, k, j)
+
+
+@inlined
+def _difference(h, k, j):
+    return h * (ERROR[0] * k[0, j] + ERROR[2] * k[2, j] + ERROR[3] * k[3, j] + ERROR[4] * k[4, j] + ERROR[5] * k[5, j]
+                + ERROR[6] * k[6, j])
+
+
+@inlined
+def interpolate(dt, theta, start, stages, size, modal, out):
+    """The first ``size`` slots of the state, and ``modal`` numbers of modes, at ``theta`` in 0..1 of a step."""
     h = dt * theta
     b0, b2, b3, b4, b5, b6 = (_polynomial(0, theta), _polynomial(2, theta), _polynomial(3, theta), _polynomial(4, theta), _polynomial(5, theta),
                               _polynomial(6, theta))
     for j in range(size):
+        out[j] = start[j] + h * (b0 * stages[0, j] + b2 * stages[2, j] + b3 * stages[3, j] + b4 * stages[4, j] + b5 * stages[5, j]
+                                 + b6 * stages[6, j])
+    for j in range(STATE_SIZE, STATE_SIZE + modal):
         out[j] = start[j] + h * (b0 * stages[0, j] + b2 * stages[2, j] + b3 * stages[3, j] + b4 * stages[4, j] + b5 * stages[5, j]
                                  + b6 * stages[6, j])
     normalise(out)

@@ -12,6 +12,7 @@ from lowfi.state import IMPULSE, MOMENT, PAYLOAD, PLACE, PLATFORM, QUATERNION, T
 from lowfi.touch import load, penetration, relative_pose, relative_velocity
 from lowfi.walls.loads import drive
 from lowfi.walls.loads import load as wall_load
+from lowfi.walls.modes import swing
 from lowfi.walls.solution import solve
 from scenes import rotation
 from scenes.effects.thrust_law import magnitude
@@ -29,7 +30,7 @@ def derivative(system, active, grip, time, state, out):
     add_gravity(system.gravity, system.payload, system.platform, system.ledger, body, base, out)
     add_contact(system.contact, system.friction, system.sticking, system.faces, system.platform, system.ledger, active, grip, body,
                 base, out)
-    add_walls(system.walls, system.friction, system.faces, system.platform, system.ledger, active, body, base, out)
+    add_walls(system.walls, system.friction, system.faces, system.platform, system.ledger, active, body, base, state, out)
     move(system.payload.mass, state[:PLATFORM], body, out[:PLATFORM])
     move_platform(system.platform, state, base, out)
 
@@ -154,17 +155,27 @@ def add_contact(laws, friction, sticking, faces, platform, ledger, active, grip,
 
 
 @kernel
-def add_walls(walls, friction, faces, platform, ledger, active, body, base, out):
+def add_walls(walls, friction, faces, platform, ledger, active, body, base, state, out):
     if walls is not None:
         place, turn = relative_pose(platform, body, base)
         for rail in range(walls.members.shape[0]):
-            count = solve(walls, faces, rail, active, place, turn)
+            count = solve(walls, faces, rail, active, place, turn, state)
             for k in range(count):
                 face = walls.room.order[k]
                 if walls.room.force[face, 0] > 0.0:
                     _press(wall_load(walls, friction, platform, faces, face, body, base), friction, platform, ledger, body, base, out)
             if count > 0:
                 _drive(walls, count, platform, ledger, body, base, out)
+            _swing(walls.modes, walls.room, rail, count, ledger, state, out)
+
+
+@inlined
+def _swing(modes, room, rail, count, ledger, state, out):
+    """Add the motion of the modes of a rail, and what damping takes from them."""
+    if modes is not None:
+        loss = swing(modes, room, rail, count, state, out)
+        if ledger is not None:
+            out[slot.STRUCTURAL] += loss
 
 
 @inlined

@@ -74,7 +74,7 @@ def first_event(laws, walls, sticking, payload, platform, faces, rail, engaged, 
     """Fraction (0..1] of the first ``span`` of a step at which it must end, and the face to blame; ``before`` and ``after`` survey the
     ends of that part.
 
-    ``rail`` is its start and end (m); ``work`` (DYNAMIC_SIZE,) is scratch.
+    ``rail`` is its start and end (m); ``work``, as long as ``start``, is scratch.
     """
     first, blamed = 1.0, -1
     if laws is not None:
@@ -157,7 +157,7 @@ def _gauge(laws, walls, sticking, row, payload, platform, faces, number, active,
     body, base = slot.motion(payload.mass, payload.inverse_inertia, state, slot.PAYLOAD), slot.frame(platform, state)
     place, turn = relative_pose(platform, body, base)
     if walls is not None:
-        return depth_in_wall(walls, faces, number, active, place, turn)
+        return depth_in_wall(walls, faces, number, active, place, turn, state)
     return _gauge_at_law(laws, sticking, row, platform, faces[number], kind, place, turn, body, base)
 
 
@@ -190,7 +190,7 @@ def _locate(laws, walls, sticking, row, payload, platform, faces, number, active
     if kind == DEPTH:
         theta = _cubic_root(f_low, f_high, span * dt * before[CLOSING], span * dt * after[CLOSING], theta)
     for _ in range(60):
-        interpolate(dt, span * theta, start, stages, slot.DYNAMIC_SIZE, work)
+        interpolate(dt, span * theta, start, stages, slot.DYNAMIC_SIZE, slot.modal_size(walls), work)
         f = _gauge(laws, walls, sticking, row, payload, platform, faces, number, active, kind, work) - level
         if abs(f) < close or high - low < 1e-14:
             return theta

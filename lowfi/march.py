@@ -13,6 +13,7 @@ from lowfi.limits import fastest_rate
 from lowfi.regrip import grasp, regrip
 from lowfi.sample import observe, rearmost_edge
 from lowfi.walls.limit import stiffness_and_damping
+from lowfi.walls.record import states
 from lowfi.walls.survey import energy as energy_on_walls
 from lowfi.walls.survey import on_walls, while_hanging
 from scenes.jit import inlined, kernel
@@ -60,11 +61,12 @@ class Loop(NamedTuple):
 
 
 def ready(system, state: np.ndarray, first_step: float) -> Loop:
-    """A loop about to take its first sample of ``system`` at ``state`` (STATE_SIZE,), and its first step of ``first_step`` (s)."""
-    faces = system.faces.shape[0]
-    state_, survey_ = (slot.STATE_SIZE,), (faces, SURVEY_SIZE)
+    """A loop about to take its first sample of ``system`` at ``state`` (STATE_SIZE,), and its first step of ``first_step`` (s). Rails are
+    at rest, or as modes at the end of ``state`` say."""
+    faces, size = system.faces.shape[0], slot.STATE_SIZE + states(system.walls)
+    state_, survey_ = (size,), (faces, SURVEY_SIZE)
     grip = zeros((faces, GRIP_SIZE)) if system.sticking is not None else None
-    loop = Loop(zeros(state_), zeros(state_), zeros((STAGES, slot.STATE_SIZE)), zeros(survey_), zeros(survey_),
+    loop = Loop(zeros(state_), zeros(state_), zeros((STAGES, size)), zeros(survey_), zeros(survey_),
                 np.zeros(faces, dtype=np.bool_), np.zeros(faces, dtype=np.bool_), grip, zeros((CLOCK_SIZE,)),
                 np.zeros(COUNT_SIZE, dtype=np.int64), zeros(state_))
     reset(system, state, first_step, loop)
@@ -79,8 +81,10 @@ def reset(system, state, first_step, loop):
     count[:] = 0
     clock[WANTED], clock[LIMIT], clock[SPAN], count[SEGMENT] = first_step, np.inf, 1.0, -1
     clock[FRICTION_POWER] = clock[DAMPING_POWER] = -np.inf
-    slot.copy(state, loop.start, slot.STATE_SIZE)
-    slot.copy(state, loop.end, slot.STATE_SIZE)
+    loop.start[:] = 0.0
+    loop.end[:] = 0.0
+    slot.copy(state, loop.start, state.size)
+    slot.copy(state, loop.end, state.size)
     _flatten(system.walls)
     loop.engaged[:] = False
     loop.active[:] = False
@@ -158,9 +162,10 @@ def march(system, plan, tolerance, loop, last, until_passed, rows, forces):
             if not step(system, plan, tolerance, loop):
                 return UNDERFLOW
         if time == clock[NOW]:
-            slot.copy(loop.end, loop.work, slot.STATE_SIZE)
+            slot.copy_all(loop.end, loop.work, slot.modal_size(system.walls))
         else:
-            interpolate(clock[SIZE], (time - clock[BEGAN]) / clock[SIZE], loop.start, loop.stages, slot.STATE_SIZE, loop.work)
+            interpolate(clock[SIZE], (time - clock[BEGAN]) / clock[SIZE], loop.start, loop.stages, slot.STATE_SIZE, slot.modal_size(system.walls),
+                        loop.work)
         # Before the first step nothing is felt yet, and every face may press.
         felt_ = loop.active if count[STEPS] > 0 else loop.engaged
         if not observe(system, loop.engaged, felt_, loop.grip, loop.work, rows[number], forces[number]):
@@ -191,7 +196,7 @@ def step(system, plan, tolerance, loop):
         attempt(system, loop.active, loop.grip, stretch, start, dt, fresh, loop.start, loop.stages, loop.end)
         count[EVALUATIONS] += STAGES if fresh else STAGES - 1
         fresh = False
-        ratio = error_ratio(tolerance, system.payload, system.platform, dt, loop.stages, loop.end, loop.work)
+        ratio = error_ratio(tolerance, system.payload, system.platform, system.walls, dt, loop.stages, loop.end, loop.work)
         if not ratio <= 1.0:
             count[REJECTED] += 1
             clock[WANTED] = dt * (max(_SHRINK, _SAFETY * ratio**-0.2) if ratio < np.inf else _SHRINK)
@@ -263,7 +268,7 @@ def _land(system, loop, dt):
             return span, -1 if loop.active[face] else face
         span *= theta
         loop.count[EVENTS] += 1
-        interpolate(dt, span, loop.start, loop.stages, slot.STATE_SIZE, loop.end)
+        interpolate(dt, span, loop.start, loop.stages, slot.STATE_SIZE, slot.modal_size(system.walls), loop.end)
         _survey(system, loop)
     return span, -1
 
@@ -272,7 +277,7 @@ def _land(system, loop, dt):
 def _begin(system, plan, loop):
     """Make the end of the last step the start of the next; what jumps in between jumps here. True when the derivative jumps too."""
     clock, count = loop.clock, loop.count
-    slot.copy(loop.end, loop.start, slot.STATE_SIZE)
+    slot.copy_all(loop.end, loop.start, slot.modal_size(system.walls))
     clock[BEGAN] = clock[NOW]
     fresh = count[SEGMENT] < 0 or clock[NOW] >= plan.stops[count[SEGMENT]]
     if fresh:
@@ -284,7 +289,7 @@ def _begin(system, plan, loop):
     loop.start[slot.FRICTION] += lost
     for i in range(loop.engaged.size):
         slot.copy(loop.after[i], loop.before[i], SURVEY_SIZE)
-    slot.copy(loop.stages[STAGES - 1], loop.stages[0], slot.STATE_SIZE)
+    slot.copy_all(loop.stages[STAGES - 1], loop.stages[0], slot.modal_size(system.walls))
     _release(system.walls, system, loop, left, 1.0)
     if felt(loop.after, loop.engaged, loop.active) or regripped:
         changed = True

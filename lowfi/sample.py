@@ -10,13 +10,14 @@ from lowfi.system import HALF_LENGTH
 from lowfi.touch import along, load, pad_point, penetration, relative_pose
 from lowfi.walls.loads import energy as wall_energy
 from lowfi.walls.loads import load as wall_load
+from lowfi.walls.modes import energies
 from lowfi.walls.solution import solve
 from scenes import rotation
 from scenes.jit import inlined, kernel
 
 # Slots of a sample: payload and platform first (place, velocity, quaternion, rate in body axes), each BODY_SIZE long.
 RATE = slot.MOMENT  # where the state holds angular momentum the sample holds the rate
-KINETIC, AXIAL_KINETIC, STORED, WORKS = 26, 27, 28, 29
+KINETIC, AXIAL_KINETIC, STORED, STRAIN, WORKS = 26, 27, 28, 29, 30
 LINEAR, ANGULAR, GIVEN = WORKS + WORK_SIZE, WORKS + WORK_SIZE + 3, WORKS + WORK_SIZE + 6
 SAMPLE_SIZE = GIVEN + 6
 
@@ -33,7 +34,8 @@ def observe(system, engaged, active, grip, state, row, forces):
     _platform(system.platform, state, base, row)
     row[STORED] = _press(system.contact, system.friction, system.sticking, system.faces, system.platform, engaged, grip, body, base,
                          forces)
-    row[STORED] += _press_walls(system.walls, system.friction, system.faces, system.platform, active, body, base, forces)
+    row[STORED] += _press_walls(system.walls, system.friction, system.faces, system.platform, active, body, base, state, forces)
+    _rails(system.walls, state, row)
     slot.copy(state[WORK:], row[WORKS:], WORK_SIZE)
     slot.copy(state[IMPULSE:], row[GIVEN:], 6)
     total = 0.0
@@ -134,14 +136,14 @@ def _press(laws, friction, sticking, faces, platform, engaged, grip, body, base,
 
 
 @kernel
-def _press_walls(walls, friction, faces, platform, active, body, base, forces):
+def _press_walls(walls, friction, faces, platform, active, body, base, state, forces):
     """The same on walls that give way. A sample leaves no trace: the next step begins with the displacement that the last one left."""
     energy = 0.0
     if walls is not None:
         _keep(walls.room.displacement, walls.room.kept)
         place, turn = relative_pose(platform, body, base)
         for rail in range(walls.members.shape[0]):
-            count = solve(walls, faces, rail, active, place, turn)
+            count = solve(walls, faces, rail, active, place, turn, state)
             energy += wall_energy(walls, count)
             for k in range(count):
                 i = walls.room.order[k]
@@ -151,6 +153,15 @@ def _press_walls(walls, friction, faces, platform, active, body, base, forces):
                         forces[i, j] = face.normal[j] + face.drag[j]
         _keep(walls.room.kept, walls.room.displacement)
     return energy
+
+
+@inlined
+def _rails(walls, state, row):
+    """Add the energies of the rails' modes."""
+    if walls is not None:
+        kinetic, strain = energies(walls.modes, state)
+        row[KINETIC] += kinetic
+        row[STRAIN] = strain
 
 
 @inlined

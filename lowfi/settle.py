@@ -217,7 +217,7 @@ def _sample(system, loop, time, row):
     if time == clock[NOW]:
         slot.copy(loop.end, loop.work, slot.STATE_SIZE)
     else:
-        interpolate(clock[SIZE], (time - clock[BEGAN]) / clock[SIZE], loop.start, loop.stages, slot.DYNAMIC_SIZE, loop.work)
+        interpolate(clock[SIZE], (time - clock[BEGAN]) / clock[SIZE], loop.start, loop.stages, slot.DYNAMIC_SIZE, 0, loop.work)
     posture(system, loop.work, row)
 
 
@@ -228,7 +228,7 @@ def _sample_payload(system, loop, time, row):
     if time == clock[NOW]:
         slot.copy(loop.end, loop.work, slot.BODY_SIZE)
     else:
-        interpolate(clock[SIZE], (time - clock[BEGAN]) / clock[SIZE], loop.start, loop.stages, slot.BODY_SIZE, loop.work)
+        interpolate(clock[SIZE], (time - clock[BEGAN]) / clock[SIZE], loop.start, loop.stages, slot.BODY_SIZE, 0, loop.work)
     payload_rates(system.payload, loop.work, row)
 
 

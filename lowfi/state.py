@@ -6,7 +6,8 @@ Each body has place r, velocity v, quaternion q and the *total* angular momentum
 
 Explicit Runge-Kutta methods keep linear invariants to rounding. The sums of m v and of A over both bodies, less the impulse and
 its moment from outside, are such invariants when every internal force acts as a pair at one common point; a wrong pair still shows.
-The work entries behind them are quadratures: the same method integrates them, so that both ledgers close to its accuracy.
+The work entries behind them are quadratures: the same method integrates them, so that both ledgers close to its accuracy. Behind all
+that stand the modes of the rails, where there are any (``lowfi.walls.modes``).
 """
 
 from typing import NamedTuple
@@ -21,10 +22,10 @@ from scenes.model import Model
 PLACE, VELOCITY, QUATERNION, MOMENT, BODY_SIZE = 0, 3, 6, 10, 13
 # First slots of the parts of the state.
 PAYLOAD, PLATFORM, IMPULSE, TURN, WORK = 0, 13, 26, 29, 32
-DYNAMIC_SIZE = 26  # what the equations of motion depend on
+DYNAMIC_SIZE = 26  # what the equations of motion depend on, besides modes
 # Slots of work and loss (J), total and axial part.
-THRUST, THRUST_AXIAL, GRAVITY, GRAVITY_AXIAL, FRICTION, FRICTION_AXIAL, DAMPING, RELEASED, CONTACT_AXIAL = range(WORK, WORK + 9)
-WORK_SIZE = 9
+THRUST, THRUST_AXIAL, GRAVITY, GRAVITY_AXIAL, FRICTION, FRICTION_AXIAL, DAMPING, RELEASED, CONTACT_AXIAL, STRUCTURAL = range(WORK, WORK + 10)
+WORK_SIZE = 10
 STATE_SIZE = 48  # WORK + WORK_SIZE, filled up to whole cache lines: rows of stages are read as vectors of eight
 
 
@@ -42,6 +43,31 @@ class Motion(NamedTuple):
 def copy(source, target, size):
     """Copy the first ``size`` numbers. A loop, because a slice brings Numba's broadcasting and its error texts into each kernel."""
     for j in range(size):
+        target[j] = source[j]
+
+
+@inlined
+def modal_size(walls):
+    """How many numbers the modes of ``walls`` add to the state: all amplitudes q (kg^0.5 m), rail by rail, then all their rates."""
+    size = 0
+    if walls is not None:
+        size = _modal_size(walls.modes)
+    return size
+
+
+@inlined
+def _modal_size(modes):
+    size = 0
+    if modes is not None:
+        size = 2 * modes.square.size
+    return size
+
+
+@inlined
+def copy_all(source, target, modal):
+    """Copy a state with ``modal`` numbers of modes behind it."""
+    copy(source, target, STATE_SIZE)
+    for j in range(STATE_SIZE, STATE_SIZE + modal):
         target[j] = source[j]
 
 

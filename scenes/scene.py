@@ -14,6 +14,7 @@ from pydantic import AfterValidator, Field, PrivateAttr, ValidationError
 from scenes import overrides as keys
 from scenes import plausibility, reading, roles, validity
 from scenes.effects.contact import ContactTable
+from scenes.effects.flexibility import FlexibilityTable
 from scenes.effects.flight import FlightTable
 from scenes.effects.friction import FrictionTable
 from scenes.effects.gravity import GravityTable
@@ -30,7 +31,7 @@ from scenes.tables import AgreementTable, OutputTable, PadTable, PayloadTable
 from scenes.units import PositiveTime
 
 CATALOG = reading.CATALOG
-EFFECTS = ("thrust_offset", "mass_offset", "initial", "contact", "friction", "platform", "gravity", "rail.damping")
+EFFECTS = ("thrust_offset", "mass_offset", "initial", "contact", "friction", "platform", "gravity", "rail.damping", "flexibility")
 NOMINAL = "nominal"  # the scene itself, named like a condition
 _BESIDE = ("conditions", "agreement", "provenance")
 _NOT_PHYSICS = {"name", "description", "flight", *_BESIDE}  # what comes after the exit changes nothing before it
@@ -53,6 +54,7 @@ class Scene(Table):
     friction: FrictionTable | None = None
     platform: PlatformTable | None = None
     gravity: GravityTable | None = None
+    flexibility: FlexibilityTable | None = None
     flight: FlightTable | None = None
     output: OutputTable = OutputTable()
     agreement: AgreementTable = AgreementTable()

@@ -7,6 +7,12 @@ On pad face i, with xi along the rail and eta across it in [-1, 1], a pressure p
 
 F is symmetric and positive definite: the flexibility of linear statics, at every place the pads come to. Near an end of the rail a face
 keeps the last place where all of it has a wall under it, and xi goes on from there.
+
+Of this the lowest modes of the rail, mass-normalised and of frequencies omega_m, bring a part; without it statics has the rest::
+
+    U = F_res P + W q,   F_res = F - sum_m W_m W_m' / omega_m^2,   W_iam(travel) the displacement in mode m
+
+F_res is positive semidefinite, for it is what the other modes would bring.
 """
 
 import hashlib
@@ -25,6 +31,8 @@ from scenes.scene import Scene
 PATTERNS = 6  # phi: all products of powers of xi and eta up to the second degree
 POWERS = np.array([[0, 0], [1, 0], [0, 1], [2, 0], [1, 1], [0, 2]])  # of xi and eta
 
+_ROUNDING = 1e-9  # of the largest eigenvalue of F: what the modes' own accuracy may take from an eigenvalue of zero
+
 # Means over a face of products of two patterns: the mean of xi^n is 1 / (n + 1) for even n.
 _TOGETHER = POWERS[:, None] + POWERS
 GRAM = np.where((_TOGETHER % 2 == 0).all(axis=2), 1.0 / (_TOGETHER + 1.0).prod(axis=2), 0.0)
@@ -34,21 +42,43 @@ GRAM = np.where((_TOGETHER % 2 == 0).all(axis=2), 1.0 / (_TOGETHER + 1.0).prod(a
 class Walls:
     """travel (s,) m of the payload along X since ignition, evenly spaced; flexibility (s,f,p,f,p) m/N; rail (f,) number of the rail
     each face is on; half (f,2) m, half the size of each face along xi and eta, negative where eta runs against the axis;
-    made_for, digest of the rail and pads."""
+    frequency (r,n) rad/s of the lowest modes of each rail, ascending, and their shape W (s,f,p,n) 1/kg^0.5; made_for, digest of the
+    rail and pads."""
 
     travel: np.ndarray
     flexibility: np.ndarray
     rail: np.ndarray
     half: np.ndarray
+    frequency: np.ndarray
+    shape: np.ndarray
     made_for: str
 
-    @cached_property
-    def cubic(self) -> np.ndarray:
-        """Flexibility (s-1,f,f,p,p,4) between stations: coefficients of the rising powers of the way (m) from the one before."""
-        from scipy.interpolate import CubicSpline
+    def cubic(self, modes: int = 0) -> tuple[np.ndarray, np.ndarray]:
+        """Flexibility (s-1,f,f,p,p,4) without the part of the first ``modes``, and their shapes (s-1,f,n,p,4), between stations:
+        coefficients of the rising powers of the way (m) from the one before. Raises ValueError as ``residual`` does."""
+        if modes not in self._cubics:
+            flexibility, shape = (_by_powers(self.travel, table) for table in (self.residual(modes), self.shape[..., :modes]))
+            self._cubics[modes] = (np.ascontiguousarray(flexibility.transpose(1, 2, 4, 3, 5, 0)),
+                                   np.ascontiguousarray(shape.transpose(1, 2, 4, 3, 0)))
+        return self._cubics[modes]
 
-        by_power = CubicSpline(self.travel, self.flexibility).c[::-1]  # (4,s-1,f,p,f,p)
-        return np.ascontiguousarray(by_power.transpose(1, 2, 4, 3, 5, 0))
+    @cached_property
+    def _cubics(self) -> dict:
+        return {}
+
+    def residual(self, modes: int) -> np.ndarray:
+        """Flexibility (s,f,p,f,p) m/N without the part of the first ``modes`` of each rail. Raises ValueError where this is no longer
+        positive semidefinite: the modes are not those of the rail the flexibility belongs to."""
+        if modes == 0:
+            return self.flexibility
+        part = self.shape[..., :modes] / self.frequency[self.rail, None, :modes]
+        together = (self.rail[:, None] == self.rail)[:, None, :, None]
+        rest = self.flexibility - together * np.einsum("siam,sjbm->siajb", part, part)
+        size = rest.shape[1] * PATTERNS
+        lowest, largest = (np.linalg.eigvalsh(table.reshape(-1, size, size))[:, end] for table, end in ((rest, 0), (self.flexibility, -1)))
+        if not (lowest >= -_ROUNDING * largest).all():
+            raise ValueError(f"modes: given {modes} that give way more than the whole wall, expected modes of the same rail")
+        return rest
 
     def __getstate__(self) -> dict:
         """What goes to another process: not what it can make by itself."""
@@ -58,7 +88,7 @@ class Walls:
     def hash(self) -> str:
         """Hexadecimal SHA-256 of all of it."""
         digest = hashlib.sha256(self.made_for.encode())
-        for array in (self.travel, self.flexibility, self.rail, self.half):
+        for array in (self.travel, self.flexibility, self.rail, self.half, self.frequency, self.shape):
             digest.update(np.ascontiguousarray(array).tobytes())
         return digest.hexdigest()
 
@@ -67,16 +97,19 @@ class Walls:
         return (GRAM @ self.flexibility.transpose(0, 1, 3, 2, 4) @ GRAM)[..., 0, 0]
 
     def restricted(self, patterns: int = PATTERNS, coupled: bool = True) -> "Walls":
-        """The same walls with the first so many patterns of pressure and displacement only, and, unless ``coupled``, each face by itself:
-        what a simpler model knows of them."""
+        """The same walls with the first so many patterns of pressure and displacement only, and, unless ``coupled``, each face by itself,
+        without modes then, which faces have in common: what a simpler model knows of them."""
         kept = np.arange(PATTERNS) < patterns
         blocks = (GRAM @ self.flexibility.transpose(0, 1, 3, 2, 4) @ GRAM)[..., kept, :][..., kept]
         inverse = np.linalg.inv(GRAM[np.ix_(kept, kept)])
         flexibility = np.zeros_like(self.flexibility)
         flexibility[:, :, :patterns, :, :patterns] = (inverse @ blocks @ inverse).transpose(0, 1, 3, 2, 4)
+        frequency, shape = self.frequency, np.zeros_like(self.shape)
+        shape[:, :, :patterns] = inverse @ (GRAM @ self.shape)[:, :, kept]
         if not coupled:
             flexibility *= np.eye(len(self.rail))[None, :, None, :, None]
-        return replace(self, flexibility=flexibility)
+            frequency, shape = frequency[:, :0], shape[..., :0]
+        return replace(self, flexibility=flexibility, frequency=frequency, shape=shape)
 
     def require(self, scene: Scene) -> None:
         """Raises SceneError where ``scene`` has another rail or other pads than these walls were found for."""
@@ -103,13 +136,33 @@ class Walls:
     def _require_whole(self) -> None:
         """Raises ValueError where shapes do not belong together or a number is not finite."""
         stations, faces = self.travel.size, self.rail.size
-        expected = {"travel": (stations,), "flexibility": (stations, faces, PATTERNS, faces, PATTERNS), "rail": (faces,), "half": (faces, 2)}
+        modes = self.frequency.shape[-1]
+        expected = {"travel": (stations,), "flexibility": (stations, faces, PATTERNS, faces, PATTERNS), "rail": (faces,), "half": (faces, 2),
+                    "frequency": (int(self.rail.max()) + 1, modes), "shape": (stations, faces, PATTERNS, modes)}
         for name, shape in expected.items():
             array = getattr(self, name)
             if array.shape != shape or not np.isfinite(array).all():
                 raise ValueError(f"{name}: given shape {array.shape}, expected finite numbers in the shape {shape}")
         if stations < 2:
             raise ValueError(f"travel: given {stations} stations, expected at least 2")
+
+
+def require_modes(scene: Scene, walls: Walls | None) -> None:
+    """Raises SceneError where ``scene`` asks for modes of its rails that ``walls`` do not have."""
+    if scene.flexibility is None or scene.contact is None:
+        return
+    if walls is None:
+        raise SceneError([Fault(scene.name, "flexibility", "modes of rails without their walls",
+                                "walls too (tipoff run --walls, highfi.walls), or no such table")])
+    if (known := walls.frequency.shape[1]) < scene.flexibility.modes:
+        raise SceneError([Fault(scene.name, "flexibility.modes", str(scene.flexibility.modes), f"at most {known}, the modes these walls have")])
+
+
+def _by_powers(place: np.ndarray, table: np.ndarray) -> np.ndarray:
+    """Coefficients (4,s-1,...) of the cubic spline through ``table`` (s,...), constant first."""
+    from scipy.interpolate import CubicSpline
+
+    return CubicSpline(place, table).c[::-1] if table.size else np.zeros((4, len(place) - 1, *table.shape[1:]))
 
 
 def digest(scene: Scene) -> str:

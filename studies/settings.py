@@ -16,7 +16,7 @@ _BESIDE_RESULTS = ("workers", "checkpoint_every", "resume")  # how a run is made
 @dataclass(frozen=True)
 class Settings:
     """``element_size`` (m) of the reference; ``tolerances`` of the surrogate in the cost study; repeats of timed runs;
-    ``clearance_change`` (m) that defines the floor; ``workers`` side by side; ``checkpoint_every`` seconds (wall clock) of a run
+    ``clearance_change`` (m) that defines the floor; ``rail_modes`` of the surrogate whose rails vibrate; ``workers`` side by side; ``checkpoint_every`` seconds (wall clock) of a run
     of the reference, and whether one that was interrupted may ``resume``. What the convergence study compares, coarsest first:
     meshes by ``mesh_ratios`` to ``element_size``, one of them 1; ``safeties`` of the step, from that of every other stage down;
     ``quadratures``; and factors of the scene's penalty stiffness."""
@@ -26,6 +26,7 @@ class Settings:
     highfi_repeats: int = 3
     lowfi_repeats: int = 20
     clearance_change: float = 1e-6
+    rail_modes: int = 4
     mesh_ratios: tuple[float, ...] = (4.0, 2.0, 1.0, 0.5)
     safeties: tuple[float, ...] = (0.9, 0.45, 0.225)
     quadratures: tuple[int, ...] = (2, 4, 8)

@@ -4,6 +4,7 @@ from pathlib import Path
 
 from scenes.calibration import Calibration
 from scenes.faults import Fault, SceneError
+from scenes.walls import require_modes
 from studies import choice
 from studies.progress import say
 from studies.stages import cost, walls
@@ -18,6 +19,7 @@ def run(study: Study, condition: str, fidelity: str, calibration: Path | None = 
     asked = study.highfi(condition)
     if fidelity == "lowfi":
         under = walls.load(study, study.condition(condition)) if on_walls else None
+        require_modes(study.condition(condition), under)
         asked = study.lowfi(condition, constants(calibration), walls=under)
     return _made(study, condition, asked, quiet)
 

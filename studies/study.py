@@ -74,12 +74,14 @@ class Study:
 
     def lowfi(self, name: str, calibration: Calibration | None = None, overrides: dict | None = None, tag: str = "",
               walls: Walls | None = None, **numerics: Any) -> Run:
-        """A surrogate run of condition ``name``, with the scene's own contact constants unless calibrated, or on ``walls``."""
+        """A surrogate run of condition ``name``, with the scene's own contact constants unless calibrated and rails that do not bend,
+        or on ``walls``."""
         import lowfi
 
         label = f"{name}{tag}{'-calibrated' if calibration else ''}{'-walls' if walls else ''}"
         numbers = _numerics(lowfi.Numerics, **numerics)
-        return Run("lowfi", label, self.condition(name).replace(overrides or {}), numbers, calibration, walls)
+        rigid = {} if walls else {"flexibility": None}
+        return Run("lowfi", label, self.condition(name).replace((overrides or {}) | rigid), numbers, calibration, walls)
 
     def path(self, name: str) -> Path:
         """A file in the folder of this scene."""

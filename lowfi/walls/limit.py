@@ -4,12 +4,16 @@ With the tangent T = K (1 + F K)^-1 of ``lowfi.walls.solution`` and the wrenches
 face, the linearised springs are sum_ab T_ab g_a g_b', and the trace over both bodies bounds what they can do::
 
     K = sum over rails of sum_ab T_ab (g_a . M^-1 g_b)
+
+Modes of rails that move or are pressed add a diagonal of omega^2 and d to the matrices, which raises their spectra by the largest of
+each (Weyl), and the trace of what contact does to them, W' T W.
 """
 
 from lowfi import state as slot
 from lowfi.limits import friction_damping
 from lowfi.touch import outward, relative_pose
 from lowfi.walls.loads import load
+from lowfi.walls.modes import fastest
 from lowfi.walls.record import SHIFT
 from lowfi.walls.solution import eliminate, fill_matrix, solve, stiffness
 from lowfi.system import NORMAL_Y
@@ -25,23 +29,25 @@ def stiffness_and_damping(walls, friction, faces, platform, payload, active, sta
     """Traces K (1/s2) and C (1/s) of all faces that are ``active`` (f,) at ``state``."""
     body, base = slot.motion(payload.mass, payload.inverse_inertia, state, slot.PAYLOAD), slot.frame(platform, state)
     place, turn = relative_pose(platform, body, base)
-    springs, dampers = 0.0, 0.0
+    springs, dampers, square, drag = 0.0, 0.0, 0.0, 0.0
     for rail in range(walls.members.shape[0]):
-        count = solve(walls, faces, rail, active, place, turn)
+        count = solve(walls, faces, rail, active, place, turn, state)
+        by_rail = fastest(walls.modes, rail, count > 0, state)
+        square, drag = max(square, by_rail[0]), max(drag, by_rail[1])
         for i in range(count):
             face = walls.room.order[i]
             if walls.room.force[face, 0] > 0.0:
                 now = load(walls, friction, platform, faces, face, body, base)
                 dampers += friction_damping(friction, now, platform, payload, body, base, outward(faces[face], base))
         if count > 0:
-            _tangent(walls, count)
-            springs += _trace(walls, faces, platform, payload, count, body, base)
-    return springs, dampers
+            columns = _tangent(walls, count)
+            springs += _trace(walls, faces, platform, payload, count, body, base) + _trace_of_modes(walls.modes, walls.room, count, columns)
+    return springs + square, dampers + drag
 
 
 @kernel
 def _tangent(walls, count):
-    """Fill ``right`` with dP (w,) by a unit of each rigid motion, as the wall follows."""
+    """Fill ``right`` with dU (w,) by a unit of each rigid motion, then of each mode; how many columns the former take."""
     room = walls.room
     fill_matrix(room, count)
     wide = count * PATTERNS
@@ -55,7 +61,47 @@ def _tangent(walls, count):
                     total += room.flexibility[row, column] * _reaction(room, face, c, rigid)
                 room.right[row, j * _RIGID + rigid] = total
     # dU = (1 + F K)^-1 F K e, dP = K (e - dU)
-    eliminate(room.matrix, room.right, wide, count * _RIGID)
+    eliminate(room.matrix, room.right, wide, count * _RIGID + _add_modes(walls.modes, room, count))
+    return count * _RIGID
+
+
+@inlined
+def _add_modes(modes, room, count):
+    """Fill the columns of the modes, whose number this is, before elimination."""
+    number = 0
+    if modes is not None:
+        number = modes.square.shape[1]
+        for row in range(count * PATTERNS):
+            for i in range(number):
+                total = 0.0
+                for j in range(count):
+                    face = room.order[j]
+                    for c in range(PATTERNS):
+                        total += room.flexibility[row, j * PATTERNS + c] * _pressure(modes, room, face, c, i)
+                room.right[row, count * _RIGID + i] = total
+    return number
+
+
+@inlined
+def _pressure(modes, room, face, a, i):
+    """dP_a by a unit of mode i on a wall that is stiff else."""
+    value = 0.0
+    for b in range(PATTERNS):
+        value += stiffness(room.moment[face], a, b) * modes.shape[face, i, b]
+    return value
+
+
+@inlined
+def _trace_of_modes(modes, room, count, first):
+    """Trace (1/s2) of W' T W; dU of the modes stands in ``right`` from the column ``first`` on."""
+    total = 0.0
+    if modes is not None:
+        for k in range(count):
+            face = room.order[k]
+            for a in range(PATTERNS):
+                for i in range(modes.square.shape[1]):
+                    total += _pressure(modes, room, face, a, i) * (modes.shape[face, i, a] - room.right[k * PATTERNS + a, first + i])
+    return total
 
 
 @inlined

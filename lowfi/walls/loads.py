@@ -2,10 +2,10 @@
 
     E = sum over cells of penalty dA max(0, p)^2 / 2 + P' F P / 2
 
-With the pose of the payload they are: P_1 against the normal, at the centre of pressure, and along X, as the rail is softer or stiffer
+(that of the modes, where the rail has some, is their own). With the pose of the payload they are: P_1 against the normal, at the centre of pressure, and along X, as the rail is softer or stiffer
 ahead and as its bent wall slopes (xi' moves with the pad where a face hangs over an end)::
 
-    X = P' F' P / 2 + sum of pressure d(xi')/dx du/dxi'
+    X = P' F' P / 2 + P' W' q + sum of pressure d(xi')/dx du/dxi'
 
 which acts on payload and platform at the payload's mass centre, since that is the place whose way counts. Energy still under the part
 of a pad that leaves the wall is lost.
@@ -14,6 +14,7 @@ of a pad that leaves the wall is lost.
 from lowfi.system import NORMAL_Y
 from lowfi.touch import Load, friction_force, outward, relative_velocity
 from lowfi.walls.cells import stored
+from lowfi.walls.modes import offset, slope
 from lowfi.walls.record import DRIFT, SHIFT
 from scenes import rotation
 from scenes.jit import kernel
@@ -52,17 +53,17 @@ def drive(walls, count):
             for j in range(count):
                 for b in range(PATTERNS):
                     total += room.slope[i * PATTERNS + a, j * PATTERNS + b] * room.force[room.order[j], b]
-            pull += 0.5 * force[a] * total
+            pull += force[a] * (0.5 * total + slope(walls.modes, face, a))
     return pull, fading
 
 
 @kernel
 def energy(walls, count):
-    """Energy (J) in walls and penalty under the ``count`` faces solved for: P' F P is P' U."""
+    """Energy (J) in walls and penalty under the ``count`` faces solved for: P' F P is P' (U - W q)."""
     total = 0.0
     for i in range(count):
         face = walls.room.order[i]
         total += stored(walls, face)[0]
         for a in range(PATTERNS):
-            total += 0.5 * walls.room.force[face, a] * walls.room.displacement[face, a]
+            total += 0.5 * walls.room.force[face, a] * (walls.room.displacement[face, a] - offset(walls.modes, face, a))
     return total

@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from scenes import walls as data
+from scenes.effects.flexibility import Flexibility
 from scenes.effects.friction import require_two_step
 from scenes.memory import zeros
 from scenes.model import Model
@@ -20,7 +21,7 @@ DEGREES = 5  # of the moments of pressed cells: products of two patterns reach t
 class Room(NamedTuple):
     """Scratch of one run. lever (f, LEVER_SIZE); displacement (f,p) m of the walls, the next first guess, and the same ``kept`` aside;
     force (f,p) N; moment (f, DEGREES, DEGREES) N/m; order (m,) faces solved for at once; and over those, w = m p: flexibility and its
-    slope along the travel (w,w), matrix (w,w), right (w, 3 m)."""
+    slope along the travel (w,w), matrix (w,w), right (w, 3 m + n) with n modes."""
 
     lever: np.ndarray
     displacement: np.ndarray
@@ -32,6 +33,20 @@ class Room(NamedTuple):
     slope: np.ndarray
     matrix: np.ndarray
     right: np.ndarray
+
+
+class Modes(NamedTuple):
+    """The n modes of each of r rails: square (r,n) 1/s2 of their frequencies, drag (r,n) 1/s, cubic (s-1,f,n,p,4) of their shapes (1/kg^0.5)
+    as that of ``Walls``; and what they are now under each face: shape (f,n,p), displacement ``offset`` (f,p) m, its slope along the
+    travel (f,p), its speed (f,p) m/s."""
+
+    square: np.ndarray
+    drag: np.ndarray
+    cubic: np.ndarray
+    shape: np.ndarray
+    offset: np.ndarray
+    slope: np.ndarray
+    speed: np.ndarray
 
 
 class Walls(NamedTuple):
@@ -52,12 +67,14 @@ class Walls(NamedTuple):
     end: float
     node: np.ndarray
     crown: np.ndarray
+    modes: Modes | None
     room: Room
 
 
 def under_pads(scene: Scene, model: Model, found: data.Walls | None) -> Walls | None:
-    """Record of what was ``found`` for the kernels, None without contact. Raises SceneError for walls of another rail, and for the law of
-    friction that sticks."""
+    """Record of what was ``found`` for the kernels, None without contact. Raises SceneError for walls of another rail, for the law of
+    friction that sticks, and for modes without walls that have them."""
+    data.require_modes(scene, found)
     if found is None or model.contact is None:
         return None
     found.require(scene)
@@ -76,12 +93,26 @@ def build(found: data.Walls, model: Model, cells: int = CELLS) -> Walls:
     edges = np.linspace(-1.0, 1.0, cells + 1)
     crown = np.diff(edges**5) / (5.0 * np.diff(edges))
     origin = float(model.faces.centre[0, 0] + model.payload.mass_centre[0] - platform)
-    return Walls(found.cubic, origin, spacing, members, found.rail, found.half,
+    flexibility, shape = found.cubic(model.flexibility.modes if model.flexibility else 0)
+    modes = _modes(found, shape, model.flexibility) if shape.size else None
+    return Walls(flexibility, origin, spacing, members, found.rail, found.half,
                  model.faces.relief, float(model.penalty), float(model.rail_start), float(model.rail_end),
-                 0.5 * (edges[1:] + edges[:-1]), crown, _room(model.faces.axis.size, members.shape[1]))
+                 0.5 * (edges[1:] + edges[:-1]), crown, modes, _room(model.faces.axis.size, members.shape[1], shape.shape[2]))
 
 
-def _room(faces: int, members: int) -> Room:
+def states(walls: Walls | None) -> int:
+    """How many numbers the modes of ``walls`` add to the state (``lowfi.state.modal_size``)."""
+    return 2 * walls.modes.square.size if walls is not None and walls.modes is not None else 0
+
+
+def _modes(found: data.Walls, cubic: np.ndarray, flexibility: Flexibility) -> Modes:
+    square = found.frequency[:, :flexibility.modes]**2
+    mass_rate, stiffness_time = flexibility.damping or (0.0, 0.0)
+    faces = (found.rail.size, data.PATTERNS)
+    return Modes(square, mass_rate + stiffness_time * square, cubic, zeros((faces[0], flexibility.modes, faces[1])), *(zeros(faces) for _ in range(3)))
+
+
+def _room(faces: int, members: int, modes: int) -> Room:
     wide, by_pattern = members * data.PATTERNS, (faces, data.PATTERNS)
     return Room(zeros((faces, LEVER_SIZE)), zeros(by_pattern), zeros(by_pattern), zeros(by_pattern), zeros((faces, DEGREES, DEGREES)),
-                np.zeros(members, dtype=np.int64), zeros((wide, wide)), zeros((wide, wide)), zeros((wide, wide)), zeros((wide, 3 * members)))
+                np.zeros(members, dtype=np.int64), zeros((wide, wide)), zeros((wide, wide)), zeros((wide, wide)), zeros((wide, 3 * members + modes)))

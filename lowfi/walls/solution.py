@@ -1,14 +1,15 @@
 """Displacement of the walls of one rail under the faces that press it, by Newton's method on piecewise linear equations.
 
-    U = F P(U),    (1 + F K) dU = F P - U,    K_iab = dP_ia/d(-U_ib) = sum over pressed cells of penalty dA phi_a phi_b
+    U = F P(U) + W q,    (1 + F K) dU = F P + W q - U,    K_iab = dP_ia/d(-U_ib) = sum over pressed cells of penalty dA phi_a phi_b
 
-P is the gradient of a convex potential, so the solution is one; while the pressed cells do not change the equations are linear, and the
+W q is what the rail's modes make of it (``lowfi.walls.modes``), F the rest; without modes there is only F. P is the gradient of a convex potential, so the solution is one; while the pressed cells do not change the equations are linear, and the
 last correction is exact. The displacement of the solution before is the first guess.
 """
 
 import numpy as np
 
 from lowfi.walls.cells import eased, press, take_lever
+from lowfi.walls.modes import offset, take_swing
 from scenes.jit import inlined, kernel
 from scenes.walls import PATTERNS, POWERS
 
@@ -19,8 +20,9 @@ _XI, _ETA = POWERS.T.copy()
 
 
 @kernel
-def solve(walls, faces, rail, active, place, turn):
-    """Number of ``active`` (f,) faces on ``rail``; ``walls.room`` holds them in ``order``, with lever, displacement and force."""
+def solve(walls, faces, rail, active, place, turn, state):
+    """Number of ``active`` (f,) faces on ``rail``; ``walls.room`` holds them in ``order``, with lever, displacement and force. Of ``state``
+    only the modes are read."""
     room, count = walls.room, 0
     for slot in range(walls.members.shape[1]):
         face = walls.members[rail, slot]
@@ -29,7 +31,7 @@ def solve(walls, faces, rail, active, place, turn):
             room.order[count] = face
             count += 1
     if count > 0:
-        take_flexibility(walls, count, place[0] + faces[0, 0])
+        take_flexibility(walls, count, place[0] + faces[0, 0], state)
         for correction in range(_MOST):
             if _correct(walls, count, 1.0 if correction < _CAREFUL else 0.5) < _ARRIVED:
                 return count
@@ -51,11 +53,12 @@ def between_stations(walls, place):
 
 
 @kernel
-def take_flexibility(walls, count, place):
-    """Fill flexibility and slope between the first ``count`` faces in order."""
+def take_flexibility(walls, count, place, state):
+    """Fill flexibility and slope between the first ``count`` faces in order, and what the modes are under them."""
     room = walls.room
     station, s, changes = between_stations(walls, place)
     for i in range(count):
+        take_swing(walls.modes, walls.rail[room.order[i]], room.order[i], station, s, changes, state)
         for j in range(count):
             block = walls.cubic[station, room.order[i], room.order[j]]
             for a in range(PATTERNS):
@@ -83,7 +86,8 @@ def _correct(walls, count, share):
         total = 0.0
         for column in range(wide):
             total += room.flexibility[row, column] * room.force[room.order[column // PATTERNS], column % PATTERNS]
-        room.right[row, 0] = total - room.displacement[room.order[row // PATTERNS], row % PATTERNS]
+        face, a = room.order[row // PATTERNS], row % PATTERNS
+        room.right[row, 0] = total - (room.displacement[face, a] - offset(walls.modes, face, a))
     eliminate(room.matrix, room.right, wide, 1)
     largest = 0.0
     for i in range(count):
@@ -139,12 +143,14 @@ def eliminate(matrix, right, size, columns):
 
 
 @kernel
-def follow(walls, face, place, count, out):
-    """Fill ``out`` (p,) with the displacement of the wall under a face that may not press, by the ``count`` faces solved for."""
+def follow(walls, face, place, count, state, out):
+    """Fill ``out`` (p,) with the displacement of the wall under a face that may not press, by the ``count`` faces solved for and by
+    modes."""
     room = walls.room
-    station, s, _ = between_stations(walls, place)
+    station, s, changes = between_stations(walls, place)
+    take_swing(walls.modes, walls.rail[face], face, station, s, changes, state)
     for a in range(PATTERNS):
-        out[a] = 0.0
+        out[a] = offset(walls.modes, face, a)
         for j in range(count):
             other = room.order[j]
             for b in range(PATTERNS):

@@ -7,6 +7,7 @@ from lowfi.system import NORMAL_Y, NORMAL_Z
 from lowfi.touch import approach, relative_motion, relative_pose
 from lowfi.walls.cells import LAST_STRIP, deepest, reaches, take_lever
 from lowfi.walls.loads import energy as energy_of_rail
+from lowfi.walls.modes import speed_at
 from lowfi.walls.record import MIDDLE, SHIFT
 from lowfi.walls.solution import follow, solve
 from scenes.jit import inlined, kernel
@@ -15,31 +16,32 @@ _THERE = 1e-9  # m, how far beyond its aim a step goes
 
 
 @kernel
-def depth(walls, faces, face, active, place, turn):
+def depth(walls, faces, face, active, place, turn, state):
     """Deepest penetration (m) of a face: negative across the gap, which other faces on the rail may narrow. ``active`` (f,) tells which
     faces press."""
-    count = solve(walls, faces, walls.rail[face], active, place, turn)
-    return _deepest(walls, faces, face, count, active, place, turn)[0]
+    count = solve(walls, faces, walls.rail[face], active, place, turn, state)
+    return _deepest(walls, faces, face, count, active, place, turn, state)[0]
 
 
 @kernel
-def _deepest(walls, faces, face, count, active, place, turn):
+def _deepest(walls, faces, face, count, active, place, turn, state):
     """The same after ``solve``, and xi and eta of the deepest cell. A face past the end has the depth it would have there: else a touch
     in the step in which it leaves would not be seen."""
     if not active[face]:
         take_lever(walls, faces, face, place, turn)
     displacement = walls.room.displacement[face]
     if not active[face]:
-        follow(walls, face, place[0] + faces[0, 0], count, displacement)
+        follow(walls, face, place[0] + faces[0, 0], count, state, displacement)
     return deepest(walls, face, displacement)
 
 
 @inlined
 def _approach(walls, faces, face, xi, eta, drift, swing):
-    """Rate (m/s) at which a point of the face comes up to a wall at rest."""
+    """Rate (m/s) at which a point of the face comes up to its wall, which only modes move."""
     y, z, half = faces[face, NORMAL_Y], faces[face, NORMAL_Z], walls.half[face]
     turning = xi * half[0] * (y * swing[3] + z * swing[6]) + eta * half[1] * (y * swing[5] + z * swing[7])
-    return approach(faces[face], drift, swing) + turning
+    away = speed_at(walls.modes, face, xi + walls.room.lever[face, SHIFT], eta)
+    return approach(faces[face], drift, swing) + turning - away
 
 
 @kernel
@@ -50,11 +52,11 @@ def survey(walls, faces, platform, payload, active, state, columns, out):
     drift, swing = relative_motion(platform, body, base, place, turn)
     open_, pressing, mode, penetration, closing, along = columns
     for rail in range(walls.members.shape[0]):
-        count = solve(walls, faces, rail, active, place, turn)
+        count = solve(walls, faces, rail, active, place, turn, state)
         for k in range(walls.members.shape[1]):
             face = walls.members[rail, k]
             if face >= 0:
-                p, xi, eta = _deepest(walls, faces, face, count, active, place, turn)
+                p, xi, eta = _deepest(walls, faces, face, count, active, place, turn, state)
                 out[face, mode], out[face, penetration] = pressing if p > 0.0 else open_, p
                 out[face, closing] = _approach(walls, faces, face, xi, eta, drift, swing)
                 out[face, along] = walls.room.lever[face, MIDDLE]
@@ -88,7 +90,7 @@ def energy(walls, faces, platform, payload, active, state):
     place, turn = relative_pose(platform, body, base)
     total = 0.0
     for rail in range(walls.members.shape[0]):
-        total += energy_of_rail(walls, solve(walls, faces, rail, active, place, turn))
+        total += energy_of_rail(walls, solve(walls, faces, rail, active, place, turn, state))
     return total
 
 

@@ -95,9 +95,9 @@ def energy_ledgers(runs: Runs, condition: str) -> Chart:
 def cost_picture(cost: dict) -> Chart:
     """Error against wall time, one line per model, with the band of the reference's own uncertainty; and the part of the
     surrogate's error that a tighter tolerance can buy off."""
-    looks = (("s", "-"), ("^", ":"), ("o", "--"), ("v", "-."), ("D", "-"))
+    looks = (("s", "-"), ("^", ":"), ("o", "--"), ("v", "-."), ("D", "-"), ("o", ":"))
     models = dict.fromkeys(point["model"] for point in cost["points"])
-    look = {model: (colour, *rest) for model, colour, rest in zip(models, (NAVY, GREY, AMBER, TEAL, VERMILION), looks)}
+    look = {model: (colour, *rest) for model, colour, rest in zip(models, (NAVY, GREY, AMBER, TEAL, VERMILION, NAVY), looks)}
     band = (cost["band_deg_s"], "the reference's own uncertainty") if cost["band_deg_s"] else None
     panels = []
     for title, error, shaded in (("against the finest mesh", "error_deg_s", band),

@@ -23,30 +23,36 @@ _SIMPLER = {"mean pressure of each face by itself": (1, False), "mean pressure":
 
 
 class Rung(NamedTuple):
-    """A surrogate to judge: its name in result files, what the report calls it, its constants, and the walls of each condition."""
+    """A surrogate to judge: its name in result files, what the report calls it, its constants, the walls of each condition, and how many
+    modes of each rail vibrate on them."""
 
     name: str
     title: str
     calibration: Calibration | None = None
     walls: dict[str, Walls | None] = {}
+    modes: int | None = None
 
     def ask(self, study: Study, condition: str, overrides: dict | None = None, tag: str = "", **numerics) -> Run:
         """The run of a condition."""
-        return study.lowfi(condition, self.calibration, overrides, tag, self.walls.get(condition), **numerics)
+        vibrating = {"flexibility": None} if self.modes is None else {"flexibility.modes": self.modes}
+        tag += "" if self.modes is None else "-modal"
+        return study.lowfi(condition, self.calibration, vibrating | (overrides or {}), tag, self.walls.get(condition), **numerics)
 
 
 def rungs(study: Study) -> list[Rung]:
-    """The surrogates of a scene, from the plainest up: with its own constants, with calibrated ones, and on walls that give way as
-    statics has them, where nothing is fitted."""
+    """The surrogates of a scene, from the plainest up: with its own constants, with calibrated ones, on walls that give way as statics
+    has them, where nothing is fitted, and on the same with the lowest modes of the rails."""
+    under = walls.under(study, study.conditions)
     return [Rung("uncalibrated", "surrogate, uncalibrated"), Rung("calibrated", "surrogate, calibrated", calibrate.load(study)),
-            Rung("compliant", "surrogate, compliant walls", walls=walls.under(study, study.conditions))]
+            Rung("compliant", "surrogate, compliant walls", walls=under),
+            Rung("modal", "surrogate, modal rail", walls=under, modes=study.settings.rail_modes)]
 
 
 def run(study: Study) -> dict:
-    """``uncalibrated``, ``fitted``, ``held_out`` and ``compliant`` rows, ``floor`` and ``refinement`` as measured, ``growth`` of 1 um,
-    ``speedup`` of the calibrated and of the compliant surrogate, ``simpler`` walls."""
+    """``uncalibrated``, ``fitted``, ``held_out``, ``compliant`` and ``modal`` rows, ``floor`` and ``refinement`` as measured, ``growth`` of
+    1 um, ``speedup`` of the calibrated and of the compliant surrogate, ``simpler`` walls."""
     study.fitted()
-    _, calibrated, compliant = ladder = rungs(study)
+    _, calibrated, compliant, modal = ladder = rungs(study)
     gates = agreement.gates(study.scene)
 
     def make() -> tuple[dict, list[Path]]:
@@ -57,7 +63,8 @@ def run(study: Study) -> dict:
         own = {rung.name: floors(study, rung.title, partial(rung.ask, study)) for rung in ladder}
         table = {rung.name: rows(study, rung, highfi, Context([*floor, *own[rung.name]], changes, gates)) for rung in ladder}
         groups = {role: [row for row in table["calibrated"] if row["role"] == role] for role in ("fitted", "held_out")}
-        return {"uncalibrated": table["uncalibrated"], **groups, "compliant": table["compliant"], "gates": gates,
+        return {"uncalibrated": table["uncalibrated"], **groups, "compliant": table["compliant"], "modal": table["modal"],
+                "rail_modes": modal.modes, "gates": gates,
                 "converged_deg_s": agreement.CONVERGED_DEG_S, "clearance_change_m": study.settings.clearance_change,
                 "floor": [asdict(item) for item in sum(own.values(), floor)], "refinement": [asdict(item) for item in changes],
                 "growth": [asdict(item) for item in _growths(study, compliant, table["compliant"])],

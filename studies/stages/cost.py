@@ -47,9 +47,9 @@ def run(study: Study) -> dict:
 
 def surrogates(study: Study) -> list[Rung]:
     """The rungs of the agreement study, and one more between them."""
-    plain, calibrated, compliant = rungs(study)
+    plain, calibrated, compliant, modal = rungs(study)
     along = {name: known and known.restricted(1, coupled=False) for name, known in compliant.walls.items()}
-    return [plain, calibrated, compliant._replace(name="along", title=STIFFNESS_ALONG, walls=along), compliant]
+    return [plain, calibrated, compliant._replace(name="along", title=STIFFNESS_ALONG, walls=along), compliant, modal]
 
 
 def _reference_points(study: Study, name: str) -> tuple[Trajectory, float | None, list[dict]]:

@@ -53,7 +53,7 @@ def _trajectories(study: Study, documents: dict):
 
     asked = [{name: ask(name) for name in study.conditions} for ask in (study.highfi, study.lowfi)]
     if documents["agreement"]:
-        asked += [{name: rung.ask(study, name) for name in study.conditions} for rung in compare.rungs(study)[1:]]
+        asked += [{name: rung.ask(study, name) for name in study.conditions} for rung in compare.rungs(study)[1:3]]
     return Runs(*(_stored(study, runs) for runs in asked))
 
 

@@ -38,7 +38,8 @@ def handmade(scene: Scene, entries: dict, rail=None) -> Walls:
     for (i, a, j, b), value in entries.items():
         flexibility[:, i, a, j, b] = flexibility[:, j, b, i, a] = value
     half = np.column_stack([faces.half_length, faces.half_width])
-    return Walls(np.array([0.0, 1.0]), flexibility, np.zeros(count, dtype=np.int64) if rail is None else rail, half, digest(scene))
+    rail = np.zeros(count, dtype=np.int64) if rail is None else rail
+    return Walls(np.array([0.0, 1.0]), flexibility, rail, half, np.zeros((rail.max() + 1, 0)), np.zeros((2, count, PATTERNS, 0)), digest(scene))
 
 
 def in_one_cell(monkeypatch) -> None:
@@ -91,7 +92,7 @@ def seen_from_platform(platform, payload, state):
 def add_walls(walls, friction, faces, platform, payload, active, state, out):
     """What walls alone add to ``out``, the derivative of ``state``."""
     body = slot.motion(payload.mass, payload.inverse_inertia, state, slot.PAYLOAD)
-    equations.add_walls(walls, friction, faces, platform, True, active, body, slot.frame(platform, state), out)
+    equations.add_walls(walls, friction, faces, platform, True, active, body, slot.frame(platform, state), state, out)
 
 
 def pressed(scene: Scene, walls: Walls):

@@ -14,6 +14,7 @@ from tests.lowfi.giving import reference_walls
 # How the effects that the reference scene lacks are added; a law that sticks stands in the place of the other.
 ADDED = {"gravity": {"gravity.z": -9.80665},
          "sticking": {"friction": {"law": "sticking", "static": 0.2, "dynamic": 0.2, "stiffness": 1e7, "damping": 1e4}}}
+ON_WALLS = ("walls", "flexibility")
 COUNT = """
 import numba
 import numpy as np
@@ -44,13 +45,13 @@ def test_pruned_kernels_know_no_friction(tmp_path):
     assert without == 0 and with_friction > 0
 
 
-@pytest.mark.parametrize("effect", [effect for effect in LAWS if effect != "walls"])
+@pytest.mark.parametrize("effect", [effect for effect in LAWS if effect not in ON_WALLS])
 def test_one_absent_effect_is_not_compiled(effect):
     """Read from the machine code: what the scene has is there, what it has not is not, and one change changes nothing else. Without contact
     there is no friction either."""
     base = load("reference")
     present = lowfi.compiled_effects(base)
-    assert present == {name: name not in (*ADDED, "walls") for name in LAWS}
+    assert present == {name: name not in (*ADDED, *ON_WALLS) for name in LAWS}
     changed = lowfi.compiled_effects(base.replace(ADDED.get(effect, {effect: None})))
     also = {"friction"} if effect in ("contact", "sticking") else set()
     assert changed == {name: not value if name == effect or name in also else value for name, value in present.items()}
@@ -66,3 +67,11 @@ def test_walls_that_give_way_stand_in_the_place_of_the_contact_law():
     scene, name = load("reference"), b"5lowfi5walls"
     assert lowfi.compiled_effects(scene, walls=reference_walls()) == lowfi.compiled_effects(scene) | {"contact": False, "walls": True}
     assert name in compiled_code(scene, walls=reference_walls()) and name not in compiled_code(scene)
+
+
+@pytest.mark.slow
+def test_modes_of_the_rails_are_compiled_where_there_are_any():
+    scene, walls = load("reference"), reference_walls()
+    without, none, with_modes = (lowfi.compiled_effects(each, walls=walls)
+                                 for each in (scene, scene.replace({"flexibility.modes": 0}), scene.replace({"flexibility.modes": 4})))
+    assert without == none and with_modes == without | {"flexibility": True}

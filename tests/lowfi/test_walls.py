@@ -38,21 +38,23 @@ def pose_of(model, name, base=((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))):
     return relative(model, travel, [CLEARANCE + way for way in beyond], attitude, *base)
 
 
-def solved(system, model, pose, rail, active=None):
-    """Number of faces of a rail solved for at ``pose``, which ``system.walls.room`` then holds."""
-    place, turn = seen_from_platform(system.platform, system.payload, state_of(model, pose))
+def solved(system, model, pose, rail, active=None, modes=()):
+    """Number of faces of a rail solved for at ``pose``, which ``system.walls.room`` then holds; ``modes`` are those of the state."""
+    state = np.append(state_of(model, pose), modes)
+    place, turn = seen_from_platform(system.platform, system.payload, state)
     active = np.ones(len(system.faces), dtype=np.bool_) if active is None else active
-    return solution.solve(system.walls, system.faces, rail, active, place, turn)
+    return solution.solve(system.walls, system.faces, rail, active, place, turn, state)
 
 
-def energy(system, model, pose) -> float:
-    return sum(loads.energy(system.walls, solved(system, model, pose, rail)) for rail in range(len(system.walls.members)))
+def energy(system, model, pose, modes=()) -> float:
+    return sum(loads.energy(system.walls, solved(system, model, pose, rail, None, modes)) for rail in range(len(system.walls.members)))
 
 
-def derivative(system, model, pose, twist):
+def derivative(system, model, pose, twist, modes=()):
     """What walls alone add to the derivative of the state at ``pose`` and ``twist``."""
-    out, every = np.zeros(slot.STATE_SIZE), np.ones(len(system.faces), dtype=np.bool_)
-    add_walls(system.walls, system.friction, system.faces, system.platform, system.payload, every, state_of(model, pose, twist), out)
+    state, every = np.append(state_of(model, pose, twist), modes), np.ones(len(system.faces), dtype=np.bool_)
+    out = np.zeros(state.size)
+    add_walls(system.walls, system.friction, system.faces, system.platform, system.payload, every, state, out)
     return out
 
 

@@ -19,13 +19,14 @@ def walls():
     """Any numbers, for the pads and rail of the scene."""
     random = np.random.default_rng(4)
     flexibility = random.random((5, FACES, PATTERNS, FACES, PATTERNS))
-    return Walls(np.linspace(0.0, 0.2, 5), flexibility, np.arange(FACES) // 4, random.random((FACES, 2)), digest(SCENE))
+    frequency, shape = 2e4 * np.arange(1.0, 4.0) * np.ones((4, 1)), random.random((5, FACES, PATTERNS, 3))
+    return Walls(np.linspace(0.0, 0.2, 5), flexibility, np.arange(FACES) // 4, random.random((FACES, 2)), frequency, shape, digest(SCENE))
 
 
 def test_what_was_saved_is_loaded(walls, tmp_path):
     walls.save(tmp_path / "walls.npz")
     found = Walls.load(tmp_path / "walls.npz")
-    assert all(np.array_equal(getattr(found, name), getattr(walls, name)) for name in ("travel", "flexibility", "rail", "half"))
+    assert all(np.array_equal(getattr(found, name), getattr(walls, name)) for name in ("travel", "flexibility", "rail", "half", "frequency", "shape"))
     assert found.made_for == walls.made_for and found.rail.dtype == walls.rail.dtype
     assert [path.name for path in tmp_path.iterdir()] == ["walls.npz"]
 
@@ -70,7 +71,7 @@ def test_damaged_and_foreign_files_are_refused(walls, tmp_path, damage):
 def test_arrays_that_do_not_belong_together_are_refused(walls, tmp_path):
     gap = walls.flexibility.copy()
     gap[2, 3, 0, 3, 0] = np.nan
-    for change in ({"half": walls.half[1:]}, {"rail": walls.rail[:, None]}, {"flexibility": gap}):
+    for change in ({"frequency": walls.frequency[:3]}, {"shape": walls.shape[..., :2]}, {"half": walls.half[1:]}, {"rail": walls.rail[:, None]}, {"flexibility": gap}):
         replace(walls, **change).save(tmp_path / "walls.npz")
         with pytest.raises(ValueError, match="not a file of walls.*expected finite numbers"):
             Walls.load(tmp_path / "walls.npz")

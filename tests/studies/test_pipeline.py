@@ -76,8 +76,8 @@ def test_agreement_holds_the_keys_other_tools_read(pipeline):
     found = result(pipeline[0], "agreement")
     assert [row["condition"] for row in found["fitted"]] == ["phi15", "phi60"]
     assert [row["condition"] for row in found["held_out"]] == ["h1", "h2"]
-    assert len(found["uncalibrated"]) == len(found["compliant"]) == 4
-    assert all(ROW <= set(row) for group in ("uncalibrated", "fitted", "held_out", "compliant") for row in found[group])
+    assert len(found["uncalibrated"]) == len(found["compliant"]) == len(found["modal"]) == 4
+    assert all(ROW <= set(row) for group in ("uncalibrated", "fitted", "held_out", "compliant", "modal") for row in found[group])
     for speed in (found["speedup"], found["speedup_compliant"]):
         assert {"ratio", "low", "high", "highfi_wall_s", "lowfi_wall_s", "elements"} <= set(speed)
         assert speed["low"] <= speed["ratio"] <= speed["high"]
@@ -121,9 +121,9 @@ def test_cost_has_three_meshes_and_three_tolerances(pipeline):
     assert all({"model", "numerics", "error_deg_s", "wall_s", "pareto"} <= set(point) for point in points)
     counts = [sum(point["model"] == model for point in points)
               for model in ("finite elements", "surrogate, uncalibrated", "surrogate, calibrated", "surrogate, stiffness along the rail",
-                            "surrogate, compliant walls")]
+                            "surrogate, compliant walls", "surrogate, modal rail")]
     assert all(count >= 3 for count in counts)
-    assert len(result(pipeline[0], "cost_study")["matched"]) == 4
+    assert len(result(pipeline[0], "cost_study")["matched"]) == 5
     assert any(point["pareto"] for point in points)
 
 

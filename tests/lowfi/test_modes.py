@@ -1,0 +1,133 @@
+"""Modes of the rails on walls that give way: one potential behind all forces, the step limit, and who may ask for them."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import lowfi
+from lowfi import state as slot
+from lowfi.walls import limit
+from scenes import model as models
+from scenes.faults import SceneError
+from scenes.walls import require_modes
+from tests.lowfi.giving import REFERENCE, SMOOTH, pressed, reference_walls, state_of
+from tests.lowfi.test_walls import BASES, POSES, derivative, energy, generalised, pose_of, solved
+
+COUNT = 5
+DAMPED = {"rail.damping.ratios": [0.02, 0.01], "rail.damping.frequencies": [1e3, 5e3]}
+
+
+@pytest.fixture(scope="module")
+def vibrating():
+    """Model, records, and any motion of the modes: walls out by micrometres, at centimetres a second."""
+    model, system = pressed(REFERENCE.replace(SMOOTH | DAMPED | {"flexibility.modes": COUNT}), reference_walls())
+    size = system.walls.modes.square.size
+    random = np.random.default_rng(5)
+    return model, system, np.append(3e-7 * random.standard_normal(size), 3e-3 * random.standard_normal(size))
+
+
+def rails(system):
+    return range(len(system.walls.members))
+
+
+@pytest.mark.parametrize("name", POSES)
+def test_forces_are_the_gradient_of_the_energy(vibrating, name):
+    """By either body's ways and turns at modes held still, and by every mode: q'' = -dE/dq - omega^2 q - d q'."""
+    model, system, modes = vibrating
+    pose, h, twists = pose_of(model, name, BASES["moved and turned"]), 1e-9, np.eye(12)
+    out = [derivative(system, model, pose, twist, modes) for twist in twists]
+    forces, released = generalised(pose, out[0]), np.array([each[slot.RELEASED] for each in out])
+    slopes = np.array([(energy(system, model, pose.moved(twist, h), modes) - energy(system, model, pose.moved(twist, -h), modes)) / (2.0 * h)
+                       for twist in twists])
+    size = np.abs(forces).max()
+    assert size > 20.0
+    assert slopes == pytest.approx(-forces - released, abs=1e-7 * size, rel=0.0)
+    # Control: without the force along the rail of a wall that modes have bent they would not agree, but where the table ends and the
+    # place on the wall stands still.
+    assert (abs(pull_of_modes(system, model, pose, modes)) > 1e-6 * size) == (not name.startswith("rear"))
+    q, rate = modes.reshape(2, -1)
+    square, drag = system.walls.modes.square.ravel(), system.walls.modes.drag.ravel()
+    steps = 1e-9 * np.eye(q.size, modes.size)
+    by_mode = np.array([energy(system, model, pose, modes + step) - energy(system, model, pose, modes - step) for step in steps]) / 2e-9
+    swung, found = out[0][slot.STATE_SIZE:].reshape(2, -1)
+    assert (swung == rate).all() and np.abs(by_mode).max() > 1.0
+    assert found + square * q + drag * rate == pytest.approx(-by_mode, abs=1e-6 * np.abs(by_mode).max())
+    assert out[0][slot.STRUCTURAL] == pytest.approx(drag @ rate**2, rel=1e-12)
+
+
+def pull_of_modes(system, model, pose, modes) -> float:
+    """Force (N) along the rail on the payload by walls that modes have bent."""
+    found = 0.0
+    for rail in rails(system):
+        faces = system.walls.room.order[:solved(system, model, pose, rail, None, modes)]
+        found += (system.walls.room.force[faces] * system.walls.modes.slope[faces]).sum()
+    return found
+
+
+@pytest.mark.parametrize("name", ["both legs", "rails of both sides"])
+def test_limit_holds_the_spectrum(vibrating, name):
+    """Every eigenvalue of the whole lies below the bound, which is not far above; the highest mode alone would not do."""
+    model, system, modes = vibrating
+    pose, bodies = pose_of(model, name), (model.payload, model.platform)
+    metric = np.zeros((12 + modes.size // 2,) * 2)
+    for first, body in zip((0, 6), bodies):
+        metric[first:first + 3, first:first + 3] = np.eye(3) / body.mass
+        metric[first + 3:first + 6, first + 3:first + 6] = body.inverse_inertia
+    metric[12:, 12:] = np.eye(modes.size // 2)
+
+    def forces(moved, tail):
+        out = derivative(system, model, moved, np.zeros(12), tail)
+        return np.append(generalised(moved, out), out[slot.STATE_SIZE + modes.size // 2:])
+
+    still = modes * (np.arange(modes.size) < modes.size // 2)
+    columns = [(forces(pose.moved(twist, 1e-9), still) - forces(pose.moved(twist, -1e-9), still)) / 2e-9 for twist in np.eye(12)]
+    columns += [(forces(pose, still + step) - forces(pose, still - step)) / 2e-9 for step in 1e-9 * np.eye(modes.size // 2, modes.size)]
+    fastest = np.abs(np.linalg.eigvals(metric @ np.array(columns).T)).max()
+    springs, dampers = limit.stiffness_and_damping(system.walls, system.friction, system.faces, system.platform, system.payload,
+                                                   np.ones(len(system.faces), dtype=np.bool_), np.append(state_of(model, pose), modes))
+    assert system.walls.modes.square.max() < fastest < springs < 10.0 * fastest
+    assert dampers == system.walls.modes.drag.max() > 0.0
+
+
+def test_modes_need_walls_that_have_them():
+    asked = REFERENCE.replace({"flexibility.modes": 4})
+    with pytest.raises(SceneError, match="flexibility: given modes of rails without their walls, expected walls too"):
+        lowfi.run(asked)
+    walls = reference_walls()
+    few = replace(walls, frequency=walls.frequency[:, :3], shape=walls.shape[..., :3])
+    with pytest.raises(SceneError, match="flexibility.modes: given 4, expected at most 3"):
+        lowfi.run(asked, walls=few)
+    found = lowfi.run_many(REFERENCE, [{"flexibility.modes": 4}], workers=1)
+    assert list(found.status.values) == ["refused"] and "without their walls" in str(found.message.values[0])
+    nothing = asked.replace({"contact": None, "friction": None})  # presses the rails
+    require_modes(nothing, None)
+    assert models.build(nothing).flexibility is None
+
+
+@pytest.mark.parametrize("given", [-1, 21, 2.5, "many", True])
+def test_a_number_of_modes_is_a_whole_one(given):
+    with pytest.raises(SceneError, match="flexibility.modes.*expected a whole number from 0 to 20"):
+        REFERENCE.replace({"flexibility.modes": given})
+    assert REFERENCE.replace({"flexibility.modes": "4"}).flexibility.modes == 4
+
+
+def test_no_modes_are_the_walls_of_statics():
+    asked, walls = REFERENCE.condition("h4"), reference_walls()
+    plain, none = (lowfi.run(scene, walls=walls) for scene in (asked, asked.replace({"flexibility.modes": 0})))
+    assert all(np.array_equal(getattr(plain, name), getattr(none, name)) for name in ("velocity", "rate", "pad_force", "energy"))
+    assert plain.cost["steps"] == none.cost["steps"]
+
+
+def test_rails_that_nothing_touches_take_no_time():
+    """No pad touches in h5: not a step more, and the bits of a run without modes."""
+    asked, walls = REFERENCE.condition("h5"), reference_walls()
+    plain, modes = (lowfi.run(scene, walls=walls) for scene in (asked, asked.replace({"flexibility.modes": 4})))
+    assert modes.cost["steps"] == plain.cost["steps"] and np.array_equal(modes.rate, plain.rate)
+
+
+def test_walls_and_modes_of_different_rails_are_refused():
+    walls = reference_walls()
+    with pytest.raises(ValueError, match="give way more than the whole wall"):
+        replace(walls, shape=3.0 * walls.shape).residual(1)
+    assert walls.residual(0) is walls.flexibility
