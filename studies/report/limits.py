@@ -30,7 +30,9 @@ def draw(found: dict, figure) -> Html:
     others = "as the scene has them" if found["asked"]["others"] == "scene" else "zero"
     words = _TABLE.format(others=others, most=1.0 - found["probability"], uncertain=_uncertain(found),
                           **{name: found[name] for name in ("confidence", "cases", "allowed")})
-    return Html("".join([_said(found["summary"]), _table(found), caption(words), *(figure(*each) for each in charts(found)),
+    odd = [f"{row['words']}: {line}" for row in found["rows"] for line in _odd(row, _unit(row))]
+    return Html("".join([_said([found["summary"][0], *odd]), _table(found), caption(words),
+                         *(figure(*each) for each in charts(found)),
                          _beside(found), paragraph(_ADVICE)]))
 
 
@@ -52,7 +54,11 @@ def summary(found: dict) -> list[str]:
     """What the study says, one line each."""
     said = [f"limits: {', '.join(found['limits_said'])}; each case within all of them with probability {found['probability']:g}, "
             f"shown at {found['confidence']:.0%} confidence by {found['cases']:,} cases on {found['surrogate']}"]
-    return said + [_line(row, "" if row["unit"] == "1" else f" {row['unit']}") for row in found["rows"]]
+    return said + [_line(row, _unit(row)) for row in found["rows"]]
+
+
+def _unit(row: dict) -> str:
+    return "" if row["unit"] == "1" else f" {row['unit']}"
 
 
 def _line(row: dict, unit: str) -> str:
@@ -62,12 +68,17 @@ def _line(row: dict, unit: str) -> str:
     for key, words in (("model", "with the model's error"), ("both", "with both")):
         parts += [f"{words} {value(row[key], unit)}"] if row[key] else []
     if advised := row["advised"]:
-        parts.append(f"at {advised['tolerance']:.3g}{unit} {advised['share']:.2%} are above")
-    if again := row["nominal"]["again"]:
-        parts.append(f"certified again beyond a failure, which is not used: {', '.join(f'{size:.3g}' for size in again)}{unit}")
-    if falls := row["nominal"]["falls"]:
-        parts.append(f"the count above falls from {' and from '.join(f'{one:.3g} to {two:.3g}' for one, two in falls)}{unit}")
-    return "; ".join(parts)
+        parts.append(f"{advised['share']:.2%} above at the advised {advised['tolerance']:.3g}{unit}")
+    return "; ".join(parts + _odd(row, unit))
+
+
+def _odd(row: dict, unit: str) -> list[str]:
+    """Where the count of cases above does not grow with the tolerance, in words."""
+    again, falls = row["nominal"]["again"], row["nominal"]["falls"]
+    sizes = ", ".join(f"{size:.3g}" for size in again)
+    said = [f"certified again beyond a failure, which is not used: {sizes}{unit}"] if again else []
+    ends = " and from ".join(f"{one:.3g} to {two:.3g}" for one, two in falls)
+    return said + ([f"fewer cases above, not more, from {ends}{unit}"] if falls else [])
 
 
 def value(answer: dict, unit: str = "") -> str:

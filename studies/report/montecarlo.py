@@ -9,8 +9,6 @@ from studies.report.markup import Html, caption, fold, number, paragraph, table
 
 _RATES = ("rate_x_deg_s", "rate_y_deg_s", "rate_z_deg_s")
 _LOOKS = {0.5: (NAVY, "-", "o"), 0.95: (VERMILION, "--", "s"), 0.99: (TEAL, "-.", "^")}
-
-
 _HISTOGRAMS = ("Densities of the settled rates. Broad pale: the first {paper_cases:,} cases, as many as the paper has in its "
                "Figure 9. Thin: all of them.")
 _CONVERGENCE = ("Left: quantiles of the total rate from the first cases, with their 95 % bounds from order statistics (dotted). "
@@ -97,7 +95,7 @@ def _quantities(found: dict) -> Html:
         rows.append((f"{item['label']} ({item['unit']})", f"{found['counts']['asked']:,}", spread,
                      *map(bounded, item["quantiles"][1:])))
         rows.append(("", f"{found['paper_cases']:,}", "", *map(bounded, item["first"][1:])))
-    heads = ("quantity", "cases", "sd", *(f"{share:.2%} below" for share in shares))
+    heads = ("quantity", "cases", "sd", *(f"{100.0 * share:g} % below" for share in shares))
     return Html(table(heads, rows, dense=True) + caption(_BOUNDS))
 
 
@@ -116,7 +114,7 @@ def _readings(found: dict) -> Html:
         rows.append((item["reading"] + (" (the same, drawn again)" if item["same"] else ""), *(number(rate["sd"]) for rate in axes),
                      *(bounded(quantiles[share]) for share in shares), number(item["distance"]), number(item["chance"], 2)))
     heads = ("reading of the paper's Table 3", *(f"sd about {axis}" for axis in "xyz"),
-             *(f"total, {share:.2%} below" for share in shares), "distance", "by chance")
+             *(f"total, {100.0 * share:g} % below" for share in shares), "distance", "by chance")
     words = _READINGS.format(cases=found["readings"][0]["cases"])
     return Html("<h3>Does the reading matter?</h3>" + table(heads, rows, dense=True) + caption(words))
 
