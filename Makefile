@@ -87,7 +87,7 @@ pictures: $(READY) ## add pyvista (0.6 GB) to .venv, with which `make view` draw
 convergence: $(READY) ## the error of the reference itself: meshes, steps, penalty, quadrature (minutes)
 	$(TIPOFF) convergence $(ASKED)
 
-full-report: convergence ## the report with the convergence study on it
+full-report: convergence posterior blind sensitivity sweeps montecarlo limits flight droptest paper ## the report with every study on it (an hour)
 	$(TIPOFF) report $(ASKED)
 
 test: $(READY) ## the tests, without the slow ones

@@ -7,13 +7,24 @@ from scenes.calibration import Calibration
 from scenes.scene import Scene
 from scenes.uncertainty import Uncertainty
 from studies.derived import law
-from studies.stages import compare
+from studies.stages import compare, posterior
 from studies.study import Study, read
 
 _TWO_SIDED_95 = 1.959963984540054  # standard deviations
 
 
-def draws(scene: Scene, fitted: Calibration, count: int, seed: int) -> tuple[list[dict[str, float]], list[str]]:
+def draws(study: Study, fitted: Calibration, count: int, seed: int) -> tuple[list[dict[str, float]], list[str]]:
+    """``count`` sets of overrides of the study's scene, and the names of the constants that differ in them: from the posterior where
+    there is one (``make posterior``), with all that ties constants together, else from the intervals of the calibration."""
+    if count == 0 or posterior.stored(study) is None:
+        return by_intervals(study.scene, fitted, count, seed)
+    import calibrate
+
+    found = calibrate.Posterior.load(study.path(f"{posterior.NAME}.json"))
+    return calibrate.draws(found, count, seed), found.parameters
+
+
+def by_intervals(scene: Scene, fitted: Calibration, count: int, seed: int) -> tuple[list[dict[str, float]], list[str]]:
     """``count`` sets of overrides of ``scene``, and the names of the constants that differ in them.
 
     Each is drawn by itself from the normal distribution of its 95 % interval, and inside it (a Latin hypercube). A constant without

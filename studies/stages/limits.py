@@ -19,6 +19,7 @@ from studies.exceedance import Limit
 from studies.limit_inputs import Asked, checked
 from studies.population import Surrogate
 from studies.progress import Board
+from studies.stages import posterior
 from studies.store import SOURCES
 from studies.study import Study, read
 from studies.tolerance_cases import SETS, Cases, Factor
@@ -59,7 +60,8 @@ def stored(study: Study) -> dict | None:
 
 
 def _key(study: Study, asked: dict) -> str:
-    return study.key(_SOURCES, NAME, _plain(asked), constants.margin(study, asked["walls"]))
+    known = posterior.stored(study)
+    return study.key(_SOURCES, NAME, _plain(asked), constants.margin(study, asked["walls"]), known and known["key"])
 
 
 def _plain(asked: dict) -> dict:
@@ -76,7 +78,7 @@ class _Answers:
         self.factors = tolerance_cases.factors(self.model.scene)
         self.allowed = exceedance.allowed(cases, asked.probability, asked.confidence)
         overrides, self.drawn = ([], []) if model.calibration is None else constants.draws(
-            study.scene, model.calibration, asked.draws, asked.seed)
+            study, model.calibration, asked.draws, asked.seed)
         self.others = [self.model.at(item) for item in overrides]
         self.report, self.evaluations = report, 0
         # Halvings and refinements of each search, and about five evaluations of each that starts from a known answer.

@@ -18,8 +18,7 @@ def run(study: Study) -> dict:
     """The posterior as plain values, ``predicted`` rows by condition and ``coverage`` by role. Raises StudyError without emcee."""
     if importlib.util.find_spec("emcee") is None:
         raise StudyError("the posterior is drawn with emcee, which is not installed: pip install 'tipoff[studies]'")
-    fitted, calibration = study.fitted(), calibrate.load(study)
-    roles = dict.fromkeys([*fitted, *study.scene.agreement.held_out], "held_out") | dict.fromkeys(fitted, "fitted")
+    fitted, calibration, roles = study.fitted(), calibrate.load(study), _roles(study)
     asked = {name: study.highfi(name) for name in roles}
 
     def make() -> tuple[dict, list[Path]]:
@@ -39,15 +38,26 @@ def run(study: Study) -> dict:
             board.finished("rates", _covered(covered))
         return found.as_dict() | {"linear": calibrate.as_dict(calibration)["intervals"], "predicted": rows, "coverage": covered}, []
 
-    document = study.stage(NAME, study.key(_SOURCES, calibration.constants, [item.key for item in asked.values()]), make)
+    document = study.stage(NAME, _key(study, calibration.constants), make)
     for doubt in document["chain"]["doubts"]:
         say(f"  not converged: {doubt}")
     return document
 
 
 def stored(study: Study) -> dict | None:
-    """The result that is there already, or None."""
-    return read(study.path(f"{NAME}.json"))
+    """The result, if it was made from the present scene, code, settings and calibration."""
+    found, calibration = read(study.path(f"{NAME}.json")), read(study.path("calibration.json"))
+    return found if found and calibration and found["key"] == _key(study, calibration["constants"]) else None
+
+
+def _key(study: Study, constants: dict) -> str:
+    return study.key(_SOURCES, NAME, constants, [study.highfi(name).key for name in _roles(study)])
+
+
+def _roles(study: Study) -> dict[str, str]:
+    """Fitted or held out, by condition."""
+    roles = study.scene.agreement
+    return dict.fromkeys([*roles.fitted, *roles.held_out], "held_out") | dict.fromkeys(roles.fitted, "fitted")
 
 
 def lines(document: dict) -> list[str]:

@@ -170,7 +170,7 @@ def test_constants_are_drawn_inside_their_intervals_and_untold_ones_stay():
                          ["N", "1", "N*s/m", "1"], [20.0, 1.0, 0.0, 0.05], [6720.0, 2.2, 7000.0, 0.5], [], np.zeros((0, 0)), [], {},
                          [], 0.0,
                          intervals=[[500.0, 700.0], [-endless, endless], [-endless, endless], [0.19, 0.21]])
-    found, names = constants.draws(scene, fitted, 400, 1)
+    found, names = constants.by_intervals(scene, fitted, 400, 1)
     assert names == ["contact.force", "friction.dynamic"] and len(found) == 400
     friction = np.array([item["friction.dynamic"] for item in found])
     assert 0.19 <= friction.min() < friction.max() <= 0.21 and friction.std() == pytest.approx(0.01 / 1.96, rel=0.15)
@@ -178,7 +178,7 @@ def test_constants_are_drawn_inside_their_intervals_and_untold_ones_stay():
     assert 500.0 <= force.min() < force.max() <= 700.0 and abs(np.corrcoef(force, friction)[0, 1]) < 0.2
     assert {item["contact.exponent"] for item in found} == {1.0} and all(item["friction.static"] == item["friction.dynamic"]
                                                                          for item in found)
-    assert constants.draws(scene, fitted, 0, 1) == ([], [])
+    assert constants.by_intervals(scene, fitted, 0, 1) == ([], [])
 
 
 def test_the_model_s_error_is_the_largest_measured_on_held_out_conditions(tmp_path, monkeypatch):
