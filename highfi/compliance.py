@@ -8,8 +8,8 @@ pattern 1 the mean displacement under a unit force. F is the flexibility of ``sc
 taken for the polynomials phi nearest to them. K is that of the whole rail, clamped at its mounts, so faces on one rail press each
 other's walls too. Inertia is left out. Both are symmetric (Maxwell and Betti).
 
-The modes psi_m of the same rail (``highfi.vibration``) are seen under the faces in the same patterns, so that a full set of them makes
-up C::
+The modes psi_m of the same rail (``highfi.vibration``) are seen under the faces in the same patterns, so that a full set of them
+makes up C::
 
     V_iam = 1/A_i integral over face i of phi_a n_i . psi_m,   W = G^-1 V,   C = sum_m V_m V_m' / omega_m^2
 """
@@ -40,9 +40,9 @@ _SINGULAR = 1e-6  # of the largest eigenvalue of G: patterns that hardly differ 
 class Compliance(NamedTuple):
     """travel (s,) m of the payload along X since ignition; matrix (s,f,p,f,p) m/N between f pad faces and p patterns, zero between
     faces on different rails; gram (s,f,p,p), zero where a face has no wall; rail (f,) the number of the rail under each, -1 without;
-    half (f,2) m, half the size of each face along xi and eta, negative where eta runs against the axis; frequency (r,n) rad/s of the
-    modes of each rail and their shape V (s,f,p,n) 1/kg^0.5. Near an end of the rail a face stays at the last place where all of it is
-    on the rail."""
+    half (f,2) m, half the size of each face along xi and eta, negative where eta runs against the axis; frequency (r,n) rad/s of
+    the modes of each rail and their shape V (s,f,p,n) 1/kg^0.5. Near an end of the rail a face stays at the last place where all of
+    it is on the rail."""
 
     travel: np.ndarray
     matrix: np.ndarray
@@ -54,8 +54,8 @@ class Compliance(NamedTuple):
 
 
 def walls(scene: Scene, element_size: float, spacing: float = _SPACING, modes: int = MOST) -> Walls:
-    """Flexibility and lowest ``modes`` of the rails of ``scene`` in elements of about ``element_size`` (m), at stations about ``spacing``
-    (m) apart from ignition until the last pad begins to leave.
+    """Flexibility and lowest ``modes`` of the rails of ``scene`` in elements of about ``element_size`` (m), at stations about
+    ``spacing`` (m) apart from ignition until the last pad begins to leave.
 
     Raises SceneError or MeshError.
     """
@@ -72,7 +72,8 @@ def along(scene: Scene, element_size: float, travel: Sequence[float], patterns: 
     """Compliance of the rails of ``scene`` in elements of about ``element_size`` (m), the payload aligned and moved by each
     ``travel`` (m) from its place at ignition.
 
-    Faces are those of ``scenes.model.Faces``. Raises SceneError or MeshError, ValueError for a number of patterns or modes there is not.
+    Faces are those of ``scenes.model.Faces``. Raises SceneError or MeshError, ValueError for a number of patterns or modes there is
+    not.
     """
     nominal = scene_model.built(scene).nominal
     origin = np.array(scene.platform.record().mass_centre if scene.platform else (0.0, 0.0, 0.0))
@@ -147,8 +148,8 @@ class _Patches:
         return number
 
     def solved(self, material: MaterialTable, modes: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Displacement (m,p,m,p) in m of all places under the loads of all, normals of the faces positive; frequencies (n,) rad/s of
-        the lowest modes and their displacement (m,p,n)."""
+        """Displacement (m,p,m,p) in m of all places under the loads of all, normals of the faces positive; frequencies (n,) rad/s
+        of the lowest modes and their displacement (m,p,n)."""
         operator = assembly.build(self._rail, material.density, material.youngs_modulus, material.poisson_ratio)
         if operator.free.all():
             raise MeshError("a rail that pads press has no mount: nothing holds it")

@@ -12,8 +12,8 @@ from scipy.sparse.linalg import LinearOperator, eigsh
 
 
 def modes(stiffness: csc_array, mass: np.ndarray, solve: Callable[[np.ndarray], np.ndarray], count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Frequencies (n,) rad/s, ascending, and shapes (d,n) 1/kg^0.5 of the lowest ``count`` modes over d freedoms that nothing holds, of
-    ``stiffness`` (d,d) N/m and ``mass`` (d,) kg; ``solve`` answers the displacement (m) under a load (N).
+    """Frequencies (n,) rad/s, ascending, and shapes (d,n) 1/kg^0.5 of the lowest ``count`` modes over d freedoms that nothing
+    holds, of ``stiffness`` (d,d) N/m and ``mass`` (d,) kg; ``solve`` answers the displacement (m) under a load (N).
 
     Raises ValueError where there are not so many.
     """

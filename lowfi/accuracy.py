@@ -34,7 +34,8 @@ class Tolerance(NamedTuple):
 
 @inlined
 def error_ratio(tolerance, payload, platform, walls, dt, stages, end, error):
-    """Error of the step that led to ``end`` over what is allowed; NaN where anything is. ``error``, as long as ``end``, is scratch."""
+    """Error of the step that led to ``end`` over what is allowed; NaN where anything is. ``error``, as long as ``end``, is
+    scratch."""
     local_error(dt, stages, modal_size(walls), error)
     ratio = _body_ratio(tolerance, payload.mass, payload.inverse_inertia, dt, error[:BODY_SIZE], end[:BODY_SIZE])
     return worse(worse(ratio, _platform_ratio(tolerance, platform, dt, error, end)), _rail_ratio(tolerance, payload, walls, error, end))

@@ -61,8 +61,8 @@ class Loop(NamedTuple):
 
 
 def ready(system, state: np.ndarray, first_step: float) -> Loop:
-    """A loop about to take its first sample of ``system`` at ``state`` (STATE_SIZE,), and its first step of ``first_step`` (s). Rails are
-    at rest, or as modes at the end of ``state`` say."""
+    """A loop about to take its first sample of ``system`` at ``state`` (STATE_SIZE,), and its first step of ``first_step`` (s).
+    Rails are at rest, or as modes at the end of ``state`` say."""
     faces, size = system.faces.shape[0], slot.STATE_SIZE + states(system.walls)
     state_, survey_ = (size,), (faces, SURVEY_SIZE)
     grip = zeros((faces, GRIP_SIZE)) if system.sticking is not None else None

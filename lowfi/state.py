@@ -6,8 +6,8 @@ Each body has place r, velocity v, quaternion q and the *total* angular momentum
 
 Explicit Runge-Kutta methods keep linear invariants to rounding. The sums of m v and of A over both bodies, less the impulse and
 its moment from outside, are such invariants when every internal force acts as a pair at one common point; a wrong pair still shows.
-The work entries behind them are quadratures: the same method integrates them, so that both ledgers close to its accuracy. Behind all
-that stand the modes of the rails, where there are any (``lowfi.walls.modes``).
+The work entries behind them are quadratures: the same method integrates them, so that both ledgers close to its accuracy. Behind
+all that stand the modes of the rails, where there are any (``lowfi.walls.modes``).
 """
 
 from typing import NamedTuple

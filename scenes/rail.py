@@ -3,8 +3,8 @@
 Presence of ``mesh`` or ``geometry`` is the switch. Such a file stands in scene axes (m, origin at the nominal mass centre at
 ignition, +X to the open end), its walls one ``clearance`` off the pads. The surrogate sees none of it: ``start`` and ``end`` say
 where the walls begin and end, pads and clearance where they stand; the reference refuses a file that says otherwise
-(``highfi.fit``). ``damping`` (``scenes.effects.structural_damping``), which any kind of rail may have, is felt by the reference and by modes of the
-rails (``scenes.effects.flexibility``).
+(``highfi.fit``). ``damping`` (``scenes.effects.structural_damping``), which any kind of rail may have, is felt by the reference and
+by modes of the rails (``scenes.effects.flexibility``).
 """
 
 import hashlib

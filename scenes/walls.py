@@ -67,8 +67,8 @@ class Walls:
         return {}
 
     def residual(self, modes: int) -> np.ndarray:
-        """Flexibility (s,f,p,f,p) m/N without the part of the first ``modes`` of each rail. Raises ValueError where this is no longer
-        positive semidefinite: the modes are not those of the rail the flexibility belongs to."""
+        """Flexibility (s,f,p,f,p) m/N without the part of the first ``modes`` of each rail. Raises ValueError where this is no
+        longer positive semidefinite: the modes are not those of the rail the flexibility belongs to."""
         if modes == 0:
             return self.flexibility
         part = self.shape[..., :modes] / self.frequency[self.rail, None, :modes]
@@ -97,8 +97,8 @@ class Walls:
         return (GRAM @ self.flexibility.transpose(0, 1, 3, 2, 4) @ GRAM)[..., 0, 0]
 
     def restricted(self, patterns: int = PATTERNS, coupled: bool = True) -> "Walls":
-        """The same walls with the first so many patterns of pressure and displacement only, and, unless ``coupled``, each face by itself,
-        without modes then, which faces have in common: what a simpler model knows of them."""
+        """The same walls with the first so many patterns of pressure and displacement only, and, unless ``coupled``, each face by
+        itself, without modes then, which faces have in common: what a simpler model knows of them."""
         kept = np.arange(PATTERNS) < patterns
         blocks = (GRAM @ self.flexibility.transpose(0, 1, 3, 2, 4) @ GRAM)[..., kept, :][..., kept]
         inverse = np.linalg.inv(GRAM[np.ix_(kept, kept)])

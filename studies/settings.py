@@ -16,10 +16,10 @@ _BESIDE_RESULTS = ("workers", "checkpoint_every", "resume")  # how a run is made
 @dataclass(frozen=True)
 class Settings:
     """``element_size`` (m) of the reference; ``tolerances`` of the surrogate in the cost study; repeats of timed runs;
-    ``clearance_change`` (m) that defines the floor; ``rail_modes`` of the surrogate whose rails vibrate; ``workers`` side by side; ``checkpoint_every`` seconds (wall clock) of a run
-    of the reference, and whether one that was interrupted may ``resume``. What the convergence study compares, coarsest first:
-    meshes by ``mesh_ratios`` to ``element_size``, one of them 1; ``safeties`` of the step, from that of every other stage down;
-    ``quadratures``; and factors of the scene's penalty stiffness."""
+    ``clearance_change`` (m) that defines the floor; ``rail_modes`` of the surrogate whose rails vibrate; ``workers`` side by side;
+    ``checkpoint_every`` seconds (wall clock) of a run of the reference, and whether one that was interrupted may ``resume``. What
+    the convergence study compares, coarsest first: meshes by ``mesh_ratios`` to ``element_size``, one of them 1; ``safeties`` of
+    the step, from that of every other stage down; ``quadratures``; and factors of the scene's penalty stiffness."""
 
     element_size: float = 0.002
     tolerances: tuple[float, ...] = (1e-2, 1e-4, 1e-6, 1e-8)

@@ -74,8 +74,8 @@ class Study:
 
     def lowfi(self, name: str, calibration: Calibration | None = None, overrides: dict | None = None, tag: str = "",
               walls: Walls | None = None, **numerics: Any) -> Run:
-        """A surrogate run of condition ``name``, with the scene's own contact constants unless calibrated and rails that do not bend,
-        or on ``walls``."""
+        """A surrogate run of condition ``name``, with the scene's own contact constants unless calibrated and rails that do not
+        bend, or on ``walls``."""
         import lowfi
 
         label = f"{name}{tag}{'-calibrated' if calibration else ''}{'-walls' if walls else ''}"

@@ -5,8 +5,8 @@ face, the linearised springs are sum_ab T_ab g_a g_b', and the trace over both b
 
     K = sum over rails of sum_ab T_ab (g_a . M^-1 g_b)
 
-Modes of rails that move or are pressed add a diagonal of omega^2 and d to the matrices, which raises their spectra by the largest of
-each (Weyl), and the trace of what contact does to them, W' T W.
+Modes of rails that move or are pressed add a diagonal of omega^2 and d to the matrices, which raises their spectra by the largest
+of each (Weyl), and the trace of what contact does to them, W' T W.
 """
 
 from lowfi import state as slot

@@ -2,8 +2,9 @@
 
     E = sum over cells of penalty dA max(0, p)^2 / 2 + P' F P / 2
 
-(that of the modes, where the rail has some, is their own). With the pose of the payload they are: P_1 against the normal, at the centre of pressure, and along X, as the rail is softer or stiffer
-ahead and as its bent wall slopes (xi' moves with the pad where a face hangs over an end)::
+(that of the modes, where the rail has some, is their own). With the pose of the payload they are: P_1 against the normal, at the
+centre of pressure, and along X, as the rail is softer or stiffer ahead and as its bent wall slopes (xi' moves with the pad where a
+face hangs over an end)::
 
     X = P' F' P / 2 + P' W' q + sum of pressure d(xi')/dx du/dxi'
 

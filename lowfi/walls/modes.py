@@ -1,16 +1,17 @@
-"""Vibration of the rails that pads press: their lowest modes, states of their own behind those of the bodies (data: ``scenes.walls``).
+"""Vibration of the rails that pads press: their lowest modes, states of their own behind those of the bodies (data:
+``scenes.walls``).
 
     U = F_res P + W q,    q_m'' + d_m q_m' + omega_m^2 q_m = sum_ia W_iam P_ia,    d_m = alpha + beta omega_m^2
 
-with W at the place the pads are at. The other modes follow at once. These are Lagrange's equations of the potential in ``loads`` with
-the modes' own energy sum_m (q_m'^2 + omega_m^2 q_m^2) / 2 beside it, so both ledgers close. At ignition a rail is at rest and straight,
-as in the reference. ``lowfi.accuracy`` and ``lowfi.walls.limit`` hold the steps to what the highest mode asks.
+with W at the place the pads are at. The other modes follow at once. These are Lagrange's equations of the potential in ``loads``
+with the modes' own energy sum_m (q_m'^2 + omega_m^2 q_m^2) / 2 beside it, so both ledgers close. At ignition a rail is at rest and
+straight, as in the reference. ``lowfi.accuracy`` and ``lowfi.walls.limit`` hold the steps to what the highest mode asks.
 
 Left out, in both directions, is that mounts move with the platform: the inertial load -L_m a of the modes under its acceleration a,
-and the momentum L_m q_m' of a rail that swings, which the contact force, taken to act on the platform at once, lacks or has too much.
-L_m^2 is the mode's effective mass, and all of them together are less than the rail weighs. The reference scene has rails of 0.11 kg on
-a platform of 81 kg: a thousandth of the contact force, and 1e-5 m/s of the platform when a wall swings at 10 mm/s. The momenta of payload
-and platform are kept to rounding by that choice.
+and the momentum L_m q_m' of a rail that swings, which the contact force, taken to act on the platform at once, lacks or has too
+much. L_m^2 is the mode's effective mass, and all of them together are less than the rail weighs. The reference scene has rails of
+0.11 kg on a platform of 81 kg: a thousandth of the contact force, and 1e-5 m/s of the platform when a wall swings at 10 mm/s. The
+momenta of payload and platform are kept to rounding by that choice.
 """
 
 import numpy as np
@@ -24,7 +25,8 @@ _XI, _ETA = POWERS.T.copy()
 
 @kernel
 def take_swing(modes, rail, face, station, way, changes, state):
-    """Fill what the modes of ``rail`` are under ``face``, ``way`` (m) from a station where that changes by ``changes`` with the place."""
+    """Fill what the modes of ``rail`` are under ``face``, ``way`` (m) from a station where that changes by ``changes`` with the
+    place."""
     if modes is not None:
         count = modes.square.shape[1]
         first, rates = STATE_SIZE + rail * count, STATE_SIZE + modes.square.size + rail * count
@@ -103,7 +105,8 @@ def energies(modes, state):
 
 @inlined
 def fastest(modes, rail, pressed, state):
-    """Largest omega^2 (1/s2) and d (1/s) of the modes of a rail; zero while it is at rest and nothing has pressed it, for then it stays so."""
+    """Largest omega^2 (1/s2) and d (1/s) of the modes of a rail; zero while it is at rest and nothing has pressed it, for then it
+    stays so."""
     square, drag = 0.0, 0.0
     if modes is not None:
         count = modes.square.shape[1]

@@ -36,9 +36,9 @@ class Room(NamedTuple):
 
 
 class Modes(NamedTuple):
-    """The n modes of each of r rails: square (r,n) 1/s2 of their frequencies, drag (r,n) 1/s, cubic (s-1,f,n,p,4) of their shapes (1/kg^0.5)
-    as that of ``Walls``; and what they are now under each face: shape (f,n,p), displacement ``offset`` (f,p) m, its slope along the
-    travel (f,p), its speed (f,p) m/s."""
+    """The n modes of each of r rails: square (r,n) 1/s2 of their frequencies, drag (r,n) 1/s, cubic (s-1,f,n,p,4) of their shapes
+    (1/kg^0.5) as that of ``Walls``; and what they are now under each face: shape (f,n,p), displacement ``offset`` (f,p) m, its
+    slope along the travel (f,p), its speed (f,p) m/s."""
 
     square: np.ndarray
     drag: np.ndarray
@@ -72,8 +72,8 @@ class Walls(NamedTuple):
 
 
 def under_pads(scene: Scene, model: Model, found: data.Walls | None) -> Walls | None:
-    """Record of what was ``found`` for the kernels, None without contact. Raises SceneError for walls of another rail, for the law of
-    friction that sticks, and for modes without walls that have them."""
+    """Record of what was ``found`` for the kernels, None without contact. Raises SceneError for walls of another rail, for the law
+    of friction that sticks, and for modes without walls that have them."""
     data.require_modes(scene, found)
     if found is None or model.contact is None:
         return None

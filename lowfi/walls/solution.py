@@ -2,8 +2,9 @@
 
     U = F P(U) + W q,    (1 + F K) dU = F P + W q - U,    K_iab = dP_ia/d(-U_ib) = sum over pressed cells of penalty dA phi_a phi_b
 
-W q is what the rail's modes make of it (``lowfi.walls.modes``), F the rest; without modes there is only F. P is the gradient of a convex potential, so the solution is one; while the pressed cells do not change the equations are linear, and the
-last correction is exact. The displacement of the solution before is the first guess.
+W q is what the rail's modes make of it (``lowfi.walls.modes``), F the rest; without modes there is only F. P is the gradient of a
+convex potential, so the solution is one; while the pressed cells do not change the equations are linear, and the last correction is
+exact. The displacement of the solution before is the first guess.
 """
 
 import numpy as np
@@ -21,8 +22,8 @@ _XI, _ETA = POWERS.T.copy()
 
 @kernel
 def solve(walls, faces, rail, active, place, turn, state):
-    """Number of ``active`` (f,) faces on ``rail``; ``walls.room`` holds them in ``order``, with lever, displacement and force. Of ``state``
-    only the modes are read."""
+    """Number of ``active`` (f,) faces on ``rail``; ``walls.room`` holds them in ``order``, with lever, displacement and force. Of
+    ``state`` only the modes are read."""
     room, count = walls.room, 0
     for slot in range(walls.members.shape[1]):
         face = walls.members[rail, slot]

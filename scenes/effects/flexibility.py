@@ -1,4 +1,5 @@
-"""Vibration of the rails in the surrogate: the lowest modes of every rail on walls that give way. Absent table: rails without inertia.
+"""Vibration of the rails in the surrogate: the lowest modes of every rail on walls that give way. Absent table: rails without
+inertia.
 
     q_i'' + (alpha + beta omega_i^2) q_i' + omega_i^2 q_i = the work of the pads' pressure on mode i, mass-normalised
 

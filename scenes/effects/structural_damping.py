@@ -1,4 +1,5 @@
-"""Structural (Rayleigh) damping of the rails, ``C = alpha M + beta K``, of the reference and of its modes in the surrogate. Absent table: none.
+"""Structural (Rayleigh) damping of the rails, ``C = alpha M + beta K``, of the reference and of its modes in the surrogate. Absent
+table: none.
 
 A mode of angular frequency w then has the damping ratio ``alpha / 2w + beta w / 2`` (Clough and Penzien, Dynamics of Structures,
 section 12-5), which meets the two ratios given at the two frequencies given, is less between them and more outside.

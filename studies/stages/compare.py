@@ -23,8 +23,8 @@ _SIMPLER = {"mean pressure of each face by itself": (1, False), "mean pressure":
 
 
 class Rung(NamedTuple):
-    """A surrogate to judge: its name in result files, what the report calls it, its constants, the walls of each condition, and how many
-    modes of each rail vibrate on them."""
+    """A surrogate to judge: its name in result files, what the report calls it, its constants, the walls of each condition, and how
+    many modes of each rail vibrate on them."""
 
     name: str
     title: str
@@ -40,8 +40,8 @@ class Rung(NamedTuple):
 
 
 def rungs(study: Study) -> list[Rung]:
-    """The surrogates of a scene, from the plainest up: with its own constants, with calibrated ones, on walls that give way as statics
-    has them, where nothing is fitted, and on the same with the lowest modes of the rails."""
+    """The surrogates of a scene, from the plainest up: with its own constants, with calibrated ones, on walls that give way as
+    statics has them, where nothing is fitted, and on the same with the lowest modes of the rails."""
     under = walls.under(study, study.conditions)
     return [Rung("uncalibrated", "surrogate, uncalibrated"), Rung("calibrated", "surrogate, calibrated", calibrate.load(study)),
             Rung("compliant", "surrogate, compliant walls", walls=under),

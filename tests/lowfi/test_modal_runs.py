@@ -132,8 +132,8 @@ def work_of_modes(scene, walls, run, states) -> float:
 
 
 def test_rails_without_inertia_are_the_walls_of_statics():
-    """Frequencies to infinity at the same statics: what vibration changes falls with their square, four times for twice as fast, and
-    touches at another phase of it may hide a little of that."""
+    """Frequencies to infinity at the same statics: what vibration changes falls with their square, four times for twice as fast,
+    and touches at another phase of it may hide a little of that."""
     asked, walls = REFERENCE.condition("phi60"), reference_walls()
     static = lowfi.run(asked, numerics=TIGHT, walls=walls).outcome.rate
     change = []

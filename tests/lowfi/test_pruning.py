@@ -69,7 +69,6 @@ def test_walls_that_give_way_stand_in_the_place_of_the_contact_law():
     assert name in compiled_code(scene, walls=reference_walls()) and name not in compiled_code(scene)
 
 
-@pytest.mark.slow
 def test_modes_of_the_rails_are_compiled_where_there_are_any():
     scene, walls = load("reference"), reference_walls()
     without, none, with_modes = (lowfi.compiled_effects(each, walls=walls)

@@ -39,7 +39,8 @@ def pose_of(model, name, base=((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))):
 
 
 def solved(system, model, pose, rail, active=None, modes=()):
-    """Number of faces of a rail solved for at ``pose``, which ``system.walls.room`` then holds; ``modes`` are those of the state."""
+    """Number of faces of a rail solved for at ``pose``, which ``system.walls.room`` then holds; ``modes`` are those of the
+    state."""
     state = np.append(state_of(model, pose), modes)
     place, turn = seen_from_platform(system.platform, system.payload, state)
     active = np.ones(len(system.faces), dtype=np.bool_) if active is None else active
