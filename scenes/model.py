@@ -15,10 +15,11 @@ from scenes.effects.gravity import Gravity
 from scenes.effects.initial import Initial
 from scenes.effects.platform import Platform
 from scenes.effects.sticking import Sticking
+from scenes.effects.thermal import Thermal
 from scenes.scene import Scene
 
 # Tables of a scene whose records may be kept.
-_REUSED = ("payload", "pads", "rail", "thrust", "initial", "contact", "friction", "platform")
+_REUSED = ("payload", "pads", "rail", "thrust", "initial", "contact", "friction", "platform", "thermal")
 
 
 class Payload(NamedTuple):
@@ -62,6 +63,7 @@ class Model(NamedTuple):
     friction: Friction | Sticking | None
     platform: Platform | None
     gravity: Gravity | None
+    thermal: Thermal | None
     initial: Initial
     thrust_arm: float
 
@@ -105,6 +107,7 @@ def built(scene: Scene, known: Built | None = None) -> Built:
         friction=known.model.friction if kept("friction", "contact") else scene.friction.record() if scene.friction and touching else None,
         platform=platform,
         gravity=scene.gravity.record() if scene.gravity else None,
+        thermal=known.model.thermal if kept("rail", "thermal") else scene.thermal.record(scene.rail) if scene.thermal else None,
         initial=known.model.initial if kept("initial") else scene.initial.record() if scene.initial else Initial(),
         thrust_arm=scene.thrust.arm,
     ), nominal)

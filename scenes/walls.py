@@ -6,18 +6,21 @@ On pad face i, with xi along the rail and eta across it in [-1, 1], a pressure p
     phi = 1, xi, eta, xi^2, xi eta, eta^2
 
 F is symmetric and positive definite: the flexibility of linear statics, at every place the pads come to. Near an end of the rail a face
-keeps the last place where all of it has a wall under it, and xi goes on from there.
+keeps the last place where all of it has a wall under it, and xi goes on from there. Where the rail is warm (``scenes.effects.thermal``)
+its walls stand away from their places before anything presses them, by W = sum_t amount_t warm_t of the same patterns, on top of which
+comes U; walls known to be warm and rigid have no F.
 """
 
 import hashlib
 import zipfile
 import zlib
-from dataclasses import dataclass, fields, replace
+from dataclasses import MISSING, dataclass, fields, replace
 from functools import cached_property
 from pathlib import Path
 
 import numpy as np
 
+from scenes.effects.thermal import FIELDS
 from scenes.faults import Fault, SceneError
 from scenes.files import content_hash, replacing
 from scenes.scene import Scene
@@ -34,41 +37,49 @@ GRAM = np.where((_TOGETHER % 2 == 0).all(axis=2), 1.0 / (_TOGETHER + 1.0).prod(a
 class Walls:
     """travel (s,) m of the payload along X since ignition, evenly spaced; flexibility (s,f,p,f,p) m/N; rail (f,) number of the rail
     each face is on; half (f,2) m, half the size of each face along xi and eta, negative where eta runs against the axis;
-    made_for, digest of the rail and pads."""
+    made_for, digest of the rail and pads; warm (t,s,f,p) m away from the payload under one of each field of temperature, None where
+    nobody asked. Rigid walls have None for their flexibility."""
 
     travel: np.ndarray
-    flexibility: np.ndarray
+    flexibility: np.ndarray | None
     rail: np.ndarray
     half: np.ndarray
     made_for: str
+    warm: np.ndarray | None = None
 
     @cached_property
     def cubic(self) -> np.ndarray:
         """Flexibility (s-1,f,f,p,p,4) between stations: coefficients of the rising powers of the way (m) from the one before."""
-        from scipy.interpolate import CubicSpline
-
-        by_power = CubicSpline(self.travel, self.flexibility).c[::-1]  # (4,s-1,f,p,f,p)
-        return np.ascontiguousarray(by_power.transpose(1, 2, 4, 3, 5, 0))
+        return np.ascontiguousarray(cubic(self.travel, self.flexibility).transpose(0, 1, 3, 2, 4, 5))
 
     def __getstate__(self) -> dict:
-        """What goes to another process: not what it can make by itself."""
-        return {field.name: getattr(self, field.name) for field in fields(self)}
+        """What goes to another process, or into a file: not what it can make by itself, nor what is not known."""
+        return {field.name: value for field in fields(self) if (value := getattr(self, field.name)) is not None}
 
     @cached_property
     def hash(self) -> str:
         """Hexadecimal SHA-256 of all of it."""
         digest = hashlib.sha256(self.made_for.encode())
-        for array in (self.travel, self.flexibility, self.rail, self.half):
-            digest.update(np.ascontiguousarray(array).tobytes())
+        for array in (self.travel, self.flexibility, self.rail, self.half, self.warm):
+            if array is not None:
+                digest.update(np.ascontiguousarray(array).tobytes())
         return digest.hexdigest()
 
     def compliance(self) -> np.ndarray:
         """Mean displacement (s,f,f) in m/N of each face under a unit force spread evenly over each."""
         return (GRAM @ self.flexibility.transpose(0, 1, 3, 2, 4) @ GRAM)[..., 0, 0]
 
+    def rigid(self) -> "Walls":
+        """The same walls for a contact law to stand on: where they are when they are warm, and nothing of how they give way."""
+        return replace(self, flexibility=None)
+
+    def moved(self, amounts: np.ndarray) -> np.ndarray:
+        """W (s,f,p) m by ``amounts`` (t,) of the fields of temperature."""
+        return np.tensordot(amounts, self.warm, 1)
+
     def restricted(self, patterns: int = PATTERNS, coupled: bool = True) -> "Walls":
-        """The same walls with the first so many patterns of pressure and displacement only, and, unless ``coupled``, each face by itself:
-        what a simpler model knows of them."""
+        """The same walls with the first so many patterns of pressure and displacement by load only, and, unless ``coupled``, each face by
+        itself: what a simpler model knows of them."""
         kept = np.arange(PATTERNS) < patterns
         blocks = (GRAM @ self.flexibility.transpose(0, 1, 3, 2, 4) @ GRAM)[..., kept, :][..., kept]
         inverse = np.linalg.inv(GRAM[np.ix_(kept, kept)])
@@ -79,9 +90,13 @@ class Walls:
         return replace(self, flexibility=flexibility)
 
     def require(self, scene: Scene) -> None:
-        """Raises SceneError where ``scene`` has another rail or other pads than these walls were found for."""
+        """Raises SceneError where ``scene`` has another rail or other pads than these walls were found for, or a temperature of which they
+        do not know."""
         if self.made_for != digest(scene):
             raise SceneError([Fault(scene.name, "rail", "another rail, or other pads", "those the walls were found for: find them anew")])
+        if scene.thermal is not None and self.warm is None:
+            raise SceneError([Fault(scene.name, "thermal", "walls that know of no temperature",
+                                    "walls found for warm rails: find them anew")])
 
     def save(self, path: str | Path) -> None:
         """Write atomically, as arrays."""
@@ -93,7 +108,7 @@ class Walls:
         """Read what ``save`` wrote. Raises FileNotFoundError, or ValueError for a damaged or foreign file."""
         try:
             with np.load(path, allow_pickle=False) as found:
-                arrays = {field.name: found[field.name] for field in fields(cls)}
+                arrays = {field.name: found[field.name] for field in fields(cls) if field.default is MISSING or field.name in found}
             walls = cls(**arrays | {"made_for": str(arrays["made_for"])})
             walls._require_whole()
         except (zipfile.BadZipFile, zlib.error, KeyError, EOFError, TypeError, ValueError) as error:  # TypeError: a lone array
@@ -104,6 +119,8 @@ class Walls:
         """Raises ValueError where shapes do not belong together or a number is not finite."""
         stations, faces = self.travel.size, self.rail.size
         expected = {"travel": (stations,), "flexibility": (stations, faces, PATTERNS, faces, PATTERNS), "rail": (faces,), "half": (faces, 2)}
+        if self.warm is not None:
+            expected["warm"] = (FIELDS, stations, faces, PATTERNS)
         for name, shape in expected.items():
             array = getattr(self, name)
             if array.shape != shape or not np.isfinite(array).all():
@@ -112,9 +129,18 @@ class Walls:
             raise ValueError(f"travel: given {stations} stations, expected at least 2")
 
 
+def cubic(travel: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Cubic spline (s-1,...,4) through ``values`` (s,...) at ``travel`` (s,) m: coefficients of the rising powers of the way (m) from the
+    station before."""
+    from scipy.interpolate import CubicSpline
+
+    return np.ascontiguousarray(np.moveaxis(CubicSpline(travel, values).c[::-1], 0, -1))
+
+
 def digest(scene: Scene) -> str:
     """Hexadecimal digest of what walls depend on. The clearance is not part of it: it moves pads over a leg by a hundredth of its width."""
     described = scene.model_dump(mode="json", include={"rail", "pads"})
     described["rail"] |= scene.rail.contents()
     described["rail"].pop("damping", None)  # statics
+    described["rail"]["material"].pop("expansion", None)  # found for one of each field
     return content_hash(described)
