@@ -5,10 +5,10 @@ On pad face i, with xi along the rail and eta across it in [-1, 1], a pressure p
     u_i = sum_a U_ia phi_a(xi, eta),   P_jb = integral over face j of p phi_b dA,   U_ia = sum_jb F_iajb(travel) P_jb
     phi = 1, xi, eta, xi^2, xi eta, eta^2
 
-F is symmetric and positive definite: the flexibility of linear statics, at every place the pads come to. Near an end of the rail a face
-keeps the last place where all of it has a wall under it, and xi goes on from there. Where the rail is warm (``scenes.effects.thermal``)
-its walls stand away from their places before anything presses them, by W = sum_t amount_t warm_t of the same patterns, on top of which
-comes U; walls known to be warm and rigid have no F.
+F is symmetric and positive definite: the flexibility of linear statics, at every place the pads come to. Near an end of the rail a
+face keeps the last place where all of it has a wall under it, and xi goes on from there. Where the rail is warm
+(``scenes.effects.thermal``) its walls stand away from their places before anything presses them, by W = sum_t amount_t warm_t of
+the same patterns, on top of which comes U; walls known to be warm and rigid have no F.
 """
 
 import hashlib
@@ -53,8 +53,8 @@ class Walls:
         return np.ascontiguousarray(cubic(self.travel, self.flexibility).transpose(0, 1, 3, 2, 4, 5))
 
     def __getstate__(self) -> dict:
-        """What goes to another process, or into a file: not what it can make by itself, nor what is not known."""
-        return {field.name: value for field in fields(self) if (value := getattr(self, field.name)) is not None}
+        """What goes to another process: not what it can make by itself."""
+        return {field.name: getattr(self, field.name) for field in fields(self)}
 
     @cached_property
     def hash(self) -> str:
@@ -78,8 +78,8 @@ class Walls:
         return np.tensordot(amounts, self.warm, 1)
 
     def restricted(self, patterns: int = PATTERNS, coupled: bool = True) -> "Walls":
-        """The same walls with the first so many patterns of pressure and displacement by load only, and, unless ``coupled``, each face by
-        itself: what a simpler model knows of them."""
+        """The same walls with the first so many patterns of pressure and displacement by load only, and, unless ``coupled``, each
+        face by itself: what a simpler model knows of them."""
         kept = np.arange(PATTERNS) < patterns
         blocks = (GRAM @ self.flexibility.transpose(0, 1, 3, 2, 4) @ GRAM)[..., kept, :][..., kept]
         inverse = np.linalg.inv(GRAM[np.ix_(kept, kept)])
@@ -90,8 +90,8 @@ class Walls:
         return replace(self, flexibility=flexibility)
 
     def require(self, scene: Scene) -> None:
-        """Raises SceneError where ``scene`` has another rail or other pads than these walls were found for, or a temperature of which they
-        do not know."""
+        """Raises SceneError where ``scene`` has another rail or other pads than these walls were found for, or a temperature of
+        which they do not know."""
         if self.made_for != digest(scene):
             raise SceneError([Fault(scene.name, "rail", "another rail, or other pads", "those the walls were found for: find them anew")])
         if scene.thermal is not None and self.warm is None:
@@ -101,7 +101,7 @@ class Walls:
     def save(self, path: str | Path) -> None:
         """Write atomically, as arrays."""
         with replacing(path) as temporary, open(temporary, "wb") as stream:
-            np.savez_compressed(stream, **self.__getstate__())
+            np.savez_compressed(stream, **{name: value for name, value in self.__getstate__().items() if value is not None})
 
     @classmethod
     def load(cls, path: str | Path) -> "Walls":
@@ -130,8 +130,8 @@ class Walls:
 
 
 def cubic(travel: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Cubic spline (s-1,...,4) through ``values`` (s,...) at ``travel`` (s,) m: coefficients of the rising powers of the way (m) from the
-    station before."""
+    """Cubic spline (s-1,...,4) through ``values`` (s,...) at ``travel`` (s,) m: coefficients of the rising powers of the way (m)
+    from the station before."""
     from scipy.interpolate import CubicSpline
 
     return np.ascontiguousarray(np.moveaxis(CubicSpline(travel, values).c[::-1], 0, -1))

@@ -5,8 +5,8 @@ alpha the coefficient of expansion and s the strain of the platform that carries
 
     T = mean + gradient . (X - X_m),      free strain alpha T in every direction,      mounts moved by s (X - X_m)
 
-So rails on the sunny side, 0.2 m from those in the shade and 20 K warmer, have a gradient of 0.1 K/mm, and a platform that warms with
-its rails and expands as they do has s = alpha mean and leaves them free of stress. Absent table: rails as they were mounted.
+So rails on the sunny side, 0.2 m from those in the shade and 20 K warmer, have a gradient of 0.1 K/mm, and a platform that warms
+with its rails and expands as they do has s = alpha mean and leaves them free of stress. Absent table: rails as they were mounted.
 """
 
 from typing import NamedTuple
@@ -42,8 +42,8 @@ class ThermalTable(Table):
 
 
 class Thermal(NamedTuple):
-    """Plain record: amounts (FIELDS,), how much there is of each of the fields: free strain at X_m (1), its gradients (1/m), strain of the
-    platform (1); ``middle``, X_m in scene axes (m)."""
+    """Plain record: amounts (FIELDS,), how much there is of each of the fields: free strain at X_m (1), its gradients (1/m), strain
+    of the platform (1); ``middle``, X_m in scene axes (m)."""
 
     amounts: np.ndarray
     middle: float
