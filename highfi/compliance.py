@@ -6,21 +6,23 @@
 C is the displacement of the wall under pad face i, averaged with pattern a, caused by the pressure pattern b under face j: with the
 pattern 1 the mean displacement under a unit force. F is the flexibility of ``scenes.walls``: displacement and pressure are both
 taken for the polynomials phi nearest to them. K is that of the whole rail, clamped at its mounts, so faces on one rail press each
-other's walls too. Inertia is left out. Both are symmetric (Maxwell and Betti).
+other's walls too. Inertia is left out. Both are symmetric (Maxwell and Betti). Beside them stands where uneven temperature brings
+the same walls (``highfi.thermal``), for one of each field of which [thermal] is a sum.
 """
 
 from typing import NamedTuple, Sequence
 
 import numpy as np
 from scipy.sparse import coo_array, csc_array
-from scipy.sparse.linalg import splu
 
-from highfi import assembly, pieces, surface
-from highfi.mesh import MeshError, RailMesh
+from highfi import assembly, pieces, surface, thermal
+from highfi.mesh import RailMesh
 from highfi.numerics import Numerics
 from highfi.pressure import Pressed, pressed
 from highfi.run import prepare
+from highfi.statics import Clamped
 from scenes import model as scene_model
+from scenes.effects.thermal import FIELDS
 from scenes.rail import MaterialTable
 from scenes.scene import Scene
 from scenes.walls import PATTERNS, Walls, digest
@@ -33,8 +35,9 @@ _SINGULAR = 1e-6  # of the largest eigenvalue of G: patterns that hardly differ 
 
 class Compliance(NamedTuple):
     """travel (s,) m of the payload along X since ignition; matrix (s,f,p,f,p) m/N between f pad faces and p patterns, zero between
-    faces on different rails; gram (s,f,p,p), zero where a face has no wall; rail (f,) the number of the rail under each, -1 without;
-    half (f,2) m, half the size of each face along xi and eta, negative where eta runs against the axis. Near an end of the rail
+    faces on different rails; gram (s,f,p,p), zero where a face has no wall; rail (f,) the number of the rail under each, -1
+    without; half (f,2) m, half the size of each face along xi and eta, negative where eta runs against the axis; warm (s,f,p,t) m,
+    the mean displacement away from the payload, by pattern, of one of each of the t fields of temperature. Near an end of the rail
     a face stays at the last place where all of it is on the rail."""
 
     travel: np.ndarray
@@ -42,6 +45,7 @@ class Compliance(NamedTuple):
     gram: np.ndarray
     rail: np.ndarray
     half: np.ndarray
+    warm: np.ndarray
 
 
 def walls(scene: Scene, element_size: float, spacing: float = _SPACING) -> Walls:
@@ -56,7 +60,8 @@ def walls(scene: Scene, element_size: float, spacing: float = _SPACING) -> Walls
     found = along(scene, element_size, stations, PATTERNS)
     inverse = np.linalg.pinv(found.gram, rcond=_SINGULAR, hermitian=True)
     flexibility = np.einsum("siab,sibjc,sjcd->siajd", inverse, found.matrix, inverse, optimize=True)
-    return Walls(stations, flexibility, found.rail, found.half, digest(scene))
+    warm = np.einsum("siab,sibt->tsia", inverse, found.warm)
+    return Walls(stations, flexibility, found.rail, found.half, digest(scene), warm)
 
 
 def along(scene: Scene, element_size: float, travel: Sequence[float], patterns: int = PATTERNS) -> Compliance:
@@ -84,20 +89,22 @@ def of_mesh(mesh: RailMesh, material: MaterialTable, faces: scene_model.Faces, r
     across = faces.centre[np.arange(count), 3 - faces.axis]
     half = np.column_stack([faces.half_length, np.where(across >= 0.0, 1.0, -1.0) * faces.half_width])
     matrix, gram = np.zeros((travel.size, count, patterns, count, patterns)), np.zeros((travel.size, count, patterns, patterns))
-    rail_of = np.full(count, -1)
+    warm, rail_of = np.zeros((travel.size, count, patterns, FIELDS)), np.full(count, -1)
     for rail, images in pieces.distinct(mesh):
         patches = _Patches(rail, patterns)
         places = [patches.under(faces, half, signs, reach, travel) for signs in images]
         if not patches.found:
             continue
         # One more that answers nothing is what a face without a wall, number -1, points at.
-        between = np.pad(patches.solved(material), [(0, 1), (0, 0), (0, 1), (0, 0)])
+        between, moved = patches.solved(material, 0.5 * (reach[0] + reach[1]))
+        between, moved = np.pad(between, [(0, 1), (0, 0), (0, 1), (0, 0)]), np.pad(moved, [(0, 1), (0, 0), (0, 0)])
         grams = np.array([patch.gram for patch in patches.found] + [np.zeros((patterns, patterns))])
-        for number in places:
+        for number, signs in zip(places, images):
             gram += grams[number]
+            warm += moved[number] * np.r_[1.0, signs, 1.0]  # an image is warmer where its y and z say
             matrix += between[number[:, :, None, None, None], pattern[:, None, None], number[:, None, None, :, None], pattern]
             rail_of[(number >= 0).any(axis=0)] = rail_of.max() + 1
-    return Compliance(travel, matrix, gram, rail_of, half)
+    return Compliance(travel, matrix, gram, rail_of, half, warm)
 
 
 class _Patches:
@@ -132,18 +139,16 @@ class _Patches:
                 number[station, face] = self._number[key]
         return number
 
-    def solved(self, material: MaterialTable) -> np.ndarray:
-        """Displacement (m,p,m,p) in m of all places under the loads of all, normals of the faces positive."""
+    def solved(self, material: MaterialTable, middle: float) -> tuple[np.ndarray, np.ndarray]:
+        """Displacement (m,p,m,p) in m of all places under the loads of all, normals of the faces positive, and (m,p,t) under one of
+        each field of temperature around X = ``middle`` (m)."""
         operator = assembly.build(self._rail, material.density, material.youngs_modulus, material.poisson_ratio)
-        if operator.free.all():
-            raise MeshError("a rail that pads press has no mount: nothing holds it")
-        free = np.repeat(operator.free, 3)
-        # A positive definite matrix needs no pivoting, and an ordering for symmetric ones keeps its factors sparse.
-        factor = splu(csc_array(assembly.sparse(operator)[free][:, free]), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0,
-                      options={"SymmetricMode": True})
-        loads = self._loads()[free]
-        answer = [loads.T @ factor.solve(loads[:, start:start + _BATCH].toarray()) for start in range(0, loads.shape[1], _BATCH)]
-        return np.concatenate(answer, axis=1).reshape(2 * (len(self.found), self._patterns))
+        clamped, loads = Clamped(operator), self._loads()
+        warm = loads.T @ thermal.of_fields(self._rail, operator, material, clamped, middle).reshape(-1, FIELDS)
+        loads = loads[clamped.free]
+        answer = [loads.T @ clamped.solve(loads[:, start:start + _BATCH].toarray()) for start in range(0, loads.shape[1], _BATCH)]
+        shape = len(self.found), self._patterns
+        return np.concatenate(answer, axis=1).reshape(2 * shape), warm.reshape(*shape, FIELDS)
 
     def _loads(self) -> csc_array:
         """Nodal loads (3n,mp) of all patterns at all places."""

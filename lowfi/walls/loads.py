@@ -5,7 +5,7 @@
 With the pose of the payload they are: P_1 against the normal, at the centre of pressure, and along X, as the rail is softer or stiffer
 ahead and as its bent wall slopes (xi' moves with the pad where a face hangs over an end)::
 
-    X = P' F' P / 2 + sum of pressure d(xi')/dx du/dxi'
+    X = P' F' P / 2 + P . W' + sum of pressure d(xi')/dx du/dxi'
 
 which acts on payload and platform at the payload's mass centre, since that is the place whose way counts. Energy still under the part
 of a pad that leaves the wall is lost.
@@ -13,6 +13,7 @@ of a pad that leaves the wall is lost.
 
 from lowfi.system import NORMAL_Y
 from lowfi.touch import Load, friction_force, outward, relative_velocity
+from lowfi.walls import warm
 from lowfi.walls.cells import stored
 from lowfi.walls.record import DRIFT, SHIFT
 from scenes import rotation
@@ -45,6 +46,7 @@ def drive(walls, count):
         face = room.order[i]
         u, force = room.displacement[face], room.force[face]
         pull += room.lever[face, DRIFT] * (u[1] * force[0] + 2.0 * u[3] * force[1] + u[4] * force[2])
+        pull += warm.pull(walls.warm, face, force)
         if room.lever[face, SHIFT] != 0.0:  # else all of it is over the wall
             fading += stored(walls, face)[1]
         for a in range(PATTERNS):
@@ -58,11 +60,11 @@ def drive(walls, count):
 
 @kernel
 def energy(walls, count):
-    """Energy (J) in walls and penalty under the ``count`` faces solved for: P' F P is P' U."""
+    """Energy (J) in walls and penalty under the ``count`` faces solved for: P' F P is P' (U - W)."""
     total = 0.0
     for i in range(count):
         face = walls.room.order[i]
         total += stored(walls, face)[0]
         for a in range(PATTERNS):
-            total += 0.5 * walls.room.force[face, a] * walls.room.displacement[face, a]
+            total += 0.5 * walls.room.force[face, a] * (walls.room.displacement[face, a] - warm.place(walls.warm, face, a))
     return total

@@ -1,13 +1,15 @@
 """Displacement of the walls of one rail under the faces that press it, by Newton's method on piecewise linear equations.
 
-    U = F P(U),    (1 + F K) dU = F P - U,    K_iab = dP_ia/d(-U_ib) = sum over pressed cells of penalty dA phi_a phi_b
+    U = W + F P(U),    (1 + F K) dU = W + F P - U,    K_iab = dP_ia/d(-U_ib) = sum over pressed cells of penalty dA phi_a phi_b
 
 P is the gradient of a convex potential, so the solution is one; while the pressed cells do not change the equations are linear, and the
-last correction is exact. The displacement of the solution before is the first guess.
+last correction is exact. The displacement of the solution before is the first guess. W is where walls stand that are warm
+(``lowfi.walls.warm``), zero otherwise.
 """
 
 import numpy as np
 
+from lowfi.walls import warm
 from lowfi.walls.cells import eased, press, take_lever
 from scenes.jit import inlined, kernel
 from scenes.walls import PATTERNS, POWERS
@@ -56,6 +58,7 @@ def take_flexibility(walls, count, place):
     room = walls.room
     station, s, changes = between_stations(walls, place)
     for i in range(count):
+        warm.take(walls.warm, room.order[i], station, s, changes)
         for j in range(count):
             block = walls.cubic[station, room.order[i], room.order[j]]
             for a in range(PATTERNS):
@@ -80,7 +83,7 @@ def _correct(walls, count, share):
     wide = count * PATTERNS
     fill_matrix(room, count)
     for row in range(wide):
-        total = 0.0
+        total = warm.place(walls.warm, room.order[row // PATTERNS], row % PATTERNS)
         for column in range(wide):
             total += room.flexibility[row, column] * room.force[room.order[column // PATTERNS], column % PATTERNS]
         room.right[row, 0] = total - room.displacement[room.order[row // PATTERNS], row % PATTERNS]
@@ -142,9 +145,10 @@ def eliminate(matrix, right, size, columns):
 def follow(walls, face, place, count, out):
     """Fill ``out`` (p,) with the displacement of the wall under a face that may not press, by the ``count`` faces solved for."""
     room = walls.room
-    station, s, _ = between_stations(walls, place)
+    station, s, changes = between_stations(walls, place)
+    warm.take(walls.warm, face, station, s, changes)
     for a in range(PATTERNS):
-        out[a] = 0.0
+        out[a] = warm.place(walls.warm, face, a)
         for j in range(count):
             other = room.order[j]
             for b in range(PATTERNS):

@@ -6,6 +6,7 @@ from lowfi import state as slot
 from lowfi.system import NORMAL_Y, NORMAL_Z
 from lowfi.touch import approach, relative_motion, relative_pose
 from lowfi.walls.cells import LAST_STRIP, deepest, reaches, take_lever
+from lowfi.walls import warm
 from lowfi.walls.loads import energy as energy_of_rail
 from lowfi.walls.record import MIDDLE, SHIFT
 from lowfi.walls.solution import follow, solve
@@ -36,10 +37,11 @@ def _deepest(walls, faces, face, count, active, place, turn):
 
 @inlined
 def _approach(walls, faces, face, xi, eta, drift, swing):
-    """Rate (m/s) at which a point of the face comes up to a wall at rest."""
+    """Rate (m/s) at which a point of the face comes up to a wall that no load moves."""
     y, z, half = faces[face, NORMAL_Y], faces[face, NORMAL_Z], walls.half[face]
     turning = xi * half[0] * (y * swing[3] + z * swing[6]) + eta * half[1] * (y * swing[5] + z * swing[7])
-    return approach(faces[face], drift, swing) + turning
+    ahead = warm.recess(walls.warm, face, xi, eta) * drift[0]
+    return approach(None, faces[face], None, None, drift, swing) + turning - ahead
 
 
 @kernel
