@@ -21,6 +21,7 @@ from calibrate.faults import CalibrationError
 from calibrate.parameters import Parameter, overrides
 from scenes.scene import Scene
 from scenes.trajectory import Trajectory
+from scenes.walls import Walls
 
 VELOCITY_WEIGHT = 50.0
 SMALLEST_AMPLITUDE = 0.01
@@ -89,11 +90,13 @@ class Objective:
     """Residuals as a function of the parameters' shares (0..1 of their bounds); counts its evaluations.
 
     ``over`` applies a function to every condition, in order: ``map``, or that of a pool of threads, since the surrogate's kernels
-    release the interpreter. No bit of the result depends on the choice.
+    release the interpreter. No bit of the result depends on the choice. ``walls`` are rigid ones, where the rails are warm.
     """
 
-    def __init__(self, scene: Scene, targets: dict[str, Target], parameters: list[Parameter], numerics=None, over: Callable = map):
+    def __init__(self, scene: Scene, targets: dict[str, Target], parameters: list[Parameter], numerics=None, over: Callable = map,
+                 walls: Walls | None = None):
         self.scene, self.targets, self.parameters, self.numerics, self.over = scene, targets, parameters, numerics, over
+        self.walls = walls
         self.evaluations = 0
 
     def values(self, shares: np.ndarray) -> dict[str, float]:
@@ -106,7 +109,7 @@ class Objective:
         changed = overrides(self.scene, self.values(shares))
 
         def one(wanted: Target) -> Parts:
-            return compare(wanted, lowfi.run(wanted.scene.replace(changed), numerics=self.numerics))
+            return compare(wanted, lowfi.run(wanted.scene.replace(changed), numerics=self.numerics, walls=self.walls))
 
         return dict(zip(self.targets, self.over(one, self.targets.values())))
 

@@ -76,10 +76,12 @@ class Study:
               walls: Walls | None = None, **numerics: Any) -> Run:
         """A surrogate run of condition ``name``, with the scene's own contact constants unless calibrated, or on ``walls``."""
         import lowfi
+        from studies.stages.walls import of_law
 
+        scene = self.condition(name).replace(overrides or {})
         label = f"{name}{tag}{'-calibrated' if calibration else ''}{'-walls' if walls else ''}"
         numbers = _numerics(lowfi.Numerics, **numerics)
-        return Run("lowfi", label, self.condition(name).replace(overrides or {}), numbers, calibration, walls)
+        return Run("lowfi", label, scene, numbers, calibration, walls or of_law(self, scene))
 
     def path(self, name: str) -> Path:
         """A file in the folder of this scene."""

@@ -86,7 +86,8 @@ def _rows(fidelity: str, lines: dict[str, dict], asked: list[Run], runs: list[Tr
 
 def compiled(run: Run) -> list[str]:
     """Effects whose code is in the kernel compiled for ``run``, as the fidelity reads them off it."""
-    present = importlib.import_module(run.fidelity).compiled_effects(run.scene, run.numerics)
+    known = {"walls": run.walls} if run.walls is not None else {}
+    present = importlib.import_module(run.fidelity).compiled_effects(run.scene, run.numerics, **known)
     return sorted(effect for effect in present if present[effect])
 
 

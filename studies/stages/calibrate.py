@@ -12,7 +12,9 @@ import numpy as np
 from scenes.calibration import Calibration
 from scenes.faults import Fault, SceneError
 from scenes.scene import NOMINAL
+from scenes.walls import Walls
 from studies.progress import Board
+from studies.stages import walls
 from studies.store import SOURCES
 from studies.study import Study, StudyError, require_success
 
@@ -83,10 +85,15 @@ def _fitted(study: Study, references: dict, path: Path) -> tuple[dict, list[Path
     import calibrate
 
     with Board("calibrate", 1) as board:
-        found = calibrate.run(study.scene, references, progress=board.callback("calibrate"))
+        found = calibrate.run(study.scene, references, progress=board.callback("calibrate"), walls=_walls(study, references))
         board.finished("calibrate", f"objective {found.objective:.4g}")
     found.save(path)
     return as_dict(found) | {"calibration": study.relative(path)}, [path]
+
+
+def _walls(study: Study, names) -> Walls | None:
+    """Rigid walls for the conditions of these ``names``, if any of them is warm: they share a rail."""
+    return next(filter(None, (walls.of_law(study, study.condition(name)) for name in names)), None)
 
 
 def load(study: Study) -> Calibration:
