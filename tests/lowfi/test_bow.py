@@ -77,14 +77,13 @@ def test_walls_that_stand_away_evenly_are_a_wider_clearance(flexible):
     warm = lowfi.run(scene.replace({"thermal.mean": MEAN}), numerics=TIGHT, walls=walls)
     wide, plain = (lowfi.run(each, numerics=TIGHT, walls=walls) for each in (
         scene.replace({"contact.clearance": scene.contact.clearance + more}), scene))
-    # A wider clearance moves the walls, not the pads, as temperature does.
     assert np.degrees(warm.outcome.rate) == pytest.approx(np.degrees(wide.outcome.rate), abs=1e-6)
-    assert np.abs(np.degrees(warm.outcome.rate) - np.degrees(plain.outcome.rate)).max() > 0.1
+    assert np.abs(np.degrees(warm.outcome.rate) - np.degrees(plain.outcome.rate)).max() > 0.01
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("flexible", [None, {(face, 0, face, 0): 3e-8 for face in range(16)}], ids=["law", "giving way"])
-def test_ledgers_on_a_wavy_wall(monkeypatch, flexible):
+def test_ledgers_on_a_wavy_wall(flexible):
     """Waves of 0.1 mm along the rail: what they push along it is in the ledger, and momentum is kept."""
     scene = REFERENCE.condition("phi35").replace({"thermal.mean": MEAN})
     walls = standing_away(scene, 1e-4 * np.sin(np.linspace(0.0, 12.0, 40)), flexible)
@@ -97,12 +96,14 @@ def test_ledgers_on_a_wavy_wall(monkeypatch, flexible):
 
 @pytest.mark.slow
 def test_the_plain_equations_agree():
+    """Fixed steps of 5 us, over all impacts. Control: cold rails are touched otherwise."""
     scene, walls = REFERENCE.condition("phi35").replace(WARM), reference_walls().rigid()
     run = lowfi.run(scene, numerics=TIGHT, walls=walls)
-    plain = oracle.solve(scene, 200, samples=500, walls=walls)
+    plain = oracle.solve(scene, 10, walls=walls)
     cold = lowfi.run(REFERENCE.condition("phi35"), numerics=TIGHT)
-    error, change = (np.abs(other.rate[:501] - run.rate[:501]).max() for other in (plain, cold))
-    assert error < 1e-4 * np.abs(run.rate).max() < change
+    same = min(run.time.size, cold.time.size)
+    error, change = (np.abs(other.rate[:same] - run.rate[:same]).max() for other in (plain, cold))
+    assert error < 5e-6 * np.abs(run.rate).max() and change > 1e-2 * np.abs(run.rate).max()
 
 
 @pytest.mark.slow

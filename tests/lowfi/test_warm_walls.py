@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
 
+import highfi
 import lowfi
 from lowfi import Numerics
 from lowfi import state as slot
@@ -35,12 +36,12 @@ def test_forces_are_the_gradient_of_the_energy(heated, name):
                        for twist in twists])
     size = np.abs(forces).max()
     assert size > 20.0 and slopes == pytest.approx(-forces - released, abs=1e-7 * size, rel=0.0)
-    # Control: what the slope of the warm walls pushes along the rail is far above that.
+    # Control: what the slope of the warm walls pushes along the rail is far above that; over the end the place on the wall stops.
     pushed = 0.0
     for rail in range(len(system.walls.members)):
         faces = system.walls.room.order[:solved(system, model, pose, rail)]
         pushed = max(pushed, *(abs(warm.pull(system.walls.warm, face, system.walls.room.force[face])) for face in faces), 0.0)
-    assert pushed > 1e-5 * size
+    assert (pushed > 1e-5 * size) == ("over" not in name)
 
 
 @pytest.mark.parametrize("name", PRESSED[:1])
@@ -86,3 +87,15 @@ def test_nothing_warm_is_the_same_as_no_temperature():
     assert rates[1] == pytest.approx(rates[0], abs=1e-9)
     there, back = rates[2] - rates[0], rates[3] - rates[0]
     assert np.abs(there + back).max() < 0.2 * np.abs(there).max() and np.abs(there).max() > 1e-4
+
+
+@pytest.mark.slow
+def test_both_fidelities_agree_on_warm_rails():
+    """Elements of 4 mm in both, 20 K with the sun on one side: within what agreement may be claimed for, where the temperature is worth
+    ten times as much. Control: the other way round, or forgotten, it is missed."""
+    cold, sun = REFERENCE.condition("phi35"), {"thermal.mean": 20.0, "thermal.gradient.y": 100.0, "thermal.gradient.z": -50.0}
+    wanted = np.degrees(highfi.run(cold.replace(sun), highfi.Numerics(element_size=4e-3)).outcome.rate)
+    shade = {key: -value for key, value in sun.items()}
+    errors = [np.abs(np.degrees(lowfi.run(cold.replace(change), walls=reference_walls()).outcome.rate) - wanted).max()
+              for change in (sun, shade, {})]
+    assert errors[0] < 0.1 and min(errors[1:]) > 0.9
