@@ -23,6 +23,7 @@ from calibrate.parameters import Parameter, overrides
 from scenes.scene import Scene
 from scenes.trajectory import Trajectory
 from scenes.variation import Variations
+from scenes.walls import Walls
 
 VELOCITY_WEIGHT = 50.0
 SMALLEST_AMPLITUDE = 0.01
@@ -92,12 +93,13 @@ class Objective:
 
     ``over`` applies a function to every condition, in order: ``map``, or that of a pool of threads, since the surrogate's kernels
     release the interpreter. No bit of the result depends on the choice. ``run`` is the surrogate, or ``calibrate.motion.run``.
+    ``walls`` are rigid ones, where the rails are warm.
     """
 
     def __init__(self, scene: Scene, targets: dict[str, Target], parameters: list[Parameter], numerics=None, over: Callable = map,
-                 run: Callable = lowfi.run):
+                 run: Callable = lowfi.run, walls: Walls | None = None):
         self.scene, self.targets, self.parameters = scene, targets, parameters
-        self.numerics, self.over, self.run = numerics, over, run
+        self.numerics, self.over, self.run, self.walls = numerics, over, run, walls
         self.variations = {name: Variations(wanted.scene) for name, wanted in targets.items()}
         self.evaluations = 0
 
@@ -112,7 +114,7 @@ class Objective:
         changed = overrides(self.scene, self.values(shares)) | {"flexibility": None}
 
         def one(name: str) -> Parts:
-            return compare(self.targets[name], self.run(self.variations[name].of(changed), numerics=self.numerics))
+            return compare(self.targets[name], self.run(self.variations[name].of(changed), numerics=self.numerics, walls=self.walls))
 
         return dict(zip(self.targets, self.over(one, self.targets)))
 

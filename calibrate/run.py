@@ -13,27 +13,28 @@ from calibrate.search import Plan, search
 from scenes.calibration import Calibration
 from scenes.scene import Scene
 from scenes.trajectory import Trajectory
+from scenes.walls import Walls
 
 WORKERS = 2
 
 
 def run(scene: Scene, references: dict[str, Trajectory | Curves], numerics=None, progress: Callable[[float], None] | None = None,
-        seed: int = 0, plan: Plan | None = None) -> Calibration:
+        seed: int = 0, plan: Plan | None = None, walls: Walls | None = None) -> Calibration:
     """Fit the surrogate's contact constants to ``references`` (condition name to reference run or curves) of ``scene``.
 
     ``numerics`` are the surrogate's (lowfi.Numerics), ``progress`` is called with the fraction done, ``plan`` sizes the search; the
-    same seed gives the same bits. Raises CalibrationError for references that are missing, did not exit, are too short or do not
-    turn, SceneError for an unknown condition.
+    same seed gives the same bits. A warm scene asks for its rigid ``walls`` (``lowfi.run``). Raises CalibrationError for references
+    that are missing, did not exit, are too short or do not turn, SceneError for an unknown condition.
     """
     faults.check(scene, references)
     curves = {name: item if isinstance(item, Curves) else Curves.from_trajectory(item) for name, item in references.items()}
     free, held, plan = parameters.free(scene), parameters.held(scene), plan or Plan()
     wanted = targets(scene, curves)
     with ThreadPoolExecutor(WORKERS) as pool:
-        objective = Objective(scene, wanted, free, numerics, pool.map)
+        objective = Objective(scene, wanted, free, numerics, pool.map, walls)
         found = search(objective, _shares(free, scene), plan, seed, progress)
         residuals = objective.parts(found.shares)
-        wide = Objective(scene, wanted, free + held, numerics, pool.map)
+        wide = Objective(scene, wanted, free + held, numerics, pool.map, walls)
         matrix = information(jacobian(wide, np.append(found.shares, _shares(held, scene))))
     values = objective.values(found.shares)
     constants = parameters.overrides(scene, values)

@@ -6,6 +6,7 @@ Elements that are translations of each other have the same matrix, so one matrix
 has a handful of classes, which stay in the fastest cache while the kernel streams over the elements.
 """
 
+from types import ModuleType
 from typing import NamedTuple
 
 import numpy as np
@@ -47,8 +48,7 @@ def build(mesh: RailMesh, density: float, youngs_modulus: float, poisson_ratio: 
         raise ValueError(f"density must be positive and finite, got {density!r} kg/m3")
     law = element.elasticity(youngs_modulus, poisson_ratio)
     shape_class, representatives = shape_classes(mesh)
-    nodes, formulation = mesh.points[mesh.cells[representatives]], _FORMULATION[mesh.cells.shape[1]]
-    batches = [nodes[start:start + _BATCH] for start in range(0, len(nodes), _BATCH)]
+    batches, formulation = _batches(mesh, representatives)
     stiffness = np.concatenate([formulation.stiffness(batch, law) for batch in batches])
     node_mass = np.concatenate([formulation.node_mass(batch, density) for batch in batches])
     mass = np.bincount(mesh.cells.ravel(), node_mass[shape_class].ravel(), minlength=len(mesh.points))
@@ -56,6 +56,19 @@ def build(mesh: RailMesh, density: float, youngs_modulus: float, poisson_ratio: 
     for name in fixed:
         free[mesh.surfaces[name]] = False
     return Operator(mesh.cells.astype(np.uint32), shape_class, aligned(stiffness), node_mass, mass, free)
+
+
+def expansion(mesh: RailMesh, youngs_modulus: float, poisson_ratio: float) -> np.ndarray:
+    """Loads (c,3k,k) in N on an element of each class of a free strain that is one at each of its nodes in turn."""
+    law = element.elasticity(youngs_modulus, poisson_ratio)
+    batches, formulation = _batches(mesh, shape_classes(mesh)[1])
+    return np.concatenate([formulation.expansion(batch, law) for batch in batches])
+
+
+def _batches(mesh: RailMesh, representatives: np.ndarray) -> tuple[list[np.ndarray], ModuleType]:
+    """Nodes (c,k,3) m of the first element of each class, some at a time, and the module of their formulas."""
+    nodes = mesh.points[mesh.cells[representatives]]
+    return [nodes[start:start + _BATCH] for start in range(0, len(nodes), _BATCH)], _FORMULATION[mesh.cells.shape[1]]
 
 
 def shape_classes(mesh: RailMesh) -> tuple[np.ndarray, np.ndarray]:

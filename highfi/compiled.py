@@ -10,7 +10,7 @@ from scenes.effects.friction import coefficient_over_speed
 from scenes.jit import contains, machine_code
 from scenes.scene import Scene
 
-# A function that only this effect calls. Mass offset and initial state are numbers without code of their own.
+# A function that only this effect calls. Mass offset, initial state and temperature are numbers without code of their own.
 LAWS = {"contact": facet_contact.press, "friction": coefficient_over_speed, "gravity": loads._add_weight,
         "platform": nodes._move_in_frame, "rail.damping": damping._damp_component, "thrust_offset": loads._offset_line}
 

@@ -6,7 +6,8 @@
 C is the displacement of the wall under pad face i, averaged with pattern a, caused by the pressure pattern b under face j: with the
 pattern 1 the mean displacement under a unit force. F is the flexibility of ``scenes.walls``: displacement and pressure are both
 taken for the polynomials phi nearest to them. K is that of the whole rail, clamped at its mounts, so faces on one rail press each
-other's walls too. Inertia is left out. Both are symmetric (Maxwell and Betti).
+other's walls too. Inertia is left out. Both are symmetric (Maxwell and Betti). Beside them stands where uneven temperature brings
+the same walls (``highfi.thermal``), for one of each field of which [thermal] is a sum.
 
 The modes psi_m of the same rail (``highfi.vibration``) are seen under the faces in the same patterns, so that a full set of them
 makes up C::
@@ -18,15 +19,16 @@ from typing import NamedTuple, Sequence
 
 import numpy as np
 from scipy.sparse import coo_array, csc_array
-from scipy.sparse.linalg import splu
 
-from highfi import assembly, pieces, surface, vibration
-from highfi.mesh import MeshError, RailMesh
+from highfi import assembly, pieces, surface, thermal, vibration
+from highfi.mesh import RailMesh
 from highfi.numerics import Numerics
 from highfi.pressure import Pressed, pressed
 from highfi.run import prepare
+from highfi.statics import Clamped
 from scenes import model as scene_model
 from scenes.effects.flexibility import MOST
+from scenes.effects.thermal import FIELDS
 from scenes.rail import MaterialTable
 from scenes.scene import Scene
 from scenes.walls import PATTERNS, Walls, digest
@@ -41,8 +43,9 @@ class Compliance(NamedTuple):
     """travel (s,) m of the payload along X since ignition; matrix (s,f,p,f,p) m/N between f pad faces and p patterns, zero between
     faces on different rails; gram (s,f,p,p), zero where a face has no wall; rail (f,) the number of the rail under each, -1 without;
     half (f,2) m, half the size of each face along xi and eta, negative where eta runs against the axis; frequency (r,n) rad/s of
-    the modes of each rail and their shape V (s,f,p,n) 1/kg^0.5. Near an end of the rail a face stays at the last place where all of
-    it is on the rail."""
+    the modes of each rail and their shape V (s,f,p,n) 1/kg^0.5; warm (s,f,p,t) m, the mean displacement away from the payload, by
+    pattern, of one of each of the t fields of temperature. Near an end of the rail a face stays at the last place where all of it
+    is on the rail."""
 
     travel: np.ndarray
     matrix: np.ndarray
@@ -51,6 +54,7 @@ class Compliance(NamedTuple):
     half: np.ndarray
     frequency: np.ndarray
     shape: np.ndarray
+    warm: np.ndarray
 
 
 def walls(scene: Scene, element_size: float, spacing: float = _SPACING, modes: int = MOST) -> Walls:
@@ -65,7 +69,8 @@ def walls(scene: Scene, element_size: float, spacing: float = _SPACING, modes: i
     found = along(scene, element_size, stations, PATTERNS, modes)
     inverse = np.linalg.pinv(found.gram, rcond=_SINGULAR, hermitian=True)
     flexibility = np.einsum("siab,sibjc,sjcd->siajd", inverse, found.matrix, inverse, optimize=True)
-    return Walls(stations, flexibility, found.rail, found.half, found.frequency, inverse @ found.shape, digest(scene))
+    warm = np.einsum("siab,sibt->tsia", inverse, found.warm)
+    return Walls(stations, flexibility, found.rail, found.half, found.frequency, inverse @ found.shape, digest(scene), warm)
 
 
 def along(scene: Scene, element_size: float, travel: Sequence[float], patterns: int = PATTERNS, modes: int = 0) -> Compliance:
@@ -95,24 +100,27 @@ def of_mesh(mesh: RailMesh, material: MaterialTable, faces: scene_model.Faces, r
     half = np.column_stack([faces.half_length, np.where(across >= 0.0, 1.0, -1.0) * faces.half_width])
     matrix, gram = np.zeros((travel.size, count, patterns, count, patterns)), np.zeros((travel.size, count, patterns, patterns))
     rail_of, frequencies, shape = np.full(count, -1), [], np.zeros((travel.size, count, patterns, modes))
+    warm = np.zeros((travel.size, count, patterns, FIELDS))
     for rail, images in pieces.distinct(mesh):
         patches = _Patches(rail, patterns)
         places = [patches.under(faces, half, signs, reach, travel) for signs in images]
         if not patches.found:
             continue
         # One more that answers nothing is what a face without a wall, number -1, points at.
-        answer, frequency, moved = patches.solved(material, modes)
-        between, moved = np.pad(answer, [(0, 1), (0, 0), (0, 1), (0, 0)]), np.pad(moved, [(0, 1), (0, 0), (0, 0)])
+        answer, heated, frequency, swung = patches.solved(material, 0.5 * (reach[0] + reach[1]), modes)
+        between = np.pad(answer, [(0, 1), (0, 0), (0, 1), (0, 0)])
+        heated, swung = (np.pad(moved, [(0, 1), (0, 0), (0, 0)]) for moved in (heated, swung))
         grams = np.array([patch.gram for patch in patches.found] + [np.zeros((patterns, patterns))])
-        for number in places:
+        for number, signs in zip(places, images):
             gram += grams[number]
+            warm += moved[number] * np.r_[1.0, signs, 1.0]  # an image is warmer where its y and z say
             matrix += between[number[:, :, None, None, None], pattern[:, None, None], number[:, None, None, :, None], pattern]
-            shape += moved[number]
+            shape += swung[number]
             here = (number >= 0).any(axis=0)
             if here.any():
                 rail_of[here] = len(frequencies)
                 frequencies.append(frequency)
-    return Compliance(travel, matrix, gram, rail_of, half, np.array(frequencies).reshape(len(frequencies), modes), shape)
+    return Compliance(travel, matrix, gram, rail_of, half, np.array(frequencies).reshape(len(frequencies), modes), shape, warm)
 
 
 class _Patches:
@@ -147,22 +155,18 @@ class _Patches:
                 number[station, face] = self._number[key]
         return number
 
-    def solved(self, material: MaterialTable, modes: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Displacement (m,p,m,p) in m of all places under the loads of all, normals of the faces positive; frequencies (n,) rad/s
-        of the lowest modes and their displacement (m,p,n)."""
+    def solved(self, material: MaterialTable, middle: float, modes: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """Displacement (m,p,m,p) in m of all places under the loads of all, normals of the faces positive, and (m,p,t) under one of
+        each field of temperature around X = ``middle`` (m); frequencies (n,) rad/s of the lowest modes and their displacement
+        (m,p,n)."""
         operator = assembly.build(self._rail, material.density, material.youngs_modulus, material.poisson_ratio)
-        if operator.free.all():
-            raise MeshError("a rail that pads press has no mount: nothing holds it")
-        free = np.repeat(operator.free, 3)
-        # A positive definite matrix needs no pivoting, and an ordering for symmetric ones keeps its factors sparse.
-        stiffness = csc_array(assembly.sparse(operator)[free][:, free])
-        factor = splu(stiffness, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0,
-                      options={"SymmetricMode": True})
-        loads = self._loads()[free]
-        answer = [loads.T @ factor.solve(loads[:, start:start + _BATCH].toarray()) for start in range(0, loads.shape[1], _BATCH)]
-        frequency, shape = vibration.modes(stiffness, np.repeat(operator.mass, 3)[free], factor.solve, modes)
-        return (np.concatenate(answer, axis=1).reshape(2 * (len(self.found), self._patterns)), frequency,
-                (loads.T @ shape).reshape(len(self.found), self._patterns, modes))
+        clamped, loads = Clamped(operator), self._loads()
+        warm = loads.T @ thermal.of_fields(self._rail, operator, material, clamped, middle).reshape(-1, FIELDS)
+        loads = loads[clamped.free]
+        answer = [loads.T @ clamped.solve(loads[:, start:start + _BATCH].toarray()) for start in range(0, loads.shape[1], _BATCH)]
+        frequency, shape = vibration.modes(clamped.stiffness, np.repeat(operator.mass, 3)[clamped.free], clamped.solve, modes)
+        under = len(self.found), self._patterns
+        return np.concatenate(answer, axis=1).reshape(2 * under), warm.reshape(*under, FIELDS), frequency, (loads.T @ shape).reshape(*under, modes)
 
     def _loads(self) -> csc_array:
         """Nodal loads (3n,mp) of all patterns at all places."""

@@ -41,7 +41,7 @@ def contact_forces(rail, surface, faces, frame, penalty, friction, state, active
 
 @kernel
 def _forces_of_group(rail, surface, faces, frame, penalty, friction, state, active, pose, group, dt):
-    touch = Touch(rail.points, rail.inverse_mass, state.displacement, state.velocity, state.contact, state.loads[group],
+    touch = Touch(surface.places, rail.inverse_mass, state.displacement, state.velocity, state.contact, state.loads[group],
                   state.face_force)
     touch.load[:] = 0.0
     groups = surface.groups

@@ -94,6 +94,17 @@ def stiffness(corners: np.ndarray, law: np.ndarray) -> np.ndarray:
     return 0.5 * (condensed + np.swapaxes(condensed, 1, 2))  # symmetric to the last bit, so that energy is exact
 
 
+def expansion(corners: np.ndarray, law: np.ndarray) -> np.ndarray:
+    """Condensed loads (c,24,8) in N of a free strain that is one at each corner in turn: f - L^T H^-1 f_a, since bubbles feel it
+    too."""
+    cells = basis(corners)
+    strain, stress = kinematics(cells), law[:, :3].sum(axis=1)
+    direct, own_load = (np.einsum("cqsd,s,aq,cq->cda", part, stress, shape_functions(cells), strain.volume, optimize=True)
+                        for part in (strain.nodal, strain.bubble))
+    coupling, own = bubble_blocks(strain, law)
+    return direct - np.swapaxes(coupling, 1, 2) @ np.linalg.solve(own, own_load)
+
+
 def node_mass(corners: np.ndarray, density: float) -> np.ndarray:
     """Row sums (c,8) in kg of the consistent mass: density times the integral of each corner function."""
     cells = basis(corners)

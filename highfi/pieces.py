@@ -11,11 +11,16 @@ from highfi.mesh import RailMesh
 
 def pieces(mesh: RailMesh) -> list[RailMesh]:
     """Each solid as a mesh of its own, in the order of their first nodes; surfaces that a solid lacks are empty."""
+    return [_part(mesh, own) for own in nodes(mesh)]
+
+
+def nodes(mesh: RailMesh) -> list[np.ndarray]:
+    """Numbers of the nodes of each solid, in ascending order."""
     first = np.repeat(mesh.cells[:, 0], mesh.cells.shape[1])
     size = len(mesh.points)
     graph = coo_array((np.ones(first.size, dtype=bool), (first, mesh.cells.ravel())), shape=(size, size))
     count, piece = connected_components(graph, directed=False)
-    return [_part(mesh, piece == which) for which in range(count)]
+    return [np.flatnonzero(piece == which) for which in range(count)]
 
 
 def distinct(mesh: RailMesh) -> list[tuple[RailMesh, list[np.ndarray]]]:
@@ -32,7 +37,9 @@ def distinct(mesh: RailMesh) -> list[tuple[RailMesh, list[np.ndarray]]]:
     return found
 
 
-def _part(mesh: RailMesh, inside: np.ndarray) -> RailMesh:
+def _part(mesh: RailMesh, own: np.ndarray) -> RailMesh:
+    inside = np.zeros(len(mesh.points), dtype=np.bool_)
+    inside[own] = True
     number = np.cumsum(inside) - 1
     surfaces = {name: number[facets[inside[facets[:, 0]]]] for name, facets in mesh.surfaces.items()}
     return RailMesh(mesh.points[inside], number[mesh.cells[inside[mesh.cells[:, 0]]]], surfaces)

@@ -54,11 +54,13 @@ class Groups(NamedTuple):
 
 
 class Surface(NamedTuple):
-    """Constant: facets (m,k) node numbers, four corners or the six nodes of a triangle; shape (q,k) functions at the Gauss points,
+    """Constant: places (n,3) m of the nodes before any load, which are the rail's points but where it is warm; facets (m,k) node
+    numbers, four corners or the six nodes of a triangle; shape (q,k) functions at the Gauss points,
     and what bounds their products, ``spread`` (q,k), see ``limits``; area (m,q) m2 per point; for face f the facets it can meet are
     ``reach[first[f]:first[f+1]]``, sorted by their smallest X ``start`` (m); ``longest`` facet extent along X (m); control (6,6):
     control points of a triangle from its nodes, None for facets of four corners, which need none."""
 
+    places: np.ndarray
     facets: np.ndarray
     shape: np.ndarray
     spread: np.ndarray

@@ -8,7 +8,7 @@ from typing import Callable
 
 import numpy as np
 
-from highfi import observe, patch, records, samples, watch, worst
+from highfi import observe, records, samples, watch, worst
 from highfi.checkpoint import Checkpoint, restore
 from highfi.contact import FASTEST_APPROACH
 from highfi.fit import check_fit
@@ -177,9 +177,15 @@ class Loop:
     def _watch(self) -> None:
         """Stresses at the sample just taken."""
         if self.watch.patch is not None:
-            self.gauges.append(patch.stress(self.watch.patch, self.state.displacement))
+            self.gauges.append(watch.gauge(self.watch, self.deformed()))
         if (len(self.rows) - 1) % self.watch.every == 0:
-            watch.look(self.watch, self.state.displacement, self.steps * self.stepping.dt_s, self.worst, self.pool)
+            watch.look(self.watch, self.deformed(), self.steps * self.stepping.dt_s, self.worst, self.pool)
+
+    def deformed(self) -> np.ndarray:
+        """Displacement (n,3) m of the nodal arrays from the rail as it was mounted: by load, and by temperature where it is
+        warm."""
+        warm = self.system.warm
+        return self.state.displacement if warm is None else self.state.displacement + warm
 
     def _kick(self, step: float) -> None:
         """Advance the velocities alone, over ``step`` (s), by the present forces."""
@@ -244,7 +250,9 @@ class Loop:
                   "linear_momentum_error": linear, "angular_momentum_error": angular,
                   "quaternion_error": float(np.abs(np.linalg.norm(moved.quaternion, axis=1) - 1.0).max()),
                   "friction_power_max": float(-friction.min()), "friction_step_ratio": float(self.damping)}
-        return Trajectory(fidelity="highfi", status=status, message=self.message, **moved._asdict(),
+        pressed = outcome.pressed_at_ignition(self.system.faces, self.forces[0]) if self.forces else ""
+        message = "; ".join(filter(None, [self.message, pressed]))
+        return Trajectory(fidelity="highfi", status=status, message=message, **moved._asdict(),
                           pad_force=np.array(self.forces), energy=total, transverse_energy=transverse, outcome=result,
                           checks=checks, cost=cost, scene=self.scene.resolved(), numerics=numerics.as_dict(),
                           stress=None if self.message else self._stress(),

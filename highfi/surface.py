@@ -28,8 +28,8 @@ def build(surfaces: dict[str, np.ndarray], points: np.ndarray, faces, quadrature
     longest = float((extent.max(axis=1) - smallest).max())
     first = np.cumsum([0] + [group.size for group in found])
     groups = group_faces([np.unique(facets[group]) for group in found], [group.size * len(shape) for group in found], clamped)
-    return Surface(facets, shape, _spread(shape), area, first, reach, smallest[reach], longest, geometry.control(facets.shape[1]),
-                   groups)
+    return Surface(points, facets, shape, _spread(shape), area, first, reach, smallest[reach], longest,
+                   geometry.control(facets.shape[1]), groups)
 
 
 def group_faces(nodes: list[np.ndarray], points: list[int], clamped: np.ndarray) -> Groups:

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from highfi import assembly, pencils, records, surface
+from highfi import assembly, pencils, records, surface, thermal
 from scenes.memory import zeros
 from highfi.mesh import RailMesh
 from highfi.numerics import Numerics
@@ -23,7 +23,8 @@ class System(NamedTuple):
     """Constant records of one run.
 
     ``number`` (n,) of each mesh node in the nodal arrays; ``moving_mass`` kg of the nodal arrays, zero where clamped;
-    ``origin`` (3,) m: the frame's origin at ignition in scene axes; ``body_offset`` (3,) m from it to the platform's mass centre.
+    ``origin`` (3,) m: the frame's origin at ignition in scene axes; ``body_offset`` (3,) m from it to the platform's mass centre;
+    ``warm`` (n,3) m: displacement by temperature of the nodal arrays, None where the scene has none.
     """
 
     model: scene_model.Model
@@ -38,10 +39,12 @@ class System(NamedTuple):
     drive: records.Drive
     origin: np.ndarray
     body_offset: np.ndarray
+    warm: np.ndarray | None
 
 
 def build(scene: Scene, numerics: Numerics, mesh: RailMesh) -> System:
-    """Constant records of a run on ``mesh``. Raises SceneError for a platform that cannot hold its rails."""
+    """Constant records of a run on ``mesh``. Raises SceneError for a platform that cannot hold its rails, MeshError for warm rails
+    that nothing holds."""
     model = scene_model.build(scene)
     material = scene.rail.material
     operator = assembly.build(mesh, material.density, material.youngs_modulus, material.poisson_ratio)
@@ -56,9 +59,19 @@ def build(scene: Scene, numerics: Numerics, mesh: RailMesh) -> System:
     rail, number = _rail(mesh.points - origin, operator, damping)
     masses = np.where(rail.inverse_mass > 0.0, rail.mass, 0.0)
     surfaces = {name: number[facets] for name, facets in mesh.surfaces.items()}
-    gauss = surface.build(surfaces, rail.points, faces, numerics.points_per_edge(), rail.clamped)
+    warm = _warmed(scene, model, mesh, rail, number)
+    places = rail.points if warm is None else rail.points + warm
+    gauss = surface.build(surfaces, places, faces, numerics.points_per_edge(), rail.clamped)
     drive = records.Drive(model.thrust_arm, model.reacts_on_platform, float(moving.sum()))
-    return System(model, mesh, operator, number, rail, masses, gauss, faces, frame, drive, origin, offset)
+    return System(model, mesh, operator, number, rail, masses, gauss, faces, frame, drive, origin, offset, warm)
+
+
+def _warmed(scene: Scene, model: scene_model.Model, mesh: RailMesh, rail: records.Rail, number: np.ndarray) -> np.ndarray | None:
+    if model.thermal is None:
+        return None
+    found = zeros(rail.points.shape, order="F")
+    found[number] = thermal.displacement(mesh, scene.rail.material, model.thermal)
+    return found
 
 
 def _rail(points: np.ndarray, operator: assembly.Operator, damping: Damping | None) -> tuple[records.Rail, np.ndarray]:

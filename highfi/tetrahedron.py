@@ -64,6 +64,12 @@ def stiffness(nodes: np.ndarray, law: np.ndarray) -> np.ndarray:
     return 0.5 * (result + np.swapaxes(result, 1, 2))  # symmetric to the last bit, so that energy is exact
 
 
+def expansion(nodes: np.ndarray, law: np.ndarray) -> np.ndarray:
+    """Loads (c,30,10) in N of a free strain that is one at each node in turn."""
+    strain, (values, _) = kinematics(nodes), shape_functions(get_quadrature(ElementTetP2, _CURVED)[0])
+    return np.einsum("cqsd,s,aq,cq->cda", strain.nodal, law[:, :3].sum(axis=1), values, strain.volume, optimize=True)
+
+
 def node_mass(nodes: np.ndarray, density: float) -> np.ndarray:
     """Mass (c,10) in kg of each node of elements with nodes (c,10,3) m: the scaled diagonal of the module docstring."""
     places, weights = get_quadrature(ElementTetP2, _CURVED)

@@ -1,4 +1,5 @@
-"""Stress of the rails while a run goes on: the worst node of all elements, and the gauges on the walls, both at samples.
+"""Stress of the rails while a run goes on: the worst node of all elements, and the gauges on the walls, both at samples. That of
+uneven temperature is part of both (``highfi.thermal``).
 
 A look at all elements costs as much as up to eight steps (``highfi.peaks``), so it is taken at so many samples only that it stays
 below a twentieth of the run. What is found is judged at the end: above the yield strength, or beyond what small strain and small
@@ -16,6 +17,7 @@ from highfi import element, patch, peaks
 from highfi.mesh import RailMesh
 from highfi.system import System
 from highfi.worst import ROTATION, STRAIN, STRESS, Worst
+from scenes.effects.thermal import fields
 from scenes.rail import MaterialTable
 
 _SHARE = 0.05  # of the run that looks may cost
@@ -25,12 +27,14 @@ _OFF_AXIS = 1e-3  # m: a rail whose middle is nearer to a plane of symmetry has 
 
 
 class Watch(NamedTuple):
-    """Constant: recovery of all elements, room for one in each thread, patches or None, samples from one look to the next, shear
-    modulus and Lame's first constant (Pa)."""
+    """Constant: recovery of all elements, room for one in each thread, patches or None, ``free`` stress (w,6) Pa to take off
+    theirs, for free expansion is no stress, or None, samples from one look to the next, shear modulus and Lame's first constant
+    (Pa)."""
 
     recovery: peaks.Recovery
     rooms: np.ndarray
     patch: patch.Patch | None
+    free: np.ndarray | None
     every: int
     shear_modulus: float
     lame: float
@@ -43,7 +47,21 @@ def build(system: System, material: MaterialTable, steps_per_sample: int, thread
     recovery = peaks.build(points, system.mesh.cells, operator.shape_class, law, system.number)
     gauges = patch.find(system.mesh, system.faces, points, law, system.number)
     every = peaks.samples_between(recovery, steps_per_sample, _SHARE)
-    return Watch(recovery, np.zeros((threads, peaks.SIZE)), gauges, every, float(law[3, 3]), float(law[0, 1]))
+    free = _free_stress(system, gauges, law) if system.warm is not None and gauges is not None else None
+    return Watch(recovery, np.zeros((threads, peaks.SIZE)), gauges, free, every, float(law[3, 3]), float(law[0, 1]))
+
+
+def _free_stress(system: System, gauges: patch.Patch, law: np.ndarray) -> np.ndarray:
+    """D m e (w,6) Pa of the free strain e in the middle of each patch, which is its mean there."""
+    thermal = system.model.thermal
+    strain = fields(gauges.centre + system.origin, thermal.middle) @ thermal.amounts[:-1]
+    return np.outer(strain, law[:, :3].sum(axis=1))
+
+
+def gauge(watch: Watch, displacement: np.ndarray) -> np.ndarray:
+    """Mean stress (w,6) Pa of each patch."""
+    found = patch.stress(watch.patch, displacement)
+    return found if watch.free is None else found - watch.free
 
 
 def look(watch: Watch, displacement: np.ndarray, time: float, worst: Worst, pool) -> None:

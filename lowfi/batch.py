@@ -5,7 +5,7 @@ from typing import Any, Callable, Mapping, NamedTuple, Sequence
 
 import numpy as np
 
-from lowfi import march, plan, settle, state, system
+from lowfi import bow, march, plan, settle, state, system
 from lowfi.numerics import Numerics
 from lowfi.run import end_of, run
 from lowfi.walls import record as wall_record
@@ -79,11 +79,13 @@ class Family:
             require_modes(scene, self.walls)
         if self.walls is not None and not (scene.rail is base.rail and scene.pads is base.pads):
             self.walls.require(scene)
+        if scene.thermal is not base.thermal:
+            bow.require(scene, self.walls)
 
     def _group(self, groups: dict, built: Built) -> _Group:
         scene, model = built.scene, built.model
         key = (id(scene.thrust), scene.duration, id(scene.output), id(model.contact), id(model.friction), id(model.gravity),
-               id(model.platform), id(built.nominal), model.thrust_offset is None, model.flexibility)
+               id(model.platform), id(model.thermal), id(built.nominal), model.thrust_offset is None, model.flexibility)
         if key not in groups:
             same = scene.thrust is self.base.scene.thrust and scene.duration == self.base.scene.duration
             marks = self.marks if same else outcome.milestones(scene, model)
@@ -109,7 +111,8 @@ class Family:
     def _kernel(self, group: _Group) -> Callable[[], np.ndarray]:
         model, planned, marks = group.built.model, group.plan, group.marks
         under_pads = wall_record.under_pads(group.built.scene, model, self.walls)
-        common, first = system.build(model, ledger=False, walls=under_pads), plan.first_step(planned)
+        under_law = bow.under_pads(group.built.scene, model, self.walls)
+        common, first = system.build(model, ledger=False, walls=under_pads, bow=under_law), plan.first_step(planned)
         ends = settle.Ends(end_of(group.built.scene), marks.settled_thrust, marks.spent_thrust, marks.constant_thrust, marks.jam_speed,
                            max(1, round(outcome.JAM_DURATION / planned.interval)))
         loop, room, cases = march.ready(common, state.initial(model), first), settle.scratch(planned.interval), _stacked(common, group)

@@ -1,6 +1,6 @@
 """Which effects the compiled time loop of a scene really contains, read from its machine code."""
 
-from lowfi import equations, grip, touch
+from lowfi import bow, equations, grip, touch
 from lowfi.march import march
 from lowfi.numerics import Numerics
 from lowfi.run import Run
@@ -10,9 +10,11 @@ from scenes.jit import contains, machine_code
 from scenes.scene import Scene
 from scenes.walls import Walls
 
-# A function that only this effect calls. Mass offset and initial state are numbers without code, and so is the damping of rails that vibrate.
+# A function that only this effect calls. Mass offset and initial state are numbers without code, and so is the damping of rails that
+# vibrate; walls that give way have the temperature in their own.
 LAWS = {"contact": touch.load, "walls": solution.solve, "flexibility": modes.swing, "friction": coefficient_over_speed,
-        "sticking": grip.traction, "gravity": equations._weigh, "platform": touch._relative_turn, "thrust_offset": equations._offset_line}
+        "sticking": grip.traction, "gravity": equations._weigh, "platform": touch._relative_turn, "thrust_offset": equations._offset_line,
+        "thermal": bow.stand}
 
 
 def compiled_effects(scene: Scene, numerics: Numerics | None = None, walls: Walls | None = None) -> dict[str, bool]:

@@ -147,7 +147,7 @@ def add_contact(laws, friction, sticking, faces, platform, ledger, active, grip,
         place, turn = relative_pose(platform, body, base)
         for i in range(active.size):
             if active[i]:
-                p = penetration(faces[i], place, turn)
+                p = penetration(laws.bow, faces[i], place, turn)
                 if p > 0.0:
                     face = load(laws, friction, platform, faces[i], p, body, base)
                     _press(face, friction, platform, ledger, body, base, out)

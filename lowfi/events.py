@@ -38,10 +38,10 @@ def survey(laws, walls, sticking, faces, platform, payload, active, grip, state,
         place, turn = relative_pose(platform, body, base)
         drift, swing = relative_motion(platform, body, base, place, turn)
         for i in range(out.shape[0]):
-            p = penetration(faces[i], place, turn)
+            p = penetration(laws.bow, faces[i], place, turn)
             out[i, MODE], out[i, DEPTH], out[i, PULL] = OPEN, p, 1.0
             out[i, ALONG] = along(faces[i], place, turn)
-            out[i, CLOSING] = approach(faces[i], drift, swing)
+            out[i, CLOSING] = approach(laws.bow, faces[i], place, turn, drift, swing)
             if p > 0.0:
                 face = load(laws, None, platform, faces[i], p, body, base)
                 out[i, MODE] = PRESSING if face.raw >= 0.0 else CUT_OFF
@@ -165,10 +165,18 @@ def _gauge(laws, walls, sticking, row, payload, platform, faces, number, active,
 def _gauge_at_law(laws, sticking, row, platform, face, kind, place, turn, body, base):
     if kind == ALONG:
         return along(face, place, turn)
-    p = penetration(face, place, turn)
+    p = _depth(laws, face, place, turn)
     if kind == MARGIN:
         return _margin(laws, sticking, row, platform, face, p, body, base)
     return p if kind == DEPTH else _pull_at(laws, platform, face, p, body, base)
+
+
+@inlined
+def _depth(laws, face, place, turn):
+    p = 0.0
+    if laws is not None:
+        p = penetration(laws.bow, face, place, turn)
+    return p
 
 
 @inlined

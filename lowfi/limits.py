@@ -15,7 +15,7 @@ import numpy as np
 
 from lowfi import state as slot
 from lowfi.grip import HELD, heading
-from lowfi.touch import load, outward, penetration, relative_pose
+from lowfi.touch import gradient, load, outward, penetration, relative_pose
 from scenes import rotation
 from scenes.effects import contact as law
 from scenes.effects.friction import coefficient_over_speed
@@ -37,7 +37,7 @@ def fastest_rate(laws, friction, sticking, faces, platform, payload, active, gri
         stiffness, damping = 0.0, 0.0
         for i in range(active.size):
             if active[i]:
-                p = penetration(faces[i], place, turn)
+                p = penetration(laws.bow, faces[i], place, turn)
                 if p > 0.0:
                     p += ahead * max(load(laws, None, platform, faces[i], p, body, base).closing, 0.0)
                     k, c = _face(laws, friction, platform, payload, faces[i], p, body, base)
@@ -51,7 +51,8 @@ def fastest_rate(laws, friction, sticking, faces, platform, payload, active, gri
 @inlined
 def _face(laws, friction, platform, payload, face, p, body, base):
     """Contribution of one face to K (1/s2) and C (1/s)."""
-    now, n = load(laws, friction, platform, face, p, body, base), outward(face, base)
+    now = load(laws, friction, platform, face, p, body, base)
+    n = gradient(laws.bow, face, base, now.point)
     more = law.parts(laws.impact, laws.hunt_crossley, laws.linear, p * (1.0 + _NUDGE), now.closing)
     unit = law.parts(laws.impact, laws.hunt_crossley, laws.linear, p, 1.0)
     across = inverse_mass(platform, payload, body, base, now.point, n)

@@ -2,15 +2,17 @@
 
     m v' = F,    I w' = M - w x I w    (w and M in body axes, M about the body's own mass centre),    q' = q w / 2
 
-It shares only the laws in ``scenes.effects`` and the rotations with the fast path: other state variables, another integrator, no
-events, no error control. Tests hold the fast path against it; benchmarks take it as the baseline.
+It shares only the laws in ``scenes.effects``, the table of warm walls (``lowfi.bow``) and the rotations with the fast path: other
+state variables, another integrator, no events, no error control. Tests hold the fast path against it; benchmarks take it as the
+baseline.
 """
 
 from typing import NamedTuple
 
 import numpy as np
 
-from lowfi.system import build
+from lowfi import bow
+from lowfi.system import NUMBER, build
 from scenes import model as models
 from scenes import rotation
 from scenes.effects import contact as law
@@ -19,6 +21,7 @@ from scenes.effects.gravity import acceleration
 from scenes.effects.thrust_law import magnitude
 from scenes.jit import inlined, njit
 from scenes.scene import Scene
+from scenes.walls import Walls
 
 _BODY = 13  # place, velocity, quaternion, body rate
 _SIZE = 2 * _BODY
@@ -35,16 +38,20 @@ class Samples(NamedTuple):
     evaluations: int
 
 
-def solve(scene: Scene, steps_per_sample: int, samples: int | None = None, interval: float | None = None) -> Samples:
-    """Motion of the payload of ``scene`` with ``steps_per_sample`` equal steps between samples, to the scene's duration."""
+def solve(scene: Scene, steps_per_sample: int, samples: int | None = None, interval: float | None = None,
+          walls: Walls | None = None) -> Samples:
+    """Motion of the payload of ``scene`` with ``steps_per_sample`` equal steps between samples, to the scene's duration; a warm
+    scene asks for rigid ``walls``."""
     interval = interval or scene.output.interval
-    job, rows = prepared(scene, steps_per_sample, samples if samples is not None else round(scene.duration / interval), interval)
+    samples = samples if samples is not None else round(scene.duration / interval)
+    job, rows = prepared(scene, steps_per_sample, samples, interval, walls)
     integrate(*job, rows)
     return Samples(np.arange(len(rows)) * interval, rows[:, 0:3], rows[:, 3:6], rows[:, 6:10], rows[:, 10:13],
                    4 * steps_per_sample * (len(rows) - 1))
 
 
-def prepared(scene: Scene, steps_per_sample: int, samples: int, interval: float) -> tuple[tuple, np.ndarray]:
+def prepared(scene: Scene, steps_per_sample: int, samples: int, interval: float,
+             walls: Walls | None = None) -> tuple[tuple, np.ndarray]:
     """Arguments of ``integrate`` but the last, and the last: rows (samples + 1, 26) of which only the first is filled.
 
     Raises SceneError for the law of friction that sticks.
@@ -54,7 +61,7 @@ def prepared(scene: Scene, steps_per_sample: int, samples: int, interval: float)
     inertias = (model.payload.inertia, model.platform.inertia if model.platform is not None else np.eye(3))
     rows = np.zeros((samples + 1, _SIZE))
     rows[0] = _start(model)
-    return (build(model), *inertias, interval / steps_per_sample, steps_per_sample), rows
+    return (build(model, bow=bow.under_pads(scene, model, walls)), *inertias, interval / steps_per_sample, steps_per_sample), rows
 
 
 def _start(model) -> np.ndarray:
@@ -162,7 +169,8 @@ def touch(laws, friction, face, rail_start, rail_end, place, axes, payload, plat
     if laws is not None:
         c = rotation.rotate(axes, (face[0], face[1], face[2]))
         x = (place[0] + c[0], place[1] + c[1], place[2] + c[2])
-        p = face[3] * x[1] + face[4] * x[2] - face[5]
+        away, slope = _bowed(laws.bow, face, x[0])
+        p = face[3] * x[1] + face[4] * x[2] - face[5] - away
         if p > 0.0 and rail_start <= x[0] <= rail_end:
             r, v, turn, spin = payload
             R, V, frame, frame_spin = platform
@@ -170,13 +178,24 @@ def touch(laws, friction, face, rail_start, rail_end, place, axes, payload, plat
             d = (r[0] + arm[0] - R[0], r[1] + arm[1] - R[1], r[2] + arm[2] - R[2])
             a, b = rotation.cross(spin, arm), rotation.cross(frame_spin, d)
             u = rotation.unrotate(frame, (v[0] + a[0] - V[0] - b[0], v[1] + a[1] - V[1] - b[1], v[2] + a[2] - V[2] - b[2]))
-            closing = face[3] * u[1] + face[4] * u[2]
+            n = (-slope, face[3], face[4])
+            closing = rotation.dot(n, u)
             elastic, damping = law.parts(laws.impact, laws.hunt_crossley, laws.linear, p, closing)
             normal = max(0.0, elastic + damping)
-            slip = (u[0], u[1] - closing * face[3], u[2] - closing * face[4])
+            off = closing / rotation.dot(n, n)
+            slip = (u[0] - off * n[0], u[1] - off * n[1], u[2] - off * n[2])
             drag = normal * _drag(friction, slip)
-            force = rotation.rotate(frame, (-drag * slip[0], -normal * face[3] - drag * slip[1], -normal * face[4] - drag * slip[2]))
+            force = rotation.rotate(frame, (-normal * n[0] - drag * slip[0], -normal * n[1] - drag * slip[1],
+                                            -normal * n[2] - drag * slip[2]))
     return force, arm
+
+
+@inlined
+def _bowed(bow_, face, x):
+    """How far (m) the wall stands away at ``x`` (m), and its slope."""
+    if bow_ is not None:
+        return bow.stand(bow_, int(face[NUMBER]), x)
+    return 0.0, 0.0
 
 
 @inlined

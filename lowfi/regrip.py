@@ -38,7 +38,7 @@ def change(laws, sticking, payload, platform, face, row, touched, touches, state
     """Change the grip of a face that begins to touch, slips, stops, or ceases to touch; the energy (J) lost, and its new margin."""
     body, base = slot.motion(payload.mass, payload.inverse_inertia, state, slot.PAYLOAD), slot.frame(platform, state)
     place, turn = relative_pose(platform, body, base)
-    now = load(laws, None, platform, face, max(penetration(face, place, turn), 0.0), body, base)
+    now = load(laws, None, platform, face, max(penetration(laws.bow, face, place, turn), 0.0), body, base)
     lost = 0.0
     if not (touched and touches):
         lost = grips.kept(sticking, row, face, now.point, base)

@@ -5,7 +5,7 @@ from typing import Callable, Sequence
 
 import numpy as np
 
-from lowfi import balance, march, plan, state, system
+from lowfi import balance, bow, march, plan, state, system
 from lowfi.accuracy import Tolerance
 from lowfi.march import EVALUATIONS, EVENTS, LIMIT, LIMIT_USED, NOW, REJECTED, STEPS, TAKEN
 from lowfi.numerics import Numerics
@@ -30,8 +30,8 @@ def run(scene: Scene, calibration: Calibration | None = None, numerics: Numerics
 
     ``calibration`` replaces the scene's contact and friction constants; the message says where the scene lies outside what they
     were found for. With ``walls`` the pads press walls that give way, through the penalty of the reference, in place of the contact
-    law. ``progress`` is called with the fraction of the duration done. Raises SceneError before any stepping; what goes wrong later is
-    the status of the result.
+    law; at rigid ones, which a warm scene asks for, that law acts where they stand. ``progress`` is called with the fraction of the
+    duration done. Raises SceneError before any stepping; what goes wrong later is the status of the result.
     """
     began, cpu = clock.perf_counter(), clock.thread_time()
     outside = calibration.outside(scene) if calibration else []
@@ -68,7 +68,8 @@ class Run:
         self.plan = plan.make(model, self.interval, self.end * self.interval, numerics)
         reach = float(np.sqrt((model.faces.centre**2).sum(axis=1).max()))
         self.tolerance = Tolerance(numerics.relative_tolerance, numerics.speed_floor, reach)
-        self.system = system.build(model, walls=wall_record.under_pads(scene, model, walls))
+        self.system = system.build(model, walls=wall_record.under_pads(scene, model, walls),
+                                   bow=bow.under_pads(scene, model, walls))
         self.loop = march.ready(self.system, state.initial(model), plan.first_step(self.plan))
         self.rows, self.forces = np.zeros((self.end + 1, SAMPLE_SIZE)), np.zeros((self.end + 1, model.faces.axis.size, 3))
         self.taken, self.left, self.message = 0, False, ""
@@ -124,18 +125,13 @@ class Run:
         status, result = outcome.judge(moved, self.marks)
         if self.message:
             status, result = "diverged", outcome.Outcome()
-        message = "; ".join(filter(None, [self.message, self._pressed_at_ignition(), *warnings]))
+        pressed = outcome.pressed_at_ignition(self.model.faces, self.forces[0])
+        message = "; ".join(filter(None, [self.message, pressed, *warnings]))
         return Trajectory(
             fidelity="lowfi", status=status, message=message,
             **moved._asdict(), pad_force=self.forces[:self.taken], energy=total, transverse_energy=across, outcome=result,
             checks=balance.checks(rows, moved, total, across, self.model.payload.mass, self.loop.clock), cost=self._cost(),
             scene=self.scene.resolved(), numerics=self.numerics.as_dict())
-
-    def _pressed_at_ignition(self) -> str:
-        """A warning that names the pads that overlap the rail before anything moves, or nothing."""
-        pressed = (self.forces[0] != 0.0).any(axis=1)
-        pads = sorted(set(self.model.faces.pad[pressed].tolist()))
-        return f"initial interference: pads {', '.join(map(str, pads))} press on the rail at ignition" if pads else ""
 
     def _cost(self) -> dict[str, float]:
         """Counts; dt_limit_s is the smallest proven limit met while anything touched, limit_used the largest step over its limit."""

@@ -124,7 +124,7 @@ def _press(laws, friction, sticking, faces, platform, engaged, grip, body, base,
         place, turn = relative_pose(platform, body, base)
         for i in range(engaged.size):
             if engaged[i]:
-                p = penetration(faces[i], place, turn)
+                p = penetration(laws.bow, faces[i], place, turn)
                 if p > 0.0:
                     face = load(laws, friction, platform, faces[i], p, body, base)
                     energy += stored(laws, p)

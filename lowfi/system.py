@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from scenes.effects.contact import Laws
+from scenes.effects.contact import HuntCrossley, Impact, Linear
 from scenes.effects.friction import Friction
 from scenes.effects.gravity import Gravity
 from scenes.effects.sticking import Sticking
@@ -16,11 +16,12 @@ from scenes.effects.thrust_offset import ThrustOffset
 from scenes.model import Faces, Model
 
 if TYPE_CHECKING:
+    from lowfi.bow import Bow
     from lowfi.walls.record import Walls
 
 # Columns of the table of faces: centre in payload body axes (m); outward normal's y and z and the wall's distance along it (m), in
-# platform axes; half the length (m).
-CENTRE, NORMAL_Y, NORMAL_Z, WALL, HALF_LENGTH, FACE_SIZE = 0, 3, 4, 5, 6, 7
+# platform axes; half the length (m); its own number.
+CENTRE, NORMAL_Y, NORMAL_Z, WALL, HALF_LENGTH, NUMBER, FACE_SIZE = 0, 3, 4, 5, 6, 7, 8
 
 
 class Body(NamedTuple):
@@ -28,6 +29,15 @@ class Body(NamedTuple):
 
     mass: float
     inverse_inertia: np.ndarray
+
+
+class Contact(NamedTuple):
+    """The one law a scene uses, the others None, and where the walls it acts at stand if they are warm, else None."""
+
+    impact: Impact | None
+    hunt_crossley: HuntCrossley | None
+    linear: Linear | None
+    bow: "Bow | None"
 
 
 class System(NamedTuple):
@@ -42,7 +52,7 @@ class System(NamedTuple):
     thrust: Thrust
     reacts_on_platform: bool
     thrust_offset: ThrustOffset | None
-    contact: Laws | None
+    contact: Contact | None
     walls: "Walls | None"
     friction: Friction | None
     sticking: Sticking | None
@@ -50,12 +60,13 @@ class System(NamedTuple):
     ledger: bool | None
 
 
-def build(model: Model, ledger: bool = True, walls: "Walls | None" = None) -> System:
-    """Records of ``model`` as the kernels take them, with a contact law at rigid walls or with ``walls`` that give way. Without a
-    ``ledger`` no work, loss or impulse is integrated."""
+def build(model: Model, ledger: bool = True, walls: "Walls | None" = None, bow: "Bow | None" = None) -> System:
+    """Records of ``model`` as the kernels take them, with a contact law at rigid walls, straight or with a ``bow``, or with
+    ``walls`` that give way. Without a ``ledger`` no work, loss or impulse is integrated."""
+    contact = Contact(*model.contact, bow) if model.contact is not None and walls is None else None
     return System(_body(model.payload), _body(model.platform) if model.platform is not None else None, _table(model.faces),
                   float(model.rail_start), float(model.rail_end), model.thrust, model.reacts_on_platform, model.thrust_offset,
-                  model.contact if walls is None else None, walls, _if(model.friction, Friction), _if(model.friction, Sticking), model.gravity,
+                  contact, walls, _if(model.friction, Friction), _if(model.friction, Sticking), model.gravity,
                   True if ledger else None)
 
 
@@ -74,4 +85,5 @@ def _table(faces: Faces) -> np.ndarray:
     table[:, NORMAL_Y] = np.where(faces.axis == 1, faces.sign, 0.0)
     table[:, NORMAL_Z] = np.where(faces.axis == 2, faces.sign, 0.0)
     table[:, WALL], table[:, HALF_LENGTH] = faces.sign * faces.wall, faces.half_length
+    table[:, NUMBER] = np.arange(faces.axis.size)
     return table

@@ -5,13 +5,15 @@ rail's point at the same place (both inertial, so the frame's own turning is in 
 
     p = n . x - wall,     p_dot = n . u,     F = -N n - mu(s)/s N (u - p_dot n),     N = max(0, raw)
 
-``raw`` is the law in ``scenes.effects.contact``. The rail's reach is not tested here but in ``lowfi.events``.
+``raw`` is the law in ``scenes.effects.contact``. Where walls are warm, p and n are those of ``lowfi.bow``. The rail's reach is not
+tested here but in ``lowfi.events``.
 """
 
 from typing import NamedTuple
 
+from lowfi.bow import stand
 from lowfi.state import velocity_at
-from lowfi.system import NORMAL_Y, NORMAL_Z, WALL
+from lowfi.system import NORMAL_Y, NORMAL_Z, NUMBER, WALL
 from scenes import rotation
 from scenes.effects import contact as law
 from scenes.effects.friction import coefficient_over_speed
@@ -70,11 +72,15 @@ def _seen_from_platform(body, base, place, spin):
 
 
 @inlined
-def approach(face, drift, swing):
-    """Rate (m/s) of the penetration of ``face``, from the rates of the pose."""
+def approach(bow, face, place, turn, drift, swing):
+    """Rate (m/s) of the penetration of ``face``, from the rates of the pose; without a ``bow`` the pose itself is not asked for."""
     y = drift[1] + swing[3] * face[0] + swing[4] * face[1] + swing[5] * face[2]
     z = drift[2] + swing[6] * face[0] + swing[7] * face[1] + swing[8] * face[2]
-    return face[NORMAL_Y] * y + face[NORMAL_Z] * z
+    rate = face[NORMAL_Y] * y + face[NORMAL_Z] * z
+    if bow is not None:
+        x = drift[0] + swing[0] * face[0] + swing[1] * face[1] + swing[2] * face[2]
+        rate -= stand(bow, int(face[NUMBER]), along(face, place, turn))[1] * x
+    return rate
 
 
 @inlined
@@ -84,17 +90,44 @@ def along(face, place, turn):
 
 
 @inlined
-def penetration(face, place, turn):
+def penetration(bow, face, place, turn):
     """Penetration (m) of ``face`` into its wall, negative across the gap."""
     y = place[1] + turn[3] * face[0] + turn[4] * face[1] + turn[5] * face[2]
     z = place[2] + turn[6] * face[0] + turn[7] * face[1] + turn[8] * face[2]
-    return face[NORMAL_Y] * y + face[NORMAL_Z] * z - face[WALL]
+    p = face[NORMAL_Y] * y + face[NORMAL_Z] * z - face[WALL]
+    if bow is not None:
+        p -= stand(bow, int(face[NUMBER]), along(face, place, turn))[0]
+    return p
 
 
 @inlined
 def outward(face, base):
-    """Outward normal of ``face`` in scene axes."""
+    """Outward normal of ``face`` in scene axes, the wall being straight."""
     return rotation.rotate(base.turn, (0.0, face[NORMAL_Y], face[NORMAL_Z]))
+
+
+@inlined
+def gradient(bow, face, base, point):
+    """What a step of the pad's ``point`` (m, scene axes) adds to the penetration: the normal of the wall, bowed or straight."""
+    if bow is not None:
+        return _bowed(bow, face, base, point)
+    return outward(face, base)
+
+
+@inlined
+def _bowed(bow, face, base, point):
+    place = rotation.unrotate(base.turn, (point[0] - base.place[0], point[1] - base.place[1], point[2] - base.place[2]))
+    slope = stand(bow, int(face[NUMBER]), place[0])[1]
+    return rotation.rotate(base.turn, (-slope, face[NORMAL_Y], face[NORMAL_Z]))
+
+
+@inlined
+def slip_velocity(bow, u, closing, n):
+    """The part of ``u`` (m/s) across ``n``, whose square is one where the wall is straight."""
+    along = closing
+    if bow is not None:
+        along = closing / rotation.dot(n, n)
+    return (u[0] - along * n[0], u[1] - along * n[1], u[2] - along * n[2])
 
 
 @inlined
@@ -126,12 +159,13 @@ def friction_force(friction, normal_force, slip):
 @inlined
 def load(laws, friction, platform, face, p, body, base):
     """Load of ``face`` at penetration ``p`` >= 0."""
-    point, n = pad_point(face, body), outward(face, base)
+    point = pad_point(face, body)
+    n = gradient(laws.bow, face, base, point)
     u = relative_velocity(platform, body, base, point)
     closing = rotation.dot(u, n)
     elastic, damping = law.parts(laws.impact, laws.hunt_crossley, laws.linear, p, closing)
     raw = elastic + damping
     force = max(raw, 0.0)
-    slip = (u[0] - closing * n[0], u[1] - closing * n[1], u[2] - closing * n[2])
+    slip = slip_velocity(laws.bow, u, closing, n)
     return Load(point, (-force * n[0], -force * n[1], -force * n[2]), friction_force(friction, force, slip), slip, closing, elastic,
                 raw)

@@ -16,10 +16,11 @@ from scenes.effects.gravity import Gravity
 from scenes.effects.initial import Initial
 from scenes.effects.platform import Platform
 from scenes.effects.sticking import Sticking
+from scenes.effects.thermal import Thermal
 from scenes.scene import Scene
 
 # Tables of a scene whose records may be kept.
-_REUSED = ("payload", "pads", "rail", "thrust", "initial", "contact", "friction", "platform")
+_REUSED = ("payload", "pads", "rail", "thrust", "initial", "contact", "friction", "platform", "thermal")
 
 
 class Payload(NamedTuple):
@@ -64,6 +65,7 @@ class Model(NamedTuple):
     platform: Platform | None
     gravity: Gravity | None
     flexibility: Flexibility | None
+    thermal: Thermal | None
     initial: Initial
     thrust_arm: float
 
@@ -109,6 +111,7 @@ def built(scene: Scene, known: Built | None = None) -> Built:
         gravity=scene.gravity.record() if scene.gravity else None,
         # Nothing presses a rail without contact either.
         flexibility=scene.flexibility.record(scene.rail.damping and scene.rail.damping.record()) if scene.flexibility and touching else None,
+        thermal=known.model.thermal if kept("rail", "thermal") else scene.thermal.record(scene.rail) if scene.thermal else None,
         initial=known.model.initial if kept("initial") else scene.initial.record() if scene.initial else Initial(),
         thrust_arm=scene.thrust.arm,
     ), nominal)

@@ -189,6 +189,12 @@ def is_jammed(motion, marks: Milestones) -> bool:
     return bool((np.abs(speed) < marks.jam_speed).all())
 
 
+def pressed_at_ignition(faces, forces: np.ndarray) -> str:
+    """A warning that names the pads on which there are ``forces`` (f,3) N before anything moves, or nothing."""
+    pads = sorted(set(faces.pad[(forces != 0.0).any(axis=1)].tolist()))
+    return f"initial interference: pads {', '.join(map(str, pads))} press on the rail at ignition" if pads else ""
+
+
 def judge(motion, marks: Milestones) -> tuple[str, Outcome]:
     """Status ("exited", "jammed" or "time_limit") and outcome of samples so far."""
     exit_at = exit_time(motion, marks)

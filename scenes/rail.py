@@ -12,11 +12,11 @@ import math
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal, Union
 
-from pydantic import AfterValidator, Discriminator, PrivateAttr, Tag, ValidationInfo, field_validator, model_validator
+from pydantic import AfterValidator, Discriminator, Field, PrivateAttr, Tag, ValidationInfo, field_validator, model_validator
 
 from scenes.effects.structural_damping import DampingTable
-from scenes.table import Table, at_least_one
-from scenes.units import Density, Length, NonNegativeLength, PositiveLength, Pressure, quantity
+from scenes.table import Table, at_least_one, is_absent
+from scenes.units import Density, Expansion, Length, NonNegativeLength, PositiveLength, Pressure, quantity
 
 FILES = ("mesh", "geometry")  # keys that give the rail as a file
 SOLIDS = (".step", ".stp", ".iges", ".igs", ".brep")
@@ -38,12 +38,13 @@ class Span(Table):
 
 
 class MaterialTable(Table):
-    """``[rail.material]``: isotropic linear elasticity."""
+    """``[rail.material]``: isotropic linear elasticity; ``expansion`` (1/K) is what ``[thermal]`` asks for, and nothing else."""
 
     density: Density
     youngs_modulus: Pressure
     poisson_ratio: quantity("dimensionless", gt=-1.0, lt=0.5)
     yield_strength: Pressure | None = None
+    expansion: Expansion | None = Field(None, exclude_if=is_absent)
 
 
 class _RailTable(Table):

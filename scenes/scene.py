@@ -9,7 +9,7 @@ from operator import attrgetter
 from pathlib import Path
 from typing import Annotated, Any, Mapping
 
-from pydantic import AfterValidator, Field, PrivateAttr, ValidationError
+from pydantic import AfterValidator, Field, PrivateAttr, ValidationError, ValidationInfo, field_validator
 
 from scenes import overrides as keys
 from scenes import plausibility, reading, roles, validity
@@ -21,17 +21,18 @@ from scenes.effects.gravity import GravityTable
 from scenes.effects.initial import InitialTable
 from scenes.effects.mass_offset import MassOffsetTable
 from scenes.effects.platform import PlatformTable
+from scenes.effects.thermal import ThermalTable
 from scenes.effects.thrust import ThrustTable
 from scenes.effects.thrust_offset import ThrustOffsetTable
 from scenes.faults import Fault, SceneError, faults_of
 from scenes.files import content_hash
 from scenes.rail import RailTable
-from scenes.table import Table, at_least_one
+from scenes.table import Table, at_least_one, is_absent
 from scenes.tables import AgreementTable, OutputTable, PadTable, PayloadTable
 from scenes.units import PositiveTime
 
 CATALOG = reading.CATALOG
-EFFECTS = ("thrust_offset", "mass_offset", "initial", "contact", "friction", "platform", "gravity", "rail.damping", "flexibility")
+EFFECTS = ("thrust_offset", "mass_offset", "initial", "contact", "friction", "platform", "gravity", "thermal", "rail.damping", "flexibility")
 NOMINAL = "nominal"  # the scene itself, named like a condition
 _BESIDE = ("conditions", "agreement", "provenance")
 _NOT_PHYSICS = {"name", "description", "flight", *_BESIDE}  # what comes after the exit changes nothing before it
@@ -56,12 +57,20 @@ class Scene(Table):
     gravity: GravityTable | None = None
     flexibility: FlexibilityTable | None = None
     flight: FlightTable | None = None
+    thermal: ThermalTable | None = Field(None, exclude_if=is_absent)
     output: OutputTable = OutputTable()
     agreement: AgreementTable = AgreementTable()
     conditions: dict[str, dict[str, Any]] = Field(default_factory=dict)
     provenance: dict[str, str] = Field(default_factory=dict)
     _raw: dict = PrivateAttr(default_factory=dict)
     _source: str = PrivateAttr(default="scene")
+
+    @field_validator("thermal")
+    @classmethod
+    def _expanding(cls, thermal: ThermalTable | None, info: ValidationInfo):
+        if thermal is not None and "rail" in info.data and info.data["rail"].material.expansion is None:
+            raise ValueError('rails that expand: rail.material.expansion, for example "23.6e-6 1/K"')
+        return thermal
 
     def replace(self, overrides: Mapping[str, Any]) -> "Scene":
         """A new scene with dotted keys set. Text carries units, a bare number is SI, None or "absent" drops a table.
@@ -89,7 +98,10 @@ class Scene(Table):
 
     def physics(self) -> dict:
         """The resolved physical inputs in SI, without names and roles: what a result depends on."""
-        return self.model_dump(mode="json", exclude=_NOT_PHYSICS)
+        found = self.model_dump(mode="json", exclude=_NOT_PHYSICS)
+        if self.thermal is None:
+            found["rail"]["material"].pop("expansion", None)
+        return found
 
     def resolved(self) -> dict:
         """Every input in SI, as written into result files; ``parse(..., bare_numbers_are_si=True)`` reads it back."""
@@ -119,6 +131,10 @@ class Scene(Table):
     def warnings(self) -> list[str]:
         """Values that are allowed but implausible, by field name."""
         return plausibility.warnings(self)
+
+    def expands(self) -> bool:
+        """Whether the rails can follow a temperature, where there is one."""
+        return self.thermal is None or self.rail.material.expansion is not None
 
     def absent_effects(self) -> list[str]:
         """Dotted keys of the effect tables this scene does not have."""

@@ -25,6 +25,11 @@ class Table(BaseModel):
         return data
 
 
+def is_absent(value: Any) -> bool:
+    """Keeps a key that came later out of what is written where it is not used, so that older scenes keep their hash."""
+    return value is None
+
+
 def at_least_one(items: Sized) -> Sized:
     """Pydantic validator of a list that may not be empty; its own min_length also counts items that are refused."""
     if len(items) == 0:

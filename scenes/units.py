@@ -39,6 +39,8 @@ def to_si(text: str, unit: str) -> float:
         raise ValueError(f"{named(unit)} ({given_unit!r} is no unit)") from error
     if not quantity.is_compatible_with(unit):
         raise ValueError(f"{named(unit)} (given dimension {quantity.dimensionality})")
+    if registry.Quantity(0.0, quantity.units).to(unit).magnitude != 0.0:
+        raise ValueError(f"{named(unit)} ({given_unit!r} has its zero elsewhere: a difference is in K or delta_degC)")
     # An angle has no dimension, so "0.1" would pass for 0.1 rad and "5 Hz" for 5 rad/s: ask for the unit itself.
     if _radians(quantity) != _radians(registry.Quantity(1.0, unit)):
         raise ValueError(f"{named(unit)} (given unit {quantity.units})")
@@ -110,4 +112,7 @@ Frequency = quantity("Hz", gt=0.0)
 DampingRatio = quantity("dimensionless", ge=0.0, lt=1.0)
 Stiffness = quantity("N/m", gt=0.0)
 ContactDamping = quantity("N*s/m", ge=0.0)
+TemperatureChange = quantity("K")
+TemperatureGradient = quantity("K/m")
+Expansion = quantity("1/K")
 PenaltyStiffness = quantity("N/m**3", gt=0.0)

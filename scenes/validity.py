@@ -24,6 +24,7 @@ def loads(scene) -> dict[str, float]:
 def geometry(scene) -> str:
     """Digest of rail and pads; a rail from a file counts by what the file holds."""
     parts = scene.model_dump(mode="json", exclude_none=True, include={"pads", "rail"})
+    parts["rail"]["material"].pop("expansion", None)
     return content_hash(parts["pads"], parts["rail"] | scene.rail.contents())
 
 

@@ -61,7 +61,8 @@ class Variations:
             tables = {name: self._table(name, raw) for name in changed}
         except (ValidationError, KeyError):
             return self.scene.replace(row)
-        return self.scene.model_copy(update=tables)
+        found = self.scene.model_copy(update=tables)
+        return found if found.expands() else self.scene.replace(row)
 
     def _table(self, name: str, raw: dict) -> Any:
         field = Scene.model_fields[name]

@@ -12,18 +12,21 @@ Of this the lowest modes of the rail, mass-normalised and of frequencies omega_m
 
     U = F_res P + W q,   F_res = F - sum_m W_m W_m' / omega_m^2,   W_iam(travel) the displacement in mode m
 
-F_res is positive semidefinite, for it is what the other modes would bring.
+F_res is positive semidefinite, for it is what the other modes would bring. Where the rail is warm (``scenes.effects.thermal``) its walls
+stand away from their places before anything presses them, by T = sum_t amount_t warm_t of the same patterns, on top of which comes U;
+walls known to be warm and rigid have no F.
 """
 
 import hashlib
 import zipfile
 import zlib
-from dataclasses import dataclass, fields, replace
+from dataclasses import MISSING, dataclass, fields, replace
 from functools import cached_property
 from pathlib import Path
 
 import numpy as np
 
+from scenes.effects.thermal import FIELDS
 from scenes.faults import Fault, SceneError
 from scenes.files import content_hash, replacing
 from scenes.scene import Scene
@@ -43,23 +46,25 @@ class Walls:
     """travel (s,) m of the payload along X since ignition, evenly spaced; flexibility (s,f,p,f,p) m/N; rail (f,) number of the rail
     each face is on; half (f,2) m, half the size of each face along xi and eta, negative where eta runs against the axis;
     frequency (r,n) rad/s of the lowest modes of each rail, ascending, and their shape W (s,f,p,n) 1/kg^0.5; made_for, digest of the
-    rail and pads."""
+    rail and pads; warm (t,s,f,p) m away from the payload under one of each field of temperature, None where nobody asked. Rigid
+    walls have None for their flexibility."""
 
     travel: np.ndarray
-    flexibility: np.ndarray
+    flexibility: np.ndarray | None
     rail: np.ndarray
     half: np.ndarray
     frequency: np.ndarray
     shape: np.ndarray
     made_for: str
+    warm: np.ndarray | None = None
 
     def cubic(self, modes: int = 0) -> tuple[np.ndarray, np.ndarray]:
         """Flexibility (s-1,f,f,p,p,4) without the part of the first ``modes``, and their shapes (s-1,f,n,p,4), between stations:
         coefficients of the rising powers of the way (m) from the one before. Raises ValueError as ``residual`` does."""
         if modes not in self._cubics:
-            flexibility, shape = (_by_powers(self.travel, table) for table in (self.residual(modes), self.shape[..., :modes]))
-            self._cubics[modes] = (np.ascontiguousarray(flexibility.transpose(1, 2, 4, 3, 5, 0)),
-                                   np.ascontiguousarray(shape.transpose(1, 2, 4, 3, 0)))
+            flexibility, shape = (cubic(self.travel, table) for table in (self.residual(modes), self.shape[..., :modes]))
+            self._cubics[modes] = (np.ascontiguousarray(flexibility.transpose(0, 1, 3, 2, 4, 5)),
+                                   np.ascontiguousarray(shape.transpose(0, 1, 3, 2, 4)))
         return self._cubics[modes]
 
     @cached_property
@@ -88,17 +93,26 @@ class Walls:
     def hash(self) -> str:
         """Hexadecimal SHA-256 of all of it."""
         digest = hashlib.sha256(self.made_for.encode())
-        for array in (self.travel, self.flexibility, self.rail, self.half, self.frequency, self.shape):
-            digest.update(np.ascontiguousarray(array).tobytes())
+        for array in (self.travel, self.flexibility, self.rail, self.half, self.frequency, self.shape, self.warm):
+            if array is not None:
+                digest.update(np.ascontiguousarray(array).tobytes())
         return digest.hexdigest()
 
     def compliance(self) -> np.ndarray:
         """Mean displacement (s,f,f) in m/N of each face under a unit force spread evenly over each."""
         return (GRAM @ self.flexibility.transpose(0, 1, 3, 2, 4) @ GRAM)[..., 0, 0]
 
+    def rigid(self) -> "Walls":
+        """The same walls for a contact law to stand on: where they are when they are warm, and nothing of how they give way."""
+        return replace(self, flexibility=None)
+
+    def moved(self, amounts: np.ndarray) -> np.ndarray:
+        """W (s,f,p) m by ``amounts`` (t,) of the fields of temperature."""
+        return np.tensordot(amounts, self.warm, 1)
+
     def restricted(self, patterns: int = PATTERNS, coupled: bool = True) -> "Walls":
-        """The same walls with the first so many patterns of pressure and displacement only, and, unless ``coupled``, each face by
-        itself, without modes then, which faces have in common: what a simpler model knows of them."""
+        """The same walls with the first so many patterns of pressure and displacement by load only, and, unless ``coupled``, each
+        face by itself, without modes then, which faces have in common: what a simpler model knows of them."""
         kept = np.arange(PATTERNS) < patterns
         blocks = (GRAM @ self.flexibility.transpose(0, 1, 3, 2, 4) @ GRAM)[..., kept, :][..., kept]
         inverse = np.linalg.inv(GRAM[np.ix_(kept, kept)])
@@ -112,21 +126,25 @@ class Walls:
         return replace(self, flexibility=flexibility, frequency=frequency, shape=shape)
 
     def require(self, scene: Scene) -> None:
-        """Raises SceneError where ``scene`` has another rail or other pads than these walls were found for."""
+        """Raises SceneError where ``scene`` has another rail or other pads than these walls were found for, or a temperature of
+        which they do not know."""
         if self.made_for != digest(scene):
             raise SceneError([Fault(scene.name, "rail", "another rail, or other pads", "those the walls were found for: find them anew")])
+        if scene.thermal is not None and self.warm is None:
+            raise SceneError([Fault(scene.name, "thermal", "walls that know of no temperature",
+                                    "walls found for warm rails: find them anew")])
 
     def save(self, path: str | Path) -> None:
         """Write atomically, as arrays."""
         with replacing(path) as temporary, open(temporary, "wb") as stream:
-            np.savez_compressed(stream, **self.__getstate__())
+            np.savez_compressed(stream, **{name: value for name, value in self.__getstate__().items() if value is not None})
 
     @classmethod
     def load(cls, path: str | Path) -> "Walls":
         """Read what ``save`` wrote. Raises FileNotFoundError, or ValueError for a damaged or foreign file."""
         try:
             with np.load(path, allow_pickle=False) as found:
-                arrays = {field.name: found[field.name] for field in fields(cls)}
+                arrays = {field.name: found[field.name] for field in fields(cls) if field.default is MISSING or field.name in found}
             walls = cls(**arrays | {"made_for": str(arrays["made_for"])})
             walls._require_whole()
         except (zipfile.BadZipFile, zlib.error, KeyError, EOFError, TypeError, ValueError) as error:  # TypeError: a lone array
@@ -139,6 +157,8 @@ class Walls:
         modes = self.frequency.shape[-1]
         expected = {"travel": (stations,), "flexibility": (stations, faces, PATTERNS, faces, PATTERNS), "rail": (faces,), "half": (faces, 2),
                     "frequency": (int(self.rail.max()) + 1, modes), "shape": (stations, faces, PATTERNS, modes)}
+        if self.warm is not None:
+            expected["warm"] = (FIELDS, stations, faces, PATTERNS)
         for name, shape in expected.items():
             array = getattr(self, name)
             if array.shape != shape or not np.isfinite(array).all():
@@ -158,11 +178,14 @@ def require_modes(scene: Scene, walls: Walls | None) -> None:
         raise SceneError([Fault(scene.name, "flexibility.modes", str(scene.flexibility.modes), f"at most {known}, the modes these walls have")])
 
 
-def _by_powers(place: np.ndarray, table: np.ndarray) -> np.ndarray:
-    """Coefficients (4,s-1,...) of the cubic spline through ``table`` (s,...), constant first."""
+def cubic(travel: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Cubic spline (s-1,...,4) through ``values`` (s,...) at ``travel`` (s,) m: coefficients of the rising powers of the way (m)
+    from the station before."""
     from scipy.interpolate import CubicSpline
 
-    return CubicSpline(place, table).c[::-1] if table.size else np.zeros((4, len(place) - 1, *table.shape[1:]))
+    if not values.size:
+        return np.zeros((len(travel) - 1, *values.shape[1:], 4))
+    return np.ascontiguousarray(np.moveaxis(CubicSpline(travel, values).c[::-1], 0, -1))
 
 
 def digest(scene: Scene) -> str:
@@ -170,4 +193,5 @@ def digest(scene: Scene) -> str:
     described = scene.model_dump(mode="json", include={"rail", "pads"})
     described["rail"] |= scene.rail.contents()
     described["rail"].pop("damping", None)  # statics
+    described["rail"]["material"].pop("expansion", None)  # found for one of each field
     return content_hash(described)

@@ -28,7 +28,8 @@ TOLERANCE = 1e-2  # relative error of a step: 95 % of reference cases within 0.2
 
 
 class Surrogate(NamedTuple):
-    """A scene whose contact constants are the calibrated ones, the calibration they come from, and walls that give way or none.
+    """A scene whose contact constants are the calibrated ones, the calibration they come from, and walls that give way, rigid ones
+    under a law where the rails are warm, or none.
 
     A scene without contact has neither.
     """
@@ -71,7 +72,7 @@ def surrogate(study: Study, walls: bool = False, condition: str | None = None) -
     if walls:
         return Surrogate(scene, None, wall_stage.load(study, scene))
     fitted = calibrate.load(study)
-    return Surrogate(fitted.apply(scene), fitted, None)
+    return Surrogate(fitted.apply(scene), fitted, wall_stage.of_law(study, scene))
 
 
 def run(study: Study, name: str, model: Surrogate, source, tolerance: float = TOLERANCE) -> Population:

@@ -77,11 +77,14 @@ class Study:
         """A surrogate run of condition ``name``, with the scene's own contact constants unless calibrated and rails that do not
         bend, or on ``walls``."""
         import lowfi
+        from studies.stages.walls import of_law
 
+        scene = self.condition(name).replace(overrides or {})
         label = f"{name}{tag}{'-calibrated' if calibration else ''}{'-walls' if walls else ''}"
         numbers = _numerics(lowfi.Numerics, **numerics)
         rigid = {} if walls else {"flexibility": None}
-        return Run("lowfi", label, self.condition(name).replace((overrides or {}) | rigid), numbers, calibration, walls)
+        scene = self.condition(name).replace((overrides or {}) | rigid)
+        return Run("lowfi", label, scene, numbers, calibration, walls or of_law(self, scene))
 
     def path(self, name: str) -> Path:
         """A file in the folder of this scene."""

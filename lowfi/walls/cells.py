@@ -32,7 +32,7 @@ def take_lever(walls, faces, face, place, turn):
     """Fill the face's lever for the payload's pose in platform axes."""
     lever, half = walls.room.lever[face], walls.half[face]
     y, z = faces[face, NORMAL_Y], faces[face, NORMAL_Z]
-    lever[DEPTH] = penetration(faces[face], place, turn)
+    lever[DEPTH] = penetration(None, faces[face], place, turn)
     lever[BY_XI] = half[0] * (y * turn[3] + z * turn[6])
     lever[BY_ETA] = half[1] * (y * turn[5] + z * turn[7])  # a face along y is wide along z, and the other way round
     middle = place[0] + faces[face, 0]

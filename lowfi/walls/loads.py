@@ -6,7 +6,7 @@
 centre of pressure, and along X, as the rail is softer or stiffer ahead and as its bent wall slopes (xi' moves with the pad where a
 face hangs over an end)::
 
-    X = P' F' P / 2 + P' W' q + sum of pressure d(xi')/dx du/dxi'
+    X = P' F' P / 2 + P' (T' + W' q) + sum of pressure d(xi')/dx du/dxi'
 
 which acts on payload and platform at the payload's mass centre, since that is the place whose way counts. Energy still under the part
 of a pad that leaves the wall is lost.
@@ -14,6 +14,7 @@ of a pad that leaves the wall is lost.
 
 from lowfi.system import NORMAL_Y
 from lowfi.touch import Load, friction_force, outward, relative_velocity
+from lowfi.walls import warm
 from lowfi.walls.cells import stored
 from lowfi.walls.modes import offset, slope
 from lowfi.walls.record import DRIFT, SHIFT
@@ -47,6 +48,7 @@ def drive(walls, count):
         face = room.order[i]
         u, force = room.displacement[face], room.force[face]
         pull += room.lever[face, DRIFT] * (u[1] * force[0] + 2.0 * u[3] * force[1] + u[4] * force[2])
+        pull += warm.pull(walls.warm, face, force)
         if room.lever[face, SHIFT] != 0.0:  # else all of it is over the wall
             fading += stored(walls, face)[1]
         for a in range(PATTERNS):
@@ -60,11 +62,12 @@ def drive(walls, count):
 
 @kernel
 def energy(walls, count):
-    """Energy (J) in walls and penalty under the ``count`` faces solved for: P' F P is P' (U - W q)."""
+    """Energy (J) in walls and penalty under the ``count`` faces solved for: P' F P is P' (U - T - W q)."""
     total = 0.0
     for i in range(count):
         face = walls.room.order[i]
         total += stored(walls, face)[0]
         for a in range(PATTERNS):
-            total += 0.5 * walls.room.force[face, a] * (walls.room.displacement[face, a] - offset(walls.modes, face, a))
+            own = warm.place(walls.warm, face, a) + offset(walls.modes, face, a)
+            total += 0.5 * walls.room.force[face, a] * (walls.room.displacement[face, a] - own)
     return total

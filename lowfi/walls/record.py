@@ -49,11 +49,20 @@ class Modes(NamedTuple):
     speed: np.ndarray
 
 
+class Warm(NamedTuple):
+    """cubic (s-1,f,p,4): T (m) of warm walls between stations as powers of the way (m) from the one before; and as scratch its
+    value ``place`` (f,p) m and its ``slope`` (f,p) under the faces last looked at."""
+
+    cubic: np.ndarray
+    place: np.ndarray
+    slope: np.ndarray
+
+
 class Walls(NamedTuple):
     """cubic (s-1,f,f,p,p,4): flexibility (m/N) between stations as powers of the way (m) from the one before, which stand ``spacing``
     apart from the X ``origin`` (m) of the first face at ignition on; members (r,m) faces on each rail, -1 for none;
     rail (f,) and half (f,2) as in ``scenes.walls``; relief (f,) m; penalty (N/m3); start and end (m) of the rail; node (n,) middle of
-    the cells in xi and eta, and crown (n,) the means of xi^4 over them."""
+    the cells in xi and eta, and crown (n,) the means of xi^4 over them; warm, None where no rail is."""
 
     cubic: np.ndarray
     origin: float
@@ -68,14 +77,15 @@ class Walls(NamedTuple):
     node: np.ndarray
     crown: np.ndarray
     modes: Modes | None
+    warm: Warm | None
     room: Room
 
 
 def under_pads(scene: Scene, model: Model, found: data.Walls | None) -> Walls | None:
-    """Record of what was ``found`` for the kernels, None without contact. Raises SceneError for walls of another rail, for the law
-    of friction that sticks, and for modes without walls that have them."""
+    """Record of what was ``found`` for the kernels, None without contact and for rigid ones. Raises SceneError for walls of another
+    rail, for the law of friction that sticks, and for modes without walls that have them."""
     data.require_modes(scene, found)
-    if found is None or model.contact is None:
+    if found is None or found.flexibility is None or model.contact is None:
         return None
     found.require(scene)
     require_two_step(scene)
@@ -97,7 +107,15 @@ def build(found: data.Walls, model: Model, cells: int = CELLS) -> Walls:
     modes = _modes(found, shape, model.flexibility) if shape.size else None
     return Walls(flexibility, origin, spacing, members, found.rail, found.half,
                  model.faces.relief, float(model.penalty), float(model.rail_start), float(model.rail_end),
-                 0.5 * (edges[1:] + edges[:-1]), crown, modes, _room(model.faces.axis.size, members.shape[1], shape.shape[2]))
+                  0.5 * (edges[1:] + edges[:-1]), crown, modes, _warm(found, model),
+                  _room(model.faces.axis.size, members.shape[1], shape.shape[2]))
+
+
+def _warm(found: data.Walls, model: Model) -> Warm | None:
+    if model.thermal is None:
+        return None
+    by_pattern = (model.faces.axis.size, data.PATTERNS)
+    return Warm(data.cubic(found.travel, found.moved(model.thermal.amounts)), zeros(by_pattern), zeros(by_pattern))
 
 
 def states(walls: Walls | None) -> int:

@@ -1,14 +1,15 @@
 """Displacement of the walls of one rail under the faces that press it, by Newton's method on piecewise linear equations.
 
-    U = F P(U) + W q,    (1 + F K) dU = F P + W q - U,    K_iab = dP_ia/d(-U_ib) = sum over pressed cells of penalty dA phi_a phi_b
+    U = T + F P(U) + W q,    (1 + F K) dU = T + F P + W q - U,    K_iab = dP_ia/d(-U_ib) = sum over pressed cells of penalty dA phi_a phi_b
 
-W q is what the rail's modes make of it (``lowfi.walls.modes``), F the rest; without modes there is only F. P is the gradient of a
-convex potential, so the solution is one; while the pressed cells do not change the equations are linear, and the last correction is
-exact. The displacement of the solution before is the first guess.
+W q is what the rail's modes make of it (``lowfi.walls.modes``), F the rest; without modes there is only F. T is where walls stand that
+are warm (``lowfi.walls.warm``), zero otherwise. P is the gradient of a convex potential, so the solution is one; while the pressed cells
+do not change the equations are linear, and the last correction is exact. The displacement of the solution before is the first guess.
 """
 
 import numpy as np
 
+from lowfi.walls import warm
 from lowfi.walls.cells import eased, press, take_lever
 from lowfi.walls.modes import offset, take_swing
 from scenes.jit import inlined, kernel
@@ -60,6 +61,7 @@ def take_flexibility(walls, count, place, state):
     station, s, changes = between_stations(walls, place)
     for i in range(count):
         take_swing(walls.modes, walls.rail[room.order[i]], room.order[i], station, s, changes, state)
+        warm.take(walls.warm, room.order[i], station, s, changes)
         for j in range(count):
             block = walls.cubic[station, room.order[i], room.order[j]]
             for a in range(PATTERNS):
@@ -88,7 +90,7 @@ def _correct(walls, count, share):
         for column in range(wide):
             total += room.flexibility[row, column] * room.force[room.order[column // PATTERNS], column % PATTERNS]
         face, a = room.order[row // PATTERNS], row % PATTERNS
-        room.right[row, 0] = total - (room.displacement[face, a] - offset(walls.modes, face, a))
+        room.right[row, 0] = total - (room.displacement[face, a] - warm.place(walls.warm, face, a) - offset(walls.modes, face, a))
     eliminate(room.matrix, room.right, wide, 1)
     largest = 0.0
     for i in range(count):
@@ -150,8 +152,9 @@ def follow(walls, face, place, count, state, out):
     room = walls.room
     station, s, changes = between_stations(walls, place)
     take_swing(walls.modes, walls.rail[face], face, station, s, changes, state)
+    warm.take(walls.warm, face, station, s, changes)
     for a in range(PATTERNS):
-        out[a] = offset(walls.modes, face, a)
+        out[a] = warm.place(walls.warm, face, a) + offset(walls.modes, face, a)
         for j in range(count):
             other = room.order[j]
             for b in range(PATTERNS):

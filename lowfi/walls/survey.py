@@ -6,6 +6,7 @@ from lowfi import state as slot
 from lowfi.system import NORMAL_Y, NORMAL_Z
 from lowfi.touch import approach, relative_motion, relative_pose
 from lowfi.walls.cells import LAST_STRIP, deepest, reaches, take_lever
+from lowfi.walls import warm
 from lowfi.walls.loads import energy as energy_of_rail
 from lowfi.walls.modes import speed_at
 from lowfi.walls.record import MIDDLE, SHIFT
@@ -40,8 +41,9 @@ def _approach(walls, faces, face, xi, eta, drift, swing):
     """Rate (m/s) at which a point of the face comes up to its wall, which only modes move."""
     y, z, half = faces[face, NORMAL_Y], faces[face, NORMAL_Z], walls.half[face]
     turning = xi * half[0] * (y * swing[3] + z * swing[6]) + eta * half[1] * (y * swing[5] + z * swing[7])
-    away = speed_at(walls.modes, face, xi + walls.room.lever[face, SHIFT], eta)
-    return approach(faces[face], drift, swing) + turning - away
+    on_wall = xi + walls.room.lever[face, SHIFT]
+    away = speed_at(walls.modes, face, on_wall, eta) + warm.recess(walls.warm, face, on_wall, eta) * drift[0]
+    return approach(None, faces[face], None, None, drift, swing) + turning - away
 
 
 @kernel

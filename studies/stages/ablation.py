@@ -2,8 +2,9 @@
 compiled kernel without it does not contain it.
 
 The baseline has every effect on: those the scene does not have are added with the small values in ``ADDED``, except those that
-need values of the scene's own (contact, friction, platform), which count where the scene has them. The scene as it asks and the scene
-without any effect close the table. The surrogate runs all of them by turns, so that what else the machine does meets each alike.
+need values of the scene's own (contact, friction, platform, and a temperature where rails are not known to expand), which count where
+the scene has them. The scene as it asks and the scene without any effect close the table. The surrogate runs all of them by turns, so
+that what else the machine does meets each alike.
 """
 
 import importlib
@@ -25,6 +26,7 @@ ADDED = {
     "mass_offset": {"mass_offset.eccentricity.axial": "0.1 mm", "mass_offset.eccentricity.radial": "120 deg"},
     "initial": {"initial.position.y": "20 um"},
     "gravity": {"gravity.z": "-9.81 m/s**2"},
+    "thermal": {"thermal.mean": "5 K", "thermal.gradient.y": "20 K/m"},
     "rail.damping": {"rail.damping.ratios": [0.01, 0.01], "rail.damping.frequencies": ["500 Hz", "5 kHz"]},
 }
 
@@ -32,8 +34,9 @@ ADDED = {
 def variants(scene: Scene) -> dict[str, dict]:
     """Overrides of ``scene`` for each line of the table, by name."""
     absent = scene.absent_effects()
-    everything = {key: value for effect in absent for key, value in ADDED.get(effect, {}).items()}
-    present = [effect for effect in EFFECTS if effect not in absent or effect in ADDED]
+    added = {effect: values for effect, values in ADDED.items() if effect != "thermal" or scene.rail.material.expansion is not None}
+    everything = {key: value for effect in absent for key, value in added.get(effect, {}).items()}
+    present = [effect for effect in EFFECTS if effect not in absent or effect in added]
     lines = {"all effects": everything}
     for effect in present:
         kept = {key: value for key, value in everything.items() if not key.startswith(f"{effect}.")}
@@ -86,7 +89,8 @@ def _rows(fidelity: str, lines: dict[str, dict], asked: list[Run], runs: list[Tr
 
 def compiled(run: Run) -> list[str]:
     """Effects whose code is in the kernel compiled for ``run``, as the fidelity reads them off it."""
-    present = importlib.import_module(run.fidelity).compiled_effects(run.scene, run.numerics)
+    known = {"walls": run.walls} if run.walls is not None else {}
+    present = importlib.import_module(run.fidelity).compiled_effects(run.scene, run.numerics, **known)
     return sorted(effect for effect in present if present[effect])
 
 

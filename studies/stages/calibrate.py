@@ -12,8 +12,10 @@ import numpy as np
 from scenes.calibration import Calibration
 from scenes.faults import Fault, SceneError
 from scenes.scene import NOMINAL
+from scenes.walls import Walls
 from studies import forecast
 from studies.progress import Board, say
+from studies.stages import walls
 from studies.store import SOURCES
 from studies.study import Study, StudyError, require_success
 
@@ -85,10 +87,15 @@ def _fitted(study: Study, references: dict, path: Path) -> tuple[dict, list[Path
     import calibrate
 
     with Board("calibrate", 1) as board:
-        found = calibrate.run(study.scene, references, progress=board.callback("calibrate"))
+        found = calibrate.run(study.scene, references, progress=board.callback("calibrate"), walls=_walls(study, references))
         board.finished("calibrate", f"objective {found.objective:.4g}")
     found.save(path)
     return as_dict(found) | {"calibration": study.relative(path)}, [path]
+
+
+def _walls(study: Study, names) -> Walls | None:
+    """Rigid walls for the conditions of these ``names``, if any of them is warm: they share a rail."""
+    return next(filter(None, (walls.of_law(study, study.condition(name)) for name in names)), None)
 
 
 def load(study: Study) -> Calibration:

@@ -58,7 +58,8 @@ def request(study: Study, asked: Asked, calibration: Calibration | None = None) 
         numerics = Numerics(relative_tolerance=asked.tolerance)
     except ValueError as fault:
         raise SceneError([Fault("--tolerance", "numerics", str(asked.tolerance), str(fault))]) from None
-    return Ensemble(study.scene, source, calibration, numerics, walls.load(study, study.scene) if asked.walls else None)
+    found = (walls.load if asked.walls else walls.of_law)(study, study.scene)
+    return Ensemble(study.scene, source, calibration, numerics, found)
 
 
 def run(study: Study, asked: Asked, calibration: Calibration | None = None) -> dict:

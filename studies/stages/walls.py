@@ -49,6 +49,12 @@ def load(study: Study, scene: Scene) -> Walls | None:
     return found
 
 
+def of_law(study: Study, scene: Scene) -> Walls | None:
+    """What a contact law stands on in ``scene``: rigid walls where its rails are warm, else None, walls as they were mounted."""
+    found = load(study, scene) if scene.thermal is not None else None
+    return found and found.rigid()
+
+
 def under(study: Study, names) -> dict[str, Walls | None]:
     """Walls of each condition by name; conditions with the same rail and pads share them."""
     scenes = {name: study.condition(name) for name in names}

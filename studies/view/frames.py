@@ -47,8 +47,8 @@ class Camera:
     def take(self, loop) -> Frame:
         """The frame of ``loop`` now."""
         state, system = loop.state, self.system
-        displacement = state.displacement[system.number]
-        mean, worst = self._stresses(state.displacement)
+        displacement = loop.deformed()[system.number]
+        mean, worst = self._stresses(loop.deformed())
         base, body = (rotation.matrices(part.quaternion[None])[0] for part in (state.platform, state.payload))
         turn, centre = base.T @ body, base.T @ (state.payload.position - state.platform.position)
         return Frame(loop.steps * loop.stepping.dt_s, displacement, recovery.von_mises(mean), worst,

@@ -14,7 +14,7 @@ from tests.lowfi.giving import reference_walls
 # How the effects that the reference scene lacks are added; a law that sticks stands in the place of the other.
 ADDED = {"gravity": {"gravity.z": -9.80665},
          "sticking": {"friction": {"law": "sticking", "static": 0.2, "dynamic": 0.2, "stiffness": 1e7, "damping": 1e4}}}
-ON_WALLS = ("walls", "flexibility")
+ON_WALLS = ("walls", "flexibility", "thermal")  # effects that need walls found for the scene
 COUNT = """
 import numba
 import numpy as np
@@ -60,6 +60,15 @@ def test_one_absent_effect_is_not_compiled(effect):
 def test_without_any_effect_nothing_of_them_is_compiled():
     found = lowfi.compiled_effects(load("reference").replace({name: None for name in ("friction", "platform", "contact", "thrust_offset")}))
     assert not any(found.values())
+
+
+@pytest.mark.slow
+def test_warm_walls_are_compiled_for_a_warm_scene_only():
+    """A law asks where they stand, walls that give way know it in code of their own."""
+    cold, name = load("reference"), b"5lowfi5walls4warm5_fill"
+    warm, walls = cold.replace({"thermal.mean": 20.0}), reference_walls()
+    assert lowfi.compiled_effects(warm, walls=walls.rigid()) == lowfi.compiled_effects(cold) | {"thermal": True}
+    assert name in compiled_code(warm, walls=walls) and name not in compiled_code(cold, walls=walls)
 
 
 def test_walls_that_give_way_stand_in_the_place_of_the_contact_law():

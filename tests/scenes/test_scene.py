@@ -103,7 +103,7 @@ def _numbers(value, path=""):
 
 
 def test_every_physical_number_changes_the_hash():
-    scene = load("reference").condition("h9").replace({"gravity.z": -9.81, "initial.position.y": 1e-5})
+    scene = load("reference").condition("h9").replace({"gravity.z": -9.81, "initial.position.y": 1e-5, "thermal.mean": 20.0})
     # As a number, because its unit in text belongs to one exponent.
     scene = scene.replace({"contact.stiffness": scene.contact.stiffness})
     keys = [(key, value) for key, value in _numbers(scene.resolved()) if key.split(".")[0] not in ("conditions", "agreement", "flight")]

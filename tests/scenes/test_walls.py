@@ -31,6 +31,25 @@ def test_what_was_saved_is_loaded(walls, tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["walls.npz"]
 
 
+def test_warm_walls_are_saved_too_and_older_files_know_of_none(walls, tmp_path):
+    path, warm = tmp_path / "walls.npz", np.random.default_rng(9).random((5, 5, FACES, PATTERNS))
+    known = replace(walls, warm=warm)
+    known.save(path)
+    assert np.array_equal(Walls.load(path).warm, warm) and known.hash != walls.hash
+    walls.save(path)
+    assert Walls.load(path).warm is None
+    replace(walls, warm=warm[:4]).save(path)
+    with pytest.raises(ValueError, match="warm: given shape"):
+        Walls.load(path)
+
+
+@pytest.mark.parametrize("wrong, words", [(lambda walls: None, "given no walls"), (lambda walls: walls, "know of no temperature"),
+                                          (lambda walls: walls.rigid(), "know of no temperature")])
+def test_a_warm_scene_asks_for_walls_that_know_of_it(walls, wrong, words):
+    with pytest.raises(SceneError, match=words):
+        lowfi.run(SCENE.replace({"thermal.mean": 20.0}), walls=wrong(walls))
+
+
 def damage_end(path):
     path.write_bytes(path.read_bytes()[:-1000])
 

@@ -40,9 +40,11 @@ def test_ablation_takes_every_effect_away_once():
     assert scene.replace(lines["as the scene asks"]).hash == scene.hash
     assert len(scene.replace(lines["no effect"]).absent_effects()) == len(EFFECTS) == 9
     assert "without friction" not in ablation.variants(scene.replace({"friction": None}))
-    # Every effect with code of its own is looked for in the compiled kernels of both models; sticking is a second law of friction.
+    assert "without thermal" not in ablation.variants(scene.replace({"rail.material.expansion": None}))
+    # Every effect with code of its own is looked for in the compiled kernels of both models; sticking is a second law of friction, and
+    # the reference feels temperature before its kernels run.
     assert (set(lowfi_laws) - {"sticking", "walls"}) | {"mass_offset", "initial", "rail.damping"} == set(EFFECTS)
-    assert set(highfi_laws) | {"mass_offset", "initial", needs_walls} == set(EFFECTS)
+    assert set(highfi_laws) | {"mass_offset", "initial", "thermal", needs_walls} == set(EFFECTS)
 
 
 def test_surrogate_is_timed_by_turns(monkeypatch, tmp_path):
