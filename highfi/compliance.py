@@ -113,7 +113,7 @@ def of_mesh(mesh: RailMesh, material: MaterialTable, faces: scene_model.Faces, r
         grams = np.array([patch.gram for patch in patches.found] + [np.zeros((patterns, patterns))])
         for number, signs in zip(places, images):
             gram += grams[number]
-            warm += moved[number] * np.r_[1.0, signs, 1.0]  # an image is warmer where its y and z say
+            warm += heated[number] * np.r_[1.0, signs, 1.0]  # an image is warmer where its y and z say
             matrix += between[number[:, :, None, None, None], pattern[:, None, None], number[:, None, None, :, None], pattern]
             shape += swung[number]
             here = (number >= 0).any(axis=0)

@@ -4,7 +4,6 @@ Exit codes: 0 done; 1 a run failed (its status says why); 2 bad input, every fau
 imported by the command that needs them, so that ``--help`` answers at once.
 """
 
-import json
 from pathlib import Path
 from typing import Annotated, Optional
 

@@ -14,8 +14,6 @@ much. L_m^2 is the mode's effective mass, and all of them together are less than
 momenta of payload and platform are kept to rounding by that choice.
 """
 
-import numpy as np
-
 from lowfi.state import STATE_SIZE
 from scenes.jit import inlined, kernel
 from scenes.walls import PATTERNS, POWERS

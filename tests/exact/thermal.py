@@ -1,7 +1,6 @@
 """Closed forms of thermo-elasticity: Timoshenko and Goodier, Theory of Elasticity, 3rd ed. 1970, chapter 13; Boley and Weiner,
 Theory of Thermal Stresses, 1960, section 9.6: a simply connected body is free of stress if its temperature is linear in place."""
 
-import numpy as np
 
 
 def free_displacement(places, strain, gradient):
