@@ -9,6 +9,7 @@ from lowfi.numerics import Numerics
 from lowfi.run import Run
 from scenes import outcome
 from scenes.scene import Scene
+from scenes.walls import Walls
 
 
 class Motion(NamedTuple):
@@ -21,9 +22,9 @@ class Motion(NamedTuple):
     outcome: outcome.Outcome
 
 
-def run(scene: Scene, numerics: Numerics | None = None) -> Motion:
+def run(scene: Scene, numerics: Numerics | None = None, walls: Walls | None = None) -> Motion:
     """The motion of ``lowfi.run``, to the last bit."""
-    going = Run(scene, numerics or Numerics())
+    going = Run(scene, numerics or Numerics(), walls)
     going.begin()
     going.march(None)
     moved = balance.motion(going.rows[:going.taken], 0, going.interval)

@@ -31,10 +31,10 @@ def run(scene: Scene, references: dict[str, Trajectory | Curves], numerics=None,
     free, held, plan = parameters.free(scene), parameters.held(scene), plan or Plan()
     wanted = targets(scene, curves)
     with ThreadPoolExecutor(WORKERS) as pool:
-        objective = Objective(scene, wanted, free, numerics, pool.map, walls)
+        objective = Objective(scene, wanted, free, numerics, pool.map, walls=walls)
         found = search(objective, _shares(free, scene), plan, seed, progress)
         residuals = objective.parts(found.shares)
-        wide = Objective(scene, wanted, free + held, numerics, pool.map, walls)
+        wide = Objective(scene, wanted, free + held, numerics, pool.map, walls=walls)
         matrix = information(jacobian(wide, np.append(found.shares, _shares(held, scene))))
     values = objective.values(found.shares)
     constants = parameters.overrides(scene, values)

@@ -6,7 +6,7 @@ from studies.flight import flown, orbit, rotation
 
 SHOWN = 5  # conditions with curves
 _POINTS = 201
-_NEAR = 5e-4  # m of clearance up to which it is shown
+_NEAR, _LEAST = 5e-4, 2.0  # clearance (m), and times the least one, up to which it is shown
 
 
 def of(both: flown.Pair, found: flown.Flown) -> dict:
@@ -39,7 +39,7 @@ def _clearance(both: flown.Pair) -> dict:
         return {}
     time = np.linspace(0.0, float(flown.clear_after(both)[0]), 4 * _POINTS)
     gap = flown.gap(both, time[None])[0]
-    near = gap <= _NEAR
+    near = gap <= max(_NEAR, _LEAST * gap.min())
     return {"clearance_s": _plain(time[near]), "clearance_m": _plain(gap[near])}
 
 
