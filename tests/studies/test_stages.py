@@ -38,7 +38,7 @@ def test_ablation_takes_every_effect_away_once():
     for effect in others:
         assert scene.replace(lines[f"without {effect}"]).absent_effects() == [effect, needs_walls]
     assert scene.replace(lines["as the scene asks"]).hash == scene.hash
-    assert len(scene.replace(lines["no effect"]).absent_effects()) == len(EFFECTS) == 9
+    assert len(scene.replace(lines["no effect"]).absent_effects()) == len(EFFECTS) == 10
     assert "without friction" not in ablation.variants(scene.replace({"friction": None}))
     assert "without thermal" not in ablation.variants(scene.replace({"rail.material.expansion": None}))
     # Every effect with code of its own is looked for in the compiled kernels of both models; sticking is a second law of friction, and
