@@ -25,8 +25,9 @@ def named(unit: str) -> str:
 
 
 @lru_cache(maxsize=4096)
-def to_si(text: str, unit: str) -> float:
-    """Value of ``text`` in ``unit`` (an SI unit). Raises ValueError for a wrong dimension, bad text, or NaN and inf."""
+def to_si(text: str, unit: str, absolute: bool = False) -> float:
+    """Value of ``text`` in ``unit`` (an SI unit). Raises ValueError for a wrong dimension, bad text, NaN and inf, and, unless it is
+    ``absolute``, for a unit whose zero is elsewhere."""
     match = _QUANTITY.fullmatch(text)
     if match is None:
         raise ValueError(named(unit))
@@ -39,7 +40,7 @@ def to_si(text: str, unit: str) -> float:
         raise ValueError(f"{named(unit)} ({given_unit!r} is no unit)") from error
     if not quantity.is_compatible_with(unit):
         raise ValueError(f"{named(unit)} (given dimension {quantity.dimensionality})")
-    if registry.Quantity(0.0, quantity.units).to(unit).magnitude != 0.0:
+    if not absolute and registry.Quantity(0.0, quantity.units).to(unit).magnitude != 0.0:
         raise ValueError(f"{named(unit)} ({given_unit!r} has its zero elsewhere: a difference is in K or delta_degC)")
     # An angle has no dimension, so "0.1" would pass for 0.1 rad and "5 Hz" for 5 rad/s: ask for the unit itself.
     if _radians(quantity) != _radians(registry.Quantity(1.0, unit)):

@@ -50,7 +50,7 @@ def turns(quaternion: np.ndarray) -> float:
 
 def principal(quaternion: np.ndarray) -> np.ndarray:
     """Rotation vectors (n,3) rad of quaternions (n,4), the shortest ones: what jumps at each half turn."""
-    return np.array([outcome._rotation_vector(q) for q in quaternion])
+    return np.array([rotation.vector(q) for q in quaternion])
 
 
 def assert_smooth(run, interval: float, rate: float) -> None:

@@ -56,7 +56,7 @@ def read(path: str | Path) -> tuple[Sheet, Log]:
         if columns:
             si = {"time": "s", "rate": "rad/s", "acceleration": "m/s**2", "temperature": "K"}[group]
             unit = getattr(sheet.units, group)
-            zero, one = to_si(f"0 {unit}", si), to_si(f"1 {unit}", si)  # degC has an offset
+            zero, one = to_si(f"0 {unit}", si, absolute=True), to_si(f"1 {unit}", si, absolute=True)  # degC has an offset
             values[group] = zero + (one - zero) * np.column_stack([table[name] for name in columns])
     return sheet, _even(sheet, str(source), values)
 

@@ -16,12 +16,12 @@ from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import AfterValidator, ValidationError, model_validator
+from pydantic import AfterValidator, BeforeValidator, ValidationError, ValidationInfo, model_validator
 
 from scenes import reading
 from scenes.faults import SceneError, faults_of
 from scenes.table import Table
-from scenes.units import (Acceleration, Angle, NonNegativeNumber, NonNegativeTime, Number, PositiveTime, Rate, quantity, to_si)
+from scenes.units import (Acceleration, Angle, NonNegativeNumber, NonNegativeTime, Number, PositiveTime, Rate, parse, quantity, to_si)
 
 NonNegativeRate, PositiveRate = quantity("rad/s", ge=0.0), quantity("rad/s", gt=0.0)
 PositiveAcceleration = quantity("m/s**2", gt=0.0)
@@ -40,10 +40,16 @@ def _matrix(kind: Any) -> Any:
 
 def _unit(si: str) -> Any:
     def check(text: str) -> str:
-        to_si(f"1 {text}", si)
+        to_si(f"1 {text}", si, absolute=True)
         return text
 
     return Annotated[str, AfterValidator(check)]
+
+
+def _temperature(value: Any, info: ValidationInfo) -> float:
+    """On the absolute scale, so that a degC has its zero."""
+    bare = bool(info.context and info.context.get("bare_numbers_are_si"))
+    return to_si(value, "K", absolute=True) if isinstance(value, str) else parse(value, "K", bare)
 
 
 class Columns(Table):
@@ -86,7 +92,7 @@ class Gyro(Table):
     misalignment: _matrix(Angle) = ((0.0,) * 3,) * 3
     g_sensitivity: _matrix(GSensitivity) = ((0.0,) * 3,) * 3
     temperature: _triple(Drift) = (0.0,) * 3
-    reference_temperature: quantity("K") = 293.15
+    reference_temperature: Annotated[float, BeforeValidator(_temperature)] = 293.15
 
 
 class Accelerometer(Table):

@@ -7,17 +7,19 @@ from studies.report import tables
 from studies.report.chart import Chart
 from studies.report.markup import Html, caption, fold, paragraph, table
 
-_WORDS = ("Drawn from the distributions \u201c{vary}\u201d with seed {seed}{origin}. Every condition has its own uncertainty of the reference by the "
-          "mesh; step, penalty and the floor are those of the first.")
+_WORDS = ("Drawn from the distributions “{vary}” with seed {seed}{origin}. Every condition has its own uncertainty of the reference by "
+          "the mesh; step, penalty and the floor are those of the first.")
 
 
 def draw(found: dict, figure: Callable[[Chart, str], Html]) -> Html:
     """The section."""
     origin = ", which follows from the sources and the scene: a change of the code draws others" if found["asked"]["seed"] is None else ""
     words = _WORDS.format(vary=found["asked"]["vary"], seed=found["seed"], origin=origin)
-    return Html(paragraph("On compliant walls, nothing fitted: " + tables.summary(found["compliant"])) + tables.judged(found["compliant"], "blind-compliant")
-                + caption(words) + paragraph("Calibrated springs: " + tables.summary(found["calibrated"]))
-                + tables.judged(found["calibrated"], "blind-calibrated") + fold("What was drawn", _drawn(found["conditions"])))
+    compliant, calibrated = found["compliant"], found["calibrated"]
+    return Html("".join([
+        paragraph("On compliant walls, nothing fitted: " + tables.summary(compliant)), tables.judged(compliant, "blind-compliant"),
+        caption(words), paragraph("Calibrated springs: " + tables.summary(calibrated)), tables.judged(calibrated, "blind-calibrated"),
+        fold("What was drawn", _drawn(found["conditions"]))]))
 
 
 def _drawn(conditions: dict) -> Html:

@@ -27,7 +27,8 @@ _PLOTLY_MARKER = {"o": "circle", "s": "square", "^": "triangle-up", "v": "triang
 
 @dataclass(frozen=True)
 class Line:
-    """One curve (x, y); ``dash`` as in matplotlib, "" for markers only; ``marker`` "o", "s", "^", "v", "D" or ""; ``labels`` are texts at the points, ``size`` that of a marker (px)."""
+    """One curve (x, y); ``dash`` as in matplotlib, "" for markers only; ``marker`` "o", "s", "^", "v", "D" or ""; ``labels`` are texts
+    at the points, ``size`` that of a marker (px)."""
 
     x: Sequence[float]
     y: Sequence[float]

@@ -15,8 +15,8 @@ from studies.report.markup import Html, caption, code, number, paragraph, sectio
 from studies.report.promises import promises, render
 from studies.report.style import CSS
 
-_CONTENTS = (("answer", "Answer"), ("scene", "Scene"), ("mesh", "Mesh"), ("compliance", "Compliance"), ("thrust", "Thrust"), ("figure6", "Curves"),
-             ("contact-forces", "Contact"), ("energy", "Energy"), ("stress", "Stress"), ("calibration", "Calibration"),
+_CONTENTS = (("answer", "Answer"), ("scene", "Scene"), ("mesh", "Mesh"), ("compliance", "Compliance"), ("thrust", "Thrust"),
+             ("figure6", "Curves"), ("contact-forces", "Contact"), ("energy", "Energy"), ("stress", "Stress"), ("calibration", "Calibration"),
              ("posterior", "Uncertainty"), ("agreement-section", "Agreement"), ("growth-section", "Growth of 1 µm"), ("speedup", "Speed"),
              ("cost", "Cost"), ("convergence", "Convergence"), ("bench", "Solvers"), ("stability", "Hard cases"), ("ablation", "Ablation"),
              *((item.name, item.link) for item in answers.ANSWERS), ("promises", "Promises"), ("colophon", "Origin"))

@@ -37,8 +37,8 @@ def charts(found: dict) -> list[Chart]:
             for stress in sorted({item["stress"] for item in found["searches"]})}
     looks = ((GREY, "s"), (NAVY, "o"))
     trade = [Line(front[:, 0], front[:, 1], "best of all met", VERMILION)]
-    trade += [Line(*zip(*pairs), "ended, three conditions asked" if stress == 0.0 else "ended, all five asked", *look[:1], dash="", marker=look[1])
-              for (stress, pairs), look in zip(ends.items(), looks)]
+    trade += [Line(*zip(*pairs), "ended, three conditions asked" if stress == 0.0 else "ended, all five asked", colour, dash="",
+                   marker=marker) for (stress, pairs), (colour, marker) in zip(ends.items(), looks)]
     best, printed = found["searches"][found["best"]], published.sensitivity()
     rates = np.array(best["rates_deg_s"])[1:4]
     deviations = np.array(best["changed_deg_s"]) - rates[:, None, :]
@@ -88,8 +88,8 @@ def _verdict(found: dict) -> str:
 def _headline(found: dict) -> Html:
     """Cost of one case in both fidelities, the paper's beside ours."""
     printed, ours = found["headline"], found["ours"]
-    rows = [("the paper", "LS-DYNA, 4 million hexahedra", f"{printed['high_fidelity_wall_time']} h", f"ADAMS, {printed['low_fidelity_wall_time']} s",
-             f"{float(printed['speedup']):,.0f}")]
+    rows = [("the paper", "LS-DYNA, 4 million hexahedra", f"{printed['high_fidelity_wall_time']} h",
+             f"ADAMS, {printed['low_fidelity_wall_time']} s", f"{float(printed['speedup']):,.0f}")]
     if ours:
         rows.append(("here, its own reference scene", "explicit finite elements", f"{ours['highfi_wall_s']:.3g} s",
                      f"calibrated surrogate, {1e3 * ours['lowfi_wall_s']:.3g} ms", f"{ours['ratio']:,.0f}"))
@@ -97,8 +97,8 @@ def _headline(found: dict) -> Html:
 
 
 def _inputs(found: dict) -> Html:
-    rows = [(item["name"].replace("_", " "), item["unit"], number(item["low"]), number(item["high"]), number(item["best"], 4), number(item["from"]),
-             number(item["to"]), f"{100.0 * item['share']:.0f} %", item["reason"]) for item in found["inputs"]]
+    rows = [(item["name"].replace("_", " "), item["unit"], number(item["low"]), number(item["high"]), number(item["best"], 4),
+             number(item["from"]), number(item["to"]), f"{100.0 * item['share']:.0f} %", item["reason"]) for item in found["inputs"]]
     heads = ("input", "unit", "bound from", "to", "best", "admissible from", "to", "of the bounds", "why these bounds")
     return table(heads, rows, dense=True)
 

@@ -16,7 +16,8 @@ def agreement(document: dict) -> Html:
     """The agreement tables, the surrogate on compliant walls first, with floor and reference uncertainty beside every claim."""
     gates = document["gates"]
     legend = (f"Gates: rate L2 {percent(gates['rate_relative_l2'])} %, v_x L2 {percent(gates['velocity_relative_l2'])} %, settled error "
-              f"{gates['settled_rate_error_deg_s']:g} deg/s, or twice the floor where that is more. " + _FLOOR.format(change=1e6 * document["clearance_change_m"])
+              f"{gates['settled_rate_error_deg_s']:g} deg/s, or twice the floor where that is more. "
+              + _FLOOR.format(change=1e6 * document["clearance_change_m"])
               + "Reference ±: the largest change of its settled rates from twice the element size on, and there under half the step or "
               f"four times the penalty; above {document['converged_deg_s']:g} deg/s no agreement is claimed. A star marks a value measured on other "
               "conditions, of which the largest is taken. ISO 18571 is the mean rating of the three rates (1 is perfect); Sprague "

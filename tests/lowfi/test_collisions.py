@@ -6,6 +6,7 @@ import pytest
 
 import lowfi
 from lowfi import state, touch
+from lowfi.system import Contact
 from scenes.effects import contact as law
 from tests.exact import contact as exact
 from tests.lowfi.support import G, PAPER_PAD, close, drop, numerics, scene
@@ -23,7 +24,7 @@ def test_impact_spot_values(p_mm, closing, force):
     turn, zero = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0), (0.0, 0.0, 0.0)
     body = state.Motion(zero, (0.0, 0.0, -closing / 1e3), turn, zero)
     face = (0.0, 0.0, -0.1, 0.0, -1.0, 0.1, 0.0)
-    found = touch.load(law.laws(record), None, None, face, p_mm * 1e-3, body, state.Motion(zero, zero, turn, zero)).normal[2]
+    found = touch.load(Contact(*law.laws(record), None), None, None, face, p_mm * 1e-3, body, state.Motion(zero, zero, turn, zero)).normal[2]
     assert found == pytest.approx(exact.impact_force(K, 1.5, 60000.0, 3e-4, p_mm * 1e-3, closing / 1e3), rel=1e-9, abs=1e-12)
     assert found == pytest.approx(force, abs=5e-4)
     # Controls: without the cut-off the law pulls while the pad opens fast; with its damping there at once, not by the cubic step, it
