@@ -1,5 +1,7 @@
 """Many cases on the surrogate of a study: the store, what is outside a calibration, and the quantities that are reported."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -35,6 +37,14 @@ def test_offsets_do_not_decide_what_is_outside(model, expected):
     offsets = {"thrust_offset.misalignment.radial": np.linspace(0.0, 6.0, 7)}
     assert regime.outside(model, offsets, 7).tolist() == [expected] * 7
     assert regime.outside(Surrogate(SCENE, FITTED, None), {"rail.thickness": np.array([4e-3])}, 1).all()
+
+
+def test_calibration_without_ranges_judges_the_rail_alone():
+    """Nothing is outside ranges that do not exist; rail and pads are known all the same."""
+    endless = replace(FITTED, valid={})
+    assert regime.outside(Surrogate(SCENE, endless, None), columns_of(ROWS), len(ROWS)).tolist() == [False] * len(ROWS)
+    other = Surrogate(SCENE.replace({"rail.thickness": "3 mm", "rail.mount_width": "3 mm"}), endless, None)
+    assert regime.outside(other, columns_of(ROWS), len(ROWS)).all()
 
 
 def test_cases_are_kept_and_not_run_again(tmp_path, monkeypatch):
