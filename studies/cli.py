@@ -281,10 +281,10 @@ def ensemble(scene: SceneName = "reference", out: Out = Path("out"), set_: Set =
 
     found = guarded(work, json_)
     if not json_:
-        from studies import ensemble_summary
+        from studies.populations import summary
         from studies.stages import ensemble as stage
 
-        print("\n".join(stage.case_lines(found) if case is not None else ensemble_summary.lines(found)))
+        print("\n".join(stage.case_lines(found) if case is not None else summary.lines(found)))
 
 
 add_all(app)
@@ -302,12 +302,10 @@ def bench(out: Out = Path("out"),
     at the same error; writes bench/highfi.json and bench/lowfi.json."""
 
     def work() -> dict:
-        from studies import bench as stage
-        from studies import bench_lowfi
+        from studies.bench import reference, surrogate
 
-        surrogate = bench_lowfi.run(out, cases=cases, repeats=repeats)
-        solver = stage.run(out, tuple(1e-3 * size for size in element_size) if element_size else stage.SIZES, repeats, steps)
-        return {**solver, "surrogate": surrogate}
+        sizes = tuple(1e-3 * size for size in element_size) if element_size else reference.SIZES
+        return {**reference.run(out, sizes, repeats, steps), "surrogate": surrogate.run(out, cases=cases, repeats=repeats)}
 
     guarded(work, json_)
 

@@ -9,8 +9,8 @@ import sys
 from pathlib import Path
 
 from scenes.files import write_text
-from studies import bench
-from studies.agreement import FINITE_ELEMENTS
+from studies.bench import reference
+from studies.agreement.verdicts import FINITE_ELEMENTS
 from studies.report import growth, scaling
 from studies.study import read
 
@@ -36,7 +36,7 @@ def section(folder: Path) -> str:
         parts += [_cost(found), _scaling(found["scaling"])]
     if (found := read(folder / "convergence.json")) is not None:
         parts.append(_convergence(found))
-    if (found := bench.stored(folder.parent)) is not None:
+    if (found := reference.stored(folder.parent)) is not None:
         parts += [_bench(found["rows"])] if found["rows"] else []
         parts += [_surrogate(found["lowfi"])] if found["lowfi"] else []
     return "\n\n".join(parts)

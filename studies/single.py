@@ -5,7 +5,7 @@ from pathlib import Path
 from scenes.calibration import Calibration
 from scenes.faults import Fault, SceneError
 from scenes.walls import require_modes
-from studies import choice
+from studies.cost import choice
 from studies.progress import say
 from studies.stages import cost, walls
 from studies.stages.runs import row

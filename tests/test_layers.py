@@ -39,6 +39,18 @@ def sources(*folders: str) -> list[Path]:
     return [path for folder in folders for path in sorted((ROOT / folder).rglob("*.py"))]
 
 
+def test_an_installed_package_holds_every_module_and_data_file():
+    """The project is used from its folder here, where nothing is missing; a wheel holds what is listed and no more."""
+    settings = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["setuptools"]
+    held = {str(path.parent.relative_to(ROOT)).replace("/", ".") for path in sources(*PACKAGES)}
+    assert set(settings["packages"]) == held
+    listed = {path for package, patterns in settings["package-data"].items() for pattern in patterns
+              for path in (ROOT / package.replace(".", "/")).glob(pattern)}
+    data = {path for package in PACKAGES for path in (ROOT / package).rglob("*.*")
+            if path.suffix in (".toml", ".csv", ".msh", ".json", ".txt") and "__pycache__" not in path.parts}
+    assert data == listed
+
+
 def imported(tree: ast.AST) -> set[str]:
     """Top-level names of everything the source imports, wherever the statement stands."""
     names = set()

@@ -46,7 +46,7 @@ def add(app: typer.Typer) -> None:
         """
 
         def work() -> dict:
-            from studies.limit_inputs import Asked
+            from studies.limits.inputs import Asked
             from studies.stages import limits as stage
 
             asked = Asked(tuple(limit or Asked.limits), probability, confidence, cases, seed, tolerances.value, others.value, draws,

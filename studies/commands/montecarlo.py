@@ -43,7 +43,7 @@ def add(app: typer.Typer) -> None:
         """
 
         def work() -> dict:
-            from studies.random_factors import Reading
+            from studies.populations.random_factors import Reading
             from studies.stages import montecarlo as stage
 
             how = Reading(reading.value, angles.value, rule.value, initial)

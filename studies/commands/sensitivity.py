@@ -16,7 +16,7 @@ def add(app: typer.Typer) -> None:
 
 def sensitivity(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = None,
                 vary: Annotated[Optional[Path], typer.Option("--vary", metavar="FILE",
-                                help="What is not certain, as a .toml file; default: studies/data/tolerances.toml.")] = None,
+                                help="What is not certain, as a .toml file; default: studies/sensitivity/tolerances.toml.")] = None,
                 points: Annotated[int, typer.Option("--points", metavar="N", help="Base points of the Sobol' indices, a power "
                                   "of two; each takes one case an input, and two.")] = 1024,
                 seed: Annotated[int, typer.Option("--seed", metavar="N", help="Seed of the points and of the bootstrap.")] = 1,

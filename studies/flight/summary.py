@@ -7,10 +7,10 @@ from scipy.stats import binomtest
 
 from scenes.scene import Scene
 from scenes.uncertainty import Uncertainty
-from studies import order_statistics
+from studies.populations import order_statistics
 from studies.flight import bodies
 from studies.flight.flown import Flown
-from studies.population import Population
+from studies.populations.population import Population
 
 if TYPE_CHECKING:
     import xarray

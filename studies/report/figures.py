@@ -8,7 +8,7 @@ from scenes import ledger
 from scenes.effects import thrust_law
 from scenes.scene import Scene
 from scenes.trajectory import Trajectory
-from studies.contact_loads import by_pad
+from studies.refinement.contact_loads import by_pad
 from studies.report.chart import AMBER, AXIS_COLOURS, GREY, NAVY, TEAL, VERMILION, Chart, Line, Panel
 
 _MILLISECONDS = "time after ignition (ms)"

@@ -6,8 +6,8 @@ from html import escape
 import numpy as np
 
 from calibrate.profile import DROP
-from studies import prediction
-from studies.metrics import AXES
+from studies.agreement import prediction
+from studies.agreement.metrics import AXES
 from studies.report.chart import AMBER, GREY, NAVY, TEAL, VERMILION, Chart, Line, Panel
 from studies.report.markup import Html, caption, fold, number, paragraph, percent, table
 

@@ -2,7 +2,7 @@
 
 from typing import Callable
 
-from studies.knee import LEVEL, MISFIT
+from studies.sweeps.knee import LEVEL, MISFIT
 from studies.report.chart import Chart
 from studies.report.markup import Html, caption, number, paragraph, percent, table
 from studies.report.sweep_figures import pictures

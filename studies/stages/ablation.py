@@ -19,7 +19,7 @@ from studies import machine
 from studies.stages.compare import SOURCES_USED
 from studies.store import Run
 from studies.study import Study
-from studies.timing import timed, warm_up
+from studies.cost.timing import timed, warm_up
 
 ADDED = {
     "thrust_offset": {"thrust_offset.misalignment.axial": "0.1 deg", "thrust_offset.misalignment.radial": "35 deg"},

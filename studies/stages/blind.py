@@ -11,8 +11,8 @@ from pathlib import Path
 from lowfi.rows import Drawn
 from scenes import uncertainty
 from scenes.files import content_hash, source_hash
-from studies import agreement
-from studies.agreement import Context
+from studies.agreement import verdicts
+from studies.agreement.verdicts import Context
 from studies.stages import calibrate, compare, walls
 from studies.store import SOURCES
 from studies.study import Study, read, require_success
@@ -40,12 +40,12 @@ def run(study: Study, asked: Asked = Asked()) -> dict:
         wanted = {name: drawn.highfi(name) for name in drawn.conditions}
         highfi = dict(zip(wanted, drawn.store.fill("highfi", list(wanted.values()))))
         require_success(highfi, "judge blind conditions")
-        changes, floor, gates = compare.refinements(drawn), compare.floors(drawn, "reference", drawn.coarse), agreement.gates(study.scene)
+        changes, floor, gates = compare.refinements(drawn), compare.floors(drawn, "reference", drawn.coarse), verdicts.gates(study.scene)
         rows = {}
         for rung in ladder:
             own = compare.floors(drawn, rung.title, partial(rung.ask, drawn))
             rows[rung.name] = compare.rows(drawn, rung, highfi, Context([*floor, *own], changes, gates))
-        return {"asked": asdict(asked), "seed": seed_of(study, asked), "gates": gates, "converged_deg_s": agreement.CONVERGED_DEG_S,
+        return {"asked": asdict(asked), "seed": seed_of(study, asked), "gates": gates, "converged_deg_s": verdicts.CONVERGED_DEG_S,
                 "clearance_change_m": study.settings.clearance_change, "conditions": drawn.scene.conditions, **rows}, []
 
     return study.stage(NAME, _key(study, drawn), make)
@@ -90,4 +90,4 @@ def _rate(value: float | None) -> str:
 
 
 def _key(study: Study, drawn: Study) -> str:
-    return study.key((*SOURCES["highfi"], *SOURCES["lowfi"], "calibrate"), NAME, drawn.scene.conditions, agreement.gates(study.scene))
+    return study.key((*SOURCES["highfi"], *SOURCES["lowfi"], "calibrate"), NAME, drawn.scene.conditions, verdicts.gates(study.scene))

@@ -13,7 +13,7 @@ from scenes.calibration import Calibration
 from scenes.faults import Fault, SceneError
 from scenes.scene import NOMINAL
 from scenes.walls import Walls
-from studies import forecast
+from studies.cost import forecast
 from studies.progress import Board, say
 from studies.stages import walls
 from studies.store import SOURCES

@@ -9,13 +9,13 @@ from typing import Callable, Iterable, NamedTuple
 from scenes.calibration import Calibration
 from scenes.trajectory import Trajectory
 from scenes.walls import PATTERNS, Walls
-from studies import agreement, growth, metrics
-from studies.agreement import Context, Spread, spread
+from studies.agreement import growth, metrics, verdicts
+from studies.agreement.verdicts import Context, Spread, spread
 from studies.progress import Board
 from studies.stages import calibrate, walls
 from studies.store import SOURCES, Run
 from studies.study import Study, read, require_success
-from studies.timing import speedups
+from studies.cost.timing import speedups
 
 SOURCES_USED = (*SOURCES["highfi"], *SOURCES["lowfi"], "calibrate")
 _SIMPLER = {"mean pressure of each face by itself": (1, False), "mean pressure": (1, True), "pressure and its tilt": (3, True),
@@ -53,7 +53,7 @@ def run(study: Study) -> dict:
     1 um, ``speedup`` of the calibrated and of the compliant surrogate, ``simpler`` walls."""
     study.fitted()
     _, calibrated, compliant, modal = ladder = rungs(study)
-    gates = agreement.gates(study.scene)
+    gates = verdicts.gates(study.scene)
 
     def make() -> tuple[dict, list[Path]]:
         asked = {name: study.highfi(name) for name in study.conditions}
@@ -65,7 +65,7 @@ def run(study: Study) -> dict:
         groups = {role: [row for row in table["calibrated"] if row["role"] == role] for role in ("fitted", "held_out")}
         return {"uncalibrated": table["uncalibrated"], **groups, "compliant": table["compliant"], "modal": table["modal"],
                 "rail_modes": modal.modes, "gates": gates,
-                "converged_deg_s": agreement.CONVERGED_DEG_S, "clearance_change_m": study.settings.clearance_change,
+                "converged_deg_s": verdicts.CONVERGED_DEG_S, "clearance_change_m": study.settings.clearance_change,
                 "floor": [asdict(item) for item in sum(own.values(), floor)], "refinement": [asdict(item) for item in changes],
                 "growth": [asdict(item) for item in _growths(study, compliant, table["compliant"])],
                 "simpler": _simpler(study, compliant, highfi),
@@ -81,7 +81,7 @@ def stored(study: Study) -> dict | None:
 
 
 def _key(study: Study, constants: dict) -> str:
-    return study.key(SOURCES_USED, constants, agreement.gates(study.scene))
+    return study.key(SOURCES_USED, constants, verdicts.gates(study.scene))
 
 
 def rows(study: Study, rung: Rung, highfi: dict[str, Trajectory], context: Context) -> list[dict]:
@@ -89,7 +89,7 @@ def rows(study: Study, rung: Rung, highfi: dict[str, Trajectory], context: Conte
     wanted = {name: rung.ask(study, name) for name in study.conditions}
     found = dict(zip(wanted, study.store.fill(rung.title, list(wanted.values()))))
     outside = rung.calibration.outside if rung.calibration else lambda scene: []
-    return [agreement.row(name, role, highfi[name], found[name], context) | {"outside_calibration": outside(study.condition(name))}
+    return [verdicts.row(name, role, highfi[name], found[name], context) | {"outside_calibration": outside(study.condition(name))}
             for role in ("fitted", "held_out") for name in getattr(study.scene.agreement, role)]
 
 
@@ -120,9 +120,9 @@ def _growths(study: Study, compliant: Rung, rows: list[dict]) -> list[growth.Gro
     if study.scene.contact is None:
         return []
     names = dict.fromkeys([*study.scene.agreement.floor, *(row["condition"] for row in rows if not row["reference_converged"])])
-    gate = agreement.gates(study.scene)["settled_rate_error_deg_s"]
+    gate = verdicts.gates(study.scene)["settled_rate_error_deg_s"]
     return [growth.growth(name, model, nominal, changed, study.settings.clearance_change, gate)
-            for model, ask in ((agreement.FINITE_ELEMENTS, study.coarse), (compliant.title, partial(compliant.ask, study)))
+            for model, ask in ((rows.FINITE_ELEMENTS, study.coarse), (compliant.title, partial(compliant.ask, study)))
             for name, (nominal, *changed) in _twins(study, f"growth, {model}", ask, names).items()]
 
 

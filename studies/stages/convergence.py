@@ -13,9 +13,10 @@ from pathlib import Path
 from highfi.numerics import Numerics
 from scenes.scene import Scene
 from scenes.trajectory import Trajectory
-from studies import agreement, contact_loads, ripple, stresses
-from studies.convergence import Estimate, estimate
-from studies.quantities import RATE, quantities, settled_rate
+from studies.agreement import verdicts
+from studies.refinement import contact_loads, ripple, stresses
+from studies.refinement.extrapolation import Estimate, estimate
+from studies.refinement.quantities import RATE, quantities, settled_rate
 from studies.stages.compare import refined
 from studies.store import SOURCES, Run
 from studies.study import Study, read, require_success
@@ -135,7 +136,7 @@ def _compared(study: Study, title: str, name: str, heads: list[dict], asked: lis
     """The rows with the settled rates of their runs and the largest change of one (deg/s) against the nominal run of the coarse mesh."""
     nominal, *runs = study.store.fill(title, [study.coarse(name), *asked])
     return [head | {"status": found.status, "settled_rate_deg_s": settled_rate(found),
-                    "settled_rate_change_deg_s": agreement.settled_change(nominal, found)} for head, found in zip(heads, runs)]
+                    "settled_rate_change_deg_s": verdicts.settled_change(nominal, found)} for head, found in zip(heads, runs)]
 
 
 def summary(condition: str, judged: list[dict], penalty: list[dict], quadrature: list[dict]) -> list[str]:
@@ -153,7 +154,7 @@ def summary(condition: str, judged: list[dict], penalty: list[dict], quadrature:
     for title, key, rows in (("penalty stiffness, times", "factor", penalty),
                              ("Gauss points per facet edge,", "points_per_edge", quadrature)):
         if rows:
-            change = agreement.largest(row["settled_rate_change_deg_s"] for row in rows)
+            change = verdicts.largest(row["settled_rate_change_deg_s"] for row in rows)
             odd = "".join(f"; {row[key]:g} {row['status']}" for row in rows if row["settled_rate_change_deg_s"] is None)
             lines.append(f"{title} {rows[0][key]:g} to {rows[-1][key]:g}: "
                          + ("no run settled" if change is None else f"a settled rate changes by up to {change:.2g} deg/s") + odd)

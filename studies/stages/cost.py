@@ -13,12 +13,14 @@ from pathlib import Path
 
 from scenes.files import write_json
 from scenes.trajectory import Trajectory
-from studies import agreement, machine, scaling
-from studies.agreement import FINITE_ELEMENTS
+from studies import machine
+from studies.agreement import verdicts
+from studies.cost import scaling
+from studies.agreement.verdicts import FINITE_ELEMENTS
 from studies.stages import ablation
 from studies.stages.compare import SOURCES_USED, Rung, refined, rungs
 from studies.study import Study
-from studies.timing import timed, warm_up
+from studies.cost.timing import timed, warm_up
 
 
 STIFFNESS_ALONG = "surrogate, stiffness along the rail"  # mean pressure, each face by itself
@@ -59,9 +61,9 @@ def _reference_points(study: Study, name: str) -> tuple[Trajectory, float | None
     asked = [study.highfi(name, element_size=sizes[0], tag="-coarsest"), study.coarse(name), study.highfi(name),
              *refined(study, name).values()]
     coarsest, coarse, finest, *changed = study.store.fill("cost, meshes", asked)
-    band = agreement.largest(agreement.settled_change(coarse, run) for run in (finest, *changed))
+    band = verdicts.largest(verdicts.settled_change(coarse, run) for run in (finest, *changed))
     points = [{"model": FINITE_ELEMENTS, "rung": "highfi", "setting": size, "numerics": f"{1e3 * size:g} mm, {found.cost['elements']} elements",
-               "error_deg_s": None if found is finest else agreement.settled_change(finest, found),
+               "error_deg_s": None if found is finest else verdicts.settled_change(finest, found),
                "integration_error_deg_s": None, "wall_s": found.cost["wall_s"], "status": found.status}
               for size, found in zip(sizes, (coarsest, coarse, finest))]
     return finest, band, points
@@ -74,8 +76,8 @@ def _surrogate_points(study: Study, name: str, rung: Rung, finest: Trajectory) -
     measured = [[timed(run) for _ in range(study.settings.lowfi_repeats)] for run in asked]
     runs = [repeats[0][0] for repeats in measured]
     return [{"model": rung.title, "rung": rung.name, "setting": tolerance, "numerics": f"tolerance {tolerance:g}",
-             "error_deg_s": agreement.settled_change(finest, found),
-             "integration_error_deg_s": agreement.settled_change(runs[0], found) if found is not runs[0] else None,
+             "error_deg_s": verdicts.settled_change(finest, found),
+             "integration_error_deg_s": verdicts.settled_change(runs[0], found) if found is not runs[0] else None,
              "wall_s": statistics.median(wall for _, wall, _ in repeats), "status": found.status}
             for tolerance, found, repeats in reversed(list(zip(tolerances, runs, measured)))]
 

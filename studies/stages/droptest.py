@@ -12,11 +12,11 @@ import numpy as np
 from lowfi.rows import Drawn
 from scenes import uncertainty
 from scenes.faults import Fault, SceneError
-from studies import population
+from studies.populations import population
 from studies.droptest import shipped
 from studies.droptest.analysis import Drop, analyse
 from studies.droptest.results import joint, summary, row_of
-from studies.population import Population
+from studies.populations.population import Population
 from studies.store import SOURCES
 from studies.study import Study, StudyError, read
 

@@ -19,7 +19,8 @@ from scenes import uncertainty
 from scenes.calibration import Calibration
 from scenes.faults import Fault, SceneError
 from scenes.files import write_json
-from studies import ensemble_summary, machine
+from studies import machine
+from studies.populations import summary
 from studies.progress import Board, say
 from studies.stages import walls
 from studies.study import Study, StudyError
@@ -77,7 +78,7 @@ def run(study: Study, asked: Asked, calibration: Calibration | None = None) -> d
             board.finished(label, f"{new:,} run in {wall:.3g} s" if new else "all of them stored before")
     except StoreError as fault:
         raise StudyError(str(fault)) from fault
-    said = ensemble_summary.summary(ensemble, store)
+    said = summary.of(ensemble, store)
     cost = {"cases": new, "wall_s": wall, "peak_memory_bytes": 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss,
             "scheduler": asked.scheduler}
     if new and not asked.scheduler:

@@ -11,7 +11,7 @@ from scenes.faults import Fault, SceneError
 from scenes.files import replacing
 from scenes.scene import Scene
 from scenes.variation import Variations
-from studies import population
+from studies.populations import population
 from studies.flight import bodies, curves, flown, summary
 from studies.progress import Board
 from studies.store import SOURCES

@@ -13,17 +13,18 @@ from typing import Callable
 
 import numpy as np
 
-from studies import answers, constants, exceedance, population, spread, tolerance_cases
-from studies import tolerance_search as search
-from studies.exceedance import Limit
-from studies.limit_inputs import Asked, checked
-from studies.population import Surrogate
+from studies.limits import constants, within
+from studies.populations import answers, exceedance, population, spread
+from studies.limits import search
+from studies.populations.exceedance import Limit
+from studies.limits.inputs import Asked, checked
+from studies.populations.population import Surrogate
 from studies.progress import Board
 from studies.stages import posterior
 from studies.store import SOURCES
 from studies.study import Study, read
-from studies.tolerance_cases import SETS, Cases, Factor
-from studies.tolerance_search import Found
+from studies.limits.within import SETS, Cases, Factor
+from studies.limits.search import Found
 
 NAME = "limits"
 TOGETHER = "together"
@@ -74,8 +75,8 @@ class _Answers:
     def __init__(self, study: Study, asked: Asked, limits: list[Limit], cases: int, model: Surrogate, margin: constants.Margin,
                  report: Callable[[float], None]):
         self.study, self.asked, self.limits, self.cases, self.margin = study, asked, limits, cases, margin
-        self.model = model if asked.others == "scene" else tolerance_cases.without_errors(model)
-        self.factors = tolerance_cases.factors(self.model.scene)
+        self.model = model if asked.others == "scene" else within.without_errors(model)
+        self.factors = within.factors(self.model.scene)
         self.allowed = exceedance.allowed(cases, asked.probability, asked.confidence)
         overrides, self.drawn = ([], []) if model.calibration is None else constants.draws(
             study, model.calibration, asked.draws, asked.seed)

@@ -9,10 +9,10 @@ from pathlib import Path
 
 import numpy as np
 
-from studies import answers, exceedance, population, random_factors, spread
+from studies.populations import answers, exceedance, population, random_factors, spread
 from studies.checked import together
-from studies.population import Population, Surrogate
-from studies.random_factors import READINGS, Reading
+from studies.populations.population import Population, Surrogate
+from studies.populations.random_factors import READINGS, Reading
 from studies.store import SOURCES
 from studies.study import Study, StudyError, read
 

@@ -4,7 +4,7 @@ of every condition, fitted or held out."""
 import importlib.util
 from pathlib import Path
 
-from studies import prediction
+from studies.agreement import prediction
 from studies.progress import Board, say
 from studies.stages import calibrate
 from studies.store import SOURCES

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Callable
 
 from scenes.files import content_hash, write_text
-from studies import bench
+from studies.bench import reference
 from studies.report.answers import ANSWERS
 from studies.stages import ablation, calibrate, compare, convergence, cost, mesh, posterior, runs, stability, view, walls
 from studies.store import Run
@@ -26,7 +26,7 @@ def run(study: Study) -> dict:
         except StudyError as fault:
             documents[name], problems[name] = None, str(fault)
     there = {convergence.NAME: convergence.stored(study), posterior.NAME: posterior.stored(study),
-             "bench": bench.stored(study.folder.parent), "view": view.stored(study)} | {item.name: item.stored(study) for item in ANSWERS}
+             "bench": reference.stored(study.folder.parent), "view": view.stored(study)} | {item.name: item.stored(study) for item in ANSWERS}
 
     def make() -> tuple[dict, list[Path]]:
         from studies.report.page import Page

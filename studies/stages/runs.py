@@ -4,7 +4,7 @@ import math
 from pathlib import Path
 
 from scenes.trajectory import Trajectory
-from studies import stresses
+from studies.refinement import stresses
 from studies.store import SOURCES, Run
 from studies.study import FAILED, Study
 

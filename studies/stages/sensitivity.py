@@ -9,8 +9,10 @@ import numpy as np
 from lowfi.numerics import Numerics
 from lowfi.rows import Listed
 from scenes.faults import Fault, SceneError
-from studies import answers, contact_table, indices, population, published, tolerances
-from studies.population import Population, Surrogate
+from studies import published
+from studies.populations import answers, population
+from studies.sensitivity import contact_table, indices, tolerances
+from studies.populations.population import Population, Surrogate
 from studies.report import sensitivity as drawing
 from studies.report.chart import to_files
 from studies.store import SOURCES

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from studies import hard_cases
+from studies.stability import cases
 from studies.progress import Board
 from studies.stages.compare import SOURCES_USED
 from studies.store import code_hash
@@ -15,7 +15,7 @@ def run(study: Study) -> dict:
 
     def make() -> tuple[dict, list[Path]]:
         found = []
-        known = hard_cases.cases()
+        known = cases.cases()
         with Board("stability", len(known)) as board:
             for name, case in known.items():
                 board.callback(name)(0.0)

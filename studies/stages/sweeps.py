@@ -8,9 +8,11 @@ from typing import NamedTuple
 import numpy as np
 
 from scenes.faults import Fault, SceneError
-from studies import answers, burnout, factors, knee, population, published, sides
-from studies.factors import FACTORS, SIZES, Factor
-from studies.population import Population, Surrogate
+from studies import published
+from studies.populations import answers, population
+from studies.sweeps import burnout, factors, knee, sides
+from studies.sweeps.factors import FACTORS, SIZES, Factor
+from studies.populations.population import Population, Surrogate
 from studies.progress import Board
 from studies.report import sweep_figures as drawing
 from studies.report.chart import to_files

@@ -7,7 +7,7 @@ import lowfi
 from lowfi import columns
 from scenes import load
 from scenes.faults import SceneError
-from studies.bench_lowfi import varied
+from studies.bench.surrogate import varied
 
 ROWS = [{"thrust_offset.misalignment.radial": f"{angle} deg"} for angle in (5, 25, 45, 65)]
 

@@ -11,7 +11,7 @@ from lowfi import march, state
 from lowfi.run import Run
 from lowfi.system import WALL
 from scenes import ledger
-from studies import weaker_methods as weaker
+from studies.stability import weaker_methods as weaker
 from tests.exact import contact as exact
 from tests.exact.rigid import elastic_impact
 from tests.lowfi.support import ONE_PAD, PAPER_PAD, RAIL, close, drop, numerics, scene

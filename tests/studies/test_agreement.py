@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from scenes import load
-from studies import agreement
-from studies.agreement import Context, Spread
+from studies.agreement import verdicts
+from studies.agreement.verdicts import Context, Spread
 from tests.studies.synthetic import flight
 
 
@@ -17,12 +17,12 @@ def constant(*rate, **parts):
 CONVERGED = [Spread("phi15", "reference", "mesh", 0.001, 0.02), Spread("phi15", "reference", "penalty", 0.002, 0.05)]
 FLOORS = [Spread("phi15", "reference", "clearance", 0.004, 0.01), Spread("phi15", "surrogate", "clearance", 0.003, 0.03),
           Spread("phi60", "reference", "clearance", 0.006, 0.02)]
-GATES = agreement.gates(load("reference"))
+GATES = verdicts.gates(load("reference"))
 
 
 def row(other, refinements=CONVERGED, condition="phi15"):
     touched = constant(3.0, 0.0, 4.0, pad_force=np.ones((601, 16, 3)))
-    return agreement.row(condition, "held_out", touched, other, Context(FLOORS, refinements, GATES))
+    return verdicts.row(condition, "held_out", touched, other, Context(FLOORS, refinements, GATES))
 
 
 def test_row_holds_every_key_other_tools_read():
@@ -39,7 +39,7 @@ def test_agreement_within_all_gates():
 
 
 def test_agreement_in_free_flight_says_that_nothing_was_tested():
-    found = agreement.row("phi15", "fitted", constant(3.0, 0.0, 4.0), constant(3.0, 0.0, 4.0), Context(FLOORS, CONVERGED, GATES))
+    found = verdicts.row("phi15", "fitted", constant(3.0, 0.0, 4.0), constant(3.0, 0.0, 4.0), Context(FLOORS, CONVERGED, GATES))
     assert not found["touches"] and found["verdict"] == "agrees (no pad touches)"
 
 
@@ -52,7 +52,7 @@ def test_missed_gate_says_by_how_much():
 
 def test_gates_are_those_of_the_scene_or_twice_the_floor():
     assert GATES == pytest.approx({"rate_relative_l2": 0.05, "velocity_relative_l2": 0.001, "settled_rate_error_deg_s": 0.1})
-    harder = agreement.gates(load("sensitive"))
+    harder = verdicts.gates(load("sensitive"))
     assert (harder["rate_relative_l2"], harder["settled_rate_error_deg_s"]) == pytest.approx((0.1, 0.2))
     limits = [Context([], [], GATES).limits(floor)["settled_rate_error_deg_s"] for floor in (None, 0.03, 0.08, 3.0)]
     assert limits == pytest.approx([0.1, 0.1, 0.16, 0.2])  # a chaotic condition does not forgive everything
@@ -73,13 +73,13 @@ def test_floor_is_the_own_one_where_measured_else_the_largest():
 
 
 def test_run_that_did_not_settle_never_passes():
-    found = agreement.row("phi15", "fitted", constant(3.0, 0.0, 4.0), flight(status="jammed"), Context(FLOORS, CONVERGED, GATES))
+    found = verdicts.row("phi15", "fitted", constant(3.0, 0.0, 4.0), flight(status="jammed"), Context(FLOORS, CONVERGED, GATES))
     assert not found["passes"]
     assert "settled rate unknown" in found["verdict"]
 
 
 def test_spread_takes_the_larger_side():
-    found = agreement.spread("phi15", "reference", "clearance", constant(1.0, 0.0, 0.0),
+    found = verdicts.spread("phi15", "reference", "clearance", constant(1.0, 0.0, 0.0),
                              [constant(1.02, 0.0, 0.0), constant(0.99, 0.0, 0.0)])
     assert found.settled_rate_change_deg_s == pytest.approx(0.02, rel=1e-9)
     assert found.rate_relative_l2 == pytest.approx(0.02, rel=1e-9)

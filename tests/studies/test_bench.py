@@ -9,9 +9,9 @@ from typer.testing import CliRunner
 import highfi
 from highfi import Numerics, assembly
 from scenes import load
-from studies import bench
+from studies.bench import reference
 from studies.cli import app
-from studies.csr_loop import CsrLoop
+from studies.bench.csr_loop import CsrLoop
 from studies.report.figures import Runs
 from studies.report.page import Page
 
@@ -38,10 +38,10 @@ def test_bench_writes_one_row_per_size(tmp_path):
     assert row["elements"] > 500 and row["faces_in_contact"] >= 4
     assert row["ratio"] == pytest.approx(row["baseline_ns_per_element_step"] / row["ns_per_element_step"])
     assert row["bytes_per_element"] > 24 * 8 and row["dt_s"] > row["dt_element_s"] * 0.9
-    assert f"{row['elements']:,} elements" in bench.line(row)
-    page = Page(load("tiny"), tmp_path, {"bench": bench.stored(tmp_path)}, Runs({}, {}, {}), {}).render()
+    assert f"{row['elements']:,} elements" in reference.line(row)
+    page = Page(load("tiny"), tmp_path, {"bench": reference.stored(tmp_path)}, Runs({}, {}, {}), {}).render()
     assert 'id="bench"' in page and f"{row['elements']:,}" in page
-    assert bench.stored(tmp_path / "elsewhere") is None
+    assert reference.stored(tmp_path / "elsewhere") is None
     surrogate = json.loads((tmp_path / "bench" / "lowfi.json").read_text())
     for single in surrogate["single"]:
         assert {"error_percent", "cpu_ms", "baseline_cpu_ms", "ratio"} <= single.keys()

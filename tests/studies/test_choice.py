@@ -6,7 +6,7 @@ import pytest
 from typer.testing import CliRunner
 
 import scenes
-from studies.choice import choose
+from studies.cost.choice import choose
 from studies.cli import app
 from studies.settings import Settings
 from studies.study import Study, StudyError

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import scenes
-from studies import contact_loads
+from studies.refinement import contact_loads
 from tests.studies.synthetic import flight
 
 SCENE = scenes.load("reference")  # samples every 0.05 ms, as flight's

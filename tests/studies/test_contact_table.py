@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from scenes import load
-from studies import contact_table, published
+from studies import published
+from studies.sensitivity import contact_table
 
 
 def test_largest_deviations_of_the_paper():

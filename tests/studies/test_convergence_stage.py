@@ -13,7 +13,7 @@ from studies import store as store_module
 from studies.cli import app
 from studies.report.figures import Runs
 from studies.report.page import Page
-from studies.ripple import Ripple
+from studies.refinement.ripple import Ripple
 from studies.settings import Settings, defaults
 from studies.stages import convergence, report
 from studies.study import Study, StudyError

@@ -5,8 +5,8 @@ import pytest
 from scipy import stats
 
 from scenes.faults import SceneError
-from studies import exceedance, order_statistics
-from studies.exceedance import Limit
+from studies.populations import exceedance, order_statistics
+from studies.populations.exceedance import Limit
 
 
 def test_limits_are_read_with_their_axis():

@@ -7,10 +7,10 @@ import pytest
 from typer.testing import CliRunner
 
 from scenes import load
-from studies import population
+from studies.populations import population
 from studies.cli import app
 from studies.flight import summary
-from studies.population import Surrogate
+from studies.populations.population import Surrogate
 from studies.report import chart
 from studies.report import flight as section
 from studies.settings import Settings

@@ -8,7 +8,7 @@ import h5py
 import pytest
 
 import scenes
-from studies import forecast
+from studies.cost import forecast
 from studies.settings import defaults
 from studies.study import Study
 

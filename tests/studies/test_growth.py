@@ -5,7 +5,7 @@ import pytest
 
 import lowfi
 import scenes
-from studies.growth import contacts, growth, horizon
+from studies.agreement.growth import contacts, growth, horizon
 from tests.studies.synthetic import flight
 
 GATE = 0.1  # deg/s

@@ -7,7 +7,7 @@ import pytest
 from lowfi.rows import numbers
 from scenes import load
 from scenes.effects import thrust_offset
-from studies import indices, tolerances
+from studies.sensitivity import indices, tolerances
 
 SCENE = load("reference")
 ANGLES = ("thrust_offset.misalignment.radial", "thrust_offset.eccentricity.radial", "mass_offset.eccentricity.radial")

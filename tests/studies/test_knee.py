@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from studies.knee import growth
+from studies.sweeps.knee import growth
 
 SIZES = np.arange(1, 11) / 10.0
 KNEE = 0.43

@@ -8,15 +8,16 @@ from typer.testing import CliRunner
 from lowfi.rows import numbers
 from scenes import load
 from scenes.calibration import Calibration
-from studies import constants, exceedance, tolerance_cases
+from studies.limits import constants, within
+from studies.populations import exceedance
 from studies.cli import app
-from studies.limit_inputs import Asked
-from studies.population import Surrogate
+from studies.limits.inputs import Asked
+from studies.populations.population import Surrogate
 from studies.report import limits as pictures
 from studies.settings import Settings
 from studies.stages import limits
 from studies.study import Study
-from studies.tolerance_cases import ADVISED
+from studies.limits.within import ADVISED
 from tests.studies import free_flight
 
 pytest.importorskip("zarr")
@@ -52,17 +53,17 @@ def row_of(found, name):
 def certified(study, name, cases, limit=LIMIT):
     """Largest tolerance in closed form: the first draw that may not be above the limit lies on it."""
     allowed = exceedance.allowed(cases, PROBABILITY, 0.95)
-    source = tolerance_cases.source(study.scene, {name: 1.0}, cases, 1)
-    sizes = np.sort(numbers(source.keys, source.rows(0, cases))[:, source.keys.index(f"{tolerance_cases.ERRORS[name].key}.axial")])
+    source = within.source(study.scene, {name: 1.0}, cases, 1)
+    sizes = np.sort(numbers(source.keys, source.rows(0, cases))[:, source.keys.index(f"{within.ERRORS[name].key}.axial")])
     return limit / (PER_UNIT[name] * sizes[cases - 1 - allowed])
 
 
 def combined(study, tolerances, cases):
     """Total rates (n,), deg/s, of all errors within ``tolerances`` (SI), none of the others."""
-    source = tolerance_cases.source(study.scene, dict.fromkeys(ADVISED, 0.0) | tolerances, cases, 1)
+    source = within.source(study.scene, dict.fromkeys(ADVISED, 0.0) | tolerances, cases, 1)
     drawn = dict(zip(source.keys, numbers(source.keys, source.rows(0, cases)).T))
     (t, a), (r, b), (m, c) = ((drawn[f"{error.key}.axial"], drawn[f"{error.key}.radial"])
-                              for error in tolerance_cases.ERRORS.values())
+                              for error in within.ERRORS.values())
     y = free_flight.RATE_PER_RADIAN * t * np.sin(a) + free_flight.RATE_PER_METRE * (r * np.cos(b) - m * np.cos(c))
     z = free_flight.RATE_PER_RADIAN * t * np.cos(a) + free_flight.RATE_PER_METRE * (r * np.sin(b) - m * np.sin(c))
     return np.hypot(y, z)
@@ -152,15 +153,15 @@ def test_too_few_cases_and_nonsense_are_refused_with_every_fault(tmp_path):
 
 def test_clearance_and_friction_vary_about_their_nominal_values():
     scene = load("reference")
-    assert list(tolerance_cases.factors(scene)) == [*ADVISED, "clearance", "friction"]
-    assert list(tolerance_cases.factors(free_flight.scene())) == list(ADVISED)
-    source = tolerance_cases.source(scene.replace({"friction.static": 0.3}), {"clearance": 0.1e-3, "friction": 0.05}, 2000, 1)
+    assert list(within.factors(scene)) == [*ADVISED, "clearance", "friction"]
+    assert list(within.factors(free_flight.scene())) == list(ADVISED)
+    source = within.source(scene.replace({"friction.static": 0.3}), {"clearance": 0.1e-3, "friction": 0.05}, 2000, 1)
     drawn = dict(zip(source.keys, numbers(source.keys, source.rows(0, 2000)).T))
     gaps = drawn["contact.clearance"]
     assert np.abs(gaps - 0.25e-3).max() <= 0.1e-3 and gaps.mean() == pytest.approx(0.25e-3, rel=0.01)
     assert drawn["friction.dynamic"].std() == pytest.approx(0.05 / 3.0 * np.sqrt(0.9733369), rel=0.05)
     assert np.allclose(drawn["friction.static"], 1.5 * drawn["friction.dynamic"])
-    more = tolerance_cases.source(scene, {"clearance": 0.2e-3}, 2000, 1).rows(0, 2000)  # the same draws, whatever else varies
+    more = within.source(scene, {"clearance": 0.2e-3}, 2000, 1).rows(0, 2000)  # the same draws, whatever else varies
     assert np.allclose([row["contact.clearance"] - 0.25e-3 for row in more], 2.0 * (gaps - 0.25e-3))
 
 

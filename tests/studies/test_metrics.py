@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from studies import iso18571, metrics
+from studies.agreement import iso18571, metrics
 from tests.studies.synthetic import flight
 
 TIME = np.linspace(0.0, 1.0, 1001)

@@ -8,7 +8,7 @@ from scipy import stats
 from scipy.special import j0
 from typer.testing import CliRunner
 
-from studies import spread
+from studies.populations import spread
 from studies.cli import app
 from studies.report import montecarlo as pictures
 from studies.settings import Settings

@@ -10,8 +10,8 @@ from lowfi.numerics import Numerics
 from lowfi.rows import Listed
 from scenes import load
 from scenes.calibration import Calibration
-from studies import answers, population, regime
-from studies.population import Surrogate
+from studies.populations import answers, population, regime
+from studies.populations.population import Surrogate
 from studies.settings import Settings
 from studies.study import Study
 

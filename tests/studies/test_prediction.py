@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from studies import prediction
+from studies.agreement import prediction
 from studies.report import posterior as page
 from studies.report.chart import to_html
 

@@ -7,8 +7,8 @@ from scipy import stats
 from lowfi.rows import numbers
 from scenes import load
 from scenes.faults import SceneError
-from studies import answers, population, random_factors, spread
-from studies.random_factors import ERRORS, READINGS, Reading
+from studies.populations import answers, population, random_factors, spread
+from studies.populations.random_factors import ERRORS, READINGS, Reading
 from studies.settings import Settings
 from studies.study import Study
 from tests.studies import free_flight

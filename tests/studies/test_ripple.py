@@ -6,7 +6,7 @@ import pytest
 import highfi
 import scenes
 from highfi import Numerics
-from studies import ripple
+from studies.refinement import ripple
 
 FREQUENCY, FACETS, SAMPLES = 1500.0, 11, 367  # 44 mm at 6 m/s, every 0.02 ms
 

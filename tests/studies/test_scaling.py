@@ -5,9 +5,9 @@ import pytest
 
 import scenes
 from scenes.model import build
-from studies import scaling
+from studies.cost import scaling
 from studies.report import scaling as page
-from studies.scaling import SPRINGS, effects, fitted, power_law, shares, with_pads
+from studies.cost.scaling import SPRINGS, effects, fitted, power_law, shares, with_pads
 from studies.settings import defaults
 from studies.study import Study
 

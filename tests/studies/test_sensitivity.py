@@ -8,9 +8,9 @@ from typer.testing import CliRunner
 
 from lowfi.columns import STATUSES
 from scenes import load
-from studies import population
+from studies.populations import population
 from studies.cli import app
-from studies.population import Surrogate
+from studies.populations.population import Surrogate
 from studies.report import sensitivity as section
 from studies.report.markup import Html
 from studies.settings import defaults

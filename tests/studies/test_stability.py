@@ -2,10 +2,10 @@
 
 import pytest
 
-from studies import hard_contacts, hard_guides, hard_thrusts
+from studies.stability import contacts, guides, thrusts
 from studies.report.tables import stability
 
-CASES = {**hard_contacts.CASES, **hard_guides.CASES, **hard_thrusts.CASES}
+CASES = {**contacts.CASES, **guides.CASES, **thrusts.CASES}
 CHEAP = [name for name in CASES if name != "turning_platform"]  # which takes seconds, and is run with the pipeline
 
 

@@ -10,7 +10,8 @@ import scenes
 from highfi.compiled import LAWS as highfi_laws
 from lowfi.compiled import LAWS as lowfi_laws
 from scenes.scene import EFFECTS
-from studies import machine, weaker_methods
+from studies import machine
+from studies.stability import weaker_methods
 from studies.settings import Settings, defaults
 from studies.stages import ablation, compare, cost
 from studies.stages.mesh import area

@@ -9,9 +9,10 @@ import pytest
 from typer.testing import CliRunner
 
 from scenes import load
-from studies import burnout, factors, population, sides
+from studies.populations import population
+from studies.sweeps import burnout, factors, sides
 from studies.cli import app
-from studies.population import Surrogate
+from studies.populations.population import Surrogate
 from studies.report import sweeps as sections
 from studies.report.markup import Html
 from studies.settings import Settings

@@ -3,7 +3,7 @@ grow."""
 
 import pytest
 
-from studies.tolerance_search import ALL, FOUND, NONE, SMALL, largest, near
+from studies.limits.search import ALL, FOUND, NONE, SMALL, largest, near
 
 
 def step(place, below=0, beyond=10):

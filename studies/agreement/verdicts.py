@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 from scenes.scene import Scene
 from scenes.trajectory import Trajectory
-from studies.metrics import compare, settled_rate_errors
+from studies.agreement.metrics import compare, settled_rate_errors
 
 VELOCITY_LIMIT = 0.001
 CONVERGED_DEG_S = 0.1

@@ -18,10 +18,10 @@ from lowfi.rows import numbers
 from scenes.files import replacing
 from scenes.scene import Scene
 from scenes.uncertainty import Uncertainty
-from studies import answers, population, regime
-from studies.derived import Derived, Numbers, around_zero, law
-from studies.population import Surrogate
-from studies.random_factors import ERRORS, pointing
+from studies.populations import answers, population, regime
+from studies.populations.derived import Derived, Numbers, around_zero, law
+from studies.populations.population import Surrogate
+from studies.populations.random_factors import ERRORS, pointing
 from studies.study import Study
 
 CLEARANCE, FRICTION = "clearance", "friction"

@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 
 from scenes.faults import Fault, SceneError
-from studies import exceedance, order_statistics
+from studies.populations import exceedance, order_statistics
 from studies.checked import together
-from studies.exceedance import Limit
+from studies.populations.exceedance import Limit
 
 TIMES_NEEDED = 10  # of the fewest cases: some may then be above, and tolerances are not cut for want of cases
 _MOST_DRAWS = 1000

@@ -17,7 +17,7 @@ from scipy.stats import binom
 import calibrate
 import lowfi
 from scenes.scene import Scene
-from studies.metrics import AXES
+from studies.agreement.metrics import AXES
 
 LEVEL = 0.95
 TOLERANCE = 1e-4

@@ -1,4 +1,4 @@
-"""What is not certain about a launcher, as a file says it (``data/tolerances.toml``), and from points of the unit cube to cases.
+"""What is not certain about a launcher, as a file says it (``tolerances.toml`` here), and from points of the unit cube to cases.
 
 Each key has a distribution of ``scenes.distributions``. Under ``[vary]`` it is that of the number itself, under ``[factor]`` that
 of a factor of the number the surrogate has. An offset that a scene holds as size r and angle a may be given by its components::
@@ -24,7 +24,7 @@ from scenes.faults import Fault, SceneError, faults_of
 from scenes.files import content_hash
 from scenes.scene import Scene
 
-DEFAULT = Path(__file__).parent / "data" / "tolerances.toml"
+DEFAULT = Path(__file__).with_name("tolerances.toml")
 _KINDS = ("vary", "factor")
 _SPRINGS = ("contact.stiffness", "contact.exponent", "contact.damping", "contact.damping_depth", "contact.dissipation")
 

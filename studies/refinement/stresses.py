@@ -9,7 +9,7 @@ every refinement.
 from highfi.recovery import von_mises
 from scenes.scene import Scene
 from scenes.trajectory import Trajectory
-from studies import contact_loads
+from studies.refinement import contact_loads
 
 PEAK = "peak stress of the rail"
 SINGULAR = "mesh-dependent: stress has no limit at a sharp corner or clamp"

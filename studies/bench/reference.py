@@ -65,7 +65,7 @@ def _measured(scene: Scene, size: float, repeats: int, steps: int | None) -> dic
     from highfi.stepping import choose
     from highfi.system import build
     from highfi.team import processors
-    from studies.csr_loop import CsrLoop
+    from studies.bench.csr_loop import CsrLoop
 
     numerics, began = Numerics(element_size=size), time.perf_counter()
     touching, mesh = pressed(scene), prepare(scene, numerics)

@@ -8,7 +8,7 @@ from lowfi import columns
 from lowfi.request import Ensemble
 from lowfi.rows import Drawn
 from lowfi.store import Store
-from studies import order_statistics
+from studies.populations import order_statistics
 
 SHARES = (0.05, 0.5, 0.95, 0.99, 0.9973)
 CONFIDENCE = 0.95
@@ -19,7 +19,7 @@ _VALUES = {"rate_deg_s": ("rate", lambda rate: np.degrees(np.linalg.norm(rate, a
 _LABELS = {"rate_deg_s": "|rate|, deg/s", "lateral_velocity_mm_s": "across, mm/s", "direction_error_deg": "off axis, deg"}
 
 
-def summary(ensemble: Ensemble, store: Store) -> dict:
+def of(ensemble: Ensemble, store: Store) -> dict:
     """Counts, and quantiles of the settled values with what bounds them. ``failed`` has the reasons when no case is ok."""
     status, settled, failures = store.column("status"), np.isfinite(store.column("exit_time")), store.failures()
     counts, why = columns.counts(status), _no_bounds(ensemble.source)

@@ -15,7 +15,7 @@ import numpy as np
 
 from scenes.outcome import SETTLE_WINDOW
 from scenes.trajectory import Trajectory
-from studies import iso18571
+from studies.agreement import iso18571
 
 AXES = ("x", "y", "z")
 CHANNELS = ("velocity_x", "rate_x", "rate_y", "rate_z")

@@ -12,9 +12,9 @@ from scenes import outcome, rotation
 from scenes.effects import thrust_law
 from scenes.scene import Scene, load, parse
 from scenes.trajectory import Trajectory
-from studies import weaker_methods as weaker
-from studies.hard_cases import Stability, Verdict, stability, verdict
-from studies.hard_contacts import DEFAULT_STEP, run
+from studies.stability import weaker_methods as weaker
+from studies.stability.cases import Stability, Verdict, stability, verdict
+from studies.stability.contacts import DEFAULT_STEP, run
 
 _RAIL = {"density": 2810.0, "youngs_modulus": 72e9, "poisson_ratio": 0.33}
 

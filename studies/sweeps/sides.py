@@ -13,7 +13,7 @@ import numpy as np
 import lowfi
 from lowfi.numerics import Numerics
 from scenes.scene import Scene
-from studies.population import TOLERANCE, Surrogate
+from studies.populations.population import TOLERANCE, Surrogate
 
 NONE = -1  # no face touched
 

@@ -1,9 +1,9 @@
 """Hard thrusts for the rigid surrogate: shorter than a step, and corners that no step falls on. v = J / m (momentum)."""
 
 from scenes.effects import thrust_law
-from studies import weaker_methods as weaker
-from studies.hard_cases import Verdict, stability, verdict
-from studies.hard_contacts import DEFAULT_STEP, run, single_pad
+from studies.stability import weaker_methods as weaker
+from studies.stability.cases import Verdict, stability, verdict
+from studies.stability.contacts import DEFAULT_STEP, run, single_pad
 
 _MASS = 20.0
 

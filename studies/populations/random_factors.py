@@ -17,7 +17,7 @@ from scenes.distributions import Distribution
 from scenes.faults import Fault, SceneError
 from scenes.scene import Scene
 from scenes.uncertainty import Uncertainty
-from studies.derived import Derived, Numbers, around_zero, law
+from studies.populations.derived import Derived, Numbers, around_zero, law
 
 VALUES, ANGLES, RULES = ("signed", "half", "components"), ("independent", "shared"), ("redraw", "clip", "none")
 

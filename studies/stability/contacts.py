@@ -15,8 +15,8 @@ import numpy as np
 from scenes import ledger
 from scenes.scene import Scene, parse
 from scenes.trajectory import Trajectory
-from studies import weaker_methods as weaker
-from studies.hard_cases import Verdict, stability, verdict
+from studies.stability import weaker_methods as weaker
+from studies.stability.cases import Verdict, stability, verdict
 
 DEFAULT_STEP = 1e-4  # s: what a careless user of a fixed-step code would take
 _MASS, _LINEAR = 20.0, 7e7

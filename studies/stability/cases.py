@@ -58,6 +58,6 @@ def _finite(value: float) -> float | None:
 
 def cases() -> dict[str, Callable[[], Verdict]]:
     """Every case by name."""
-    from studies import hard_contacts, hard_elastic, hard_guides, hard_thrusts
+    from studies.stability import contacts, elastic, guides, thrusts
 
-    return {**hard_contacts.CASES, **hard_guides.CASES, **hard_thrusts.CASES, **hard_elastic.CASES}
+    return {**contacts.CASES, **guides.CASES, **thrusts.CASES, **elastic.CASES}

@@ -18,7 +18,7 @@ from lowfi.store import StoreError
 from scenes.calibration import Calibration
 from scenes.scene import Scene
 from scenes.walls import Walls
-from studies import regime
+from studies.populations import regime
 from studies.progress import Board
 from studies.stages import calibrate
 from studies.stages import walls as wall_stage

@@ -6,7 +6,7 @@ from lowfi.sampling import Points
 from scenes.calibration import Calibration
 from scenes.scene import Scene
 from scenes.uncertainty import Uncertainty
-from studies.derived import law
+from studies.populations.derived import law
 from studies.stages import compare, posterior
 from studies.study import Study, read
 

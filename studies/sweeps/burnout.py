@@ -12,7 +12,7 @@ import lowfi
 from lowfi.numerics import Numerics
 from scenes.effects import thrust
 from scenes.scene import Scene
-from studies.population import TOLERANCE, Surrogate
+from studies.populations.population import TOLERANCE, Surrogate
 
 _LEAVES_UNDER_THRUST, _BURNS_OUT = 0.15, 0.001  # share of the impulse after the exit
 _ROUNDING = 1e-12  # of a difference of two equal impulses

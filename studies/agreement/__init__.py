@@ -1,0 +1,1 @@
+"""How far two trajectories are apart, what that is judged by, and how long it means anything."""

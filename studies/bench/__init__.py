@@ -1,0 +1,1 @@
+"""Speed of both solvers against what one would write today."""

@@ -1,0 +1,1 @@
+"""What a run takes, how that grows, and which model to choose for an accuracy or a time."""

@@ -1,0 +1,1 @@
+"""Hard cases, each beside a weaker method that fails on it."""
