@@ -122,7 +122,7 @@ def _growths(study: Study, compliant: Rung, rows: list[dict]) -> list[growth.Gro
     names = dict.fromkeys([*study.scene.agreement.floor, *(row["condition"] for row in rows if not row["reference_converged"])])
     gate = verdicts.gates(study.scene)["settled_rate_error_deg_s"]
     return [growth.growth(name, model, nominal, changed, study.settings.clearance_change, gate)
-            for model, ask in ((rows.FINITE_ELEMENTS, study.coarse), (compliant.title, partial(compliant.ask, study)))
+            for model, ask in ((verdicts.FINITE_ELEMENTS, study.coarse), (compliant.title, partial(compliant.ask, study)))
             for name, (nominal, *changed) in _twins(study, f"growth, {model}", ask, names).items()]
 
 
