@@ -10,7 +10,7 @@ from lowfi import grip as grips
 from lowfi import state as slot
 from lowfi.state import IMPULSE, MOMENT, PAYLOAD, PLACE, PLATFORM, QUATERNION, TURN, VELOCITY
 from lowfi.touch import load, penetration, relative_pose, relative_velocity
-from lowfi.walls.loads import drive
+from lowfi.walls.loads import drive, lean
 from lowfi.walls.loads import load as wall_load
 from lowfi.walls.modes import swing
 from lowfi.walls.solution import solve
@@ -164,6 +164,7 @@ def add_walls(walls, friction, faces, platform, ledger, active, body, base, stat
                 face = walls.room.order[k]
                 if walls.room.force[face, 0] > 0.0:
                     _press(wall_load(walls, friction, platform, faces, face, body, base), friction, platform, ledger, body, base, out)
+                    _lean(walls, faces, face, platform, ledger, body, base, out)
             if count > 0:
                 _drive(walls, count, platform, ledger, body, base, out)
             _swing(walls.modes, walls.room, rail, count, ledger, state, out)
@@ -176,6 +177,15 @@ def _swing(modes, room, rail, count, ledger, state, out):
         loss = swing(modes, room, rail, count, state, out)
         if ledger is not None:
             out[slot.STRUCTURAL] += loss
+
+
+@inlined
+def _lean(walls, faces, face, platform, ledger, body, base, out):
+    """Add what a wall that slopes across the rail does there; its work is the walls' own energy."""
+    force, point = lean(walls, faces, face, body, base)
+    _pair(platform, ledger, force, point, out)
+    if ledger is not None:
+        out[slot.CONTACT_AXIAL] += force[0] * _axial_speed(platform, body, base)
 
 
 @inlined

@@ -9,6 +9,7 @@ from lowfi.state import IMPULSE, MOMENT, PAYLOAD, PLACE, PLATFORM, VELOCITY, WOR
 from lowfi.system import HALF_LENGTH
 from lowfi.touch import along, load, pad_point, penetration, relative_pose
 from lowfi.walls.loads import energy as wall_energy
+from lowfi.walls.loads import lean
 from lowfi.walls.loads import load as wall_load
 from lowfi.walls.modes import energies
 from lowfi.walls.solution import solve
@@ -149,8 +150,9 @@ def _press_walls(walls, friction, faces, platform, active, body, base, state, fo
                 i = walls.room.order[k]
                 if walls.room.force[i, 0] > 0.0:
                     face = wall_load(walls, friction, platform, faces, i, body, base)
+                    aside, _ = lean(walls, faces, i, body, base)
                     for j in range(3):
-                        forces[i, j] = face.normal[j] + face.drag[j]
+                        forces[i, j] = face.normal[j] + face.drag[j] + aside[j]
         _keep(walls.room.kept, walls.room.displacement)
     return energy
 

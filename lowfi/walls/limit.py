@@ -1,7 +1,8 @@
 """The proven step limit on walls that give way: stiffness and damping of the faces of each rail (``lowfi.limits`` has the bound).
 
 With the tangent T = K (1 + F K)^-1 of ``lowfi.walls.solution`` and the wrenches g of depth, tilt along and tilt across of each rigid
-face, the linearised springs are sum_ab T_ab g_a g_b', and the trace over both bodies bounds what they can do::
+face, the linearised springs are sum_ab T_ab g_a g_b', and the trace over both bodies bounds what they can do. A way across the rail along
+a wall of slope du/deta' = U_2 + xi' U_4 + 2 eta' U_5 is a depth and tilts too, so each g has its part of a force there::
 
     K = sum over rails of sum_ab T_ab (g_a . M^-1 g_b)
 
@@ -11,10 +12,10 @@ of each (Weyl), and the trace of what contact does to them, W' T W.
 
 from lowfi import state as slot
 from lowfi.limits import friction_damping
-from lowfi.touch import outward, relative_pose
+from lowfi.touch import outward, pad_point, relative_pose
 from lowfi.walls.loads import load
 from lowfi.walls.modes import fastest
-from lowfi.walls.record import SHIFT
+from lowfi.walls.record import ASIDE, SHIFT
 from lowfi.walls.solution import eliminate, fill_matrix, solve, stiffness
 from lowfi.system import NORMAL_Y
 from scenes import rotation
@@ -106,11 +107,17 @@ def _trace_of_modes(modes, room, count, first):
 
 @inlined
 def _reaction(room, face, a, rigid):
-    """dP_a by a unit of a rigid motion on a wall at rest: xi of the pad is xi' - shift."""
+    """dP_a by a unit of a rigid motion on a wall at rest."""
     value = stiffness(room.moment[face], a, rigid)
-    if rigid == 1:
-        value -= room.lever[face, SHIFT] * stiffness(room.moment[face], a, 0)
+    if rigid > 0:
+        value -= _beyond(room, face, rigid) * stiffness(room.moment[face], a, 0)
     return value
+
+
+@inlined
+def _beyond(room, face, rigid):
+    """How far the place on the wall is beyond that on the pad, along xi or eta."""
+    return room.lever[face, SHIFT if rigid == 1 else ASIDE]
 
 
 @kernel
@@ -126,8 +133,8 @@ def _answer(room, i, rigid, column):
 @inlined
 def _own(room, face, rigid, other):
     value = _reaction(room, face, rigid, other)
-    if rigid == 1:
-        value -= room.lever[face, SHIFT] * _reaction(room, face, 0, other)
+    if rigid > 0:
+        value -= _beyond(room, face, rigid) * _reaction(room, face, 0, other)
     return value
 
 
@@ -147,16 +154,25 @@ def _trace(walls, faces, platform, payload, count, body, base):
 @inlined
 def _wrench(walls, faces, face, rigid, body, base):
     """Force, a point it acts at (m), and couple that belong to a rigid motion of the face."""
-    n = outward(faces[face], base)
-    arm = rotation.rotate(body.turn, (faces[face, 0], faces[face, 1], faces[face, 2]))
-    point = (body.place[0] + arm[0], body.place[1] + arm[1], body.place[2] + arm[2])
+    n, half = outward(faces[face], base), walls.half[face]
+    wide_along_y = faces[face, NORMAL_Y] == 0.0
+    sinks = -_by_slope(walls.room, face, rigid) / half[1]
+    aside = rotation.rotate(base.turn, (0.0, sinks if wide_along_y else 0.0, 0.0 if wide_along_y else sinks))
     if rigid == 0:
-        return n, point, (0.0, 0.0, 0.0)
-    half = walls.half[face, rigid - 1]
-    edge = (half, 0.0, 0.0)
+        return (n[0] + aside[0], n[1] + aside[1], n[2] + aside[2]), pad_point(faces[face], body), (0.0, 0.0, 0.0)
+    edge = (half[0], 0.0, 0.0)
     if rigid == 2:
-        edge = (0.0, half, 0.0) if faces[face, NORMAL_Y] == 0.0 else (0.0, 0.0, half)
-    return (0.0, 0.0, 0.0), point, rotation.cross(rotation.rotate(body.turn, edge), n)
+        edge = (0.0, half[1], 0.0) if wide_along_y else (0.0, 0.0, half[1])
+    return aside, pad_point(faces[face], body), rotation.cross(rotation.rotate(body.turn, edge), n)
+
+
+@inlined
+def _by_slope(room, face, rigid):
+    """What the slope of the wall across has of a rigid motion, as a sum over 1, xi and eta of the pad."""
+    u, lever = room.displacement[face], room.lever[face]
+    if rigid == 0:
+        return u[2] + lever[SHIFT] * u[4] + 2.0 * lever[ASIDE] * u[5]
+    return u[4] if rigid == 1 else 2.0 * u[5]
 
 
 @kernel

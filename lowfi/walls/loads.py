@@ -8,18 +8,22 @@ face hangs over an end)::
 
     X = P' F' P / 2 + P' (T' + W' q) + sum of pressure d(xi')/dx du/dxi'
 
-which acts on payload and platform at the payload's mass centre, since that is the place whose way counts. Energy still under the part
-of a pad that leaves the wall is lost.
+which acts on payload and platform at the payload's mass centre, since that is the place whose way counts. Where the pad moves across the
+rail, eta' moves with its middle, and there the slope of the wall pushes::
+
+    Y = sum of pressure d(eta')/dy du/deta'
+
+Energy still under the part of a pad that leaves the wall is lost.
 """
 
 from lowfi.system import NORMAL_Y
-from lowfi.touch import Load, friction_force, outward, relative_velocity
+from lowfi.touch import Load, friction_force, outward, pad_point, relative_velocity
 from lowfi.walls import warm
 from lowfi.walls.cells import stored
 from lowfi.walls.modes import offset, slope
-from lowfi.walls.record import DRIFT, SHIFT
+from lowfi.walls.record import ASIDE, DRIFT, SHIFT
 from scenes import rotation
-from scenes.jit import kernel
+from scenes.jit import inlined, kernel
 from scenes.walls import PATTERNS
 
 
@@ -27,10 +31,10 @@ from scenes.walls import PATTERNS
 def load(walls, friction, platform, faces, face, body, base):
     """Load of a pressed face, after ``solve``; the wall's own velocity is left out."""
     room = walls.room
-    force, shift, half = room.force[face], room.lever[face, SHIFT], walls.half[face]
-    across = half[1] * force[2] / force[0]
+    force, lever, half = room.force[face], room.lever[face], walls.half[face]
+    across = half[1] * (force[2] / force[0] - lever[ASIDE])
     wide_along_y = faces[face, NORMAL_Y] == 0.0  # the normal is along z
-    arm = rotation.rotate(body.turn, (faces[face, 0] + half[0] * (force[1] / force[0] - shift),
+    arm = rotation.rotate(body.turn, (faces[face, 0] + half[0] * (force[1] / force[0] - lever[SHIFT]),
                                       faces[face, 1] + (across if wide_along_y else 0.0), faces[face, 2] + (0.0 if wide_along_y else across)))
     point = (body.place[0] + arm[0], body.place[1] + arm[1], body.place[2] + arm[2])
     n, u = outward(faces[face], base), relative_velocity(platform, body, base, point)
@@ -38,6 +42,15 @@ def load(walls, friction, platform, faces, face, body, base):
     slip = (u[0] - closing * n[0], u[1] - closing * n[1], u[2] - closing * n[2])
     return Load(point, (-force[0] * n[0], -force[0] * n[1], -force[0] * n[2]), friction_force(friction, force[0], slip), slip, closing,
                 force[0], force[0])
+
+
+@inlined
+def lean(walls, faces, face, body, base):
+    """Force (N) across the rail on the payload by the slope of the wall under a pressed face, and where it acts (m), in scene axes."""
+    u, force = walls.room.displacement[face], walls.room.force[face]
+    size = (u[2] * force[0] + u[4] * force[1] + 2.0 * u[5] * force[2]) / walls.half[face, 1]
+    wide_along_y = faces[face, NORMAL_Y] == 0.0
+    return rotation.rotate(base.turn, (0.0, size if wide_along_y else 0.0, 0.0 if wide_along_y else size)), pad_point(faces[face], body)
 
 
 @kernel

@@ -13,8 +13,8 @@ from scenes.scene import Scene
 
 CELLS = 10  # along each edge of a pad face
 # Columns of a face's lever: penetration (m) of its flat face at the middle, and per xi and eta; how far xi on the wall is ahead of
-# xi on the pad, and by how much more per metre of way; X (m) of the middle.
-DEPTH, BY_XI, BY_ETA, SHIFT, DRIFT, MIDDLE, LEVER_SIZE = range(7)
+# xi on the pad, and by how much more per metre of way; X (m) of the middle; how far eta on the wall is beyond eta on the pad.
+DEPTH, BY_XI, BY_ETA, SHIFT, DRIFT, MIDDLE, ASIDE, LEVER_SIZE = range(8)
 DEGREES = 5  # of the moments of pressed cells: products of two patterns reach the fourth power
 
 
@@ -61,7 +61,8 @@ class Warm(NamedTuple):
 class Walls(NamedTuple):
     """cubic (s-1,f,f,p,p,4): flexibility (m/N) between stations as powers of the way (m) from the one before, which stand ``spacing``
     apart from the X ``origin`` (m) of the first face at ignition on; members (r,m) faces on each rail, -1 for none;
-    rail (f,) and half (f,2) as in ``scenes.walls``; relief (f,) m; penalty (N/m3); start and end (m) of the rail; node (n,) middle of
+    rail (f,) and half (f,2) as in ``scenes.walls``; across (f,) m, where on the other axis across the rail the middle of each face stands
+    that the walls were found for; relief (f,) m; penalty (N/m3); start and end (m) of the rail; node (n,) middle of
     the cells in xi and eta, and crown (n,) the means of xi^4 over them; warm, None where no rail is."""
 
     cubic: np.ndarray
@@ -70,6 +71,7 @@ class Walls(NamedTuple):
     members: np.ndarray
     rail: np.ndarray
     half: np.ndarray
+    across: np.ndarray
     relief: np.ndarray
     penalty: float
     start: float
@@ -94,7 +96,8 @@ def under_pads(scene: Scene, model: Model, found: data.Walls | None) -> Walls | 
 
 def build(found: data.Walls, model: Model, cells: int = CELLS) -> Walls:
     """Record of ``found`` for the faces of ``model``."""
-    platform = model.platform.mass_centre[0] if model.platform is not None else 0.0
+    faces, platform = model.faces, model.platform.mass_centre if model.platform is not None else (0.0, 0.0, 0.0)
+    nominal = faces.centre + np.subtract(model.payload.mass_centre, platform)
     spacing = float(found.travel[1] - found.travel[0])
     rails = [np.flatnonzero(found.rail == number) for number in range(found.rail.max() + 1)]
     members = np.full((len(rails), max(rail.size for rail in rails)), -1)
@@ -102,13 +105,12 @@ def build(found: data.Walls, model: Model, cells: int = CELLS) -> Walls:
         row[:rail.size] = rail
     edges = np.linspace(-1.0, 1.0, cells + 1)
     crown = np.diff(edges**5) / (5.0 * np.diff(edges))
-    origin = float(model.faces.centre[0, 0] + model.payload.mass_centre[0] - platform)
     flexibility, shape = found.cubic(model.flexibility.modes if model.flexibility else 0)
     modes = _modes(found, shape, model.flexibility) if shape.size else None
-    return Walls(flexibility, origin, spacing, members, found.rail, found.half,
-                 model.faces.relief, float(model.penalty), float(model.rail_start), float(model.rail_end),
-                  0.5 * (edges[1:] + edges[:-1]), crown, modes, _warm(found, model),
-                  _room(model.faces.axis.size, members.shape[1], shape.shape[2]))
+    return Walls(flexibility, float(nominal[0, 0]), spacing, members, found.rail, found.half,
+                 nominal[np.arange(faces.axis.size), 3 - faces.axis], faces.relief, float(model.penalty), float(model.rail_start), float(model.rail_end),
+                 0.5 * (edges[1:] + edges[:-1]), crown, modes, _warm(found, model),
+                 _room(faces.axis.size, members.shape[1], shape.shape[2]))
 
 
 def _warm(found: data.Walls, model: Model) -> Warm | None:

@@ -9,7 +9,7 @@ from lowfi.walls.cells import LAST_STRIP, deepest, reaches, take_lever
 from lowfi.walls import warm
 from lowfi.walls.loads import energy as energy_of_rail
 from lowfi.walls.modes import speed_at
-from lowfi.walls.record import MIDDLE, SHIFT
+from lowfi.walls.record import ASIDE, MIDDLE, SHIFT
 from lowfi.walls.solution import follow, solve
 from scenes.jit import inlined, kernel
 
@@ -41,8 +41,8 @@ def _approach(walls, faces, face, xi, eta, drift, swing):
     """Rate (m/s) at which a point of the face comes up to its wall, which only modes move."""
     y, z, half = faces[face, NORMAL_Y], faces[face, NORMAL_Z], walls.half[face]
     turning = xi * half[0] * (y * swing[3] + z * swing[6]) + eta * half[1] * (y * swing[5] + z * swing[7])
-    on_wall = xi + walls.room.lever[face, SHIFT]
-    away = speed_at(walls.modes, face, on_wall, eta) + warm.recess(walls.warm, face, on_wall, eta) * drift[0]
+    along, across = xi + walls.room.lever[face, SHIFT], eta + walls.room.lever[face, ASIDE]
+    away = speed_at(walls.modes, face, along, across) + warm.recess(walls.warm, face, along, across) * drift[0]
     return approach(None, faces[face], None, None, drift, swing) + turning - away
 
 

@@ -7,8 +7,8 @@
 * **Gates**: v_x within 0.1 %, rates and settled rates within the limits of the scene's ``[agreement]``; where twice the floor, taken as at
   most 0.1 deg/s, is above the limit of the settled rates, that counts, for no model could be held to less.
 
-What the mesh changes is measured on every condition. The rest is measured on a few; the others take the largest of those and say
-so.
+What the mesh changes is measured on every condition. The rest is measured where the scene says; other conditions take the largest of
+those and say so.
 """
 
 import math

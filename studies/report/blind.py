@@ -7,8 +7,8 @@ from studies.report import tables
 from studies.report.chart import Chart
 from studies.report.markup import Html, caption, fold, paragraph, table
 
-_WORDS = ("Drawn from the distributions “{vary}” with seed {seed}{origin}. Every condition has its own uncertainty of the reference by "
-          "the mesh; step, penalty and the floor are those of the first.")
+_WORDS = ("Drawn from the distributions “{vary}” with seed {seed}{origin}. Every condition has a floor and an "
+          "uncertainty of the reference by the mesh of its own; step and penalty are those of the first.")
 
 
 def draw(found: dict, figure: Callable[[Chart, str], Html]) -> Html:

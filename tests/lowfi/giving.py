@@ -114,7 +114,9 @@ def forces_of(walls: Walls, model, cells: int, face: int, pose: Pose, displaceme
     arms[:, 0], arms[:, across] = half[0] * xi, half[1] * eta
     depth = faces.sign[face] * ((place + (faces.centre[face] + arms) @ turn.T)[:, axis] - faces.wall[face])
     depth -= faces.relief[face] * np.add.outer(crown, crown).ravel()
-    phi = xi[:, None] ** POWERS[:, 0] * eta[:, None] ** POWERS[:, 1]
+    origin = np.array(model.platform.mass_centre) if model.platform else np.zeros(3)
+    aside = (place + turn @ faces.centre[face] - faces.centre[face] - model.payload.mass_centre + origin)[across]
+    phi = xi[:, None] ** POWERS[:, 0] * (eta + aside / half[1])[:, None] ** POWERS[:, 1]
     area = 4.0 * np.abs(half).prod() / cells**2
     return model.penalty * area * phi.T @ np.maximum(0.0, depth - phi @ displacement)
 

@@ -95,7 +95,8 @@ def test_forces_are_the_gradient_of_the_energy(reference, name, base):
 
 @pytest.mark.parametrize("name", POSES)
 def test_tangent_bounds_what_the_forces_change_by(reference, name):
-    """Trace of M^-1 T against differences of the forces; the rest is the turning of the forces' own arms, a thousandth of it."""
+    """Trace of M^-1 T against differences of the forces; the rest, that of the forces' own arms and of the slopes they lean on, is
+    a few thousandths of it."""
     _, model, system = reference
     pose, h = pose_of(model, name, BASES["moved and turned"]), 1e-9
     metric = np.zeros((12, 12))
@@ -109,7 +110,7 @@ def test_tangent_bounds_what_the_forces_change_by(reference, name):
                              - generalised(back, derivative(system, model, back, 0.0 * twist))) / (2.0 * h)
     springs, dampers = limit.stiffness_and_damping(system.walls, system.friction, system.faces, system.platform, system.payload,
                                                    np.ones(len(system.faces), dtype=np.bool_), state_of(model, pose))
-    assert springs == pytest.approx(-np.trace(metric @ change), rel=2e-3)
+    assert springs == pytest.approx(-np.trace(metric @ change), rel=4e-3)
     assert dampers == 0.0
 
 
@@ -154,9 +155,10 @@ def test_any_pose_is_solved(reference):
     assert worst < 1e-12
 
 
-def pressed_elements(scene, face, travel):
-    """Force (N) as a function of the depth (m) a crowned pad face is pressed into the rail of elements of 4 mm: penalty at 4 x 4 Gauss
-    points a facet, each one's pressure felt at every other, by Newton's rule with the points that touch."""
+def pressed_elements(scene, face, travel, aside=0.0, points_per_edge=4):
+    """Force (N) as a function of the depth (m) a crowned pad face is pressed into the rail of elements of 4 mm, ``aside`` (m) of where it
+    stands midway between the rails: penalty at Gauss points of each facet, each one's pressure felt at every other, by Newton's rule
+    with the points that touch."""
     nominal = models.built(scene).nominal
     faces = nominal._replace(wall=nominal.wall + np.array(scene.platform.record().mass_centre)[nominal.axis])
     axis, across, sign, material = faces.axis[face], 3 - faces.axis[face], faces.sign[face], scene.rail.material
@@ -165,9 +167,9 @@ def pressed_elements(scene, face, travel):
         wall = wall[surface.in_reach(rail.points[wall], faces, face)]
         if wall.size:
             break
-    shape, area = facets.gauss(rail.points[wall], 4)
+    shape, area = facets.gauss(rail.points[wall], points_per_edge)
     points = np.einsum("qk,mki->mqi", shape, rail.points[wall])[:, :, [0, across]]
-    local = (points - faces.centre[face, [0, across]] - [travel, 0.0]) / [faces.half_length[face], faces.half_width[face]]
+    local = (points - faces.centre[face, [0, across]] - [travel, aside]) / [faces.half_length[face], faces.half_width[face]]
     where, which = np.nonzero((np.abs(local) < 1.0).all(axis=2))
     spring, crown = scene.contact.penalty * area[where, which], faces.relief[face] * (local[where, which]**4).sum(axis=1)
     seen = np.zeros((spring.size, 3 * len(rail.points)))
@@ -202,3 +204,23 @@ def test_force_is_that_of_the_finite_elements(reference, travel, error):
         assert system.walls.room.force[face, 0] == pytest.approx(force(depth), rel=error)
         # Control: a rigid wall would press back three times as hard, or more.
         assert forces_of(walls, model, record.CELLS, face, pose, np.zeros(PATTERNS))[0] > 3.0 * force(depth)
+
+
+@pytest.mark.parametrize("aside", [CLEARANCE, -CLEARANCE], ids=["to the free edge", "to the corner"])
+def test_a_pad_aside_meets_a_softer_or_stiffer_leg(reference, aside):
+    """The same as with finite elements under the pad where it really stands, though the walls were found midway between the rails."""
+    walls, model, system = reference
+    face, travel, depth = 0, 0.056, 2e-5
+    active = np.arange(len(system.faces)) == face
+    axis = model.faces.axis[face]
+
+    def force(way):
+        offset = np.zeros(2)
+        offset[axis - 1], offset[2 - axis] = model.faces.sign[face] * (CLEARANCE + depth), way
+        solved(system, model, relative(model, travel, offset), walls.rail[face], active)
+        return system.walls.room.force[face, 0]
+
+    expected = [pressed_elements(REFERENCE, face, travel, way, 16)(depth) for way in (0.0, aside)]
+    change = expected[1] / expected[0] - 1.0
+    assert abs(change) > 0.02  # control: what would be missed
+    assert force(aside) / force(0.0) - 1.0 == pytest.approx(change, abs=0.1 * abs(change))

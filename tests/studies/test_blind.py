@@ -27,7 +27,8 @@ def test_seed_is_that_of_code_and_scene(monkeypatch):
 def test_drawn_conditions_are_all_held_out():
     drawn = blind.draw(study_of(), Asked(cases=3, seed=1))
     assert list(drawn.conditions) == ["blind1", "blind2", "blind3"] == list(drawn.scene.agreement.held_out)
-    assert drawn.scene.agreement.fitted == () and drawn.scene.agreement.floor == drawn.scene.agreement.refined == ("blind1",)
+    assert drawn.scene.agreement.fitted == () and drawn.scene.agreement.floor == drawn.scene.agreement.held_out
+    assert drawn.scene.agreement.refined == ("blind1",)
     hashes = {scene.hash for scene in drawn.conditions.values()}
     assert len(hashes) == 3 and hashes.isdisjoint(scene.hash for scene in study_of().conditions.values())
     again = blind.draw(study_of(), Asked(cases=2, seed=1))
