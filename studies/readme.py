@@ -9,8 +9,8 @@ import sys
 from pathlib import Path
 
 from scenes.files import write_text
-from studies.bench import reference
 from studies.agreement.verdicts import FINITE_ELEMENTS
+from studies.bench import reference
 from studies.report import growth, scaling
 from studies.study import read
 

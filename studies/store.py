@@ -21,7 +21,8 @@ from scenes.trajectory import Trajectory
 from scenes.walls import Walls
 from studies.progress import Board, say
 
-SOURCES = {"highfi": ("scenes", "meshes", "highfi"), "lowfi": ("scenes", "lowfi")}
+SOURCES = {"highfi": ("scenes", "meshes", "highfi"), "lowfi": ("scenes", "lowfi"),
+           "calibrated": ("scenes", "meshes", "highfi", "lowfi", "calibrate")}
 code_hash = functools.lru_cache(source_hash)  # the sources do not change while the program runs
 
 

@@ -116,6 +116,15 @@ class Study:
         write_json(path, document)
         return document
 
+    def stored(self, name: str, key: Callable[[dict], str]) -> dict | None:
+        """The stage's result, if it has the ``key`` that a result of its settings would be given now; None too where those are of other
+        code, or a file they name is gone."""
+        found = read(self.path(f"{name}.json"))
+        try:
+            return found if found and found["key"] == key(found) else None
+        except (SceneError, KeyError, TypeError, ValueError):
+            return None
+
     def _tell(self, name: str, words: str) -> None:
         if name not in self._told:
             say(f"{name}: {words}")

@@ -22,8 +22,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from scenes.trajectory import Trajectory
-from studies.agreement.verdicts import largest, settled_change
 from studies.agreement.metrics import common_time
+from studies.agreement.verdicts import largest, settled_change
 
 _BOUNCE = 1e-3  # s: touches closer than this are one contact, for in between nothing settles
 _DRAWN = 300  # points of a curve that result files keep

@@ -25,10 +25,10 @@ from scenes.faults import SceneError
 from scenes.rail import MeshTable
 from scenes.scene import Scene
 from studies.agreement.verdicts import FINITE_ELEMENTS
+from studies.cost.timing import timed, warm_up
 from studies.progress import Board
 from studies.store import Run
 from studies.study import Study
-from studies.cost.timing import timed, warm_up
 
 SPRINGS, WALLS = "surrogate, springs", "surrogate, compliant walls"
 _TIME = {"highfi": "cpu_s", "lowfi": "kernel_s"}

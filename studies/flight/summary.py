@@ -7,9 +7,9 @@ from scipy.stats import binomtest
 
 from scenes.scene import Scene
 from scenes.uncertainty import Uncertainty
-from studies.populations import order_statistics
 from studies.flight import bodies
 from studies.flight.flown import Flown
+from studies.populations import order_statistics
 from studies.populations.population import Population
 
 if TYPE_CHECKING:

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 from scenes.faults import Fault, SceneError
-from studies.populations import exceedance, order_statistics
 from studies.checked import together
+from studies.populations import exceedance, order_statistics
 from studies.populations.exceedance import Limit
 
 TIMES_NEEDED = 10  # of the fewest cases: some may then be above, and tolerances are not cut for want of cases

@@ -5,8 +5,8 @@ from typing import Iterator, Sequence
 
 from scenes.scene import Scene
 from scenes.trajectory import Trajectory
-from studies.refinement import contact_loads, stresses
 from studies.agreement.metrics import AXES
+from studies.refinement import contact_loads, stresses
 
 RATE = "settled rate"
 

@@ -2,11 +2,11 @@
 
 from html import escape
 
+from studies.limits.search import ALL, FOUND, NONE, SMALL
 from studies.populations import exceedance
 from studies.report.chart import AMBER, GREY, NAVY, TEAL, VERMILION, Chart, Line, Panel
 from studies.report.markup import Html, caption, fold, number, paragraph, table
 from studies.report.montecarlo import bounded
-from studies.limits.search import ALL, FOUND, NONE, SMALL
 
 _CURVES = ("Share of {cases:,} cases above a limit over the tolerance, the same draws at every tolerance. Dotted: its upper bound "
            "at {confidence:.0%} confidence, which may not be above the horizontal line, 1 - p. Vertical: the largest certified "

@@ -3,9 +3,9 @@
 import math
 
 from studies.agreement.verdicts import FINITE_ELEMENTS
+from studies.cost.scaling import SPRINGS, WALLS
 from studies.report.chart import AMBER, NAVY, VERMILION, Chart, Line, Panel
 from studies.report.markup import Html, caption, paragraph, table
-from studies.cost.scaling import SPRINGS, WALLS
 
 WORDS = ("Time of one processor on {condition}: of a whole run of the reference, of the time loop of the surrogate. Left and "
          "middle: fitted power laws, and dotted the exponent 4/3. Right: over the time without any effect; the last marker has every "

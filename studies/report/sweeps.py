@@ -2,10 +2,10 @@
 
 from typing import Callable
 
-from studies.sweeps.knee import LEVEL, MISFIT
 from studies.report.chart import Chart
 from studies.report.markup import Html, caption, number, paragraph, percent, table
 from studies.report.sweep_figures import pictures
+from studies.sweeps.knee import LEVEL, MISFIT
 
 _SHORT = {"rate_x_deg_s": "x", "rate_y_deg_s": "y", "rate_z_deg_s": "z", "rate_deg_s": "total"}
 _RUN = ("thrust, times as long", "cases", "did not settle", "outside the calibration", "exit (ms)", "impulse after the exit (%)")

@@ -5,8 +5,8 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 
 from scenes.scene import Scene, load
-from studies.stability import weaker_methods as weaker
 from studies.agreement.verdicts import settled_change
+from studies.stability import weaker_methods as weaker
 from studies.stability.cases import Stability, Verdict, verdict
 
 _SIZE = 0.016

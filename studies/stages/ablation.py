@@ -16,10 +16,9 @@ import numpy as np
 from scenes.scene import EFFECTS, Scene
 from scenes.trajectory import Trajectory
 from studies import machine
-from studies.stages.compare import SOURCES_USED
-from studies.store import Run
-from studies.study import Study
 from studies.cost.timing import timed, warm_up
+from studies.store import SOURCES, Run
+from studies.study import Study
 
 ADDED = {
     "thrust_offset": {"thrust_offset.misalignment.axial": "0.1 deg", "thrust_offset.misalignment.radial": "35 deg"},
@@ -54,7 +53,7 @@ def run(study: Study) -> dict:
         return {"condition": name, "added": ADDED, "element_size_m": study.settings.coarse_size, "rows": rows,
                 "hardware": machine.describe()}, []
 
-    return study.stage("ablation", study.key(SOURCES_USED, name, ADDED), make)
+    return study.stage("ablation", study.key(SOURCES["calibrated"], name, ADDED), make)
 
 
 def _reference(study: Study, name: str, lines: dict[str, dict]):

@@ -15,7 +15,7 @@ from studies.agreement import verdicts
 from studies.agreement.verdicts import Context
 from studies.stages import calibrate, compare, walls
 from studies.store import SOURCES
-from studies.study import Study, read, require_success
+from studies.study import Study, require_success
 
 NAME = "blind"
 _CODE = ("scenes", "highfi", "lowfi", "calibrate")
@@ -53,8 +53,7 @@ def run(study: Study, asked: Asked = Asked()) -> dict:
 
 def stored(study: Study) -> dict | None:
     """The result, if it was made from the present scene, code and settings."""
-    found = read(study.path(f"{NAME}.json"))
-    return found if found and found["key"] == _key(study, draw(study, Asked(**found["asked"]))) else None
+    return study.stored(NAME, lambda found: _key(study, draw(study, Asked(**found["asked"]))))
 
 
 def draw(study: Study, asked: Asked) -> Study:
@@ -91,4 +90,4 @@ def _rate(value: float | None) -> str:
 
 
 def _key(study: Study, drawn: Study) -> str:
-    return study.key((*SOURCES["highfi"], *SOURCES["lowfi"], "calibrate"), NAME, drawn.scene.conditions, verdicts.gates(study.scene))
+    return study.key(SOURCES["calibrated"], NAME, drawn.scene.conditions, verdicts.gates(study.scene))

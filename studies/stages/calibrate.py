@@ -20,7 +20,6 @@ from studies.store import SOURCES
 from studies.study import Study, StudyError, require_success
 
 FILE = "calibration.toml"
-_SOURCES = (*SOURCES["highfi"], *SOURCES["lowfi"], "calibrate")
 
 
 def run(study: Study) -> dict:
@@ -39,7 +38,7 @@ def run(study: Study) -> dict:
         except calibrate.CalibrationError as fault:
             raise StudyError(f"cannot calibrate: {fault}") from None
 
-    return study.stage("calibration", study.key(_SOURCES, [item.key for item in asked]), make)
+    return study.stage("calibration", study.key(SOURCES["calibrated"], [item.key for item in asked]), make)
 
 
 def named(references: list[str], condition: str | None, settled_from: float | None) -> list[tuple[str, str]]:
@@ -80,7 +79,7 @@ def from_files(study: Study, files: list[tuple[str, str]], settled_from: float |
         return _fitted(study, references, study.path(f"curves/{FILE}"))
 
     sources = {name: item.source for name, item in references.items()}
-    return study.stage("curves/calibration", study.key(_SOURCES, sources), make)
+    return study.stage("curves/calibration", study.key(SOURCES["calibrated"], sources), make)
 
 
 def _fitted(study: Study, references: dict, path: Path) -> tuple[dict, list[Path]]:

@@ -11,13 +11,12 @@ from scenes.trajectory import Trajectory
 from scenes.walls import PATTERNS, Walls
 from studies.agreement import growth, metrics, verdicts
 from studies.agreement.verdicts import Context, Spread, spread
+from studies.cost.timing import speedups
 from studies.progress import Board
 from studies.stages import calibrate, walls
 from studies.store import SOURCES, Run
 from studies.study import Study, read, require_success
-from studies.cost.timing import speedups
 
-SOURCES_USED = (*SOURCES["highfi"], *SOURCES["lowfi"], "calibrate")
 _SIMPLER = {"mean pressure of each face by itself": (1, False), "mean pressure": (1, True), "pressure and its tilt": (3, True),
             "all, each face by itself": (PATTERNS, False)}
 
@@ -76,12 +75,12 @@ def run(study: Study) -> dict:
 
 def stored(study: Study) -> dict | None:
     """The result, if it was made from the present scene, code, settings and calibration."""
-    found, calibration = read(study.path("agreement.json")), read(study.path("calibration.json"))
-    return found if found and calibration and found["key"] == _key(study, calibration["constants"]) else None
+    calibration = read(study.path("calibration.json"))
+    return study.stored("agreement", lambda _: _key(study, calibration["constants"])) if calibration else None
 
 
 def _key(study: Study, constants: dict) -> str:
-    return study.key(SOURCES_USED, constants, verdicts.gates(study.scene))
+    return study.key(SOURCES["calibrated"], constants, verdicts.gates(study.scene))
 
 
 def rows(study: Study, rung: Rung, highfi: dict[str, Trajectory], context: Context) -> list[dict]:

@@ -19,7 +19,7 @@ from studies.refinement.extrapolation import Estimate, estimate
 from studies.refinement.quantities import RATE, quantities, settled_rate
 from studies.stages.compare import refined
 from studies.store import SOURCES, Run
-from studies.study import Study, read, require_success
+from studies.study import Study, require_success
 
 NAME = "convergence"
 
@@ -48,8 +48,7 @@ def run(study: Study, condition: str | None = None) -> dict:
 
 def stored(study: Study) -> dict | None:
     """The result, if it was made from the present scene, code and settings: the report shows it and makes none."""
-    found = read(study.path(f"{NAME}.json"))
-    return found if found and found["key"] == _key(study, found["condition"]) else None
+    return study.stored(NAME, lambda found: _key(study, found["condition"]))
 
 
 def _key(study: Study, name: str) -> str:

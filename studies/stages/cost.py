@@ -15,12 +15,13 @@ from scenes.files import write_json
 from scenes.trajectory import Trajectory
 from studies import machine
 from studies.agreement import verdicts
-from studies.cost import scaling
 from studies.agreement.verdicts import FINITE_ELEMENTS
-from studies.stages import ablation
-from studies.stages.compare import SOURCES_USED, Rung, refined, rungs
-from studies.study import Study
+from studies.cost import scaling
 from studies.cost.timing import timed, warm_up
+from studies.stages import ablation
+from studies.stages.compare import Rung, refined, rungs
+from studies.store import SOURCES
+from studies.study import Study
 
 
 STIFFNESS_ALONG = "surrogate, stiffness along the rail"  # mean pressure, each face by itself
@@ -44,7 +45,7 @@ def run(study: Study) -> dict:
         return {"condition": name, "scene_hash": study.scene.hash, "band_deg_s": band, "points": points, "matched": matched(points),
                 "scaling": growing, "hardware": machine.describe()}, [path]
 
-    return study.stage(NAME, study.key(SOURCES_USED, name, ladder[1].calibration.constants), make)
+    return study.stage(NAME, study.key(SOURCES["calibrated"], name, ladder[1].calibration.constants), make)
 
 
 def surrogates(study: Study) -> list[Rung]:

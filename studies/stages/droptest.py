@@ -12,19 +12,18 @@ import numpy as np
 from lowfi.rows import Drawn
 from scenes import uncertainty
 from scenes.faults import Fault, SceneError
-from studies.populations import population
 from studies.droptest import shipped
 from studies.droptest.analysis import Drop, analyse
 from studies.droptest.results import joint, summary, row_of
+from studies.populations import population
 from studies.populations.population import Population
 from studies.store import SOURCES
-from studies.study import Study, StudyError, read
+from studies.study import Study, StudyError
 
 NAME = "droptest"
 CASES = 1000
 _FEWEST = 20  # settled cases; a covariance of fewer says little
 _SHOWN = 2000  # cases in the figure
-_SOURCES = (*SOURCES["highfi"], *SOURCES["lowfi"], "calibrate")
 
 
 def run(study: Study, logs: list[Path] | None = None, cases: int = CASES, walls: bool = False) -> dict:
@@ -48,12 +47,11 @@ def run(study: Study, logs: list[Path] | None = None, cases: int = CASES, walls:
 
 def stored(study: Study) -> dict | None:
     """The result, if it was made from the present scene, code and settings: the report shows it and makes none."""
-    found = read(study.path(f"{NAME}.json"))
-    return found if found and found["key"] == _key(study, found["request"]) else None
+    return study.stored(NAME, lambda found: _key(study, found["request"]))
 
 
 def _key(study: Study, request: dict) -> str:
-    return study.key(_SOURCES, NAME, request)
+    return study.key(SOURCES["calibrated"], NAME, request)
 
 
 def _analysed(paths: list[Path]) -> list[Drop]:

@@ -11,14 +11,13 @@ from scenes.faults import Fault, SceneError
 from scenes.files import replacing
 from scenes.scene import Scene
 from scenes.variation import Variations
-from studies.populations import population
 from studies.flight import bodies, curves, flown, summary
+from studies.populations import population
 from studies.progress import Board
 from studies.store import SOURCES
-from studies.study import Study, StudyError, read
+from studies.study import Study, StudyError
 
 NAME = "flight"
-_SOURCES = (*SOURCES["highfi"], *SOURCES["lowfi"], "calibrate")
 
 
 @dataclass(frozen=True)
@@ -61,18 +60,14 @@ def run(study: Study, asked: Asked = Asked()) -> dict:
 
 def stored(study: Study) -> dict | None:
     """The result, if it was made from the present scene, code and settings."""
-    found = read(study.path(f"{NAME}.json"))
-    try:
-        return found if found and study.scene.flight and found["key"] == _key(study, Asked(**found["asked"])) else None
-    except SceneError:  # the file of distributions is gone, or says something else by now
-        return None
+    return study.stored(NAME, lambda found: _key(study, Asked(**found["asked"]))) if study.scene.flight else None
 
 
 def _key(study: Study, asked: Asked) -> str:
     tables = {name: scene.flight and scene.flight.model_dump(mode="json") for name, scene in study.conditions.items()}
     varied = uncertainty.load(asked.vary, study.scene).resolved()
     own = study.scene.flight.model_dump(mode="json")
-    return study.key(_SOURCES, NAME, own, tables, asdict(asked), varied, study.settings.element_size)
+    return study.key(SOURCES["calibrated"], NAME, own, tables, asdict(asked), varied, study.settings.element_size)
 
 
 def _require(scenes: dict[str, Scene]) -> None:

@@ -14,24 +14,23 @@ from typing import Callable
 import numpy as np
 
 from studies.limits import constants, within
-from studies.populations import answers, exceedance, population, spread
 from studies.limits import search
-from studies.populations.exceedance import Limit
 from studies.limits.inputs import Asked, checked
+from studies.limits.search import Found
+from studies.limits.within import SETS, Cases, Factor
+from studies.populations import answers, exceedance, population, spread
+from studies.populations.exceedance import Limit
 from studies.populations.population import Surrogate
 from studies.progress import Board
 from studies.stages import posterior
 from studies.store import SOURCES
-from studies.study import Study, read
-from studies.limits.within import SETS, Cases, Factor
-from studies.limits.search import Found
+from studies.study import Study
 
 NAME = "limits"
 TOGETHER = "together"
 PAIR = ("misalignment", "mass_eccentricity")
 _RAYS = 5  # between the axes of the map of two tolerances
 _REACH = 5.0  # times the tolerances that are scaled together
-_SOURCES = (*SOURCES["highfi"], *SOURCES["lowfi"], "calibrate")
 
 
 def run(study: Study, asked: Asked = Asked()) -> dict:
@@ -56,13 +55,12 @@ def run(study: Study, asked: Asked = Asked()) -> dict:
 
 def stored(study: Study) -> dict | None:
     """The result, if it was made from the present scene, code and settings."""
-    found = read(study.path(f"{NAME}.json"))
-    return found if found and found["key"] == _key(study, found["asked"]) else None
+    return study.stored(NAME, lambda found: _key(study, found["asked"]))
 
 
 def _key(study: Study, asked: dict) -> str:
     known = posterior.stored(study)
-    return study.key(_SOURCES, NAME, _plain(asked), constants.margin(study, asked["walls"]), known and known["key"])
+    return study.key(SOURCES["calibrated"], NAME, _plain(asked), constants.margin(study, asked["walls"]), known and known["key"])
 
 
 def _plain(asked: dict) -> dict:

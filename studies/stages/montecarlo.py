@@ -9,12 +9,12 @@ from pathlib import Path
 
 import numpy as np
 
-from studies.populations import answers, exceedance, population, random_factors, spread
 from studies.checked import together
+from studies.populations import answers, exceedance, population, random_factors, spread
 from studies.populations.population import Population, Surrogate
 from studies.populations.random_factors import READINGS, Reading
 from studies.store import SOURCES
-from studies.study import Study, StudyError, read
+from studies.study import Study, StudyError
 
 NAME = "montecarlo"
 PAPER = 1000  # cases of the paper
@@ -22,7 +22,6 @@ CASES = 100_000
 _COMPARED = 10_000  # cases of each reading: differences of 2 % between distributions can be told
 _CONVERGING = (0.5, 0.95, 0.99)
 _RATES = (*answers.RATES, answers.TOTAL_RATE)
-_SOURCES = (*SOURCES["highfi"], *SOURCES["lowfi"], "calibrate")
 
 
 @dataclass(frozen=True)
@@ -67,12 +66,11 @@ def run(study: Study, asked: Asked = Asked()) -> dict:
 
 def stored(study: Study) -> dict | None:
     """The result, if it was made from the present scene, code and settings."""
-    found = read(study.path(f"{NAME}.json"))
-    return found if found and found["key"] == _key(study, found["asked"]) else None
+    return study.stored(NAME, lambda found: _key(study, found["asked"]))
 
 
 def _key(study: Study, asked: dict) -> str:
-    return study.key(_SOURCES, NAME, asked)
+    return study.key(SOURCES["calibrated"], NAME, asked)
 
 
 def _plain(asked: Asked) -> dict:

@@ -52,17 +52,12 @@ def run(study: Study, asked: Asked = Asked()) -> dict:
         pictures = [file for chart in drawn.charts(result) for file in to_files(chart, study.path("figures"))]
         return result, [path, *pictures]
 
-    return study.stage(NAME, content_hash(_key(study, asked), _speed(study)), make)
+    return study.stage(NAME, _key(study, asked), make)
 
 
 def stored(study: Study) -> dict | None:
     """The result, if it was made from the present scene, code and settings."""
-    found = read(study.path(f"{NAME}.json"))
-    if not found:
-        return None
-    plan = found["asked"]["plan"]
-    asked = Asked(found["asked"]["starts"], solutions.Plan(**plan | {"tolerances": tuple(plan["tolerances"])}))
-    return found if found["key"] == content_hash(_key(study, asked), _speed(study)) else None
+    return study.stored(NAME, lambda found: _key(study, _asked(found["asked"])))
 
 
 def require(scene: Scene) -> None:
@@ -134,7 +129,13 @@ def _speed(study: Study) -> dict | None:
 
 
 def _key(study: Study, asked: Asked) -> str:
-    return study.key(SOURCES["lowfi"], NAME, asked.starts, _plain(asked.plan))
+    return study.key(SOURCES["lowfi"], NAME, asked.starts, _plain(asked.plan), _speed(study))
+
+
+def _asked(plain: dict) -> Asked:
+    """Inverse of what a result holds of it."""
+    plan = plain["plan"]
+    return Asked(plain["starts"], solutions.Plan(**plan | {"tolerances": tuple(plan["tolerances"])}))
 
 
 def _plain(plan: solutions.Plan) -> dict:

@@ -11,7 +11,6 @@ from studies.store import SOURCES
 from studies.study import Study, StudyError, read, require_success
 
 NAME = "posterior"
-_SOURCES = (*SOURCES["highfi"], *SOURCES["lowfi"], "calibrate")
 
 
 def run(study: Study) -> dict:
@@ -46,12 +45,12 @@ def run(study: Study) -> dict:
 
 def stored(study: Study) -> dict | None:
     """The result, if it was made from the present scene, code, settings and calibration."""
-    found, calibration = read(study.path(f"{NAME}.json")), read(study.path("calibration.json"))
-    return found if found and calibration and found["key"] == _key(study, calibration["constants"]) else None
+    calibration = read(study.path("calibration.json"))
+    return study.stored(NAME, lambda _: _key(study, calibration["constants"])) if calibration else None
 
 
 def _key(study: Study, constants: dict) -> str:
-    return study.key(_SOURCES, NAME, constants, [study.highfi(name).key for name in _roles(study)])
+    return study.key(SOURCES["calibrated"], NAME, constants, [study.highfi(name).key for name in _roles(study)])
 
 
 def _roles(study: Study) -> dict[str, str]:

@@ -8,8 +8,6 @@ from studies.refinement import stresses
 from studies.store import SOURCES, Run
 from studies.study import FAILED, Study
 
-_SOURCES = {"highfi": SOURCES["highfi"], "lowfi": SOURCES["lowfi"]}
-
 
 def requests(study: Study, fidelity: str) -> dict[str, Run]:
     """The run of each condition, by name."""
@@ -27,7 +25,7 @@ def run(study: Study, fidelity: str) -> dict:
         failed = [f"{name}: {found.status}: {found.message}" for name, found in runs.items() if found.status in FAILED]
         return {"conditions": rows, "failed": failed}, [study.store.path(item) for item in asked.values()]
 
-    return study.stage(fidelity, study.key(_SOURCES[fidelity], [item.key for item in asked.values()]), make)
+    return study.stage(fidelity, study.key(SOURCES[fidelity], [item.key for item in asked.values()]), make)
 
 
 def row(name: str, run: Trajectory, path: str) -> dict:

@@ -11,15 +11,14 @@ from lowfi.rows import Listed
 from scenes.faults import Fault, SceneError
 from studies import published
 from studies.populations import answers, population
-from studies.sensitivity import contact_table, indices, tolerances
 from studies.populations.population import Population, Surrogate
 from studies.report import sensitivity as drawing
 from studies.report.chart import to_files
+from studies.sensitivity import contact_table, indices, tolerances
 from studies.store import SOURCES
-from studies.study import Study, StudyError, read
+from studies.study import Study, StudyError
 
 NAME = "sensitivity"
-_SOURCES = (*SOURCES["highfi"], *SOURCES["lowfi"], "calibrate")
 _HALVINGS = 3  # smaller runs beside the whole one, for convergence
 _FINE = Numerics().relative_tolerance  # deviations of a thousandth are asked of a table
 
@@ -54,15 +53,11 @@ def run(study: Study, asked: Asked = Asked()) -> dict:
 
 def stored(study: Study) -> dict | None:
     """The result, if it was made from the present scene, code, settings and file of tolerances."""
-    found = read(study.path(f"{NAME}.json"))
-    try:
-        return found if found and found["key"] == _key(study, Asked(**found["asked"])) else None
-    except SceneError:  # the file of tolerances has gone
-        return None
+    return study.stored(NAME, lambda found: _key(study, Asked(**found["asked"])))
 
 
 def _key(study: Study, asked: Asked) -> str:
-    return study.key(_SOURCES, NAME, asked._asdict(), tolerances.digest(asked.vary or tolerances.DEFAULT))
+    return study.key(SOURCES["calibrated"], NAME, asked._asdict(), tolerances.digest(asked.vary or tolerances.DEFAULT))
 
 
 def _require(study: Study, asked: Asked) -> None:

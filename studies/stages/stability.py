@@ -2,11 +2,10 @@
 
 from pathlib import Path
 
-from studies.stability import cases
-from studies.progress import Board
-from studies.stages.compare import SOURCES_USED
-from studies.store import code_hash
 from scenes.files import content_hash
+from studies.progress import Board
+from studies.stability import cases
+from studies.store import SOURCES, code_hash
 from studies.study import Study
 
 
@@ -26,4 +25,4 @@ def run(study: Study) -> dict:
         return {"cases": [item._asdict() for item in found], "failed": failed}, []
 
     # The cases bring their own scenes, so the scene under study is not part of the key.
-    return study.stage("stability", content_hash("stability", code_hash(*SOURCES_USED, "studies")), make)
+    return study.stage("stability", content_hash("stability", code_hash(*SOURCES["calibrated"], "studies")), make)

@@ -10,18 +10,17 @@ import numpy as np
 from scenes.faults import Fault, SceneError
 from studies import published
 from studies.populations import answers, population
-from studies.sweeps import burnout, factors, knee, sides
-from studies.sweeps.factors import FACTORS, SIZES, Factor
 from studies.populations.population import Population, Surrogate
 from studies.progress import Board
 from studies.report import sweep_figures as drawing
 from studies.report.chart import to_files
 from studies.store import SOURCES
-from studies.study import Study, read
+from studies.study import Study
+from studies.sweeps import burnout, factors, knee, sides
+from studies.sweeps.factors import FACTORS, SIZES, Factor
 
 NAME = "sweeps"
 JUDGED = (*answers.RATES, answers.TOTAL_RATE)  # quantities whose growth is judged
-_SOURCES = (*SOURCES["highfi"], *SOURCES["lowfi"], "calibrate")
 _TOLERANCE = 1e-4  # at the ensemble's own a long thrust without contact is taken in six steps and loses 0.5 % of its impulse
 _FEWEST = 8  # directions: fewer tell no side from another
 _COARSER = 5  # directions of the ensemble for each one whose pads are looked at
@@ -62,12 +61,11 @@ def run(study: Study, asked: Asked = Asked()) -> dict:
 
 def stored(study: Study) -> dict | None:
     """The result, if it was made from the present scene, code and settings."""
-    found = read(study.path(f"{NAME}.json"))
-    return found if found and found["key"] == _key(study, Asked(**found["asked"])) else None
+    return study.stored(NAME, lambda found: _key(study, Asked(**found["asked"])))
 
 
 def _key(study: Study, asked: Asked) -> str:
-    return study.key(_SOURCES, NAME, asked._asdict())
+    return study.key(SOURCES["calibrated"], NAME, asked._asdict())
 
 
 def _launch(study: Study, model: Surrogate, asked: Asked, stretch: float, leaves: burnout.Exit | None) -> dict:

@@ -10,8 +10,8 @@ import highfi
 from highfi import Numerics, assembly
 from scenes import load
 from studies.bench import reference
-from studies.cli import app
 from studies.bench.csr_loop import CsrLoop
+from studies.cli import app
 from studies.report.figures import Runs
 from studies.report.page import Page
 

@@ -6,8 +6,8 @@ import pytest
 from typer.testing import CliRunner
 
 import scenes
-from studies.cost.choice import choose
 from studies.cli import app
+from studies.cost.choice import choose
 from studies.settings import Settings
 from studies.study import Study, StudyError
 

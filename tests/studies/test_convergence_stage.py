@@ -11,9 +11,9 @@ import scenes
 from scenes.faults import SceneError
 from studies import store as store_module
 from studies.cli import app
+from studies.refinement.ripple import Ripple
 from studies.report.figures import Runs
 from studies.report.page import Page
-from studies.refinement.ripple import Ripple
 from studies.settings import Settings, defaults
 from studies.stages import convergence, report
 from studies.study import Study, StudyError

@@ -7,9 +7,9 @@ import pytest
 from typer.testing import CliRunner
 
 from scenes import load
-from studies.populations import population
 from studies.cli import app
 from studies.flight import summary
+from studies.populations import population
 from studies.populations.population import Surrogate
 from studies.report import chart
 from studies.report import flight as section

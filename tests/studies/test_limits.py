@@ -8,16 +8,16 @@ from typer.testing import CliRunner
 from lowfi.rows import numbers
 from scenes import load
 from scenes.calibration import Calibration
-from studies.limits import constants, within
-from studies.populations import exceedance
 from studies.cli import app
+from studies.limits import constants, within
 from studies.limits.inputs import Asked
+from studies.limits.within import ADVISED
+from studies.populations import exceedance
 from studies.populations.population import Surrogate
 from studies.report import limits as pictures
 from studies.settings import Settings
 from studies.stages import limits
 from studies.study import Study
-from studies.limits.within import ADVISED
 from tests.studies import free_flight
 
 pytest.importorskip("zarr")

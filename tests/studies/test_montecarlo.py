@@ -8,8 +8,8 @@ from scipy import stats
 from scipy.special import j0
 from typer.testing import CliRunner
 
-from studies.populations import spread
 from studies.cli import app
+from studies.populations import spread
 from studies.report import montecarlo as pictures
 from studies.settings import Settings
 from studies.stages import montecarlo

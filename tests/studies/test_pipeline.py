@@ -14,8 +14,8 @@ from scenes.calibration import Calibration
 from scenes.trajectory import Trajectory
 from studies.cli import app
 from studies.report.answers import ANSWERS
-from studies.stages.report import STAGES
 from studies.stages import ablation
+from studies.stages.report import STAGES
 
 pytestmark = pytest.mark.timeout(1500)  # nearly all of it compiles kernels, side by side with other test files
 

@@ -6,8 +6,8 @@ import pytest
 import scenes
 from scenes.model import build
 from studies.cost import scaling
-from studies.report import scaling as page
 from studies.cost.scaling import SPRINGS, effects, fitted, power_law, shares, with_pads
+from studies.report import scaling as page
 from studies.settings import defaults
 from studies.study import Study
 

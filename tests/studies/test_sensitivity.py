@@ -8,8 +8,8 @@ from typer.testing import CliRunner
 
 from lowfi.columns import STATUSES
 from scenes import load
-from studies.populations import population
 from studies.cli import app
+from studies.populations import population
 from studies.populations.population import Surrogate
 from studies.report import sensitivity as section
 from studies.report.markup import Html

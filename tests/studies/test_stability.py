@@ -2,8 +2,8 @@
 
 import pytest
 
-from studies.stability import contacts, guides, thrusts
 from studies.report.tables import stability
+from studies.stability import contacts, guides, thrusts
 
 CASES = {**contacts.CASES, **guides.CASES, **thrusts.CASES}
 CHEAP = [name for name in CASES if name != "turning_platform"]  # which takes seconds, and is run with the pipeline

@@ -1,5 +1,6 @@
 """Small parts of the stages that need no run."""
 
+import json
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -11,9 +12,9 @@ from highfi.compiled import LAWS as highfi_laws
 from lowfi.compiled import LAWS as lowfi_laws
 from scenes.scene import EFFECTS
 from studies import machine
-from studies.stability import weaker_methods
 from studies.settings import Settings, defaults
-from studies.stages import ablation, compare, cost
+from studies.stability import weaker_methods
+from studies.stages import ablation, compare, cost, sweeps
 from studies.stages.mesh import area
 from studies.study import Study
 
@@ -113,3 +114,14 @@ def test_weaker_methods_have_their_order(method, order):
         return np.hypot(x - np.cos(1.0), v + np.sin(1.0))
 
     assert np.log2(error(40) / error(80)) == pytest.approx(order, abs=0.1)
+
+
+def test_a_stored_result_is_one_of_the_present_settings_and_code(tmp_path):
+    """Other code may have called its settings something else: that is no result, and no error either."""
+    study = Study(scenes.load("tiny"), tmp_path, Settings())
+    asked = sweeps.Asked()._asdict()
+    for found, known in (({"asked": asked, "key": "of another scene"}, False), ({"asked": asked | {"turns": 3}, "key": "x"}, False),
+                         ({"key": "x"}, False), ({"asked": [], "key": "x"}, False), ({"asked": asked, "key": "right"}, True)):
+        (tmp_path / "sweeps.json").write_text(json.dumps(found))
+        assert (study.stored("sweeps", lambda result: sweeps.Asked(**result["asked"]) and "right") is not None) == known
+    assert study.stored("limits", lambda result: "right") is None

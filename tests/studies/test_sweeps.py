@@ -9,15 +9,15 @@ import pytest
 from typer.testing import CliRunner
 
 from scenes import load
-from studies.populations import population
-from studies.sweeps import burnout, factors, sides
 from studies.cli import app
+from studies.populations import population
 from studies.populations.population import Surrogate
 from studies.report import sweeps as sections
 from studies.report.markup import Html
 from studies.settings import Settings
 from studies.stages import sweeps
 from studies.study import Study, read
+from studies.sweeps import burnout, factors, sides
 
 pytest.importorskip("zarr")
 # Of the reference scene, whose pulse begins three widths before its peak.
