@@ -13,9 +13,9 @@ count as
 
 with N_q = sum_c N_cq and S_q = sum_c N_cq e_cq^2 / N_q from the relative mean squares e_cq^2 of what is left: the likelihood of
 independent samples, raised to the power at which its curvature is right (Ribatet, Cooley and Davison, Stat. Sinica 22, 2012, 813).
-rho_q is read off what the best constants leave, all conditions together, and held (``correlated``). It takes errors for alike at all
-times; but a pad touches for some milliseconds, and what is wrong with a free flight was decided before. So a curve never counts more
-often than pads touched in it, where that is known.
+rho_q is read off what the best constants leave, all conditions together, and held (``correlated``). It takes errors for alike at
+all times; but a pad touches for some milliseconds, and what is wrong with a free flight was decided before. So a curve never counts
+more often than pads touched in it, where that is known.
 
 The sizes are integrated out over scaled inverse chi^2 priors of nu = 1, s_q^2 ~ s_0^2, s_0 the smallest error worth a thought::
 
@@ -63,8 +63,8 @@ def error(parts: Sequence[Parts], touches: Sequence[int | None]) -> Error:
 def correlated(curves: Sequence[np.ndarray]) -> float:
     """1 + 2 sum rho_k of zero-mean curves (n_c,) together, summed up to the lag that makes most of it; 1 without any.
 
-    A sum up to the first rho_k below zero would take a slow error under a quick one, a rail that rings, for noise of the quick one's
-    kind: the curves would seem to tell the constants anew with every swing.
+    A sum up to the first rho_k below zero would take a slow error under a quick one, a rail that rings, for noise of the quick
+    one's kind: the curves would seem to tell the constants anew with every swing.
     """
     length = max(curve.size for curve in curves)
     power = sum(np.abs(np.fft.rfft(curve, 2 * length)) ** 2 for curve in curves)

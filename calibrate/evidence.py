@@ -1,4 +1,5 @@
-"""What stands beside calibrated constants: residuals per condition, open directions, the range they were found in, and from what."""
+"""What stands beside calibrated constants: residuals per condition, open directions, the range they were found in, and from
+what."""
 
 import math
 
@@ -23,7 +24,8 @@ def residuals(part: Parts, wanted: Target) -> dict[str, float]:
             "settled_rate_error_deg_s": math.degrees(float(np.abs(part.settled).max()) * wanted.amplitudes[2])}
 
 
-def weak_directions(scene: Scene, free: list[Parameter], held: list[Parameter], shares: np.ndarray, matrix: np.ndarray) -> list[str]:
+def weak_directions(scene: Scene, free: list[Parameter], held: list[Parameter], shares: np.ndarray,
+                    matrix: np.ndarray) -> list[str]:
     """Sentences: what the curves cannot tell, what was held for that reason, and what they pushed to a bound.
 
     ``matrix`` is the information on free and held parameters together, in this order.
@@ -36,13 +38,14 @@ def weak_directions(scene: Scene, free: list[Parameter], held: list[Parameter], 
         left, alone = information.left_alone(matrix, index), matrix[index, index]
         ratio = left / largest if largest > 0.0 else 0.0
         told = "at these constants it has no effect" if ratio < _NOTHING else (
-            f"of its information {alone:.2g} only {left:.2g} is left when the others are fitted again, {ratio:.1e} of the largest eigenvalue")
+            f"of its information {alone:.2g} only {left:.2g} is left when the others are fitted again, "
+            f"{ratio:.1e} of the largest eigenvalue")
         sentences.append(f"{item.name} held at {item.read(scene):.4g} {item.unit}: {told}")
     for item, share, bound in zip(free, shares, _on_bound(shares)):
         if bound:
             side = "lower" if share < 0.5 else "upper"
-            sentences.append(f"{item.name} lies on its {side} bound {item.value(round(float(share))):.4g} {item.unit}: physics, not the "
-                             "curves, sets its value")
+            sentences.append(f"{item.name} lies on its {side} bound {item.value(round(float(share))):.4g} {item.unit}: physics, "
+                             "not the curves, sets its value")
     return sentences
 
 
@@ -83,7 +86,8 @@ def provenance(scene: Scene, references: dict[str, Curves], constants: dict[str,
         "geometry_hash": scene.geometry_hash,
         "contact_law": f"{scene.contact.law}, k = {constants['contact.stiffness']:.6g} N/m^{exponent:.6g}",
         "references": ", ".join(f"{name}: {item.source}" for name, item in references.items()),
-        "search": f"{plan.points} Sobol' points, {plan.starts} starts of CMA-ES, least squares; {evaluations} evaluations; seed {seed}",
+        "search": f"{plan.points} Sobol' points, {plan.starts} starts of CMA-ES, least squares; {evaluations} evaluations; "
+                  f"seed {seed}",
         "intervals": f"95 %, linear, from what the fit leaves, {count:.0f} independent residuals; model error is not in them",
         "basins": f"each start ended at objective and shares of the bounds: {ends}",
     }

@@ -11,7 +11,8 @@ import numpy as np
 
 # Large against the surrogate's tolerance (1e-6), small against the width of a basin (about 0.1).
 DIFFERENCE_STEP = 1e-3
-# A direction that can move by a tenth of its bounds for 0.5 % of the curves' amplitude is not told by curves fitted to some percent.
+# A direction that can move by a tenth of its bounds for 0.5 % of the curves' amplitude is not told by curves fitted to some
+# percent.
 WEAK_EIGENVALUE = (0.005 / 0.1) ** 2
 WEAK_RATIO = 1e-3
 

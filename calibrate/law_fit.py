@@ -18,8 +18,8 @@ NAMES = ["contact.stiffness", "contact.exponent", "contact.damping", "contact.da
 
 
 class LawFit(NamedTuple):
-    """Constants in SI; information (4,4) about the logarithms in ``NAMES`` (k taken as force at the largest penetration) from N over
-    its norm; weak directions; and the relative residual of N."""
+    """Constants in SI; information (4,4) about the logarithms in ``NAMES`` (k taken as force at the largest penetration) from N
+    over its norm; weak directions; and the relative residual of N."""
 
     law: Impact
     friction: float

@@ -114,7 +114,8 @@ class Objective:
         changed = overrides(self.scene, self.values(shares)) | {"flexibility": None}
 
         def one(name: str) -> Parts:
-            return compare(self.targets[name], self.run(self.variations[name].of(changed), numerics=self.numerics, walls=self.walls))
+            return compare(self.targets[name],
+                           self.run(self.variations[name].of(changed), numerics=self.numerics, walls=self.walls))
 
         return dict(zip(self.targets, self.over(one, self.targets)))
 

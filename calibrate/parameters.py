@@ -7,7 +7,8 @@ p_r = 0.02 mm (loads of 60 to 180 N press a rail of 3e-8 to 1e-7 m/N by 2 to 18 
 
 B_r is IMPACT's damping coefficient at p_r. While p << d the law holds c and d only through c/d^2, so d stays at the scene's value
 and only B_r moves; ``held`` lists d again, for the information matrix to show that the curves would not have told it.
-Bounds scale with the rail: a pad load P bends a leg (thickness t, length a) by about P a^2/(E t^3), the scale of a cantilever plate.
+Bounds scale with the rail: a pad load P bends a leg (thickness t, length a) by about P a^2/(E t^3), the scale of a cantilever
+plate.
 """
 
 import math
@@ -121,15 +122,16 @@ def _damping(scene: Scene) -> Parameter:
     where = "damping coefficient at 0.02 mm (c s(0.02 mm/d), d held)" if impact else "damping coefficient"
     return Parameter(
         "contact.damping", "N*s/m", 0.0, 0.2 * critical, False,
-        f"{where}: from none to a fifth of critical, 2 sqrt(k m) = {critical:.3g} N s/m of the payload on the rail's stiffest place, where "
-        "restitution is 0.5: metal does not lose more in one touch at millimetres per second",
+        f"{where}: from none to a fifth of critical, 2 sqrt(k m) = {critical:.3g} N s/m of the payload on the rail's stiffest "
+        "place, where restitution is 0.5: metal does not lose more in one touch at millimetres per second",
         lambda s: s.contact.damping * (share_of_damping(s.contact.damping_depth) if impact else 1.0))
 
 
 def _dissipation(scene: Scene) -> Parameter:
     return Parameter(
         "contact.dissipation", "s/m", 0.1, 100.0, True,
-        "restitution between 0.999 and 0.4 at an approach of 20 mm/s, the speed a clearance lets a pad gain (1 - 2 a v/3 at low speed)",
+        "restitution between 0.999 and 0.4 at an approach of 20 mm/s, the speed a clearance lets a pad gain "
+        "(1 - 2 a v/3 at low speed)",
         lambda s: s.contact.dissipation)
 
 

@@ -2,8 +2,8 @@
 
 1. Sobol' points (scrambled by the seed) and the scene's own constants: which basins are there.
 2. CMA-ES (Hansen) from the best points that are apart from each other: it steps over jumps at which a gradient would stop.
-3. Trust-region least squares from where each ended: the digits CMA-ES would take long for. A jump ends it early, without harm. Starts
-   that meet in one point are the evidence that there is one basin.
+3. Trust-region least squares from where each ended: the digits CMA-ES would take long for. A jump ends it early, without harm.
+   Starts that meet in one point are the evidence that there is one basin.
 """
 
 from typing import Callable, NamedTuple

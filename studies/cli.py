@@ -11,8 +11,8 @@ import typer
 
 from studies.asked import guarded, quantity, study_of
 from studies.commands import add_all
-from studies.options import (CheckpointEvery, Conditions, ElementSize, Fidelity, Json, OnWalls, Out, Resume, Sampling, SceneName, Set,
-                             Workers)
+from studies.options import (CheckpointEvery, Conditions, ElementSize, Fidelity, Json, OnWalls, Out, Resume, Sampling,
+                             SceneName, Set, Workers)
 
 EXAMPLES = """Examples:
 
@@ -202,10 +202,10 @@ def run(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = None
         fidelity: Annotated[Fidelity, typer.Option(help="Which model.")] = Fidelity.lowfi,
         calibration: Annotated[Optional[Path], typer.Option(metavar="FILE", help="calibration.toml for the surrogate.")] = None,
         walls: OnWalls = False,
-        accuracy: Annotated[Optional[str], typer.Option("--accuracy", metavar="RATE", help='Error of the settled rates to be kept, "0.1 '
-                                           'deg/s": takes the cheapest model that make cost found so exact.')] = None,
-        budget: Annotated[Optional[str], typer.Option("--budget", metavar="TIME", help='Wall time to be kept, "2 s": takes the most exact '
-                                         "model that make cost found so fast.")] = None,
+        accuracy: Annotated[Optional[str], typer.Option("--accuracy", metavar="RATE", help='Error of the settled rates to be kept, '
+                                           '"0.1 deg/s": takes the cheapest model that make cost found so exact.')] = None,
+        budget: Annotated[Optional[str], typer.Option("--budget", metavar="TIME", help='Wall time to be kept, "2 s": takes the '
+                                         "most exact model that make cost found so fast.")] = None,
         element_size: ElementSize = None, checkpoint_every: CheckpointEvery = None, resume: Resume = True,
         json_: Json = False) -> None:
     """Run one condition in one model and print what the payload leaves with."""
@@ -236,10 +236,12 @@ def ensemble(scene: SceneName = "reference", out: Out = Path("out"), set_: Set =
                                  help="How points are drawn; default: as the file says.")] = None,
              store: Annotated[Optional[Path], typer.Option("--store", metavar="DIR",
                               help="Folder of the results; default: one of its own for every ensemble.")] = None,
-             case: Annotated[Optional[int], typer.Option("--case", metavar="N", min=0, help="Run case N alone and print it.")] = None,
-             tolerance: Annotated[float, typer.Option("--tolerance", metavar="X", help="Relative error of a step; 1e-2 keeps 95 % of "
-                                  "20 reference cases to 0.2 % of their rate, 1e-4 to 0.1 %.")] = 1e-2,
-             calibration: Annotated[Optional[Path], typer.Option(metavar="FILE", help="calibration.toml for the surrogate.")] = None,
+             case: Annotated[Optional[int], typer.Option("--case", metavar="N", min=0,
+                             help="Run case N alone and print it.")] = None,
+             tolerance: Annotated[float, typer.Option("--tolerance", metavar="X", help="Relative error of a step; 1e-2 keeps "
+                                  "95 % of 20 reference cases to 0.2 % of their rate, 1e-4 to 0.1 %.")] = 1e-2,
+             calibration: Annotated[Optional[Path], typer.Option(metavar="FILE",
+                                    help="calibration.toml for the surrogate.")] = None,
              walls: OnWalls = False,
              scheduler: Annotated[Optional[str], typer.Option("--scheduler", metavar="ADDRESS",
                                   help="Dask scheduler whose workers run the cases, such as tcp://node1:8786.")] = None,
@@ -295,11 +297,12 @@ def bench(out: Out = Path("out"),
           element_size: Annotated[Optional[list[float]], typer.Option("--element-size", metavar="MM", min=0.05,
                                   help="Element size in mm, repeatable; default: 2, 1 and 0.5.")] = None,
           repeats: Annotated[int, typer.Option(metavar="N", min=1, help="Timed repeats; the median counts.")] = 5,
-          steps: Annotated[Optional[int], typer.Option(metavar="N", min=1, help="Steps of a timed piece; default: by size.")] = None,
+          steps: Annotated[Optional[int], typer.Option(metavar="N", min=1,
+                           help="Steps of a timed piece; default: by size.")] = None,
           cases: Annotated[int, typer.Option(metavar="N", min=1, help="Cases of the surrogate's ensemble.")] = 2000,
           json_: Json = False) -> None:
-    """Speed of the reference solver against a SciPy matrix and NumPy on the same mesh, and of the surrogate against plain Runge-Kutta
-    at the same error; writes bench/highfi.json and bench/lowfi.json."""
+    """Speed of the reference solver against a SciPy matrix and NumPy on the same mesh, and of the surrogate against plain
+    Runge-Kutta at the same error; writes bench/highfi.json and bench/lowfi.json."""
 
     def work() -> dict:
         from studies.bench import reference, surrogate

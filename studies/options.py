@@ -12,8 +12,8 @@ Set = Annotated[Optional[list[str]], typer.Option("--set", metavar="KEY=VALUE",
                 help='Override, repeatable: --set payload.mass="9 kg"; "absent" drops a table.')]
 Conditions = Annotated[Optional[list[str]], typer.Option("--condition", metavar="NAME",
                        help="Named condition of the scene, repeatable; default: all.")]
-OnWalls = Annotated[bool, typer.Option("--walls", help="Surrogate on walls that give way as the statics of the rail has them, found from "
-                                       "the reference's matrices in seconds, in place of a contact law to calibrate.")]
+OnWalls = Annotated[bool, typer.Option("--walls", help="Surrogate on walls that give way as the statics of the rail has them, "
+                                       "found from the reference's matrices in seconds, in place of a contact law to calibrate.")]
 Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON on standard output.")]
 ElementSize = Annotated[Optional[float], typer.Option("--element-size", metavar="MM", min=0.05,
                         help="Element size of the reference in mm.")]

@@ -45,10 +45,13 @@ def section(folder: Path) -> str:
 def _agreement(found: dict) -> str:
     before = {row["condition"]: row for row in found["uncalibrated"]}
     fitted = {row["condition"]: row for row in found["fitted"] + found["held_out"]}
-    lines = ["Rates of the surrogates against the reference (rate L2 / settled error in deg/s), and what bounds any such claim: the floor is",
-             "the change by 1 um of clearance, the uncertainty that of the reference itself under refinement. Nothing is fitted on compliant",
+    lines = ["Rates of the surrogates against the reference (rate L2 / settled error in deg/s), and what bounds any such claim: "
+             "the floor is",
+             "the change by 1 um of clearance, the uncertainty that of the reference itself under refinement. Nothing is fitted on "
+             "compliant",
              "walls; the role is that of the condition in the calibration of the others. The verdict is on compliant walls.", "",
-             "| condition | role | uncalibrated | calibrated | compliant walls | floor, deg/s | reference uncertainty, deg/s | verdict |",
+             "| condition | role | uncalibrated | calibrated | compliant walls | floor, deg/s | reference uncertainty, deg/s | "
+             "verdict |",
              "|---|---|---|---|---|---|---|---|"]
     for row in found["compliant"]:
         lines.append(f"| {row['condition']} | {row['role'].replace('_', ' ')} | {_pair(before[row['condition']])} | "
@@ -68,19 +71,22 @@ def _number(value: float | None) -> str:
 def _speed(agreement: dict) -> str:
     found, plain = agreement["speedup_compliant"], agreement["speedup"]
     machine = found["hardware"]
-    return (f"Speed: {found['ratio']:,.0f} times ({found['low']:,.0f} to {found['high']:,.0f} over repeats): {found['highfi_wall_s']:.3g} s "
-            f"for the reference with {found['elements']:,} elements against {1e3 * found['lowfi_wall_s']:.3g} ms on compliant walls; "
-            f"{plain['ratio']:,.0f} times ({1e3 * plain['lowfi_wall_s']:.3g} ms) for the calibrated surrogate. The same case, everything "
-            f"but compilation included, on {machine['cores']} cores of {machine['processor']}.")
+    return (f"Speed: {found['ratio']:,.0f} times ({found['low']:,.0f} to {found['high']:,.0f} over repeats): "
+            f"{found['highfi_wall_s']:.3g} s for the reference with {found['elements']:,} elements against "
+            f"{1e3 * found['lowfi_wall_s']:.3g} ms on compliant walls; {plain['ratio']:,.0f} times "
+            f"({1e3 * plain['lowfi_wall_s']:.3g} ms) for the calibrated surrogate. The same case, everything but compilation "
+            f"included, on {machine['cores']} cores of {machine['processor']}.")
 
 
 def _cost(found: dict) -> str:
-    lines = [f"What the same accuracy costs (`make cost`, {found['condition']}): each surrogate, and the coarsest mesh that is no less exact.", "",
-             "| model | error, deg/s | wall time, ms | mesh | its error, deg/s | wall time, s | times as long |", "|---|---|---|---|---|---|---|"]
+    lines = [f"What the same accuracy costs (`make cost`, {found['condition']}): each surrogate, "
+             "and the coarsest mesh that is no less exact.", "",
+             "| model | error, deg/s | wall time, ms | mesh | its error, deg/s | wall time, s | times as long |",
+             "|---|---|---|---|---|---|---|"]
     for row in found["matched"]:
         exact = "the yardstick" if row["mesh_error_deg_s"] is None else _number(row["mesh_error_deg_s"])
-        lines.append(f"| {row['model']}, {row['numerics']} | {_number(row['error_deg_s'])} | {1e3 * row['wall_s']:.2g} | {row['mesh']} | "
-                     f"{exact} | {row['mesh_wall_s']:.3g} | {row['ratio']:,.0f} |")
+        lines.append(f"| {row['model']}, {row['numerics']} | {_number(row['error_deg_s'])} | {1e3 * row['wall_s']:.2g} | "
+                     f"{row['mesh']} | {exact} | {row['mesh_wall_s']:.3g} | {row['ratio']:,.0f} |")
     return "\n".join(lines)
 
 
@@ -97,7 +103,8 @@ def _scaling(found: dict) -> str:
     over = found["elements"]
     laws = [(f"{_ends(over)} elements", over), ("the two finest meshes", over["finest"] | {"model": over["model"]}),
             *((f"{_ends(law)} pads", law) for law in found["pads"])]
-    lines = ["How time grows (`make cost`, one processor): t = c n^p. Expected over elements: 1 for a step, 4/3 for a run, whose steps",
+    lines = ["How time grows (`make cost`, one processor): t = c n^p. Expected over elements: 1 for a step, 4/3 for a run, "
+             "whose steps",
              "shorten too.", "", "| over | model | p of a run | p of a step |", "|---|---|---|---|"]
     lines += [f"| {words} | {law['model']} | {scaling.exponent(law['run'])} | {scaling.exponent(law['step'])} |"
               for words, law in laws]
@@ -114,7 +121,8 @@ def _ends(law: dict) -> str:
 def _convergence(found: dict) -> str:
     sizes = [row for row in found["quantities"] if row["parameter"] == "element size"]
     heads = [f"{1e3 * size:g} mm" for size in sizes[0]["sizes"]]
-    lines = [f"Error of the reference itself (`make convergence`, {found['condition']}):", "", *(f"- {line}" for line in found["summary"]),
+    lines = [f"Error of the reference itself (`make convergence`, {found['condition']}):", "",
+             *(f"- {line}" for line in found["summary"]),
              "", f"| quantity | {' | '.join(heads)} | order | ± at {heads[-1]} |", "|---" * (len(heads) + 3) + "|"]
     for row in sizes:
         values = " | ".join("-" if value is None else f"{value:.5g}" for value in row["values"])
@@ -139,22 +147,23 @@ def _changed(row: dict) -> str:
 
 def _bench(rows: list[dict]) -> str:
     first = rows[0]
-    lines = [f"Speed of the reference solver (`make bench`, {first['threads']} threads on {first['hardware']['processor']}), wall ns per "
-             f"element and step with {first['faces_in_contact']} pad faces pressed:", "",
-             "| elements | this solver | without contact | one thread | SciPy matrix and NumPy | ratio | bytes per element | 40 ms would take |",
+    lines = [f"Speed of the reference solver (`make bench`, {first['threads']} threads on {first['hardware']['processor']}), "
+             f"wall ns per element and step with {first['faces_in_contact']} pad faces pressed:", "",
+             "| elements | this solver | without contact | one thread | SciPy matrix and NumPy | ratio | bytes per element | "
+             "40 ms would take |",
              "|---|---|---|---|---|---|---|---|"]
     for row in rows:
-        lines.append(f"| {row['elements']:,} | {row['ns_per_element_step']:.2f} | {row['ns_free']:.2f} | {row['ns_one_thread']:.2f} | "
-                     f"{row['baseline_ns_per_element_step']:.0f} | {row['ratio']:.0f} | {row['bytes_per_element']:.0f} | "
-                     f"{row['projected_40_ms_s'] / 3600.0:.2g} h |")
+        lines.append(f"| {row['elements']:,} | {row['ns_per_element_step']:.2f} | {row['ns_free']:.2f} | "
+                     f"{row['ns_one_thread']:.2f} | {row['baseline_ns_per_element_step']:.0f} | {row['ratio']:.0f} | "
+                     f"{row['bytes_per_element']:.0f} | {row['projected_40_ms_s'] / 3600.0:.2g} h |")
     return "\n".join(lines)
 
 
 def _surrogate(found: dict) -> str:
     many = found["ensemble"]
-    lines = ["Speed of the surrogate (`make bench`), processor ms per case on one core at the same error of the settled rate (95th percentile "
-             f"of {found['varied_cases']} varied cases); an ensemble of {many['cases']:,} takes {many['cpu_ms_per_case']:.3f} ms per case at "
-             f"{found['single'][0]['error_percent']:g} %, set-up included:", "",
+    lines = ["Speed of the surrogate (`make bench`), processor ms per case on one core at the same error of the settled rate (95th "
+             f"percentile of {found['varied_cases']} varied cases); an ensemble of {many['cases']:,} takes "
+             f"{many['cpu_ms_per_case']:.3f} ms per case at {found['single'][0]['error_percent']:g} %, set-up included:", "",
              "| error | surrogate | plain Runge-Kutta | ratio | with curves |", "|---|---|---|---|---|"]
     for row in found["single"]:
         lines.append(f"| {row['error_percent']:g} % | {row['cpu_ms']:.3f} | {row['baseline_cpu_ms']:.3f} | {row['ratio']:.1f} | "

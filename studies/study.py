@@ -97,7 +97,8 @@ class Study:
     def key(self, sources: Iterable[str], *inputs: Any) -> str:
         """Digest of the scene with its conditions and roles, settings, sources (those of the studies always), further inputs."""
         described = self.scene.model_dump(mode="json", include={"name", "conditions", "agreement", "provenance"})
-        return content_hash(self.scene.hash, described, self.settings.hash, list(self.only), code_hash(*sorted({*sources, "studies"})), inputs)
+        return content_hash(self.scene.hash, described, self.settings.hash, list(self.only),
+                            code_hash(*sorted({*sources, "studies"})), inputs)
 
     def stage(self, name: str, key: str, make: Callable[[], tuple[dict, list[Path]]]) -> dict:
         """The stage's result: read when it was made under the same key and its files are whole, else made and written.
@@ -117,8 +118,8 @@ class Study:
         return document
 
     def stored(self, name: str, key: Callable[[dict], str]) -> dict | None:
-        """The stage's result, if it has the ``key`` that a result of its settings would be given now; None too where those are of other
-        code, or a file they name is gone."""
+        """The stage's result, if it has the ``key`` that a result of its settings would be given now; None too where those are of
+        other code, or a file they name is gone."""
         found = read(self.path(f"{name}.json"))
         try:
             return found if found and found["key"] == key(found) else None

@@ -133,6 +133,13 @@ def test_files_are_short():
     assert statistics.median(lengths.values()) < 150
 
 
+def test_lines_are_short():
+    """Those of scenes, highfi and lowfi are left as they are: their sources are hashed, and what was run on them is dear."""
+    long = [f"{path.relative_to(ROOT)}:{number}" for path in sources("studies", "calibrate", "meshes", "tests")
+            for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1) if len(line) > 132]
+    assert long == []
+
+
 def test_sources_keep_the_house_rules():
     paths = [path for path in sources(*PACKAGES, "tests") if path != ROOT / "scenes" / "jit.py"]
     wrong = {str(path.relative_to(ROOT)): found for path in paths if (found := breaches(_parsed(path)))}

@@ -101,8 +101,8 @@ def contacts(time: np.ndarray, loaded: np.ndarray) -> list[tuple[int, int]]:
 
 
 def horizon(time: np.ndarray, apart: np.ndarray, spans: list[tuple[int, int]], gate: float) -> float | None:
-    """First instant (s) at which ``apart`` (n,) passes ``gate`` for longer than the contact it is in, as ``contacts`` gives them; None
-    without one. Between samples s is taken to grow exponentially."""
+    """First instant (s) at which ``apart`` (n,) passes ``gate`` for longer than the contact it is in, as ``contacts`` gives them;
+    None without one. Between samples s is taken to grow exponentially."""
     free = np.ones(time.size, dtype=bool)
     for first, after in spans:
         free[first:min(after, time.size - 1)] = False

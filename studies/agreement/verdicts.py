@@ -4,11 +4,11 @@
 * **Reference uncertainty**: what coming from twice the element size, and there four times the penalty and half the step, change
   in the settled rates of the reference, each alone. Agreement is claimed only where the largest is at most 0.1 deg/s.
 
-* **Gates**: v_x within 0.1 %, rates and settled rates within the limits of the scene's ``[agreement]``; where twice the floor, taken as at
-  most 0.1 deg/s, is above the limit of the settled rates, that counts, for no model could be held to less.
+* **Gates**: v_x within 0.1 %, rates and settled rates within the limits of the scene's ``[agreement]``; where twice the floor,
+  taken as at most 0.1 deg/s, is above the limit of the settled rates, that counts, for no model could be held to less.
 
-What the mesh changes is measured on every condition. The rest is measured where the scene says; other conditions take the largest of
-those and say so.
+What the mesh changes is measured on every condition. The rest is measured where the scene says; other conditions take the largest
+of those and say so.
 """
 
 import math
@@ -64,7 +64,8 @@ def largest(values) -> float | None:
 
 @dataclass(frozen=True)
 class Context:
-    """What stands beside the metrics: spreads under ``clearance`` of both models, and of the reference under refinement; and the gates."""
+    """What stands beside the metrics: spreads under ``clearance`` of both models, and of the reference under refinement; and the
+    gates."""
 
     floors: list[Spread]
     refinements: list[Spread]
@@ -89,7 +90,8 @@ class Context:
             causes[cause] = largest(item.settled_rate_change_deg_s for item in own)
             here.append(measured)
         # A refinement after which the payload did not settle leaves nothing known.
-        unknown = not causes or any(item.settled_rate_change_deg_s is None for item in self.refinements if item.condition == condition)
+        unknown = not causes or any(item.settled_rate_change_deg_s is None for item in self.refinements
+                                    if item.condition == condition)
         return None if unknown else largest(causes.values()), causes, all(here)
 
 

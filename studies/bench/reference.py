@@ -53,10 +53,11 @@ def stored(out: Path) -> dict | None:
 
 def line(row: dict) -> str:
     """One row in words."""
-    return (f"  {row['elements']:>9,} elements: {row['ns_per_element_step']:.2f} ns per element and step on {row['threads']} threads with "
-            f"{row['faces_in_contact']} faces pressed, {row['ns_free']:.2f} without; {row['ns_one_thread']:.2f} on one thread; SciPy and "
-            f"NumPy {row['baseline_ns_per_element_step']:.0f}, {row['ratio']:.0f} times as much; set-up {row['set_up_s']:.1f} s; "
-            f"{row['bytes_per_element']:.0f} bytes per element; 40 ms would take {row['projected_40_ms_s'] / 3600.0:.2g} h")
+    return (f"  {row['elements']:>9,} elements: {row['ns_per_element_step']:.2f} ns per element and step on {row['threads']} "
+            f"threads with {row['faces_in_contact']} faces pressed, {row['ns_free']:.2f} without; {row['ns_one_thread']:.2f} on "
+            f"one thread; SciPy and NumPy {row['baseline_ns_per_element_step']:.0f}, {row['ratio']:.0f} times as much; set-up "
+            f"{row['set_up_s']:.1f} s; {row['bytes_per_element']:.0f} bytes per element; 40 ms would take "
+            f"{row['projected_40_ms_s'] / 3600.0:.2g} h")
 
 
 def _measured(scene: Scene, size: float, repeats: int, steps: int | None) -> dict:
@@ -92,9 +93,9 @@ def _measured(scene: Scene, size: float, repeats: int, steps: int | None) -> dic
             "ratio": median["baseline"] / median["pressed"], "baseline_elements": baseline.elements,
             "bytes_per_element": memory(system, state) / elements, "range_ns": [min(times["pressed"]), max(times["pressed"])],
             "steps_timed": count, "repeats": repeats, "faces_in_contact": int((np.abs(state.face_force).max(axis=1) > 0.0).sum()),
-            "set_up_s": set_up, "peak_memory_bytes": 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss, "dt_s": stepping.dt_s,
-            "dt_element_s": stepping.dt_element_s, "projected_40_ms_s": 0.04 / stepping.dt_s * 1e-9 * median["pressed"] * elements,
-            "hardware": machine.describe()}
+            "set_up_s": set_up, "peak_memory_bytes": 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss,
+            "dt_s": stepping.dt_s, "dt_element_s": stepping.dt_element_s,
+            "projected_40_ms_s": 0.04 / stepping.dt_s * 1e-9 * median["pressed"] * elements, "hardware": machine.describe()}
 
 
 class _Again:

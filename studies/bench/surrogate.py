@@ -1,9 +1,10 @@
 """Speed of the surrogate at a stated error, by itself and in ensembles, against plain Runge-Kutta of order four with fixed steps.
 
 Both solve the same varied cases of the reference scene, drawn as a Monte Carlo study draws them. The error of a case is that of its
-settled rate, largest axis, relative to its largest rate and against a run with a tight tolerance; of each method the coarsest setting
-counts from which on the 95th percentile keeps to what is asked. Times are processor times of one core: of the surrogate from the records to the
-settled values, exit found and judged; of the baseline the bare integration, to an end of the window that it is told.
+settled rate, largest axis, relative to its largest rate and against a run with a tight tolerance; of each method the coarsest
+setting counts from which on the 95th percentile keeps to what is asked. Times are processor times of one core: of the surrogate
+from the records to the settled values, exit found and judged; of the baseline the bare integration, to an end of the window that it
+is told.
 """
 
 import resource
@@ -86,7 +87,8 @@ def _single(yardstick: _Yardstick, asked: float, repeats: int) -> dict:
     tolerance, error = _coarsest(TOLERANCES, lambda setting: yardstick.error(_settled(yardstick, setting)), asked)
     dt, baseline_error = _coarsest(STEPS_S, lambda setting: yardstick.error(_plain(yardstick, setting)), asked)
     adaptive, plain, whole = _kernel(yardstick, tolerance), _loops(yardstick, dt), lowfi.Numerics(relative_tolerance=tolerance)
-    pieces = {"adaptive": adaptive, "plain": plain, "whole": lambda: [lowfi.run(scene, numerics=whole) for scene in yardstick.scenes]}
+    pieces = {"adaptive": adaptive, "plain": plain,
+              "whole": lambda: [lowfi.run(scene, numerics=whole) for scene in yardstick.scenes]}
     times: dict[str, list[float]] = {name: [] for name in pieces}
     for _ in range(repeats):
         for name, piece in pieces.items():

@@ -15,7 +15,8 @@ def add(app: typer.Typer) -> None:
 
 
 def blind(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = None,
-          cases: Annotated[int, typer.Option("--cases", metavar="N", min=1, help="Conditions to draw; each is two runs of the reference.")] = 8,
+          cases: Annotated[int, typer.Option("--cases", metavar="N", min=1,
+                                             help="Conditions to draw; each is two runs of the reference.")] = 8,
           vary: Annotated[str, typer.Option("--vary", metavar="NAME_OR_FILE",
                           help="Distributions: a .toml file, or from the catalogue.")] = "paper",
           seed: Annotated[Optional[int], typer.Option("--seed", metavar="N", min=0,

@@ -15,13 +15,16 @@ def add(app: typer.Typer) -> None:
 
 
 def flight(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = None, condition: Conditions = None,
-           range_: Annotated[Optional[str], typer.Option("--range", metavar="LENGTH", help='How far the target lies along the launch axis, '
-                                                         '"500 m"; default: as the scene says.')] = None,
+           range_: Annotated[Optional[str], typer.Option("--range", metavar="LENGTH", help='How far the target lies along the '
+                                                         'launch axis, "500 m"; default: as the scene says.')] = None,
            altitude: Annotated[Optional[str], typer.Option(metavar="LENGTH", help='Altitude of the orbit, "500 km".')] = None,
-           duration: Annotated[Optional[str], typer.Option(metavar="TIME", help='How long the flight is followed, "2 hour".')] = None,
+           duration: Annotated[Optional[str], typer.Option(metavar="TIME",
+                                                           help='How long the flight is followed, "2 hour".')] = None,
            vary: Annotated[str, typer.Option("--vary", metavar="NAME_OR_FILE", help="Distributions of the cases.")] = "paper",
-           cases: Annotated[Optional[int], typer.Option(metavar="N", min=1, help="Number of cases; default: as the file says.")] = None,
-           seed: Annotated[Optional[int], typer.Option(metavar="N", min=0, help="Seed of all draws; default: as the file says.")] = None,
+           cases: Annotated[Optional[int], typer.Option(metavar="N", min=1,
+                                                        help="Number of cases; default: as the file says.")] = None,
+           seed: Annotated[Optional[int], typer.Option(metavar="N", min=0,
+                                                       help="Seed of all draws; default: as the file says.")] = None,
            walls: OnWalls = False, element_size: ElementSize = None, workers: Workers = None, json_: Json = False) -> None:
     """What becomes of the payload in orbit: miss of a target, pointing, coning, and whether it touches the platform again.
 

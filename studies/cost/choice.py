@@ -8,8 +8,8 @@ from studies.study import Study, StudyError, read
 
 
 def choose(study: Study, accuracy: float | None = None, budget: float | None = None) -> dict:
-    """The point of ``cost_study.json``, with ``trusted_deg_s`` and ``why`` in words, for an error of the settled rates of at most ``accuracy``
-    (deg/s) and a wall time of at most ``budget`` (s).
+    """The point of ``cost_study.json``, with ``trusted_deg_s`` and ``why`` in words, for an error of the settled rates of at most
+    ``accuracy`` (deg/s) and a wall time of at most ``budget`` (s).
 
     Raises StudyError where nothing was measured for this scene, or where no model fits, with the nearest that does.
     """

@@ -11,8 +11,8 @@ Pads are taken away or added between the others of the same payload. Its motion 
 so that p of a run is the price of pads in that motion; per step it is nearer to the price of the pads themselves. Effects differ in
 what they are, so that no power of their number means anything: what counts is the price of each, and of all over none.
 
-Times are of one processor, without compilation, and as in the ablation study: of a whole run of the reference, of the time loop of the
-surrogate.
+Times are of one processor, without compilation, and as in the ablation study: of a whole run of the reference, of the time loop of
+the surrogate.
 """
 
 import statistics
@@ -37,8 +37,8 @@ _REPEATS = {"highfi": 2, "lowfi": 20}
 
 
 def power_law(sizes: Sequence[float], times: Sequence[float]) -> dict:
-    """``exponent`` p of t = c n^p, None of a single size, as a mesh from a file has, and its ``standard_error``, which two points do
-    not have."""
+    """``exponent`` p of t = c n^p, None of a single size, as a mesh from a file has, and its ``standard_error``, which two points
+    do not have."""
     if len(set(sizes)) < 2:
         return {"exponent": None, "standard_error": None}
     line = linregress(np.log(sizes), np.log(times))
@@ -74,13 +74,15 @@ def elements(study: Study, name: str) -> dict:
     points = [_median([next(runs).cost for _ in asked], "cpu_s") | {"element_size_m": size} for size, asked in ask.items()]
     law = fitted(FINITE_ELEMENTS, points)
     fixed, each = shares([point["n"] for point in points], [point["step_s"] for point in law["points"]])
-    return law | {"finest": {of: fitted(FINITE_ELEMENTS, points[-2:])[of] for of in ("run", "step")}, "fixed_s": fixed, "element_s": each}
+    return law | {"finest": {of: fitted(FINITE_ELEMENTS, points[-2:])[of] for of in ("run", "step")}, "fixed_s": fixed,
+                  "element_s": each}
 
 
 def _median(costs: list[dict], time: str) -> dict:
     """Repeats of a run as one point; the elements are its ``n`` unless said otherwise."""
     return {"n": costs[0].get("elements"), "steps": statistics.median(cost["steps"] for cost in costs), "repeats": len(costs),
-            "time_s": statistics.median(cost[time] for cost in costs), "wall_s": statistics.median(cost["wall_s"] for cost in costs)}
+            "time_s": statistics.median(cost[time] for cost in costs),
+            "wall_s": statistics.median(cost["wall_s"] for cost in costs)}
 
 
 def pads(study: Study, name: str) -> list[dict]:
@@ -165,9 +167,9 @@ def _walls(study: Study, name: str, change: dict):
 
 
 def effects(scene: Scene, ablation: dict) -> list[dict]:
-    """What the ablation study measured, for each model: times with ``none`` and with ``all`` effects and their ``ratio``; ``ladder``,
-    rungs of effects added to those before, each with the number on; ``effects``, what each costs alone, as the time that all take
-    more than all but it; ``asked``, number and time of those of the scene."""
+    """What the ablation study measured, for each model: times with ``none`` and with ``all`` effects and their ``ratio``;
+    ``ladder``, rungs of effects added to those before, each with the number on; ``effects``, what each costs alone, as the time
+    that all take more than all but it; ``asked``, number and time of those of the scene."""
     found = []
     for fidelity, model in (("highfi", FINITE_ELEMENTS), ("lowfi", SPRINGS)):
         time = {row["variant"]: row["time_s"] for row in ablation["rows"] if row["fidelity"] == fidelity}
@@ -182,8 +184,8 @@ def effects(scene: Scene, ablation: dict) -> list[dict]:
 
 
 def _ladder(time: dict[str, float], count: int) -> list[dict]:
-    """No further kernel is compiled for it: the sets of the ablation study that lie inside each other. Friction has nothing to rub on
-    without contact, and no code."""
+    """No further kernel is compiled for it: the sets of the ablation study that lie inside each other. Friction has nothing to rub
+    on without contact, and no code."""
     rungs = [("none", 0, "no effect"), ("all but contact and friction", count - 2, "without contact"),
              ("contact too", count - 1, "without friction"), ("friction too", count, "all effects")]
     if {"without contact", "without friction"} - set(time):

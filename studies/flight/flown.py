@@ -179,7 +179,8 @@ def gap(both: Pair, time: np.ndarray) -> np.ndarray:
 
 
 def clear_after(both: Pair) -> np.ndarray:
-    """Time (n,) s from which on the sphere about the payload is past the front of the platform, so that the clearance only grows."""
+    """Time (n,) s from which on the sphere about the payload is past the front of the platform, so that the clearance only
+    grows."""
     bodies, flight = both.bodies, both.flight
     along = (both.payload - both.platform) @ np.kron(np.eye(2), flight.axes[:, :1])
     front = (bodies.boxes + bodies.box_halves)[..., 0].max(axis=1)

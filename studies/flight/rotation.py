@@ -17,8 +17,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy.special import ellipj, ellipkinc, ellipkm1, elliprf, elliprj
 
-# Least relative distance of the moments: a body of revolution gets as much of its phase wrong, and half the digits go where it turns
-# about an axis across its own.
+# Least relative distance of the moments: a body of revolution gets as much of its phase wrong, and half the digits go where it
+# turns about an axis across its own.
 _PARTED = 1e-13
 
 

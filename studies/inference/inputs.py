@@ -17,7 +17,8 @@ from scenes.scene import Scene
 
 
 class Unknown(NamedTuple):
-    """An input: its bounds (SI), searched on a logarithmic or linear scale, the unit and factor it is printed with, and why these bounds."""
+    """An input: its bounds (SI), searched on a logarithmic or linear scale, the unit and factor it is printed with, and why these
+    bounds."""
 
     name: str
     low: float
@@ -102,8 +103,9 @@ def overrides(base: Scene, found: dict[str, float]) -> dict[str, float]:
         "rail.start": start, "rail.end": end, "contact.clearance": clearance, "contact.exponent": exponent,
         "contact.stiffness": stiffness(STIFFNESS, exponent), "contact.damping": DAMPING, "contact.damping_depth": DEPTH,
         "friction.static": found["friction"], "friction.dynamic": found["friction"],
-        "thrust.peak": found["impulse"] / (width * math.sqrt(2.0 * math.pi)), "thrust.width": width, "thrust.centre": _CENTRE * width,
-        "thrust.arm": found["arm"], "initial.position.y": found["offset_y"] * clearance, "initial.position.z": found["offset_z"] * clearance,
+        "thrust.peak": found["impulse"] / (width * math.sqrt(2.0 * math.pi)), "thrust.width": width,
+        "thrust.centre": _CENTRE * width, "thrust.arm": found["arm"], "initial.position.y": found["offset_y"] * clearance,
+        "initial.position.z": found["offset_z"] * clearance,
         "rail.mounts": [{"start": first * (end - start), "end": last * (end - start)} for first, last in _MOUNTS],
         "duration": duration(found)}
 

@@ -4,10 +4,10 @@
     54 deviations    e = (w_changed - w) - (w_changed - w)_printed                  weight 1 / s
     conditions 1, 5  e = max(|w| - 0.3 deg/s, 0)                                    weight ``stress`` / s
 
-s is per axis the root mean square of the printed deviations themselves (0.034, 0.013, 0.0075 deg/s). They do not run monotonically in
-k, c or d (the roll rate of condition 2 falls for a softer and for a stiffer contact), so as much of them as that is scatter of the
-printed solution, and no smooth model comes closer. A search starts with residuals of many s; those count by sqrt(1 + (e/L)^2) - 1 with
-L = 0.3 deg/s, the size the paper calls negligible, so that one bad rate does not hide eight good ones.
+s is per axis the root mean square of the printed deviations themselves (0.034, 0.013, 0.0075 deg/s). They do not run monotonically
+in k, c or d (the roll rate of condition 2 falls for a softer and for a stiffer contact), so as much of them as that is scatter of
+the printed solution, and no smooth model comes closer. A search starts with residuals of many s; those count by
+sqrt(1 + (e/L)^2) - 1 with L = 0.3 deg/s, the size the paper calls negligible, so that one bad rate does not hide eight good ones.
 """
 
 import math
@@ -25,7 +25,8 @@ NEGLIGIBLE = 0.3  # deg/s
 SCATTER = np.sqrt((published.sensitivity().deviations() ** 2).mean(axis=(0, 1)))  # deg/s, per axis
 _UNSETTLED = 1e3  # deg/s, in place of the rates of a body that never leaves the rail
 _RADIAL = "thrust_offset.misalignment.radial"
-_SCALE = {"k": ("contact.stiffness", None), "c": ("contact.damping", 1e3), "d": ("contact.damping_depth", 1e-3)}  # printed unit in SI
+_SCALE = {"k": ("contact.stiffness", None), "c": ("contact.damping", 1e3),
+          "d": ("contact.damping_depth", 1e-3)}  # printed unit in SI
 
 
 class Launcher:
@@ -87,4 +88,5 @@ def residuals(rates: np.ndarray, changed: np.ndarray, stress: float) -> np.ndarr
     """All weighted errors (69,): nine rates, six excesses, 54 deviations; ``changed`` as ``Launcher.changed`` gives it."""
     nominal = rates[[condition - 1 for condition in published.SENSITIVE]]
     deviations = changed - nominal[:, None, :] - published.sensitivity().deviations()
-    return np.concatenate([(nine(rates) / SCATTER).ravel(), (stress * excess(rates) / SCATTER).ravel(), (deviations / SCATTER).ravel()])
+    return np.concatenate([(nine(rates) / SCATTER).ravel(), (stress * excess(rates) / SCATTER).ravel(),
+                           (deviations / SCATTER).ravel()])

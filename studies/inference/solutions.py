@@ -1,6 +1,7 @@
 """Sets of inputs that give the printed rates: many independent searches, everything admissible on their way, and what they trade.
 
-Rates are discontinuous in the inputs, since an impact more or less changes them by degrees per second, and smooth between. So a search
+Rates are discontinuous in the inputs, since an impact more or less changes them by degrees per second, and smooth between. So a
+search
 
 1. draws points of the unit cube and follows the best of them with CMA-ES (Hansen) on the rough misfit of five runs, far and wide;
 2. goes down the basin it ended in by least squares, which there are few residuals for and many inputs;
@@ -8,8 +9,9 @@ Rates are discontinuous in the inputs, since an impact more or less changes them
 
 A search that ends badly is shown like one that ends well.
 
-Nine rates and fifty-four small deviations cannot tell twenty inputs. What is kept is therefore a set: every point of a search at which
-no printed rate is missed by more than ``ADMISSIBLE``, thinned; an input is told as far as the set is narrower than its bounds.
+Nine rates and fifty-four small deviations cannot tell twenty inputs. What is kept is therefore a set: every point of a search at
+which no printed rate is missed by more than ``ADMISSIBLE``, thinned; an input is told as far as the set is narrower than its
+bounds.
 """
 
 from typing import Callable, NamedTuple
@@ -32,8 +34,8 @@ _FINE_COST = 5  # runs of a fine evaluation over those of a rough one
 
 class Plan(NamedTuple):
     """Size of a search: ``points`` drawn; evaluations of CMA-ES far and wide, ``descents`` of least squares, evaluations of CMA-ES
-    ``near`` their end, all of 5 runs, and ``fine`` ones of 23; points ``kept``; tolerances of rough and fine runs (relative error of a
-    step)."""
+    ``near`` their end, all of 5 runs, and ``fine`` ones of 23; points ``kept``; tolerances of rough and fine runs (relative error
+    of a step)."""
 
     points: int = 400
     rough: int = 20000
@@ -45,9 +47,9 @@ class Plan(NamedTuple):
 
 
 class Search(NamedTuple):
-    """Where a search of one ``stress`` (the weight of the rates that should be negligible) and ``seed`` ended: shares (p,), rates (5,3)
-    and ``changed`` (3,6,3) deg/s there; the ``admissible`` points (n,p) it met; and the ``front`` (m,2) of what it traded, deg/s: largest
-    error of a printed rate, largest rate of conditions 1 and 5."""
+    """Where a search of one ``stress`` (the weight of the rates that should be negligible) and ``seed`` ended: shares (p,), rates
+    (5,3) and ``changed`` (3,6,3) deg/s there; the ``admissible`` points (n,p) it met; and the ``front`` (m,2) of what it traded,
+    deg/s: largest error of a printed rate, largest rate of conditions 1 and 5."""
 
     stress: float
     seed: int
@@ -70,13 +72,15 @@ class _Seen:
         self.shares.append(shares)
 
     def admissible(self, kept: int) -> np.ndarray:
-        found = np.array([point for error, point in zip(self.errors, self.shares) if error <= ADMISSIBLE]).reshape(-1, len(UNKNOWNS))
+        found = np.array([point for error, point in zip(self.errors, self.shares)
+                          if error <= ADMISSIBLE]).reshape(-1, len(UNKNOWNS))
         return found[np.linspace(0, len(found) - 1, min(kept, len(found))).round().astype(int)]
 
 
 def run(launcher_of: Callable[[float], misfit.Launcher], stress: float, seed: int, plan: Plan = Plan(),
         progress: Callable[[float], None] | None = None) -> Search:
-    """One search; the same seed gives the same bits. ``launcher_of`` makes the surrogate for a tolerance; ``progress`` takes 0 to 1."""
+    """One search; the same seed gives the same bits. ``launcher_of`` makes the surrogate for a tolerance; ``progress`` takes 0 to
+    1."""
     generator, seen, done = np.random.default_rng([seed, 7]), _Seen(), 0
     coarse, fine = map(launcher_of, plan.tolerances)
     whole = plan.points + plan.rough + plan.descents * (2 * len(UNKNOWNS) + 1) + plan.near + _FINE_COST * plan.fine

@@ -15,21 +15,25 @@ _DIGITS = 9
 
 
 def scene(base: Scene, found: dict[str, float], rates: np.ndarray) -> str:
-    """TOML of a scene like ``base`` with inputs ``found`` (``inputs.values``), whose settled ``rates`` (5,3) deg/s its description has."""
+    """TOML of a scene like ``base`` with inputs ``found`` (``inputs.values``), whose settled ``rates`` (5,3) deg/s its description
+    has."""
     changed = inputs.overrides(base, found)
     error = np.abs(rates[[condition - 1 for condition in published.SENSITIVE]] - published.sensitivity().baseline).max()
     lines = [f'extends = "{base.name}"', 'name = "paper_like"',
-             f'description = "Inputs inferred so that the settled rates of the paper\'s Table 2 come out, all nine within {error:.2g} deg/s."',
+             'description = "Inputs inferred so that the settled rates of the paper\'s Table 2 come out, '
+             f'all nine within {error:.2g} deg/s."',
              f"duration = {_quantity('duration', changed['duration'])}"]
     lines += _table("payload", {"mass": changed["payload.mass"]})
     lines += _table("payload.inertia", _under(changed, "payload.inertia"))
     lines += _table("rail", {end: changed[f"rail.{end}"] for end in ("start", "end")})
-    mounts = ", ".join(f'{{ start = "{1e3 * item["start"]:.6g} mm", end = "{1e3 * item["end"]:.6g} mm" }}' for item in changed["rail.mounts"])
+    mounts = ", ".join(f'{{ start = "{1e3 * item["start"]:.6g} mm", end = "{1e3 * item["end"]:.6g} mm" }}'
+                       for item in changed["rail.mounts"])
     lines += [f"mounts = [{mounts}]"]
     lines += _table("thrust", _under(changed, "thrust"))
     lines += ["", "[contact]", f"exponent = {changed['contact.exponent']:.{_DIGITS}g}",
               f'stiffness = "{inputs.STIFFNESS:g} N/mm**{changed["contact.exponent"]:.{_DIGITS}g}"']
-    lines += [f"{name} = {_quantity(f'contact.{name}', changed[f'contact.{name}'])}" for name in ("clearance", "damping", "damping_depth")]
+    lines += [f"{name} = {_quantity(f'contact.{name}', changed[f'contact.{name}'])}"
+              for name in ("clearance", "damping", "damping_depth")]
     lines += ["", "[friction]", *(f"{name} = {changed[f'friction.{name}']:.{_DIGITS}g}" for name in ("static", "dynamic"))]
     lines += _table("initial.position", _under(changed, "initial.position"))
     lines += ["", "[agreement]", 'fitted = ["phi0", "phi15", "phi35", "phi60", "phi90"]', "held_out = []", 'floor = ["phi15"]',

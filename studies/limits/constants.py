@@ -14,8 +14,8 @@ _TWO_SIDED_95 = 1.959963984540054  # standard deviations
 
 
 def draws(study: Study, fitted: Calibration, count: int, seed: int) -> tuple[list[dict[str, float]], list[str]]:
-    """``count`` sets of overrides of the study's scene, and the names of the constants that differ in them: from the posterior where
-    there is one (``make posterior``), with all that ties constants together, else from the intervals of the calibration."""
+    """``count`` sets of overrides of the study's scene, and the names of the constants that differ in them: from the posterior
+    where there is one (``make posterior``), with all that ties constants together, else from the intervals of the calibration."""
     if count == 0 or posterior.stored(study) is None:
         return by_intervals(study.scene, fitted, count, seed)
     import calibrate

@@ -1,8 +1,9 @@
 """What the order of independent draws says about a distribution of which nothing is known.
 
-Of n draws, k lie below the quantile of probability p with a binomial probability, whatever the distribution is, so that a pair of draws
-bounds the quantile (``scipy.stats.quantile_test``). The largest of n draws lies above it with confidence ``1 - p^n``; the smallest and
-largest hold a share p of the distribution between them with ``1 - n p^(n-1) + (n-1) p^n`` (Wilks, Ann. Math. Statist. 12, 1941).
+Of n draws, k lie below the quantile of probability p with a binomial probability, whatever the distribution is, so that a pair of
+draws bounds the quantile (``scipy.stats.quantile_test``). The largest of n draws lies above it with confidence ``1 - p^n``; the
+smallest and largest hold a share p of the distribution between them with ``1 - n p^(n-1) + (n-1) p^n`` (Wilks, Ann. Math. Statist.
+12, 1941).
 """
 
 import math
@@ -12,7 +13,8 @@ from scipy.stats import quantile_test
 
 
 def runs_needed(share: float, confidence: float = 0.95, sides: int = 1) -> int:
-    """Fewest runs whose largest (``sides`` = 1), or smallest and largest (2), bound a ``share`` of all runs with this confidence."""
+    """Fewest runs whose largest (``sides`` = 1), or smallest and largest (2), bound a ``share`` of all runs with this
+    confidence."""
     def confident(n: int) -> bool:
         missed = share**n if sides == 1 else n * share ** (n - 1) - (n - 1) * share**n
         return 1.0 - missed >= confidence

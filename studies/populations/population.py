@@ -1,8 +1,9 @@
-"""Many cases of a scene on the surrogate that its studies use, kept in a store beside the results: what every study of tolerances asks.
+"""Many cases of a scene on the surrogate that its studies use, kept in a store beside the results: what every study of tolerances
+asks.
 
 The surrogate is the calibrated one, with its constants laid over the scene, so that a case may vary them like any other number; or
-the one on walls that give way, to which nothing is fitted. A store that was left half filled is gone on with, and one that is whole is
-only read.
+the one on walls that give way, to which nothing is fitted. A store that was left half filled is gone on with, and one that is whole
+is only read.
 """
 
 from typing import Any, NamedTuple
@@ -49,8 +50,8 @@ class Surrogate(NamedTuple):
 
 
 class Population(NamedTuple):
-    """``inputs`` (n,) by dotted key, SI; results as columns, NaN in cases that did not settle; whether a case is ``outside`` (n,) what the
-    calibration was made for; the folder of the store, and counts as ``lowfi.columns.counts`` gives them."""
+    """``inputs`` (n,) by dotted key, SI; results as columns, NaN in cases that did not settle; whether a case is ``outside`` (n,)
+    what the calibration was made for; the folder of the store, and counts as ``lowfi.columns.counts`` gives them."""
 
     inputs: dict[str, np.ndarray]
     results: Columns
@@ -65,7 +66,8 @@ class Population(NamedTuple):
 
 
 def surrogate(study: Study, walls: bool = False, condition: str | None = None) -> Surrogate:
-    """The surrogate of a study on one of its conditions, or on the scene itself; calibrated, or found, where that was not done yet."""
+    """The surrogate of a study on one of its conditions, or on the scene itself; calibrated, or found, where that was not done
+    yet."""
     scene = study.condition(condition) if condition else study.scene
     if scene.contact is None:
         return Surrogate(scene, None, None)
@@ -89,4 +91,5 @@ def run(study: Study, name: str, model: Surrogate, source, tolerance: float = TO
     except StoreError as fault:
         raise StudyError(str(fault)) from fault
     named = dict(zip(store.names, inputs.T))
-    return Population(named, results, regime.outside(model, named, store.asked), study.relative(path), columns.counts(results.status))
+    return Population(named, results, regime.outside(model, named, store.asked), study.relative(path),
+                      columns.counts(results.status))

@@ -19,7 +19,8 @@ def outside(model, inputs: dict[str, np.ndarray], cases: int) -> np.ndarray:
         return np.ones(cases, dtype=bool)
     found, geometry = _loads(model.scene, inputs, cases), model.scene.geometry_hash
     limited = sorted(set(found) & set(fitted.valid))
-    rows = np.array([found[name] for name in limited]).reshape(len(limited), cases).T  # none of which differ where nothing is limited
+    rows = np.array([found[name] for name in limited]).reshape(
+        len(limited), cases).T  # none of which differ where nothing is limited
     distinct, place = np.unique(rows, axis=0, return_inverse=True)
     flags = [bool(validity.outside(SimpleNamespace(loads=dict(zip(limited, row)), geometry_hash=geometry), fitted.valid,
                                    fitted.provenance.get("geometry_hash"))) for row in distinct]

@@ -29,7 +29,8 @@ def of(ensemble: Ensemble, store: Store) -> dict:
             "quantiles": {name: _quantiles(found, why is None) for name, found in values.items()},
             "cases": ensemble.source.identity, "provenance": _provenance(ensemble.source), "numerics": ensemble.numerics.as_dict(),
             "failures": failures[:_SHOWN], "digest": store.digest(),
-            "failed": [] if counts["ok"] else [f"case {item['case']}: {item['status']}: {item['reason']}" for item in failures[:_SHOWN]]}
+            "failed": [] if counts["ok"] else [f"case {item['case']}: {item['status']}: {item['reason']}"
+                                               for item in failures[:_SHOWN]]}
 
 
 def _values(store: Store, name: str, of: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:

@@ -1,7 +1,7 @@
 """The printed tables of the work this project starts from, as data, and the arithmetic that can be checked on them.
 
-Z. Jin, Z. Ma, H. Yang, S. Wu, Z. Tan, X. Tao: Rapid Modeling Method and Analysis of Factors Affecting the Dynamics of On-Orbit Launch
-Systems for Micro-Spacecraft. Aerospace 13 (2026) 541, doi 10.3390/aerospace13060541. Rates in deg/s about X, Y and Z.
+Z. Jin, Z. Ma, H. Yang, S. Wu, Z. Tan, X. Tao: Rapid Modeling Method and Analysis of Factors Affecting the Dynamics of On-Orbit
+Launch Systems for Micro-Spacecraft. Aerospace 13 (2026) 541, doi 10.3390/aerospace13060541. Rates in deg/s about X, Y and Z.
 """
 
 import csv
@@ -58,7 +58,8 @@ def angles() -> dict[int, tuple[float, float]]:
 @cache
 def table_2() -> list[Changed]:
     """The rows of Table 2 in their order."""
-    return [Changed(int(row["condition"]), row["parameter"], float(row["value"]) > BASELINE[row["parameter"]] if row["value"] else None,
+    return [Changed(int(row["condition"]), row["parameter"],
+                    float(row["value"]) > BASELINE[row["parameter"]] if row["value"] else None,
                     tuple(float(row[f"omega_{axis}_deg_s"]) for axis in "xyz")) for row in _rows("table2_sensitivity.csv")]
 
 
@@ -86,8 +87,10 @@ def slips() -> list[str]:
     largest, claimed = 100.0 * sensitivity().largest_relative()[2], CLAIMED_DEVIATION[2]
     stiffness, damping, depth = (100.0 * (value - BASELINE[name]) / BASELINE[name] for name, value in CHANGES[1::2])
     hours, seconds = float(headline()["high_fidelity_wall_time"]), float(headline()["low_fidelity_wall_time"])
-    return [f"The largest relative deviation of the z rate on conditions 2 and 4 of Table 2 is {largest:.2f} %; the text has {claimed:.2f} %.",
-            f"The stiffness is changed by {stiffness:.1f} %, damping by {damping:.1f} % and depth by {depth:.1f} %; the text has 5 % and 15 %.",
+    return [f"The largest relative deviation of the z rate on conditions 2 and 4 of Table 2 is {largest:.2f} %; "
+            f"the text has {claimed:.2f} %.",
+            f"The stiffness is changed by {stiffness:.1f} %, damping by {damping:.1f} % and depth by {depth:.1f} %; "
+            "the text has 5 % and 15 %.",
             f"{hours:g} h over {seconds:g} s is {3600.0 * hours / seconds:,.0f}; the text has {float(headline()['speedup']):,.0f}."]
 
 

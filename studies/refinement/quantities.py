@@ -1,4 +1,5 @@
-"""What a refinement of the reference is judged by: the state the payload leaves with, the loads of the pads that touch, and stress."""
+"""What a refinement of the reference is judged by: the state the payload leaves with, the loads of the pads that touch, and
+stress."""
 
 import math
 from typing import Iterator, Sequence

@@ -8,8 +8,8 @@ from studies.report.markup import Html
 
 
 class Answer(NamedTuple):
-    """A study: ``name`` of its stage, result file, target and of its module here and in ``studies.stages``; ``title`` of its section and
-    ``link`` to it."""
+    """A study: ``name`` of its stage, result file, target and of its module here and in ``studies.stages``; ``title`` of its
+    section and ``link`` to it."""
 
     name: str
     title: str

@@ -13,13 +13,14 @@ _WORDS = ("Drawn from the distributions “{vary}” with seed {seed}{origin}. E
 
 def draw(found: dict, figure: Callable[[Chart, str], Html]) -> Html:
     """The section."""
-    origin = ", which follows from the sources and the scene: a change of the code draws others" if found["asked"]["seed"] is None else ""
+    origin = (", which follows from the sources and the scene: a change of the code draws others"
+              if found["asked"]["seed"] is None else "")
     words = _WORDS.format(vary=found["asked"]["vary"], seed=found["seed"], origin=origin)
     compliant, calibrated = found["compliant"], found["calibrated"]
     return Html("".join([
         paragraph("On compliant walls, nothing fitted: " + tables.summary(compliant)), tables.judged(compliant, "blind-compliant"),
-        caption(words), paragraph("Calibrated springs: " + tables.summary(calibrated)), tables.judged(calibrated, "blind-calibrated"),
-        fold("What was drawn", _drawn(found["conditions"]))]))
+        caption(words), paragraph("Calibrated springs: " + tables.summary(calibrated)),
+        tables.judged(calibrated, "blind-calibrated"), fold("What was drawn", _drawn(found["conditions"]))]))
 
 
 def _drawn(conditions: dict) -> Html:

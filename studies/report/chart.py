@@ -27,8 +27,8 @@ _PLOTLY_MARKER = {"o": "circle", "s": "square", "^": "triangle-up", "v": "triang
 
 @dataclass(frozen=True)
 class Line:
-    """One curve (x, y); ``dash`` as in matplotlib, "" for markers only; ``marker`` "o", "s", "^", "v", "D" or ""; ``labels`` are texts
-    at the points, ``size`` that of a marker (px)."""
+    """One curve (x, y); ``dash`` as in matplotlib, "" for markers only; ``marker`` "o", "s", "^", "v", "D" or ""; ``labels`` are
+    texts at the points, ``size`` that of a marker (px)."""
 
     x: Sequence[float]
     y: Sequence[float]
@@ -93,12 +93,14 @@ def to_html(chart: Chart | Picture) -> str:
     if isinstance(chart, Picture):
         stream = io.BytesIO()
         chart.figure.savefig(stream, format="png")
-        return f'<img id="chart-{chart.name}" alt="{chart.name}" src="data:image/png;base64,{base64.b64encode(stream.getvalue()).decode()}">'
+        return (f'<img id="chart-{chart.name}" alt="{chart.name}" '
+                f'src="data:image/png;base64,{base64.b64encode(stream.getvalue()).decode()}">')
     import plotly.graph_objects as go
     from plotly.subplots import make_subplots
 
     figure = make_subplots(rows=chart.rows, cols=chart.columns, subplot_titles=[panel.title for panel in chart.panels],
-                           horizontal_spacing=0.09 if chart.columns > 1 else 0.0, vertical_spacing=_GAP / (chart.height * chart.rows))
+                           horizontal_spacing=0.09 if chart.columns > 1 else 0.0,
+                           vertical_spacing=_GAP / (chart.height * chart.rows))
     shown: set[str] = set()
     for index, panel in enumerate(chart.panels):
         place = {"row": index // chart.columns + 1, "col": index % chart.columns + 1}
@@ -122,12 +124,15 @@ def to_html(chart: Chart | Picture) -> str:
                              line_width=0, **place)
             figure.add_annotation(text=panel.band[1], xref="x domain", yref="y domain", x=0.98, y=0.02, xanchor="right",
                                   yanchor="bottom", showarrow=False, **place)
-    figure.update_layout(height=chart.height * chart.rows + 90, template="plotly_white", margin={"l": 62, "r": 18, "t": 40, "b": 60},
+    figure.update_layout(height=chart.height * chart.rows + 90, template="plotly_white",
+                         margin={"l": 62, "r": 18, "t": 40, "b": 60},
                          font={"family": _FONT, "size": 13, "color": _INK}, hovermode="closest",
                          legend={"orientation": "h", "yanchor": "top", "y": -90.0 / (chart.height * chart.rows), "x": 0.0})
     figure.update_annotations(font={"size": 14})
-    figure.update_xaxes(title_font={"size": 13}, showline=True, linecolor="#9aa1a9", gridcolor=_RULE, zerolinecolor="#c9ced4", ticks="outside")
-    figure.update_yaxes(title_font={"size": 13}, showline=True, linecolor="#9aa1a9", gridcolor=_RULE, zerolinecolor="#c9ced4", ticks="outside")
+    figure.update_xaxes(title_font={"size": 13}, showline=True, linecolor="#9aa1a9", gridcolor=_RULE, zerolinecolor="#c9ced4",
+                        ticks="outside")
+    figure.update_yaxes(title_font={"size": 13}, showline=True, linecolor="#9aa1a9", gridcolor=_RULE, zerolinecolor="#c9ced4",
+                        ticks="outside")
     return figure.to_html(full_html=False, include_plotlyjs=False, div_id=f"chart-{chart.name}",
                           config={"displayModeBar": False, "responsive": True})
 
@@ -159,7 +164,8 @@ def to_files(chart: Chart | Picture, folder: Path) -> list[Path]:
 
 
 def save(figure, stem: Path) -> list[Path]:
-    """Write a figure of matplotlib to ``stem``.png and ``stem``.svg, each in one piece and the same bytes every time; their paths."""
+    """Write a figure of matplotlib to ``stem``.png and ``stem``.svg, each in one piece and the same bytes every time; their
+    paths."""
     import matplotlib
 
     paths = [stem.with_name(f"{stem.name}.{kind}") for kind in ("png", "svg")]

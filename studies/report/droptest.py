@@ -30,7 +30,8 @@ def draw(found: dict, figure: Callable[[Chart, str], Html]) -> str:
     said = "".join(paragraph(f"{words[0].upper()}{words[1:]}.") for words in verdict)
     share, most = found["regions"][0]["share"], found["cases"]["settled"]
     shown = "" if len(found["cases"]["shown_deg_s"]) == most else f", the first {len(found['cases']['shown_deg_s']):,} of {most:,}"
-    return "".join([*notices, figure(rates, _RATES), _changes(found), figure(cloud, _CLOUD.format(share=100.0 * share, shown=shown)), said,
+    return "".join([*notices, figure(rates, _RATES), _changes(found),
+                    figure(cloud, _CLOUD.format(share=100.0 * share, shown=shown)), said,
                     _standing(found), _power(found), _budgets(found), _notes(found)])
 
 

@@ -73,7 +73,8 @@ def _pad_title(scene: Scene, pad: int) -> str:
     return f"pad {pad + 1} ({'front' if x > 0 else 'rear'}, {'+' if y > 0 else '-'}y {'+' if z > 0 else '-'}z)"
 
 
-_LEDGER_COLOURS = dict(zip(ledger.ENTRIES, (NAVY, GREY, VERMILION, AMBER, TEAL, "#7b4b94", "#8c6d46", "#b0b5bb", "#5f9ed1", "#c98bb9")))
+_LEDGER_COLOURS = dict(zip(ledger.ENTRIES, (NAVY, GREY, VERMILION, AMBER, TEAL, "#7b4b94", "#8c6d46", "#b0b5bb",
+                                            "#5f9ed1", "#c98bb9")))
 
 
 def energy_ledgers(runs: Runs, condition: str) -> Chart:
@@ -114,4 +115,5 @@ def _cost_line(points: list[dict], error: str, model: str, colour: str, marker: 
     labels = [point["numerics"].split(",")[0].removeprefix("tolerance ") for point in points]
     if "surrogate" in model and (error == "error_deg_s" or "compliant" not in model):
         labels = [""] * len(labels)
-    return Line([p["wall_s"] for p in points], [p[error] for p in points], model, colour, 1.6, dash, marker=marker, labels=tuple(labels))
+    return Line([p["wall_s"] for p in points], [p[error] for p in points], model, colour, 1.6, dash, marker=marker,
+                labels=tuple(labels))

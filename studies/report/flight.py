@@ -11,7 +11,8 @@ _LOOKS = ((NAVY, "-", "o"), (VERMILION, "--", "s"), (AMBER, "-.", "^"), (TEAL, "
 _SHOWN = ("miss_m", "tip_off_miss_m", "passes_s", "pointing_deg", "limit_s", "coning_deg_s", "nutation_s", "clearance_mm",
           "closest_ms")
 _PATHS = ("Left and middle: the way to the target in orbit axes, sideways and up being the scene's y and z. The bend that all "
-          "shots have in common is the orbit's. Right: relative to the platform; at this scale the conditions can hardly be told apart.")
+          "shots have in common is the orbit's. Right: relative to the platform; at this scale the conditions can hardly be told "
+          "apart.")
 _AXES = ("Left: the cone of the payload's x axis in inertial space, one round about its angular momentum, free rotation of the "
          "whole inertia tensor; distance from the middle is the angle from the launch axis, the marker the instant of passing the "
          "target. Right: that angle until the target is passed.")
@@ -36,8 +37,8 @@ def draw(found: dict, figure: Callable[[Chart, str], Html]) -> Html:
         table(("quantity", *(f"{100.0 * share:.4g} %" for share in shares)),
               [(by_name[name], *map(_quantile, quantiles)) for name, quantiles in judged.items()], dense=True),
         caption(f"{many['counts']['asked']:,} cases, {many['settled']:,} of them flown, {many['outside']:,} outside what the "
-                f"calibration was made for. Share of cases below the value; in brackets its bounds at {many['confidence']:.0%} confidence "
-                f"({many['bounds']}). {_touching(many)}")]))
+                f"calibration was made for. Share of cases below the value; in brackets its bounds at {many['confidence']:.0%} "
+                f"confidence ({many['bounds']}). {_touching(many)}")]))
 
 
 def charts(found: dict) -> list[tuple[Chart, str]]:
@@ -63,7 +64,8 @@ def _paths(curves: list[dict], flight: dict) -> Chart:
     platform = Line([0.0], [0.0], "platform", "#000000", 1.0, "", marker="s")
     along = "along the launch axis (m)"
     return Chart("flight-path", [
-        Panel("to the target, sideways", along, "y (m)", [*_lines(curves, column("to_target_m", 0), column("to_target_m", 1)), target]),
+        Panel("to the target, sideways", along, "y (m)",
+              [*_lines(curves, column("to_target_m", 0), column("to_target_m", 1)), target]),
         Panel("to the target, up", along, "z (m)", [*_lines(curves, column("to_target_m", 0), column("to_target_m", 2)), target]),
         Panel(f"{flight['duration_s'] / 60.0:.3g} min, from the platform", "along the orbit (km)", "radially outwards (km)",
               [*_lines(curves, column("orbit_m", 1, 1e-3), column("orbit_m", 0, 1e-3)), platform])], columns=3, height=320)
@@ -96,7 +98,8 @@ def _scatter(found: dict) -> Chart:
     marks = [Line(y, z, "case", NAVY, 1.0, "", 0.35, marker="o", size=3.0),
              Line(orbital_y[:1], orbital_z[:1], "without errors", VERMILION, 1.0, "", marker="o"),
              Line([0.0], [0.0], "target", "#000000", 1.0, "", marker="D")]
-    return Chart("flight-miss", [Panel(f"{len(y):,} of {many['settled']:,} cases in the plane of the target", "y (m)", "z (m)", marks),
+    return Chart("flight-miss", [Panel(f"{len(y):,} of {many['settled']:,} cases in the plane of the target",
+                                       "y (m)", "z (m)", marks),
                                  Panel("cases that miss by more", "miss (m)", "share (%)", shares)], columns=2, height=360)
 
 
@@ -104,7 +107,8 @@ def _exceeded(many: dict, name: str, values: list[float], words: str, colour: st
     """Share of cases above each value, and bounds of the quantiles."""
     above = [100.0 * (1.0 - (index + 1) / len(values)) for index in range(len(values))]
     rows = [row for row in many["quantiles"].get(name, []) if None not in (row["low"], row["high"])]
-    bounds = [Line([row["low"], row["high"]], [100.0 * (1.0 - row["share"])] * 2, "bounds", VERMILION, 2.5, "-", marker="D", size=5.0)
+    bounds = [Line([row["low"], row["high"]], [100.0 * (1.0 - row["share"])] * 2, "bounds", VERMILION, 2.5, "-",
+                   marker="D", size=5.0)
               for row in rows]
     return [Line(sorted(values), above, words, colour, 2.0, dash), *bounds]
 

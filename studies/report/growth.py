@@ -10,9 +10,9 @@ WORDS = ("Largest separation of the body rates from those of twins whose clearan
          "settled rates. Marks: the horizon, where it passes the gate for good; peaks that a contact takes back are contacts that "
          "come a little earlier or later. A curve begins where the twins first touch.")
 _LEGEND = ("Reference on the coarse mesh, as for the floor. Sensitive: 1 µm moves a settled rate by more than the gate "
-           "({gate:g} deg/s). Chaotic: so it does, and by growth from contact to contact: the factor is above their number, which is "
-           "what walls that stand 1 µm elsewhere at every contact would bring without any. Conditions are those of the floor and all "
-           "whose reference is not converged.")
+           "({gate:g} deg/s). Chaotic: so it does, and by growth from contact to contact: the factor is above their number, which "
+           "is what walls that stand 1 µm elsewhere at every contact would bring without any. Conditions are those of the floor "
+           "and all whose reference is not converged.")
 _SHOWN = 1e-4  # of the gate; nothing below matters to a comparison
 _LOOKS = ((NAVY, 5.0, "-", 0.35), (VERMILION, 1.5, "-", 1.0))
 _MARKERS = "Do"
@@ -25,20 +25,22 @@ def picture(found: list[dict]) -> Chart:
         own = [item for item in found if item["condition"] == condition]
         lines = [line for item, look, marker in zip(own, _LOOKS, _MARKERS) for line in _lines(item, look, marker)]
         if lines:
-            panels.append(Panel(condition, "time after ignition (ms)", "separation (deg/s)", lines, band=(own[0]["gate_deg_s"], "below the gate"),
-                                log_y=True))
+            panels.append(Panel(condition, "time after ignition (ms)", "separation (deg/s)", lines,
+                                band=(own[0]["gate_deg_s"], "below the gate"), log_y=True))
     return Chart("growth", panels, columns=min(3, max(1, len(panels))), height=270)
 
 
 def _lines(item: dict, look: tuple, marker: str) -> list[Line]:
     """The curve of one model and its horizon; nothing where twins do not part."""
-    known = [(1e3 * time, apart) for time, apart in zip(item["time_s"], item["separation_deg_s"]) if apart > _SHOWN * item["gate_deg_s"]]
+    known = [(1e3 * time, apart) for time, apart in zip(item["time_s"], item["separation_deg_s"])
+             if apart > _SHOWN * item["gate_deg_s"]]
     if not known:
         return []
     curve = Line(*zip(*known), item["model"], *look)
     if item["horizon_s"] is None:
         return [curve]
-    return [curve, Line([1e3 * item["horizon_s"]], [item["gate_deg_s"]], f"horizon, {item['model']}", look[0], 1.0, "", marker=marker)]
+    return [curve, Line([1e3 * item["horizon_s"]], [item["gate_deg_s"]], f"horizon, {item['model']}", look[0], 1.0, "",
+                        marker=marker)]
 
 
 def tables(found: list[dict]) -> Html:

@@ -78,7 +78,8 @@ def scene_tables(scene: Scene) -> Html:
         if key == "contact.stiffness":
             unit = f"N/m**{scene.contact.exponent:g}"
         rows.append((code(key), Html(f"<span>{text(readable(value, unit))}</span>"), provenance(scene, key, stated)))
-    pads = [(index + 1, readable(pad.position, "m"), ", ".join(pad.normals), f"{readable(pad.length, 'm')} x {readable(pad.width, 'm')}",
+    pads = [(index + 1, readable(pad.position, "m"), ", ".join(pad.normals),
+             f"{readable(pad.length, 'm')} x {readable(pad.width, 'm')}",
              readable(pad.inset, "m"), readable(pad.relief, "m")) for index, pad in enumerate(scene.pads)]
     conditions = [(name, _role(scene, name), "; ".join(f"{key} = {value}" for key, value in overrides.items()))
                   for name, overrides in scene.conditions.items()]
@@ -108,7 +109,8 @@ def thrust_facts(scene: Scene) -> Html:
         rows.append(("impulse of the whole Gaussian", f"{whole:.6g} N s, of which {100.0 * (1.0 - delivered / whole):.3g} % falls "
                      "before ignition, after the end, or beyond the cutoff"))
         cutoff = getattr(scene.thrust, "cutoff", None)
-        rows.append(("cutoff", "none" if not cutoff else f"{cutoff:g} widths, {'rescaled' if scene.thrust.rescale else 'not rescaled'}"))
+        rows.append(("cutoff", "none" if not cutoff else
+                     f"{cutoff:g} widths, {'rescaled' if scene.thrust.rescale else 'not rescaled'}"))
     if scene.thrust.kind == "measured":
         fit = scene.thrust.fit()
         rows.append(("Gaussian fit of the measured curve", f"peak {fit.peak:.5g} N at {1e3 * fit.centre:.4g} ms, width "

@@ -81,7 +81,8 @@ def _section(axes, mesh, colours: dict[str, str]) -> None:
     reach = mesh.points[mesh.cells[layer]][:, :, 0]
     for name, colour in colours.items():
         facets = mesh.points[mesh.surfaces[name]]
-        near = facets[(facets[:, :, 1:].min(axis=(1, 2)) > 0.0) & (np.abs(facets[:, :, 0].mean(axis=1) - reach.mean()) < np.ptp(reach))]
+        near = facets[(facets[:, :, 1:].min(axis=(1, 2)) > 0.0)
+                      & (np.abs(facets[:, :, 0].mean(axis=1) - reach.mean()) < np.ptp(reach))]
         lines = [(1e3 * facet[:, 1:].min(axis=0), 1e3 * facet[:, 1:].max(axis=0)) for facet in near]
         axes.add_collection(LineCollection(lines, colors=colour, linewidths=3.0))
     axes.autoscale()

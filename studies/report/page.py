@@ -16,9 +16,10 @@ from studies.report.promises import promises, render
 from studies.report.style import CSS
 
 _CONTENTS = (("answer", "Answer"), ("scene", "Scene"), ("mesh", "Mesh"), ("compliance", "Compliance"), ("thrust", "Thrust"),
-             ("figure6", "Curves"), ("contact-forces", "Contact"), ("energy", "Energy"), ("stress", "Stress"), ("calibration", "Calibration"),
-             ("posterior", "Uncertainty"), ("agreement-section", "Agreement"), ("growth-section", "Growth of 1 µm"), ("speedup", "Speed"),
-             ("cost", "Cost"), ("convergence", "Convergence"), ("bench", "Solvers"), ("stability", "Hard cases"), ("ablation", "Ablation"),
+             ("figure6", "Curves"), ("contact-forces", "Contact"), ("energy", "Energy"), ("stress", "Stress"),
+             ("calibration", "Calibration"), ("posterior", "Uncertainty"), ("agreement-section", "Agreement"),
+             ("growth-section", "Growth of 1 µm"), ("speedup", "Speed"), ("cost", "Cost"), ("convergence", "Convergence"),
+             ("bench", "Solvers"), ("stability", "Hard cases"), ("ablation", "Ablation"),
              *((item.name, item.link) for item in answers.ANSWERS), ("promises", "Promises"), ("colophon", "Origin"))
 
 
@@ -38,8 +39,8 @@ class Page:
                         self._of("calibration", "calibration", "Calibration", tables.calibration, "calibrate"), self._posterior(),
                         self._of("agreement", "agreement-section", "Agreement with the reference", tables.agreement, "compare"),
                         self._growth(), self._of("agreement", "speedup", "Speed", tables.speedups, "compare"),
-                        self._of("cost_study", "cost", "What accuracy costs", self._cost, "cost"), self._convergence(), self._bench(),
-                        self._of("stability", "stability", "Hard cases", tables.stability, "stability"),
+                        self._of("cost_study", "cost", "What accuracy costs", self._cost, "cost"), self._convergence(),
+                        self._bench(), self._of("stability", "stability", "Hard cases", tables.stability, "stability"),
                         self._of("ablation", "ablation", "Only what the scene calls for", tables.ablation, "ablation"),
                         *map(self._study, answers.ANSWERS), render(promises(self._rows(), self.documents)), self._colophon()])
         links = " ".join(f'<a href="#{name}">{title}</a>' for name, title in _CONTENTS if f'id="{name}"' in body)
@@ -55,7 +56,8 @@ class Page:
 
     def _study(self, answer: answers.Answer) -> Html:
         found = self.documents.get(answer.name)
-        return section(answer.name, answer.title, answer.draw(found, self._figure) if found else self._missing(answer.name, answer.name))
+        return section(answer.name, answer.title,
+                       answer.draw(found, self._figure) if found else self._missing(answer.name, answer.name))
 
     def _missing(self, stage: str, target: str) -> Html:
         if reason := self.problems.get(stage):
@@ -78,22 +80,26 @@ class Page:
             settled, row = found["settled"], uncertain.get(found["condition"], {})
             rate = settled and settled["rate_deg_s"]
             rows.append((found["condition"], found["status"], settled and f"{settled['velocity_m_s'][0]:.4f}",
-                         settled and f"{1e3 * settled['lateral_velocity_m_s']:.3g}", settled and f"{settled['direction_error_deg']:.3g}",
+                         settled and f"{1e3 * settled['lateral_velocity_m_s']:.3g}",
+                         settled and f"{settled['direction_error_deg']:.3g}",
                          *([f"{value:+.3f}" for value in rate] if rate else [None] * 3),
                          number(row.get("reference_uncertainty_deg_s"), 2), number(row.get("settled_rate_error_deg_s"), 2)))
         boxes = ""
         if speed := agreement.get("speedup_compliant"):
-            facts = ((f"{speed['highfi_wall_s']:.3g} s", "one reference run"), (f"{1e3 * speed['lowfi_wall_s']:.3g} ms", "one surrogate run"),
+            facts = ((f"{speed['highfi_wall_s']:.3g} s", "one reference run"),
+                     (f"{1e3 * speed['lowfi_wall_s']:.3g} ms", "one surrogate run"),
                      (f"{speed['ratio']:,.0f} ×", f"faster ({speed['low']:,.0f} to {speed['high']:,.0f})"))
-            boxes = '<div class="figures">' + "".join(f"<div><b>{value}</b><span>{words}</span></div>" for value, words in facts) + "</div>"
+            boxes = '<div class="figures">' + "".join(f"<div><b>{value}</b><span>{words}</span></div>"
+                                                      for value, words in facts) + "</div>"
         notices = "".join(f'<div class="notice">Implausible: {escape(words)}</div>' for words in self.scene.warnings)
         notices += "".join(f'<div class="notice">{escape(stage)}: {escape(words)}</div>' for stage, words in self.problems.items())
         return section("answer", "What the payload leaves with", notices, boxes, table(
             ("condition", "status", Html("v<sub>x</sub> (m/s)"), "lateral v (mm/s)", "off axis (deg)", "roll rate (deg/s)",
              "y rate (deg/s)", "z rate (deg/s)", "reference ± (deg/s)", "surrogate error (deg/s)"), rows), caption(
-            "Settled values of the finite-element reference: means over 2 ms after exit and burnout, velocity in initial scene axes, "
-            "rates inertial in payload body axes. Reference ± is what refining mesh, step or penalty still changes; surrogate error the "
-            "largest axis error of the surrogate on compliant walls, to which nothing was fitted, on the same condition."))
+            "Settled values of the finite-element reference: means over 2 ms after exit and burnout, "
+            "velocity in initial scene axes, rates inertial in payload body axes. Reference ± is what refining mesh, step or "
+            "penalty still changes; surrogate error the largest axis error of the surrogate on compliant walls, to which nothing "
+            "was fitted, on the same condition."))
 
     def _scene(self) -> Html:
         return section("scene", "Scene", inputs.scene_tables(self.scene))
@@ -104,10 +110,12 @@ class Page:
             return section("mesh", "Mesh", self._missing("mesh", "mesh"))
         path = self.folder / found["picture"]
         image = base64.b64encode(path.read_bytes()).decode()
-        areas = [(name.replace("_", " "), item["facets"], f"{1e6 * item['area_m2']:.5g}") for name, item in found["surfaces"].items()]
+        areas = [(name.replace("_", " "), item["facets"], f"{1e6 * item['area_m2']:.5g}")
+                 for name, item in found["surfaces"].items()]
         words = (f"{found['elements']:,} {found['kind']}, {found['nodes']:,} nodes, elements of about "
-                 f"{1e3 * found['element_size_m']:g} mm; edges {1e3 * found['shortest_edge_m']:.3g} to {1e3 * found['longest_edge_m']:.3g} mm, "
-                 f"smallest scaled Jacobian {found['smallest_scaled_jacobian']:.3f} (1 for a brick and for a regular tetrahedron).")
+                 f"{1e3 * found['element_size_m']:g} mm; edges {1e3 * found['shortest_edge_m']:.3g} to "
+                 f"{1e3 * found['longest_edge_m']:.3g} mm, smallest scaled Jacobian {found['smallest_scaled_jacobian']:.3f} (1 for "
+                 "a brick and for a regular tetrahedron).")
         warned = "".join(f'<div class="notice">{escape(line)}</div>' for line in found["warnings"])
         return section("mesh", "Mesh", Html(f'<img alt="mesh of the rails" src="data:image/png;base64,{image}">'), caption(words),
                        table(("surface", "facets", "area (mm²)"), areas), warned)
@@ -128,9 +136,10 @@ class Page:
         names = [name for name in self.scene.agreement.fitted if name in self.runs.highfi] or list(self.runs.highfi)[:5]
         if not names:
             return section("figure6", "Velocity and rates", self._missing("highfi", "highfi"))
-        words = ("The paper's Figure 6 for this scene. Broad pale lines: finite elements. Thin lines: the surrogate on walls that give way as "
-                 "statics has them, nothing fitted. Dashed: the calibrated surrogate. Dotted: before calibration. Rates are inertial, in "
-                 "payload body axes. " + ("" if self.runs.calibrated else "The other surrogates are missing."))
+        words = ("The paper's Figure 6 for this scene. Broad pale lines: finite elements. Thin lines: the surrogate on walls that "
+                 "give way as statics has them, nothing fitted. Dashed: the calibrated surrogate. Dotted: before calibration. "
+                 "Rates are inertial, in payload body axes. "
+                 + ("" if self.runs.calibrated else "The other surrogates are missing."))
         return section("figure6", "Velocity and rates, all models", self._figure(figures.figure6(self.runs, names), words))
 
     def _condition(self) -> str | None:
@@ -152,8 +161,9 @@ class Page:
         if name is None:
             return section("energy", "Energy", self._missing("highfi", "highfi"))
         return section("energy", "Energy ledgers", self._figure(
-            figures.energy_ledgers(self.runs, name), f"Condition {name}. The transverse ledger leaves out the axial motion, so that its "
-            "hundreds of joules cannot hide the millijoules that decide the rates. The dashed residual should lie on zero."))
+            figures.energy_ledgers(self.runs, name), f"Condition {name}. The transverse ledger leaves out the axial motion, "
+            "so that its hundreds of joules cannot hide the millijoules that decide the rates. The dashed residual should lie on "
+            "zero."))
 
     def _stress(self) -> Html:
         """Peak stresses of all conditions; pictures of those that `make view` was made for."""
@@ -165,8 +175,8 @@ class Page:
     def _cost(self, found: dict) -> Html:
         return section("cost", "What accuracy costs", self._figure(
             figures.cost_picture(found), f"Condition {found['condition']}. Error against the finest finite-element mesh, whose own "
-            "uncertainty is the band: an error inside it cannot be told from zero. Right: what a tighter tolerance can still buy. Labels: element size, "
-            "tolerance."), tables.cost(found), Html("<h3>How cost grows</h3>"),
+            "uncertainty is the band: an error inside it cannot be told from zero. Right: what a tighter tolerance can still buy. "
+            "Labels: element size, tolerance."), tables.cost(found), Html("<h3>How cost grows</h3>"),
             self._figure(scaling.picture(found["scaling"]), scaling.WORDS.format(condition=found["condition"])),
             scaling.tables(found["scaling"]))
 
@@ -204,4 +214,5 @@ class Page:
                  ("Python", here["python"]), *versions().items(), ("scene hash", code(self.scene.hash))]
         keys = [(stage, code(found["key"])) for stage, found in self.documents.items() if found and stage != "view"]
         return section("colophon", "Where these numbers come from", table(("", ""), facts),
-                       table(("result file", "key: hash of scene, code and numerics"), [(f"{stage}.json", key) for stage, key in keys]))
+                       table(("result file", "key: hash of scene, code and numerics"),
+                             [(f"{stage}.json", key) for stage, key in keys]))

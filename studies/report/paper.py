@@ -1,4 +1,5 @@
-"""The paper's own numbers on the page: its Table 2 and headline beside ours, the inputs that must have been, and what they trade."""
+"""The paper's own numbers on the page: its Table 2 and headline beside ours, the inputs that must have been, and what they
+trade."""
 
 from typing import Callable
 
@@ -16,24 +17,27 @@ def draw(found: dict, figure: Callable[[Chart, str], Html]) -> Html:
     picture, = charts(found)
     best = found["searches"][found["best"]]
     words = (f"The paper prints no geometry, inertia, thrust, friction or clearance. {len(found['searches'])} searches over "
-             f"{len(found['inputs'])} inputs within physical bounds ask which would give the nine rates of its Table 2 and their 54 "
-             f"deviations, half of them also that no rate of conditions 1 and 5 exceeds {found['negligible_deg_s']:g} deg/s, where the paper "
-             f"speaks of negligible rates and prints none. The best misses a printed rate by at most {best['largest_error_deg_s']:.2g} deg/s; "
-             f"its largest rate on conditions 1 and 5 is {best['largest_negligible_deg_s']:.2g} deg/s. It is the catalogue's scene paper_like: "
-             "inferred, one of many that would do.")
+             f"{len(found['inputs'])} inputs within physical bounds ask which would give the nine rates of its Table 2 and their "
+             f"54 deviations, half of them also that no rate of conditions 1 and 5 exceeds {found['negligible_deg_s']:g} deg/s, "
+             "where the paper speaks of negligible rates and prints none. The best misses a printed rate by at most "
+             f"{best['largest_error_deg_s']:.2g} deg/s; its largest rate on conditions 1 and 5 is "
+             f"{best['largest_negligible_deg_s']:.2g} deg/s. It is the catalogue's scene paper_like: inferred, one of many that "
+             "would do.")
     return Html(paragraph(words) + figure(picture, _CAPTION) + paragraph(_verdict(found)) + _table2(best) + _inputs(found)
-                + fold("Every search", _searches(found)) + _headline(found) + paragraph("On the printed numbers: " + " ".join(found["slips"])))
+                + fold("Every search", _searches(found)) + _headline(found)
+                + paragraph("On the printed numbers: " + " ".join(found["slips"])))
 
 
-_CAPTION = ("Left: what every search met on its way, largest error of the nine printed rates against the largest rate of conditions 1 and 5; "
-            "filled markers are where searches ended. Middle and right: printed rates and their deviations against those of the best set; on "
-            "the line they agree.")
+_CAPTION = ("Left: what every search met on its way, largest error of the nine printed rates against the largest rate of "
+            "conditions 1 and 5; filled markers are where searches ended. Middle and right: printed rates and their deviations "
+            "against those of the best set; on the line they agree.")
 
 
 def charts(found: dict) -> list[Chart]:
     """Trade-off of all searches, and printed against found rates and deviations of the best."""
     front = np.array(found["front"])
-    ends = {stress: [(item["largest_error_deg_s"], item["largest_negligible_deg_s"]) for item in found["searches"] if item["stress"] == stress]
+    ends = {stress: [(item["largest_error_deg_s"], item["largest_negligible_deg_s"]) for item in found["searches"]
+                     if item["stress"] == stress]
             for stress in sorted({item["stress"] for item in found["searches"]})}
     looks = ((GREY, "s"), (NAVY, "o"))
     trade = [Line(front[:, 0], front[:, 1], "best of all met", VERMILION)]
@@ -43,8 +47,10 @@ def charts(found: dict) -> list[Chart]:
     rates = np.array(best["rates_deg_s"])[1:4]
     deviations = np.array(best["changed_deg_s"]) - rates[:, None, :]
     return [Chart("paper", [
-        Panel("What cannot be had at once", "largest error of nine rates, deg/s", "largest rate, conditions 1 and 5, deg/s", trade, log=True),
-        _against("Nine rates, deg/s", printed.baseline, rates), _against("54 deviations, deg/s", printed.deviations(), deviations)], columns=3)]
+        Panel("What cannot be had at once", "largest error of nine rates, deg/s", "largest rate, conditions 1 and 5, deg/s",
+              trade, log=True),
+        _against("Nine rates, deg/s", printed.baseline, rates),
+        _against("54 deviations, deg/s", printed.deviations(), deviations)], columns=3)]
 
 
 def _against(title: str, printed: np.ndarray, ours: np.ndarray) -> Panel:
@@ -65,7 +71,8 @@ def _table2(best: dict) -> Html:
         rows += [(str(condition), f"{name} = {value:g} {units[name]}", *_pairs(printed.changed[place, row], changed[place, row]))
                  for row, (name, value) in enumerate(published.CHANGES)]
     return fold("Table 2, printed and found", table(("condition", "constant", *(f"{axis}, {kind} (deg/s)" for axis in "xyz"
-                                                                               for kind in ("printed", "found"))), rows, dense=True))
+                                                                               for kind in ("printed", "found"))),
+                                                    rows, dense=True))
 
 
 def _pairs(printed: np.ndarray, ours: np.ndarray) -> list[str]:
@@ -76,13 +83,14 @@ def _verdict(found: dict) -> str:
     ends = [item for item in found["searches"] if item["largest_error_deg_s"] <= found["admissible_deg_s"]]
     quiet = [item for item in ends if item["largest_negligible_deg_s"] <= found["negligible_deg_s"]]
     if quiet:
-        return f"{len(quiet)} searches met both within {found['admissible_deg_s']:g} deg/s: printed rates and negligible ones can hold together."
+        return (f"{len(quiet)} searches met both within {found['admissible_deg_s']:g} deg/s: printed rates and negligible ones can "
+                "hold together.")
     least = min((size for error, size in found["front"] if error <= found["admissible_deg_s"]), default=None)
     if least is None:
-        return (f"No search met all nine rates within {found['admissible_deg_s']:g} deg/s; the figure shows how close they came, and at "
-                "which rates of conditions 1 and 5.")
-    return (f"{len(ends)} searches ended within {found['admissible_deg_s']:g} deg/s of all nine rates, none of them with negligible rates on "
-            f"conditions 1 and 5: at that accuracy the smallest largest rate met there is {least:.2g} deg/s.")
+        return (f"No search met all nine rates within {found['admissible_deg_s']:g} deg/s; the figure shows how close they came, "
+                "and at which rates of conditions 1 and 5.")
+    return (f"{len(ends)} searches ended within {found['admissible_deg_s']:g} deg/s of all nine rates, none of them with "
+            f"negligible rates on conditions 1 and 5: at that accuracy the smallest largest rate met there is {least:.2g} deg/s.")
 
 
 def _headline(found: dict) -> Html:
@@ -98,13 +106,15 @@ def _headline(found: dict) -> Html:
 
 def _inputs(found: dict) -> Html:
     rows = [(item["name"].replace("_", " "), item["unit"], number(item["low"]), number(item["high"]), number(item["best"], 4),
-             number(item["from"]), number(item["to"]), f"{100.0 * item['share']:.0f} %", item["reason"]) for item in found["inputs"]]
+             number(item["from"]), number(item["to"]), f"{100.0 * item['share']:.0f} %", item["reason"])
+            for item in found["inputs"]]
     heads = ("input", "unit", "bound from", "to", "best", "admissible from", "to", "of the bounds", "why these bounds")
     return table(heads, rows, dense=True)
 
 
 def _searches(found: dict) -> Html:
     rows = [(f"{item['seed'] + 1}", "five" if item["stress"] else "three", number(item["largest_error_deg_s"]),
-             number(item["largest_negligible_deg_s"]), number(item["sum_of_squares"]), str(item["admissible"])) for item in found["searches"]]
+             number(item["largest_negligible_deg_s"]), number(item["sum_of_squares"]), str(item["admissible"]))
+            for item in found["searches"]]
     return table(("search", "conditions asked", "largest error of nine rates (deg/s)", "largest rate, conditions 1 and 5 (deg/s)",
                   "sum of squares", "admissible points kept"), rows)

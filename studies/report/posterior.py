@@ -14,7 +14,8 @@ from studies.report.markup import Html, caption, fold, number, paragraph, percen
 WORDS = ("Constants: log likelihood with the discrepancy integrated out, relative to its largest value, all other constants "
          "found again (profile); marginal: logarithm of the share of draws per bin, likewise relative. Bars: 95 % intervals, "
          "triangles where every sample is taken for independent noise about a model that is right. A flat line is a constant the "
-         "curves do not tell. Rates: the line is equality; broad bars: what the constants leave open; dotted ones: with the discrepancy.")
+         "curves do not tell. Rates: the line is equality; broad bars: what the constants leave open; dotted ones: with the "
+         "discrepancy.")
 _LOWEST = -8.0  # of the log likelihood, drawn
 _BINS = 12
 _TITLES = dict(zip(AXES, ("roll rate", "y rate", "z rate")))
@@ -95,15 +96,16 @@ def _covered(found: dict) -> Html:
              f"{item['band'][1]})" + prediction.missed(item) for role, item in found.items() if item["values"]]
     return Html(paragraph("; ".join(parts) + ".") + caption(
         "The three axes of a condition are not independent of each other, so the band is the narrowest there could be. Fitted "
-        "conditions were seen by the constants and by the size of the discrepancy; held-out ones by neither. Conditions in which no "
-        "pad touches are not counted."))
+        "conditions were seen by the constants and by the size of the discrepancy; held-out ones by neither. "
+        "Conditions in which no pad touches are not counted."))
 
 
 def _predicted(rows: list[dict]):
     for item in rows:
         for index, axis in enumerate(AXES):
             reference = item["reference_deg_s"] and f"{item['reference_deg_s'][index]:+.3f}"
-            head = (item["condition"] + ("" if item["touches"] else " (no pad touches)"), item["role"].replace("_", " "), axis, reference)
+            head = (item["condition"] + ("" if item["touches"] else " (no pad touches)"), item["role"].replace("_", " "),
+                    axis, reference)
             if item["median_deg_s"] is None:
                 yield *head, None, None, None, None
                 continue

@@ -58,7 +58,8 @@ def _step(rows: list[dict]) -> Promise | None:
         return None
     ratio, row = max(known, key=lambda pair: pair[0])
     return Promise("no step above the critical one, finite elements",
-                   f"{1e9 * row['cost']['dt_s']:.4g} ns of {1e9 * row['cost']['dt_limit_s']:.4g} ns, {ratio:.3f} ({row['condition']})",
+                   f"{1e9 * row['cost']['dt_s']:.4g} ns of {1e9 * row['cost']['dt_limit_s']:.4g} ns, "
+                   f"{ratio:.3f} ({row['condition']})",
                    f"{row['numerics'].get('safety', 1.0):g} of the limit", ratio <= 1.0)
 
 
@@ -72,7 +73,8 @@ def _surrogate_step(rows: list[dict]) -> Promise | None:
 
 def _friction(rows: list[dict]) -> Promise | None:
     worst, where = _worst(rows, "friction_power_max")
-    return None if worst is None else Promise("friction never gives energy back", f"{worst + 0.0:.2e} W ({where})", "0 W", worst <= 0.0)
+    return None if worst is None else Promise("friction never gives energy back", f"{worst + 0.0:.2e} W ({where})", "0 W",
+                                              worst <= 0.0)
 
 
 def _finite(rows: dict[str, list[dict]]) -> Promise:

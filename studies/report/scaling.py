@@ -8,15 +8,15 @@ from studies.report.chart import AMBER, NAVY, VERMILION, Chart, Line, Panel
 from studies.report.markup import Html, caption, paragraph, table
 
 WORDS = ("Time of one processor on {condition}: of a whole run of the reference, of the time loop of the surrogate. Left and "
-         "middle: fitted power laws, and dotted the exponent 4/3. Right: over the time without any effect; the last marker has every "
-         "effect on, those before it the same without friction, and without contact.")
+         "middle: fitted power laws, and dotted the exponent 4/3. Right: over the time without any effect; "
+         "the last marker has every effect on, those before it the same without friction, and without contact.")
 _LOOKS = {FINITE_ELEMENTS: (NAVY, "s", "-"), SPRINGS: (AMBER, "o", "--"), WALLS: (VERMILION, "D", "-.")}
-_EXPECTED = ("Expected over elements: 1 for a step, and 4/3 for a run, whose steps get shorter with the edges of the elements; less "
-             "where much of a step is the same on any mesh, and where the thickness of the walls sets the step. Another number of "
-             "pads is another motion of the same payload: rear bands alone, or more bands between the outer ones.")
+_EXPECTED = ("Expected over elements: 1 for a step, and 4/3 for a run, whose steps get shorter with the edges of the elements; "
+             "less where much of a step is the same on any mesh, and where the thickness of the walls sets the step. Another "
+             "number of pads is another motion of the same payload: rear bands alone, or more bands between the outer ones.")
 _PRICES = ("Effects differ in what they are, so no power of their number means anything. First lines: times with effects added to "
-           "those above, in brackets over the time without any. Lines below: what each costs alone, all effects against all but it; "
-           "below zero where the motion without it is the dearer one. From the ablation study.")
+           "those above, in brackets over the time without any. Lines below: what each costs alone, "
+           "all effects against all but it; below zero where the motion without it is the dearer one. From the ablation study.")
 
 
 def picture(found: dict) -> Chart:
@@ -53,7 +53,8 @@ def _ladder(item: dict) -> Line:
 def tables(found: dict) -> Html:
     """Exponents, the points they were fitted to, and the price of each effect."""
     return Html(paragraph("How cost grows: t = c n", Html("<sup>p</sup>"), ", the exponent p with its standard error.")
-                + _exponents(found) + caption(_EXPECTED + _shares(found["elements"])) + _meshes(found["elements"]) + _pads(found["pads"])
+                + _exponents(found) + caption(_EXPECTED + _shares(found["elements"])) + _meshes(found["elements"])
+                + _pads(found["pads"])
                 + _prices(found["effects"]) + caption(_PRICES))
 
 
@@ -70,7 +71,8 @@ def _exponents(found: dict) -> Html:
     finest = elements["finest"] | {"model": elements["model"], "points": elements["points"][-2:]}
     laws = [("elements", elements), ("elements, two finest meshes", finest), *(("pads", law) for law in found["pads"])]
     return table(("over", "model", "from", "to", "p of a run", "p of a step"), [
-        (over, law["model"], f"{law['points'][0]['n']:,}", f"{law['points'][-1]['n']:,}", exponent(law["run"]), exponent(law["step"]))
+        (over, law["model"], f"{law['points'][0]['n']:,}", f"{law['points'][-1]['n']:,}", exponent(law["run"]),
+         exponent(law["step"]))
         for over, law in laws])
 
 

@@ -3,7 +3,8 @@
 CSS = """
 :root { --ink: #24292f; --soft: #59636e; --rule: #d9dee3; --tint: #f5f7f9; --accent: #1d3461; }
 * { box-sizing: border-box; }
-body { margin: 0; color: var(--ink); background: #fff; font: 16px/1.55 system-ui, "Segoe UI", Roboto, "Liberation Sans", sans-serif; }
+body { margin: 0; color: var(--ink); background: #fff; \
+font: 16px/1.55 system-ui, "Segoe UI", Roboto, "Liberation Sans", sans-serif; }
 main, header { max-width: 1240px; margin: 0 auto; padding: 0 28px; }
 header { padding-top: 40px; }
 h1 { font-size: 30px; line-height: 1.2; margin: 0 0 6px; letter-spacing: -0.01em; }
@@ -15,13 +16,15 @@ p { max-width: 78ch; margin: 8px 0; }
 nav { margin: 20px 0 0; font-size: 14px; }
 nav a { margin-right: 14px; white-space: nowrap; }
 a { color: var(--accent); }
-code { font: 0.9em/1.4 ui-monospace, "SF Mono", Menlo, Consolas, monospace; background: var(--tint); padding: 1px 4px; border-radius: 3px; }
+code { font: 0.9em/1.4 ui-monospace, "SF Mono", Menlo, Consolas, monospace; \
+background: var(--tint); padding: 1px 4px; border-radius: 3px; }
 .wide { overflow-x: auto; margin: 12px 0; }
 table { border-collapse: collapse; font-size: 14px; line-height: 1.4; }
 th { text-align: left; vertical-align: bottom; font-weight: 600; border-bottom: 1.5px solid var(--ink); padding: 5px 12px 5px 6px; }
 td { vertical-align: top; border-bottom: 1px solid var(--rule); padding: 4px 12px 4px 6px; }
 td.number { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
-table.dense { font-size: 13px; } .dense td:last-child { min-width: 190px; } .dense th { padding-right: 8px; } .dense td { padding-right: 8px; }
+table.dense { font-size: 13px; } .dense td:last-child { min-width: 190px; } \
+.dense th { padding-right: 8px; } .dense td { padding-right: 8px; }
 tbody tr:nth-child(even) { background: var(--tint); }
 tr.good td:last-child::before { content: "\\2713\\00a0"; }
 tr.bad td:last-child { font-weight: 600; }

@@ -5,30 +5,31 @@ from html import escape
 from studies.report.markup import Html, caption, code, fold, number, paragraph, percent, section, table
 
 _INTERVALS = ("Intervals are linear and take what the fit leaves for scatter about a model that is right. Model error is not in "
-              "them: what the surrogate lacks may move its constants by more than they say; make posterior takes that in. Not told: "
-              "the curves do not fix the constant, and no interval is made up.")
-_HEADS = ("condition", "role", "rate L2 (%)", "floor L2 (%)", Html("v<sub>x</sub> L2 (%)"), "settled error (deg/s)", "error x, y, z (deg/s)",
-          "floor (deg/s)", "reference ± (deg/s)", "ISO 18571", "S-G magnitude (%)", "S-G phase (%)", "verdict")
+              "them: what the surrogate lacks may move its constants by more than they say; make posterior takes that in. "
+              "Not told: the curves do not fix the constant, and no interval is made up.")
+_HEADS = ("condition", "role", "rate L2 (%)", "floor L2 (%)", Html("v<sub>x</sub> L2 (%)"), "settled error (deg/s)",
+          "error x, y, z (deg/s)", "floor (deg/s)", "reference ± (deg/s)", "ISO 18571", "S-G magnitude (%)", "S-G phase (%)",
+          "verdict")
 _FLOOR = "Floor: what ±{change:g} µm of clearance changes in either model. "
 
 
 def agreement(document: dict) -> Html:
     """The agreement tables, the surrogate on compliant walls first, with floor and reference uncertainty beside every claim."""
     gates = document["gates"]
-    legend = (f"Gates: rate L2 {percent(gates['rate_relative_l2'])} %, v_x L2 {percent(gates['velocity_relative_l2'])} %, settled error "
-              f"{gates['settled_rate_error_deg_s']:g} deg/s, or twice the floor where that is more. "
+    legend = (f"Gates: rate L2 {percent(gates['rate_relative_l2'])} %, v_x L2 {percent(gates['velocity_relative_l2'])} %, "
+              f"settled error {gates['settled_rate_error_deg_s']:g} deg/s, or twice the floor where that is more. "
               + _FLOOR.format(change=1e6 * document["clearance_change_m"])
-              + "Reference ±: the largest change of its settled rates from twice the element size on, and there under half the step or "
-              f"four times the penalty; above {document['converged_deg_s']:g} deg/s no agreement is claimed. A star marks a value measured on other "
-              "conditions, of which the largest is taken. ISO 18571 is the mean rating of the three rates (1 is perfect); Sprague "
-              "and Geers over the three rates together.")
+              + "Reference ±: the largest change of its settled rates from twice the element size on, "
+              f"and there under half the step or four times the penalty; above {document['converged_deg_s']:g} deg/s no agreement "
+              "is claimed. A star marks a value measured on other conditions, of which the largest is taken. ISO 18571 is the mean "
+              "rating of the three rates (1 is perfect); Sprague and Geers over the three rates together.")
     calibrated = [*document["fitted"], *document["held_out"]]
     return section("agreement-section", "Agreement with the reference",
-                   paragraph("On walls that give way as the statics of the rail has them, nothing fitted (the role is that of the condition in "
-                             "the calibration of the other surrogates): " + summary(document["compliant"])),
+                   paragraph("On walls that give way as the statics of the rail has them, nothing fitted (the role is that of the "
+                             "condition in the calibration of the other surrogates): " + summary(document["compliant"])),
                    judged(document["compliant"], "agreement"), caption(legend), _further(document["compliant"]), _simpler(document),
-                   paragraph("One spring and damper per pad face, calibrated on the fitted conditions: " + summary(document["fitted"], "fitted ")
-                             + "; " + summary(document["held_out"], "held-out ")),
+                   paragraph("One spring and damper per pad face, calibrated on the fitted conditions: "
+                             + summary(document["fitted"], "fitted ") + "; " + summary(document["held_out"], "held-out ")),
                    judged(calibrated, "agreement-calibrated"), _outside(calibrated), _further(calibrated),
                    fold("the same before calibration", judged(document["uncalibrated"], "agreement-uncalibrated")),
                    _evidence(document))
@@ -51,8 +52,8 @@ def _simpler(document: dict) -> Html:
     whole = {"all": "compliant", f"all, and the {document['rail_modes']} lowest modes of each rail": "modal"}
     rows += [(words, *(_errors(row) for name in names for row in document[group] if row["condition"] == name))
              for words, group in whole.items()]
-    return fold("what the parts of the flexibility are worth: rate L2 (%) and settled error (deg/s) when the surrogate knows less, or "
-                "more",
+    return fold("what the parts of the flexibility are worth: rate L2 (%) and settled error (deg/s) when the surrogate knows less, "
+                "or more",
                 table(("walls", *names), rows, dense=True))
 
 
@@ -150,7 +151,8 @@ def speedups(document: dict) -> Html:
     """Wall times of the reference and of two surrogates on one machine, their ratios and the scatter."""
     found = document["speedup_compliant"]
     machine = found["hardware"]
-    return section("speedup", "Speed", paragraph("The surrogate on compliant walls:"), _speedup(found), paragraph("The calibrated surrogate:"),
+    return section("speedup", "Speed", paragraph("The surrogate on compliant walls:"), _speedup(found),
+                   paragraph("The calibrated surrogate:"),
                    _speedup(document["speedup"]), caption(
         f"Condition {found['condition']}, all models by turns in one go, all included but compilation, on {machine['processor']}, "
         f"{machine['cores']} cores, {machine['memory_gib']} GiB, Python {machine['python']}."))
@@ -161,7 +163,8 @@ def _speedup(found: dict) -> Html:
              f"{_range(found['highfi_wall_range_s'])} s, {found['elements']:,} elements"),
             ("wall time of one surrogate run", f"{1e3 * found['lowfi_wall_s']:.4g} ms", f"{found['lowfi_repeats']} repeats, "
              f"{_range([1e3 * value for value in found['lowfi_wall_range_s']])} ms, warm"),
-            ("ratio of wall times", f"{found['ratio']:,.0f}", f"{found['low']:,.0f} to {found['high']:,.0f} over all pairs of repeats"),
+            ("ratio of wall times", f"{found['ratio']:,.0f}",
+             f"{found['low']:,.0f} to {found['high']:,.0f} over all pairs of repeats"),
             ("ratio of kernels alone", _whole(found["kernel_ratio"]), "time loops only, without set-up and output"),
             ("ratio of processor times", _whole(found["cpu_ratio"]), "of the whole process")]
     return table(("", "value", "how measured"), rows)
@@ -177,14 +180,18 @@ def _whole(value: float | None) -> str:
 
 def cost(document: dict) -> Html:
     """Error against wall time, as numbers."""
-    rows = [(p["model"], p["numerics"], f"{p['wall_s']:.3g}", "the yardstick" if p["error_deg_s"] is None else number(p["error_deg_s"]),
+    rows = [(p["model"], p["numerics"], f"{p['wall_s']:.3g}",
+             "the yardstick" if p["error_deg_s"] is None else number(p["error_deg_s"]),
              number(p["integration_error_deg_s"]), "best at its price" if p["pareto"] else "") for p in document["points"]]
-    same = [(m["model"], f"{m['numerics']}, {1e3 * m['wall_s']:.3g} ms", number(m["error_deg_s"]), f"{m['mesh']}, {m['mesh_wall_s']:.3g} s",
+    same = [(m["model"], f"{m['numerics']}, {1e3 * m['wall_s']:.3g} ms", number(m["error_deg_s"]),
+             f"{m['mesh']}, {m['mesh_wall_s']:.3g} s",
              "the yardstick" if m["mesh_error_deg_s"] is None else number(m["mesh_error_deg_s"]), f"{m['ratio']:,.0f}")
             for m in document["matched"]]
     return Html(table(("model", "numerics", "wall time (s)", "error (deg/s)", "of which time integration (deg/s)", ""), rows)
-                + paragraph("What the same accuracy costs with finite elements: the coarsest mesh that is no less exact than each surrogate.")
-                + table(("surrogate", "as fast as it is so exact", "error (deg/s)", "mesh", "error (deg/s)", "times as long"), same))
+                + paragraph("What the same accuracy costs with finite elements: "
+                            "the coarsest mesh that is no less exact than each surrogate.")
+                + table(("surrogate", "as fast as it is so exact", "error (deg/s)", "mesh", "error (deg/s)", "times as long"),
+                        same))
 
 
 def stability(document: dict) -> Html:
@@ -192,14 +199,15 @@ def stability(document: dict) -> Html:
     heads = ("case", "model", "measured", "limit", "largest step (µs)", "critical step (µs)", "energy drift", "simpler method",
              "its figure", "verdict")
     rows = [(_case(c), c["fidelity"], _figure(c["figure"]), number(c["limit"]), _micro(c["largest_step_s"]),
-             _micro(c["critical_step_s"]), number(c["energy_drift"], 2), c["control"], _figure(c["control_figure"]), _held(c)) for c in document["cases"]]
+             _micro(c["critical_step_s"]), number(c["energy_drift"], 2), c["control"], _figure(c["control_figure"]), _held(c))
+            for c in document["cases"]]
     kinds = ["good" if c["held"] and c["control_failed"] else "bad" for c in document["cases"]]
     return section("stability", "Hard cases", paragraph("Each case stands beside a simpler method that must fail on it."),
                    table(heads, rows, kinds=kinds, dense=True), caption(
         "Largest step: of the surrogate the proven limit at its smallest, which no step passed; of the reference the step it took. "
-        "Critical step: 2 / ω of the case made linear at its stiffest, beyond which central differences grow, or 2 / rate where friction "
-        "damps faster. Energy drift: largest residual of the total energy ledger over its scale. A dash: nothing touches or vibrates, or "
-        "no figure applies."))
+        "Critical step: 2 / ω of the case made linear at its stiffest, beyond which central differences grow, "
+        "or 2 / rate where friction damps faster. Energy drift: largest residual of the total energy ledger over its scale. A "
+        "dash: nothing touches or vibrates, or no figure applies."))
 
 
 def _case(case: dict) -> Html:
@@ -224,7 +232,8 @@ def _held(case: dict) -> str:
 
 def bench(rows: list[dict], surrogate: dict | None) -> Html:
     """Speed of the reference solver by mesh, and of the surrogate by error."""
-    return section("bench", "Speed of the solvers", _solver(rows) if rows else Html(""), _surrogate(surrogate) if surrogate else Html(""))
+    return section("bench", "Speed of the solvers", _solver(rows) if rows else Html(""),
+                   _surrogate(surrogate) if surrogate else Html(""))
 
 
 def _solver(rows: list[dict]) -> Html:
@@ -235,9 +244,10 @@ def _solver(rows: list[dict]) -> Html:
               f"{row['set_up_s']:.1f}", f"{row['projected_40_ms_s'] / 3600.0:.2g}") for row in rows]
     first = rows[0]
     return Html(table(heads, lines) + caption(
-        f"Reference: wall time per element and step on {first['threads']} threads, {first['faces_in_contact']} pad faces pressed or none; "
-        f"medians of {first['repeats']} repeats by turns, compilation apart. Beside it central differences with an assembled SciPy matrix "
-        f"and NumPy, without contact. {first['hardware']['cores']} cores of {first['hardware']['processor']}."))
+        f"Reference: wall time per element and step on {first['threads']} threads, {first['faces_in_contact']} pad faces pressed "
+        f"or none; medians of {first['repeats']} repeats by turns, compilation apart. Beside it central differences with an "
+        f"assembled SciPy matrix and NumPy, without contact. {first['hardware']['cores']} cores of "
+        f"{first['hardware']['processor']}."))
 
 
 def _surrogate(found: dict) -> Html:
@@ -247,22 +257,23 @@ def _surrogate(found: dict) -> Html:
               f"{row['run_cpu_ms']:.2f}", f"{row['tolerance']:g}", f"{1e6 * row['baseline_dt_s']:.3g}") for row in found["single"]]
     many = found["ensemble"]
     return Html(table(heads, lines) + caption(
-        f"Surrogate: processor time of one core per case, the coarsest setting whose 95th percentile over {found['varied_cases']} varied "
-        f"cases keeps to the error; set-up apart. An ensemble of {many['cases']:,} cases at the first error, set-up included: "
-        f"{many['cpu_ms_per_case']:.3f} ms of processor time per case, {many['wall_s']:.2g} s in all. {found['hardware']['processor']}."))
+        f"Surrogate: processor time of one core per case, the coarsest setting whose 95th percentile over {found['varied_cases']} "
+        f"varied cases keeps to the error; set-up apart. An ensemble of {many['cases']:,} cases at the first error, set-up "
+        f"included: {many['cpu_ms_per_case']:.3f} ms of processor time per case, {many['wall_s']:.2g} s in all. "
+        f"{found['hardware']['processor']}."))
 
 
 def ablation(document: dict) -> Html:
     """Every effect off, both fidelities: what it costs and what it changes."""
-    heads = ("model", "variant", "status", "time (s)", "time ratio", "ns per step", "settled x, y, z (deg/s)", "change x, y, z (deg/s)",
-             "effects in the compiled kernel")
-    rows = [(row["fidelity"], row["variant"], row["status"], f"{row['time_s']:.3g}", f"{row['time_ratio']:.2f}", f"{row['ns_per_step']:,.0f}",
-             _three(row["settled_rate_deg_s"], ""), _three(row["settled_rate_change_deg_s"], "+"),
+    heads = ("model", "variant", "status", "time (s)", "time ratio", "ns per step", "settled x, y, z (deg/s)",
+             "change x, y, z (deg/s)", "effects in the compiled kernel")
+    rows = [(row["fidelity"], row["variant"], row["status"], f"{row['time_s']:.3g}", f"{row['time_ratio']:.2f}",
+             f"{row['ns_per_step']:,.0f}", _three(row["settled_rate_deg_s"], ""), _three(row["settled_rate_change_deg_s"], "+"),
              ", ".join(row["compiled"]) or "none") for row in document["rows"]]
     return section("ablation", "Only what the scene calls for", table(heads, rows), caption(
-        f"Condition {document['condition']}; reference on {1e3 * document['element_size_m']:g} mm elements, surrogate uncalibrated. "
-        "Times, without compilation: of a whole run of the reference, of the time loop of the surrogate. The first line of each model has every effect on, those the scene lacks with "
-        "small values; each further line takes one away."))
+        f"Condition {document['condition']}; reference on {1e3 * document['element_size_m']:g} mm elements, surrogate "
+        "uncalibrated. Times, without compilation: of a whole run of the reference, of the time loop of the surrogate. The first "
+        "line of each model has every effect on, those the scene lacks with small values; each further line takes one away."))
 
 
 def _three(values: list[float] | None, sign: str) -> str:

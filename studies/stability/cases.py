@@ -21,8 +21,8 @@ class Stability(NamedTuple):
 
 class Verdict(NamedTuple):
     """One line of the stability table. ``figure`` is what was measured against ``limit`` (dimensionless unless ``measure`` says
-    otherwise), ``control_figure`` the same measure of the weaker method; infinite values are given as None. The last three are those of
-    ``Stability``."""
+    otherwise), ``control_figure`` the same measure of the weaker method; infinite values are given as None. The last three are
+    those of ``Stability``."""
 
     name: str
     fidelity: str

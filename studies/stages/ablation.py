@@ -2,9 +2,9 @@
 compiled kernel without it does not contain it.
 
 The baseline has every effect on: those the scene does not have are added with the small values in ``ADDED``, except those that
-need values of the scene's own (contact, friction, platform, and a temperature where rails are not known to expand), which count where
-the scene has them. The scene as it asks and the scene without any effect close the table. The surrogate runs all of them by turns, so
-that what else the machine does meets each alike.
+need values of the scene's own (contact, friction, platform, and a temperature where rails are not known to expand), which count
+where the scene has them. The scene as it asks and the scene without any effect close the table. The surrogate runs all of them by
+turns, so that what else the machine does meets each alike.
 """
 
 import importlib

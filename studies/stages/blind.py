@@ -1,7 +1,7 @@
 """Stage ``blind``: agreement on conditions drawn after everything was settled, by a seed that nobody chose.
 
-Held-out conditions are known to whoever writes the surrogate. These are drawn from distributions of errors, and unless a seed is given
-it is that of the sources and the scene: any change of the code draws others.
+Held-out conditions are known to whoever writes the surrogate. These are drawn from distributions of errors, and unless a seed is
+given it is that of the sources and the scene: any change of the code draws others.
 """
 
 from dataclasses import asdict, dataclass, replace
@@ -31,7 +31,8 @@ class Asked:
 
 
 def run(study: Study, asked: Asked = Asked()) -> dict:
-    """Rows of the ``calibrated`` surrogate and of that on ``compliant`` walls, as in the agreement study, and the conditions drawn."""
+    """Rows of the ``calibrated`` surrogate and of that on ``compliant`` walls, as in the agreement study, and the conditions
+    drawn."""
     drawn = draw(study, asked)
     ladder = [compare.Rung("calibrated", "surrogate, calibrated", calibrate.load(study)),
               compare.Rung("compliant", "surrogate, compliant walls", walls=walls.under(drawn, drawn.conditions))]
@@ -40,7 +41,8 @@ def run(study: Study, asked: Asked = Asked()) -> dict:
         wanted = {name: drawn.highfi(name) for name in drawn.conditions}
         highfi = dict(zip(wanted, drawn.store.fill("highfi", list(wanted.values()))))
         require_success(highfi, "judge blind conditions")
-        changes, floor, gates = compare.refinements(drawn), compare.floors(drawn, "reference", drawn.coarse), verdicts.gates(study.scene)
+        changes, floor, gates = (compare.refinements(drawn), compare.floors(drawn, "reference", drawn.coarse),
+                                 verdicts.gates(study.scene))
         rows = {}
         for rung in ladder:
             own = compare.floors(drawn, rung.title, partial(rung.ask, drawn))
@@ -57,8 +59,8 @@ def stored(study: Study) -> dict | None:
 
 
 def draw(study: Study, asked: Asked) -> Study:
-    """The study of the drawn conditions, in the same folder: all held out, each with a floor of its own; refinements other than the mesh on
-    the first."""
+    """The study of the drawn conditions, in the same folder: all held out, each with a floor of its own; refinements other than the
+    mesh on the first."""
     source = Drawn(uncertainty.load(asked.vary, study.scene, cases=asked.cases, seed=seed_of(study, asked), sampling="random"))
     conditions = {f"blind{number + 1}": row for number, row in enumerate(source.rows(0, asked.cases))}
     names = list(conditions)
@@ -76,7 +78,8 @@ def lines(found: dict) -> list[str]:
     said = [f"{len(found['conditions'])} conditions drawn with seed {found['seed']}"]
     for name in ("calibrated", "compliant"):
         said += [f"  {name:11} {row['condition']}: rate L2 {_percent(row['rate_relative_l2'])}, settled error "
-                 f"{_rate(row['settled_rate_error_deg_s'])} (reference within {_rate(row['reference_uncertainty_deg_s'])}): {row['verdict']}"
+                 f"{_rate(row['settled_rate_error_deg_s'])} (reference within {_rate(row['reference_uncertainty_deg_s'])}): "
+                 f"{row['verdict']}"
                  for row in found[name]]
     return said
 

@@ -1,5 +1,5 @@
-"""Stage ``compare``: agreement of the surrogates with the reference, on conditions one was fitted to and on conditions none ever saw,
-beside the floor and the uncertainty of the reference; the growth of 1 um; and the speed-up."""
+"""Stage ``compare``: agreement of the surrogates with the reference, on conditions one was fitted to and on conditions none ever
+saw, beside the floor and the uncertainty of the reference; the growth of 1 um; and the speed-up."""
 
 from dataclasses import asdict
 from functools import partial
@@ -48,8 +48,8 @@ def rungs(study: Study) -> list[Rung]:
 
 
 def run(study: Study) -> dict:
-    """``uncalibrated``, ``fitted``, ``held_out``, ``compliant`` and ``modal`` rows, ``floor`` and ``refinement`` as measured, ``growth`` of
-    1 um, ``speedup`` of the calibrated and of the compliant surrogate, ``simpler`` walls."""
+    """``uncalibrated``, ``fitted``, ``held_out``, ``compliant`` and ``modal`` rows, ``floor`` and ``refinement`` as measured,
+    ``growth`` of 1 um, ``speedup`` of the calibrated and of the compliant surrogate, ``simpler`` walls."""
     study.fitted()
     _, calibrated, compliant, modal = ladder = rungs(study)
     gates = verdicts.gates(study.scene)
@@ -96,7 +96,8 @@ def _simpler(study: Study, compliant: Rung, highfi: dict[str, Trajectory]) -> li
     """What each part of the walls' flexibility is worth: the errors of surrogates that know less of it."""
     found = []
     for words, (patterns, coupled) in _SIMPLER.items():
-        rung = compliant._replace(walls={name: known and known.restricted(patterns, coupled) for name, known in compliant.walls.items()})
+        rung = compliant._replace(walls={name: known and known.restricted(patterns, coupled)
+                                         for name, known in compliant.walls.items()})
         wanted = [rung.ask(study, name, tag=f"-{patterns}{'' if coupled else '-apart'}") for name in study.conditions]
         for name, result in zip(study.conditions, study.store.fill(f"walls: {words}", wanted)):
             difference = metrics.compare(highfi[name], result)
@@ -114,8 +115,8 @@ def floors(study: Study, model: str, ask: Callable[..., Run]) -> list[Spread]:
 
 
 def _growths(study: Study, compliant: Rung, rows: list[dict]) -> list[growth.Growth]:
-    """How 1 um of clearance grows in both models, on the conditions of the floor and on those whose reference is not converged: that
-    they are chaotic may be why."""
+    """How 1 um of clearance grows in both models, on the conditions of the floor and on those whose reference is not converged:
+    that they are chaotic may be why."""
     if study.scene.contact is None:
         return []
     names = dict.fromkeys([*study.scene.agreement.floor, *(row["condition"] for row in rows if not row["reference_converged"])])
@@ -140,8 +141,8 @@ def clearances(study: Study) -> list[tuple[str, float]]:
 
 
 def refinements(study: Study) -> list[Spread]:
-    """Spread of the reference under each refinement alone: the mesh from the coarse one to its own, on every condition, for one that
-    is chaotic shows itself there; the others on the coarse one, where the scene asks for it."""
+    """Spread of the reference under each refinement alone: the mesh from the coarse one to its own, on every condition, for one
+    that is chaotic shows itself there; the others on the coarse one, where the scene asks for it."""
     found = []
     groups = {name: {"coarse": study.coarse(name), "mesh": study.highfi(name)}
               | (refined(study, name) if name in study.scene.agreement.refined else {}) for name in study.conditions}

@@ -113,7 +113,8 @@ def _quadratures(study: Study, name: str) -> list[dict]:
 
 
 def _ripples(study: Study, scene: Scene) -> list[dict]:
-    """Rows by element size, the first with a single Gauss point a facet for comparison; none where the rail lets nothing be told."""
+    """Rows by element size, the first with a single Gauss point a facet for comparison; none where the rail lets nothing be
+    told."""
     rows = []
     for size, points in ((study.settings.coarse_size, 1), (study.settings.coarse_size, None), (study.settings.element_size, None)):
         numerics = Numerics(element_size=size, quadrature=points)
@@ -132,7 +133,8 @@ def _told(ripples: list[dict]) -> list[str]:
 
 
 def _compared(study: Study, title: str, name: str, heads: list[dict], asked: list[Run]) -> list[dict]:
-    """The rows with the settled rates of their runs and the largest change of one (deg/s) against the nominal run of the coarse mesh."""
+    """The rows with the settled rates of their runs and the largest change of one (deg/s) against the nominal run of the coarse
+    mesh."""
     nominal, *runs = study.store.fill(title, [study.coarse(name), *asked])
     return [head | {"status": found.status, "settled_rate_deg_s": settled_rate(found),
                     "settled_rate_change_deg_s": verdicts.settled_change(nominal, found)} for head, found in zip(heads, runs)]

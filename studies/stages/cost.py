@@ -63,7 +63,8 @@ def _reference_points(study: Study, name: str) -> tuple[Trajectory, float | None
              *refined(study, name).values()]
     coarsest, coarse, finest, *changed = study.store.fill("cost, meshes", asked)
     band = verdicts.largest(verdicts.settled_change(coarse, run) for run in (finest, *changed))
-    points = [{"model": FINITE_ELEMENTS, "rung": "highfi", "setting": size, "numerics": f"{1e3 * size:g} mm, {found.cost['elements']} elements",
+    points = [{"model": FINITE_ELEMENTS, "rung": "highfi", "setting": size,
+               "numerics": f"{1e3 * size:g} mm, {found.cost['elements']} elements",
                "error_deg_s": None if found is finest else verdicts.settled_change(finest, found),
                "integration_error_deg_s": None, "wall_s": found.cost["wall_s"], "status": found.status}
               for size, found in zip(sizes, (coarsest, coarse, finest))]
@@ -84,9 +85,9 @@ def _surrogate_points(study: Study, name: str, rung: Rung, finest: Trajectory) -
 
 
 def matched(points: list[dict]) -> list[dict]:
-    """For each surrogate: the cheapest mesh that is as exact, and how many times longer it takes. A surrogate's error is that at its
-    tightest tolerance, for errors of the steps may cancel it by luck; its time that of the loosest one that adds no tenth to it. The
-    finest mesh, the yardstick, is as exact as anything can be told to be."""
+    """For each surrogate: the cheapest mesh that is as exact, and how many times longer it takes. A surrogate's error is that at
+    its tightest tolerance, for errors of the steps may cancel it by luck; its time that of the loosest one that adds no tenth to
+    it. The finest mesh, the yardstick, is as exact as anything can be told to be."""
     meshes = [point for point in points if point["model"] == FINITE_ELEMENTS]
     found = []
     for model in dict.fromkeys(point["model"] for point in points if point["model"] != FINITE_ELEMENTS):

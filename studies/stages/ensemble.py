@@ -28,8 +28,8 @@ from studies.study import Study, StudyError
 
 @dataclass(frozen=True)
 class Asked:
-    """What ``tipoff ensemble`` is given beside the scene, ``walls`` that give way or not; None: as the file of distributions says, or the
-    default."""
+    """What ``tipoff ensemble`` is given beside the scene, ``walls`` that give way or not; None: as the file of distributions says,
+    or the default."""
 
     vary: str = uncertainty.DEFAULT
     table: Path | None = None
@@ -100,8 +100,8 @@ def case(study: Study, asked: Asked, number: int, calibration: Calibration | Non
     if not 0 <= number < ensemble.source.asked:
         raise SceneError([Fault("--case", "number", str(number), f"0 to {ensemble.source.asked - 1}")])
     row, found = ensemble.case(number)
-    result = {"case": number, "inputs": {key: str(value) for key, value in row.items()}, "status": found.status, "message": found.message,
-              "steps": found.steps, **found.outcome._asdict(), "stored": None}
+    result = {"case": number, "inputs": {key: str(value) for key, value in row.items()}, "status": found.status,
+              "message": found.message, "steps": found.steps, **found.outcome._asdict(), "stored": None}
     path = _path(study, asked, ensemble)
     if path.exists():
         try:
@@ -121,5 +121,6 @@ def case_lines(found: dict) -> list[str]:
     if found["rate"] is not None:
         said.append("  velocity      " + ", ".join(f"{value:.17g}" for value in found["velocity"]) + " m/s (x, y, z)")
         said.append("  rate          " + ", ".join(f"{value:.17g}" for value in found["rate"]) + " rad/s (x, y, z)")
-    kept = {None: "no stored result to compare with", True: "the stored result has the same bits", False: "THE STORED RESULT DIFFERS"}
+    kept = {None: "no stored result to compare with", True: "the stored result has the same bits",
+            False: "THE STORED RESULT DIFFERS"}
     return [*said, f"  {kept[found['stored']]}"]

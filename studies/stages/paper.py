@@ -86,7 +86,8 @@ def _searches(study: Study, asked: Asked) -> list[solutions.Search]:
             if kept and kept.get("key") == key:
                 return solutions.restored(kept)
             label = f"search {seed + 1}, {'all five conditions' if stress else 'three conditions'}"
-            found = solutions.run(lambda tolerance: misfit.Launcher(base, tolerance), stress, seed, asked.plan, board.callback(label))
+            found = solutions.run(lambda tolerance: misfit.Launcher(base, tolerance), stress, seed, asked.plan,
+                                  board.callback(label))
             write_json(path, {"key": key, **solutions.plain(found)})
             board.finished(label, f"largest error of nine rates {np.abs(misfit.nine(found.rates)).max():.3g} deg/s, "
                                   f"largest rate of conditions 1 and 5 {solutions.largest_negligible(found.rates):.3g} deg/s")
@@ -145,8 +146,8 @@ def _plain(plan: solutions.Plan) -> dict:
 def lines(found: dict) -> list[str]:
     """The result in words and units."""
     best = found["searches"][found["best"]]
-    said = [f"best of {len(found['searches'])} searches: a printed rate missed by {best['largest_error_deg_s']:.3g} deg/s at most; rates of "
-            f"conditions 1 and 5 up to {best['largest_negligible_deg_s']:.3g} deg/s"]
-    said += [f"  {item['name']:16}{item['best']:.4g} {item['unit']}, admissible {item['from']:.3g} to {item['to']:.3g} of {item['low']:.3g} to "
-             f"{item['high']:.3g}" for item in found["inputs"]]
+    said = [f"best of {len(found['searches'])} searches: a printed rate missed by {best['largest_error_deg_s']:.3g} deg/s at most; "
+            f"rates of conditions 1 and 5 up to {best['largest_negligible_deg_s']:.3g} deg/s"]
+    said += [f"  {item['name']:16}{item['best']:.4g} {item['unit']}, admissible {item['from']:.3g} to {item['to']:.3g} of "
+             f"{item['low']:.3g} to {item['high']:.3g}" for item in found["inputs"]]
     return [*said, *(f"  note          {words}" for words in found["slips"]), f"  scene         {found['scene_file']}"]

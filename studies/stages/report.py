@@ -1,5 +1,5 @@
-"""Stage ``report``: the stages that compare both models, then one page of their results, and of what is there already: the error of the
-reference, the posterior of the constants, a benchmark, and the studies that answer an engineer's questions."""
+"""Stage ``report``: the stages that compare both models, then one page of their results, and of what is there already: the error of
+the reference, the posterior of the constants, a benchmark, and the studies that answer an engineer's questions."""
 
 from pathlib import Path
 from typing import Callable
@@ -14,7 +14,8 @@ from studies.study import Study, StudyError
 STAGES: dict[str, Callable[[Study], dict]] = {
     "mesh": mesh.run, "highfi": lambda study: runs.run(study, "highfi"), "lowfi": lambda study: runs.run(study, "lowfi"),
     "walls": walls.run,
-    "calibration": calibrate.run, "agreement": compare.run, cost.NAME: cost.run, "stability": stability.run, "ablation": ablation.run}
+    "calibration": calibrate.run, "agreement": compare.run, cost.NAME: cost.run, "stability": stability.run,
+    "ablation": ablation.run}
 
 
 def run(study: Study) -> dict:
@@ -25,8 +26,9 @@ def run(study: Study) -> dict:
             documents[name] = stage(study)
         except StudyError as fault:
             documents[name], problems[name] = None, str(fault)
-    there = {convergence.NAME: convergence.stored(study), posterior.NAME: posterior.stored(study),
-             "bench": reference.stored(study.folder.parent), "view": view.stored(study)} | {item.name: item.stored(study) for item in ANSWERS}
+    there = ({convergence.NAME: convergence.stored(study), posterior.NAME: posterior.stored(study),
+              "bench": reference.stored(study.folder.parent), "view": view.stored(study)}
+             | {item.name: item.stored(study) for item in ANSWERS})
 
     def make() -> tuple[dict, list[Path]]:
         from studies.report.page import Page

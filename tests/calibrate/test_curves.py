@@ -56,8 +56,8 @@ def test_constants_come_back_from_files(tmp_path):
 
 
 def test_any_sampling_tells_the_same(tmp_path):
-    """A third of the samples at random leaves the truth where it was, but for straight lines across some 0.3 ms. Control: the scene's
-    own constants, wrong by 30 %, stay far away."""
+    """A third of the samples at random leaves the truth where it was, but for straight lines across some 0.3 ms. Control: the
+    scene's own constants, wrong by 30 %, stay far away."""
     generator, thinned = np.random.default_rng(3), {}
     for name, run in own_curves().items():
         keep = np.flatnonzero(generator.random(run.time.size) < 1.0 / 3.0)

@@ -130,8 +130,8 @@ def test_samples_that_repeat_each_other_are_no_new_ones():
 
 
 def test_intervals_of_a_curve_do_not_shrink_with_its_sampling():
-    """A level read off correlated noise, 400 samples each worth 1/9. Counted by their correlation at least nine in ten intervals hold
-    the truth (the correlation itself is read off 400 residuals); counted whole only about half do."""
+    """A level read off correlated noise, 400 samples each worth 1/9. Counted by their correlation at least nine in ten intervals
+    hold the truth (the correlation itself is read off 400 residuals); counted whole only about half do."""
     generator, hits = np.random.default_rng(9), np.zeros(2)
     for _ in range(400):
         noise = correlated(generator, 400, 0.8)

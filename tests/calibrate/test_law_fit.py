@@ -12,7 +12,8 @@ MU = 0.2
 
 
 def bench(deepest: float, samples: int = 400) -> tuple[np.ndarray, ...]:
-    """Penetration, rate, normal and tangential force of the pad by the formula of IMPACT in plain NumPy, some of it pulling back."""
+    """Penetration, rate, normal and tangential force of the pad by the formula of IMPACT in plain NumPy, some of it pulling
+    back."""
     p = deepest * np.linspace(0.01, 1.0, samples)
     q = 0.05 * np.cos(np.linspace(0.0, 40.0, samples))
     x = np.minimum(p / PAD.damping_depth, 1.0)

@@ -59,7 +59,8 @@ def test_static_friction_keeps_its_ratio():
 
 
 def test_another_law_without_friction_fits_its_own_curves():
-    """Hunt-Crossley, start 40 % off in force; one condition of three impacts. Each further law would only compile its kernels again."""
+    """Hunt-Crossley, start 40 % off in force; one condition of three impacts. Each further law would only compile its kernels
+    again."""
     truth = with_law("hunt-crossley", friction=False).replace({"agreement.fitted": ["phi60"]})
     free = parameters.free(truth)
     wrong = {item.name: item.read(truth) for item in free}

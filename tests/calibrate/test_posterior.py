@@ -79,8 +79,8 @@ def test_walkers_that_are_stuck_are_called_so():
 
 
 def hits(count: int):
-    """Whether 95 % intervals of a level hold it, with the discrepancy and with every sample as noise of its own: a surrogate that is
-    a constant, beside curves with an error of size 1 that is correlated over some nine samples."""
+    """Whether 95 % intervals of a level hold it, with the discrepancy and with every sample as noise of its own: a surrogate that
+    is a constant, beside curves with an error of size 1 that is correlated over some nine samples."""
     generator, grid = np.random.default_rng(45), np.linspace(-2.0, 2.0, 1601)
     for _ in range(count):
         noise = correlated(generator, 400, 0.8)
@@ -104,8 +104,8 @@ def test_intervals_hold_the_truth_beside_a_model_that_is_wrong():
 
 
 def test_correlated_samples_of_several_curves_count_together():
-    """(1 + rho)/(1 - rho), and no less; beyond, sums over many lags scatter by some 10 % of it. A slow error under one that swings is
-    not taken for noise. Control: up to the first negative lag every sample would count."""
+    """(1 + rho)/(1 - rho), and no less; beyond, sums over many lags scatter by some 10 % of it. A slow error under one that swings
+    is not taken for noise. Control: up to the first negative lag every sample would count."""
     generator = np.random.default_rng(2)
     curves = [correlated(generator, 300, 0.8) for _ in range(60)]
     assert 9.0 <= discrepancy.correlated(curves) < 9.0 * 1.3

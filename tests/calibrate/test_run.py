@@ -38,7 +38,8 @@ def test_recovers_known_constants_from_a_wrong_start(fitted):
 def test_uncalibrated_start_is_far(fitted):
     """Control: the constants the fit started from are nowhere near."""
     free = parameters.free(scene())
-    objective = Objective(scene(), targets(scene(), {name: Curves.from_trajectory(run) for name, run in own_curves().items()}), free)
+    objective = Objective(scene(), targets(scene(), {name: Curves.from_trajectory(run) for name, run in own_curves().items()}),
+                          free)
     residuals = objective(np.array([item.share(item.read(scene())) for item in free]))
     assert residuals @ residuals > 1e-3
 

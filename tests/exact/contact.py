@@ -7,13 +7,15 @@ from scipy.optimize import brentq
 
 
 def impact_force(k: float, e: float, c: float, d: float, p: float, closing: float) -> float:
-    """Normal force (N) of IMPACT with no pull: max(0, k p^e + c s(p/d) p'), s = x^2 (3 - 2x) (MSC ADAMS/Solver, IMPACT function)."""
+    """Normal force (N) of IMPACT with no pull: max(0, k p^e + c s(p/d) p'), s = x^2 (3 - 2x) (MSC ADAMS/Solver, IMPACT
+    function)."""
     x = min(p / d, 1.0)
     return max(0.0, k * p**e + c * x * x * (3.0 - 2.0 * x) * closing)
 
 
 def impact_collision(mass: float, v: float, k: float, e: float, c: float, d: float) -> dict[str, float]:
-    """Restitution, deepest penetration (m), largest force (N) and duration (s) from m p'' = -F(p, p'), integrated by DOP853 at 1e-13."""
+    """Restitution, deepest penetration (m), largest force (N) and duration (s) from m p'' = -F(p, p'), integrated by DOP853 at
+    1e-13."""
     def slope(_, y):
         p = max(y[0], 0.0)
         return [y[1], -impact_force(k, e, c, d, p, y[1]) / mass]
@@ -23,8 +25,8 @@ def impact_collision(mass: float, v: float, k: float, e: float, c: float, d: flo
 
     apart.terminal, apart.direction = True, -1.0
     period = math.pi * v / (k * (mass * v * v / k) ** (e / (e + 1.0)) / mass)
-    found = solve_ivp(slope, (0.0, 20.0 * period), [0.0, v], method="DOP853", rtol=1e-13, atol=1e-18, events=apart, dense_output=True,
-                      max_step=period / 500.0)
+    found = solve_ivp(slope, (0.0, 20.0 * period), [0.0, v], method="DOP853", rtol=1e-13, atol=1e-18, events=apart,
+                      dense_output=True, max_step=period / 500.0)
     end = found.t_events[0][0]
     times = [end * i / 20000 for i in range(20001)]
     states = found.sol(times)
@@ -56,8 +58,8 @@ def oblique_ball(vn: float, vt: float, mu: float, e: float, radius: float) -> tu
 
 
 def hunt_crossley_restitution(av: float) -> float:
-    """Restitution on F = k p^n (1 + a p') from a v (1 + e) = ln[(1 + a v)/(1 - a v e)] (Hunt and Crossley, J. Appl. Mech. 42, 1975);
-    independent of k, m and n."""
+    """Restitution on F = k p^n (1 + a p') from a v (1 + e) = ln[(1 + a v)/(1 - a v e)] (Hunt and Crossley, J. Appl. Mech. 42,
+    1975); independent of k, m and n."""
     upper = min(1.0, 1.0 / av) * (1.0 - 1e-15)
     return brentq(lambda e: av * (1.0 + e) - math.log((1.0 + av) / (1.0 - av * e)), 1e-9, upper, xtol=1e-15)
 

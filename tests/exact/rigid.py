@@ -65,8 +65,8 @@ def impulsive_rate(inertia: np.ndarray, arm: np.ndarray, impulse: np.ndarray) ->
 
 
 def recoil(impulse: float, payload: float, platform: float, inertia: float, offset: float) -> dict[str, float]:
-    """Speeds (m/s), rate (rad/s), closing speed on the line and energy (J) after an impulse between a payload and a free platform whose
-    mass centre lies ``offset`` (m) beside the line: J/m, -J/M, -J b/I."""
+    """Speeds (m/s), rate (rad/s), closing speed on the line and energy (J) after an impulse between a payload and a free platform
+    whose mass centre lies ``offset`` (m) beside the line: J/m, -J/M, -J b/I."""
     v, base, rate = impulse / payload, -impulse / platform, -impulse * offset / inertia
     return {"payload": v, "platform": base, "rate": rate, "closing": v - base - rate * offset,
             "energy": 0.5 * (payload * v**2 + platform * base**2 + inertia * rate**2)}

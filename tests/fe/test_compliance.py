@@ -34,7 +34,8 @@ def pads(*middles, half_length=HALF):
     count = len(middles)
     centre = np.array([(middle, 0.5 * WIDTH, HEIGHT) for middle in middles])
     ones = np.ones(count)
-    return Faces(centre, np.full(count, 2), -ones, half_length * ones, 0.5 * WIDTH * ones, 0.0 * ones, HEIGHT * ones, np.arange(count))
+    return Faces(centre, np.full(count, 2), -ones, half_length * ones, 0.5 * WIDTH * ones, 0.0 * ones, HEIGHT * ones,
+                 np.arange(count))
 
 
 def elastic(modulus=MODULUS, poisson_ratio=0.0):
@@ -44,8 +45,8 @@ def elastic(modulus=MODULUS, poisson_ratio=0.0):
 
 
 def beam_theory(first, second):
-    """Matrix (2,2) of the patterns 1 and xi between patches with these middles, by the deflection x^2 (3 s - x) / 6 E I + x / kappa G A
-    at x <= s under a unit force at s."""
+    """Matrix (2,2) of the patterns 1 and xi between patches with these middles, by the deflection x^2 (3 s - x) / 6 E I + x / kappa
+    G A at x <= s under a unit force at s."""
     xi = (np.arange(400) + 0.5) / 200.0 - 1.0
     x, s = (middle + HALF * xi for middle in (first, second))
     near, far = np.minimum(x[:, None], s), np.maximum(x[:, None], s)
@@ -67,7 +68,8 @@ def test_beam_under_two_pads():
             here = (1, 1) if i == j else (2, 2)  # under its own pressure a slope has a local part, which beams do not know
             assert matrix[i, :, j][:here[0], :here[1]] == pytest.approx(exact[:here[0], :here[1]], rel=0.01)
     # Control: in the place of a point force at the middle the mean under a pad near the root would be off.
-    assert abs(beam_theory(0.06, 0.06)[0, 0] / (elasticity.cantilever_deflection(1.0, 0.06, WIDTH, HEIGHT, MODULUS, 0.0)[0]) - 1.0) > 0.01
+    assert abs(beam_theory(0.06, 0.06)[0, 0]
+               / (elasticity.cantilever_deflection(1.0, 0.06, WIDTH, HEIGHT, MODULUS, 0.0)[0]) - 1.0) > 0.01
 
 
 def test_a_pad_over_the_end_keeps_its_last_whole_place():
@@ -112,7 +114,8 @@ def test_loads_have_the_force_and_moment_of_their_pressure():
     assert found.gram[0, 0] == pytest.approx(1.0, rel=1e-12)
     local = (points[found.node][:, :, :2] - middle) / half
     assert found.load.sum(axis=(1, 2)) == pytest.approx([1.0, 0.0, 0.0, 1.0 / 3.0, 0.0, 1.0 / 3.0], abs=2e-3)
-    assert np.einsum("pqk,qki->pi", found.load[:3], local) == pytest.approx(np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]) / 3.0, abs=2e-3)
+    assert np.einsum("pqk,qki->pi", found.load[:3], local) == pytest.approx(
+        np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]) / 3.0, abs=2e-3)
 
 
 @pytest.fixture(scope="module")
@@ -158,7 +161,8 @@ def test_mirrored_rails_share_one_solution(monkeypatch):
 
 def test_compliance_converges_with_the_mesh(reference):
     """The wall of 4 mm is one element thick: what 2 mm change is 5 % of the direct compliance, and half of what 4 mm changed."""
-    coarse, fine = (direct_and_cross(compliance.along(scenes.load("reference"), size, TRAVEL[:2], patterns=1)) for size in (0.008, 0.002))
+    coarse, fine = (direct_and_cross(compliance.along(scenes.load("reference"), size, TRAVEL[:2], patterns=1))
+                    for size in (0.008, 0.002))
     for first, second, third in zip(coarse, direct_and_cross(reference), fine):
         change = np.abs(third - second[:2])
         assert (change < 0.06 * fine[0]).all() and (change < 0.6 * np.abs(second[:2] - first)).all()

@@ -51,7 +51,8 @@ def test_areas_and_volume_do_not_depend_on_the_mesh(size, count):
 
 @pytest.mark.parametrize("size, even", [(0.0034, False), (0.0013, True), (0.0007, True)])
 def test_layers_are_even_where_a_length_near_the_size_divides_all_intervals(size, even):
-    """4 mm divide every interval between borders of the mounts; 1.33 and 0.667 mm are near enough to the size, but 4 mm is not to 3.4 mm."""
+    """4 mm divide every interval between borders of the mounts; 1.33 and 0.667 mm are near enough to the size, but 4 mm is not to
+    3.4 mm."""
     stations = np.unique(np.round(l_rail.build(GEOMETRY, size).points[:, 0], 12))
     assert (np.ptp(np.diff(stations)) < 1e-9) == even
 

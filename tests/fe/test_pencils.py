@@ -30,7 +30,8 @@ def groups_of(mesh):
     places = np.zeros((number.max() // columns.stride + 1, 2))
     places[number // columns.stride] = mesh.points[:, 1:]
     counts = columns.groups.counts
-    return places, *(counts @ np.array(size) for size in zip(*((len(kind.numbers), len(kind.folded) > 0) for kind in folding.KINDS)))
+    return places, *(counts @ np.array(size)
+                     for size in zip(*((len(kind.numbers), len(kind.folded) > 0) for kind in folding.KINDS)))
 
 
 def both_forces(mesh):

@@ -1,4 +1,5 @@
-"""Runs with structural damping of the rails: ledgers, momenta, the same bits by any threads and after a resume, the compiled code."""
+"""Runs with structural damping of the rails: ledgers, momenta, the same bits by any threads and after a resume, the compiled
+code."""
 
 import numpy as np
 import pytest

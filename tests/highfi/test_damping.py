@@ -134,7 +134,8 @@ def test_faint_damping_over_a_hundred_thousand_cycles(safety):
 @pytest.mark.case("O15")
 @pytest.mark.parametrize("ratio", [0.05, 0.9])
 def test_step_of_a_damped_rail_keeps_below_the_damped_limit(ratio):
-    """Damped by ``ratio`` in the highest mode. Control: at the undamped limit, which a code that forgets would take, it blows up."""
+    """Damped by ``ratio`` in the highest mode. Control: at the undamped limit, which a code that forgets would take, it blows
+    up."""
     highest, shape = highest_mode(loop_on(scene(), bar(2)).system.operator)
     frequency = highest / (2.0 * math.pi)
     given = scene(damping([0.5 * frequency, frequency], (ratio, ratio)))
@@ -155,8 +156,8 @@ def test_step_of_a_damped_rail_keeps_below_the_damped_limit(ratio):
 
 
 def test_limit_with_contact_encloses_the_coupled_system():
-    """At the bound M - dt C / 2 - dt^2 (K + S) / 4 is still not negative, with springs S on every node across the bar; and the bound is
-    exact where the highest mode of the rail has all of the springs."""
+    """At the bound M - dt C / 2 - dt^2 (K + S) / 4 is still not negative, with springs S on every node across the bar; and the
+    bound is exact where the highest mode of the rail has all of the springs."""
     operator = loop_on(scene(), bar(2)).system.operator
     stiffness, mass, _ = free_stiffness(operator)
     matrix = stiffness.toarray() / np.sqrt(np.outer(mass, mass))

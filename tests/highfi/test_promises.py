@@ -74,8 +74,8 @@ def test_spurious_contact_energy_is_seen():
 
 
 def test_energy_of_points_that_cross_the_edge_is_released():
-    """Pads without a crown are pressed up to their edge, and slide: points leave it loaded and meet it loaded. The ledger closes only
-    with what they carry off and bring in; with crowned pads there is nothing to release."""
+    """Pads without a crown are pressed up to their edge, and slide: points leave it loaded and meet it loaded. The ledger closes
+    only with what they carry off and bring in; with crowned pads there is nothing to release."""
     early = {"duration": "14 ms", "contact__clearance": "0.05 mm"}
     flat = [pad.model_dump() | {"relief": 0.0} for pad in tiny().pads]
     entry = ledger.ENTRIES.index("released")

@@ -38,6 +38,7 @@ def test_each_other_effect_is_compiled_where_it_is_present_only(effect):
 
 def test_code_read_from_the_disk_cache_is_the_code_that_runs():
     """A second process finds the kernel compiled; what it reads must not depend on who compiled it."""
-    ask = "import highfi; from tests.highfi.support import COARSE, tiny; print(highfi.compiled_effects(tiny(friction=None), COARSE))"
+    ask = ("import highfi; from tests.highfi.support import COARSE, tiny; "
+           "print(highfi.compiled_effects(tiny(friction=None), COARSE))")
     said = [subprocess.run([sys.executable, "-c", ask], check=True, capture_output=True, text=True).stdout for _ in range(2)]
     assert said[0] == said[1] == f"{highfi.compiled_effects(tiny(friction=None), COARSE)}\n"

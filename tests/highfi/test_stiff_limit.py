@@ -1,4 +1,5 @@
-"""The limit that justifies the surrogate: on the penalty of the reference at rigid walls it is the reference with an infinitely stiff rail.
+"""The limit that justifies the surrogate: on the penalty of the reference at rigid walls it is the reference with an infinitely
+stiff rail.
 
 A rail of modulus E gives way by force/E, so what that changes of a smooth event falls as 1/E, until penalty, step or quadrature are
 larger. The penalty is a hundredth of the catalogue's, for a rail to be stiff beside it; pads are flat and lie on whole facets.

@@ -37,7 +37,8 @@ def stiffened(mesh: RailMesh, rails: set[int]) -> RailMesh:
 
 
 def deflections(loop: Loop, mesh: RailMesh) -> Iterator[tuple[int, float]]:
-    """Each rail when a pad first touches it, with the largest displacement (m) of its walls along their normals a sample earlier."""
+    """Each rail when a pad first touches it, with the largest displacement (m) of its walls along their normals a sample
+    earlier."""
     walls = [(mesh.surfaces[name], axis) for name, axis in (("contact_y", 1), ("contact_z", 2))]
     owner, known, before = rail_of(mesh.points), set(), {}
     while len(loop.rows) <= loop.last:
@@ -72,9 +73,9 @@ def test_on_a_fixed_platform_an_untouched_rail_stays_at_rest():
 @pytest.mark.slow
 @pytest.mark.parametrize("condition", ["phi0", "phi15", "phi35"])
 def test_on_a_free_platform_it_cannot_be_left_out(condition):
-    """Two rails are never touched; made rigid they change a settled rate by 2e-7 (phi35) to 1.3e-6 (phi0) of it. The others lie up to
-    5 nm off their place when they are touched first, for the platform's acceleration bends them: one stepped only from then on would
-    be that far off, which the floor of the scene turns into as much as 2e-5 of a rate."""
+    """Two rails are never touched; made rigid they change a settled rate by 2e-7 (phi35) to 1.3e-6 (phi0) of it. The others lie up
+    to 5 nm off their place when they are touched first, for the platform's acceleration bends them: one stepped only from then on
+    would be that far off, which the floor of the scene turns into as much as 2e-5 of a rate."""
     scene, numerics = load("reference").condition(condition), Numerics()
     mesh = highfi.prepare(scene, numerics)
     system = build(scene, numerics, mesh)

@@ -39,7 +39,8 @@ def handmade(scene: Scene, entries: dict, rail=None) -> Walls:
         flexibility[:, i, a, j, b] = flexibility[:, j, b, i, a] = value
     half = np.column_stack([faces.half_length, faces.half_width])
     rail = np.zeros(count, dtype=np.int64) if rail is None else rail
-    return Walls(np.array([0.0, 1.0]), flexibility, rail, half, np.zeros((rail.max() + 1, 0)), np.zeros((2, count, PATTERNS, 0)), digest(scene))
+    return Walls(np.array([0.0, 1.0]), flexibility, rail, half, np.zeros((rail.max() + 1, 0)), np.zeros((2, count, PATTERNS, 0)),
+                 digest(scene))
 
 
 def in_one_cell(monkeypatch) -> None:
@@ -69,7 +70,8 @@ def relative(model, travel: float, offset=(0.0, 0.0), attitude=(0.0, 0.0, 0.0), 
     place = np.array(model.payload.mass_centre) - origin + [travel, *offset]
     base_attitude = rotation.exponential(turn)
     carried = np.array(rotation.rotate(rotation.matrix(base_attitude), tuple(place)))
-    return Pose(origin + base + carried, rotation.product(base_attitude, rotation.exponential(attitude)), origin + base, base_attitude)
+    return Pose(origin + base + carried, rotation.product(base_attitude, rotation.exponential(attitude)), origin + base,
+                base_attitude)
 
 
 def state_of(model, pose: Pose, twist: np.ndarray = np.zeros(12)) -> np.ndarray:

@@ -25,7 +25,8 @@ def scene(duration: float, interval: float, mass: float = 20.0, inertia: dict | 
           rail: dict | None = None, thrust: dict | None = None, **tables) -> scenes.Scene:
     """A scene whose fixed rails are so long that nothing leaves them, without thrust unless ``thrust`` says otherwise."""
     none = {"kind": "constant", "force": 0.0, "duration": duration}
-    raw = {"name": "test", "duration": duration, "payload": {"mass": mass, "inertia": inertia or {"xx": 0.3, "yy": 0.55, "zz": 0.6}},
+    raw = {"name": "test", "duration": duration,
+           "payload": {"mass": mass, "inertia": inertia or {"xx": 0.3, "yy": 0.55, "zz": 0.6}},
            "pads": pads or ONE_PAD, "rail": rail or RAIL, "thrust": thrust or none, "output": {"interval": interval}, **tables}
     return scenes.parse(raw, bare_numbers_are_si=True)
 
@@ -63,7 +64,8 @@ def drop(contact: dict, tolerance: float, duration: float, v: float = 0.05, mass
          along: float = 1.0, **tables):
     """A body thrown at ``v`` (m/s) along -z onto its pads' wall; ``duration`` (s) is that of the contact, roughly.
 
-    It also slides along the rail at ``along`` (m/s), so that nobody takes it for jammed in a long contact. Returns what was measured and the trajectory.
+    It also slides along the rail at ``along`` (m/s), so that nobody takes it for jammed in a long contact. Returns what was
+    measured and the trajectory.
     """
     gap = contact["clearance"]
     length = gap / v + 1.3 * duration

@@ -24,11 +24,12 @@ def test_impact_spot_values(p_mm, closing, force):
     turn, zero = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0), (0.0, 0.0, 0.0)
     body = state.Motion(zero, (0.0, 0.0, -closing / 1e3), turn, zero)
     face = (0.0, 0.0, -0.1, 0.0, -1.0, 0.1, 0.0)
-    found = touch.load(Contact(*law.laws(record), None), None, None, face, p_mm * 1e-3, body, state.Motion(zero, zero, turn, zero)).normal[2]
+    found = touch.load(Contact(*law.laws(record), None), None, None, face, p_mm * 1e-3, body,
+                       state.Motion(zero, zero, turn, zero)).normal[2]
     assert found == pytest.approx(exact.impact_force(K, 1.5, 60000.0, 3e-4, p_mm * 1e-3, closing / 1e3), rel=1e-9, abs=1e-12)
     assert found == pytest.approx(force, abs=5e-4)
-    # Controls: without the cut-off the law pulls while the pad opens fast; with its damping there at once, not by the cubic step, it
-    # is off where the pad is shallow.
+    # Controls: without the cut-off the law pulls while the pad opens fast; with its damping there at once, not by the cubic step,
+    # it is off where the pad is shallow.
     uncut = sum(law.impact(record, p_mm * 1e-3, closing / 1e3))
     assert uncut < -5.0 if closing < 0.0 else uncut == pytest.approx(force, abs=5e-4)
     if 0.0 < closing and p_mm < 0.3:
@@ -77,7 +78,8 @@ def test_thousandfold_stiffness(tolerance):
     assert found["restitution"] == pytest.approx(1.0, abs=1e-4)
     assert run.checks["energy_error"] <= 1e-3 and run.cost["limit_used"] <= 1.0
     # Control: explicit Euler at a step that serves the paper's pad well invents energy here.
-    euler = exact.explicit_euler_restitution(lambda p, _: exact.impact_force(1e3 * K, 1.5, 0.0, 3e-4, max(p, 0.0), 0.0), 20.0, 0.05, 1e-5)
+    euler = exact.explicit_euler_restitution(lambda p, _: exact.impact_force(1e3 * K, 1.5, 0.0, 3e-4, max(p, 0.0), 0.0),
+                                             20.0, 0.05, 1e-5)
     assert euler > 1.2
 
 

@@ -14,7 +14,8 @@ ROWS = [{"thrust_offset.misalignment.radial": f"{angle} deg"} for angle in (5, 2
 
 @pytest.mark.case("X19")
 def test_bad_rows_are_refused_alone():
-    rows = [ROWS[0], {"payload.mass": -1.0}, {"contact.clearence": 1e-4}, {"thrust.peak": 1e200, "thrust_offset.misalignment.axial": 0.0}, ROWS[1]]
+    rows = [ROWS[0], {"payload.mass": -1.0}, {"contact.clearence": 1e-4},
+            {"thrust.peak": 1e200, "thrust_offset.misalignment.axial": 0.0}, ROWS[1]]
     found = lowfi.run_many(load("reference"), rows, workers=2)
     assert found.status.values.tolist() == ["exited", "refused", "refused", "diverged", "exited"]
     assert found.attrs == {"asked": 5, "ok": 2, "refused": 2, "failed": 1}
@@ -29,8 +30,8 @@ def test_same_bits_for_any_worker_count():
         assert np.array_equal(one[name].values, three[name].values)
 
 
-NUMBERS = [*varied(6), {"contact.clearance": "0.1 mm"}, {"thrust.peak": "5 kN"}, {"duration": "30 ms"}, {"initial.position.y": 0.26e-3},
-           {"output.interval": "0.2 ms"}, {"thrust.peak": 20.0}]
+NUMBERS = [*varied(6), {"contact.clearance": "0.1 mm"}, {"thrust.peak": "5 kN"}, {"duration": "30 ms"},
+           {"initial.position.y": 0.26e-3}, {"output.interval": "0.2 ms"}, {"thrust.peak": 20.0}]
 # Each of these has kernels of its own.
 TABLES = [{"thrust_offset": "absent"}, {"platform": "absent", "payload.mass": 8.0}, {"friction": "absent"}, {"contact": "absent"},
           {"gravity.z": -9.80665}]
@@ -38,17 +39,19 @@ TABLES = [{"thrust_offset": "absent"}, {"platform": "absent", "payload.mass": 8.
 
 @pytest.mark.parametrize("rows", [NUMBERS, pytest.param([*NUMBERS[:2], *TABLES], marks=pytest.mark.slow)])
 def test_same_bits_as_single_runs(rows):
-    """Varied numbers, text with units, other thrust, time that ends early, pads pressed at ignition, a payload that hardly moves, tables that
-    come and go: whichever way the ensemble takes, nothing differs from ``run``."""
+    """Varied numbers, text with units, other thrust, time that ends early, pads pressed at ignition, a payload that hardly moves,
+    tables that come and go: whichever way the ensemble takes, nothing differs from ``run``."""
     base = load("reference")
     found = lowfi.run_many(base, rows, workers=2)
     for index, row in enumerate(rows):
         alone = lowfi.run(base.replace(row))
         case = found.isel(case=index)
-        assert (str(case.status.values), str(case.message.values), int(case.steps)) == (alone.status, alone.message, alone.cost["steps"])
+        assert (str(case.status.values), str(case.message.values), int(case.steps)) == (
+            alone.status, alone.message, alone.cost["steps"])
         for name in columns.UNITS:
             expected = getattr(alone.outcome, name)
-            assert np.array_equal(case[name].values, np.nan * case[name].values if expected is None else expected, equal_nan=True), (row, name)
+            assert np.array_equal(case[name].values, np.nan * case[name].values if expected is None else expected,
+                                  equal_nan=True), (row, name)
 
 
 def test_refused_rows_have_the_reason_of_replace():

@@ -148,12 +148,13 @@ def test_run_many_with_a_store_is_run_many(tmp_path):
             {"thrust.peak": 1e200, "thrust_offset.misalignment.axial": 0.0}, {key: "65 deg"}]
     plain, kept, again = (lowfi.run_many(load("reference"), rows, **where) for where in ({}, *2 * [{"store": tmp_path / "store"}]))
     for found in (kept, again):
-        assert found.equals(plain.drop_vars("wall_s")) and found.attrs == plain.attrs == {"asked": 7, "ok": 3, "refused": 3, "failed": 1}
+        assert found.equals(plain.drop_vars("wall_s")) and found.attrs == plain.attrs == {
+            "asked": 7, "ok": 3, "refused": 3, "failed": 1}
     assert len(list((tmp_path / "store" / "done").iterdir())) == 1
     failures = Ensemble(load("reference"), Listed(rows), None, lowfi.Numerics()).store(tmp_path / "store").failures()
     assert [(item["case"], item["status"], item["inputs"]) for item in failures] == [
-        (2, "refused", {"payload.mass": -1.0}), (3, "refused", {"contact.clearence": 1e-4}), (4, "refused", {"payload.mass": "nan"}),
-        (5, "diverged", rows[5])]
+        (2, "refused", {"payload.mass": -1.0}), (3, "refused", {"contact.clearence": 1e-4}),
+        (4, "refused", {"payload.mass": "nan"}), (5, "diverged", rows[5])]
     assert "clearence" in failures[1]["reason"]
 
 

@@ -40,7 +40,8 @@ def crossing(ratio: float, modes: int):
     pads = [{"position": (0.0, 0.1, 0.1), "normals": ["+y"], "length": 0.016, "width": 0.016, "inset": 0.009, "relief": 0.0}]
     duration = LENGTH / (ratio * CRITICAL)
     asked = on_springs(RUB | {"static": 0.0, "dynamic": 0.0}, penalty=STIFFNESS / 0.016**2, pads=pads, duration=duration,
-                       payload=heavy | {"mass": 1e4}, platform=heavy | {"mass": 1e9, "mass_centre": {"x": 0.0}}, thrust=EFFECTS["thrust"] | {"peak": 0.0},
+                       payload=heavy | {"mass": 1e4}, platform=heavy | {"mass": 1e9, "mass_centre": {"x": 0.0}},
+                       thrust=EFFECTS["thrust"] | {"peak": 0.0},
                        initial={"position": {"y": 1e-4 + PUSHED}, "velocity": {"x": ratio * CRITICAL}},
                        output={"interval": duration / 400}, flexibility={"modes": modes})
     travel, number = np.linspace(0.0, LENGTH, 101), np.arange(1, 21)
@@ -115,7 +116,8 @@ def test_ledgers_and_momentum(condition, changes):
 def test_no_step_is_too_long_for_the_highest_mode():
     """At a tolerance that lets errors grow to centimetres a second the proven limit alone holds the steps, and no mode grows."""
     asked, walls = REFERENCE.condition("phi60").replace(MODES), reference_walls()
-    loose, fine = (lowfi.run(asked, numerics=each, walls=walls) for each in (Numerics(relative_tolerance=1e-2, speed_floor=10.0), Numerics()))
+    loose, fine = (lowfi.run(asked, numerics=each, walls=walls)
+                   for each in (Numerics(relative_tolerance=1e-2, speed_floor=10.0), Numerics()))
     assert loose.status == "exited" and 0.9 < loose.cost["limit_used"] <= 1.0 + 1e-9
     assert np.degrees(loose.outcome.rate) == pytest.approx(np.degrees(fine.outcome.rate), abs=0.1)
     strain = ledger.ENTRIES.index("strain")
@@ -125,7 +127,8 @@ def test_no_step_is_too_long_for_the_highest_mode():
 def work_of_modes(scene, walls, run, states) -> float:
     """Most work (J) by any time of the pull along the rail that comes from its modes."""
     model, system = pressed(scene, walls)
-    poses = [Pose(*row) for row in zip(run.position, map(tuple, run.quaternion), run.platform_position, map(tuple, run.platform_quaternion))]
+    poses = [Pose(*row) for row in zip(run.position, map(tuple, run.quaternion), run.platform_position,
+                                       map(tuple, run.platform_quaternion))]
     pulls = [pull_of_modes(system, model, pose, state[slot.STATE_SIZE:]) for pose, state in zip(poses, states)]
     power = np.array(pulls) * (run.velocity[:, 0] - run.platform_velocity[:, 0])
     return np.abs(np.cumsum(power)).max() * (run.time[1] - run.time[0])

@@ -38,18 +38,20 @@ def test_forces_are_the_gradient_of_the_energy(vibrating, name):
     pose, h, twists = pose_of(model, name, BASES["moved and turned"]), 1e-9, np.eye(12)
     out = [derivative(system, model, pose, twist, modes) for twist in twists]
     forces, released = generalised(pose, out[0]), np.array([each[slot.RELEASED] for each in out])
-    slopes = np.array([(energy(system, model, pose.moved(twist, h), modes) - energy(system, model, pose.moved(twist, -h), modes)) / (2.0 * h)
+    slopes = np.array([(energy(system, model, pose.moved(twist, h), modes) - energy(system, model, pose.moved(twist, -h), modes))
+                       / (2.0 * h)
                        for twist in twists])
     size = np.abs(forces).max()
     assert size > 20.0
     assert slopes == pytest.approx(-forces - released, abs=1e-7 * size, rel=0.0)
-    # Control: without the force along the rail of a wall that modes have bent they would not agree, but where the table ends and the
-    # place on the wall stands still.
+    # Control: without the force along the rail of a wall that modes have bent they would not agree, but where the table ends and
+    # the place on the wall stands still.
     assert (abs(pull_of_modes(system, model, pose, modes)) > 1e-6 * size) == (not name.startswith("rear"))
     q, rate = modes.reshape(2, -1)
     square, drag = system.walls.modes.square.ravel(), system.walls.modes.drag.ravel()
     steps = 1e-9 * np.eye(q.size, modes.size)
-    by_mode = np.array([energy(system, model, pose, modes + step) - energy(system, model, pose, modes - step) for step in steps]) / 2e-9
+    by_mode = np.array([energy(system, model, pose, modes + step) - energy(system, model, pose, modes - step)
+                        for step in steps]) / 2e-9
     swung, found = out[0][slot.STATE_SIZE:].reshape(2, -1)
     assert (swung == rate).all() and np.abs(by_mode).max() > 1.0
     assert found + square * q + drag * rate == pytest.approx(-by_mode, abs=1e-6 * np.abs(by_mode).max())
@@ -82,10 +84,12 @@ def test_limit_holds_the_spectrum(vibrating, name):
 
     still = modes * (np.arange(modes.size) < modes.size // 2)
     columns = [(forces(pose.moved(twist, 1e-9), still) - forces(pose.moved(twist, -1e-9), still)) / 2e-9 for twist in np.eye(12)]
-    columns += [(forces(pose, still + step) - forces(pose, still - step)) / 2e-9 for step in 1e-9 * np.eye(modes.size // 2, modes.size)]
+    columns += [(forces(pose, still + step) - forces(pose, still - step)) / 2e-9
+                for step in 1e-9 * np.eye(modes.size // 2, modes.size)]
     fastest = np.abs(np.linalg.eigvals(metric @ np.array(columns).T)).max()
     springs, dampers = limit.stiffness_and_damping(system.walls, system.friction, system.faces, system.platform, system.payload,
-                                                   np.ones(len(system.faces), dtype=np.bool_), np.append(state_of(model, pose), modes))
+                                                   np.ones(len(system.faces), dtype=np.bool_),
+                                                   np.append(state_of(model, pose), modes))
     assert system.walls.modes.square.max() < fastest < springs < 10.0 * fastest
     assert dampers == system.walls.modes.drag.max() > 0.0
 

@@ -10,7 +10,8 @@ from tests.lowfi.support import PAPER_PAD, scene
 
 
 def test_order_conditions_of_the_pair():
-    """b and the interpolant at 1 agree, the error weights sum to zero, and quadrature is exact to t^4 (order 5) and t^3 (order 4)."""
+    """b and the interpolant at 1 agree, the error weights sum to zero, and quadrature is exact to t^4 (order 5) and t^3 (order
+    4)."""
     weights = np.append(pair.MATRIX[6], 0.0)
     assert pair.DENSE.sum(axis=1) == pytest.approx(weights, abs=1e-14)
     assert pair.MATRIX.sum(axis=1) == pytest.approx(pair.NODES, abs=1e-14)

@@ -3,8 +3,8 @@
 Contact makes small differences grow, by how much depends on the scene. So each comparison brings its own yardstick: the same scene
 with its state at ignition nudged by as much as one step may err. Two runs are compared as long as what the nudge changes is below a
 thousandth of the motion; a wrong sign or a lost term is a million times larger from the first touch on. Where both take the same
-steps ten nudges are allowed, for a pad that just touches may by rounding be open in one and closed in the other, which makes one step
-different; where they take different steps, one nudge for each.
+steps ten nudges are allowed, for a pad that just touches may by rounding be open in one and closed in the other, which makes one
+step different; where they take different steps, one nudge for each.
 """
 
 import numpy as np

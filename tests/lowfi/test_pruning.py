@@ -47,8 +47,8 @@ def test_pruned_kernels_know_no_friction(tmp_path):
 
 @pytest.mark.parametrize("effect", [effect for effect in LAWS if effect not in ON_WALLS])
 def test_one_absent_effect_is_not_compiled(effect):
-    """Read from the machine code: what the scene has is there, what it has not is not, and one change changes nothing else. Without contact
-    there is no friction either."""
+    """Read from the machine code: what the scene has is there, what it has not is not, and one change changes nothing else. Without
+    contact there is no friction either."""
     base = load("reference")
     present = lowfi.compiled_effects(base)
     assert present == {name: name not in (*ADDED, *ON_WALLS) for name in LAWS}
@@ -58,7 +58,8 @@ def test_one_absent_effect_is_not_compiled(effect):
 
 
 def test_without_any_effect_nothing_of_them_is_compiled():
-    found = lowfi.compiled_effects(load("reference").replace({name: None for name in ("friction", "platform", "contact", "thrust_offset")}))
+    found = lowfi.compiled_effects(load("reference").replace(
+        {name: None for name in ("friction", "platform", "contact", "thrust_offset")}))
     assert not any(found.values())
 
 
@@ -74,12 +75,14 @@ def test_warm_walls_are_compiled_for_a_warm_scene_only():
 def test_walls_that_give_way_stand_in_the_place_of_the_contact_law():
     """Nothing of the package is in a kernel without them."""
     scene, name = load("reference"), b"5lowfi5walls"
-    assert lowfi.compiled_effects(scene, walls=reference_walls()) == lowfi.compiled_effects(scene) | {"contact": False, "walls": True}
+    assert lowfi.compiled_effects(scene, walls=reference_walls()) == lowfi.compiled_effects(scene) | {
+        "contact": False, "walls": True}
     assert name in compiled_code(scene, walls=reference_walls()) and name not in compiled_code(scene)
 
 
 def test_modes_of_the_rails_are_compiled_where_there_are_any():
     scene, walls = load("reference"), reference_walls()
     without, none, with_modes = (lowfi.compiled_effects(each, walls=walls)
-                                 for each in (scene, scene.replace({"flexibility.modes": 0}), scene.replace({"flexibility.modes": 4})))
+                                 for each in (scene, scene.replace({"flexibility.modes": 0}),
+                                              scene.replace({"flexibility.modes": 4})))
     assert without == none and with_modes == without | {"flexibility": True}

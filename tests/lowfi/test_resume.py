@@ -20,7 +20,8 @@ def put_away(tolerance: float, last: int, path) -> Run:
     run.begin()
     run._advance(last)
     assert run.taken == last + 1
-    np.savez(path, rows=run.rows, forces=run.forces, **{name: array for name, array in run.loop._asdict().items() if array is not None})
+    np.savez(path, rows=run.rows, forces=run.forces, **{name: array for name, array in run.loop._asdict().items()
+                                                        if array is not None})
     kept, other = np.load(path), Run(ASKED, numerics)
     other.loop = march.Loop(*(kept.get(name) for name in march.Loop._fields))
     other.rows, other.forces, other.taken = kept["rows"], kept["forces"], last + 1

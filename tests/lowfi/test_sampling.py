@@ -15,7 +15,8 @@ from scenes.uncertainty import Uncertainty
 
 def drawn(cases: int, how: str, seed: int = 1, **vary) -> Uncertainty:
     """``vary`` holds the bounds of uniform distributions by name."""
-    tables = {name: BY_NAME["uniform"].model_construct(distribution="uniform", low=low, high=high) for name, (low, high) in vary.items()}
+    tables = {name: BY_NAME["uniform"].model_construct(distribution="uniform", low=low, high=high)
+              for name, (low, high) in vary.items()}
     return Uncertainty(cases, seed, how, tables)
 
 
@@ -63,15 +64,17 @@ def test_what_cannot_be_held_is_refused(monkeypatch):
 def test_variance_shares_of_the_linear_tip_off():
     """w = (J l/I) t cos f1 + (J/I)(r cos f2 + m cos f3): the terms are independent with mean zero, so variances add up.
 
-    The error of a variance from n draws is sqrt((m4 - m2^2)/n), with the exact moments of each term: those of a normal times a cosine,
-    m4 = 3 s^4 * 3/8.
+    The error of a variance from n draws is sqrt((m4 - m2^2)/n), with the exact moments of each term: those of a normal times a
+    cosine, m4 = 3 s^4 * 3/8.
     """
     normal = {name: {"distribution": "normal", "mean": 0.0, "sd": sd} for name, sd in (
-        ("thrust_offset.misalignment.axial", np.deg2rad(0.4 / 3.0)), ("initial.position.y", 0.2e-3), ("initial.position.z", 0.4e-3 / 3.0))}
+        ("thrust_offset.misalignment.axial", np.deg2rad(0.4 / 3.0)), ("initial.position.y", 0.2e-3),
+        ("initial.position.z", 0.4e-3 / 3.0))}
     angles = {name: {"distribution": "uniform", "low": 0.0, "high": 2.0 * np.pi} for name in (
         "thrust_offset.misalignment.radial", "thrust_offset.eccentricity.radial", "mass_offset.eccentricity.radial")}
     count = 200_000
-    source = Drawn(uncertainty.parse({"cases": count, "seed": 3, "vary": normal | angles}, load("reference"), bare_numbers_are_si=True))
+    source = Drawn(uncertainty.parse({"cases": count, "seed": 3, "vary": normal | angles}, load("reference"),
+                                     bare_numbers_are_si=True))
     t, r, m, f1, f2, f3 = np.concatenate([numbers(source.keys, source.rows(n, n + 50_000)) for n in range(0, count, 50_000)]).T
     impulse, arm, inertia = 100.0, 0.15, 0.55
     terms = np.degrees(impulse / inertia * np.stack([arm * t * np.cos(f1), r * np.cos(f2), m * np.cos(f3)]))

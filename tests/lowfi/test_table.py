@@ -22,7 +22,8 @@ def test_units_in_a_line_or_in_the_cells_are_the_same_bits(tmp_path):
     line = table(tmp_path, f"{AXIAL},{MASS}", "deg,g", *(f"{text},{9000 + n}" for n, text in enumerate(texts)))
     cells = table(tmp_path, f"{AXIAL}, {MASS}", *(f"{text} deg, {9000 + n} g" for n, text in enumerate(texts)))
     assert line.asked == cells.asked == 200 and line.identity == cells.identity
-    assert line.rows(7, 9) == cells.rows(7, 9) == [{AXIAL: to_si(f"{texts[n]} deg", "rad"), MASS: to_si(f"{9000 + n} g", "kg")} for n in (7, 8)]
+    assert line.rows(7, 9) == cells.rows(7, 9) == [{AXIAL: to_si(f"{texts[n]} deg", "rad"), MASS: to_si(f"{9000 + n} g", "kg")}
+                                                   for n in (7, 8)]
 
 
 def test_odd_cells_stay_text_and_empty_ones_are_left_out(tmp_path):

@@ -48,7 +48,8 @@ def solved(system, model, pose, rail, active=None, modes=()):
 
 
 def energy(system, model, pose, modes=()) -> float:
-    return sum(loads.energy(system.walls, solved(system, model, pose, rail, None, modes)) for rail in range(len(system.walls.members)))
+    return sum(loads.energy(system.walls, solved(system, model, pose, rail, None, modes))
+               for rail in range(len(system.walls.members)))
 
 
 def derivative(system, model, pose, twist, modes=()):
@@ -156,9 +157,9 @@ def test_any_pose_is_solved(reference):
 
 
 def pressed_elements(scene, face, travel, aside=0.0, points_per_edge=4):
-    """Force (N) as a function of the depth (m) a crowned pad face is pressed into the rail of elements of 4 mm, ``aside`` (m) of where it
-    stands midway between the rails: penalty at Gauss points of each facet, each one's pressure felt at every other, by Newton's rule
-    with the points that touch."""
+    """Force (N) as a function of the depth (m) a crowned pad face is pressed into the rail of elements of 4 mm, ``aside`` (m) of
+    where it stands midway between the rails: penalty at Gauss points of each facet, each one's pressure felt at every other, by
+    Newton's rule with the points that touch."""
     nominal = models.built(scene).nominal
     faces = nominal._replace(wall=nominal.wall + np.array(scene.platform.record().mass_centre)[nominal.axis])
     axis, across, sign, material = faces.axis[face], 3 - faces.axis[face], faces.sign[face], scene.rail.material
@@ -191,8 +192,8 @@ def pressed_elements(scene, face, travel, aside=0.0, points_per_edge=4):
 
 @pytest.mark.parametrize("travel, error", [(0.008, 0.05), (0.056, 0.025)], ids=["at a mount", "between mounts"])
 def test_force_is_that_of_the_finite_elements(reference, travel, error):
-    """One pad: pressure in six patterns under ten by ten cells against pressure free to be anything. Nothing is fitted. A mount leaves
-    only the leg's own bending, which knows less of the patterns."""
+    """One pad: pressure in six patterns under ten by ten cells against pressure free to be anything. Nothing is fitted. A mount
+    leaves only the leg's own bending, which knows less of the patterns."""
     walls, model, system = reference
     face, force = 0, pressed_elements(REFERENCE, 0, travel)
     active = np.arange(len(system.faces)) == face
@@ -208,7 +209,8 @@ def test_force_is_that_of_the_finite_elements(reference, travel, error):
 
 @pytest.mark.parametrize("aside", [CLEARANCE, -CLEARANCE], ids=["to the free edge", "to the corner"])
 def test_a_pad_aside_meets_a_softer_or_stiffer_leg(reference, aside):
-    """The same as with finite elements under the pad where it really stands, though the walls were found midway between the rails."""
+    """The same as with finite elements under the pad where it really stands, though the walls were found midway between the
+    rails."""
     walls, model, system = reference
     face, travel, depth = 0, 0.056, 2e-5
     active = np.arange(len(system.faces)) == face

@@ -25,14 +25,16 @@ RUB = {"static": 0.2, "dynamic": 0.2, "static_speed": 0.01, "dynamic_speed": 0.0
 
 
 def on_springs(friction: dict, stiffness: float = STIFFNESS, penalty: float = STIFFNESS / AREA, **changes):
-    """Flat pads between endless rails, with a spring of ``stiffness`` (N/m) for contact: IMPACT without damping, with the exponent 1."""
+    """Flat pads between endless rails, with a spring of ``stiffness`` (N/m) for contact: IMPACT without damping, with the exponent
+    1."""
     pads = [pad | {"length": 0.016, "width": 0.016, "inset": 0.009, "relief": 0.0} for pad in corners()]
     pads = [pad | {"normals": [("+" if pad["position"][i] > 0.0 else "-") + "xyz"[i] for i in (1, 2)]} for pad in pads]
     inertia = {"xx": 0.07, "yy": 0.13, "zz": 0.12, "xy": 0.004, "xz": -0.002}
     contact = {"law": "impact", "clearance": 1e-4, "exponent": 1.0, "stiffness": stiffness, "damping": 0.0, "damping_depth": 1.0,
                "penalty": penalty}
     return parse({"name": "springs", "duration": 0.02, "payload": {"mass": 9.9, "inertia": inertia}, "pads": pads, "rail": RAIL,
-                  "output": {"interval": 1e-4}, "contact": contact, "friction": friction} | EFFECTS | changes, bare_numbers_are_si=True)
+                  "output": {"interval": 1e-4}, "contact": contact, "friction": friction} | EFFECTS | changes,
+                 bare_numbers_are_si=True)
 
 
 def speeds(run) -> np.ndarray:
@@ -43,7 +45,8 @@ def speeds(run) -> np.ndarray:
 @pytest.mark.parametrize("friction", [0.0, 0.2])
 @pytest.mark.parametrize("given", [None, 3e7], ids=["rigid", "in series"])
 def test_one_cell_is_a_spring(monkeypatch, friction, given):
-    """A flat pad of one cell on a rigid wall is penalty times area; on a wall that only gives way as a whole, two springs in series."""
+    """A flat pad of one cell on a rigid wall is penalty times area; on a wall that only gives way as a whole, two springs in
+    series."""
     rub = RUB | {"static": friction, "dynamic": friction}
     together = STIFFNESS if given is None else 1.0 / (1.0 / STIFFNESS + 1.0 / given)
     asked = on_springs(rub, together)
@@ -157,8 +160,8 @@ def test_order_of_the_pads():
 
 
 def test_no_step_above_the_proven_limit():
-    """Under a thousandfold penalty, at a tolerance that lets errors grow to centimetres a second, the limit alone holds the steps, and the
-    motion with them."""
+    """Under a thousandfold penalty, at a tolerance that lets errors grow to centimetres a second, the limit alone holds the steps,
+    and the motion with them."""
     stiff = REFERENCE.condition("phi60").replace({"contact.penalty": 1.8e15})
     run = lowfi.run(stiff, numerics=Numerics(relative_tolerance=1e-2, speed_floor=10.0), walls=reference_walls())
     assert run.status == "exited" and 0.9 < run.cost["limit_used"] <= 1.0 + 1e-9
@@ -168,9 +171,10 @@ def test_no_step_above_the_proven_limit():
 
 @pytest.mark.parametrize("condition", ["phi0", "h7", "h9"])
 def test_no_touch_is_missed(condition):
-    """Narrow gaps and long steps: a pad that touches late in the step in which it leaves, or only with an edge, is felt as in short steps.
-    A touch that is missed is worth degrees; the error of the steps, on h7 grown by ten touches, hundredths."""
+    """Narrow gaps and long steps: a pad that touches late in the step in which it leaves, or only with an edge, is felt as in short
+    steps. A touch that is missed is worth degrees; the error of the steps, on h7 grown by ten touches, hundredths."""
     asked = load("sensitive").condition(condition)
-    long, short = (lowfi.run(asked, numerics=Numerics(relative_tolerance=tolerance), walls=reference_walls()) for tolerance in (2e-7, 1e-9))
+    long, short = (lowfi.run(asked, numerics=Numerics(relative_tolerance=tolerance), walls=reference_walls())
+                   for tolerance in (2e-7, 1e-9))
     assert long.cost["steps"] < 0.4 * short.cost["steps"]
     assert np.degrees(long.outcome.rate) == pytest.approx(np.degrees(short.outcome.rate), abs=0.1)

@@ -91,8 +91,8 @@ def test_nothing_warm_is_the_same_as_no_temperature():
 
 @pytest.mark.slow
 def test_both_fidelities_agree_on_warm_rails():
-    """Elements of 4 mm in both, 20 K with the sun on one side: within what agreement may be claimed for, where the temperature is worth
-    ten times as much. Control: the other way round, or forgotten, it is missed."""
+    """Elements of 4 mm in both, 20 K with the sun on one side: within what agreement may be claimed for, where the temperature is
+    worth ten times as much. Control: the other way round, or forgotten, it is missed."""
     cold, sun = REFERENCE.condition("phi35"), {"thermal.mean": 20.0, "thermal.gradient.y": 100.0, "thermal.gradient.z": -50.0}
     wanted = np.degrees(highfi.run(cold.replace(sun), highfi.Numerics(element_size=4e-3)).outcome.rate)
     shade = {key: -value for key, value in sun.items()}

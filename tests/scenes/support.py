@@ -17,7 +17,8 @@ SMALL = {
              "material": {"density": "2810 kg/m**3", "youngs_modulus": "72 GPa", "poisson_ratio": 0.33}},
     "thrust": {"kind": "gaussian", "peak": "6 kN", "width": "4 ms", "centre": "12 ms"},
 }
-CONTACT = {"law": "impact", "clearance": "0.1 mm", "stiffness": "70000 N/mm**1.5", "damping": "60 N*s/mm", "damping_depth": "0.3 mm"}
+CONTACT = {"law": "impact", "clearance": "0.1 mm", "stiffness": "70000 N/mm**1.5", "damping": "60 N*s/mm",
+           "damping_depth": "0.3 mm"}
 FRICTION = {"static": 0.2, "dynamic": 0.1, "static_speed": "10 mm/s", "dynamic_speed": "20 mm/s"}
 STICKING = {"law": "sticking", "static": 0.4, "dynamic": 0.3, "stiffness": "1e4 N/mm", "damping": "10 N*s/mm"}
 
@@ -43,7 +44,8 @@ def motion(position, velocity=None, quaternion=None, rate=None, time=None, platf
     entries = dict(
         fidelity="lowfi", status=status, time=time, position=position, velocity=zeros if velocity is None else velocity,
         quaternion=aligned if quaternion is None else quaternion, rate=zeros if rate is None else rate,
-        platform_position=zeros, platform_velocity=zeros, platform_rate=np.zeros((n, 3)) if platform_rate is None else platform_rate,
+        platform_position=zeros, platform_velocity=zeros,
+        platform_rate=np.zeros((n, 3)) if platform_rate is None else platform_rate,
         platform_quaternion=aligned if platform_quaternion is None else platform_quaternion, pad_force=np.zeros((n, 2, 3)),
         energy=np.zeros((n, len(ledger.ENTRIES))), transverse_energy=np.zeros((n, len(ledger.ENTRIES))), outcome=Outcome(),
         checks={}, cost={}, scene={})

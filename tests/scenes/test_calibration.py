@@ -29,7 +29,8 @@ def test_round_trip(tmp_path):
     assert _as_lists(Calibration.load(tmp_path / "c.toml")) == _as_lists(CALIBRATION)
 
 
-@given(st.one_of(st.text(alphabet=st.characters(exclude_categories=["Cs"])), st.floats(allow_nan=False), st.integers(-2**63, 2**63 - 1), st.booleans()))
+@given(st.one_of(st.text(alphabet=st.characters(exclude_categories=["Cs"])), st.floats(allow_nan=False),
+                 st.integers(-2**63, 2**63 - 1), st.booleans()))
 def test_any_value_survives_toml(value):
     assert tomllib.loads(f"x = {_toml(value)}")["x"] == value
 

@@ -36,7 +36,8 @@ def test_fixed_is_the_value():
 @pytest.mark.case("O48")
 @pytest.mark.parametrize("rule, variance, fourth", [("redraw", 0.9733369, 2.6795), ("clip", 0.9950073, 2.9)])
 def test_variance_of_a_normal_limited_at_three_sigma(rule, variance, fourth):
-    """By quadrature to the digits that are printed, and for draws within 3 standard errors. ``fourth``, at most, is the fourth moment."""
+    """By quadrature to the digits that are printed, and for draws within 3 standard errors. ``fourth``, at most, is the fourth
+    moment."""
     limited = table("truncated-normal", mean=0.0, sd=1.0, low=-3.0, high=3.0, rule=rule)
     assert abs(limited.ppf(MIDDLES).var() - variance) < 2e-7
     count = 400_000
@@ -62,22 +63,25 @@ def raw(**tables) -> dict:
 
 
 def test_units_are_those_of_the_scene():
-    found = uncertainty.parse(raw(**{"thrust_offset.misalignment.axial": {"distribution": "normal", "mean": "180 deg", "sd": "1 deg"}}),
-                              load("reference"))
+    found = uncertainty.parse(
+        raw(**{"thrust_offset.misalignment.axial": {"distribution": "normal", "mean": "180 deg", "sd": "1 deg"}}),
+        load("reference"))
     assert found.vary["thrust_offset.misalignment.axial"].mean == pytest.approx(np.pi)
     nested = uncertainty.parse(raw(contact={"clearance": {"distribution": "fixed", "value": "0.2 mm"}}), load("reference"))
     assert nested.vary["contact.clearance"].value == pytest.approx(2e-4)
 
 
 def test_every_fault_is_listed_at_once():
-    tables = {"payload.mass": {"distribution": "normal", "mean": "9.9 m", "sd": "-1 kg"}, "payload.weight": {"distribution": "fixed"},
-              "contact.clearance": {"distribution": "gauss"}, "friction.static": {"distribution": "uniform", "low": 0.3, "high": 0.2},
+    tables = {"payload.mass": {"distribution": "normal", "mean": "9.9 m", "sd": "-1 kg"},
+              "payload.weight": {"distribution": "fixed"}, "contact.clearance": {"distribution": "gauss"},
+              "friction.static": {"distribution": "uniform", "low": 0.3, "high": 0.2},
               "thrust.arm": {"distribution": "fixed", "value": 0.1}, "contact.law": {"distribution": "fixed", "value": 1.0}}
     with pytest.raises(SceneError) as refused:
         uncertainty.parse({"cases": 0, "sampling": "halton", "vary": tables}, load("reference"), "errors.toml")
     text = str(refused.value)
-    for words in ("errors.toml: cases", "sampling", "vary.payload.mass.mean", "vary.payload.mass.sd: given '-1 kg', expected greater than 0",
-                  "vary.payload.weight", "no such key", "vary.contact.clearance.distribution", "vary.friction.static.high",
+    for words in ("errors.toml: cases", "sampling", "vary.payload.mass.mean",
+                  "vary.payload.mass.sd: given '-1 kg', expected greater than 0", "vary.payload.weight", "no such key",
+                  "vary.contact.clearance.distribution", "vary.friction.static.high",
                   "vary.thrust.arm.value", "vary.contact.law", "a key that holds a number"):
         assert words in text, words
 

@@ -53,7 +53,8 @@ def test_absent_gravity_pulls_nothing():
 def test_line_of_action():
     """Misalignment from +X, clock angle from +Y to +Z; l_y = r sin, l_z = r cos; arms about the actual mass centre."""
     offset = {"misalignment": {"axial": "30 deg", "radial": "90 deg"}, "eccentricity": {"axial": "3 mm", "radial": "90 deg"}}
-    found = model.build(parse(small(thrust_offset=offset, mass_offset={"eccentricity": {"axial": "1 mm", "radial": "0 deg"}}))).thrust_offset
+    found = model.build(parse(small(thrust_offset=offset,
+                                    mass_offset={"eccentricity": {"axial": "1 mm", "radial": "0 deg"}}))).thrust_offset
     assert found.direction == pytest.approx((np.sqrt(0.75), 0.0, 0.5), abs=1e-15)
     assert found.arm == pytest.approx((-0.1, 3e-3, -1e-3), abs=1e-15)
 

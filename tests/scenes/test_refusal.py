@@ -76,7 +76,8 @@ def test_each_bad_field_alone(key):
     assert expected in fault.expected
 
 
-POSITIVE = ["payload__mass kg", "payload__inertia__xx kg*m**2", "rail__material__density kg/m**3", "rail__material__youngs_modulus Pa",
+POSITIVE = ["payload__mass kg", "payload__inertia__xx kg*m**2", "rail__material__density kg/m**3",
+            "rail__material__youngs_modulus Pa",
             "contact__stiffness N/m**1.5", "contact__penalty N/m**3", "thrust__width s", "friction__static_speed m/s", "duration s"]
 NOT_NEGATIVE = ["contact__clearance m", "contact__damping N*s/m", "friction__static dimensionless", "pads__0__relief m"]
 
@@ -141,14 +142,17 @@ def test_missing_tables(table):
 
 
 @pytest.mark.parametrize("change, key", [
-    ({"thrust__kind": "gauss"}, "thrust.kind"), ({"thrust__impulse": "1 N*s"}, "thrust"), ({"thrust__rescale": True}, "thrust.rescale"),
-    ({"rail__end": "-0.2 m"}, "rail.end"), ({"rail__thickness": "24 mm"}, "rail.thickness"), ({"rail__mount_width": "25 mm"}, "rail.mount_width"),
-    ({"rail__mounts": [{"start": "0 m", "end": "0.3 m"}]}, "rail.mounts"), ({"rail__mounts": [{"start": "2 m", "end": "1 m"}]}, "rail.mounts.0.end"),
-    ({"rail__mounts": "all"}, "rail.mounts"), ({"pads": [{"position": ["0 m"] * 4, "normals": ["+y"]}]}, "pads.0.position"),
+    ({"thrust__kind": "gauss"}, "thrust.kind"), ({"thrust__impulse": "1 N*s"}, "thrust"),
+    ({"thrust__rescale": True}, "thrust.rescale"), ({"rail__end": "-0.2 m"}, "rail.end"),
+    ({"rail__thickness": "24 mm"}, "rail.thickness"), ({"rail__mount_width": "25 mm"}, "rail.mount_width"),
+    ({"rail__mounts": [{"start": "0 m", "end": "0.3 m"}]}, "rail.mounts"),
+    ({"rail__mounts": [{"start": "2 m", "end": "1 m"}]}, "rail.mounts.0.end"), ({"rail__mounts": "all"}, "rail.mounts"),
+    ({"pads": [{"position": ["0 m"] * 4, "normals": ["+y"]}]}, "pads.0.position"),
     ({"pads": [{"position": ["0 m"] * 3, "normals": ["+y", "+y"]}]}, "pads.0.normals"),
-    ({"pads": [{"position": ["0 m"] * 3, "normals": ["+x"]}]}, "pads.0.normals.0"), ({"contact": CONTACT | {"law": "hertz"}}, "contact.law"),
-    ({"contact": CONTACT | {"exponent": 2.0}}, "contact.stiffness"), ({"contact": CONTACT | {"exponent": "x"}}, "contact.exponent"),
-    ({"friction": FRICTION | {"law": "sticky"}}, "friction.law"), ({"friction": STICKING | {"dynamic": 0.5}}, "friction.dynamic"),
+    ({"pads": [{"position": ["0 m"] * 3, "normals": ["+x"]}]}, "pads.0.normals.0"),
+    ({"contact": CONTACT | {"law": "hertz"}}, "contact.law"), ({"contact": CONTACT | {"exponent": 2.0}}, "contact.stiffness"),
+    ({"contact": CONTACT | {"exponent": "x"}}, "contact.exponent"), ({"friction": FRICTION | {"law": "sticky"}}, "friction.law"),
+    ({"friction": STICKING | {"dynamic": 0.5}}, "friction.dynamic"),
     ({"friction": STICKING | {"static_speed": "1 mm/s"}}, "friction.static_speed"),
     ({"friction": STICKING | {"stiffness": "1 N/mm**2"}}, "friction.stiffness"),
     ({"friction": STICKING | {"capture_speed": "0.1 nm/s"}}, "friction.capture_speed"),
@@ -165,8 +169,8 @@ def test_not_a_mapping():
     assert [fault.expected for fault in refused([1, 2])] == ["a table"]
 
 
-CONDITION_FAULTS = {"output.interval": 1e-4, "payload.mass": "1 m", "friction.static": 0.1, "thrust.pek": "1 N", "pads.7.relief": "1 um",
-                    "gravty": "absent"}
+CONDITION_FAULTS = {"output.interval": 1e-4, "payload.mass": "1 m", "friction.static": 0.1, "thrust.pek": "1 N",
+                    "pads.7.relief": "1 um", "gravty": "absent"}
 
 
 def test_conditions_are_checked_when_the_scene_is_read():
@@ -195,11 +199,13 @@ def test_faults_of_files_name_the_file_that_was_asked_for(tmp_path):
     child = write(tmp_path, "child.toml", 'extends = "base.toml"\n[payload]\nmass = "0 kg"\n')
     with pytest.raises(SceneError) as caught:
         load(child)
-    assert {(fault.source, fault.key) for fault in caught.value.faults} == {(str(child), "payload.mass"), (str(child), "contact.clearance")}
+    assert {(fault.source, fault.key) for fault in caught.value.faults} == {
+        (str(child), "payload.mass"), (str(child), "contact.clearance")}
 
 
 @pytest.mark.parametrize("text, key, given", [
-    ('extends = "nowhere"\n', "extends", "nowhere"), ("extends = 3\n", "extends", "3"), ('extends = "self.toml"\n', "extends", "self.toml"),
+    ('extends = "nowhere"\n', "extends", "nowhere"), ("extends = 3\n", "extends", "3"),
+    ('extends = "self.toml"\n', "extends", "self.toml"),
     ("payload = [\n", "file", "Invalid value"), ('extends = "broken.toml"\n', "extends", "broken.toml"),
 ])
 def test_files_that_cannot_be_read(tmp_path, text, key, given):
@@ -223,13 +229,13 @@ def test_unknown_names_and_paths(tmp_path):
 
 
 CURVES = {
-    "unsorted": ("time_s,force_N\n0,0\n2,5\n1,0\n", "increasing order"), "repeated": ("time_s,force_N\n0,0\n0,5\n", "increasing order"),
-    "one row": ("time_s,force_N\n0,0\n", "at least two rows"), "no rows": ("time_s,force_N\n", "at least two rows"),
-    "negative times": ("time_s,force_N\n-1,0\n1,5\n", "not negative"), "nan": ("time_s,force_N\n0,nan\n1,5\n", "finite"),
-    "nan time": ("time_s,force_N\n0,1\nnan,5\n2,1\n", "finite"), "text": ("time_s,force_N\n0,a\n1,5\n", "two numbers"),
-    "one column": ("time_s,force_N\n0\n1\n", "two numbers"), "three columns": ("time_s,force_N\n0,1,2\n1,5,2\n", "two numbers"),
-    "no header": ("0,1\n1,5\n", "header"), "empty": ("", "header"), "wrong units": ("time_ms,force_N\n0,1\n1,5\n", "header"),
-}
+    "unsorted": ("time_s,force_N\n0,0\n2,5\n1,0\n", "increasing order"),
+    "repeated": ("time_s,force_N\n0,0\n0,5\n", "increasing order"), "one row": ("time_s,force_N\n0,0\n", "at least two rows"),
+    "no rows": ("time_s,force_N\n", "at least two rows"), "negative times": ("time_s,force_N\n-1,0\n1,5\n", "not negative"),
+    "nan": ("time_s,force_N\n0,nan\n1,5\n", "finite"), "nan time": ("time_s,force_N\n0,1\nnan,5\n2,1\n", "finite"),
+    "text": ("time_s,force_N\n0,a\n1,5\n", "two numbers"), "one column": ("time_s,force_N\n0\n1\n", "two numbers"),
+    "three columns": ("time_s,force_N\n0,1,2\n1,5,2\n", "two numbers"), "no header": ("0,1\n1,5\n", "header"),
+    "empty": ("", "header"), "wrong units": ("time_ms,force_N\n0,1\n1,5\n", "header"), }
 
 
 @pytest.mark.parametrize("name", CURVES)

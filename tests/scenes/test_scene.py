@@ -45,7 +45,8 @@ def test_replace_reports_every_fault_and_changes_nothing():
     before = scene.hash
     with pytest.raises(SceneError) as caught:
         scene.replace({"contact.clearance": "-1 mm", "payload.mas": 3.0, "frictoin": None, "pads.4.relief": 0.0, "duration": "2 m"})
-    assert {fault.key for fault in caught.value.faults} == {"contact.clearance", "payload.mas", "frictoin", "pads.4.relief", "duration"}
+    assert {fault.key for fault in caught.value.faults} == {
+        "contact.clearance", "payload.mas", "frictoin", "pads.4.relief", "duration"}
     assert all(fault.source.startswith("override of") for fault in caught.value.faults)
     assert scene.hash == before
 
@@ -106,7 +107,8 @@ def test_every_physical_number_changes_the_hash():
     scene = load("reference").condition("h9").replace({"gravity.z": -9.81, "initial.position.y": 1e-5, "thermal.mean": 20.0})
     # As a number, because its unit in text belongs to one exponent.
     scene = scene.replace({"contact.stiffness": scene.contact.stiffness})
-    keys = [(key, value) for key, value in _numbers(scene.resolved()) if key.split(".")[0] not in ("conditions", "agreement", "flight")]
+    keys = [(key, value) for key, value in _numbers(scene.resolved())
+            if key.split(".")[0] not in ("conditions", "agreement", "flight")]
     assert len(keys) > 100
     hashes = {scene.replace({key: value * 1.0001 if value else 1e-6}).hash for key, value in keys}
     assert len(hashes | {scene.hash}) == len(keys) + 1
@@ -128,7 +130,8 @@ def test_a_scene_can_be_copied_to_a_worker():
 
 def test_nested_and_dotted_conditions_mean_the_same():
     """Without quotes TOML nests the keys; taken as a whole table they would silently reset the axial angle to zero."""
-    dotted = small(thrust_offset={"misalignment": {"axial": "0.1 deg"}}, conditions={"a": {"thrust_offset.misalignment.radial": "15 deg"}})
+    dotted = small(thrust_offset={"misalignment": {"axial": "0.1 deg"}},
+                   conditions={"a": {"thrust_offset.misalignment.radial": "15 deg"}})
     nested = copy.deepcopy(dotted) | {"conditions": {"a": {"thrust_offset": {"misalignment": {"radial": "15 deg"}}}}}
     assert parse(nested).condition("a").hash == parse(dotted).condition("a").hash
     assert parse(nested).condition("a").thrust_offset.misalignment.axial > 0.0

@@ -26,7 +26,8 @@ def random_trajectory(**parts) -> Trajectory:
                "pad_force": rng.normal(size=(n, 5, 3)), "time": np.sort(rng.uniform(size=n))}
     arrays["position"][0] = [-0.0, 5e-324, 1.7976931348623157e150]
     result = Outcome(0.1 + 0.2, 1 / 3, [1.0, -2e-17, 3.0], [0.1, 0.2, 0.3], 1e-9, 2e-9, [0.0, 1e-3, -1e-3])
-    given = dict(status="exited", outcome=result, checks={"energy_error": 1.2345678901234567e-7}, cost={"wall_s": 0.1, "steps": 10**12},
+    given = dict(status="exited", outcome=result, checks={"energy_error": 1.2345678901234567e-7},
+                 cost={"wall_s": 0.1, "steps": 10**12},
                  scene=load("tiny").resolved(), message='µm "quoted"\nand a second line', numerics={"step": None, "order": 2})
     return motion(**arrays | given | parts)
 
@@ -73,15 +74,15 @@ def test_no_nan_in_arrays(name, bad):
 
 @pytest.mark.parametrize("parts, place", [
     ({"checks": {"energy_error": float("nan")}}, "checks.energy_error"), ({"cost": {"dt_s": float("inf")}}, "cost.dt_s"),
-    ({"outcome": Outcome(rate=[0.0, float("nan"), 0.0])}, "outcome.rate.1"), ({"numerics": {"a": {"b": np.float64("nan")}}}, "numerics.a.b"),
-])
+    ({"outcome": Outcome(rate=[0.0, float("nan"), 0.0])}, "outcome.rate.1"),
+    ({"numerics": {"a": {"b": np.float64("nan")}}}, "numerics.a.b"), ])
 def test_no_nan_in_what_is_said_beside(parts, place):
     with pytest.raises(ValueError, match=f"^{place}: NaN"):
         random_trajectory(**parts)
 
 
-@pytest.mark.parametrize("name, shape", [("position", (7, 2)), ("quaternion", (7, 3)), ("rate", (6, 3)), ("energy", (7, 9)), ("time", (8,)),
-                                         ("pad_force", (7, 3))])
+@pytest.mark.parametrize("name, shape", [("position", (7, 2)), ("quaternion", (7, 3)), ("rate", (6, 3)),
+                                         ("energy", (7, 9)), ("time", (8,)), ("pad_force", (7, 3))])
 def test_arrays_that_do_not_fit(name, shape):
     with pytest.raises(ValueError, match="has shape"):
         random_trajectory(**{name: np.zeros(shape)})
@@ -100,7 +101,8 @@ def test_a_damaged_file_is_refused(tmp_path, damage):
     if damage == "foreign":
         random_trajectory().to_xarray().drop_vars("rate").to_netcdf(path, engine="h5netcdf")
     else:
-        path.write_bytes({"cut": whole[: len(whole) // 2], "text": b"hello", "empty": b"", "flipped header": b"\0" * 64 + whole[64:]}[damage])
+        path.write_bytes({"cut": whole[: len(whole) // 2], "text": b"hello", "empty": b"",
+                          "flipped header": b"\0" * 64 + whole[64:]}[damage])
     with pytest.raises(OSError, match="a.nc: not a whole trajectory file"):
         Trajectory.load(path)
 

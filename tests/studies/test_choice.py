@@ -23,14 +23,15 @@ def study(tmp_path):
                "status": "diverged" if name == "lost" else "exited"} for name, error, wall in POINTS]
     found = Study(scene, tmp_path / "tiny", Settings())
     found.folder.mkdir()
-    found.path("cost_study.json").write_text(json.dumps({"scene_hash": scene.hash, "condition": "phi15", "band_deg_s": 0.02, "points": points}))
+    found.path("cost_study.json").write_text(json.dumps(
+        {"scene_hash": scene.hash, "condition": "phi15", "band_deg_s": 0.02, "points": points}))
     return found
 
 
 @pytest.mark.parametrize("accuracy, budget, expected", [
     (1.0, None, "rigid"), (0.1, None, "compliant"), (0.03, None, "compliant fine"), (0.02, None, "compliant fine"),
-    (None, 0.003, "compliant"), (None, 0.0025, "rigid"), (None, 60.0, "compliant fine"), (0.1, 4.0, "compliant"), (0.86, 0.0025, None),
-    (0.01, None, None), (None, 0.0015, None)])
+    (None, 0.003, "compliant"), (None, 0.0025, "rigid"), (None, 60.0, "compliant fine"), (0.1, 4.0, "compliant"),
+    (0.86, 0.0025, None), (0.01, None, None), (None, 0.0015, None)])
 def test_cheapest_or_most_exact(study, accuracy, budget, expected):
     """An error below the band counts as the band: 0.004 deg/s cannot be told from 0.02. A model that diverged never counts."""
     if expected is None:
@@ -61,7 +62,8 @@ def test_cost_of_another_scene_is_none(study):
 
 
 @pytest.mark.parametrize("options, words", [
-    (["--accuracy", "0.1"], "deg/s"), (["--accuracy", "0.1 m"], "deg/s"), (["--budget", "2 mm"], "a quantity"), (["--budget", "-1 s"], "zero or more")])
+    (["--accuracy", "0.1"], "deg/s"), (["--accuracy", "0.1 m"], "deg/s"), (["--budget", "2 mm"], "a quantity"),
+    (["--budget", "-1 s"], "zero or more")])
 def test_bad_limits_are_refused(tmp_path, options, words):
     result = CliRunner().invoke(app, ["run", "--scene", "tiny", "--out", str(tmp_path), *options])
     assert result.exit_code == 2 and options[0] in result.stderr and words in result.stderr

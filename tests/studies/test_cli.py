@@ -15,8 +15,8 @@ from studies.cli import app
 from tests.studies.synthetic import flight
 
 ROOT = Path(__file__).resolve().parent.parent.parent
-STAGES = ("mesh", "highfi", "lowfi", "calibrate", "compare", "cost", "stability", "ablation", "convergence", "report", "view", "ensemble",
-          "blind", "sensitivity", "sweeps", "montecarlo", "limits", "flight", "droptest", "paper")
+STAGES = ("mesh", "highfi", "lowfi", "calibrate", "compare", "cost", "stability", "ablation", "convergence", "report",
+          "view", "ensemble", "blind", "sensitivity", "sweeps", "montecarlo", "limits", "flight", "droptest", "paper")
 
 
 def call(*arguments):
@@ -102,8 +102,8 @@ def test_run_prints_the_outcome_with_units(tmp_path, monkeypatch):
 
 def test_implausible_value_is_warned_about_and_still_runs(tmp_path, monkeypatch):
     _stub(monkeypatch)
-    result = call("run", "--scene", "tiny", "--condition", "phi15", "--fidelity", "highfi", "--set", "rail.material.density=2.8 kg/m**3",
-                  "--out", tmp_path)
+    result = call("run", "--scene", "tiny", "--condition", "phi15", "--fidelity", "highfi",
+                  "--set", "rail.material.density=2.8 kg/m**3", "--out", tmp_path)
     assert result.exit_code == 0
     assert "rail.material.density" in result.stderr
 
@@ -115,7 +115,8 @@ def test_catalogue_is_listed():
 
 
 def test_real_process_has_no_traceback_and_answers_help_at_once(tmp_path):
-    bad = subprocess.run([sys.executable, "-m", "studies.cli", "mesh", "--set", "payload.mass=nan kg", "--out", str(tmp_path / "out")],
+    bad = subprocess.run([sys.executable, "-m", "studies.cli", "mesh", "--set", "payload.mass=nan kg",
+                          "--out", str(tmp_path / "out")],
                          cwd=ROOT, capture_output=True, text=True, timeout=60)
     assert bad.returncode == 2
     assert "payload.mass" in bad.stderr and "Traceback" not in bad.stderr

@@ -152,7 +152,8 @@ def test_ripple_of_both_meshes_beside_that_of_a_single_point(study):
 
 
 def test_no_run_is_made_twice_and_none_again(study, asked):
-    """The run on the coarse mesh serves all four tables: it is one mesh, one step, one penalty, and eight points are its own rule."""
+    """The run on the coarse mesh serves all four tables: it is one mesh, one step, one penalty, and eight points are its own
+    rule."""
     convergence.run(study)
     assert sorted(asked) == sorted(["phi15" + tag for tag in (
         "", "-coarse", "-4mm", "-step-coarse", "-safety-0.225-coarse", "-penalty-0.25-coarse", "-penalty-coarse",

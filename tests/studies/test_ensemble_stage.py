@@ -61,7 +61,8 @@ def test_bad_rows_are_refused_alone(tmp_path):
     found = json.loads(call("--table", table, "--out", tmp_path / "out", "--json").stdout)
     assert found["counts"] == {"asked": 4, "ok": 2, "refused": 2, "failed": 0}
     assert [item["case"] for item in found["failures"]] == [1, 2]
-    assert "payload.mass" in found["failures"][0]["reason"] and found["failures"][1]["inputs"]["thrust_offset.misalignment.axial"] == "x"
+    assert ("payload.mass" in found["failures"][0]["reason"]
+            and found["failures"][1]["inputs"]["thrust_offset.misalignment.axial"] == "x")
     assert all(row["low"] is None for row in found["quantiles"]["rate_deg_s"]) and found["bounds"].startswith("none")
     table.write_text("payload.mass\nkg\n-1\n")
     hopeless = call("--table", table, "--out", tmp_path / "out")
@@ -69,9 +70,9 @@ def test_bad_rows_are_refused_alone(tmp_path):
 
 
 @pytest.mark.parametrize("arguments, words", [
-    (["--vary", "no_such_file"], "paper"), (["--table", "missing.csv"], "missing.csv"), (["--tolerance", "0.5"], "relative_tolerance"),
-    (["--table", "missing.csv", "--seed", "2"], "the table lists its cases"), (["--sampling", "latin-hypercube", "--cases", "10000000"], "at most"),
-    (["--set", "payload.mass=-1 kg"], "payload.mass")])
+    (["--vary", "no_such_file"], "paper"), (["--table", "missing.csv"], "missing.csv"),
+    (["--tolerance", "0.5"], "relative_tolerance"), (["--table", "missing.csv", "--seed", "2"], "the table lists its cases"),
+    (["--sampling", "latin-hypercube", "--cases", "10000000"], "at most"), (["--set", "payload.mass=-1 kg"], "payload.mass")])
 def test_bad_input_is_refused_and_nothing_written(tmp_path, arguments, words):
     result = call("--out", tmp_path / "out", *arguments)
     assert result.exit_code == 2

@@ -17,7 +17,8 @@ SLOW = {"flight.altitude": None, "flight.mean_motion": 1e-9, "flight.duration": 
 
 def start(velocity=(6.0, 0.0, 0.0), rate=(0.0, 0.0, 0.0), place=(0.2, 0.0, 0.0), turn=(0.0, 0.0, 0.0), platform_velocity=None):
     """One payload that leaves a platform at rest in attitude, pushed back by the momentum of the payload unless told otherwise."""
-    base = -np.array(velocity) * SCENE.payload.mass / SCENE.platform.mass if platform_velocity is None else np.array(platform_velocity)
+    base = (-np.array(velocity) * SCENE.payload.mass / SCENE.platform.mass if platform_velocity is None
+            else np.array(platform_velocity))
     row = (place, velocity, Rotation.from_rotvec(turn).as_matrix(), rate, (-0.1, 0.0, 0.0), base, np.eye(3), (0.0, 0.0, 0.0))
     return bodies.Start(*(np.array(part, dtype=float)[None] for part in row))
 
@@ -116,7 +117,8 @@ def test_no_instant_is_closer_than_the_least():
     """Of random exits from a body flush with its pads, 4,000 instants each; later there is none either."""
     rng = np.random.default_rng(7)
     scene, many = SCENE.replace({"flight.body": None}), 40
-    exits = start()._replace(velocity=np.array([6.0, 0.0, 0.0]) + 0.02 * rng.normal(size=(many, 3)), rate=0.1 * rng.normal(size=(many, 3)),
+    exits = start()._replace(velocity=np.array([6.0, 0.0, 0.0]) + 0.02 * rng.normal(size=(many, 3)),
+                             rate=0.1 * rng.normal(size=(many, 3)),
                              place=np.array([0.196, 0.0, 0.0]) + 1e-4 * rng.normal(size=(many, 3)))
     begin = bodies.Start(*(np.repeat(part, many, axis=0) if len(part) == 1 else part for part in exits))
     both = flown.pair(scene.flight.record(), bodies.bodies([scene] * many), begin)

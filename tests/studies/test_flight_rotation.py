@@ -88,7 +88,8 @@ def _cases():
     for name, moments in shapes.items():
         yield name, axes @ np.diag(moments) @ axes.T, rng.normal(size=3)
     for number, name in enumerate(("smallest", "middle", "largest")):
-        yield f"about the {name}", axes @ np.diag((0.5, 0.7, 1.1)) @ axes.T, axes[:, number] * -1.3 + (0.001 if name == "middle" else 0.0)
+        yield (f"about the {name}", axes @ np.diag((0.5, 0.7, 1.1)) @ axes.T,
+               axes[:, number] * -1.3 + (0.001 if name == "middle" else 0.0))
     yield "flat, turning over", axes @ np.diag((0.5, 0.5, 0.9)) @ axes.T, axes[:, 0]
 
 

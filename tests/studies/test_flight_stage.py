@@ -90,9 +90,11 @@ def test_what_is_to_be_doubted():
 
 
 @pytest.mark.parametrize("arguments, words", [
-    (["--set", "flight=absent"], '--set flight.altitude="500 km" --set flight.range="100 m"'), (["--range", "-5 m"], "flight.range"),
-    (["--range", "5 kg"], "flight.range"), (["--altitude", "absent"], "one of altitude and mean_motion"),
-    (["--set", "flight.mean_motion=1e-3 rad/s"], "one of altitude and mean_motion"), (["--set", "gravity.z=-9.81 m/s**2"], "fall freely"),
+    (["--set", "flight=absent"], '--set flight.altitude="500 km" --set flight.range="100 m"'),
+    (["--range", "-5 m"], "flight.range"), (["--range", "5 kg"], "flight.range"),
+    (["--altitude", "absent"], "one of altitude and mean_motion"),
+    (["--set", "flight.mean_motion=1e-3 rad/s"], "one of altitude and mean_motion"),
+    (["--set", "gravity.z=-9.81 m/s**2"], "fall freely"),
     (["--set", "flight.envelope.0.high.0=-2 m"], "a corner nowhere below low"), (["--vary", "nothing"], "paper")])
 def test_bad_input_is_refused_and_nothing_written(tmp_path, arguments, words):
     result = call("--out", tmp_path / "out", *arguments)

@@ -22,8 +22,8 @@ def touching(rate=None):
 
 
 def test_exponential_growth_is_recovered():
-    """s = s0 e^(l t): the horizon is ln(gate / s0) / l whatever lies between the samples, the exponent l times what the means over two
-    free flights of different length leave of it, exactly l between the two of the same length."""
+    """s = s0 e^(l t): the horizon is ln(gate / s0) / l whatever lies between the samples, the exponent l times what the means over
+    two free flights of different length leave of it, exactly l between the two of the same length."""
     found = growth("c", "m", touching(), [touching(lambda t: START * np.exp(RATE * t))], 1e-6, GATE)
     assert found.horizon_s == pytest.approx(np.log(GATE / np.degrees(START)) / RATE, rel=1e-5)
     assert [contact.start_s for contact in found.contacts] == pytest.approx([begin * 5e-5 for begin, _ in TOUCHES], abs=1e-4)
@@ -56,8 +56,8 @@ def test_one_hard_contact_is_sensitive_and_not_chaotic():
 
 
 def test_shifted_contact_is_no_horizon():
-    """A peak that the contact takes back is a contact that came late. Controls: one that stays passes the gate where it rose; one in
-    free flight counts at once."""
+    """A peak that the contact takes back is a contact that came late. Controls: one that stays passes the gate where it rose; one
+    in free flight counts at once."""
     time, contact = np.linspace(0.0, 0.03, 601), [(190, 260)]
     peak = (np.arange(601) >= 200) & (np.arange(601) < 255)
     assert horizon(time, np.where(peak, 1.0, 0.0), contact, GATE) is None

@@ -47,7 +47,8 @@ def test_inertia_of_a_cuboid():
     edges, mass = {"x": 0.4, "y": 0.2, "z": 0.1}, 6.0
     found = inputs.inertia({"mass": mass, **{f"radius_{axis}": edge / math.sqrt(12.0) for axis, edge in edges.items()},
                             "correlation_xy": 0.0, "correlation_xz": 0.1, "correlation_yz": 0.0})
-    assert found["xx"] == pytest.approx(mass * (0.2**2 + 0.1**2) / 12.0) and found["zz"] == pytest.approx(mass * (0.4**2 + 0.2**2) / 12.0)
+    assert (found["xx"] == pytest.approx(mass * (0.2**2 + 0.1**2) / 12.0)
+            and found["zz"] == pytest.approx(mass * (0.4**2 + 0.2**2) / 12.0))
     assert found["xy"] == 0.0 and found["xz"] == pytest.approx(-0.1 * mass * 0.4 * 0.1 / 12.0)
 
 
@@ -125,11 +126,12 @@ def test_stage_keeps_searches_and_is_skipped(tmp_path, monkeypatch):
 
 
 def test_scene_that_cannot_be_searched_lists_every_fault(tmp_path):
-    other = BASE.replace({"friction": None, "thrust.kind": "constant", "thrust.peak": None, "thrust.width": None, "thrust.centre": None,
-                          "thrust.force": "100 N", "thrust.duration": "10 ms", "thrust_offset": None})
+    other = BASE.replace({"friction": None, "thrust.kind": "constant", "thrust.peak": None, "thrust.width": None,
+                          "thrust.centre": None, "thrust.force": "100 N", "thrust.duration": "10 ms", "thrust_offset": None})
     with pytest.raises(SceneError) as refused:
         paper.run(Study(other, tmp_path, Settings()))
-    assert {fault.key for fault in refused.value.faults} == {"thrust.kind", "friction", "thrust_offset"} and not any(tmp_path.iterdir())
+    assert ({fault.key for fault in refused.value.faults} == {"thrust.kind", "friction", "thrust_offset"}
+            and not any(tmp_path.iterdir()))
 
 
 def test_catalogue_scene_gives_most_of_the_printed_rates():

@@ -19,12 +19,12 @@ from studies.stages.report import STAGES
 
 pytestmark = pytest.mark.timeout(1500)  # nearly all of it compiles kernels, side by side with other test files
 
-ROW = {"condition", "velocity_relative_l2", "rate_relative_l2", "iso18571", "settled_rate_error_deg_s", "settled_rate_error_xyz_deg_s",
-       "floor_deg_s", "floor_l2", "reference_uncertainty_deg_s"}
-RUN = {"condition", "status", "wall_s", "compile_s", "steps", "dt_s", "energy_error", "transverse_energy_error", "linear_momentum_error",
-       "angular_momentum_error", "settled", "trajectory"}
-SECTIONS = ("answer", "scene", "mesh", "compliance", "thrust", "figure6", "contact-forces", "energy", "stress", "calibration", "agreement", "growth-section", "speedup", "cost",
-            "stability", "ablation", "promises", "colophon")
+ROW = {"condition", "velocity_relative_l2", "rate_relative_l2", "iso18571", "settled_rate_error_deg_s",
+       "settled_rate_error_xyz_deg_s", "floor_deg_s", "floor_l2", "reference_uncertainty_deg_s"}
+RUN = {"condition", "status", "wall_s", "compile_s", "steps", "dt_s", "energy_error", "transverse_energy_error",
+       "linear_momentum_error", "angular_momentum_error", "settled", "trajectory"}
+SECTIONS = ("answer", "scene", "mesh", "compliance", "thrust", "figure6", "contact-forces", "energy", "stress", "calibration",
+            "agreement", "growth-section", "speedup", "cost", "stability", "ablation", "promises", "colophon")
 
 
 @pytest.fixture(scope="module")
@@ -120,8 +120,8 @@ def test_cost_has_three_meshes_and_three_tolerances(pipeline):
     assert points == result(pipeline[0], "cost_study")["points"]
     assert all({"model", "numerics", "error_deg_s", "wall_s", "pareto"} <= set(point) for point in points)
     counts = [sum(point["model"] == model for point in points)
-              for model in ("finite elements", "surrogate, uncalibrated", "surrogate, calibrated", "surrogate, stiffness along the rail",
-                            "surrogate, compliant walls", "surrogate, modal rail")]
+              for model in ("finite elements", "surrogate, uncalibrated", "surrogate, calibrated",
+                            "surrogate, stiffness along the rail", "surrogate, compliant walls", "surrogate, modal rail")]
     assert all(count >= 3 for count in counts)
     assert len(result(pipeline[0], "cost_study")["matched"]) == 5
     assert any(point["pareto"] for point in points)
@@ -164,17 +164,20 @@ def test_page_is_whole_and_self_contained(pipeline):
     assert page.count("Not made yet") == len(ANSWERS) and "BROKEN" not in page  # studies with targets of their own
     assert page.count("/*! For license information") <= 1 and 'src="http' not in page
     figures = {path.name for path in (pipeline[0] / "figures").glob("*.png")}
-    assert {"mesh.png", "compliance.png", "thrust.png", "figure6.png", "contact-forces.png", "energy-ledgers.png", "cost.png", "growth.png", "scaling.png"} <= figures
+    assert {"mesh.png", "compliance.png", "thrust.png", "figure6.png", "contact-forces.png", "energy-ledgers.png", "cost.png",
+            "growth.png", "scaling.png"} <= figures
 
 
 def test_blind_conditions_are_judged_beside_what_was_made(pipeline):
     """Two conditions drawn afterwards, on the calibration and the walls of the pipeline, which are not made again."""
     out = str(pipeline[0].parent)
     fitted = (pipeline[0] / "calibration.toml").stat().st_mtime_ns
-    found = CliRunner().invoke(app, ["blind", "--scene", "tiny", "--out", out, "--cases", "2", "--seed", "5"], catch_exceptions=False)
+    found = CliRunner().invoke(app, ["blind", "--scene", "tiny", "--out", out, "--cases", "2", "--seed", "5"],
+                               catch_exceptions=False)
     assert found.exit_code == 0 and "2 conditions drawn with seed 5" in found.stdout
     kept = result(pipeline[0], "blind")
-    assert [row["condition"] for row in kept["compliant"]] == ["blind1", "blind2"] == [row["condition"] for row in kept["calibrated"]]
+    assert ([row["condition"] for row in kept["compliant"]] == ["blind1", "blind2"]
+            == [row["condition"] for row in kept["calibrated"]])
     assert all(ROW <= set(row) and row["role"] == "held_out" for row in kept["compliant"])
     assert (pipeline[0] / "calibration.toml").stat().st_mtime_ns == fitted
     from studies.report import blind

@@ -16,11 +16,15 @@ from studies.settings import Settings
 from studies.study import Study
 
 SCENE = load("reference")
-FITTED = Calibration({}, [], [], [], [], [], [], np.zeros((0, 0)), [], {}, [], 0.0, valid={name: [value, value] for name, value in SCENE.loads.items()},
+FITTED = Calibration({}, [], [], [], [], [], [], np.zeros((0, 0)), [], {}, [], 0.0,
+                     valid={name: [value, value] for name, value in SCENE.loads.items()},
                      provenance={"geometry_hash": SCENE.geometry_hash})
-ROWS = [{"contact.clearance": 0.25e-3, "payload.mass": 9.9, "thrust.peak": 6000.0}, {"contact.clearance": 0.26e-3, "payload.mass": 9.9, "thrust.peak": 6000.0},
-        {"contact.clearance": 0.20e-3, "payload.mass": 9.9, "thrust.peak": 6000.0}, {"contact.clearance": 0.25e-3, "payload.mass": 8.0, "thrust.peak": 6000.0},
-        {"contact.clearance": 0.25e-3, "payload.mass": 9.9, "thrust.peak": 7000.0}, {"contact.clearance": 0.25e-3, "payload.mass": 9.9, "thrust.peak": 6200.0}]
+ROWS = [{"contact.clearance": 0.25e-3, "payload.mass": 9.9, "thrust.peak": 6000.0},
+        {"contact.clearance": 0.26e-3, "payload.mass": 9.9, "thrust.peak": 6000.0},
+        {"contact.clearance": 0.20e-3, "payload.mass": 9.9, "thrust.peak": 6000.0},
+        {"contact.clearance": 0.25e-3, "payload.mass": 8.0, "thrust.peak": 6000.0},
+        {"contact.clearance": 0.25e-3, "payload.mass": 9.9, "thrust.peak": 7000.0},
+        {"contact.clearance": 0.25e-3, "payload.mass": 9.9, "thrust.peak": 6200.0}]
 
 
 def columns_of(rows):
@@ -32,7 +36,8 @@ def test_cases_outside_a_calibration_are_those_it_says_are():
     assert found.tolist() == [bool(FITTED.outside(SCENE.replace(row))) for row in ROWS] == [False, False, True, True, True, False]
 
 
-@pytest.mark.parametrize("model, expected", [(Surrogate(SCENE, None, None), False), (Surrogate(SCENE.replace({"thrust.peak": "9 kN"}), FITTED, None), True)])
+@pytest.mark.parametrize("model, expected", [(Surrogate(SCENE, None, None), False),
+                                             (Surrogate(SCENE.replace({"thrust.peak": "9 kN"}), FITTED, None), True)])
 def test_offsets_do_not_decide_what_is_outside(model, expected):
     offsets = {"thrust_offset.misalignment.radial": np.linspace(0.0, 6.0, 7)}
     assert regime.outside(model, offsets, 7).tolist() == [expected] * 7
@@ -49,13 +54,15 @@ def test_calibration_without_ranges_judges_the_rail_alone():
 
 def test_cases_are_kept_and_not_run_again(tmp_path, monkeypatch):
     study = Study(SCENE, tmp_path, Settings(workers=1))
-    rows = [{"thrust_offset.misalignment.radial": angle} for angle in (0.3, 0.6)] + [{"thrust_offset.misalignment.radial": float("nan")}]
+    rows = ([{"thrust_offset.misalignment.radial": angle} for angle in (0.3, 0.6)]
+            + [{"thrust_offset.misalignment.radial": float("nan")}])
     found = population.run(study, "trial", Surrogate(SCENE, None, None), Listed(rows))
     alone = lowfi.run(SCENE.replace(rows[1]), numerics=Numerics(relative_tolerance=population.TOLERANCE)).outcome
     assert found.counts == {"asked": 3, "ok": 2, "refused": 1, "failed": 0} and found.settled.tolist() == [True, True, False]
     values = {item.name: item.of(found.results)[1] for item in answers.ALL}
     assert [values[f"rate_{axis}_deg_s"] for axis in "xyz"] == np.degrees(alone.rate).tolist()
-    assert values["lateral_velocity_mm_s"] == 1e3 * alone.lateral_velocity and values["direction_error_deg"] == np.degrees(alone.direction_error)
+    assert (values["lateral_velocity_mm_s"] == 1e3 * alone.lateral_velocity
+            and values["direction_error_deg"] == np.degrees(alone.direction_error))
     assert [values[f"attitude_{axis}_deg"] for axis in "xyz"] == np.degrees(alone.exit_attitude).tolist()
     monkeypatch.setattr("lowfi.fill.completed", lambda *_: pytest.fail("ran a stored case again"))
     again = population.run(study, "trial", Surrogate(SCENE, None, None), Listed(rows))

@@ -60,8 +60,8 @@ def document(predicted: list[dict]) -> dict:
     profile = {"value": [1.0, 2.0, 3.0], "drop": [-3.0, 0.0, -30.0]}
     chain = {"doubts": ["<short>"], "walkers": 8, "steps": 90, "accepted": 0.3, "autocorrelation_steps": [9.0, 11.0],
              "effective": 65.0, "evaluations": 720, "seed": 0}
-    return {"parameters": ["contact.force", "contact.damping_depth"], "units": ["N", "m"], "best": [2.0, 2.0], "logarithmic": [True, False],
-            "intervals": [[1.5, 2.5], None], "without": [[1.9, 2.1], None], "linear": [[1.8, 2.2]],
+    return {"parameters": ["contact.force", "contact.damping_depth"], "units": ["N", "m"], "best": [2.0, 2.0],
+            "logarithmic": [True, False], "intervals": [[1.5, 2.5], None], "without": [[1.9, 2.1], None], "linear": [[1.8, 2.2]],
             "spread": [0.05, 0.99],
             "notes": ["contact.damping_depth: its posterior is its prior"], "correlation": [[1.0, 0.1], [0.1, 1.0]],
             "profile": {"contact.force": profile, "contact.damping_depth": profile},

@@ -17,8 +17,8 @@ from tests.studies.synthetic import flight
 
 
 @pytest.mark.parametrize("value, unit, shown", [
-    (2.5e-4, "m", "250 µm"), (7.2e10, "Pa", "72 GPa"), (np.pi / 180, "rad", "1 deg"), (0.0, "m", "0 m"), (0.33, "dimensionless", "0.33"),
-    (9.9, "kg", "9.9 kg"), ((0.35, 0.2), "m", "350 mm, 200 mm")])
+    (2.5e-4, "m", "250 µm"), (7.2e10, "Pa", "72 GPa"), (np.pi / 180, "rad", "1 deg"), (0.0, "m", "0 m"),
+    (0.33, "dimensionless", "0.33"), (9.9, "kg", "9.9 kg"), ((0.35, 0.2), "m", "350 mm, 200 mm")])
 def test_values_are_shown_in_readable_units(value, unit, shown):
     assert inputs.readable(value, unit) == shown
 
@@ -54,8 +54,8 @@ def test_numbers():
 def test_chart_is_drawn_twice(tmp_path):
     x = np.linspace(0.0, 1.0, 5000)
     chart = Chart("twice", [Panel("left", "x", "y", [Line(x, x**2, "square")]),
-                            Panel("right", "x", "y", [Line([1.0, 10.0], [1e-3, 1e-2], "points", marker="o", labels=("a", "b"))], True,
-                                  (2e-3, "band"))], columns=2)
+                            Panel("right", "x", "y", [Line([1.0, 10.0], [1e-3, 1e-2], "points", marker="o", labels=("a", "b"))],
+                                  True, (2e-3, "band"))], columns=2)
     html = to_html(chart)
     assert 'id="chart-twice"' in html and "square" in html and len(html) < 60_000
     png, svg = to_files(chart, tmp_path)
@@ -67,8 +67,10 @@ def test_chart_is_drawn_twice(tmp_path):
 def test_page_of_a_reference_alone_names_the_targets_that_make_the_rest(tmp_path):
     scene = scenes.load("tiny")
     runs = {name: flight(lambda t: np.outer(np.sin(100.0 * t), [0.1, 0.2, 0.3])) for name in ("phi15", "phi60")}
-    rows = [row(name, run, f"highfi/{name}.nc") for name, run in runs.items() if run.cost.update(elements=1, ns_per_element_step=1.0) is None]
-    page = Page(scene, tmp_path, {"highfi": {"key": "k", "conditions": rows}}, Runs(runs, {}, {}), {"calibration": "phi15 diverged"}).render()
+    rows = [row(name, run, f"highfi/{name}.nc") for name, run in runs.items()
+            if run.cost.update(elements=1, ns_per_element_step=1.0) is None]
+    page = Page(scene, tmp_path, {"highfi": {"key": "k", "conditions": rows}}, Runs(runs, {}, {}),
+                {"calibration": "phi15 diverged"}).render()
     for target in ("mesh", "compare", "cost", "stability", "ablation"):
         assert f"make {target} SCENE=tiny" in page
     assert "phi15 diverged" in page
@@ -79,7 +81,8 @@ def test_page_of_a_reference_alone_names_the_targets_that_make_the_rest(tmp_path
 
 def test_broken_promise_is_called_broken():
     run = flight(checks={"linear_momentum_error": 1e-9, "angular_momentum_error": 1e-13, "friction_power_max": 0.0},
-                 cost={"wall_s": 1.0, "compile_s": 0.0, "steps": 1, "dt_s": 1e-6, "dt_limit_s": 2e-6, "elements": 1, "ns_per_element_step": 1.0})
+                 cost={"wall_s": 1.0, "compile_s": 0.0, "steps": 1, "dt_s": 1e-6, "dt_limit_s": 2e-6, "elements": 1,
+                       "ns_per_element_step": 1.0})
     found = {item.text: item for item in promises({"highfi": [row("phi15", run, "")], "lowfi": []}, {})}
     assert found["linear momentum of the free system, finite elements"].kept is False
     assert found["angular momentum, finite elements"].kept is True
@@ -105,8 +108,9 @@ def test_agreement_names_conditions_outside_the_calibration():
 
 def test_calibration_shows_intervals_and_what_is_not_told():
     document = {"parameters": ["contact.force", "contact.damping"], "values": [400.0, 0.0],
-                "intervals": [[350.0, 450.0], [None, None]], "units": ["N", "N*s/m"], "lower": [20.0, 0.0], "upper": [6720.0, 7000.0], "justification": ["a", "b"],
-                "weak_directions": [], "residuals": {}, "information": [[1.0, 0.0], [0.0, 0.0]], "constants": {}, "valid": {},
+                "intervals": [[350.0, 450.0], [None, None]], "units": ["N", "N*s/m"], "lower": [20.0, 0.0],
+                "upper": [6720.0, 7000.0], "justification": ["a", "b"], "weak_directions": [], "residuals": {},
+                "information": [[1.0, 0.0], [0.0, 0.0]], "constants": {}, "valid": {},
                 "provenance": {}, "conditions": ["phi15"], "objective": 1.0}
     shown = tables.calibration(document)
     assert ">350 to 450<" in shown and ">not told<" in shown and "Model error is not in them" in shown

@@ -24,7 +24,8 @@ def test_single_size_has_no_exponent():
     """A mesh from a file is the same whatever element size is asked for; nor does the page or its picture stumble over it."""
     points = [{"n": 500, "steps": 10, "time_s": time, "element_size_m": 1e-3, "repeats": 1} for time in (1.0, 1.1, 0.9)]
     law, finest = fitted("finite elements", points), fitted("finite elements", points[-2:])
-    assert law["run"] == law["step"] == {"exponent": None, "standard_error": None} and shares([500] * 3, [1.0, 1.1, 0.9]) == (None, None)
+    assert (law["run"] == law["step"] == {"exponent": None, "standard_error": None}
+            and shares([500] * 3, [1.0, 1.1, 0.9]) == (None, None))
     found = {"elements": law | {"finest": {"run": finest["run"], "step": finest["step"]}, "fixed_s": None, "element_s": None},
              "pads": [fitted(SPRINGS, points[:1])], "effects": effects(scenes.load("tiny"), ABLATION)}
     assert "one." in page.tables(found) and [len(panel.lines) for panel in page.picture(found).panels] == [2, 1, 2]
@@ -47,7 +48,8 @@ def test_steps_and_runs_have_laws_of_their_own():
 
 
 def test_what_is_the_same_on_any_mesh_is_told_from_the_elements():
-    """t = a + b n is recovered; control: the power law of the same points is off 1, the exponent of what the elements alone take."""
+    """t = a + b n is recovered; control: the power law of the same points is off 1, the exponent of what the elements alone
+    take."""
     times = [40e-6 + 9e-9 * size for size in SIZES]
     assert shares(SIZES, times) == pytest.approx((40e-6, 9e-9))
     assert power_law(SIZES, times)["exponent"] < 0.6
@@ -106,9 +108,11 @@ def test_prices_of_effects():
 
 def test_page_shows_exponents_with_their_errors():
     law = fitted(SPRINGS, [{"n": n, "steps": 10, "time_s": 1e-3 * n**0.5, "repeats": 1} for n in (1, 2, 4)])
-    meshes = fitted("finite elements", [{"n": n, "steps": 10, "time_s": 1e-3 * n, "element_size_m": 1e-3, "repeats": 3} for n in SIZES])
+    meshes = fitted("finite elements", [{"n": n, "steps": 10, "time_s": 1e-3 * n, "element_size_m": 1e-3, "repeats": 3}
+                                        for n in SIZES])
     finest = {"run": {"exponent": 1.3, "standard_error": None}, "step": {"exponent": 0.9, "standard_error": None}}
-    found = {"elements": meshes | {"finest": finest, "fixed_s": 4e-5, "element_s": 9e-9}, "pads": [law], "effects": effects(scenes.load("tiny"), ABLATION)}
+    found = {"elements": meshes | {"finest": finest, "fixed_s": 4e-5, "element_s": 9e-9}, "pads": [law],
+             "effects": effects(scenes.load("tiny"), ABLATION)}
     shown = page.tables(found)
     assert "0.50 ± 0.00" in shown and ">1.30<" in shown and "gravity alone" in shown
     assert [len(panel.lines) for panel in page.picture(found).panels] == [3, 2, 2]

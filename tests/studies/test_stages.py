@@ -43,8 +43,8 @@ def test_ablation_takes_every_effect_away_once():
     assert len(scene.replace(lines["no effect"]).absent_effects()) == len(EFFECTS) == 10
     assert "without friction" not in ablation.variants(scene.replace({"friction": None}))
     assert "without thermal" not in ablation.variants(scene.replace({"rail.material.expansion": None}))
-    # Every effect with code of its own is looked for in the compiled kernels of both models; sticking is a second law of friction, and
-    # the reference feels temperature before its kernels run.
+    # Every effect with code of its own is looked for in the compiled kernels of both models; sticking is a second law of friction,
+    # and the reference feels temperature before its kernels run.
     assert (set(lowfi_laws) - {"sticking", "walls"}) | {"mass_offset", "initial", "rail.damping"} == set(EFFECTS)
     assert set(highfi_laws) | {"mass_offset", "initial", "thermal", needs_walls} == set(EFFECTS)
 
@@ -74,10 +74,11 @@ def test_pareto_front():
 def test_matched_meshes():
     """An error that a loose tolerance hides by luck does not count, nor the time of one that spoils the model."""
     def point(model, setting, error, integration, wall):
-        return {"model": model, "setting": setting, "numerics": f"{setting:g}", "error_deg_s": error, "integration_error_deg_s": integration,
-                "wall_s": wall}
+        return {"model": model, "setting": setting, "numerics": f"{setting:g}", "error_deg_s": error,
+                "integration_error_deg_s": integration, "wall_s": wall}
 
-    meshes = [point(cost.FINITE_ELEMENTS, *rest) for rest in ((8.0, 0.07, None, 3.0), (4.0, 0.02, None, 6.0), (2.0, None, None, 40.0))]
+    meshes = [point(cost.FINITE_ELEMENTS, *rest)
+              for rest in ((8.0, 0.07, None, 3.0), (4.0, 0.02, None, 6.0), (2.0, None, None, 40.0))]
     lucky = [point("lucky", *rest) for rest in ((1e-2, 0.001, 0.04, 0.001), (1e-4, 0.031, 0.001, 0.002), (1e-8, 0.03, None, 0.004))]
     exact = [point("exact", *rest) for rest in ((1e-4, 0.011, 0.001, 0.002), (1e-8, 0.01, None, 0.004))]
     first, second = cost.matched([*meshes, *lucky, *exact])

@@ -69,8 +69,8 @@ def test_label_is_no_part_of_the_key(study):
     assert study.highfi("phi15", tag="-again").key == study.highfi("phi15").key
 
 
-@pytest.mark.parametrize("damage", [lambda path: path.write_bytes(b"no netCDF"), lambda path: path.write_bytes(path.read_bytes()[:2000]),
-                                    lambda path: path.write_bytes(b"")])
+@pytest.mark.parametrize("damage", [lambda path: path.write_bytes(b"no netCDF"),
+                                    lambda path: path.write_bytes(path.read_bytes()[:2000]), lambda path: path.write_bytes(b"")])
 def test_damaged_file_is_named_and_made_again(engine, study, capsys, damage):
     run = study.highfi("phi15")
     study.store.get(run)
