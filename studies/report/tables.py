@@ -81,14 +81,18 @@ def _free(rows: list[dict]) -> str:
 
 
 def _agreement_row(row: dict) -> tuple:
-    star = "" if row["floor_measured_here"] else "*"
-    mark = "" if row["reference_uncertainty_measured_here"] else "*"
+    floor_here, uncertainty_here = row["floor_measured_here"], row["reference_uncertainty_measured_here"]
     xyz = row["settled_rate_error_xyz_deg_s"]
-    return (row["condition"], row["role"].replace("_", " "), percent(row["rate_relative_l2"]), percent(row["floor_l2"]) + star,
+    return (row["condition"], row["role"].replace("_", " "), percent(row["rate_relative_l2"]), _starred(percent(row["floor_l2"]), floor_here),
             percent(row["velocity_relative_l2"]), number(row["settled_rate_error_deg_s"]),
-            "–" if xyz is None else ", ".join(f"{value:+.2g}" for value in xyz), number(row["floor_deg_s"]) + star,
-            number(row["reference_uncertainty_deg_s"]) + mark, f"{row['iso18571']:.3f}", percent(row["sprague_geers_magnitude"]),
+            "–" if xyz is None else ", ".join(f"{value:+.2g}" for value in xyz), _starred(number(row["floor_deg_s"]), floor_here),
+            _starred(number(row["reference_uncertainty_deg_s"]), uncertainty_here), f"{row['iso18571']:.3f}", percent(row["sprague_geers_magnitude"]),
             percent(row["sprague_geers_phase"]), row["verdict"])
+
+
+def _starred(shown: str, measured_here: bool) -> Html:
+    """A number, with a star where it was measured on other conditions."""
+    return Html(shown if measured_here else f"{shown}*")
 
 
 def _further(rows: list[dict]) -> Html:

@@ -51,6 +51,11 @@ def test_numbers():
     assert number(None) == "–"
 
 
+def test_a_star_leaves_powers_of_ten_as_they_are():
+    assert "10<sup>-9</sup>*</td>" in table(("a",), [(tables._starred(number(1e-9), False),)])
+    assert tables._starred(number(0.5), True) == "0.5"
+
+
 def test_chart_is_drawn_twice(tmp_path):
     x = np.linspace(0.0, 1.0, 5000)
     chart = Chart("twice", [Panel("left", "x", "y", [Line(x, x**2, "square")]),
