@@ -16,7 +16,7 @@ def add(app: typer.Typer) -> None:
 
 def paper(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = None,
           starts: Annotated[int, typer.Option("--starts", metavar="N", min=1, help="Independent searches for three conditions, "
-                                              "and as many for all five; each takes a minute or two.")] = 4,
+                                              "and as many for all five; each takes some minutes.")] = 3,
           workers: Workers = None, json_: Json = False) -> None:
     """What the inputs the paper does not print must have been, and its tables beside ours; writes paper.json and paper_like.toml.
 

@@ -78,15 +78,27 @@ def excess(rates: np.ndarray) -> np.ndarray:
     return np.maximum(np.abs(rates[[condition - 1 for condition in published.NEGLIGIBLE]]) - NEGLIGIBLE, 0.0)
 
 
+def deviations(rates: np.ndarray, changed: np.ndarray) -> np.ndarray:
+    """Errors (3,6,3) deg/s of the 54 deviations, of the rates (5,3) and what they change to (3,6,3)."""
+    nominal = rates[[condition - 1 for condition in published.SENSITIVE]]
+    return changed - nominal[:, None, :] - published.sensitivity().deviations()
+
+
 def rough(rates: np.ndarray, stress: float) -> float:
-    """The misfit for a search from afar."""
-    errors = np.append(nine(rates), stress * excess(rates)) / NEGLIGIBLE
-    return float((np.sqrt(1.0 + errors**2) - 1.0).sum())
+    """The misfit of the rates alone, of a point that may be far off."""
+    return _soft(nine(rates)) + stress * _soft(excess(rates))
+
+
+def whole(rates: np.ndarray, changed: np.ndarray, stress: float) -> float:
+    """The misfit of everything; nine rates count as much as 54 deviations."""
+    return rough(rates, stress) + nine(rates).size / changed.size * _soft(deviations(rates, changed))
+
+
+def _soft(errors: np.ndarray) -> float:
+    return float((np.sqrt(1.0 + (errors / NEGLIGIBLE) ** 2) - 1.0).sum())
 
 
 def residuals(rates: np.ndarray, changed: np.ndarray, stress: float) -> np.ndarray:
     """All weighted errors (69,): nine rates, six excesses, 54 deviations; ``changed`` as ``Launcher.changed`` gives it."""
-    nominal = rates[[condition - 1 for condition in published.SENSITIVE]]
-    deviations = changed - nominal[:, None, :] - published.sensitivity().deviations()
-    return np.concatenate([(nine(rates) / SCATTER).ravel(), (stress * excess(rates) / SCATTER).ravel(),
-                           (deviations / SCATTER).ravel()])
+    errors = (nine(rates), stress * excess(rates), deviations(rates, changed))
+    return np.concatenate([(each / SCATTER).ravel() for each in errors])

@@ -1,55 +1,57 @@
-"""Sets of inputs that give the printed rates: many independent searches, everything admissible on their way, and what they trade.
+"""Sets of inputs that give the printed rates: independent searches, everything admissible on their way, and what they trade.
 
-Rates are discontinuous in the inputs, since an impact more or less changes them by degrees per second, and smooth between. So a
-search
+Rates are smooth in the inputs until an impact more or less changes them by degrees per second. Inside such a basin there are few
+residuals for many inputs, so that Gauss and Newton bring them all to zero where it holds such a point; which basin does, only trying
+tells (basin hopping: Wales and Doye, J. Phys. Chem. A 101 (1997) 5111). A search
 
-1. draws points of the unit cube and follows the best of them with CMA-ES (Hansen) on the rough misfit of five runs, far and wide;
-2. goes down the basin it ended in by least squares, which there are few residuals for and many inputs;
-3. follows CMA-ES again from close by, since that basin has edges, and at last on the sum of squares of all 69 residuals of 23 runs.
+1. draws points of the unit cube, goes down from the best of them by least squares on the rates of five runs, and keeps a pool of ends;
+2. moves one of the pool at random, a little or far, some of its inputs or all, goes down from there, and puts the end in its place if
+   that is better;
+3. goes down from each of the pool once more, by all 69 residuals of 23 runs, and ends with the best.
 
-A search that ends badly is shown like one that ends well.
+Better is what has the smaller misfit of all 69: an end on the edge of its basin may give the nine rates, but not with a contact constant
+changed by some percent. A search that ends badly is shown like one that ends well.
 
-Nine rates and fifty-four small deviations cannot tell twenty inputs. What is kept is therefore a set: every point of a search at
-which no printed rate is missed by more than ``ADMISSIBLE``, thinned; an input is told as far as the set is narrower than its
-bounds.
+Nine rates and fifty-four small deviations cannot tell twenty inputs. What is kept is therefore a set: every end at which no printed
+rate is missed by more than ``ADMISSIBLE`` and no deviation by more than ``ROBUST``; an input is told as far as the set is narrower
+than its bounds.
 """
 
 from typing import Callable, NamedTuple
 
-import cma
 import numpy as np
 from scipy.optimize import least_squares
 
-from calibrate.information import jacobian
 from studies.inference import misfit
 from studies.inference.inputs import UNKNOWNS
 
 ADMISSIBLE = 0.1  # deg/s: a third of what the paper calls negligible
+ROBUST = 0.3  # deg/s, which it calls negligible
 
-_POPULATION = 60  # of CMA-ES: with 20, its default here, searches end in basins a third worse
-_FAR, _NEAR, _CLOSE = 0.25, 0.05, 0.005  # its first steps, of the bounds
+_MOVES = (0.01, 0.03, 0.06, 0.12)  # standard deviations of a hop, of the bounds
+_SOME = 0.25  # chance of an input to be among those that move, in every other hop
 _INSIDE = 1e-3  # of the bounds, for least squares cannot begin on one
-_FINE_COST = 5  # runs of a fine evaluation over those of a rough one
+_DIFFERENCE = 5e-4  # of the bounds: above the scatter of runs at the middle tolerance, below the size of a basin
+_LONG, _SHORT, _LAST = 25, 12, 25  # steps of a descent: of a point drawn, of a hop, of the end
+_WORK = {"point": 0.02, "descent": 2.0, "hop": 1.0, "end": 10.0}  # shares of the time, in hops
 
 
 class Plan(NamedTuple):
-    """Size of a search: ``points`` drawn; evaluations of CMA-ES far and wide, ``descents`` of least squares, evaluations of CMA-ES
-    ``near`` their end, all of 5 runs, and ``fine`` ones of 23; points ``kept``; tolerances of rough and fine runs (relative error
-    of a step)."""
+    """Size of a search: ``points`` drawn, ``descents`` from the best of them, ends in the ``pool``, ``hops``, points ``kept``;
+    relative error of a step where points are drawn, where a search goes down, and in what is told of its end."""
 
-    points: int = 400
-    rough: int = 20000
-    descents: int = 60
-    near: int = 12000
-    fine: int = 1200
+    points: int = 2000
+    descents: int = 24
+    pool: int = 6
+    hops: int = 250
     kept: int = 40
-    tolerances: tuple[float, float] = (1e-3, 1e-5)
+    tolerances: tuple[float, float, float] = (1e-3, 1e-4, 1e-5)
 
 
 class Search(NamedTuple):
-    """Where a search of one ``stress`` (the weight of the rates that should be negligible) and ``seed`` ended: shares (p,), rates
-    (5,3) and ``changed`` (3,6,3) deg/s there; the ``admissible`` points (n,p) it met; and the ``front`` (m,2) of what it traded,
-    deg/s: largest error of a printed rate, largest rate of conditions 1 and 5."""
+    """Where a search of one ``stress`` (the weight of the rates that should be negligible) and ``seed`` ended: shares (p,), rates (5,3)
+    and ``changed`` (3,6,3) deg/s there; the ``admissible`` points (n,p) it met; and the ``front`` (m,2) of what it traded, deg/s: largest
+    error of a printed rate, largest rate of conditions 1 and 5."""
 
     stress: float
     seed: int
@@ -60,69 +62,99 @@ class Search(NamedTuple):
     front: np.ndarray
 
 
-class _Seen:
-    """Points a search met, as (largest error of the nine, largest rate at 1 and 5, shares)."""
+class _End(NamedTuple):
+    """A point and its misfit."""
 
-    def __init__(self):
-        self.errors, self.sizes, self.shares = [], [], []
-
-    def add(self, shares: np.ndarray, rates: np.ndarray) -> None:
-        self.errors.append(float(np.abs(misfit.nine(rates)).max()))
-        self.sizes.append(largest_negligible(rates))
-        self.shares.append(shares)
-
-    def admissible(self, kept: int) -> np.ndarray:
-        found = np.array([point for error, point in zip(self.errors, self.shares)
-                          if error <= ADMISSIBLE]).reshape(-1, len(UNKNOWNS))
-        return found[np.linspace(0, len(found) - 1, min(kept, len(found))).round().astype(int)]
+    misfit: float
+    shares: np.ndarray
 
 
 def run(launcher_of: Callable[[float], misfit.Launcher], stress: float, seed: int, plan: Plan = Plan(),
         progress: Callable[[float], None] | None = None) -> Search:
-    """One search; the same seed gives the same bits. ``launcher_of`` makes the surrogate for a tolerance; ``progress`` takes 0 to
-    1."""
-    generator, seen, done = np.random.default_rng([seed, 7]), _Seen(), 0
-    coarse, fine = map(launcher_of, plan.tolerances)
-    whole = plan.points + plan.rough + plan.descents * (2 * len(UNKNOWNS) + 1) + plan.near + _FINE_COST * plan.fine
-
-    def seen_rates(launcher: misfit.Launcher, shares: np.ndarray, cost: int) -> np.ndarray:
-        nonlocal done
-        rates, done = launcher.rates(shares), done + cost
-        seen.add(shares, rates)
-        if progress:
-            progress(min(1.0, done / whole))
-        return rates
-
-    def rough(shares: np.ndarray) -> float:
-        return misfit.rough(seen_rates(coarse, shares, 1), stress)
-
-    def few(shares: np.ndarray) -> np.ndarray:
-        rates = seen_rates(coarse, shares, 1)
-        return np.append(misfit.nine(rates), stress * misfit.excess(rates)) / misfit.NEGLIGIBLE
-
-    def exact(shares: np.ndarray) -> float:
-        rates = seen_rates(fine, shares, _FINE_COST)
-        return float((misfit.residuals(rates, fine.changed(shares), stress) ** 2).sum())
-
+    """One search; the same seed gives the same bits. ``launcher_of`` makes the surrogate for a tolerance; ``progress`` takes 0 to 1."""
+    generator, walk = np.random.default_rng([seed, 7]), _Walk(*map(launcher_of, plan.tolerances), stress, plan, progress)
     points = generator.random((plan.points, len(UNKNOWNS)))
-    start = points[int(np.argmin([rough(point) for point in points]))]
-    far = _evolved(rough, start, _FAR, plan.rough, generator)
-    down = least_squares(few, np.clip(far, _INSIDE, 1.0 - _INSIDE), lambda x: jacobian(few, x), bounds=(0.0, 1.0), loss="soft_l1",
-                         max_nfev=plan.descents).x
-    near = _evolved(rough, down, _NEAR, plan.near, generator)
-    end = _evolved(exact, near, _CLOSE, plan.fine, generator)
-    return Search(stress, seed, end, fine.rates(end), fine.changed(end), seen.admissible(plan.kept), front(seen.errors, seen.sizes))
+    order = np.argsort([walk.first(point) for point in points], kind="stable")
+    pool = sorted((walk.end(points[number], _LONG, "descent") for number in order[:plan.descents]), key=lambda end: end.misfit)
+    pool = pool[:plan.pool]
+    for _ in range(plan.hops):
+        place = min(int(generator.exponential(1.5)), len(pool) - 1)  # better ones more often
+        moves = generator.choice(_MOVES) * generator.standard_normal(len(UNKNOWNS))
+        some = generator.random(len(UNKNOWNS)) < generator.choice([_SOME, 1.0])
+        end = walk.end(np.clip(pool[place].shares + moves * some, 0.0, 1.0), _SHORT, "hop")
+        if end.misfit < pool[place].misfit:
+            pool[place] = end
+            pool.sort(key=lambda item: item.misfit)
+    best = min((walk.last(end) for end in pool), key=lambda end: end.misfit).shares
+    fine = walk.fine
+    return Search(stress, seed, best, fine.rates(best), fine.changed(best), walk.admissible(plan.kept),
+                  front(walk.errors, walk.sizes))
 
 
-def _evolved(objective, start: np.ndarray, spread: float, evaluations: int, generator: np.random.Generator) -> np.ndarray:
-    """Best point CMA-ES meets from ``start``; it draws from ``generator`` only."""
-    strategy = cma.CMAEvolutionStrategy(start, spread, {
-        "bounds": [0.0, 1.0], "popsize": _POPULATION, "maxfevals": evaluations, "tolfun": 1e-4, "verbose": -9, "seed": np.nan,
-        "randn": lambda *shape: generator.standard_normal(shape)})
-    while not strategy.stop():
-        candidates = [np.asarray(point) for point in strategy.ask()]
-        strategy.tell(candidates, [objective(point) for point in candidates])
-    return np.asarray(strategy.result.xbest)
+class _Walk:
+    """The ways down, and what was met at their ends."""
+
+    def __init__(self, rough: misfit.Launcher, middle: misfit.Launcher, fine: misfit.Launcher, stress: float, plan: Plan, progress):
+        self.rough, self.middle, self.fine, self.stress, self._progress = rough, middle, fine, stress, progress
+        self.errors, self.sizes, self._met = [], [], []
+        self._done = 0.0
+        self._whole = sum(_WORK[kind] * count for kind, count in zip(_WORK, (plan.points, plan.descents, plan.hops, plan.pool)))
+
+    def first(self, shares: np.ndarray) -> float:
+        """Misfit of a point as it was drawn."""
+        self._book("point")
+        return misfit.rough(self.rough.rates(shares), self.stress)
+
+    def end(self, shares: np.ndarray, steps: int, kind: str) -> _End:
+        """Down by the rates alone."""
+        def few(point: np.ndarray) -> np.ndarray:
+            rates = self.middle.rates(point)
+            return np.append(misfit.nine(rates), self.stress * misfit.excess(rates)) / misfit.NEGLIGIBLE
+
+        found = self._judged(_down(few, shares, steps))
+        self._book(kind)
+        return found
+
+    def last(self, end: _End) -> _End:
+        """Down by all residuals, or ``end`` itself where that is no better."""
+        def every(point: np.ndarray) -> np.ndarray:
+            return misfit.residuals(self.middle.rates(point), self.middle.changed(point), self.stress)
+
+        found = self._judged(_down(every, end.shares, _LAST))
+        self._book("end")
+        return min(end, found, key=lambda item: item.misfit)
+
+    def admissible(self, kept: int) -> np.ndarray:
+        """At most so many (n,p) of the admissible points met, from the first to the last."""
+        found = np.array(self._met).reshape(-1, len(UNKNOWNS))
+        return found[np.linspace(0, len(found) - 1, min(kept, len(found))).round().astype(int)]
+
+    def _judged(self, shares: np.ndarray) -> _End:
+        rates, changed = self.middle.rates(shares), self.middle.changed(shares)
+        self.errors.append(float(np.abs(misfit.nine(rates)).max()))
+        self.sizes.append(largest_negligible(rates))
+        if self.errors[-1] <= ADMISSIBLE and largest_of_deviations(rates, changed) <= ROBUST:
+            self._met.append(shares)
+        return _End(misfit.whole(rates, changed, self.stress), shares)
+
+    def _book(self, kind: str) -> None:
+        self._done += _WORK[kind]
+        if self._progress:
+            self._progress(min(1.0, self._done / self._whole))
+
+
+def _down(residuals: Callable[[np.ndarray], np.ndarray], start: np.ndarray, steps: int) -> np.ndarray:
+    """Where least squares end after so many steps."""
+    def slopes(point: np.ndarray) -> np.ndarray:
+        here, columns = residuals(point), []
+        for i in range(point.size):
+            beside = point.copy()
+            beside[i] += _DIFFERENCE if point[i] + _DIFFERENCE <= 1.0 else -_DIFFERENCE
+            columns.append((residuals(beside) - here) / (beside[i] - point[i]))
+        return np.column_stack(columns)
+
+    return least_squares(residuals, np.clip(start, _INSIDE, 1.0 - _INSIDE), slopes, bounds=(0.0, 1.0), loss="soft_l1",
+                         max_nfev=steps).x
 
 
 def front(errors, sizes) -> np.ndarray:
@@ -137,6 +169,11 @@ def front(errors, sizes) -> np.ndarray:
 def largest_negligible(rates: np.ndarray) -> float:
     """Largest rate (deg/s) of conditions 1 and 5."""
     return float(np.abs(rates[[0, 4]]).max())
+
+
+def largest_of_deviations(rates: np.ndarray, changed: np.ndarray) -> float:
+    """Largest error (deg/s) of the 54 deviations."""
+    return float(np.abs(misfit.deviations(rates, changed)).max())
 
 
 def plain(found: Search) -> dict:

@@ -20,7 +20,8 @@ def draw(found: dict, figure: Callable[[Chart, str], Html]) -> Html:
              f"{len(found['inputs'])} inputs within physical bounds ask which would give the nine rates of its Table 2 and their "
              f"54 deviations, half of them also that no rate of conditions 1 and 5 exceeds {found['negligible_deg_s']:g} deg/s, "
              "where the paper speaks of negligible rates and prints none. The best misses a printed rate by at most "
-             f"{best['largest_error_deg_s']:.2g} deg/s; its largest rate on conditions 1 and 5 is "
+             f"{best['largest_error_deg_s']:.2g} deg/s and a deviation by {best['largest_deviation_error_deg_s']:.2g} deg/s; its "
+             "largest rate on conditions 1 and 5 is "
              f"{best['largest_negligible_deg_s']:.2g} deg/s. It is the catalogue's scene paper_like: inferred, one of many that "
              "would do.")
     return Html(paragraph(words) + figure(picture, _CAPTION) + paragraph(_verdict(found)) + _table2(best) + _inputs(found)
@@ -109,12 +110,15 @@ def _inputs(found: dict) -> Html:
              number(item["from"]), number(item["to"]), f"{100.0 * item['share']:.0f} %", item["reason"])
             for item in found["inputs"]]
     heads = ("input", "unit", "bound from", "to", "best", "admissible from", "to", "of the bounds", "why these bounds")
-    return table(heads, rows, dense=True)
+    return table(heads, rows, dense=True) + paragraph(
+        f"Admissible is what misses no printed rate by more than {found['admissible_deg_s']:g} deg/s and no deviation by more than "
+        f"{found['robust_deg_s']:g} deg/s.")
 
 
 def _searches(found: dict) -> Html:
     rows = [(f"{item['seed'] + 1}", "five" if item["stress"] else "three", number(item["largest_error_deg_s"]),
-             number(item["largest_negligible_deg_s"]), number(item["sum_of_squares"]), str(item["admissible"]))
+             number(item["largest_negligible_deg_s"]), number(item["largest_deviation_error_deg_s"]), number(item["sum_of_squares"]),
+             str(item["admissible"]))
             for item in found["searches"]]
     return table(("search", "conditions asked", "largest error of nine rates (deg/s)", "largest rate, conditions 1 and 5 (deg/s)",
-                  "sum of squares", "admissible points kept"), rows)
+                  "largest error of 54 deviations (deg/s)", "sum of squares", "admissible points kept"), rows)

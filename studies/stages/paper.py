@@ -30,7 +30,7 @@ _SEARCHED = ("scenes", "lowfi", "studies/inference", "studies/published")  # a s
 class Asked:
     """``starts`` searches for each stress, and the ``plan`` of each."""
 
-    starts: int = 4
+    starts: int = 3
     plan: solutions.Plan = solutions.Plan()
 
 
@@ -43,7 +43,8 @@ def run(study: Study, asked: Asked = Asked()) -> dict:
         best = min(found, key=lambda item: (_misses(item), misfit_of(item)))
         path = study.path(SCENE)
         write_text(path, toml.scene(study.scene, inputs.values(best.shares), best.rates))
-        result = {"asked": {"starts": asked.starts, "plan": _plain(asked.plan)}, "admissible_deg_s": solutions.ADMISSIBLE,
+        result = {"asked": {"starts": asked.starts, "plan": _plain(asked.plan)},
+                  "admissible_deg_s": solutions.ADMISSIBLE, "robust_deg_s": solutions.ROBUST,
                   "negligible_deg_s": misfit.NEGLIGIBLE, "scatter_deg_s": misfit.SCATTER.tolist(),
                   "searches": [_summary(item) for item in found], "best": found.index(best), "inputs": _told(found, best),
                   "front": solutions.front(*np.vstack([item.front for item in found]).T).tolist(), "slips": published.slips(),
@@ -107,7 +108,8 @@ def _misses(found: solutions.Search) -> bool:
 
 def _summary(found: solutions.Search) -> dict:
     return {"stress": found.stress, "seed": found.seed, "largest_error_deg_s": float(np.abs(misfit.nine(found.rates)).max()),
-            "largest_negligible_deg_s": solutions.largest_negligible(found.rates), "sum_of_squares": misfit_of(found),
+            "largest_negligible_deg_s": solutions.largest_negligible(found.rates),
+            "largest_deviation_error_deg_s": solutions.largest_of_deviations(found.rates, found.changed), "sum_of_squares": misfit_of(found),
             "rates_deg_s": found.rates.tolist(), "changed_deg_s": found.changed.tolist(), "values": inputs.values(found.shares),
             "admissible": len(found.admissible)}
 

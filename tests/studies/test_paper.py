@@ -19,7 +19,7 @@ from studies.study import Study
 
 BASE = scenes.load("reference")
 COUNT = len(inputs.UNKNOWNS)
-SMALL = paper.Asked(1, solutions.Plan(points=6, rough=60, descents=1, near=60, fine=60, kept=3))
+SMALL = paper.Asked(1, solutions.Plan(points=6, descents=1, pool=1, hops=1, kept=3))
 
 
 def test_deviations_are_those_of_the_printed_table():
@@ -84,7 +84,7 @@ def test_a_search_nears_the_rates_it_is_shown(monkeypatch, truth):
     """Printed rates of a known body: from afar the search ends far nearer than where it began."""
     _, rates, changed = truth
     monkeypatch.setattr(published, "sensitivity", lambda: published.Sensitivity(rates[1:4], changed))
-    plan = solutions.Plan(points=40, rough=300, descents=3, near=120, fine=60, kept=5)
+    plan = solutions.Plan(points=40, descents=3, pool=2, hops=4, kept=5)
     found = solutions.run(lambda tolerance: misfit.Launcher(BASE, tolerance), 0.0, 2, plan)
     generator = np.random.default_rng([2, 7])
     drawn = [misfit.rough(misfit.Launcher(BASE).rates(point), 0.0) for point in generator.random((plan.points, COUNT))]
