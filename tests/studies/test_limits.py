@@ -185,8 +185,9 @@ def test_constants_are_drawn_inside_their_intervals_and_untold_ones_stay():
 def test_the_model_s_error_is_the_largest_measured_on_held_out_conditions(tmp_path, monkeypatch):
     study = Study(load("reference"), tmp_path, Settings())
     assert constants.margin(study, False).deg_s is None and "make compare" in constants.margin(study, False).said
-    rows = [{"role": "held_out", "settled_rate_error_xyz_deg_s": errors} for errors in ([0.3, -0.4, 0.0], None, [-0.1, 0.1, 0.2])]
-    fitted = {"role": "fitted", "settled_rate_error_xyz_deg_s": [9.0, 9.0, 9.0]}
+    rows = [{"role": "held_out", "reference_converged": converged, "settled_rate_error_xyz_deg_s": errors} for converged, errors in
+            ((True, [0.3, -0.4, 0.0]), (True, None), (True, [-0.1, 0.1, 0.2]), (False, [8.0, 8.0, 8.0]))]
+    fitted = {"role": "fitted", "reference_converged": True, "settled_rate_error_xyz_deg_s": [9.0, 9.0, 9.0]}
     monkeypatch.setattr(constants.compare, "stored", lambda _: {"held_out": rows, "compliant": [fitted, *rows[2:]]})
     assert constants.margin(study, False).deg_s == pytest.approx({"x": 0.3, "y": 0.4, "z": 0.2, "total": 0.5})
     assert constants.margin(study, True).deg_s == pytest.approx({"x": 0.1, "y": 0.1, "z": 0.2, "total": 0.06**0.5})
