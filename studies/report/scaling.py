@@ -63,7 +63,7 @@ def exponent(law: dict) -> str:
     error = law["standard_error"]
     if law["exponent"] is None:
         return "–"
-    return f"{law['exponent']:.2f}" + ("" if error is None else f" ± {error:.2f}")
+    return f"{round(law['exponent'], 2) + 0.0:.2f}" + ("" if error is None else f" ± {error:.2f}")
 
 
 def _exponents(found: dict) -> Html:
