@@ -117,8 +117,8 @@ def _inputs(found: dict) -> Html:
 
 def _searches(found: dict) -> Html:
     rows = [(f"{item['seed'] + 1}", "five" if item["stress"] else "three", number(item["largest_error_deg_s"]),
-             number(item["largest_negligible_deg_s"]), number(item["largest_deviation_error_deg_s"]), number(item["sum_of_squares"]),
+             number(item["largest_negligible_deg_s"]), number(item["largest_deviation_error_deg_s"]), number(item["misfit"]),
              str(item["admissible"]))
             for item in found["searches"]]
     return table(("search", "conditions asked", "largest error of nine rates (deg/s)", "largest rate, conditions 1 and 5 (deg/s)",
-                  "largest error of 54 deviations (deg/s)", "sum of squares", "admissible points kept"), rows)
+                  "largest error of 54 deviations (deg/s)", "misfit", "admissible points kept"), rows)

@@ -40,7 +40,7 @@ def run(study: Study, asked: Asked = Asked()) -> dict:
 
     def make() -> tuple[dict, list[Path]]:
         found = _searches(study, asked)
-        best = min(found, key=lambda item: (_misses(item), misfit_of(item)))
+        best = min(found, key=misfit_of)
         path = study.path(SCENE)
         write_text(path, toml.scene(study.scene, inputs.values(best.shares), best.rates))
         result = {"asked": {"starts": asked.starts, "plan": _plain(asked.plan)},
@@ -98,18 +98,15 @@ def _searches(study: Study, asked: Asked) -> list[solutions.Search]:
 
 
 def misfit_of(found: solutions.Search) -> float:
-    """Sum of squares of all residuals with the rates of conditions 1 and 5 at full weight, whatever the search gave them."""
-    return float((misfit.residuals(found.rates, found.changed, 1.0) ** 2).sum())
-
-
-def _misses(found: solutions.Search) -> bool:
-    return bool(np.abs(misfit.nine(found.rates)).max() > solutions.ADMISSIBLE)
+    """Misfit with the rates of conditions 1 and 5 at full weight, whatever the search gave them."""
+    return misfit.whole(found.rates, found.changed, 1.0)
 
 
 def _summary(found: solutions.Search) -> dict:
     return {"stress": found.stress, "seed": found.seed, "largest_error_deg_s": float(np.abs(misfit.nine(found.rates)).max()),
             "largest_negligible_deg_s": solutions.largest_negligible(found.rates),
-            "largest_deviation_error_deg_s": solutions.largest_of_deviations(found.rates, found.changed), "sum_of_squares": misfit_of(found),
+            "largest_deviation_error_deg_s": solutions.largest_of_deviations(found.rates, found.changed),
+            "misfit": misfit_of(found),
             "rates_deg_s": found.rates.tolist(), "changed_deg_s": found.changed.tolist(), "values": inputs.values(found.shares),
             "admissible": len(found.admissible)}
 
