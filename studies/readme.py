@@ -98,7 +98,8 @@ def _growth(found: list[dict]) -> list[str]:
              if item["sensitive"] is not False]
     if stable:
         most = max(item["settled_growth_deg_s_um"] for item in stable)
-        lines.append(f"- {', '.join(item['condition'] for item in stable)}: stable to the end (up to {_number(most)} deg/s per µm)")
+        names = ", ".join(item["condition"] for item in stable)
+        lines.append(f"- {names}: stable to the end (up to {_number(most)} deg/s per µm)")
     return ["\n".join(["How 1 µm of clearance grows in the reference:", "", *lines])] if lines else []
 
 

@@ -1,16 +1,17 @@
 """Sets of inputs that give the printed rates: independent searches, everything admissible on their way, and what they trade.
 
 Rates are smooth in the inputs until an impact more or less changes them by degrees per second. Inside such a basin there are few
-residuals for many inputs, so that Gauss and Newton bring them all to zero where it holds such a point; which basin does, only trying
-tells (basin hopping: Wales and Doye, J. Phys. Chem. A 101 (1997) 5111). A search
+residuals for many inputs, so that Gauss and Newton bring them all to zero where it holds such a point; which basin does, only
+trying tells (basin hopping: Wales and Doye, J. Phys. Chem. A 101 (1997) 5111). A search
 
-1. draws points of the unit cube, goes down from the best of them by least squares on the rates of five runs, and keeps a pool of ends;
-2. moves one of the pool at random, a little or far, some of its inputs or all, goes down from there, and puts the end in its place if
-   that is better;
+1. draws points of the unit cube, goes down from the best of them by least squares on the rates of five runs, and keeps a pool of
+   ends;
+2. moves one of the pool at random, a little or far, some of its inputs or all, goes down from there, and puts the end in its place
+   if that is better;
 3. goes down from each of the pool once more, by all 69 residuals of 23 runs, and ends with the best.
 
-Better is what has the smaller misfit of all 69: an end on the edge of its basin may give the nine rates, but not with a contact constant
-changed by some percent. A search that ends badly is shown like one that ends well.
+Better is what has the smaller misfit of all 69: an end on the edge of its basin may give the nine rates, but not with a contact
+constant changed by some percent. A search that ends badly is shown like one that ends well.
 
 Nine rates and fifty-four small deviations cannot tell twenty inputs. What is kept is therefore a set: every end at which no printed
 rate is missed by more than ``ADMISSIBLE`` and no deviation by more than ``ROBUST``; an input is told as far as the set is narrower
@@ -49,9 +50,9 @@ class Plan(NamedTuple):
 
 
 class Search(NamedTuple):
-    """Where a search of one ``stress`` (the weight of the rates that should be negligible) and ``seed`` ended: shares (p,), rates (5,3)
-    and ``changed`` (3,6,3) deg/s there; the ``admissible`` points (n,p) it met; and the ``front`` (m,2) of what it traded, deg/s: largest
-    error of a printed rate, largest rate of conditions 1 and 5."""
+    """Where a search of one ``stress`` (the weight of the rates that should be negligible) and ``seed`` ended: shares (p,), rates
+    (5,3) and ``changed`` (3,6,3) deg/s there; the ``admissible`` points (n,p) it met; and the ``front`` (m,2) of what it traded,
+    deg/s: largest error of a printed rate, largest rate of conditions 1 and 5."""
 
     stress: float
     seed: int
@@ -71,7 +72,8 @@ class _End(NamedTuple):
 
 def run(launcher_of: Callable[[float], misfit.Launcher], stress: float, seed: int, plan: Plan = Plan(),
         progress: Callable[[float], None] | None = None) -> Search:
-    """One search; the same seed gives the same bits. ``launcher_of`` makes the surrogate for a tolerance; ``progress`` takes 0 to 1."""
+    """One search; the same seed gives the same bits. ``launcher_of`` makes the surrogate for a tolerance; ``progress`` takes 0 to
+    1."""
     generator, walk = np.random.default_rng([seed, 7]), _Walk(*map(launcher_of, plan.tolerances), stress, plan, progress)
     points = generator.random((plan.points, len(UNKNOWNS)))
     order = np.argsort([walk.first(point) for point in points], kind="stable")

@@ -55,8 +55,8 @@ class Margin(NamedTuple):
 
 
 def margin(study: Study, walls: bool) -> Margin:
-    """The largest errors on the conditions of ``make compare`` that nothing was fitted to and whose reference is converged: elsewhere
-    nobody knows whose error it is. Without any, those the fit itself leaves."""
+    """The largest errors on the conditions of ``make compare`` that nothing was fitted to and whose reference is converged:
+    elsewhere nobody knows whose error it is. Without any, those the fit itself leaves."""
     if study.scene.contact is None:
         return Margin(dict.fromkeys(("x", "y", "z", "total"), 0.0), "no contact, no error of a contact law")
     rows = [row for row in (compare.stored(study) or {}).get("compliant" if walls else "held_out", []) if row["role"] == "held_out"]
@@ -65,8 +65,8 @@ def margin(study: Study, walls: bool) -> Margin:
     if errors:
         found = {axis: max(abs(error[place]) for error in errors) for place, axis in enumerate("xyz")}
         found["total"] = max(sum(part**2 for part in error) ** 0.5 for error in errors)
-        return Margin(found, f"largest of {len(errors)} held-out conditions; {len(rows) - len(errors)} more have no converged reference, "
-                             "and errors there are not known")
+        return Margin(found, f"largest of {len(errors)} held-out conditions; {len(rows) - len(errors)} more have no converged "
+                             "reference, and errors there are not known")
     left = [row["settled_rate_error_deg_s"] for row in (read(study.path("calibration.json")) or {}).get("residuals", {}).values()]
     if walls or not left or None in left:
         return Margin(None, "not measured: make compare measures it")

@@ -83,10 +83,12 @@ def _free(rows: list[dict]) -> str:
 def _agreement_row(row: dict) -> tuple:
     floor_here, uncertainty_here = row["floor_measured_here"], row["reference_uncertainty_measured_here"]
     xyz = row["settled_rate_error_xyz_deg_s"]
-    return (row["condition"], row["role"].replace("_", " "), percent(row["rate_relative_l2"]), _starred(percent(row["floor_l2"]), floor_here),
+    return (row["condition"], row["role"].replace("_", " "), percent(row["rate_relative_l2"]),
+            _starred(percent(row["floor_l2"]), floor_here),
             percent(row["velocity_relative_l2"]), number(row["settled_rate_error_deg_s"]),
             "–" if xyz is None else ", ".join(f"{value:+.2g}" for value in xyz), _starred(number(row["floor_deg_s"]), floor_here),
-            _starred(number(row["reference_uncertainty_deg_s"]), uncertainty_here), f"{row['iso18571']:.3f}", percent(row["sprague_geers_magnitude"]),
+            _starred(number(row["reference_uncertainty_deg_s"]), uncertainty_here), f"{row['iso18571']:.3f}",
+            percent(row["sprague_geers_magnitude"]),
             percent(row["sprague_geers_phase"]), row["verdict"])
 
 
