@@ -14,8 +14,7 @@ Better is what has the smaller misfit of all 69: an end on the edge of its basin
 constant changed by some percent. A search that ends badly is shown like one that ends well.
 
 Nine rates and fifty-four small deviations cannot tell twenty inputs. What is kept is therefore a set: every end at which no printed
-rate is missed by more than ``ADMISSIBLE`` and no deviation by more than ``ROBUST``; an input is told as far as the set is narrower
-than its bounds.
+rate and no deviation is missed by more than ``ADMISSIBLE``; an input is told as far as the set is narrower than its bounds.
 """
 
 from typing import Callable, NamedTuple
@@ -26,8 +25,7 @@ from scipy.optimize import least_squares
 from studies.inference import misfit
 from studies.inference.inputs import UNKNOWNS
 
-ADMISSIBLE = 0.1  # deg/s: a third of what the paper calls negligible
-ROBUST = 0.3  # deg/s, which it calls negligible
+ADMISSIBLE = misfit.NEGLIGIBLE
 
 _MOVES = (0.01, 0.03, 0.06, 0.12)  # standard deviations of a hop, of the bounds
 _SOME = 0.25  # chance of an input to be among those that move, in every other hop
@@ -135,7 +133,7 @@ class _Walk:
         rates, changed = self.middle.rates(shares), self.middle.changed(shares)
         self.errors.append(float(np.abs(misfit.nine(rates)).max()))
         self.sizes.append(largest_negligible(rates))
-        if self.errors[-1] <= ADMISSIBLE and largest_of_deviations(rates, changed) <= ROBUST:
+        if max(self.errors[-1], largest_of_deviations(rates, changed)) <= ADMISSIBLE:
             self._met.append(shares)
         return _End(misfit.whole(rates, changed, self.stress), shares)
 

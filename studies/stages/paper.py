@@ -44,7 +44,7 @@ def run(study: Study, asked: Asked = Asked()) -> dict:
         path = study.path(SCENE)
         write_text(path, toml.scene(study.scene, inputs.values(best.shares), best.rates))
         result = {"asked": {"starts": asked.starts, "plan": _plain(asked.plan)},
-                  "admissible_deg_s": solutions.ADMISSIBLE, "robust_deg_s": solutions.ROBUST,
+                  "admissible_deg_s": solutions.ADMISSIBLE,
                   "negligible_deg_s": misfit.NEGLIGIBLE, "scatter_deg_s": misfit.SCATTER.tolist(),
                   "searches": [_summary(item) for item in found], "best": found.index(best), "inputs": _told(found, best),
                   "front": solutions.front(*np.vstack([item.front for item in found]).T).tolist(), "slips": published.slips(),
@@ -112,14 +112,16 @@ def _summary(found: solutions.Search) -> dict:
 
 
 def _told(found: list[solutions.Search], best: solutions.Search) -> list[dict]:
-    """Every input: bounds, best, range of the admissible set and its share of the bounds on the scale of the search."""
+    """Every input: bounds, best, range of the admissible set and its share of the bounds on the scale of the search; None where the
+    set is empty."""
     points = np.vstack([item.admissible for item in found])
     rows = []
     for number, item in enumerate(inputs.UNKNOWNS):
-        ends = [float(end) for end in np.quantile(points[:, number], (0.0, 1.0))] if len(points) else [0.0, 1.0]
+        ends = [float(end) for end in np.quantile(points[:, number], (0.0, 1.0))] if len(points) else None
         rows.append({"name": item.name, "unit": item.unit, "low": item.factor * item.low, "high": item.factor * item.high,
-                     "best": item.factor * item.value(best.shares[number]), "from": item.factor * item.value(ends[0]),
-                     "to": item.factor * item.value(ends[1]), "share": ends[1] - ends[0], "reason": item.reason})
+                     "best": item.factor * item.value(best.shares[number]),
+                     "from": ends and item.factor * item.value(ends[0]), "to": ends and item.factor * item.value(ends[1]),
+                     "share": ends and ends[1] - ends[0], "reason": item.reason})
     return rows
 
 
@@ -145,8 +147,10 @@ def _plain(plan: solutions.Plan) -> dict:
 def lines(found: dict) -> list[str]:
     """The result in words and units."""
     best = found["searches"][found["best"]]
-    said = [f"best of {len(found['searches'])} searches: a printed rate missed by {best['largest_error_deg_s']:.3g} deg/s at most; "
-            f"rates of conditions 1 and 5 up to {best['largest_negligible_deg_s']:.3g} deg/s"]
-    said += [f"  {item['name']:16}{item['best']:.4g} {item['unit']}, admissible {item['from']:.3g} to {item['to']:.3g} of "
-             f"{item['low']:.3g} to {item['high']:.3g}" for item in found["inputs"]]
+    said = [f"best of {len(found['searches'])} searches: a printed rate missed by {best['largest_error_deg_s']:.3g} deg/s at most, "
+            f"a deviation by {best['largest_deviation_error_deg_s']:.3g} deg/s; rates of conditions 1 and 5 up to "
+            f"{best['largest_negligible_deg_s']:.3g} deg/s"]
+    for item in found["inputs"]:
+        kept = "nothing admissible" if item["share"] is None else f"admissible {item['from']:.3g} to {item['to']:.3g}"
+        said.append(f"  {item['name']:16}{item['best']:.4g} {item['unit']}, {kept} of {item['low']:.3g} to {item['high']:.3g}")
     return [*said, *(f"  note          {words}" for words in found["slips"]), f"  scene         {found['scene_file']}"]

@@ -134,9 +134,9 @@ def test_scene_that_cannot_be_searched_lists_every_fault(tmp_path):
             and not any(tmp_path.iterdir()))
 
 
-def test_catalogue_scene_gives_most_of_the_printed_rates():
-    """The best set found so far: eight of nine rates within 0.4 deg/s of Table 2, all nine within what its description says, and
-    conditions 1 and 5 below 0.6 deg/s. Control: the reference scene, where nothing was inferred, is off by degrees per second."""
+def test_catalogue_scene_gives_the_printed_rates():
+    """The best set found so far: eight of nine rates within 0.2 deg/s of Table 2, all nine within what its description says, and
+    conditions 1 and 5 below 0.4 deg/s. Control: the reference scene, where nothing was inferred, is off by degrees per second."""
     def rates(scene):
         found = lowfi.run_many(scene, [scene.conditions[name] for name in ("phi0", "phi15", "phi35", "phi60", "phi90")],
                                numerics=Numerics(relative_tolerance=1e-5))
@@ -145,6 +145,6 @@ def test_catalogue_scene_gives_most_of_the_printed_rates():
     kept = scenes.load("paper_like")
     found = rates(kept)
     errors = np.sort(np.abs(misfit.nine(found)).ravel())
-    assert errors[7] < 0.4 and f"within {errors[8]:.2g} deg/s" in kept.description
-    assert solutions.largest_negligible(found) < 0.6 and kept.provenance["thrust.arm"] == "inferred"
+    assert errors[7] < 0.2 and f"within {errors[8]:.2g} deg/s" in kept.description
+    assert solutions.largest_negligible(found) < 0.4 and kept.provenance["thrust.arm"] == "inferred"
     assert np.abs(misfit.nine(rates(BASE))).max() > 3.0
