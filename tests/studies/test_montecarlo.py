@@ -37,7 +37,7 @@ def test_what_is_written_is_whole_and_not_made_again(study, found, monkeypatch):
     assert {f"figures/montecarlo-{name}.{kind}" for name in ("histograms", "convergence")
             for kind in ("png", "svg")} == set(found["files"])
     assert found["models"] is None and len(found["readings"]) == 7  # no walls and no clearance without contact
-    monkeypatch.setattr("studies.population.run", lambda *_: pytest.fail("made again"))
+    monkeypatch.setattr("studies.populations.population.run", lambda *_: pytest.fail("made again"))
     assert montecarlo.run(study, Asked(cases=1500, limits=("y=6 deg/s", "8 deg/s"))) == found == montecarlo.stored(study)
     assert json.loads(study.path("montecarlo.json").read_text()) == found
 
