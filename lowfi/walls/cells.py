@@ -4,9 +4,9 @@ With the lever (p_0, a, b) of the rigid face and the displacement U of its wall 
 
     p = p_0 + a xi + b eta - relief (xi^4 + eta^4) - sum_a U_a phi_a(xi', eta'),   pressure = penalty max(0, p)
 
-where the crown is its mean over the cell and xi' = xi + shift, eta' = eta + aside is the place on the wall, which is known for pads that
-stand midway between all rails: a clearance of 0.25 mm aside makes the leg of an L, fast along one edge only, three percent softer or
-stiffer. Of rows of cells that hang over an end of the rail only the part over the wall counts, their sums taken as piecewise linear
+where the crown is its mean over the cell and xi' = xi + shift, eta' = eta + aside is the place on the wall, which was found for pads
+that stand midway between all rails: 0.25 mm aside, the leg of an L, held along one edge only, is three percent softer or stiffer. Of
+rows of cells that hang over an end of the rail only the part over the wall counts, their sums taken as piecewise linear
 between the middles of the rows.
 """
 
