@@ -7,15 +7,15 @@ an error of unknown size s_q relative to the curve, and correlated in time (Kenn
 Its course is no question here, so it is reduced to its size and to how often a curve tells anew what it is. Curves of n samples
 count as
 
-    N_cq = min( n / (1 + 2 sum_k rho_q(k)), touches )
+    N_cq = min( n / tau_q, touches ),      tau_q = 1 + 2 sum_k rho_q(k dt)
 
     log p(y | theta, s) = - sum_q [ N_q log s_q + N_q S_q(theta) / (2 s_q^2) ]
 
 with N_q = sum_c N_cq and S_q = sum_c N_cq e_cq^2 / N_q from the relative mean squares e_cq^2 of what is left: the likelihood of
 independent samples, raised to the power at which its curvature is right (Ribatet, Cooley and Davison, Stat. Sinica 22, 2012, 813).
-rho_q is read off what the best constants leave, all conditions together, and held (``correlated``). It takes errors for alike at
-all times; but a pad touches for some milliseconds, and what is wrong with a free flight was decided before. So a curve never counts
-more often than pads touched in it, where that is known.
+tau_q is read off what the best constants leave, all conditions together, and held (``calibrate.correlation``). It takes errors for
+alike at all times; but a pad touches for some milliseconds, and what is wrong with a free flight was decided before. So a curve
+never counts more often than pads touched in it, where that is known.
 
 The sizes are integrated out over scaled inverse chi^2 priors of nu = 1, s_q^2 ~ s_0^2, s_0 the smallest error worth a thought::
 
@@ -29,6 +29,7 @@ from typing import NamedTuple, Sequence
 
 import numpy as np
 
+from calibrate.correlation import correlation_time
 from calibrate.objective import VELOCITY_WEIGHT, Parts
 
 QUANTITIES = ("velocity_x", "rate_x", "rate_y", "rate_z")
@@ -39,11 +40,11 @@ SMALLEST = np.array([1e-3 / VELOCITY_WEIGHT, 1e-3, 1e-3, 1e-3])
 
 class Error(NamedTuple):
     """Discrepancy of every quantity: ``counts`` (c,4) independent samples N_cq of each curve, ``samples`` (c,) of each as they are,
-    and ``correlation`` (4,), the samples that tell as much as one."""
+    and ``times`` (4,), the correlation time of each quantity in samples: so many tell as much as one."""
 
     counts: np.ndarray
     samples: np.ndarray
-    correlation: np.ndarray
+    times: np.ndarray
 
 
 def squares(parts: Sequence[Parts]) -> np.ndarray:
@@ -55,23 +56,9 @@ def error(parts: Sequence[Parts], touches: Sequence[int | None]) -> Error:
     """The discrepancy as read off what the best constants leave of c conditions, sampled at equal intervals, each with so many
     ``touches`` or an unknown number of them."""
     samples = np.array([part.velocity.size for part in parts])
-    correlation = np.array([correlated(list(curves)) for curves in zip(*map(_curves, parts))])
+    times = np.array([correlation_time(curves) for curves in zip(*map(_curves, parts))])
     most = np.array([np.inf if count is None else count for count in touches])
-    return Error(np.minimum(samples[:, None] / correlation, most[:, None]), samples, correlation)
-
-
-def correlated(curves: Sequence[np.ndarray]) -> float:
-    """1 + 2 sum rho_k of zero-mean curves (n_c,) together, summed up to the lag that makes most of it; 1 without any.
-
-    A sum up to the first rho_k below zero would take a slow error under a quick one, a rail that rings, for noise of the quick
-    one's kind: the curves would seem to tell the constants anew with every swing.
-    """
-    length = max(curve.size for curve in curves)
-    power = sum(np.abs(np.fft.rfft(curve, 2 * length)) ** 2 for curve in curves)
-    covariance = np.fft.irfft(power)[:length]
-    if covariance[0] <= 0.0:
-        return 1.0
-    return 1.0 + 2.0 * max(0.0, float(np.cumsum(covariance[1:] / covariance[0]).max(initial=0.0)))
+    return Error(np.minimum(samples[:, None] / times, most[:, None]), samples, times)
 
 
 def log_likelihood(found: np.ndarray, counts: np.ndarray, smallest: np.ndarray | float = SMALLEST) -> float | np.ndarray:

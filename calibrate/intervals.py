@@ -3,8 +3,8 @@
     s^2 = r'r / (n - p)        V = s^2 (J'J)^-1        half width  t(0.975; n - p) sqrt(V_ii)
 
 This is the linear theory of least squares (Seber and Wild, Nonlinear Regression, 1989, section 5.1). ``n`` counts independent
-residuals: a curve sampled twice as often is no second experiment. With the autocorrelation rho_k of its residuals a curve of n
-samples counts as n / (1 + 2 sum rho_k), summed up to the first rho_k that is not positive.
+residuals: a curve sampled twice as often is no second experiment. A curve of n samples counts as n / tau, tau the correlation time
+of its residuals in samples (``calibrate.correlation``).
 
 A direction the data leave open has no interval, and none is made up: parameters with a part in it get an infinite one. What the
 model cannot do is taken for scatter here. It shifts the constants, which no interval of this kind can know: model error is not in
@@ -15,6 +15,8 @@ from typing import Sequence
 
 import numpy as np
 import scipy  # its parts load when they are first used
+
+from calibrate.correlation import correlation_time
 
 LEVEL = 0.95
 ROUNDING = 1e-10  # of the largest eigenvalue: what differences leave where there is nothing
@@ -47,10 +49,4 @@ def half_widths(matrix: np.ndarray, squares: float, count: float, untold: Sequen
 
 def independent(curve: np.ndarray) -> float:
     """Number of independent residuals in those of one curve (n,), between 1 and n; 0 for a curve without any residual."""
-    power = np.abs(np.fft.rfft(curve, 2 * curve.size)) ** 2
-    covariance = np.fft.irfft(power)[:curve.size]
-    if covariance[0] <= 0.0:
-        return 0.0
-    rho = covariance[1:] / covariance[0]
-    until = int(np.argmax(rho <= 0.0)) if (rho <= 0.0).any() else rho.size
-    return curve.size / (1.0 + 2.0 * float(rho[:until].sum()))
+    return curve.size / correlation_time([curve]) if curve.any() else 0.0

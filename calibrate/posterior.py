@@ -8,6 +8,7 @@ as its prior has been told nothing, and gets no interval. The fit weighs quantit
 posterior by how wrong the surrogate is about each; so a calibrated value may lie outside its interval, which is then said.
 """
 
+from concurrent.futures import ThreadPoolExecutor
 from typing import Callable, NamedTuple
 
 import numpy as np
@@ -24,6 +25,7 @@ from calibrate.profile import profile
 from scenes.calibration import Calibration
 from scenes.scene import Scene
 from scenes.trajectory import Trajectory
+from scenes.walls import Walls
 
 INTERVAL = 5e-4  # s; a touch lasts milliseconds
 TOLERANCE = 1e-4  # moves settled rates by 1e-3 of what the surrogate misses
@@ -35,56 +37,74 @@ _CHAIN_SHARE = 0.85  # of the time, for progress
 
 
 class Effort(NamedTuple):
-    """Size of the chain, and of the profiles: ``points`` a parameter, ``evaluations`` a point; and draws that are ``kept`` for what
-    comes after: of 500 the ends of an interval are known to some per cent of its width."""
+    """Size of the chain, and of the profiles: ``points`` a parameter, evaluations ``per_point``; and how many draws are ``kept``
+    for what comes after: of 500 the ends of an interval are known to some per cent of its width."""
 
     sampling: chain.Plan = chain.Plan()
     points: int = 9
-    evaluations: int = 40
+    per_point: int = 40
     kept: int = 500
+
+    def evaluations(self, count: int) -> int:
+        """How many times all conditions are run for so many parameters, at most."""
+        return self.sampling.walkers * self.sampling.steps + count * self.points * self.per_point + self.kept
 
 
 def posterior(scene: Scene, references: dict[str, Trajectory | Curves], calibration: Calibration,
-              progress: Callable[[float], None] | None = None, seed: int = 0, effort: Effort | None = None) -> Posterior:
+              progress: Callable[[float], None] | None = None, seed: int = 0, effort: Effort | None = None,
+              walls: Walls | None = None, workers: int = 1) -> Posterior:
     """Draws around ``calibration``, found for ``references`` (condition name to reference run or curves) of ``scene``.
 
     Takes about two minutes for five conditions; ``progress`` is called with the fraction done, at least, and the same seed gives
-    the same bits. Raises CalibrationError for references nothing can be fitted to.
+    the same bits, however many ``workers`` run conditions side by side. A warm scene asks for its rigid ``walls`` (``lowfi.run``).
+    Raises CalibrationError for references nothing can be fitted to, SceneError for a warm scene without walls.
     """
     faults.check(scene, references)
-    report, effort = progress or (lambda fraction: None), effort or Effort()
     items = parameters.free(scene) + parameters.held(scene)
-    best = _best(scene, calibration, items)
     curves = {name: thinned(item if isinstance(item, Curves) else Curves.from_trajectory(item))
               for name, item in references.items()}
-    sampled = scene.replace({"output.interval": INTERVAL})
-    objective = Objective(sampled, targets(sampled, curves), items, lowfi.Numerics(relative_tolerance=TOLERANCE), run=motion.run)
-    left = list(objective.parts(best).values())
-    error = discrepancy.error(left, [item.touches for item in curves.values()])
+    sampled, numerics = scene.replace({"output.interval": INTERVAL}), lowfi.Numerics(relative_tolerance=TOLERANCE)
+    with ThreadPoolExecutor(workers) as pool:
+        objective = Objective(sampled, targets(sampled, curves), items, numerics, pool.map, motion.run, walls)
+        found = _entries(objective, _best(scene, calibration, items), [item.touches for item in curves.values()],
+                         progress or (lambda fraction: None), seed, effort or Effort())
+    return Posterior(**found, draws=_columns(scene, found["samples"]), conditions=list(curves))
+
+
+def _entries(objective: Objective, best: np.ndarray, touches: list[int | None], report: Callable[[float], None], seed: int,
+             effort: Effort) -> dict:
+    """Entries of the record but those that name scene and conditions, around the ``best`` shares (p,)."""
+    items, left = objective.parameters, list(objective.parts(best).values())
+    error = discrepancy.error(left, touches)
 
     def density(shares: np.ndarray) -> float:
-        found = discrepancy.squares(list(objective.parts(shares).values()))
-        return float(discrepancy.log_likelihood(found, error.counts))
+        squares = discrepancy.squares(list(objective.parts(shares).values()))
+        return float(discrepancy.log_likelihood(squares, error.counts))
 
     known = _known(objective, best, left, error)
-    start = _start(best, known, effort.sampling.walkers, seed)
-    drawn = chain.sample(density, start, effort.sampling, seed, lambda fraction: report(_CHAIN_SHARE * fraction))
-    shares, values = drawn.shares.reshape(-1, best.size), drawn.density.ravel()
-    profiles = {}
-    for index, item in enumerate(items):
-        profiles[item.name] = profile(density, shares, values, index, effort.points, effort.evaluations)
-        report(_CHAIN_SHARE + (0.97 - _CHAIN_SHARE) * (index + 1) / len(items))
+    drawn = chain.sample(density, _start(best, known, effort.sampling.walkers, seed), effort.sampling, seed,
+                         lambda fraction: report(_CHAIN_SHARE * fraction))
+    shares = drawn.shares.reshape(-1, best.size)
+    profiles = _profiles(density, items, shares, drawn.density.ravel(), effort, report)
     kept = shares[np.linspace(0, len(shares) - 1, min(effort.kept, len(shares))).round().astype(int)]
     settled = [settled_sizes([part.settled for part in objective.parts(each).values()]) for each in kept]
     report(1.0)
-    record = told(items, shares, best) | {
-        "without": _without(items, best, known, error), "conditions": list(curves),
-        "errors": _errors(left, error), "chain": _chain(drawn, seed, objective.evaluations),
-        "profile": {item.name: {"value": _values(item, grid), "drop": (found - np.max(found)).tolist()}
-                    for item, (grid, found) in zip(items, profiles.values())},
-        "draws": _columns(scene, items, kept), "samples": {item.name: _values(item, column) for item, column in zip(items, kept.T)},
-        "settled_size": np.array(settled).tolist(), "settled_freedom": len(curves) + discrepancy.FREEDOM}
-    return Posterior(**record)
+    return told(items, shares, best) | {
+        "without": _without(items, best, known, error), "errors": _errors(left, error),
+        "chain": _chain(drawn, seed, objective.evaluations), "profile": profiles,
+        "samples": {item.name: _values(item, column) for item, column in zip(items, kept.T)},
+        "settled_size": np.array(settled).tolist(), "settled_freedom": len(left) + discrepancy.FREEDOM}
+
+
+def _profiles(density: Callable[[np.ndarray], float], items: list[Parameter], shares: np.ndarray, values: np.ndarray,
+              effort: Effort, report: Callable[[float], None]) -> dict[str, dict]:
+    """By parameter, values and how far the log likelihood drops there, from draws (k,p) and their log densities (k,)."""
+    found = {}
+    for index, item in enumerate(items):
+        grid, largest = profile(density, shares, values, index, effort.points, effort.per_point)
+        found[item.name] = {"value": _values(item, grid), "drop": (largest - np.max(largest)).tolist()}
+        report(_CHAIN_SHARE + (0.97 - _CHAIN_SHARE) * (index + 1) / len(items))
+    return found
 
 
 def thinned(curves: Curves) -> Curves:
@@ -172,7 +192,7 @@ def _values(item: Parameter, shares) -> list[float]:
 
 def _errors(left: list[Parts], error: discrepancy.Error) -> dict:
     size = discrepancy.sizes(discrepancy.squares(left), error.counts)
-    return {name: {"relative_size": float(size[index]), "correlation_time_s": float(INTERVAL * error.correlation[index]),
+    return {name: {"relative_size": float(size[index]), "correlation_time_s": float(INTERVAL * error.times[index]),
                    "independent": float(error.counts[:, index].sum()), "samples": int(error.samples.sum())}
             for index, name in enumerate(discrepancy.QUANTITIES)}
 
@@ -183,7 +203,7 @@ def _chain(drawn: chain.Chain, seed: int, evaluations: int) -> dict:
             "evaluations": evaluations, "doubts": drawn.doubts}
 
 
-def _columns(scene: Scene, items: list[Parameter], kept: np.ndarray) -> dict[str, list[float]]:
-    """Dotted overrides of every draw, by key."""
-    rows = [parameters.overrides(scene, {item.name: item.value(float(share)) for item, share in zip(items, each)}) for each in kept]
+def _columns(scene: Scene, samples: dict[str, list[float]]) -> dict[str, list[float]]:
+    """Dotted overrides of every draw, by key, from its parameters by name."""
+    rows = [parameters.overrides(scene, dict(zip(samples, values))) for values in zip(*samples.values())]
     return {key: [row[key] for row in rows] for key in rows[0]}

@@ -15,22 +15,23 @@ from scenes.scene import Scene
 from scenes.trajectory import Trajectory
 from scenes.walls import Walls
 
-WORKERS = 2
+WORKERS = 2  # threads
 
 
 def run(scene: Scene, references: dict[str, Trajectory | Curves], numerics=None, progress: Callable[[float], None] | None = None,
-        seed: int = 0, plan: Plan | None = None, walls: Walls | None = None) -> Calibration:
+        seed: int = 0, plan: Plan | None = None, walls: Walls | None = None, workers: int = WORKERS) -> Calibration:
     """Fit the surrogate's contact constants to ``references`` (condition name to reference run or curves) of ``scene``.
 
     ``numerics`` are the surrogate's (lowfi.Numerics), ``progress`` is called with the fraction done, ``plan`` sizes the search; the
-    same seed gives the same bits. A warm scene asks for its rigid ``walls`` (``lowfi.run``). Raises CalibrationError for references
+    same seed gives the same bits, however many ``workers`` run conditions side by side. A warm scene asks for its rigid ``walls``
+    (``lowfi.run``). Raises CalibrationError for references
     that are missing, did not exit, are too short or do not turn, SceneError for an unknown condition.
     """
     faults.check(scene, references)
     curves = {name: item if isinstance(item, Curves) else Curves.from_trajectory(item) for name, item in references.items()}
     free, held, plan = parameters.free(scene), parameters.held(scene), plan or Plan()
     wanted = targets(scene, curves)
-    with ThreadPoolExecutor(WORKERS) as pool:
+    with ThreadPoolExecutor(workers) as pool:
         objective = Objective(scene, wanted, free, numerics, pool.map, walls=walls)
         found = search(objective, _shares(free, scene), plan, seed, progress)
         residuals = objective.parts(found.shares)

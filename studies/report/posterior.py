@@ -91,13 +91,11 @@ def _interval(ends: list[float] | None) -> str | Html:
 
 
 def _covered(found: dict) -> Html:
-    parts = [f"{item['total']} of {item['values']} settled rates of {role.replace('_', '-')} conditions lie inside their 95 % "
-             f"interval, {item['parameter']} inside that of the constants alone (independent values: {item['band'][0]} to "
-             f"{item['band'][1]})" + prediction.missed(item) for role, item in found.items() if item["values"]]
-    return Html(paragraph("; ".join(parts) + ".") + caption(
+    said = prediction.covered(found)
+    return Html(paragraph(f"{said[0].upper()}{said[1:]}.") + caption(
         "The three axes of a condition are not independent of each other, so the band is the narrowest there could be. Fitted "
         "conditions were seen by the constants and by the size of the discrepancy; held-out ones by neither. "
-        "Conditions in which no pad touches are not counted."))
+        "Conditions in which no pad touches are not counted, nor those whose reference is not converged."))
 
 
 def _predicted(rows: list[dict]):

@@ -6,6 +6,7 @@ that the other stages, which compare with the reference, do not replace it.
 
 import math
 from pathlib import Path
+from typing import Iterable
 
 import numpy as np
 
@@ -76,6 +77,7 @@ def from_files(study: Study, files: list[tuple[str, str]], settled_from: float |
         raise SceneError(faults)
 
     def make() -> tuple[dict, list[Path]]:
+        say(f"  {forecast.search(study, len(references))}")
         return _fitted(study, references, study.path(f"curves/{FILE}"))
 
     sources = {name: item.source for name, item in references.items()}
@@ -86,13 +88,14 @@ def _fitted(study: Study, references: dict, path: Path) -> tuple[dict, list[Path
     import calibrate
 
     with Board("calibrate", 1) as board:
-        found = calibrate.run(study.scene, references, progress=board.callback("calibrate"), walls=_walls(study, references))
+        found = calibrate.run(study.scene, references, progress=board.callback("calibrate"), walls=rigid_walls(study, references),
+                              workers=study.settings.workers)
         board.finished("calibrate", f"objective {found.objective:.4g}")
     found.save(path)
     return as_dict(found) | {"calibration": study.relative(path)}, [path]
 
 
-def _walls(study: Study, names) -> Walls | None:
+def rigid_walls(study: Study, names: Iterable[str]) -> Walls | None:
     """Rigid walls for the conditions of these ``names``, if any of them is warm: they share a rail."""
     return next(filter(None, (walls.of_law(study, study.condition(name)) for name in names)), None)
 

@@ -2,11 +2,14 @@
 of every condition, fitted or held out."""
 
 import importlib.util
-from pathlib import Path
 
-from studies.agreement import prediction
+from scenes.calibration import Calibration
+from studies.agreement import prediction, verdicts
+from studies.agreement.verdicts import Context
+from studies.cost import forecast
 from studies.progress import Board, say
-from studies.stages import calibrate
+from studies.stages import calibrate as calibration_stage
+from studies.stages import compare
 from studies.store import SOURCES
 from studies.study import Study, StudyError, read, require_success
 
@@ -17,30 +20,35 @@ def run(study: Study) -> dict:
     """The posterior as plain values, ``predicted`` rows by condition and ``coverage`` by role. Raises StudyError without emcee."""
     if importlib.util.find_spec("emcee") is None:
         raise StudyError("the posterior is drawn with emcee, which is not installed: pip install 'tipoff[studies]'")
-    fitted, calibration, roles = study.fitted(), calibrate.load(study), _roles(study)
-    asked = {name: study.highfi(name) for name in roles}
-
-    def make() -> tuple[dict, list[Path]]:
-        import calibrate as fits
-
-        references = dict(zip(asked, study.store.fill("highfi", list(asked.values()))))
-        require_success(references, "draw a posterior")
-        with Board(NAME, 2) as board:
-            known = {name: references[name] for name in fitted}
-            found = fits.posterior(study.scene, known, calibration, board.callback("constants"))
-            board.finished("constants", _drawn(found.chain))
-            scenes = {name: study.condition(name) for name in asked}
-            rates = prediction.rates(found, scenes, study.settings.workers, board.callback("rates"))
-            rows = [prediction.row(name, roles[name], found, drawn, reference.outcome.rate, bool(reference.pad_force.any()))
-                    for (name, drawn), reference in zip(rates.items(), references.values())]
-            covered = {role: prediction.coverage([row for row in rows if row["role"] == role]) for role in ("fitted", "held_out")}
-            board.finished("rates", _covered(covered))
-        return found.as_dict() | {"linear": calibrate.as_dict(calibration)["intervals"], "predicted": rows, "coverage": covered}, []
-
-    document = study.stage(NAME, _key(study, calibration.constants), make)
+    calibration = calibration_stage.load(study)
+    document = study.stage(NAME, _key(study, calibration.constants), lambda: (_made(study, calibration), []))
     for doubt in document["chain"]["doubts"]:
         say(f"  not converged: {doubt}")
     return document
+
+
+def _made(study: Study, calibration: Calibration) -> dict:
+    import calibrate
+
+    roles, workers = _roles(study), study.settings.workers
+    asked = {name: study.highfi(name) for name in roles}
+    say(f"  {forecast.posterior(study, list(asked.values()), len(study.fitted()))}")
+    references = dict(zip(asked, study.store.fill("highfi", list(asked.values()))))
+    require_success(references, "draw a posterior")
+    rigid = calibration_stage.rigid_walls(study, asked)
+    sure = Context([], compare.refinements(study), verdicts.gates(study.scene))
+    with Board(NAME, 2) as board:
+        known = {name: references[name] for name in study.fitted()}
+        found = calibrate.posterior(study.scene, known, calibration, board.callback("constants"), walls=rigid, workers=workers)
+        board.finished("constants", _drawn(found.chain))
+        scenes = {name: study.condition(name) for name in asked}
+        rates = prediction.rates(found, scenes, workers, board.callback("rates"), rigid)
+        rows = [prediction.row(name, roles[name], found, drawn, references[name].outcome.rate,
+                               bool(references[name].pad_force.any()), sure.converged(name)) for name, drawn in rates.items()]
+        covered = {role: prediction.coverage([row for row in rows if row["role"] == role]) for role in ("fitted", "held_out")}
+        board.finished("rates", prediction.covered(covered))
+    linear = calibration_stage.as_dict(calibration)["intervals"]
+    return found.as_dict() | {"linear": linear, "predicted": rows, "coverage": covered}
 
 
 def stored(study: Study) -> dict | None:
@@ -65,7 +73,8 @@ def lines(document: dict) -> list[str]:
     said = [f"  {name:22}{best:.4g}{'' if unit == '1' else f' {unit}'}, 95 % {_interval(ends)} (noise alone: {_interval(narrow)})"
             for name, best, unit, ends, narrow in columns]
     return [f"posterior of {document['scene']}: {_drawn(document['chain'])}", *said, *(f"  {words}" for words in document["notes"]),
-            *(f"  not converged: {words}" for words in document["chain"]["doubts"]), f"  {_covered(document['coverage'])}"]
+            *(f"  not converged: {words}" for words in document["chain"]["doubts"]),
+            f"  {prediction.covered(document['coverage'])}"]
 
 
 def _interval(ends: list[float] | None) -> str:
@@ -74,10 +83,3 @@ def _interval(ends: list[float] | None) -> str:
 
 def _drawn(chain: dict) -> str:
     return f"{chain['effective']:.0f} independent draws in {chain['steps']} steps of {chain['walkers']} walkers"
-
-
-def _covered(found: dict) -> str:
-    return "; ".join(f"{item['total']} of {item['values']} {role.replace('_', '-')} settled rates inside their 95 % interval, "
-                     f"{item['parameter']} inside that of the constants alone (95 % band {item['band'][0]} to {item['band'][1]})"
-                     + prediction.missed(item)
-                     for role, item in found.items() if item["values"])

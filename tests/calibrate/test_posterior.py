@@ -10,11 +10,14 @@ from scipy.stats import t
 import calibrate
 import lowfi
 from calibrate import Curves, Posterior, chain, discrepancy, motion, parameters
+from calibrate.correlation import correlation_time
 from calibrate.intervals import independent
 from calibrate.objective import Parts
 from calibrate.posterior import INTERVAL, Effort, settled_sizes, thinned, told as told_of
 from calibrate.profile import profile
+from scenes import SceneError
 from tests.calibrate.support import CONDITIONS, TRUTH, correlated, own_curves, scene
+from tests.lowfi.test_bow import MEAN, standing_away
 
 SMALLEST = 1e-3
 SLOPES = 0.1 * np.column_stack([np.ones(60), np.linspace(-1.0, 1.0, 60) ** 2])  # 60 samples, two parameters that act much alike
@@ -85,7 +88,7 @@ def hits(count: int):
     for _ in range(count):
         noise = correlated(generator, 400, 0.8)
         squares = (noise.var() + (noise.mean() - grid) ** 2)[:, None, None]
-        one = discrepancy.correlated([noise - noise.mean()])
+        one = correlation_time([noise - noise.mean()])
         held = []
         for samples in (400.0 / one, 400.0):
             weight = np.exp((log := discrepancy.log_likelihood(squares, np.array([[samples]]), SMALLEST)) - log.max())
@@ -103,15 +106,22 @@ def test_intervals_hold_the_truth_beside_a_model_that_is_wrong():
     assert without < 240, without
 
 
+def to_first_negative(curve: np.ndarray) -> float:
+    """1 + 2 sum rho_k up to the first rho_k that is not positive: the weaker rule."""
+    rho = np.array([curve[:-lag] @ curve[lag:] for lag in range(1, curve.size)]) / (curve @ curve)
+    return 1.0 + 2.0 * rho[:np.argmax(rho <= 0.0)].sum()
+
+
 def test_correlated_samples_of_several_curves_count_together():
     """(1 + rho)/(1 - rho), and no less; beyond, sums over many lags scatter by some 10 % of it. A slow error under one that swings
-    is not taken for noise. Control: up to the first negative lag every sample would count."""
+    is not taken for noise, neither here nor in linear intervals. Control: up to the first negative lag every sample would count."""
     generator = np.random.default_rng(2)
     curves = [correlated(generator, 300, 0.8) for _ in range(60)]
-    assert 9.0 <= discrepancy.correlated(curves) < 9.0 * 1.3
-    assert discrepancy.correlated([np.zeros(10)]) == 1.0
+    assert 9.0 <= correlation_time(curves) < 9.0 * 1.3
+    assert correlation_time([np.zeros(10)]) == 1.0
     swinging = [curve + 1.5 * (-1.0) ** np.arange(300) for curve in curves]
-    assert discrepancy.correlated(swinging) > 3.0 and independent(swinging[0]) > 250.0
+    assert correlation_time(swinging) > 3.0 and to_first_negative(swinging[0]) == 1.0
+    assert independent(swinging[0]) == 300.0 / correlation_time(swinging[:1]) < 150.0
 
 
 def test_a_curve_counts_no_more_often_than_pads_touched():
@@ -174,12 +184,32 @@ def test_a_reduced_run_is_the_run_and_curves_are_read_where_it_has_samples():
     assert np.abs(aside - exact).max() > 1e-2 * amplitude
 
 
+def calibrated() -> SimpleNamespace:
+    """What a posterior reads of a calibration that found the truth."""
+    free = parameters.free(scene())
+    return SimpleNamespace(parameters=[item.name for item in free], values=[item.read(scene().replace(TRUTH)) for item in free])
+
+
 @pytest.fixture(scope="module")
 def drawn() -> Posterior:
     """The surrogate's own curves: a model that is right, and a chain that is far too short."""
-    free = parameters.free(scene())
-    known = SimpleNamespace(parameters=[item.name for item in free], values=[item.read(scene().replace(TRUTH)) for item in free])
-    return calibrate.posterior(scene(), own_curves(), known, effort=Effort(chain.Plan(12, 50, 50), 3, 4, 200))
+    return calibrate.posterior(scene(), own_curves(), calibrated(), effort=Effort(chain.Plan(12, 50, 50), 3, 4, 200))
+
+
+def test_a_warm_scene_stands_on_its_rigid_walls():
+    """Walls 50 um wider where they are warm: the surrogate's own curves there leave next to nothing. Controls: walls that stand as
+    cold ones do leave some per cent, and without any nothing is drawn."""
+    warm = scene().replace({"thermal.mean": MEAN, "flexibility.modes": 4})
+    wide, straight = (standing_away(warm, np.full(4, distance)) for distance in (5e-5, 0.0))
+    curves = {name: lowfi.run(warm.replace(TRUTH | {"flexibility": None}).condition(name), walls=wide) for name in CONDITIONS}
+    least = Effort(chain.Plan(12, 4, 4), 2, 2, 10)
+    found = [calibrate.posterior(warm, curves, calibrated(), effort=least, walls=walls, workers=workers)
+             for walls, workers in ((wide, 1), (straight, 1), (straight, 2))]
+    sizes = [item.errors["rate_y"]["relative_size"] for item in found]
+    assert sizes[0] < 2e-3 and sizes[1] > 1e-2
+    assert found[1] == found[2]  # threads finish in any order
+    with pytest.raises(SceneError, match="thermal"):
+        calibrate.posterior(warm, curves, calibrated(), effort=least)
 
 
 def test_exact_curves_give_the_constants_back_and_say_what_they_do_not_tell(drawn):

@@ -164,3 +164,13 @@ def test_provenance_tells_paper_from_assumption():
     assert provenance["contact.clearance"] == "assumed"
     assert load("sensitive").provenance["contact.clearance"] == "assumed, harder than the reference"
     assert load("sensitive").provenance["payload.mass"] == provenance["payload.mass"]
+
+
+def test_another_material_tells_all_of_itself_and_where_from():
+    """Titanium expands a third as much as the aluminium it replaces. Control: another thickness keeps the material."""
+    other, own = load("titanium"), load("reference")
+    assert other.rail.material.expansion == pytest.approx(8.6e-6) and own.rail.material.expansion == pytest.approx(23.6e-6)
+    keys = [f"rail.material.{name}" for name in own.rail.material.model_dump()]
+    known = [key for key in keys if key in own.provenance]
+    assert len(known) == 5 and all("Ti-6Al-4V" in other.provenance[key] for key in known)
+    assert [load("thin").provenance[key] for key in known] == [own.provenance[key] for key in known]
