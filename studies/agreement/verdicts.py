@@ -23,6 +23,7 @@ CONVERGED_DEG_S = 0.1
 FLOOR_CAP_DEG_S = 0.1
 NOT_CONVERGED = "reference not converged"
 FINITE_ELEMENTS = "finite elements"  # what results call that model, where surrogates stand beside it
+_SHORT = {"rate_relative_l2": "rate L2", "velocity_relative_l2": "v_x L2", "settled_rate_error_deg_s": "settled rate"}
 
 
 def gates(scene: Scene) -> dict[str, float]:
@@ -64,8 +65,8 @@ def largest(values) -> float | None:
 
 @dataclass(frozen=True)
 class Context:
-    """What stands beside the metrics: spreads under ``clearance`` of both models, and of the reference under refinement; and the
-    gates."""
+    """What stands beside the metrics: ``floors``, the spreads of both models when the clearance changes; ``refinements``, those of
+    the reference when mesh, step or penalty do; and the ``gates``."""
 
     floors: list[Spread]
     refinements: list[Spread]
@@ -94,6 +95,11 @@ class Context:
                                     if item.condition == condition)
         return None if unknown else largest(causes.values()), causes, all(here)
 
+    def converged(self, condition: str) -> bool:
+        """Whether the reference is sure enough there to judge a surrogate by."""
+        uncertainty = self.uncertainty(condition)[0]
+        return uncertainty is not None and uncertainty <= CONVERGED_DEG_S
+
 
 def _own(spreads: list[Spread], condition: str) -> tuple[list[Spread], bool]:
     own = [item for item in spreads if item.condition == condition]
@@ -106,7 +112,7 @@ def row(condition: str, role: str, reference: Trajectory, surrogate: Trajectory,
     floor_deg_s, floor_l2, floor_measured = context.floor(condition)
     uncertainty, causes, uncertainty_measured = context.uncertainty(condition)
     gates = {name: gate(getattr(difference, name), limit) for name, limit in context.limits(floor_deg_s).items()}
-    converged = uncertainty is not None and uncertainty <= CONVERGED_DEG_S
+    converged = context.converged(condition)
     return {"condition": condition, "role": role, "reference_status": reference.status, "surrogate_status": surrogate.status,
             **difference.as_dict(), "floor_deg_s": floor_deg_s, "floor_l2": floor_l2, "floor_measured_here": floor_measured,
             "reference_uncertainty_deg_s": uncertainty, "reference_uncertainty_by_cause_deg_s": causes,
@@ -129,6 +135,3 @@ def verdict(gates: dict[str, dict], converged: bool, touches: bool = True) -> st
     missed = [f"{_SHORT[name]} {'unknown' if item['times_limit'] is None else format(item['times_limit'], '.3g') + ' x limit'}"
               for name, item in gates.items() if not item["passes"]]
     return "misses: " + ", ".join(missed) if missed else "agrees" if touches else "agrees (no pad touches)"
-
-
-_SHORT = {"rate_relative_l2": "rate L2", "velocity_relative_l2": "v_x L2", "settled_rate_error_deg_s": "settled rate"}

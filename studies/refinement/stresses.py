@@ -1,8 +1,8 @@
 """Stresses of a run as numbers that refinement can be judged by: the filtered peak on the patches, and the peak of the whole rail.
 
 Contact rings with the modes of the elements, and the walls ring with it; so the mean stress of each patch is filtered as contact
-forces are (``studies.contact_loads``) before its von Mises stress is taken. The peak of the whole rail sits at a sharp inner
-corner or at the border of a clamp. There the stress of linear elasticity is infinite, and what a mesh shows of it grows with
+forces are (``studies.refinement.contact_loads``) before its von Mises stress is taken. The peak of the whole rail sits at a sharp
+inner corner or at the border of a clamp. There the stress of linear elasticity is infinite, and what a mesh shows of it grows with
 every refinement.
 """
 

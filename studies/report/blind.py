@@ -8,7 +8,7 @@ from studies.report.chart import Chart
 from studies.report.markup import Html, caption, fold, paragraph, table
 
 _WORDS = ("Drawn from the distributions “{vary}” with seed {seed}{origin}. Every condition has a floor and an "
-          "uncertainty of the reference by the mesh of its own; step and penalty are those of the first.")
+          "uncertainty of the reference of its own, by mesh, step and penalty.")
 
 
 def draw(found: dict, figure: Callable[[Chart, str], Html]) -> Html:

@@ -59,12 +59,12 @@ def stored(study: Study) -> dict | None:
 
 
 def draw(study: Study, asked: Asked) -> Study:
-    """The study of the drawn conditions, in the same folder: all held out, each with a floor of its own; refinements other than the
-    mesh on the first."""
+    """The study of the drawn conditions, in the same folder: all held out, each with a floor and refinements of its own, so that
+    none borrows the uncertainty of another, which may be chaotic."""
     source = Drawn(uncertainty.load(asked.vary, study.scene, cases=asked.cases, seed=seed_of(study, asked), sampling="random"))
     conditions = {f"blind{number + 1}": row for number, row in enumerate(source.rows(0, asked.cases))}
     names = list(conditions)
-    roles = {"agreement.fitted": [], "agreement.held_out": names, "agreement.floor": names, "agreement.refined": names[:1]}
+    roles = {"agreement.fitted": [], "agreement.held_out": names, "agreement.floor": names, "agreement.refined": names}
     return replace(study, scene=study.scene.replace({"conditions": conditions, **roles}), only=())
 
 

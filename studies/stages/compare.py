@@ -38,20 +38,24 @@ class Rung(NamedTuple):
         return study.lowfi(condition, self.calibration, vibrating | (overrides or {}), tag, self.walls.get(condition), **numerics)
 
 
-def rungs(study: Study) -> list[Rung]:
-    """The surrogates of a scene, from the plainest up: with its own constants, with calibrated ones, on walls that give way as
-    statics has them, where nothing is fitted, and on the same with the lowest modes of the rails."""
-    under = walls.under(study, study.conditions)
+def rungs(study: Study, conditions: Iterable[str] | None = None) -> list[Rung]:
+    """The surrogates of a scene for ``conditions``, else for all, from the plainest up: with its own constants, with calibrated
+    ones, on walls that give way as statics has them, where nothing is fitted, and on the same with the lowest modes of the rails."""
+    on_walls = compliant(study, study.conditions if conditions is None else conditions)
     return [Rung("uncalibrated", "surrogate, uncalibrated"), Rung("calibrated", "surrogate, calibrated", calibrate.load(study)),
-            Rung("compliant", "surrogate, compliant walls", walls=under),
-            Rung("modal", "surrogate, modal rail", walls=under, modes=study.settings.rail_modes)]
+            on_walls, on_walls._replace(name="modal", title="surrogate, modal rail", modes=study.settings.rail_modes)]
+
+
+def compliant(study: Study, conditions: Iterable[str]) -> Rung:
+    """The surrogate on walls that give way, for ``conditions``."""
+    return Rung("compliant", "surrogate, compliant walls", walls=walls.under(study, conditions))
 
 
 def run(study: Study) -> dict:
     """``uncalibrated``, ``fitted``, ``held_out``, ``compliant`` and ``modal`` rows, ``floor`` and ``refinement`` as measured,
     ``growth`` of 1 um, ``speedup`` of the calibrated and of the compliant surrogate, ``simpler`` walls."""
     study.fitted()
-    _, calibrated, compliant, modal = ladder = rungs(study)
+    _, calibrated, on_walls, modal = ladder = rungs(study)
     gates = verdicts.gates(study.scene)
 
     def make() -> tuple[dict, list[Path]]:
@@ -63,12 +67,12 @@ def run(study: Study) -> dict:
         table = {rung.name: rows(study, rung, highfi, Context([*floor, *own[rung.name]], changes, gates)) for rung in ladder}
         groups = {role: [row for row in table["calibrated"] if row["role"] == role] for role in ("fitted", "held_out")}
         return {"uncalibrated": table["uncalibrated"], **groups, "compliant": table["compliant"], "modal": table["modal"],
-                "rail_modes": modal.modes, "gates": gates,
+                "rail_modes": modal.modes, "gates": gates, "element_size_m": study.settings.element_size,
                 "converged_deg_s": verdicts.CONVERGED_DEG_S, "clearance_change_m": study.settings.clearance_change,
                 "floor": [asdict(item) for item in sum(own.values(), floor)], "refinement": [asdict(item) for item in changes],
-                "growth": [asdict(item) for item in _growths(study, compliant, table["compliant"])],
-                "simpler": _simpler(study, compliant, highfi),
-                **dict(zip(("speedup", "speedup_compliant"), _speedups(study, [calibrated, compliant])))}, []
+                "growth": [asdict(item) for item in _growths(study, on_walls, table["compliant"])],
+                "simpler": _simpler(study, on_walls, highfi),
+                **dict(zip(("speedup", "speedup_compliant"), _speedups(study, [calibrated, on_walls])))}, []
 
     return study.stage("agreement", _key(study, calibrated.calibration.constants), make)
 
@@ -101,7 +105,8 @@ def _simpler(study: Study, compliant: Rung, highfi: dict[str, Trajectory]) -> li
         wanted = [rung.ask(study, name, tag=f"-{patterns}{'' if coupled else '-apart'}") for name in study.conditions]
         for name, result in zip(study.conditions, study.store.fill(f"walls: {words}", wanted)):
             difference = metrics.compare(highfi[name], result)
-            found.append({"walls": words, "condition": name, "rate_relative_l2": difference.rate_relative_l2,
+            found.append({"walls": words, "patterns": patterns, "coupled": coupled, "condition": name,
+                          "rate_relative_l2": difference.rate_relative_l2,
                           "settled_rate_error_deg_s": difference.settled_rate_error_deg_s})
     return found
 

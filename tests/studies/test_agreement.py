@@ -1,11 +1,18 @@
 """Rows of the agreement table: gates, floor, and a reference that is not converged."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
+import highfi
+import lowfi
 from scenes import load
-from studies.agreement import verdicts
+from studies.agreement import metrics, verdicts
 from studies.agreement.verdicts import Context, Spread
+from studies.settings import Settings
+from studies.stages import compare
+from studies.study import Study
 from tests.studies.synthetic import flight
 
 
@@ -83,3 +90,35 @@ def test_spread_takes_the_larger_side():
                              [constant(1.02, 0.0, 0.0), constant(0.99, 0.0, 0.0)])
     assert found.settled_rate_change_deg_s == pytest.approx(0.02, rel=1e-9)
     assert found.rate_relative_l2 == pytest.approx(0.02, rel=1e-9)
+
+
+def test_every_condition_of_the_reference_has_an_uncertainty_of_its_own(monkeypatch):
+    """By mesh, step and penalty. Control: where a scene refines one only, the others borrow, and say so."""
+    scene = load("reference")
+    for refined, expected in ((scene.agreement.refined, set(scene.conditions)), (["phi35"], {"phi35"})):
+        study = Study(scene.replace({"agreement.refined": list(refined)}), Path("nowhere"), Settings())
+        monkeypatch.setattr(type(study.store), "fill", lambda store, title, runs: [flight() for _ in runs])
+        context = Context([], compare.refinements(study), GATES)
+        assert {name for name in study.conditions if context.uncertainty(name)[2]} == expected
+        assert list(context.uncertainty("h4")[1]) == ["mesh", "step", "penalty"]
+
+
+@pytest.fixture(scope="module")
+def coarse_walls():
+    return highfi.walls(load("reference"), 4e-3)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["phi35", "h2"])
+def test_compliant_walls_agree_with_finite_elements_on_the_same_mesh(coarse_walls, name):
+    """Nothing is fitted: well inside the gates of the scene, 5 % and 0.1 deg/s, where pads touch. Both stand on elements of 4 mm,
+    so the mesh is no part of the difference. Control: on rigid springs with the scene's own constants the gates are missed."""
+    scene = load("reference").condition(name)
+    reference = highfi.run(scene, highfi.Numerics(element_size=4e-3))
+    assert reference.status == "exited" and reference.pad_force.any()
+    found = metrics.compare(reference, lowfi.run(scene, walls=coarse_walls))
+    assert found.rate_relative_l2 < 0.02 and found.settled_rate_error_deg_s < 0.05
+    assert found.velocity_relative_l2 < GATES["velocity_relative_l2"]
+    springs = metrics.compare(reference, lowfi.run(scene))
+    assert springs.rate_relative_l2 > GATES["rate_relative_l2"]
+    assert springs.settled_rate_error_deg_s > GATES["settled_rate_error_deg_s"]

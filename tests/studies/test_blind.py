@@ -1,15 +1,18 @@
 """Conditions that nobody chose: drawn by the seed of the code and the scene, never fitted."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 import scenes
 from scenes.faults import SceneError
+from studies.agreement.verdicts import Context
 from studies.settings import Settings
-from studies.stages import blind
+from studies.stages import blind, compare
 from studies.stages.blind import Asked
 from studies.study import Study
+from tests.studies.synthetic import flight
 
 
 def study_of(name: str = "reference") -> Study:
@@ -28,11 +31,20 @@ def test_drawn_conditions_are_all_held_out():
     drawn = blind.draw(study_of(), Asked(cases=3, seed=1))
     assert list(drawn.conditions) == ["blind1", "blind2", "blind3"] == list(drawn.scene.agreement.held_out)
     assert drawn.scene.agreement.fitted == () and drawn.scene.agreement.floor == drawn.scene.agreement.held_out
-    assert drawn.scene.agreement.refined == ("blind1",)
     hashes = {scene.hash for scene in drawn.conditions.values()}
     assert len(hashes) == 3 and hashes.isdisjoint(scene.hash for scene in study_of().conditions.values())
     again = blind.draw(study_of(), Asked(cases=2, seed=1))
     assert [scene.hash for scene in again.conditions.values()] == [drawn.condition(name).hash for name in ("blind1", "blind2")]
+
+
+def test_no_drawn_condition_borrows_its_uncertainty(monkeypatch):
+    """Mesh, step and penalty on each. Control: a scene that refines one only has the others borrow, and says so."""
+    drawn = blind.draw(study_of(), Asked(cases=3, seed=1))
+    alone = replace(drawn, scene=drawn.scene.replace({"agreement.refined": ["blind2"]}))
+    monkeypatch.setattr(type(drawn.store), "fill", lambda store, title, runs: [flight() for _ in runs])
+    for study, measured in ((drawn, [True, True, True]), (alone, [False, True, False])):
+        context = Context([], compare.refinements(study), {})
+        assert [context.uncertainty(name)[2] for name in drawn.conditions] == measured
 
 
 def test_unknown_distributions_are_refused():
