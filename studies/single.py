@@ -1,5 +1,6 @@
 """One run of one condition in one model, its outcome printed."""
 
+from dataclasses import replace
 from pathlib import Path
 
 from scenes.calibration import Calibration
@@ -7,10 +8,10 @@ from scenes.faults import Fault, SceneError
 from scenes.walls import require_modes
 from studies.cost import choice
 from studies.progress import say
-from studies.stages import cost, walls
+from studies.stages import compare, cost, walls
 from studies.stages.runs import row
 from studies.store import Run
-from studies.study import FAILED, Study
+from studies.study import FAILED, Study, StudyError
 
 
 def run(study: Study, condition: str, fidelity: str, calibration: Path | None = None, on_walls: bool = False,
@@ -25,13 +26,18 @@ def run(study: Study, condition: str, fidelity: str, calibration: Path | None = 
 
 
 def chosen(study: Study, condition: str, accuracy: float | None, budget: float | None, quiet: bool = False) -> dict:
-    """The same in the model that measured cost calls for; ``chosen`` says which and why. Raises StudyError when none fits."""
-    point = choice.choose(study, accuracy, budget)
+    """The same in the model that measured cost calls for; ``chosen`` says which and why. Raises StudyError when none fits, or
+    when no cost was measured for this scene and this code."""
+    whole = replace(study, only=())  # results are those of all conditions, whichever one is asked for
+    measured = cost.stored(whole)
+    if measured is None:
+        raise StudyError(f"no cost was measured for this scene with this code: run tipoff cost --scene {study.scene.name} first")
+    point = choice.choose(measured, condition, compare.stored(whole), accuracy, budget)
     say(point["why"])
     if point["rung"] == "highfi":
         asked = study.highfi(condition, element_size=point["setting"])
     else:
-        rung = next(rung for rung in cost.surrogates(study) if rung.name == point["rung"])
+        rung = next(rung for rung in cost.surrogates(whole, [condition]) if rung.name == point["rung"])
         asked = rung.ask(study, condition, relative_tolerance=point["setting"])
     return _made(study, condition, asked, quiet) | {"chosen": point}
 

@@ -1,44 +1,75 @@
 """Which model answers a question: the cheapest that reached an accuracy, or the most accurate within a time, as measured.
 
 A point of the cost study counts with its error against the finest mesh and the uncertainty of that mesh, of which the larger is
-what it can be trusted to; the finest mesh itself with its uncertainty.
+what it can be trusted to; the finest mesh itself with its uncertainty. That was measured on one condition. On another, each model
+counts with its error there, and with the uncertainty of the reference there, as the agreement study found them, where that is more.
 """
 
-from studies.study import Study, StudyError, read
+import math
+
+from studies.study import StudyError
 
 
-def choose(study: Study, accuracy: float | None = None, budget: float | None = None) -> dict:
-    """The point of ``cost_study.json``, with ``trusted_deg_s`` and ``why`` in words, for an error of the settled rates of at most
-    ``accuracy`` (deg/s) and a wall time of at most ``budget`` (s).
+def choose(cost: dict, condition: str, agreement: dict | None, accuracy: float | None = None, budget: float | None = None) -> dict:
+    """The point of the ``cost`` study, with ``trusted_deg_s`` and ``why`` in words, for an error of the settled rates of at most
+    ``accuracy`` (deg/s) on ``condition`` and a wall time of at most ``budget`` (s).
 
-    Raises StudyError where nothing was measured for this scene, or where no model fits, with the nearest that does.
+    Raises StudyError where no model fits, with the nearest that does.
     """
-    found = read(study.path("cost_study.json"))
-    if found is None or found.get("scene_hash") != study.scene.hash:
-        raise StudyError(f"no cost was measured for this scene: run tipoff cost --scene {study.scene.name} first")
-    points = trusted(found["points"], found["band_deg_s"])
+    there = {} if condition == cost["condition"] else elsewhere(agreement, condition)
+    points = trusted(cost["points"], cost["band_deg_s"], there)
     fit = [point for point in points if _within(point["trusted_deg_s"], accuracy) and _within(point["wall_s"], budget)]
     if not fit:
-        raise StudyError(_refusal(points, accuracy, budget))
+        raise StudyError(_refusal(points, accuracy, budget) + _measured(cost, condition, there))
     by_time, by_error = (lambda p: (p["wall_s"], p["trusted_deg_s"])), (lambda p: (p["trusted_deg_s"], p["wall_s"]))
     best = min(fit, key=by_time if accuracy is not None else by_error)
     reason = "the cheapest that is so exact" if accuracy is not None else "the most exact within the time"
-    return best | {"why": f"{words(best)}: {reason}, of {len(points)} measured on {found['condition']}"}
+    return best | {"why": f"{words(best)}: {reason}, of {len(points)} measured on {cost['condition']}"
+                          + _measured(cost, condition, there)}
 
 
-def trusted(points: list[dict], band: float | None) -> list[dict]:
-    """The points that have an error, each with what it can be trusted to (deg/s)."""
+def elsewhere(agreement: dict | None, condition: str) -> dict[str, float]:
+    """What each rung can be trusted to (deg/s) on a condition of the ``agreement`` study, infinite where that is not known; empty
+    without one, or for a condition that it does not have."""
+    rungs = {} if agreement is None else {
+        "uncalibrated": agreement["uncalibrated"], "calibrated": agreement["fitted"] + agreement["held_out"],
+        "compliant": agreement["compliant"], "modal": agreement["modal"]}
+    found = {rung: row for rung, rows in rungs.items() for row in rows if row["condition"] == condition}
+    if not found:
+        return {}
+    unsure = _known(found["compliant"]["reference_uncertainty_deg_s"])
+    alone = next(row for row in agreement["simpler"]
+                 if (row["condition"], row["patterns"], row["coupled"]) == (condition, 1, False))
+    return {rung: max(unsure, _known(row["settled_rate_error_deg_s"])) for rung, row in (found | {"along": alone}).items()} | {
+        "highfi": unsure}
+
+
+def trusted(points: list[dict], band: float | None, there: dict[str, float] | None = None) -> list[dict]:
+    """The points that have an error, each with what it can be trusted to (deg/s), at least what is known of its rung ``there``."""
     known = []
     for point in points:
         error = point["error_deg_s"] if point["error_deg_s"] is not None else band
         if error is not None and point["status"] == "exited":
-            known.append(point | {"trusted_deg_s": max(error, band or 0.0)})
+            known.append(point | {"trusted_deg_s": max(error, band or 0.0, (there or {}).get(point["rung"], 0.0))})
     return known
+
+
+def _known(value: float | None) -> float:
+    return math.inf if value is None else value
+
+
+def _measured(cost: dict, condition: str, there: dict[str, float]) -> str:
+    """What the errors rest on, where they were measured on another condition."""
+    if condition == cost["condition"]:
+        return ""
+    return (f"; errors on {condition} as make compare found them" if there
+            else f"; the errors are those of {cost['condition']}: nothing is known of {condition}")
 
 
 def words(point: dict) -> str:
     """A point in words and units."""
-    return f"{point['model']}, {point['numerics']} ({point['trusted_deg_s']:.2g} deg/s, {point['wall_s']:.2g} s)"
+    trusted_to = f"{point['trusted_deg_s']:.2g} deg/s" if math.isfinite(point["trusted_deg_s"]) else "error unknown"
+    return f"{point['model']}, {point['numerics']} ({trusted_to}, {point['wall_s']:.2g} s)"
 
 
 def _within(value: float, limit: float | None) -> bool:

@@ -1,4 +1,4 @@
-"""How long a calibration will take, said before it begins.
+"""How long a calibration or its posterior will take, said before it begins.
 
     time = ceil(runs / at a time) * elements * steps * ns per element and step + evaluations * conditions * time of the surrogate
 
@@ -25,6 +25,7 @@ from studies.study import Study
 PATIENCE = 1.0  # s
 _TYPICAL_NS = 11.0  # per element and step, the 2 mm mesh of the reference scene on one thread of an AMD EPYC
 _TYPICAL_RUN = 3e-3  # s, the surrogate there
+_REDUCED = 0.4  # of the time of a run: what a posterior takes for one, on coarser samples and without ledgers
 _STEP = 0.7  # dt sqrt(E / rho) / h of meshes of the built-in section
 _COMPILED = " and a minute or two to compile, this once"
 _LOOKED_AT = 4  # stored runs, newest first
@@ -43,16 +44,36 @@ class Pace(NamedTuple):
 
 def calibration(study: Study, asked: Sequence[Run]) -> str:
     """The line for a calibration on the reference runs ``asked``, found in a second at most."""
-    for name in ("calibrate", "highfi", "h5py"):
-        importlib.import_module(name)  # what the calibration loads in any case is no delay
+    return _line(study, asked, lambda: _search(study, len(asked)), "the search", "about")
+
+
+def search(study: Study, conditions: int) -> str:
+    """The line for a calibration on curves of so many ``conditions``, found in a second at most."""
+    importlib.import_module("calibrate")
+    return work("the search", in_time(lambda: _search(study, conditions)))
+
+
+def posterior(study: Study, asked: Sequence[Run], fitted: int) -> str:
+    """The line for a posterior of constants found on so many ``fitted`` conditions, and for what it predicts of the reference runs
+    ``asked``, found in a second at most. A chain that is sure of itself ends earlier."""
+    return _line(study, asked, lambda: _draws(study, fitted, len(asked)), "the draws", "at most about")
+
+
+def _line(study: Study, asked: Sequence[Run], rest: Callable[[], float], name: str, bound: str) -> str:
+    for package in ("calibrate", "highfi", "h5py"):
+        importlib.import_module(package)  # what is loaded in any case is no delay
     missing = [run for run in asked if not study.store.path(run).is_file()]
-    known = in_time(lambda: (_reference(missing[0], pace(study)) if missing else None, _search(study, len(asked))))
-    return words(len(missing), min(study.settings.workers, len(missing)), *(known or (None, None)))
+    reference, seconds = in_time(lambda: (_reference(missing[0], pace(study)) if missing else None, rest())) or (None, None)
+    return words(len(missing), min(study.settings.workers, len(missing)), reference, work(name, seconds, bound))
 
 
-def words(missing: int, together: int, reference: tuple[float, str] | None, search: float | None) -> str:
-    """The line: runs ``missing``, so many ``together``, seconds of one and where they are from, seconds of the ``search``."""
-    after = "the search" + (f", about {span(search)}" if search else "")
+def work(name: str, seconds: float | None, bound: str = "about") -> str:
+    """What is done after the runs of the reference, and how long it takes where that is known."""
+    return name if seconds is None else f"{name}, {bound} {span(seconds)}"
+
+
+def words(missing: int, together: int, reference: tuple[float, str] | None, after: str) -> str:
+    """The line: runs ``missing``, so many ``together``, seconds of one and where they are from, and what comes ``after``."""
     if not missing:
         return f"no reference run to make; {after}"
     head = f"{missing} reference run{'s' if missing > 1 else ''} to make" + (f", {together} at a time" if together > 1 else "")
@@ -145,6 +166,16 @@ def _search(study: Study, conditions: int) -> float:
     from calibrate import parameters, search
 
     return search.evaluations(len(parameters.free(study.scene))) * conditions * _surrogate(study.folder)
+
+
+def _draws(study: Study, fitted: int, predicted: int) -> float:
+    """Seconds of the posterior of constants found on ``fitted`` conditions, at most, and of the rates of those ``predicted``."""
+    from calibrate import parameters
+    from calibrate.posterior import Effort
+
+    count = len(parameters.free(study.scene)) + len(parameters.held(study.scene))
+    runs = Effort().evaluations(count) * fitted + Effort().kept * predicted
+    return runs * _REDUCED * _surrogate(study.folder)
 
 
 def _is_cold() -> bool:

@@ -17,10 +17,10 @@ from studies import machine
 from studies.store import Run, execute, prepare
 
 
-def timed(run: Run) -> tuple[Trajectory, float, float]:
+def timed(run: Run, progress: Callable[[float], None] | None = None) -> tuple[Trajectory, float, float]:
     """Result, wall seconds and processor seconds of one run, both without compilation."""
     wall, processor = time.perf_counter(), time.process_time()
-    found = execute(run)
+    found = execute(run, progress)
     compiling = found.cost["compile_s"]
     return found, time.perf_counter() - wall - compiling, time.process_time() - processor - compiling
 
@@ -40,10 +40,9 @@ def speedups(highfi: Run, surrogates: dict[str, Run], highfi_repeats: int, lowfi
     slow: list = []
     fast: dict[str, list] = {name: [] for name in surrogates}
     for repeat in range(highfi_repeats):
-        slow.append(timed(highfi))
+        slow.append(timed(highfi, lambda fraction: progress((repeat + fraction) / highfi_repeats)))
         for name, run in surrogates.items():
             fast[name] += [timed(run) for _ in range(lowfi_repeats)]
-        progress((repeat + 1) / highfi_repeats)
     return {name: _speedup(highfi.label, slow, found) for name, found in fast.items()}
 
 

@@ -1,10 +1,12 @@
 """Stage ``convergence``: the error of the finite-element reference itself, on one condition.
 
-Meshes and steps are refined one after the other, and every quantity is judged by its observed order (``studies.convergence``);
-penalty and quadrature are changed and compared, and a straight slide shows the ripple that facets put into a constant force
-(``studies.ripple``). What a finer mesh brings with it: a smaller step, and fewer Gauss points per facet,
-so that they stay about 1 mm apart and their own error shows in the quadrature alone. What it may not bring: a wall of the rail has
-one element through it at least, so coarse meshes differ in length and width only; ``meshes`` holds the numbers of elements.
+Meshes and steps are refined one after the other, and every quantity is judged by its observed order
+(``studies.refinement.extrapolation``); penalty and quadrature are changed and compared, and a straight slide shows the ripple
+that facets put into a constant force (``studies.refinement.ripple``). What a finer mesh brings with it: a smaller step, and fewer
+Gauss points per facet, so that they stay about 1 mm apart and their own error shows in the quadrature alone. What it may not
+bring: a wall of the rail has one element through it at least, so coarse meshes differ in length and width only; ``meshes`` holds
+the numbers of elements. Now that the error of each mesh is known, both fidelities are timed at equal accuracy
+(``studies.cost.sureness``).
 """
 
 from dataclasses import asdict
@@ -14,19 +16,24 @@ from highfi.numerics import Numerics
 from scenes.scene import Scene
 from scenes.trajectory import Trajectory
 from studies.agreement import verdicts
+from studies.cost import sureness
+from studies.cost.timing import speedups
+from studies.progress import Board
 from studies.refinement import contact_loads, ripple, stresses
 from studies.refinement.extrapolation import Estimate, estimate
 from studies.refinement.quantities import RATE, quantities, settled_rate
-from studies.stages.compare import refined
+from studies.stages.compare import compliant, refined
 from studies.store import SOURCES, Run
 from studies.study import Study, require_success
 
 NAME = "convergence"
+_LONG = 60.0  # s, a run of the reference that is timed once only
 
 
 def run(study: Study, condition: str | None = None) -> dict:
-    """``quantities`` over element size and time step with order and uncertainty, ``penalty``, ``quadrature``, ``ripple``, and
-    ``summary`` in words. Raises SceneError for an unknown condition, StudyError where a mesh or a step fails."""
+    """``quantities`` over element size and time step with order and uncertainty, ``penalty``, ``quadrature``, ``ripple``,
+    ``equal_accuracy`` and ``summary`` in words. Raises SceneError for an unknown condition, StudyError where a mesh or a step
+    fails."""
     name = condition or (study.scene.agreement.refined or tuple(study.conditions))[0]
     scene = study.condition(name)
 
@@ -36,12 +43,14 @@ def run(study: Study, condition: str | None = None) -> dict:
         judged = [*_judged(scene, "element size", "m", list(study.settings.mesh_sizes), meshes, study.settings.element_size),
                   *_judged(scene, "time step", "s", [found.cost["dt_s"] for found in steps], steps, steps[0].cost["dt_s"])]
         penalty, quadrature, ripples = _penalties(study, name), _quadratures(study, name), _ripples(study, scene)
+        equal = _at_equal_accuracy(study, name, judged, meshes)
         return {"condition": name, "element_size_m": study.settings.element_size, "coarse_size_m": study.settings.coarse_size,
                 "force_cutoff_hz": contact_loads.cutoff(scene),
                 "meshes": [{"element_size_m": size, "elements": found.cost["elements"], "dt_s": found.cost["dt_s"],
                             "wall_s": found.cost["wall_s"]} for size, found in zip(study.settings.mesh_sizes, meshes)],
-                "quantities": judged, "penalty": penalty, "quadrature": quadrature, "ripple": ripples,
-                "summary": summary(name, judged, penalty, quadrature) + _told(ripples)}, []
+                "quantities": judged, "penalty": penalty, "quadrature": quadrature, "ripple": ripples, "equal_accuracy": equal,
+                "summary": summary(name, judged, penalty, quadrature) + _told(ripples)
+                + ([sureness.sentence(equal)] if equal else [])}, []
 
     return study.stage(NAME, _key(study, name), make)
 
@@ -52,7 +61,7 @@ def stored(study: Study) -> dict | None:
 
 
 def _key(study: Study, name: str) -> str:
-    return study.key(SOURCES["highfi"], NAME, name)
+    return study.key(SOURCES["highfi"] + SOURCES["lowfi"], NAME, name)
 
 
 def _finished(study: Study, title: str, asked: list[Run]) -> list[Trajectory]:
@@ -121,6 +130,28 @@ def _ripples(study: Study, scene: Scene) -> list[dict]:
         if found := ripple.measure(scene, numerics):
             rows.append({"element_size_m": size, "points_per_edge": numerics.points_per_edge(), **found._asdict()})
     return rows
+
+
+def _at_equal_accuracy(study: Study, name: str, judged: list[dict], meshes: list[Trajectory]) -> dict | None:
+    """The speed-up of the surrogate on compliant walls over the coarsest mesh that is surer than it is exact; None where it has no
+    walls, or where it or a mesh did not settle."""
+    rates = [row for row in judged if row["parameter"] == "element size" and row["quantity"].startswith(RATE)]
+    uncertain = sureness.uncertainties(rates)
+    if study.scene.contact is None or uncertain is None:
+        return None
+    surrogate = compliant(study, [name]).ask(study, name)
+    error = verdicts.settled_change(meshes[-1], *study.store.fill("convergence, surrogate", [surrogate]))
+    if error is None:
+        return None
+    mesh = sureness.coarsest(study.settings.mesh_sizes, uncertain, error)
+    wall = meshes[study.settings.mesh_sizes.index(mesh.element_size)].cost["wall_s"]
+    with Board("speed at equal accuracy", 1) as board:
+        found, = speedups(study.highfi(name, element_size=mesh.element_size), {"compliant": surrogate},
+                          1 if wall > _LONG else study.settings.highfi_repeats, study.settings.lowfi_repeats,
+                          board.callback(f"{1e3 * mesh.element_size:g} mm")).values()
+        board.finished(f"{1e3 * mesh.element_size:g} mm", f"{found['ratio']:,.0f} times")
+    return found | {"condition": name, "error_deg_s": error, "element_size_m": mesh.element_size,
+                    "mesh_uncertainty_deg_s": mesh.uncertainty, "surer": mesh.surer}
 
 
 def _told(ripples: list[dict]) -> list[str]:

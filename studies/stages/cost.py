@@ -1,7 +1,8 @@
 """Stage ``cost``: what accuracy costs in time. Error of the settled rates against wall time, both fidelities on one condition; and
-how time grows with elements, pads and effects (``studies.scaling``).
+how time grows with elements, pads and effects (``studies.cost.scaling``).
 
-The yardstick is the finest finite-element mesh; its own uncertainty is the band below which no error can be told from zero.
+The yardstick is the finest finite-element mesh; its own uncertainty is the band below which no error can be told from zero, so an
+error below it counts as the band where the front of the best is drawn. Every model is timed alone, each run with all the machine.
 The surrogate's time-integration error, against its own tightest tolerance, stands beside its error against the yardstick: what
 remains when it is small is the model, and no tolerance can buy it.
 
@@ -10,28 +11,31 @@ remains when it is small is the model, and no tolerance can buy it.
 
 import statistics
 from pathlib import Path
+from typing import Iterable
 
 from scenes.files import write_json
 from scenes.trajectory import Trajectory
 from studies import machine
 from studies.agreement import verdicts
+from studies.agreement.metrics import compare
 from studies.agreement.verdicts import FINITE_ELEMENTS
-from studies.cost import scaling
+from studies.cost import choice, scaling
 from studies.cost.timing import timed, warm_up
+from studies.progress import Board
 from studies.stages import ablation
 from studies.stages.compare import Rung, refined, rungs
-from studies.store import SOURCES
-from studies.study import Study
-
+from studies.store import SOURCES, Run
+from studies.study import Study, read
 
 STIFFNESS_ALONG = "surrogate, stiffness along the rail"  # mean pressure, each face by itself
 NAME, POINTS = "cost_study", "cost.json"
 
 
 def run(study: Study) -> dict:
-    """``points``: model, rung, numerics, setting (element size in m or relative tolerance), error_deg_s, wall_s, pareto;
-    ``band_deg_s``: uncertainty of the yardstick; ``matched``; ``scaling`` over ``elements``, ``pads`` and ``effects``."""
-    name = (study.scene.agreement.refined or study.fitted())[0]
+    """``points``: model, rung, numerics, setting (element size in m or relative tolerance), error_deg_s, curve_error (rate L2),
+    wall_s, pareto; ``band_deg_s``: uncertainty of the yardstick; ``matched``; ``scaling`` over ``elements``, ``pads`` and
+    ``effects``."""
+    name = _condition(study)
     ladder = surrogates(study)
 
     def make() -> tuple[dict, list[Path]]:
@@ -40,17 +44,31 @@ def run(study: Study) -> dict:
             points += _surrogate_points(study, name, rung, finest)
         growing = {"elements": scaling.elements(study, name), "pads": scaling.pads(study, name),
                    "effects": scaling.effects(study.condition(name), ablation.run(study))}
-        path, points = study.path(POINTS), marked(points)
+        path, points = study.path(POINTS), marked(points, band)
         write_json(path, points)
         return {"condition": name, "scene_hash": study.scene.hash, "band_deg_s": band, "points": points, "matched": matched(points),
                 "scaling": growing, "hardware": machine.describe()}, [path]
 
-    return study.stage(NAME, study.key(SOURCES["calibrated"], name, ladder[1].calibration.constants), make)
+    return study.stage(NAME, _key(study, next(rung.calibration for rung in ladder if rung.calibration).constants), make)
 
 
-def surrogates(study: Study) -> list[Rung]:
-    """The rungs of the agreement study, and one more between them."""
-    plain, calibrated, compliant, modal = rungs(study)
+def stored(study: Study) -> dict | None:
+    """The result, if it was made from the present scene, code, settings and calibration."""
+    calibration = read(study.path("calibration.json"))
+    return study.stored(NAME, lambda _: _key(study, calibration["constants"])) if calibration else None
+
+
+def _key(study: Study, constants: dict) -> str:
+    return study.key(SOURCES["calibrated"], _condition(study), constants)
+
+
+def _condition(study: Study) -> str:
+    return (study.scene.agreement.refined or study.fitted())[0]
+
+
+def surrogates(study: Study, conditions: Iterable[str] | None = None) -> list[Rung]:
+    """The rungs of the agreement study for ``conditions``, else for all, and one more between them."""
+    plain, calibrated, compliant, modal = rungs(study, conditions)
     along = {name: known and known.restricted(1, coupled=False) for name, known in compliant.walls.items()}
     return [plain, calibrated, compliant._replace(name="along", title=STIFFNESS_ALONG, walls=along), compliant, modal]
 
@@ -64,11 +82,27 @@ def _reference_points(study: Study, name: str) -> tuple[Trajectory, float | None
     coarsest, coarse, finest, *changed = study.store.fill("cost, meshes", asked)
     band = verdicts.largest(verdicts.settled_change(coarse, run) for run in (finest, *changed))
     points = [{"model": FINITE_ELEMENTS, "rung": "highfi", "setting": size,
-               "numerics": f"{1e3 * size:g} mm, {found.cost['elements']} elements",
-               "error_deg_s": None if found is finest else verdicts.settled_change(finest, found),
-               "integration_error_deg_s": None, "wall_s": found.cost["wall_s"], "status": found.status}
-              for size, found in zip(sizes, (coarsest, coarse, finest))]
+               "numerics": f"{1e3 * size:g} mm, {found.cost['elements']:,} elements",
+               **(dict.fromkeys(("error_deg_s", "curve_error")) if found is finest else _errors(finest, found)),
+               "integration_error_deg_s": None, "wall_s": wall, "status": found.status}
+              for size, found, wall in zip(sizes, (coarsest, coarse, finest), _wall_times(asked[:len(sizes)]))]
     return finest, band, points
+
+
+def _wall_times(runs: list[Run]) -> list[float]:
+    """Seconds that each run takes by itself: in the store they may have been made side by side, on a processor each."""
+    found = []
+    with Board("cost, times", len(runs)) as board:
+        for run in runs:
+            warm_up(run)
+            found.append(timed(run, board.callback(run.label))[1])
+            board.finished(run.label, f"{found[-1]:.3g} s")
+    return found
+
+
+def _errors(finest: Trajectory, found: Trajectory) -> dict[str, float | None]:
+    """Errors against the yardstick: of the settled rates (deg/s) and of the curves (rate L2, relative)."""
+    return {"error_deg_s": verdicts.settled_change(finest, found), "curve_error": compare(finest, found).rate_relative_l2}
 
 
 def _surrogate_points(study: Study, name: str, rung: Rung, finest: Trajectory) -> list[dict]:
@@ -78,7 +112,7 @@ def _surrogate_points(study: Study, name: str, rung: Rung, finest: Trajectory) -
     measured = [[timed(run) for _ in range(study.settings.lowfi_repeats)] for run in asked]
     runs = [repeats[0][0] for repeats in measured]
     return [{"model": rung.title, "rung": rung.name, "setting": tolerance, "numerics": f"tolerance {tolerance:g}",
-             "error_deg_s": verdicts.settled_change(finest, found),
+             **_errors(finest, found),
              "integration_error_deg_s": verdicts.settled_change(runs[0], found) if found is not runs[0] else None,
              "wall_s": statistics.median(wall for _, wall, _ in repeats), "status": found.status}
             for tolerance, found, repeats in reversed(list(zip(tolerances, runs, measured)))]
@@ -104,12 +138,12 @@ def matched(points: list[dict]) -> list[dict]:
     return found
 
 
-def marked(points: list[dict]) -> list[dict]:
-    """The points, each told whether no other one is both as exact and as fast (``pareto``)."""
-    known = [point for point in points if point["error_deg_s"] is not None]
+def marked(points: list[dict], band: float | None) -> list[dict]:
+    """The points, each told whether no other one can be trusted as far and is as fast (``pareto``)."""
+    known = choice.trusted(points, band)
 
     def beaten(point: dict) -> bool:
-        return any(other is not point and other["error_deg_s"] <= point["error_deg_s"] and other["wall_s"] < point["wall_s"]
-                   for other in known)
+        return any(other["trusted_deg_s"] <= point["trusted_deg_s"] and other["wall_s"] < point["wall_s"] for other in known)
 
-    return [point | {"pareto": point["error_deg_s"] is not None and not beaten(point)} for point in points]
+    best = [(point["model"], point["setting"]) for point in known if not beaten(point)]
+    return [point | {"pareto": (point["model"], point["setting"]) in best} for point in points]

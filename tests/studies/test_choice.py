@@ -1,13 +1,12 @@
 """The model that an accuracy or a time calls for, from measured cost."""
 
-import json
-
 import pytest
 from typer.testing import CliRunner
 
 import scenes
+from studies import single
 from studies.cli import app
-from studies.cost.choice import choose
+from studies.cost.choice import choose, elsewhere
 from studies.settings import Settings
 from studies.study import Study, StudyError
 
@@ -16,49 +15,76 @@ POINTS = [("rigid", 0.9, 0.002), ("rigid fine", 0.85, 0.004), ("compliant", 0.05
           ("4 mm", 0.03, 5.0), ("2 mm", None, 30.0), ("lost", 0.0, 0.001)]
 
 
-@pytest.fixture
-def study(tmp_path):
-    scene = scenes.load("tiny")
-    points = [{"model": name, "rung": name, "numerics": "-", "setting": 1.0, "error_deg_s": error, "wall_s": wall,
-               "status": "diverged" if name == "lost" else "exited"} for name, error, wall in POINTS]
-    found = Study(scene, tmp_path / "tiny", Settings())
-    found.folder.mkdir()
-    found.path("cost_study.json").write_text(json.dumps(
-        {"scene_hash": scene.hash, "condition": "phi15", "band_deg_s": 0.02, "points": points}))
-    return found
+COST = {"condition": "phi15", "band_deg_s": 0.02, "points": [
+    {"model": name, "rung": "highfi" if "mm" in name else name.split()[0], "numerics": "-", "setting": 1.0, "error_deg_s": error,
+     "wall_s": wall, "status": "diverged" if name == "lost" else "exited"} for name, error, wall in POINTS]}
 
 
 @pytest.mark.parametrize("accuracy, budget, expected", [
     (1.0, None, "rigid"), (0.1, None, "compliant"), (0.03, None, "compliant fine"), (0.02, None, "compliant fine"),
     (None, 0.003, "compliant"), (None, 0.0025, "rigid"), (None, 60.0, "compliant fine"), (0.1, 4.0, "compliant"),
     (0.86, 0.0025, None), (0.01, None, None), (None, 0.0015, None)])
-def test_cheapest_or_most_exact(study, accuracy, budget, expected):
+def test_cheapest_or_most_exact(accuracy, budget, expected):
     """An error below the band counts as the band: 0.004 deg/s cannot be told from 0.02. A model that diverged never counts."""
     if expected is None:
         with pytest.raises(StudyError, match="no model fits"):
-            choose(study, accuracy, budget)
+            choose(COST, "phi15", None, accuracy, budget)
     else:
-        found = choose(study, accuracy, budget)
-        assert found["rung"] == expected and found["model"] in found["why"] and "phi15" in found["why"]
+        found = choose(COST, "phi15", None, accuracy, budget)
+        assert found["model"] == expected and expected in found["why"] and found["why"].endswith("on phi15")
 
 
-def test_refusal_names_the_nearest(study):
+def test_refusal_names_the_nearest():
     with pytest.raises(StudyError) as fault:
-        choose(study, 0.1, 0.0025)
+        choose(COST, "phi15", None, 0.1, 0.0025)
     assert "most exact in that time: rigid, - (0.9 deg/s, 0.002 s)" in str(fault.value)
     assert "cheapest that is so exact: compliant, - (0.05 deg/s, 0.003 s)" in str(fault.value)
 
 
-def test_refusal_of_one_limit_names_the_best_there_is(study):
+def test_refusal_of_one_limit_names_the_best_there_is():
     with pytest.raises(StudyError, match="most exact of all: compliant fine, - "):
-        choose(study, accuracy=0.01)
+        choose(COST, "phi15", None, accuracy=0.01)
     with pytest.raises(StudyError, match="fastest of all: rigid, - "):
-        choose(study, budget=0.0015)
+        choose(COST, "phi15", None, budget=0.0015)
 
 
-def test_cost_of_another_scene_is_none(study):
+def agreement(error, unsure):
+    """Rows of two conditions: small errors on phi60, these on h8."""
+    rows = [{"condition": "phi60", "settled_rate_error_deg_s": 0.01, "reference_uncertainty_deg_s": 0.01},
+            {"condition": "h8", "settled_rate_error_deg_s": error, "reference_uncertainty_deg_s": unsure}]
+    simpler = [row | {"patterns": 1, "coupled": False} for row in rows]
+    return {"uncalibrated": rows, "fitted": rows[:1], "held_out": rows[1:], "compliant": rows, "modal": rows, "simpler": simpler}
+
+
+def test_what_holds_on_one_condition_is_not_promised_of_another():
+    """Control: without the agreement study the errors of phi15 are taken, and that is said."""
+    found = choose(COST, "phi60", agreement(13.0, 9.0), 0.03)
+    assert found["trusted_deg_s"] == 0.02 and found["why"].endswith("errors on phi60 as make compare found them")
+    with pytest.raises(StudyError, match="(?s)no model fits.*errors on h8 as make compare"):
+        choose(COST, "h8", agreement(13.0, 9.0), 0.03)
+    rigid = choose(COST, "h8", agreement(13.0, 9.0), budget=0.01)  # a rung that is not judged there
+    assert rigid["trusted_deg_s"] == 0.85
+    with pytest.raises(StudyError, match="no model fits"):
+        choose(COST, "h8", agreement(0.01, None), 0.03)
+    for unknown in (None, agreement(13.0, 9.0)):
+        assert choose(COST, "nominal", unknown, 0.03)["why"].endswith("nothing is known of nominal")
+
+
+def test_every_rung_is_known_elsewhere():
+    found = elsewhere(agreement(13.0, 9.0), "h8")
+    assert found == {"uncalibrated": 13.0, "calibrated": 13.0, "compliant": 13.0, "modal": 13.0, "along": 13.0, "highfi": 9.0}
+
+
+def test_nothing_is_chosen_without_measured_cost(tmp_path):
+    study = Study(scenes.load("tiny"), tmp_path / "tiny", Settings())
     with pytest.raises(StudyError, match="tipoff cost --scene tiny"):
-        choose(Study(study.scene.replace({"payload.mass": "8 kg"}), study.folder, Settings()), 0.1)
+        single.chosen(study, "phi15", 0.1, None)
+
+
+@pytest.mark.parametrize("option", [["--walls"], ["--fidelity", "highfi"], ["--calibration", "a.toml"]])
+def test_a_model_is_not_both_given_and_chosen(tmp_path, option):
+    result = CliRunner().invoke(app, ["run", "--scene", "tiny", "--out", str(tmp_path), "--budget", "2 s", *option])
+    assert result.exit_code == 2 and option[0] in result.stderr and "choose the model" in result.stderr
 
 
 @pytest.mark.parametrize("options, words", [

@@ -2,6 +2,7 @@
 
 import json
 import math
+import sys
 
 import numpy as np
 import pytest
@@ -10,20 +11,25 @@ from typer.testing import CliRunner
 import scenes
 from scenes.faults import SceneError
 from studies import store as store_module
+from studies.cost import timing
 from studies.cli import app
 from studies.refinement.ripple import Ripple
 from studies.report.figures import Runs
 from studies.report.page import Page
 from studies.settings import Settings, defaults
-from studies.stages import convergence, report
+from studies.stages import convergence, report, walls
 from studies.study import Study, StudyError
 from tests.studies.synthetic import flight
 
+SURROGATE_ERROR = 1.2  # deg/s
 NOMINAL_PENALTY = scenes.load("tiny").contact.penalty
 
 
 def settled(run):
-    """Rates (deg/s): x errs with the square of the element size (mm) and of the step, y jumps to and fro, z never changes."""
+    """Rates (deg/s): x errs with the square of the element size (mm) and of the step, y jumps to and fro, z never changes; the
+    surrogate is off by ``SURROGATE_ERROR`` from the finest mesh."""
+    if run.fidelity == "lowfi":
+        return 3.0 + 1e-3 * 16.0 + 0.1 * 0.9**2 + SURROGATE_ERROR, 1.0, 2.0
     size, dt = 1e3 * run.numerics.element_size, step(run)
     penalty = run.scene.contact.penalty / NOMINAL_PENALTY if run.scene.contact else 1.0
     return 3.0 + 1e-3 * size**2 + 0.1 * dt**2 + 0.01 * math.log2(penalty), {8.0: 1.3}.get(size, 1.0), 2.0
@@ -31,7 +37,7 @@ def settled(run):
 
 def step(run):
     """The step (s), as if the limit were 1 s."""
-    return run.numerics.safety
+    return run.numerics.safety if run.fidelity == "highfi" else 1.0
 
 
 def motion(run, **parts):
@@ -60,7 +66,10 @@ def asked(monkeypatch):
         return motion(run, status=made.failing.get(run.label, "exited"))
 
     monkeypatch.setattr(store_module, "execute", execute)
-    monkeypatch.setattr(store_module, "prepare", lambda run: None)
+    for module in (store_module, timing):
+        monkeypatch.setattr(module, "prepare", lambda run: None)
+    monkeypatch.setattr(timing, "execute", lambda run, progress=None: motion(run))
+    monkeypatch.setattr(walls, "under", lambda study, names: {name: None for name in names})
     monkeypatch.setattr(convergence.ripple, "measure", rippling)
     return made
 
@@ -113,6 +122,8 @@ def test_loads_of_the_one_pad_that_touches(study):
 def test_stress_is_judged_on_patches_and_never_at_its_peak(tmp_path, monkeypatch, asked):
     """A patch errs with the square of the element size; the peak grows by a third with every halving, as at a sharp corner."""
     def execute(run, progress=None, threads=None, **kept):
+        if run.fidelity == "lowfi":
+            return motion(run)
         size = 1e3 * run.numerics.element_size
         gauge = np.zeros((601, 2, 6))
         gauge[:, 1, 0] = 1e6 * (5.0 + 1e-3 * size**2)
@@ -146,9 +157,21 @@ def test_ripple_of_both_meshes_beside_that_of_a_single_point(study):
     found = convergence.run(study)
     assert [(row["element_size_m"], row["points_per_edge"], row["ripple"]) for row in found["ripple"]] == [
         (0.016, 1, 0.04), (0.016, 8, 0.005), (0.008, 8, 0.005)]
-    assert found["summary"][-1] == "ripple of a constant contact force at 750 Hz, at which facets of 8 mm are crossed: 0.5 %"
+    assert found["summary"][-2] == "ripple of a constant contact force at 750 Hz, at which facets of 8 mm are crossed: 0.5 %"
     shown = Page(study.scene, study.folder, {"convergence": found}, Runs({}, {}, {}), {})._convergence()
     assert "ripple of a constant contact force where facets are crossed" in shown
+
+
+@pytest.mark.parametrize("error, size, surer", [(0.5, 16e-3, True), (0.4, 4e-3, False)])
+def test_speed_is_measured_on_the_coarsest_mesh_that_is_surer(study, monkeypatch, error, size, surer):
+    """y jumps by 0.3 deg/s, which leaves 0.45 open at 4 mm, and as much at 16 mm."""
+    monkeypatch.setattr(sys.modules[__name__], "SURROGATE_ERROR", error)
+    found = convergence.run(study)
+    equal = found["equal_accuracy"]
+    assert (equal["element_size_m"], equal["surer"]) == (size, surer)
+    assert equal["error_deg_s"] == pytest.approx(error)
+    assert equal["ratio"] > 0.0 and equal["highfi_repeats"] == study.settings.highfi_repeats
+    assert "speed at equal accuracy on phi15" in found["summary"][-1] and ("at least" in found["summary"][-1]) is not surer
 
 
 def test_no_run_is_made_twice_and_none_again(study, asked):
@@ -157,11 +180,11 @@ def test_no_run_is_made_twice_and_none_again(study, asked):
     convergence.run(study)
     assert sorted(asked) == sorted(["phi15" + tag for tag in (
         "", "-coarse", "-4mm", "-step-coarse", "-safety-0.225-coarse", "-penalty-0.25-coarse", "-penalty-coarse",
-        "-penalty-16-coarse", "-quadrature-2-coarse", "-quadrature-4-coarse")])
+        "-penalty-16-coarse", "-quadrature-2-coarse", "-quadrature-4-coarse")] + ["phi15"])  # the last is the surrogate
     del asked[:]
     convergence.run(study)
     assert asked == []
-    assert convergence.run(study, "phi60")["condition"] == "phi60" and len(asked) == 10
+    assert convergence.run(study, "phi60")["condition"] == "phi60" and len(asked) == 11
 
 
 def test_four_meshes_of_the_reference():
@@ -190,7 +213,7 @@ def test_mesh_that_diverges_stops_the_stage(study, asked):
 def test_scene_without_contact_has_no_loads_and_no_penalty(tmp_path, asked):
     scene = scenes.load("tiny").replace({"contact": None, "friction": None})
     found = convergence.run(Study(scene, tmp_path, defaults("tiny")))
-    assert found["penalty"] == found["quadrature"] == [] and len(found["summary"]) == 2
+    assert found["penalty"] == found["quadrature"] == [] and found["equal_accuracy"] is None and len(found["summary"]) == 2
     assert {item["unit"] for item in found["quantities"]} == {"deg/s", "m/s"}
 
 

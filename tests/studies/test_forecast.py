@@ -8,8 +8,11 @@ import h5py
 import pytest
 
 import scenes
+from calibrate import parameters, search
+from calibrate.posterior import Effort
 from studies.cost import forecast
 from studies.settings import defaults
+from studies.stages import calibrate as stage
 from studies.study import Study
 
 
@@ -36,11 +39,12 @@ def test_times_are_said_to_a_tenth(seconds, said):
 
 def test_the_line_counts_waves_of_runs():
     """Five runs of 33 s, two at a time, are three waves."""
-    assert forecast.words(5, 2, (33.0, ""), 20.0).startswith("5 reference runs to make, 2 at a time: about 1 min 40 s")
-    assert forecast.words(5, 2, (33.0, ""), 20.0).endswith("; then the search, about 20 s")
-    assert forecast.words(1, 1, (33.0, ""), 20.0).startswith("1 reference run to make: about 35 s")
-    assert forecast.words(0, 0, None, 20.0) == "no reference run to make; the search, about 20 s"
-    assert "not known" in forecast.words(2, 2, None, None)
+    after = forecast.work("the search", 20.0)
+    assert forecast.words(5, 2, (33.0, ""), after).startswith("5 reference runs to make, 2 at a time: about 1 min 40 s")
+    assert forecast.words(5, 2, (33.0, ""), after).endswith("; then the search, about 20 s")
+    assert forecast.words(1, 1, (33.0, ""), after).startswith("1 reference run to make: about 35 s")
+    assert forecast.words(0, 0, None, after) == "no reference run to make; the search, about 20 s"
+    assert forecast.words(2, 2, None, forecast.work("the search", None)).endswith("was run; then the search")
 
 
 def test_time_follows_elements_steps_and_speed(tmp_path):
@@ -60,6 +64,34 @@ def test_time_follows_elements_steps_and_speed(tmp_path):
     made = asked(of)[1]
     stored(of.store.path(made), ns_per_element_step=10.0, elements=19360, steps=170_000)
     assert "4 reference runs to make, 2 at a time: about 1 min 10 s" in forecast.calibration(of, asked(of))
+
+
+def test_a_calibration_on_curves_and_a_posterior_say_theirs(tmp_path):
+    """10 ms a run: a search takes its evaluations of two conditions; a posterior its evaluations of five, and 500 draws of fifteen,
+    at four tenths."""
+    of = study(tmp_path)
+    stored(of.folder / "lowfi" / "one.nc", wall_s=0.01)
+    free, held = parameters.free(of.scene), parameters.held(of.scene)
+    assert forecast.search(of, 2) == f"the search, about {forecast.span(0.02 * search.evaluations(len(free)))}"
+    seconds = 0.004 * (5 * Effort().evaluations(len(free) + len(held)) + 500 * 15)
+    assert forecast.posterior(of, asked(of), 5).startswith("5 reference runs to make, 2 at a time: about")
+    runs = [of.highfi(name) for name in of.conditions]
+    for run in runs:
+        stored(of.store.path(run), ns_per_element_step=10.0, elements=19360, steps=170_000)
+    assert len(runs) == 15
+    assert forecast.posterior(of, runs, 5) == f"no reference run to make; the draws, at most about {forecast.span(seconds)}"
+
+
+def test_curves_are_fitted_after_the_time_was_said(tmp_path, capsys, monkeypatch):
+    """Control: a second call fits nothing and says nothing of it."""
+    monkeypatch.setattr(stage, "_fitted", lambda *asked: ({}, []))
+    path = tmp_path / "phi15.csv"
+    lines = [f"{0.5 * n},{0.1 * n},1,2,3" for n in range(120)]
+    path.write_text("\n".join(["time [ms],velocity_x [m/s],rate_x [deg/s],rate_y [deg/s],rate_z [deg/s]", *lines]))
+    stage.from_files(study(tmp_path), [("phi15", str(path))])
+    assert "the search, about" in capsys.readouterr().err
+    stage.from_files(study(tmp_path), [("phi15", str(path))])
+    assert "the search" not in capsys.readouterr().err
 
 
 def test_speed_comes_from_the_nearest_measurement(tmp_path):
