@@ -17,14 +17,25 @@ def add(app: typer.Typer) -> None:
 def droptest(logs: Annotated[Optional[list[Path]], typer.Argument(metavar="[LOG.toml]...",
                              help="Sheets of logs; default: the three simulated ones that come with the package.")] = None,
              scene: SceneName = "reference", out: Out = Path("out"), set_: Set = None,
+             condition: Annotated[Optional[str], typer.Option("--condition", metavar="NAME",
+                                  help="Named condition that was dropped; default: the scene.")] = None,
+             vary: Annotated[str, typer.Option("--vary", metavar="NAME_OR_FILE", help="Distributions of the cases.")] = "paper",
              cases: Annotated[int, typer.Option("--cases", metavar="N", min=50, help="Simulated cases to compare with.")] = 1000,
+             seed: Annotated[Optional[int], typer.Option("--seed", metavar="N", min=0,
+                                                         help="Seed of all draws; default: as the file says.")] = None,
              walls: OnWalls = False, workers: Workers = None, json_: Json = False) -> None:
-    """From logs of drop tests to rates with their uncertainty, and their place in the simulated distribution; writes droptest.json.
+    """From logs of drop tests to rates with their uncertainty, and their place in the simulated distribution.
+
+    Writes droptest.json, all signals to droptest.nc, and figures.
 
     A log is a CSV file with time, three rates and, if there are, accelerations and temperature. Beside it lies a sheet, a .toml
     file with units, axes, calibration and its uncertainties; studies/droptest/logs/ holds three to copy from. Give the sheets:
 
       tipoff droptest test1.toml test2.toml test3.toml
+
+    The simulated cases have the errors that the paper lists, unless a file says which yours has:
+
+      tipoff droptest test1.toml --scene my_launcher.toml --vary my_errors.toml --condition heavy
 
     The logs that come with the package are simulated by a sensor model, and say so wherever they appear.
     """
@@ -32,8 +43,11 @@ def droptest(logs: Annotated[Optional[list[Path]], typer.Argument(metavar="[LOG.
     def work() -> dict:
         from studies.stages import droptest as stage
 
-        return stage.run(study_of(scene, out, set_, workers=workers), logs, cases, walls)
+        return stage.run(study_of(scene, out, set_, workers=workers), logs,
+                         stage.Asked(vary, cases, seed, condition, walls))
 
     found = guarded(work, json_)
     if not json_:
-        print("\n".join([*found["summary"], *(f"  figure        {Path(out) / found['scene'] / path}" for path in found["files"])]))
+        folder = Path(out) / found["scene"]
+        files = [f"  {'data' if path == found['data'] else 'figure':13} {folder / path}" for path in found["files"]]
+        print("\n".join([*found["summary"], *files]))

@@ -9,20 +9,22 @@ from scenes.faults import Fault, SceneError
 from studies.droptest import events as finding
 from studies.droptest.calibrated import Calibrated, calibrated, untold
 from studies.droptest.channel_class import filtered
-from studies.droptest.events import Events, Spans, inside
+from studies.droptest.events import WINDOWS, Events, Spans, inside
 from studies.droptest.log import Log, read
 from studies.droptest.reduction import Reduced, reduced
 from studies.droptest.sheet import Sheet
 
 
 class Drop(NamedTuple):
-    """A drop test: its sheet, calibrated samples, filtered rate (n,3) rad/s, events, windows, change of rate; largest rate (rad/s)
-    in the window at rest, and ``notes``, everything that was repaired, assumed or left out, in words."""
+    """A drop test: its sheet, calibrated samples, filtered rate (n,3) rad/s, samples that are ``doubtful`` (n,) as they are missing
+    or clipped, events, windows, change of rate; largest rate (rad/s) in the window at rest, and ``notes``, everything that was
+    repaired, assumed or left out, in words."""
 
     name: str
     sheet: Sheet
     samples: Calibrated
     filtered: np.ndarray
+    doubtful: np.ndarray
     events: Events
     spans: Spans
     reduced: Reduced
@@ -45,13 +47,14 @@ def of(sheet: Sheet, log: Log, source: str) -> Drop:
     _require_whole(log, spans, source)
     result = reduced(sheet, samples, spans, source)
     unrest = float(np.abs(smooth[inside(log.time, spans.rest)]).max())
-    return Drop(Path(source).stem, sheet, samples, smooth, events, spans, result, unrest, _notes(sheet, log, events, unrest))
+    return Drop(Path(source).stem, sheet, samples, smooth, log.doubtful | log.clipped, events, spans, result, unrest,
+                _notes(sheet, log, events, unrest))
 
 
 def _require_whole(log: Log, spans: Spans, source: str) -> None:
     """No gap in a window, no clipped rate, nor acceleration, by which the rate is compensated. Raises SceneError else."""
     faults = []
-    for name in ("rest", "reference", "settled"):
+    for name in WINDOWS:
         places = inside(log.time, getattr(spans, name))
         if bad := int((log.doubtful | log.clipped)[places].sum()):
             faults.append(Fault(source, f"{name} window", f"{bad} of {places.size} samples missing or clipped", "none"))
@@ -63,6 +66,9 @@ def _notes(sheet: Sheet, log: Log, events: Events, unrest: float) -> list[str]:
     notes = [*log.notes, *untold(sheet, log)]
     if events.given:
         notes.append("release and ignition as the sheet gives them")
+    if events.later:
+        times = ", ".join(f"{at:.4g} s" for at in events.later)
+        notes.append(f"pushed along +X as long as by a burn after ignition too, at {times}: taken for the catch")
     if unrest > sheet.windows.rest_rate:
         notes.append(f"settling rule broken: {np.degrees(unrest):.3g} deg/s in the {sheet.windows.rest:g} s before release, "
                      f"{np.degrees(sheet.windows.rest_rate):g} deg/s allowed")

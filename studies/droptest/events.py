@@ -4,8 +4,9 @@
 filtered force stays below g/2 for 50 ms, so that no knock passes for it; its beginning is then put where a step from the mean force
 before to zero fits the unfiltered samples best (least squares, which is maximum likelihood for white noise).
 
-**Ignition**: of all stretches of free fall in which the force along +X exceeds six standard deviations of its noise (and 1 m/s2),
-that of the largest impulse is the burn, and its beginning is ignition. A latch may knock harder, but not for as long.
+**Ignition**: of all stretches after release in which the force along +X exceeds six standard deviations of its noise (and 1 m/s2),
+the first whose impulse is that of an ejection is the burn, and its beginning is ignition. A latch may knock harder, but not for as
+long; and whatever catches the platform may push for longer than the thruster, but not before it.
 """
 
 from typing import NamedTuple
@@ -19,6 +20,7 @@ from studies.droptest.log import runs
 from studies.droptest.sheet import Sheet
 
 GRAVITY = 9.80665
+WINDOWS = ("rest", "reference", "settled")
 _FALL = 0.05  # s; no knock lasts as long
 _NOISE_FROM, _NOISE_TO = 0.01, 0.05  # s after release, where the noise of the force is judged
 _SIGMAS, _LEAST = 6.0, 1.0  # a sample that belongs to the burn: standard deviations, and m/s2
@@ -29,11 +31,13 @@ _SHORTEST = 0.03  # s of a window
 
 
 class Events(NamedTuple):
-    """Instants (s of the log), and whether they are found or given."""
+    """Instants (s of the log), and whether they are found or given; ``later``, where further pushes begin that are as long as a
+    burn and lie after the exit, and are taken for the catch."""
 
     release: float
     ignition: float
     given: bool
+    later: tuple[float, ...] = ()
 
 
 class Spans(NamedTuple):
@@ -57,7 +61,8 @@ def find(sheet: Sheet, found: Calibrated, source: str) -> Events:
     if abs(felt / GRAVITY - 1.0) > _AT_REST:
         raise SceneError([Fault(source, "units.acceleration", f"{felt:.4g} m/s2 at rest",
                                 f"{GRAVITY:.4g} m/s2 within {100.0 * _AT_REST:g} %: unit, scale or bias is wrong")])
-    return Events(float(found.time[release]), float(found.time[_ignition(found, interval, release, source)]), False)
+    ignition, *others = (float(found.time[place]) for place in _pushes(found, interval, release, source))
+    return Events(float(found.time[release]), ignition, False, tuple(at for at in others if at > ignition + sheet.windows.exit))
 
 
 def _release(sheet: Sheet, found: Calibrated, interval: float, source: str) -> int:
@@ -77,7 +82,8 @@ def _release(sheet: Sheet, found: Calibrated, interval: float, source: str) -> i
     return low + int(np.argmin(wrong))
 
 
-def _ignition(found: Calibrated, interval: float, release: int, source: str) -> int:
+def _pushes(found: Calibrated, interval: float, release: int, source: str) -> list[int]:
+    """Where pushes along +X with the impulse of an ejection begin, in order. Raises SceneError where there is none."""
     ahead = found.force[:, 0]
     begin, end = (release + int(after / interval) for after in (_NOISE_FROM, _NOISE_TO))
     calm = ahead[begin:end]
@@ -85,11 +91,11 @@ def _ignition(found: Calibrated, interval: float, release: int, source: str) -> 
     limit = max(_SIGMAS * 1.4826 * np.median(np.abs(calm - level)), _LEAST)
     pushed = np.flatnonzero(ahead[begin:] - level > limit) + begin
     burns = np.split(pushed, np.flatnonzero(np.diff(pushed) > _JOINED / interval) + 1)
-    impulses = [interval * float(ahead[burn].sum()) for burn in burns]
-    if not pushed.size or max(impulses) < _IMPULSE:
+    strong = [int(burn[0]) for burn in burns if burn.size and interval * float(ahead[burn].sum()) >= _IMPULSE]
+    if not strong:
         expected = f"one of {_IMPULSE} m/s and more; do the axes point so?"
         raise SceneError([Fault(source, "ignition", "no push along +X in free fall", expected)])
-    return int(burns[int(np.argmax(impulses))][0])
+    return strong
 
 
 def spans(sheet: Sheet, found: Calibrated, events: Events, source: str) -> Spans:
@@ -103,7 +109,7 @@ def spans(sheet: Sheet, found: Calibrated, events: Events, source: str) -> Spans
                    (events.release + ask.after_release, events.ignition - guard),
                    (settled, settled + ask.settled), left + SETTLE_DELAY + 0.5 * SETTLE_WINDOW)
     faults = []
-    for name in ("rest", "reference", "settled"):
+    for name in WINDOWS:
         begin, end = getattr(spans_, name)
         if end - begin < _SHORTEST or begin < found.time[0] or end > found.time[-1]:
             faults.append(Fault(source, f"{name} window", f"{begin:.4g} to {end:.4g} s",

@@ -2,7 +2,8 @@
 
 Every sample belongs to an instant of an even grid. Time that jitters by less than half an interval is interpolated onto it; one or
 two samples that are missing or not a number are bridged by a straight line; longer gaps and clipped rates are marked, so that no
-window that matters may hold them. Each of these leaves a note; anything worse is a fault.
+window that matters may hold them. A temperature, which drifts in seconds, is interpolated over gaps of any length. Each of these
+leaves a note; anything worse is a fault.
 """
 
 import csv
@@ -108,7 +109,9 @@ def _even(sheet: Sheet, source: str, values: dict[str, np.ndarray]) -> Log:
     grid = start + interval * np.arange(place[-1] + 1)
     filled, doubtful = {"time": grid}, np.zeros(grid.size, dtype=bool)
     for name, columns in values.items():
-        if name != "time":
+        if name == "temperature":
+            filled[name] = _drifting(time, columns[:, 0], grid, source, notes)
+        elif name != "time":
             filled[name], gone = _bridged(time if off > _JITTER else grid[place], columns, grid, place, name, notes)
             doubtful |= gone
     return _marked(sheet, filled, doubtful, notes)
@@ -134,6 +137,20 @@ def _bridged(time, columns, grid, place, name: str, notes: list[str]) -> tuple[n
     return np.column_stack([np.interp(grid, time[good], column[good]) for column in columns.T]), gone
 
 
+def _drifting(time, values, grid, source: str, notes: list[str]) -> np.ndarray:
+    """Temperature (n,) on the grid; a logger may write it more slowly than rates. Raises SceneError for a column without
+    a number."""
+    good = np.isfinite(values)
+    if not good.any():
+        raise SceneError([Fault(source, "temperature", "no number in the column", "a temperature, or no such column in the sheet")])
+    if not good.all():
+        known = time[good]
+        longest = np.diff([time[0], *known, time[-1]]).max()
+        notes.append(f"temperature: given in {good.sum()} of {good.size} samples, interpolated between and held before the first "
+                     f"and after the last, over {longest:.3g} s at most")
+    return np.interp(grid, time[good], values[good])
+
+
 def _marked(sheet: Sheet, filled: dict, doubtful: np.ndarray, notes: list[str]) -> Log:
     rate, force, temperature = filled["rate"], filled.get("acceleration"), filled.get("temperature")
     at_end = (np.abs(rate) >= sheet.gyro.range * (1.0 - 1e-9)).any(axis=1)
@@ -145,7 +162,7 @@ def _marked(sheet: Sheet, filled: dict, doubtful: np.ndarray, notes: list[str]) 
         clipped = (np.abs(force) >= sheet.accelerometer.range * (1.0 - 1e-9)).any(axis=1)
     if clipped.any():
         notes.append(f"acceleration: {clipped.sum()} samples clipped at the range of {sheet.accelerometer.range:.4g} m/s2")
-    return Log(filled["time"], rate, force, None if temperature is None else temperature[:, 0], doubtful | at_end, clipped, notes)
+    return Log(filled["time"], rate, force, temperature, doubtful | at_end, clipped, notes)
 
 
 def runs(flags: np.ndarray) -> list[tuple[int, int]]:

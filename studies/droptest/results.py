@@ -2,12 +2,14 @@
 
 import numpy as np
 
+from lowfi.columns import Columns
 from studies.droptest import judgement, power
 from studies.droptest.analysis import Drop
+from studies.droptest.events import WINDOWS
 from studies.droptest.reduction import COVERAGE
+from studies.populations import answers, spread
 
 MAGNITUDES = ("roll", "transverse", "total")
-WINDOWS = ("rest", "reference", "settled")
 PAIRS = ((0, 1), (0, 2), (1, 2))
 _EVERY = 4  # samples: the curves of a result file are thinned where nothing happens
 _AROUND = 0.12  # s around ignition where they are not
@@ -63,19 +65,41 @@ def joint(tests: list[dict], simulated: np.ndarray) -> dict:
             "regions": regions, "power": power.table(simulated, len(tests))}
 
 
+def quantiles(results: Columns, settled: np.ndarray, independent: bool) -> dict[str, list[dict]]:
+    """Of what the ``settled`` (n,) cases leave their rail with, by name, in the units of the name; bounded where draws are
+    ``independent``."""
+    found = {item.name: spread.quantiles(item.of(results)[settled]) for item in answers.ALL}
+    nothing = {} if independent else {"low": None, "high": None}
+    return {name: [row | nothing for row in rows] for name, rows in found.items()}
+
+
 def summary(scene: str, found: dict) -> list[str]:
     """The whole result in words, one line each."""
     cases, tests = found["cases"], found["tests"]
     count = cases["outside_calibration"]
     outside = f"; {count:,} of them outside what the calibration was made for" if count else ""
     said = [f"{scene}: {len(tests)} drop tests against {cases['settled']:,} settled of {cases['asked']:,} cases of the surrogate, "
-            f"{found['surrogate']}{outside}"]
+            f"{found['surrogate']}{outside}; {_drawn(found)}"]
     if any(row["simulated"] for row in tests):
         said.append("  SIMULATED     logs marked so come from a sensor model: they show that the reduction works and say "
                     "nothing of a launcher")
     for row in tests:
         said += _test_lines(row)
-    return said + _verdict(found)
+    return [*said, *_cases(found["cases"]), *_verdict(found)]
+
+
+def _cases(cases: dict) -> list[str]:
+    """Medians and 95 % quantiles of the simulated cases beside their rates, which logs do not tell."""
+    at = {name: {row["share"]: row["value"] for row in rows} for name, rows in cases["quantiles"].items()}
+    return ["  cases         " + ", ".join(f"{item.label} {at[item.name][0.5]:.3g} ({at[item.name][0.95]:.3g}) {item.unit}"
+                                           for item in (*answers.VELOCITY, *answers.ATTITUDE)) + ": median (95 %)"]
+
+
+def _drawn(found: dict) -> str:
+    """What the cases are of, in words."""
+    request = found["request"]
+    condition = f"condition {request['condition']}, " if request["condition"] else ""
+    return f"{condition}errors of {request['vary']}, seed {found['varied']['seed']}"
 
 
 def _test_lines(row: dict) -> list[str]:

@@ -6,6 +6,7 @@ import numpy as np
 
 from studies.droptest import judgement
 from studies.droptest.results import MAGNITUDES, PAIRS
+from studies.populations import answers, spread
 from studies.report.chart import AMBER, AXIS_COLOURS, GREY, NAVY, TEAL, VERMILION, Chart, Line, Panel
 from studies.report.markup import Html, caption, fold, number, paragraph, table
 
@@ -14,10 +15,10 @@ _LOOKS = ((VERMILION, "s"), (TEAL, "^"), (AMBER, "D"), (NAVY, "v"))
 _RATES = ("Rates in payload body axes, filtered forward and backward with the channel frequency class of each log. Shaded: the "
           "window at rest before release, the reference window in free fall and the settled window after exit; dotted uprights: "
           "release and ignition. Right: the same around ignition.")
-_CLOUD = ("Change of rate by ejection. Dots: simulated cases{shown}, which start at rest. Closed curve: the region that holds the "
-          "next case with {share:g} % probability, an ellipse whose size comes from ranks and whose shape need not be that of the "
-          "cloud. Symbols: the tests, with bars of 95 % where these are wider than the symbol. Last: magnitudes, which need no "
-          "angle about X.")
+_CLOUD = ("Change of rate by ejection. Dots: simulated cases{shown}, which start at rest, with errors of {vary}. Closed curve: the "
+          "region that holds the next case with {share:g} % probability, an ellipse whose size comes from ranks and whose shape "
+          "need not be that of the cloud. Symbols: the tests, with bars of 95 % where these are wider than the symbol. Last: "
+          "magnitudes, which need no angle about X.")
 _SIMULATED = Html('<div class="notice">SIMULATED logs, made by a sensor model: they show that the reduction works, and say nothing '
                   "of a launcher.</div>")
 
@@ -31,8 +32,8 @@ def draw(found: dict, figure: Callable[[Chart, str], Html]) -> str:
     share, most = found["regions"][0]["share"], found["cases"]["settled"]
     shown = "" if len(found["cases"]["shown_deg_s"]) == most else f", the first {len(found['cases']['shown_deg_s']):,} of {most:,}"
     return "".join([*notices, figure(rates, _RATES), _changes(found),
-                    figure(cloud, _CLOUD.format(share=100.0 * share, shown=shown)), said,
-                    _standing(found), _power(found), _budgets(found), _notes(found)])
+                    figure(cloud, _CLOUD.format(share=100.0 * share, shown=shown, vary=found["request"]["vary"])), said,
+                    _standing(found), _cases(found["cases"]), _power(found), _budgets(found), _notes(found)])
 
 
 def charts(found: dict) -> tuple[Chart, Chart]:
@@ -108,6 +109,19 @@ def _standing(found: dict) -> Html:
     return Html(table(heads, rows) + caption(
         "Percentiles among simulated cases that carry the same errors of measurement, and p by rank, (r + 1)/(N + 1): no smaller "
         f"than {found['together']['smallest_p']:.2g}. Two-sided but for the Mahalanobis distance."))
+
+
+def _cases(cases: dict) -> Html:
+    shares = [row["share"] for row in cases["quantiles"][answers.TOTAL_RATE.name]]
+    rows = [(f"{item.label} ({item.unit})", *map(_bounded, cases["quantiles"][item.name])) for item in answers.ALL]
+    return Html(table(("simulated cases", *(f"{100.0 * share:.4g} %" for share in shares)), rows, dense=True) + caption(
+        f"What {cases['settled']:,} simulated cases leave their rail with, beside the rates that a log tells: share of cases below "
+        f"the value; in brackets its bounds at {spread.CONFIDENCE:.0%} confidence where the cases are independent and enough."))
+
+
+def _bounded(row: dict) -> Html:
+    ends = "" if row["low"] is None and row["high"] is None else f" [{number(row['low'])}, {number(row['high'])}]"
+    return Html(f"{number(row['value'])}{ends}")
 
 
 def _place(share: float, p: float) -> str:

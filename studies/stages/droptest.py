@@ -1,10 +1,12 @@
 """Stage ``droptest``: logs of drop tests against the distribution that the surrogate has for the same launcher.
 
-The simulated cases vary what the catalogue's ``paper`` distributions vary, and start at rest in free fall. How a test sits among
-them is told by ranks (``studies.droptest.judgement``), what that is worth by its power (``studies.droptest.power``).
+The simulated cases vary what the distributions that are asked for vary, the catalogue's ``paper`` unless told otherwise, and start
+at rest in free fall. How a test sits among them is told by ranks (``studies.droptest.judgement``), what that is worth by its power
+(``studies.droptest.power``).
 """
 
 import hashlib
+from dataclasses import asdict, dataclass
 from pathlib import Path
 
 import numpy as np
@@ -12,9 +14,11 @@ import numpy as np
 from lowfi.rows import Drawn
 from scenes import uncertainty
 from scenes.faults import Fault, SceneError
-from studies.droptest import shipped
+from scenes.scene import Scene
+from studies.checked import together
+from studies.droptest import sheet, shipped, signals
 from studies.droptest.analysis import Drop, analyse
-from studies.droptest.results import joint, summary, row_of
+from studies.droptest.results import joint, quantiles, row_of, summary
 from studies.populations import population
 from studies.populations.population import Population
 from studies.store import SOURCES
@@ -26,21 +30,39 @@ _FEWEST = 20  # settled cases; a covariance of fewer says little
 _SHOWN = 2000  # cases in the figure
 
 
-def run(study: Study, logs: list[Path] | None = None, cases: int = CASES, walls: bool = False) -> dict:
+@dataclass(frozen=True)
+class Asked:
+    """What ``tipoff droptest`` is given beside the scene and the logs: distributions, how many cases and their seed, None as the
+    file says, the condition that was dropped, None for the scene itself, and whether the surrogate stands on ``walls`` that give
+    way."""
+
+    vary: str = uncertainty.DEFAULT
+    cases: int = CASES
+    seed: int | None = None
+    condition: str | None = None
+    walls: bool = False
+
+
+def run(study: Study, logs: list[Path] | None = None, asked: Asked = Asked()) -> dict:
     """``tests`` with their rates, budgets and standing, ``together``, ``power``, and ``summary`` in words.
 
-    Raises SceneError listing every fault of every log, StudyError where too few cases settle.
+    Raises SceneError listing every fault of every log and of what varies, StudyError where too few cases settle.
     """
-    drops, request = _analysed(logs or shipped.sheets()), {"cases": cases, "walls": walls}
-    request["logs"] = [_digest(path, drop) for path, drop in zip(logs or shipped.sheets(), drops)]
+    drops, drawn = together(lambda: _analysed(logs or shipped.sheets()), lambda: _drawn(study, asked))
+    request = asdict(asked) | {"logs": [str(path.resolve()) for path in logs] if logs else None}
 
     def make() -> tuple[dict, list[Path]]:
         from studies.report import droptest as page
         from studies.report.chart import to_files
 
-        found = result(study, drops, _cases(study, cases, walls)) | {"request": request, "surrogate": _surrogate(study, walls)}
+        cases = population.run(study, NAME, population.surrogate(study, asked.walls, asked.condition), drawn)
+        found = result(study, drops, cases, drawn.uncertainty.sampling == "random")
+        found |= {"request": request, "surrogate": _surrogate(study, asked), "varied": drawn.uncertainty.resolved()}
         found["summary"] = summary(study.scene.name, found)
-        return found, [path for chart in page.charts(found) for path in to_files(chart, study.path("figures"))]
+        data = study.path(f"{NAME}.nc")
+        signals.write(data, drops)
+        pictures = [path for chart in page.charts(found) for path in to_files(chart, study.path("figures"))]
+        return found | {"data": study.relative(data)}, [data, *pictures]
 
     return study.stage(NAME, _key(study, request), make)
 
@@ -51,37 +73,62 @@ def stored(study: Study) -> dict | None:
 
 
 def _key(study: Study, request: dict) -> str:
-    return study.key(SOURCES["calibrated"], NAME, request)
+    """By the paths of the logs, and by what these and the distributions hold now. Raises SceneError for a file that is gone or
+    broken."""
+    digests = [_digest(Path(path)) for path in request["logs"] or shipped.sheets()]
+    asked = Asked(**{name: value for name, value in request.items() if name != "logs"})
+    return study.key(SOURCES["calibrated"], NAME, request, digests, _drawn(study, asked).uncertainty.resolved())
+
+
+def _drawn(study: Study, asked: Asked) -> Drawn:
+    seed = {} if asked.seed is None else {"seed": asked.seed}
+    return Drawn(uncertainty.load(asked.vary, _scene(study, asked), cases=asked.cases, **seed))
+
+
+def _scene(study: Study, asked: Asked) -> Scene:
+    return study.condition(asked.condition) if asked.condition else study.scene
+
+
+def _digest(path: Path) -> list[str]:
+    """Of a sheet and of the table it names."""
+    files = (path, path.parent / sheet.load(path).file)
+    try:
+        return [hashlib.sha256(file.read_bytes()).hexdigest() for file in files]
+    except OSError as error:
+        raise SceneError([Fault(str(path), "file", str(error), "a readable CSV file")]) from error
 
 
 def _analysed(paths: list[Path]) -> list[Drop]:
-    drops, different = [], list(dict.fromkeys(paths))
-    faults = [Fault("LOG", str(path), "twice", "every test once") for path in different if paths.count(path) > 1]
-    for path in different:
+    """Every log under a name of its own. Raises SceneError listing every fault of every log."""
+    drops, different = [], {path.resolve(): path for path in reversed(paths)}
+    places = [path.resolve() for path in paths]
+    faults = [Fault("LOG", str(path), "twice", "every test once") for place, path in different.items() if places.count(place) > 1]
+    for path, name in zip(paths, _names(places)):
         try:
-            drops.append(analyse(path))
+            drops.append(analyse(path)._replace(name=name))
         except SceneError as error:
             faults += error.faults
     if faults:
-        raise SceneError(faults)
+        raise SceneError(list(dict.fromkeys(faults)))
     return drops
 
 
-def _digest(path: Path, drop: Drop) -> str:
-    return hashlib.sha256(Path(path).read_bytes() + (Path(path).parent / drop.sheet.file).read_bytes()).hexdigest()
+def _names(places: list[Path]) -> list[str]:
+    """The names of the sheets without their ending, with as many folders before them as it takes to tell one from another."""
+    names = [place.stem for place in places]
+    for depth in range(2, max(len(place.parts) for place in places)):
+        names = ["/".join(place.with_suffix("").parts[-depth:]) if names.count(name) > 1 else name
+                 for place, name in zip(places, names)]
+    return names
 
 
-def _cases(study: Study, cases: int, walls: bool) -> Population:
-    source = Drawn(uncertainty.load(uncertainty.DEFAULT, study.scene, cases=cases))
-    return population.run(study, NAME, population.surrogate(study, walls), source)
+def _surrogate(study: Study, asked: Asked) -> str:
+    return "without contact" if _scene(study, asked).contact is None else "on compliant walls" if asked.walls else "calibrated"
 
 
-def _surrogate(study: Study, walls: bool) -> str:
-    return "without contact" if study.scene.contact is None else "on compliant walls" if walls else "calibrated"
-
-
-def result(study: Study, drops: list[Drop], cases: Population) -> dict:
-    """The drops among the cases, as plain values. Raises StudyError where too few cases settle."""
+def result(study: Study, drops: list[Drop], cases: Population, independent: bool = True) -> dict:
+    """The drops among the cases, which are ``independent`` draws or points that depend on each other, as plain values. Raises
+    StudyError where too few cases settle."""
     settled = cases.settled
     if settled.sum() < _FEWEST:
         raise StudyError(f"only {settled.sum()} of {settled.size} simulated cases left the rail and settled: too few")
@@ -91,6 +138,7 @@ def result(study: Study, drops: list[Drop], cases: Population) -> dict:
         row["notes"] += _doubts(study, drop, cases.results.exit_time[settled])
     return {"simulated_logs": all(drop.sheet.simulated for drop in drops), "tests": tests, **joint(tests, rates),
             "cases": {**cases.counts, "settled": int(settled.sum()), "outside_calibration": int(cases.outside.sum()),
+                      "quantiles": quantiles(cases.results, settled, independent),
                       "store": cases.store, "shown_deg_s": np.round(rates[:_SHOWN], 4).tolist()}}
 
 

@@ -37,6 +37,16 @@ def motion(before, after) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return time, rate, force
 
 
+def caught(time, rate, force, length: float = 0.5) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The same, and then a net that brakes the platform for ``length`` (s) of a log that is as much longer. It pulls along +X too:
+    less than thrust does, for so long that its impulse is larger, and it shakes the payload."""
+    after = time[-1] + INTERVAL * np.arange(1, round(length / INTERVAL) + 1)
+    pull = np.sin(np.pi * (after - time[-1]) / length)
+    shaken = rate[-1] + 0.5 * np.sin(60.0 * (after - time[-1]))[:, None]
+    return (np.concatenate([time, after]), np.vstack([rate, shaken]),
+            np.vstack([force, pull[:, None] * np.array([40.0, 0.0, 60.0])]))
+
+
 def log(sensor: Sensor, before, after, rng, kelvin: float = 293.15) -> Log:
     """What a sensor makes of it."""
     time, rate, force = motion(before, after)

@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
-from studies.droptest import events
+from studies.droptest import analysis, events
 from studies.droptest.calibrated import Calibrated
 from studies.droptest.events import GRAVITY
-from tests.studies.droptest.synthetic import BURN, IGNITION, INTERVAL, RELEASE, motion, sheet
+from studies.droptest.log import Log, runs
+from tests.studies.droptest.synthetic import BURN, END, IGNITION, INTERVAL, RELEASE, caught, motion, sheet
 
 
 def knocked(noise, seed):
@@ -36,6 +37,49 @@ def test_release_and_ignition_are_found_to_the_sample(noise, close):
         assert -1.5 * INTERVAL <= seen.ignition - IGNITION <= late + 2.5 * INTERVAL
         release, ignition = naive(found)
         assert release < RELEASE - 0.1 and ignition < IGNITION - 0.1  # the control falls for the jerk and the latch, or for noise
+
+
+def with_catch(noise, seed):
+    """A drop that ends in a net, with noise (m/s2)."""
+    time, rate, force = caught(*motion([0.0] * 3, [0.1, 0.0, 0.0]))
+    return Calibrated(time, rate, force + noise * np.random.default_rng(seed).standard_normal(force.shape), None)
+
+
+def largest_push(found):
+    """Where the push along +X of the largest impulse after release begins."""
+    stretches = [run for run in runs(found.force[:, 0] > 3.0) if found.time[run[0]] > RELEASE]
+    return found.time[max(stretches, key=lambda run: found.force[run[0]:run[1], 0].sum())[0]]
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.05, 0.4])
+def test_a_catch_is_not_taken_for_ignition(noise):
+    """Its impulse along +X is twice that of the burn. Control: by the largest impulse it would be ignition, and the window of free
+    fall would hold the burn."""
+    found = with_catch(noise, 1)
+    seen = events.find(sheet(), found, "test")
+    assert seen.release == pytest.approx(RELEASE, abs=1.5 * INTERVAL)
+    assert seen.ignition == pytest.approx(IGNITION, abs=3.5 * INTERVAL)
+    assert len(seen.later) == 1 and seen.later[0] == pytest.approx(END, abs=0.03)
+    wrong = largest_push(found)
+    assert wrong > END - INTERVAL
+    spanned = events.spans(sheet(), found, seen._replace(ignition=wrong), "test").reference
+    assert spanned[0] < IGNITION and spanned[1] > IGNITION + BURN
+    assert events.find(sheet(), knocked(noise, 1), "test").later == ()  # a latch is no catch
+
+
+def test_the_change_of_rate_does_not_know_of_the_catch():
+    """To the last digit that of the log without it; that something else pushed is said."""
+    after = [0.1, -0.05, 0.02]
+    plain, longer = motion([0.0] * 3, after), caught(*motion([0.0] * 3, after))
+    first, second = (analysis.of(sheet(), _log(*drop), "test") for drop in (plain, longer))
+    np.testing.assert_allclose(second.reduced.change, first.reduced.change, atol=1e-12)
+    assert any("taken for the catch" in note for note in second.notes)
+    assert not any("catch" in note for note in first.notes)
+
+
+def _log(time, rate, force):
+    nothing = np.zeros(time.size, dtype=bool)
+    return Log(time, rate, force, None, nothing, nothing, [])
 
 
 def test_windows_keep_clear_of_what_stirs():

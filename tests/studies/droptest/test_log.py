@@ -80,6 +80,27 @@ def test_a_longer_gap_or_clipping_elsewhere_is_left_out_and_said(tmp_path, rows,
     np.testing.assert_allclose(found.reduced.change, analysis.analyse(shipped.sheets()[0]).reduced.change, atol=1e-12)
 
 
+def slowly(every, column):
+    """A column that has a value in one of ``every`` samples."""
+    def change(cells):
+        for number, row in enumerate(cells):
+            row[column] = row[column] if number % every == 0 else ""
+        return cells
+    return change
+
+
+def test_a_temperature_that_is_sampled_slowly_is_interpolated_and_said(tmp_path):
+    """Its ramp of 0.05 K/s is rounded to 0.1 K. Control: a rate that is sampled so is refused in every window."""
+    whole, found = analysis.analyse(shipped.sheets()[0]), analysis.analyse(written(tmp_path, rows=slowly(100, 7)))
+    assert np.abs(found.samples.temperature - whole.samples.temperature).max() < 0.11
+    np.testing.assert_allclose(found.reduced.change, whole.reduced.change, atol=0.01 * whole.reduced.combined.min())
+    assert any("temperature: given in 19 of 1850 samples" in note and "over 0.1 s at most" in note for note in found.notes)
+    assert not any("temperature" in note for note in whole.notes)
+    message = refused(written(tmp_path, rows=slowly(100, 2)))
+    assert all(f"{window} window" in message for window in ("rest", "reference", "settled"))
+    assert "temperature: given no number" in refused(written(tmp_path, rows=changed(0, 5000, 7, "")))
+
+
 def test_small_jitter_is_interpolated_and_said_and_large_is_refused(tmp_path):
     def jittered(share):
         shift = share * 1e-3 * np.random.default_rng(1).uniform(-1.0, 1.0, 5000)
