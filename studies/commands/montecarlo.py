@@ -29,7 +29,8 @@ def add(app: typer.Typer) -> None:
     """Put the command under ``app``."""
 
     @app.command()
-    def montecarlo(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = None, cases: Cases = 100_000, seed: Seed = 1,
+    def montecarlo(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = None,
+                   cases: Cases = 1_000_000, seed: Seed = 1,
                    reading: Meaning = Values.signed, angles: Direction = Angles.independent, rule: Rule = Rules.redraw,
                    initial: Initial = False, limit: Limit = None, walls: OnWalls = False, workers: Workers = None,
                    json_: Json = False) -> None:

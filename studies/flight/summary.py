@@ -1,15 +1,20 @@
-"""What flights amount to in the units an engineer reads: rows of one case, distributions over many, and data."""
+"""What flights amount to in the units an engineer reads: rows of one case, distributions over many, and data.
+
+Beside each stands what the payload left its rail with, under the names that every study of tolerances has for it.
+"""
 
 from typing import TYPE_CHECKING, Callable, NamedTuple
 
 import numpy as np
 from scipy.stats import binomtest
 
+from lowfi.columns import Columns
+from scenes.outcome import Outcome
 from scenes.scene import Scene
 from scenes.uncertainty import Uncertainty
 from studies.flight import bodies
 from studies.flight.flown import Flown
-from studies.populations import order_statistics
+from studies.populations import answers, order_statistics
 from studies.populations.population import Population
 
 if TYPE_CHECKING:
@@ -44,6 +49,7 @@ QUANTITIES = (
 _SIDES: dict[str, Callable[[Flown], np.ndarray]] = {
     "miss_y_m": lambda found: found.miss[:, 0], "miss_z_m": lambda found: found.miss[:, 1],
     "orbital_y_m": lambda found: found.orbital[:, 0], "orbital_z_m": lambda found: found.orbital[:, 1]}
+WORDS = {item.name: f"{item.label} ({item.unit})" for item in answers.ALL} | {item.name: item.words for item in QUANTITIES}
 _JUDGED = ("miss_m", "tip_off_miss_m", "pointing_deg", "limit_s", "cone_largest_deg", "coning_deg_s", "clearance_mm", "returns_m")
 
 
@@ -57,9 +63,10 @@ def orbit(scene: Scene) -> dict:
             "pointing_limit_deg": flight.pointing_limit and float(np.degrees(flight.pointing_limit))}
 
 
-def row(found: Flown, case: int) -> dict:
-    """One case; None for what has no value, or is never."""
-    values = {item.name: float(item.of(found)[case]) for item in QUANTITIES}
+def row(found: Flown, left: Columns | Outcome, case: int) -> dict:
+    """One case, and what it ``left`` its rail with; None for what has no value, or is never."""
+    values = {item.name: float(item.of(left)[case]) for item in answers.ALL}
+    values |= {item.name: float(item.of(found)[case]) for item in QUANTITIES}
     values |= {name: float(of(found)[case]) for name, of in _SIDES.items()}
     return {name: value if np.isfinite(value) else None for name, value in values.items()}
 
@@ -67,8 +74,9 @@ def row(found: Flown, case: int) -> dict:
 def cases(found: Flown, population: Population, uncertainty: Uncertainty) -> dict:
     """Counts, quantiles with bounds, how many touch again and how many never reach the target, and points to draw."""
     independent = uncertainty.sampling == "random"
-    judged = {item.name: values for item in QUANTITIES if item.name in _JUDGED and np.isfinite(values := item.of(found)).any()}
     told, reached, settled = np.isfinite(found.clearance), np.isfinite(found.passes), population.settled
+    judged = {item.name: item.of(population.results)[settled] for item in answers.ALL}
+    judged |= {item.name: values for item in QUANTITIES if item.name in _JUDGED and np.isfinite(values := item.of(found)).any()}
     points = np.hstack([found.miss, found.orbital])[reached][:_SCATTERED]
     why = "order statistics of independent draws" if independent else f"none: points of {uncertainty.sampling} depend on each other"
     return {"counts": population.counts, "settled": int(settled.sum()), "outside": int(population.outside[settled].sum()),
@@ -99,13 +107,15 @@ def _share(flags: np.ndarray, independent: bool) -> dict | None:
     return {"count": count, "of": len(flags), "share": count / len(flags), "low": ends[0], "high": ends[1]}
 
 
-def dataset(names: list[str], single: Flown | None, many: Flown) -> "xarray.Dataset":
-    """Every quantity by condition and by case, with its unit in its name."""
+def dataset(names: list[str], single: Flown | None, exits: Outcome | None, many: Flown, left: Columns) -> "xarray.Dataset":
+    """Every quantity by condition, as it flew and with which ``exits``, and by case, with its unit in its name."""
     import xarray
 
-    variables = {item.name: ("case", item.of(many)) for item in QUANTITIES}
+    variables = {item.name: ("case", item.of(left)) for item in answers.ALL}
+    variables |= {item.name: ("case", item.of(many)) for item in QUANTITIES}
     variables |= {name: ("case", of(many)) for name, of in _SIDES.items()}
     if single is not None:
+        variables |= {f"condition_{item.name}": ("condition", item.of(exits)) for item in answers.ALL}
         variables |= {f"condition_{item.name}": ("condition", item.of(single)) for item in QUANTITIES}
     return xarray.Dataset(variables, {"condition": names, "case": np.arange(len(many.passes))})
 
@@ -115,12 +125,12 @@ def lines(found: dict) -> list[str]:
     flight, many = found["flight"], found["cases"]
     said = [f"{found['scene']}: target {flight['range_m']:g} m along the launch axis, orbit of {flight['period_s'] / 60.0:.4g} min"]
     for item in found["conditions"]:
-        said.append(f"  {item['condition']:10} " + (_one(item["flown"]) if item["flown"] else item["status"]))
+        said.append(f"  {item['condition']:10} " + (_one(item["flown"]) if item["flown"] else item["status"])
+                    + ("; outside the calibration" if item["outside_calibration"] else ""))
     counts = many["counts"]
     said.append(f"  {counts['asked']:,} cases = {counts['ok']:,} ok + {counts['refused']:,} refused + {counts['failed']:,} failed; "
                 f"{many['settled']:,} flown, {many['outside']:,} of them outside the calibration")
-    words = {item.name: item.words for item in QUANTITIES}
-    said += [f"  {words[name]:44} " + "  ".join(_quantile(row) for row in rows) for name, rows in many["quantiles"].items()]
+    said += [f"  {WORDS[name]:44} " + "  ".join(_quantile(row) for row in rows) for name, rows in many["quantiles"].items()]
     if many["touch"]:
         said.append(f"  touch again                                  {many['touch']['count']:,} of {many['touch']['of']:,}")
     if doubt := doubts(found):
@@ -137,6 +147,8 @@ def doubts(found: dict) -> str:
         said.append("the rails are given by a file: the clearance counts them only as far as flight.envelope lists them")
     if left:
         said.append(f"whether {left:,} cases reach the pointing limit stayed open, and they are not counted")
+    said += [f"{row['condition']} is outside what the calibration was made for: {', '.join(row['outside_calibration'])}"
+             for row in found["conditions"] if row["outside_calibration"]]
     return "; ".join(said)
 
 

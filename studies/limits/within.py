@@ -15,11 +15,11 @@ from lowfi.ensemble import PIECE, completed
 from lowfi.numerics import Numerics
 from lowfi.request import Ensemble
 from lowfi.rows import numbers
-from scenes.files import replacing
 from scenes.scene import Scene
 from scenes.uncertainty import Uncertainty
+from studies.limits import results
 from studies.populations import answers, population, regime
-from studies.populations.derived import Derived, Numbers, around_zero, law
+from studies.populations.derived import Derived, Numbers, around_zero, friction, law
 from studies.populations.population import Surrogate
 from studies.populations.random_factors import ERRORS, pointing
 from studies.study import Study
@@ -74,8 +74,7 @@ def _overrides(scene: Scene, tolerances: dict[str, float], drawn: Numbers) -> Nu
         elif name == CLEARANCE:
             found["contact.clearance"] = scene.contact.clearance + size * drawn[name]
         else:
-            dynamic = scene.friction.dynamic + size * drawn[name]
-            found |= {"friction.dynamic": dynamic, "friction.static": dynamic * (scene.friction.static / scene.friction.dynamic)}
+            found |= friction(scene, scene.friction.dynamic + size * drawn[name])
     return found
 
 
@@ -111,15 +110,11 @@ class Cases:
     def _run(self, scale: float) -> np.ndarray:
         drawn = self.source(scale)
         ensemble = Ensemble(self._model.scene, drawn, None, Numerics(relative_tolerance=population.TOLERANCE), self._model.walls)
-        path = self._study.path(f"{self._folder}/{ensemble.key[:16]}.npy")
-        try:
-            return np.load(path, allow_pickle=False)
-        except (OSError, ValueError, EOFError):  # not there, or not whole
-            pass
+        path = self._study.path(f"{self._folder}/{ensemble.key[:16]}.nc")
+        if (known := results.load(path)) is not None:
+            return known
         pieces = (drawn.rows(begin, min(begin + PIECE, drawn.asked)) for begin in range(0, drawn.asked, PIECE))
-        found = [case for piece in completed(ensemble.family(), pieces, self._study.settings.workers) for case in piece]
-        results = columns.of(found)
-        values = np.column_stack([quantity.of(results) for quantity in answers.ALL])
-        with replacing(path) as temporary:
-            np.save(temporary, values)
+        found = columns.of([case for piece in completed(ensemble.family(), pieces, self._study.settings.workers) for case in piece])
+        values = np.column_stack([quantity.of(found) for quantity in answers.ALL])
+        results.save(path, values, scale, {name: scale * size for name, size in self._tolerances.items()})
         return values

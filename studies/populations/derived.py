@@ -8,6 +8,7 @@ import numpy as np
 from lowfi.sampling import Points
 from scenes.distributions import BY_NAME, Distribution
 from scenes.files import content_hash
+from scenes.scene import Scene
 from scenes.uncertainty import Uncertainty
 
 Numbers = dict[str, np.ndarray]
@@ -30,6 +31,12 @@ class Derived:
         points = self._points.draw(begin, end)
         columns = self._derive({name: law.ppf(column) for (name, law), column in zip(self._vary.items(), points.T)})
         return [dict(zip(columns, values)) for values in zip(*(column.tolist() for column in columns.values()))]
+
+
+def friction(scene: Scene, dynamic: np.ndarray) -> Numbers:
+    """Overrides of friction in ``scene``, which has some, by coefficients ``dynamic`` (n,): that of rest goes along in proportion,
+    for it is the same pair of surfaces, and no draw may slide with more friction than it stands with."""
+    return {"friction.dynamic": dynamic, "friction.static": dynamic * (scene.friction.static / scene.friction.dynamic)}
 
 
 def law(distribution: str, **values) -> Distribution:

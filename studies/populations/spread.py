@@ -30,19 +30,21 @@ def moments(values: np.ndarray) -> dict:
             "most": float(values.max())}
 
 
-def histograms(values: np.ndarray, first: int) -> dict:
-    """Densities of the ``first`` values and of all (n,), over common edges."""
+def histograms(first: np.ndarray, values: np.ndarray) -> dict:
+    """Densities of the ``first`` (m,) of the values and of all (n,), over common edges; zero where there are none."""
     low, high = np.quantile(values, (0.0005, 0.9995))
     edges = np.linspace(low, high if high > low else low + 1e-9, _BINS + 1)
     width = edges[1] - edges[0]
-    return {"edges": edges.tolist(), "first": (np.histogram(values[:first], edges)[0] / (width * min(first, values.size))).tolist(),
-            "all": (np.histogram(values, edges)[0] / (width * values.size)).tolist()}
+    return {"edges": edges.tolist()} | {name: (np.histogram(part, edges)[0] / (width * max(part.size, 1))).tolist()
+                                        for name, part in (("first", first), ("all", values))}
 
 
 def convergence(values: np.ndarray, shares: Sequence[float]) -> list[dict]:
-    """Quantiles with bounds of the first 100, 200, 500, 1000 ... values and of all (n,)."""
+    """Quantiles with bounds of the first 100, 200, 500, 1000 ... cases and of all (n,), NaN in those that did not settle, which
+    count as cases; nothing of a part in which none settled."""
     counts = [scale * 10**power for power in range(2, 10) for scale in (1, 2, 5) if scale * 10**power < values.size] + [values.size]
-    return [{"cases": count, **row} for count in counts for row in quantiles(values[:count], shares)]
+    parts = [(count, part[np.isfinite(part)]) for count in counts for part in (values[:count],)]
+    return [{"cases": count, **row} for count, part in parts if part.size for row in quantiles(part, shares)]
 
 
 def apart(one: Sequence[np.ndarray], other: Sequence[np.ndarray]) -> tuple[float, float]:

@@ -3,7 +3,8 @@
 import math
 from typing import Callable
 
-from studies.flight.summary import QUANTITIES, doubts
+from studies.flight.summary import WORDS, doubts
+from studies.populations import answers
 from studies.report.chart import AMBER, GREY, NAVY, TEAL, VERMILION, Chart, Line, Panel
 from studies.report.markup import Html, caption, number, paragraph, table
 
@@ -19,6 +20,8 @@ _AXES = ("Left: the cone of the payload's x axis in inertial space, one round ab
 _CLEARANCE = "Least distance between the payload's box and the boxes of platform and rails after exit; below zero they overlap."
 _SCATTER = ("Left: where cases pass the plane through the target. A shot without errors misses too, by what the orbit bends its "
             "way. Right: share of cases that miss by more, in all and by their errors alone, with bounds of the quantiles.")
+_EXITS = ("What every condition leaves its rail with and the flight begins from: settled rates in payload body axes and velocity "
+          "across the launch axis, attitude as a rotation vector.")
 _BOXES = ("Clearance below zero is depth of overlap: the boxes are the scene's, rigid and undeformed. A body that stood back "
           "from its pads by as much would pass clear; flight.body says how large it is without them.")
 
@@ -26,19 +29,28 @@ _BOXES = ("Clearance below zero is depth of overlap: the boxes are the scene's, 
 def draw(found: dict, figure: Callable[[Chart, str], Html]) -> Html:
     """The section; ``figure`` puts a chart and its caption on the page."""
     many, judged = found["cases"], found["cases"]["quantiles"]
-    by_name = {item.name: item.words for item in QUANTITIES}
     rows = [(row["condition"], *(number(row["flown"][name]) if row["flown"] else None for name in _SHOWN), _cone(row["flown"]))
             for row in found["conditions"]]
     shares = [row["share"] for row in next(iter(judged.values()), [])]
+    kinds = ["doubt" if row["outside_calibration"] else "" for row in found["conditions"]]
     return Html("".join([
         paragraph(_words(found)), *(figure(drawing, words) for drawing, words in charts(found)),
-        table(("condition", *(by_name[name] for name in _SHOWN), "x axis from angular momentum (deg)"), rows, dense=True),
+        table(("condition", *(WORDS[item.name] for item in answers.ALL)), _exits(found), kinds=kinds, dense=True),
+        caption(_EXITS),
+        table(("condition", *(WORDS[name] for name in _SHOWN), "x axis from angular momentum (deg)"), rows, kinds=kinds,
+              dense=True),
         caption(" ".join([_BOXES] * (not found["flight"]["no_clearance"]) + [doubts(found)])),
         table(("quantity", *(f"{100.0 * share:.4g} %" for share in shares)),
-              [(by_name[name], *map(_quantile, quantiles)) for name, quantiles in judged.items()], dense=True),
+              [(WORDS[name], *map(_quantile, quantiles)) for name, quantiles in judged.items()], dense=True),
         caption(f"{many['counts']['asked']:,} cases, {many['settled']:,} of them flown, {many['outside']:,} outside what the "
                 f"calibration was made for. Share of cases below the value; in brackets its bounds at {many['confidence']:.0%} "
                 f"confidence ({many['bounds']}). {_touching(many)}")]))
+
+
+def _exits(found: dict) -> list[tuple]:
+    """What every condition leaves its rail with, to four digits: rates of a thousandth of a degree are compared here."""
+    return [(row["condition"], *(number(row["flown"][item.name], 4) if row["flown"] else None for item in answers.ALL))
+            for row in found["conditions"]]
 
 
 def charts(found: dict) -> list[tuple[Chart, str]]:

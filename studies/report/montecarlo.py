@@ -11,7 +11,7 @@ _RATES = ("rate_x_deg_s", "rate_y_deg_s", "rate_z_deg_s")
 _LOOKS = {0.5: (NAVY, "-", "o"), 0.95: (VERMILION, "--", "s"), 0.99: (TEAL, "-.", "^")}
 _HISTOGRAMS = ("Densities of the settled rates. Broad pale: the first {paper_cases:,} cases, as many as the paper has in its "
                "Figure 9. Thin: all of them.")
-_CONVERGENCE = ("Left: quantiles of the total rate from the first cases, with their 95 % bounds from order statistics (dotted). "
+_CONVERGENCE = ("Left: quantiles of each rate from the first cases, with their 95 % bounds from order statistics (dotted). "
                 "Right: half the width of these bounds; the grey lines fall with the root of the number of cases.")
 _MODELS = ("The same {cases:,} draws on calibrated springs and on walls that give way. On the grey line both agree; what lies off "
            "it is the uncertainty of the model.")
@@ -27,7 +27,8 @@ _PAPER = ("The paper prints no number of its Monte Carlo study, only histograms 
 def charts(found: dict) -> list[tuple[Chart, str]]:
     """Each figure with its caption."""
     made = [(_histograms(found), _HISTOGRAMS.format(**found)), (_convergence(found), _CONVERGENCE)]
-    return made + ([(_models(found["models"]), _MODELS.format(**found["models"]))] if found["models"] else [])
+    models = found["models"]
+    return made + ([(_models(models), _MODELS.format(**models))] if models and models["quantities"] else [])
 
 
 def draw(found: dict, figure) -> Html:
@@ -52,9 +53,17 @@ def _histograms(found: dict) -> Chart:
 
 
 def _convergence(found: dict) -> Chart:
+    labels = {item["name"]: item["label"] for item in found["quantities"]}
+    panels = [panel for name in dict.fromkeys(row["name"] for row in found["convergence"])
+              for panel in _converging(labels[name], [row for row in found["convergence"] if row["name"] == name])]
+    return Chart("montecarlo-convergence", panels, columns=2, height=320)
+
+
+def _converging(label: str, found: list[dict]) -> list[Panel]:
+    """Quantiles of a rate over the number of cases, and half the widths of their bounds."""
     values, widths = [], []
     for share, (colour, dash, marker) in _LOOKS.items():
-        rows = [row for row in found["convergence"] if row["share"] == share]
+        rows = [row for row in found if row["share"] == share]
         cases = [row["cases"] for row in rows]
         values.append(Line(cases, [row["value"] for row in rows], f"{share:.0%} below", colour, 1.8, dash, marker=marker, size=6.0))
         bounded = [row for row in rows if None not in (row["low"], row["high"])]
@@ -65,9 +74,8 @@ def _convergence(found: dict) -> Chart:
         if halves:
             ends = [counts[0], counts[-1]]
             widths.append(Line(ends, [halves[-1] * (counts[-1] / count) ** 0.5 for count in ends], "falling as 1/√n", GREY, 1.0))
-    return Chart("montecarlo-convergence", [
-        Panel("Quantiles of the total rate", "cases", "total rate (deg/s)", values, log_x=True),
-        Panel("Half the width of the bounds", "cases", "half width (deg/s)", widths, log=True)], columns=2, height=320)
+    return [Panel(f"Quantiles of the {label}", "cases", f"{label} (deg/s)", values, log_x=True),
+            Panel("Half the width of the bounds", "cases", "half width (deg/s)", widths, log=True)]
 
 
 def _models(models: dict) -> Chart:
@@ -94,7 +102,8 @@ def _quantities(found: dict) -> Html:
         spread = f"{item['sd']:.4g} ± {item['sd_error']:.1g}"
         rows.append((f"{item['label']} ({item['unit']})", f"{found['counts']['asked']:,}", spread,
                      *map(bounded, item["quantiles"][1:])))
-        rows.append(("", f"{found['paper_cases']:,}", "", *map(bounded, item["first"][1:])))
+        first = map(bounded, item["first"][1:]) if item["first"] else ["none settled", *[""] * (len(shares) - 1)]
+        rows.append(("", f"{found['paper_cases']:,}", "", *first))
     heads = ("quantity", "cases", "sd", *(f"{100.0 * share:g} % below" for share in shares))
     return Html(table(heads, rows, dense=True) + caption(_BOUNDS))
 
@@ -109,9 +118,13 @@ def _tails(found: dict) -> Html:
 def _readings(found: dict) -> Html:
     shares, rows = (0.5, 0.95, 0.99, 0.9973), []
     for item in found["readings"]:
+        name = item["reading"] + (" (the same, drawn again)" if item["same"] else "")
+        if item["rates"] is None:
+            rows.append((name, f"{item['settled'] or 'none'} settled", *[""] * (4 + len(shares))))
+            continue
         *axes, total = item["rates"]
         quantiles = {row["share"]: row for row in total["quantiles"]}
-        rows.append((item["reading"] + (" (the same, drawn again)" if item["same"] else ""), *(number(rate["sd"]) for rate in axes),
+        rows.append((name, *(number(rate["sd"]) for rate in axes),
                      *(bounded(quantiles[share]) for share in shares), number(item["distance"]), number(item["chance"], 2)))
     heads = ("reading of the paper's Table 3", *(f"sd about {axis}" for axis in "xyz"),
              *(f"total, {100.0 * share:g} % below" for share in shares), "distance", "by chance")
@@ -122,6 +135,8 @@ def _readings(found: dict) -> Html:
 def _apart(found: dict) -> Html:
     if not found["models"]:
         return Html("")
+    if not found["models"]["quantities"]:
+        return paragraph(f"No case of {found['models']['cases']:,} settled on springs and on walls both.")
     heads = ("quantity", "difference, root mean square", "50 % of cases below", "95 %", "99 %", "largest", "95 % below, springs",
              "walls", "99 % below, springs", "walls")
     rows = []

@@ -46,7 +46,7 @@ def _scatter(factor: dict) -> Chart:
     size, angle = np.meshgrid(sizes, angles, indexing="ij")
     over_size, over_angle = [], []
     for place, (name, (axis, marker, _)) in enumerate(_LOOKS.items()):
-        rates = np.array(factor["rates"][name], dtype=float).ravel()
+        rates = np.array(factor["values"][name], dtype=float).ravel()
         told = np.isfinite(rates)
         for lines, x, step in ((over_size, size, sizes[-1]), (over_angle, angle, 180.0 / len(angles))):
             shifted = x.ravel()[told] + (place - 1) * _APART * step
@@ -117,7 +117,7 @@ def _edges(factor: dict, angles_deg: np.ndarray) -> tuple[np.ndarray, np.ndarray
 
 
 def _rate_map(figure, axes, factor: dict, name: str) -> None:
-    angles, rates = np.array(factor["angles_deg"]), np.array(factor["rates"][name], dtype=float)
+    angles, rates = np.array(factor["angles_deg"]), np.array(factor["values"][name], dtype=float)
     bound = np.nanmax(abs(rates))
     image = axes.pcolormesh(*_edges(factor, angles), rates, cmap="cividis", vmin=-bound, vmax=bound, rasterized=True)
     around = np.radians(np.append(angles, 360.0))

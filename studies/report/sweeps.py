@@ -2,8 +2,9 @@
 
 from typing import Callable
 
+from studies.populations import answers
 from studies.report.chart import Chart
-from studies.report.markup import Html, caption, number, paragraph, percent, table
+from studies.report.markup import Html, caption, fold, number, paragraph, percent, table
 from studies.report.sweep_figures import pictures
 from studies.sweeps.knee import LEVEL, MISFIT
 
@@ -27,7 +28,7 @@ def draw(found: dict, figure: Callable[[Chart, str], Html]) -> Html:
     """The section: what was run, verdicts, why, then figures."""
     parts = [_counts(found["launches"])]
     for launch in found["launches"]:
-        parts += [Html(f"<h3>{_title(launch)}</h3>"), _verdicts(launch)]
+        parts += [Html(f"<h3>{_title(launch)}</h3>"), _verdicts(launch), _largest(launch)]
     parts += [caption(_METHOD), _why(found["launches"])]
     return Html("".join([*parts, *(figure(*item) for item in pictures(found))]))
 
@@ -54,6 +55,16 @@ def _verdict(factor: dict, name: str, bent: dict) -> tuple:
     return (f"{factor['label']} ({factor['unit']})", number(factor["departs_from_free_at"]), _SHORT[name], bent["verdict"],
             number(bent["knee"]), ends, f"{factor['paper']:g}", number(bent["slope_before"]), number(bent["slope_after"]),
             percent(bent["misfit"], 2), percent(bent["plateau_share"], 2))
+
+
+def _largest(launch: dict) -> Html:
+    """Every quantity at every size, in magnitude."""
+    parts = []
+    for factor in launch["factors"]:
+        rows = [(f"{item.label} ({item.unit})", *map(number, factor["largest"][item.name])) for item in answers.ALL]
+        heads = (f"{factor['label']} ({factor['unit']})", *(f"{size:g}" for size in factor["sizes"]))
+        parts.append(table(heads, rows, dense=True))
+    return fold("largest value of every quantity by size", *parts, caption("Largest magnitude over all directions that settled."))
 
 
 def _why(launches: list[dict]) -> Html:

@@ -5,7 +5,7 @@ means below a twentieth of the total rate of its condition. One micrometre of cl
 needs to be known better than that.
 """
 
-from typing import NamedTuple, Sequence
+from typing import Mapping, NamedTuple, Sequence
 
 import numpy as np
 
@@ -53,18 +53,23 @@ def deviations(baseline: Sequence[float], rates: Sequence[float]) -> dict:
     """Absolute (deg/s) and relative deviations by axis; relative ones None where the rate is nearly zero at the ``baseline``."""
     nominal = np.asarray(baseline, dtype=float)
     moved = np.asarray(rates, dtype=float) - nominal
-    told = abs(nominal) >= _NEARLY_ZERO * np.linalg.norm(nominal)
+    told = (abs(nominal) >= _NEARLY_ZERO * np.linalg.norm(nominal)) & (nominal != 0.0)
     return {"absolute_deg_s": moved.tolist(), "relative": [float(d / w) if ok else None for d, w, ok in zip(moved, nominal, told)]}
 
 
-def rows(condition: str, changed: Sequence[Change], rates: np.ndarray) -> list[dict]:
-    """Rows of the table for one condition; ``rates`` (n,3) in deg/s, NaN where a case did not settle."""
+def rows(condition: str, changed: Sequence[Change], rates: np.ndarray,
+         others: Mapping[str, np.ndarray] | None = None) -> list[dict]:
+    """Rows of the table for one condition; ``rates`` (n,3) in deg/s, NaN where a case did not settle, and any ``others`` (n,) by
+    name: their ``values``, and by how much each ``moved``."""
     found = []
-    for change, rate in zip(changed, rates):
+    for place, (change, rate) in enumerate(zip(changed, rates)):
         settled = bool(np.isfinite(rate).all() and np.isfinite(rates[0]).all())
+        values = {name: float(column[place]) for name, column in (others or {}).items()}
         found.append({"condition": condition, "symbol": change.symbol, "raised": change.raised, "share": change.share,
                       "value_si": next(iter(change.overrides.values()), None), "rate_deg_s": rate.tolist() if settled else None,
-                      **(deviations(rates[0], rate) if settled else {"absolute_deg_s": None, "relative": None})})
+                      **(deviations(rates[0], rate) if settled else {"absolute_deg_s": None, "relative": None}),
+                      "values": values if settled else None,
+                      "moved": {name: value - float(others[name][0]) for name, value in values.items()} if settled else None})
     return found
 
 
@@ -89,3 +94,9 @@ def largest(table: Sequence[dict], symbols: Sequence[str] | None = None) -> dict
         return [max(column, default=None) for column in columns]
 
     return {"absolute_deg_s": most("absolute_deg_s"), "relative": most("relative")}
+
+
+def most_moved(table: Sequence[dict]) -> dict[str, float]:
+    """By how much each quantity moves at most over the rows of a table, the clearance left out; of none where no row settled."""
+    moved = [row["moved"] for row in table if row["moved"] and row["raised"] is not None and row["symbol"] != "clearance"]
+    return {name: max(abs(row[name]) for row in moved) for name in (moved[0] if moved else ())}

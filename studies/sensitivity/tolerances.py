@@ -6,7 +6,8 @@ of a factor of the number the surrogate has. An offset that a scene holds as siz
     misalignment  y = r cos a, z = r sin a        eccentricity  y = r sin a, z = r cos a        (angles as in ``scenes.effects``)
 
 so that independent normal components stand for a direction about which nothing is known. Where the exponent of a contact law
-varies, the force at the reference penetration p_r of the calibration stays: k' = k p_r^(e - e').
+varies, the force at the reference penetration p_r of the calibration stays: k' = k p_r^(e - e'). Friction at rest goes along with
+that of sliding, unless it has a distribution of its own.
 """
 
 from functools import reduce
@@ -23,6 +24,7 @@ from scenes.distributions import BY_NAME, Distribution
 from scenes.faults import Fault, SceneError, faults_of
 from scenes.files import content_hash
 from scenes.scene import Scene
+from studies.populations.derived import friction
 
 DEFAULT = Path(__file__).with_name("tolerances.toml")
 _KINDS = ("vary", "factor")
@@ -59,6 +61,8 @@ class Tolerances(NamedTuple):
             contact = self.scene.contact
             stiffness = found.get("contact.stiffness", contact.stiffness)
             found["contact.stiffness"] = stiffness * REFERENCE_PENETRATION ** (contact.exponent - found["contact.exponent"])
+        if "friction.dynamic" in found and "friction.static" not in found and self.scene.friction.dynamic > 0.0:
+            found |= friction(self.scene, found["friction.dynamic"])
         polar = _polar(found)
         return [dict(zip(polar, values)) for values in zip(*(column.tolist() for column in polar.values()))]
 

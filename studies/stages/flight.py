@@ -5,10 +5,12 @@ from pathlib import Path
 
 import numpy as np
 
+from lowfi.columns import Columns
 from lowfi.rows import Drawn
 from scenes import uncertainty
 from scenes.faults import Fault, SceneError
 from scenes.files import replacing
+from scenes.outcome import Outcome
 from scenes.scene import Scene
 from scenes.variation import Variations
 from studies.flight import bodies, curves, flown, summary
@@ -45,11 +47,11 @@ def run(study: Study, asked: Asked = Asked()) -> dict:
         from studies.report import chart
         from studies.report import flight as page
 
-        rows, shapes, single = _conditions(study, asked)
-        cases, many = _cases(study, asked, drawn)
+        rows, shapes, single, exits = _conditions(study, asked)
+        cases, many, left = _cases(study, asked, drawn)
         found = {"asked": asdict(asked), "flight": summary.orbit(study.scene), "conditions": rows, "curves": shapes, "cases": cases}
         data = study.path(f"{NAME}.nc")
-        labelled = summary.dataset([row["condition"] for row in rows if row["flown"]], single, many)
+        labelled = summary.dataset([row["condition"] for row in rows if row["flown"]], single, exits, many, left)
         with replacing(data) as temporary:
             labelled.to_netcdf(temporary, engine="h5netcdf")
         pictures = [path for drawing, _ in page.charts(found) for path in chart.to_files(drawing, study.path("figures"))]
@@ -79,27 +81,31 @@ def _require(scenes: dict[str, Scene]) -> None:
         raise SceneError(faults)
 
 
-def _conditions(study: Study, asked: Asked) -> tuple[list[dict], list[dict], flown.Flown | None]:
-    """A row for every condition, curves of the first that settled, and what was found for all that did."""
-    runs = []
-    for name in study.conditions:
+def _conditions(study: Study, asked: Asked) -> tuple[list[dict], list[dict], flown.Flown | None, Outcome | None]:
+    """A row for every condition, curves of the first that settled, what was found for all that did, and their outcomes as
+    arrays."""
+    runs, outside = [], {}
+    for name, scene in study.conditions.items():
         model = population.surrogate(study, asked.walls, name)
         runs.append(study.lowfi(name, model.calibration, walls=model.walls))
+        outside[name] = model.calibration.outside(scene) if model.calibration else []
     ended = dict(zip(study.conditions, study.store.fill(NAME, runs)))
     settled = [name for name, found in ended.items() if found.outcome.rate is not None]
+    exits = {name: bodies.of_outcomes([ended[name].outcome]) for name in settled}
     pairs = {name: flown.pair(study.conditions[name].flight.record(), bodies.bodies([study.conditions[name]]),
-                              bodies.start(bodies.of_outcomes([ended[name].outcome]))) for name in settled}
+                              bodies.start(exits[name])) for name in settled}
     single = [flown.found(both) for both in pairs.values()]
     values = dict(zip(settled, single))
-    rows = [{"condition": name, "status": ended[name].status, "flown": summary.row(values[name], 0) if name in values else None}
-            for name in ended]
+    rows = [{"condition": name, "status": ended[name].status, "outside_calibration": outside[name],
+             "flown": summary.row(values[name], exits[name], 0) if name in values else None} for name in ended]
     first = [name for name in study.scene.agreement.fitted if name in pairs] or settled
     shapes = [{"condition": name, **curves.of(pairs[name], values[name])} for name in first[:curves.SHOWN]]
-    return rows, shapes, flown.joined(single) if single else None
+    return (rows, shapes, *((flown.joined(single), bodies.of_outcomes([ended[name].outcome for name in settled])) if single
+                            else (None, None)))
 
 
-def _cases(study: Study, asked: Asked, drawn: Drawn) -> tuple[dict, flown.Flown]:
-    """Distributions over the cases of ``drawn``, and what was found for each that settled."""
+def _cases(study: Study, asked: Asked, drawn: Drawn) -> tuple[dict, flown.Flown, Columns]:
+    """Distributions over the cases of ``drawn``, what was found for each that settled, and what these left their rails with."""
     model = population.surrogate(study, asked.walls)
     cases = population.run(study, NAME, model, drawn)
     which = np.flatnonzero(cases.settled)
@@ -109,7 +115,7 @@ def _cases(study: Study, asked: Asked, drawn: Drawn) -> tuple[dict, flown.Flown]
     parted = bodies.bodies(variations.of(rows[number]) for number in which)
     with Board(NAME, 1) as board:
         label = f"{len(which):,} flights"
-        begin = bodies.start(type(cases.results)(*(part[which] for part in cases.results)))
-        many = flown.fly(study.scene.flight.record(), parted, begin, board.callback(label))
+        left = Columns(*(part[which] for part in cases.results))
+        many = flown.fly(study.scene.flight.record(), parted, bodies.start(left), board.callback(label))
         board.finished(label, "flown")
-    return summary.cases(many, cases, drawn.uncertainty), many
+    return summary.cases(many, cases, drawn.uncertainty), many, left

@@ -18,8 +18,9 @@ from studies.study import Study, StudyError
 
 NAME = "montecarlo"
 PAPER = 1000  # cases of the paper
-CASES = 100_000
+CASES = 1_000_000
 _COMPARED = 10_000  # cases of each reading: differences of 2 % between distributions can be told
+_FEWEST = 2  # settled cases, without which there is no standard deviation
 _CONVERGING = (0.5, 0.95, 0.99)
 _RATES = (*answers.RATES, answers.TOTAL_RATE)
 
@@ -49,14 +50,16 @@ def run(study: Study, asked: Asked = Asked()) -> dict:
 
         model = population.surrogate(study, asked.walls)
         found = population.run(study, NAME, model, source)
-        if not found.settled.any():
-            raise StudyError(f"no case settled, {found.counts['refused']:,} of them refused; the reasons are in {found.store}/done")
+        if (settled := int(found.settled.sum())) < _FEWEST:
+            raise StudyError(f"{settled or 'no'} case settled, {found.counts['refused']:,} of them refused; the reasons are in "
+                             f"{found.store}/done")
         made = {"asked": _plain(asked), "reading": asked.reading.words, "surrogate": model.words, "store": found.store,
-                "counts": found.counts, "settled": int(found.settled.sum()), "outside": int(found.outside.sum()),
+                "counts": found.counts, "settled": settled, "outside": int(found.outside.sum()),
                 "confidence": spread.CONFIDENCE, "paper_cases": min(PAPER, asked.cases),
                 "quantities": [_quantity(item, found) for item in answers.ALL],
                 "tails": [_tail(limit, np.degrees(found.results.rate)) for limit in limits],
-                "convergence": spread.convergence(_settled(answers.TOTAL_RATE, found), _CONVERGING),
+                "convergence": [{"name": item.name, **row} for item in _RATES
+                                for row in spread.convergence(item.of(found.results), _CONVERGING)],
                 "readings": _readings(study, asked, model, found), "models": _models(study, asked, found)}
         made |= {"findings": _findings(made), "summary": _numbers(made)}
         return made, [path for chart, _ in pictures.charts(made) for path in to_files(chart, study.path("figures"))]
@@ -77,15 +80,16 @@ def _plain(asked: Asked) -> dict:
     return asdict(asked) | {"reading": asked.reading._asdict(), "limits": list(asked.limits)}
 
 
-def _settled(quantity: answers.Quantity, found: Population) -> np.ndarray:
-    return quantity.of(found.results)[found.settled]
+def _settled(quantity: answers.Quantity, found: Population, first: int | None = None) -> np.ndarray:
+    """Values of the settled of all cases, or of the ``first``: a case that did not settle keeps its number."""
+    return quantity.of(found.results)[:first][found.settled[:first]]
 
 
 def _quantity(quantity: answers.Quantity, found: Population) -> dict:
-    values = _settled(quantity, found)
+    values, first = _settled(quantity, found), _settled(quantity, found, PAPER)
     return {"name": quantity.name, "label": quantity.label, "unit": quantity.unit, **spread.moments(values),
-            "quantiles": spread.quantiles(values), "first": spread.quantiles(values[:PAPER]),
-            "histogram": spread.histograms(values, PAPER)}
+            "quantiles": spread.quantiles(values), "first": spread.quantiles(first) if first.size else None,
+            "histogram": spread.histograms(first, values)}
 
 
 def _tail(limit: exceedance.Limit, rates: np.ndarray) -> dict:
@@ -97,25 +101,32 @@ def _tail(limit: exceedance.Limit, rates: np.ndarray) -> dict:
 
 
 def _readings(study: Study, asked: Asked, model: Surrogate, found: Population) -> list[dict]:
-    """Each reading with a seed of its own beside the cases that were asked for; the row of the same reading is the control."""
+    """Each reading with a seed of its own beside the cases that were asked for; the row of the same reading is the control. Where
+    too few settled there are no rates, and no distance."""
     rows, cases = [], min(_COMPARED, asked.cases)
-    here = [_settled(item, found)[:cases] for item in _RATES]
+    here = [_settled(item, found, cases) for item in _RATES]
     for place, reading in enumerate(READINGS):
         if reading.initial and study.scene.contact is None:
             continue
         drawn = random_factors.source(study.scene, reading, cases, asked.seed + 1 + place)
         other = population.run(study, f"{NAME}-reading", model, drawn)
         values = [_settled(item, other) for item in _RATES]
-        distance, chance = spread.apart(here, values)
         rows.append({"reading": reading.words, "same": reading == asked.reading, "cases": cases,
-                     "distance": distance, "chance": chance,
-                     "rates": [{"name": item.name, **spread.moments(each), "quantiles": spread.quantiles(each)}
-                               for item, each in zip(_RATES, values)]})
+                     "settled": int(other.settled.sum()), **_apart(here, values)})
     return rows
 
 
+def _apart(here: list[np.ndarray], values: list[np.ndarray]) -> dict:
+    told = values[0].size >= _FEWEST
+    distance, chance = spread.apart(here, values) if told and here[0].size >= _FEWEST else (None, None)
+    return {"distance": distance, "chance": chance,
+            "rates": [{"name": item.name, **spread.moments(each), "quantiles": spread.quantiles(each)}
+                      for item, each in zip(_RATES, values)] if told else None}
+
+
 def _models(study: Study, asked: Asked, found: Population) -> dict | None:
-    """The paper's thousand on springs and on walls; None where no pad can touch, for then both are one model."""
+    """The paper's thousand on springs and on walls; None where no pad can touch, for then both are one model. No quantities where
+    no case settled on both."""
     if study.scene.contact is None:
         return None
     cases = min(PAPER, asked.cases)
@@ -124,7 +135,7 @@ def _models(study: Study, asked: Asked, found: Population) -> dict | None:
     both = found.settled[:cases] & other.settled
     names = ("springs", "walls") if not asked.walls else ("walls", "springs")
     rows = []
-    for item in answers.ALL:
+    for item in answers.ALL if both.any() else ():
         one, two = item.of(found.results)[:cases][both], item.of(other.results)[both]
         apart = np.abs(two - one)
         rows.append({"name": item.name, "label": item.label, "unit": item.unit,
@@ -144,12 +155,16 @@ def _findings(made: dict) -> list[str]:
             f"{counts['failed']:,} failed; {made['settled']:,} settled, {made['outside']:,} outside the calibration; seed "
             f"{asked['seed']}",
             f"errors: {made['reading']}"]
-    others = [row for row in made["readings"] if row["chance"] < 0.01 and not row["same"]]
+    lost = [row["reading"] for row in made["readings"] if row["distance"] is None]
+    said += [f"too few cases settled to compare: {'; '.join(lost)}"] if lost else []
+    others = [row for row in made["readings"] if row["reading"] not in lost and row["chance"] < 0.01 and not row["same"]]
     if told := "; ".join(f"{row['reading']} (distance {row['distance']:.3f})" for row in others):
         said.append(f"readings that can be told from this one: {told}")
-    else:
+    elif not lost:
         said.append("no other reading of the table can be told from this one")
-    if made["models"]:
+    if made["models"] and not made["models"]["quantities"]:
+        said.append(f"springs against walls on the same {made['models']['cases']:,} draws: none settled on both")
+    elif made["models"]:
         rates = [row for row in made["models"]["quantities"] if row["unit"] == "deg/s"]
         said.append(f"springs against walls on the same {made['models']['cases']:,} draws, root mean square: "
                     + ", ".join(f"{row['label']} {row['root_mean_square']:.3g}" for row in rates) + " deg/s")

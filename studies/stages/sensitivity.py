@@ -80,21 +80,28 @@ def _tables(study: Study, model: Surrogate, asked: Asked) -> list[dict]:
         return []
     titled = [("walls that give way" if asked.walls else "calibrated constants", model)]
     if not asked.walls and model.scene.contact != study.scene.contact:
-        titled.append(("constants of the scene, not calibrated", Surrogate(study.scene, None, None)))
-    return [{"title": title, **_table(study, surrogate)} for title, surrogate in titled]
+        # A law stands on the same rigid walls whatever its constants are: where warm rails have moved them to.
+        own = Surrogate(population.on_springs(study.scene), None, model.walls)
+        titled.append(("constants of the scene, not calibrated", own))
+    return [{"title": title, **_table(study, surrogate, asked.walls)} for title, surrogate in titled]
 
 
-def _table(study: Study, model: Surrogate) -> dict:
-    changed = contact_table.changes(model.scene, model.walls is not None)
+def _table(study: Study, model: Surrogate, walls: bool) -> dict:
+    changed = contact_table.changes(model.scene, walls)
     names = contact_table.conditions(study.scene) or [None]
     rows = [(study.scene.conditions[name] if name else {}) | change.overrides for name in names for change in changed]
     found = population.run(study, f"{NAME}-table", model, Listed(rows), _FINE)
-    rates = np.degrees(found.results.rate).reshape(len(names), len(changed), 3)
-    table = [row for name, block in zip(names, rates) for row in contact_table.rows(name or study.scene.name, changed, block)]
+    rates, count = np.degrees(found.results.rate), len(changed)
+    values = {item.name: item.of(found.results) for item in answers.ALL}
+    table = []
+    for place, name in enumerate(names):
+        part = slice(place * count, (place + 1) * count)
+        others = {key: column[part] for key, column in values.items()}
+        table += contact_table.rows(name or study.scene.name, changed, rates[part], others)
     contact = model.scene.contact
     return {"law": contact.law, "constants_si": contact.model_dump(mode="json", exclude={"law"}), "rows": table,
             "largest": contact_table.largest(table), "largest_clearance": contact_table.largest(table, ["clearance"]),
-            "store": found.store}
+            "most_moved": contact_table.most_moved(table), "store": found.store}
 
 
 def _paper() -> dict:
@@ -142,6 +149,9 @@ def summary(found: dict) -> list[str]:
     paper = found["paper"]["largest"]
     lines = [f"{table['title']}: moved one at a time, {_most(table['largest'])}; 1 um of clearance: "
              f"{_most(table['largest_clearance'])}" for table in found["tables"]]
+    lines += [f"{table['title']}, every quantity moves by up to: "
+              + ", ".join(f"{item.label} {table['most_moved'][item.name]:.3g} {item.unit}" for item in answers.ALL)
+              for table in found["tables"] if table["most_moved"]]
     lines += [f"the paper's Table 2: {_most(paper)}"] if lines else []
     sobol = found["sobol"]
     lines.append(f"{sobol['cases']['asked']:,} cases of {len(sobol['inputs'])} inputs, {sobol['not_settled']:,} did not settle, "

@@ -90,7 +90,7 @@ def _factor(model: Surrogate, factor: Factor, directions: np.ndarray, found: Pop
     free_largest = {item.name: abs(column).max(axis=1) for item, column in zip(JUDGED, [*np.moveaxis(free, 2, 0), free_total])}
     return {"name": factor.name, "label": factor.label, "unit": factor.unit, "paper": published.PLATEAUS[factor.name],
             "sizes": SIZES.tolist(), "angles_deg": np.degrees(directions).tolist(),
-            "rates": {item.name: _plain(values[item.name]) for item in answers.RATES},
+            "values": {name: _plain(table) for name, table in values.items()},
             "largest": {name: _plain(knee.largest(abs(table))) for name, table in values.items()},
             "free": {name: _plain(curve) for name, curve in free_largest.items()},
             "departs_from_free_at": float(SIZES[departs.argmax()]) if departs.any() else None,
@@ -132,7 +132,13 @@ def summary(found: dict) -> list[str]:
         for factor in launch["factors"]:
             told = "; ".join(f"{labels[name]}: {said(bent, factor['unit'])}" for name, bent in factor["growth"].items() if bent)
             lines.append(f"{how}, {factor['label']} (the paper: plateau from {factor['paper']:g} {factor['unit']}): {told}")
+            most = ", ".join(f"{item.label} {_most(factor['largest'][item.name])} {item.unit}" for item in answers.ALL)
+            lines.append(f"{how}, {factor['label']}, largest at any size and angle: {most}")
     return lines
+
+
+def _most(values: list[float | None]) -> str:
+    return f"{max(known):.3g}" if (known := [value for value in values if value is not None]) else "-"
 
 
 def said(bent: dict, unit: str) -> str:

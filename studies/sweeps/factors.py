@@ -1,9 +1,6 @@
 """The errors that section 3 of the paper sweeps, one at a time, over size and direction, and what each would do to a free payload.
 
-Thrust along the unit vector f through the point r (from the mass centre) leaves a free payload of inertia I with::
-
-    w = I^-1 J (r x f),   J = integral of F dt
-
+A free payload of inertia I leaves with w = I^-1 L, where L = J (r x f) is the moment impulse of ``studies.populations.moments``.
 On the reference scene that is 26 deg/s per millimetre of arm: the line that the rail bends. Gyroscopic moments are left out: they
 are quadratic in the rates.
 """
@@ -12,11 +9,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from lowfi.rows import Listed
+from lowfi.rows import Listed, numbers
 from scenes import model as models
-from scenes.effects import thrust
 from scenes.scene import Scene
-from scenes.variation import Variations
+from studies.populations import moments
 
 
 class Factor(NamedTuple):
@@ -57,11 +53,7 @@ def cases(directions: np.ndarray) -> Listed:
 
 
 def free_rates(scene: Scene, rows: list[dict[str, float]]) -> np.ndarray:
-    """Rates (n,3) in rad/s that ``rows`` of overrides would give a free payload of ``scene``."""
-    variations, base = Variations(scene), models.built(scene)
-    impulse = thrust.impulse(base.model.thrust, scene.duration)
-    found = []
-    for row in rows:
-        model = models.built(variations.of(row), base).model
-        found.append(model.payload.inverse_inertia @ np.cross(model.thrust_offset.arm, model.thrust_offset.direction))
-    return impulse * np.array(found)
+    """Rates (n,3) in rad/s that ``rows`` of overrides, those of a factor, would give a free payload of ``scene``."""
+    table = Listed(rows)
+    inputs = dict(zip(table.keys, numbers(table.keys, rows).T))
+    return moments.moment_impulses(scene, inputs, scene.loads["thrust_impulse_ns"]) @ models.build(scene).payload.inverse_inertia.T

@@ -25,6 +25,7 @@ def test_a_rate_that_is_nearly_zero_has_no_relative_deviation():
     """Condition 3 of the paper about z: 0.042 deg/s, of which 0.003 would be 7 %."""
     row = next(row for row in contact_table.of_paper() if (row["condition"], row["symbol"], row["raised"]) == ("phi35", "c", False))
     assert row["relative"][2] is None and row["relative"][0] is not None and row["absolute_deg_s"][2] == pytest.approx(0.003)
+    assert contact_table.deviations([0.0] * 3, [0.0, 0.1, 0.0]) == {"absolute_deg_s": [0.0, 0.1, 0.0], "relative": [None] * 3}
 
 
 @pytest.mark.parametrize("law, symbols", [

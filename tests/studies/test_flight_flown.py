@@ -1,6 +1,7 @@
 """Where payloads go: against full runs, against straight lines and textbook orbits, and a tail that hits its rail."""
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -82,7 +83,9 @@ def test_radial_launches_come_back():
 def test_a_target_that_is_not_reached_has_no_miss():
     found = fly(start(), {"flight.range": "1000 km"})
     assert np.isnan([found.passes[0], *found.miss[0], found.pointing[0]]).all()
-    row = summary.row(found, 0)
+    left = SimpleNamespace(rate=np.zeros((1, 3)), lateral_velocity=np.zeros(1), direction_error=np.zeros(1),
+                           exit_attitude=np.zeros((1, 3)))
+    row = summary.row(found, left, 0)
     assert row["miss_m"] is None and row["clearance_mm"] > 0.0
 
 

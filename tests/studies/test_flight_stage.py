@@ -7,14 +7,15 @@ import pytest
 from typer.testing import CliRunner
 
 from scenes import load
+from scenes.calibration import Calibration
 from studies.cli import app
 from studies.flight import summary
-from studies.populations import population
+from studies.populations import answers, population
 from studies.populations.population import Surrogate
 from studies.report import chart
 from studies.report import flight as section
 from studies.settings import Settings
-from studies.stages import flight
+from studies.stages import calibrate, flight
 from studies.study import Study
 
 pytest.importorskip("zarr")
@@ -59,6 +60,15 @@ def test_conditions_and_cases_are_flown_and_kept(tmp_path, uncalibrated, monkeyp
     assert sorted(path.name for path in (folder / "figures").glob("flight-*.svg")) == [
         "flight-axis.svg", "flight-clearance.svg", "flight-miss.svg", "flight-path.svg"]
 
+    with xarray.open_dataset(folder / found["data"], engine="h5netcdf") as data:
+        for item in answers.ALL:  # what the payload left its rail with stands beside its flight, by the same name everywhere
+            kept = data[item.name].values
+            assert np.median(kept) == pytest.approx(found["cases"]["quantiles"][item.name][summary.SHARES.index(0.5)]["value"],
+                                                    abs=0.1 * np.ptp(kept))
+            assert float(data[f"condition_{item.name}"][0]) == row[item.name]
+    assert row["rate_deg_s"] == pytest.approx(np.linalg.norm([row[f"rate_{axis}_deg_s"] for axis in "xyz"]))
+    assert row["rate_deg_s"] > 0.1 and row["lateral_velocity_mm_s"] > 0.1 and row["direction_error_deg"] > 0.0
+
     stamp = (folder / "flight.json").stat().st_mtime_ns
     assert call(*asked).exit_code == 0 and (folder / "flight.json").stat().st_mtime_ns == stamp  # nothing changed
     monkeypatch.setattr(chart, "to_files", lambda *_: [])  # drawn once is enough
@@ -74,6 +84,29 @@ def test_conditions_and_cases_are_flown_and_kept(tmp_path, uncalibrated, monkeyp
     assert flight.stored(study) is None
     drawn = section.draw(found, lambda drawing, words: chart.to_html(drawing) + words)
     assert 'id="chart-flight-miss"' in drawn and "misses by" not in drawn and "touch the platform again" in drawn
+    assert all(drawn.count(f"{item.label} ({item.unit})") == 2 for item in answers.ALL)  # conditions, and quantiles of cases
+    assert all(f"{item.label} ({item.unit})" in first.stdout for item in answers.ALL)
+
+
+def test_a_condition_outside_the_calibration_is_marked(tmp_path, monkeypatch):
+    """By the loads of the scene, which its constants are found for here: a tenth of its thrust is not. Control: phi60 only turns
+    its error."""
+    scene = load("reference")
+    fitted = Calibration({}, [], [], [], [], [], [], np.empty((0, 0)), [], {}, [], 0.0,
+                         {key: [value, value] for key, value in scene.loads.items()}, {"geometry_hash": scene.geometry_hash})
+    monkeypatch.setattr(calibrate, "load", lambda study: fitted)
+    monkeypatch.setattr(chart, "to_files", lambda *_: [])
+    source = tmp_path / "mine.toml"
+    source.write_text('extends = "reference"\n[conditions]\nweak = {"thrust.peak" = "600 N"}\n')
+    asked = ("--scene", source, "--condition", "phi60", "--condition", "weak", "--cases", 20, "--out", tmp_path)
+    result = call(*asked)
+    assert result.exit_code == 0, result.output
+    found = json.loads((tmp_path / "mine" / "flight.json").read_text())
+    inside, outside = found["conditions"]
+    assert inside["outside_calibration"] == [] and "thrust peak" in outside["outside_calibration"][0]
+    assert result.stdout.count("; outside the calibration") == 1 and "weak is outside what the calibration" in result.stdout
+    drawn = section.draw(found, lambda drawing, words: words)
+    assert drawn.count('class="doubt"') == 2 and "weak is outside" in drawn
 
 
 def test_without_an_exit_there_is_no_flight(tmp_path, uncalibrated):
@@ -84,9 +117,9 @@ def test_without_an_exit_there_is_no_flight(tmp_path, uncalibrated):
 
 def test_what_is_to_be_doubted():
     orbit = summary.orbit(load("channel"))
-    assert "given by a file" in summary.doubts({"flight": orbit, "cases": {"limit_open": 0}})
-    assert "3 cases" in summary.doubts({"flight": summary.orbit(load("reference")), "cases": {"limit_open": 3}})
-    assert summary.doubts({"flight": summary.orbit(load("reference")), "cases": {"limit_open": 0}}) == ""
+    assert "given by a file" in summary.doubts({"flight": orbit, "cases": {"limit_open": 0}, "conditions": []})
+    assert "3 cases" in summary.doubts({"flight": summary.orbit(load("reference")), "cases": {"limit_open": 3}, "conditions": []})
+    assert summary.doubts({"flight": summary.orbit(load("reference")), "cases": {"limit_open": 0}, "conditions": []}) == ""
 
 
 @pytest.mark.parametrize("arguments, words", [

@@ -105,6 +105,21 @@ def test_components_are_those_of_the_effects(tmp_path):
         assert force == pytest.approx(drawn["contact.stiffness"][number] * 2e-5**1.5, rel=1e-12)
 
 
+@pytest.mark.parametrize("static", [0.2, 0.3])
+def test_friction_at_rest_goes_along(tmp_path, static):
+    """Control: a distribution of its own is left as it is."""
+    scene = SCENE.replace({"friction.static": static})
+    found = tolerances.load(tolerances.DEFAULT, scene)
+    rows = found.rows(indices.points(8, len(found.inputs), seed=1))
+    dynamic, rest = numbers(["friction.dynamic", "friction.static"], rows).T
+    assert len(set(dynamic)) > 8 and dynamic.min() < 0.16 and dynamic.max() > 0.24 and np.allclose(rest, static / 0.2 * dynamic)
+    lowest = {"friction.dynamic": "0.1", "friction.static": "0.3"}
+    tables = [table(key, distribution="uniform", low=low, high="0.4") for key, low in lowest.items()]
+    (tmp_path / "own.toml").write_text("\n".join(tables))
+    own = tolerances.load(tmp_path / "own.toml", scene).rows(np.array([[0.25, 0.5]]))
+    assert own == [pytest.approx({"friction.dynamic": 0.175, "friction.static": 0.35})]
+
+
 def test_what_a_scene_does_not_have_is_left_out_with_the_reason():
     def left_out(overrides: dict) -> dict[str, str]:
         return tolerances.load(tolerances.DEFAULT, SCENE.replace(overrides)).left_out

@@ -1,7 +1,10 @@
 """Tolerances that keep limits, on a launch without contact, where the total rate is proportional to the one error that varies."""
 
+import json
+
 import numpy as np
 import pytest
+import xarray
 from scipy import stats
 from typer.testing import CliRunner
 
@@ -12,7 +15,7 @@ from studies.cli import app
 from studies.limits import constants, within
 from studies.limits.inputs import Asked
 from studies.limits.within import ADVISED
-from studies.populations import exceedance
+from studies.populations import answers, exceedance
 from studies.populations.population import Surrogate
 from studies.report import limits as pictures
 from studies.settings import Settings
@@ -130,6 +133,41 @@ def test_limits_that_none_or_every_tolerance_keeps_are_said(study, monkeypatch):
     assert row_of(far, "misalignment")["model"]["state"] == "lost" and "leaves nothing of a limit" in " ".join(far["summary"])
 
 
+def test_values_are_kept_with_names_units_and_scale(study, found, monkeypatch):
+    """A whole file is only read; a damaged one is made again, to the same values."""
+    cases = within.Cases(study, limits.NAME, Surrogate(study.scene, None, None), {"misalignment": 0.01}, 20, 3)
+    values, before = cases.values(0.5), set((study.folder / "limits").glob("*.nc"))
+    assert not list((study.folder / "limits").glob("*.npy")) and len(before) > 20
+    files = {path: xarray.load_dataset(path, engine="h5netcdf") for path in before}
+    path, kept = next((path, kept) for path, kept in files.items() if kept.sizes["case"] == 20)
+    assert kept["value"].dims == ("case", "quantity") and kept.attrs["scale"] == 0.5
+    assert kept["quantity"].values.tolist() == [item.name for item in answers.ALL]
+    assert kept["units"].values.tolist() == [item.unit for item in answers.ALL]
+    assert json.loads(kept.attrs["tolerances_si"]) == {"misalignment": 0.005}
+    assert np.array_equal(kept["value"], values, equal_nan=True)
+    path.write_bytes(path.read_bytes()[:600])
+    again = within.Cases(study, limits.NAME, Surrogate(study.scene, None, None), {"misalignment": 0.01}, 20, 3)
+    assert np.array_equal(again.values(0.5), values, equal_nan=True)
+    monkeypatch.setattr(within, "completed", lambda *_: pytest.fail("ran again"))
+    third = within.Cases(study, limits.NAME, Surrogate(study.scene, None, None), {"misalignment": 0.01}, 20, 3)
+    assert np.array_equal(third.values(0.5), values, equal_nan=True)
+    for row in found["rows"]:
+        assert [item["name"] for item in row["beside"]] == [item.name for item in answers.ALL]
+
+
+@pytest.mark.parametrize("tolerances, advised", [("advised", 1.0), ("table3", None)])
+def test_the_paper_advises_one_set_alone(study, monkeypatch, tolerances, advised):
+    asked = Asked(limits=("6 deg/s",), probability=PROBABILITY, cases=30, tolerances=tolerances)
+    answering = limits._Answers(study, asked, exceedance.limits(asked.limits), 30, Surrogate(study.scene, None, None),
+                                constants.Margin(None, ""), lambda _: None)
+    monkeypatch.setattr(within.Cases, "values", lambda *_: np.zeros((30, len(answers.ALL))))
+    monkeypatch.setattr(limits._Answers, "_map", lambda *_: None)
+    row = row_of(found := answering.all(), "together")
+    assert (row["advised"] and row["advised"]["tolerance"]) == advised
+    assert row_of(found, "misalignment")["advised"]["tolerance"] == pytest.approx(0.2)
+    assert ("at the advised 1" in pictures.summary(found)[-1]) == (advised is not None)
+
+
 def test_section_of_the_page(found):
     shown = pictures.draw(found, lambda chart, words: f"<figure>{chart.name}</figure>")
     assert "limits-curves" in shown and "limits-map" in shown and "by decree" in shown and "thrust misalignment" in shown
@@ -144,7 +182,9 @@ def test_too_few_cases_and_nonsense_are_refused_with_every_fault(tmp_path):
                         (["--probability", "1.5", "--confidence", "0", "--limit", "q=1 deg/s", "--draws", "-1"],
                          ("--probability", "--confidence", "--limit", "--draws", "4 faults")),
                         (["--limit", "x=1 deg/s", "--limit", "x=2 deg/s"], ("two limits",)),
-                        (["--condition", "phi99"], ("phi99",))):
+                        (["--condition", "phi99"], ("phi99",)),
+                        (["--condition", "phi99", "--draws", "-1", "--limit", "q=1 deg/s"],
+                         ("phi99", "--draws", "--limit", "3 faults"))):
         result = CliRunner().invoke(app, arguments + more)
         assert result.exit_code == 2 and all(word in result.stderr for word in words), result.output
         assert "Traceback" not in result.output

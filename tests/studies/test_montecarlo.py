@@ -8,13 +8,16 @@ from scipy import stats
 from scipy.special import j0
 from typer.testing import CliRunner
 
+from lowfi import columns
+from scenes import load
 from studies.cli import app
-from studies.populations import spread
+from studies.populations import answers, population, spread
+from studies.populations.population import Population
 from studies.report import montecarlo as pictures
 from studies.settings import Settings
 from studies.stages import montecarlo
 from studies.stages.montecarlo import Asked
-from studies.study import Study
+from studies.study import Study, StudyError
 from tests.studies import free_flight
 
 pytest.importorskip("zarr")
@@ -32,8 +35,7 @@ def found(study):
 
 def test_what_is_written_is_whole_and_not_made_again(study, found, monkeypatch):
     assert found["counts"] == {"asked": 1500, "ok": 1500, "refused": 0, "failed": 0} and found["surrogate"] == "no contact"
-    assert {"rate_x_deg_s", "rate_deg_s", "lateral_velocity_mm_s", "direction_error_deg", "attitude_z_deg"} <= {
-        item["name"] for item in found["quantities"]}
+    assert [item["name"] for item in found["quantities"]] == [item.name for item in answers.ALL]
     assert {f"figures/montecarlo-{name}.{kind}" for name in ("histograms", "convergence")
             for kind in ("png", "svg")} == set(found["files"])
     assert found["models"] is None and len(found["readings"]) == 7  # no walls and no clearance without contact
@@ -46,11 +48,61 @@ def test_the_first_thousand_are_the_paper_s_and_bounds_shrink_with_the_root_of_t
     item = found["quantities"][1]
     first, whole = item["first"][2], item["quantiles"][2]
     assert first["low"] < first["value"] < first["high"] and first != whole
-    rows = [row for row in found["convergence"] if row["share"] == 0.5]
-    assert [row["cases"] for row in rows] == [100, 200, 500, 1000, 1500]
-    halves = [0.5 * (row["high"] - row["low"]) for row in rows]
-    # The slope is -1/2; ranks are whole numbers and densities estimated, so single widths scatter by some 20 %.
-    assert np.polyfit(np.log([row["cases"] for row in rows]), np.log(halves), 1)[0] == pytest.approx(-0.5, abs=0.15)
+    assert {row["name"] for row in found["convergence"]} == {"rate_x_deg_s", "rate_y_deg_s", "rate_z_deg_s", "rate_deg_s"}
+    for name in ("rate_y_deg_s", "rate_z_deg_s", "rate_deg_s"):  # nothing turns this payload about x
+        rows = [row for row in found["convergence"] if row["share"] == 0.5 and row["name"] == name]
+        assert [row["cases"] for row in rows] == [100, 200, 500, 1000, 1500]
+        halves = [0.5 * (row["high"] - row["low"]) for row in rows]
+        # The slope is -1/2; ranks are whole numbers and densities estimated, so single widths scatter by some 20 %.
+        assert np.polyfit(np.log([row["cases"] for row in rows]), np.log(halves), 1)[0] == pytest.approx(-0.5, abs=0.15)
+
+
+def counted(cases, lost):
+    """Case n has every number n, and those of ``lost`` did not settle."""
+    number = np.arange(float(cases))
+    number[lost] = np.nan
+    each = columns.Columns(*[np.radians(np.column_stack([number] * 3)) if name in columns.VECTORS else number
+                             for name in columns.Columns._fields])
+    return Population({}, each, np.zeros(cases, dtype=bool), "store", {"refused": 0})
+
+
+def test_a_part_of_the_cases_is_their_first_whether_they_settled_or_not():
+    """Case 1,000 is not among the first thousand because an earlier one did not settle."""
+    found = counted(1200, slice(0, 300))
+    item = montecarlo._quantity(answers.RATES[0], found)
+    assert item["first"][2]["value"] == pytest.approx(649.5) and item["quantiles"][2]["value"] == pytest.approx(749.5)
+    assert sum(item["histogram"]["first"]) > 0.0
+    assert montecarlo._quantity(answers.RATES[0], counted(1200, slice(0, 1000)))["first"] is None
+    rows = spread.convergence(answers.RATES[0].of(found.results), (0.5,))
+    assert [(row["cases"], round(row["value"], 6)) for row in rows] == [(500, 399.5), (1000, 649.5), (1200, 749.5)]
+
+
+def test_what_does_not_settle_elsewhere_is_said_and_stops_nothing(study, monkeypatch):
+    """Neither another reading nor the other surrogate; with none settled of the cases asked for there is nothing to say."""
+    run, seen = population.run, []
+
+    def spoilt(*arguments):
+        seen.append(arguments[1])
+        if len(seen) == 4:
+            return counted(120, slice(0, 119))
+        return run(*arguments)
+
+    monkeypatch.setattr(population, "run", spoilt)
+    found = montecarlo.run(study, Asked(cases=120, limits=("8 deg/s",)))
+    row = found["readings"][2]
+    assert row["settled"] == 1 and row["rates"] is row["distance"] is None and found["readings"][0]["distance"] is not None
+    assert any(line == f"too few cases settled to compare: {row['reading']}" for line in found["findings"])
+    assert "1 settled" in pictures.draw(found, lambda *_: "")
+    monkeypatch.setattr(population, "run", lambda *_: counted(120, slice(None)))
+    with pytest.raises(StudyError, match="no case settled"):
+        montecarlo.run(study, Asked(cases=120, seed=2, limits=("8 deg/s",)))
+    monkeypatch.setattr(population, "surrogate", lambda *_: None)
+    touching = Study(load("reference"), study.folder, study.settings)
+    models = montecarlo._models(touching, Asked(cases=120), counted(120, slice(0, 9)))
+    assert models["both_settled"] == 0 and models["quantities"] == []
+    both = found | {"models": models}
+    assert "No case of 120 settled" in pictures.draw(both, lambda *_: "") and len(pictures.charts(both)) == 2
+    assert "none settled on both" in montecarlo._findings(both)[-1]
 
 
 def test_tails_hold_the_probability_by_independent_quadrature(found):

@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
+from lowfi import columns
 from lowfi.columns import STATUSES
 from scenes import load
 from studies.cli import app
-from studies.populations import population
-from studies.populations.population import Surrogate
+from studies.populations import answers, population
+from studies.populations.population import Population, Surrogate
 from studies.report import sensitivity as section
 from studies.report.markup import Html
 from studies.settings import defaults
@@ -62,7 +63,14 @@ def test_the_command(tiny, tmp_path, monkeypatch):
     table, = found["tables"]  # nothing was calibrated, so no second one
     assert [row["condition"] for row in table["rows"][::8]] == ["phi15", "phi35", "phi60"] and len(table["rows"]) == 24
     assert max(table["largest"]["absolute_deg_s"]) > 0.0 and max(table["largest_clearance"]["absolute_deg_s"]) > 0.0
+    for row in table["rows"]:
+        assert list(row["values"]) == list(row["moved"]) == [item.name for item in answers.ALL]
+        assert [row["values"][f"rate_{axis}_deg_s"] for axis in "xyz"] == row["rate_deg_s"]
+    attitude = [row["values"]["attitude_y_deg"] for row in table["rows"][:7]]  # the first condition, without the clearance
+    assert table["most_moved"]["attitude_y_deg"] >= max(abs(value - attitude[0]) for value in attitude) > 0.0
+    assert "lateral velocity" in next(line for line in result.stdout.splitlines() if "every quantity moves" in line)
     sobol = found["sobol"]
+    assert [item["name"] for item in sobol["quantities"]] == [item.name for item in answers.ALL]
     assert [item["key"] for item in sobol["inputs"]] == ["thrust_offset.misalignment.y", "thrust_offset.misalignment.z",
                                                          "friction.dynamic"]
     assert sobol["inputs"][0]["provenance"] == "a guess" and "zero" in sobol["left_out"]["payload.inertia.yz"]
@@ -79,6 +87,30 @@ def test_the_command(tiny, tmp_path, monkeypatch):
     assert json.loads(call([*tiny, "--json"]).stdout) == found
     (tmp_path / "mine.toml").unlink()
     assert sensitivity.stored(Study(load("tiny"), tmp_path / "out" / "tiny", defaults("tiny"))) is None
+
+
+def test_tables_of_warm_rails_stand_on_the_walls_of_the_model(tmp_path, monkeypatch):
+    """Both the calibrated constants and the scene's own, without rails that swing; constants of the law are moved, not the
+    penalty of walls that give way."""
+    asked = []
+
+    def run(_study, _name, model, source, _tolerance):
+        asked.append(model)
+        rates = np.zeros((source.asked, 3))
+        found = columns.Columns(*[rates if name in columns.VECTORS else rates[:, 0] for name in columns.Columns._fields])
+        return Population({}, found, rates[:, 0] > 0.0, "store", {})
+
+    monkeypatch.setattr(population, "run", run)
+    study = Study(load("reference").replace({"thermal.mean": "15 K", "flexibility": {"modes": 2}}), tmp_path, defaults("reference"))
+    own = population.on_springs(study.scene)
+    model = Surrogate(own.replace({"contact.stiffness": 1e9}), None, "rigid walls")
+    tables = sensitivity._tables(study, model, sensitivity.Asked())
+    assert [found.walls for found in asked] == ["rigid walls"] * 2 and len(tables) == 2
+    assert asked[1].scene.contact == study.scene.contact and asked[1].scene.flexibility is None
+    for table in tables:
+        assert {row["symbol"] for row in table["rows"]} == {"baseline", "k", "c", "d", "clearance"}
+    on_walls, = sensitivity._tables(study, model, sensitivity.Asked(walls=True))
+    assert {row["symbol"] for row in on_walls["rows"]} == {"baseline", "penalty", "clearance"}
 
 
 def test_cases_that_do_not_settle(tiny, tmp_path, monkeypatch):

@@ -10,7 +10,7 @@ from typer.testing import CliRunner
 
 from scenes import load
 from studies.cli import app
-from studies.populations import population
+from studies.populations import answers, population
 from studies.populations.population import Surrogate
 from studies.report import sweeps as sections
 from studies.report.markup import Html
@@ -53,9 +53,9 @@ def test_without_contact_rates_are_the_moment_impulse_over_the_inertia(tmp_path,
             turning = np.radians(exact)
             speeding = np.linalg.solve(TENSOR, np.cross(turning, turning @ TENSOR)[..., None])[..., 0]
             gyroscopic = np.degrees(speeding) * (launch["exit_s"] + 3e-3)
-            for axis, name in enumerate(factor["rates"]):
+            for axis, name in enumerate(item.name for item in answers.RATES):
                 within = 2e-3 * np.linalg.norm(exact, axis=2) + abs(gyroscopic[..., axis])
-                assert (abs(np.array(factor["rates"][name]) - exact[..., axis]) <= within).all()
+                assert (abs(np.array(factor["values"][name]) - exact[..., axis]) <= within).all()
                 allowed = within.max()
                 assert allowed < 0.02 * abs(exact).max()
                 assert factor["free"][name] == pytest.approx(abs(exact[..., axis]).max(axis=1), rel=1e-5)
@@ -106,7 +106,12 @@ def test_the_command_with_contact(tmp_path, monkeypatch):
     assert given["faces"][:2] == ["rear -y", "rear -z"] and given["faces"][-1] == "front +z" and len(given["faces"]) == 16
     factor, = given["factors"]
     assert factor["departs_from_free_at"] is not None and factor["growth"]["rate_deg_s"]["verdict"]
-    assert len(factor["largest"]["lateral_velocity_mm_s"]) == 10
+    for item in answers.ALL:
+        cases = np.array(factor["values"][item.name], dtype=float)
+        assert cases.shape == (10, 8) and factor["largest"][item.name] == np.nanmax(abs(cases), axis=1).tolist()
+        assert f"{item.label} {np.nanmax(abs(cases)):.3g} {item.unit}" in result.stdout
+    page = sections.draw(found, lambda chart, words: Html(chart.name))
+    assert all(f"{item.label} ({item.unit})" in page for item in answers.ALL)
     # Thrust above the mass centre turns the front down and the rear up; at 90 deg, alpha from +z towards +y, it does so towards +y.
     seen = factor["sides"]["first"]
     assert given["faces"][seen[4][0]] in ("rear +z", "front -z") and given["faces"][seen[4][2]] in ("rear +y", "front -y")

@@ -1,0 +1,37 @@
+"""The quantities of all cases within one set of tolerances, as a netCDF file that explains itself."""
+
+import json
+from pathlib import Path
+from typing import Mapping
+
+import numpy as np
+
+from scenes.files import replacing
+from studies.populations import answers
+
+
+def save(path: Path, values: np.ndarray, scale: float, tolerances: Mapping[str, float]) -> None:
+    """Write ``values`` (n,k) of ``answers.ALL`` atomically; ``scale`` and the ``tolerances`` (SI) there are attributes."""
+    import xarray
+
+    found = xarray.Dataset(
+        {"value": (("case", "quantity"), values, {"long_name": "what a case leaves the rail with, NaN where it did not settle"})},
+        {"case": np.arange(len(values)), "quantity": [item.name for item in answers.ALL],
+         "units": ("quantity", [item.unit for item in answers.ALL])},
+        {"scale": scale, "tolerances_si": json.dumps(dict(tolerances))})
+    with replacing(path) as temporary:
+        found.to_netcdf(temporary, engine="h5netcdf")
+
+
+def load(path: Path) -> np.ndarray | None:
+    """The values (n,k) that ``save`` wrote; None where they are not there, not whole, or those of other quantities."""
+    if not path.is_file():
+        return None
+    import xarray
+
+    try:
+        with xarray.open_dataset(path, engine="h5netcdf") as found:
+            same = found["quantity"].values.tolist() == [item.name for item in answers.ALL]
+            return found["value"].transpose("case", "quantity").values if same else None
+    except (OSError, KeyError, TypeError, ValueError, RuntimeError):  # what HDF5 says of damage depends on where it is
+        return None
