@@ -3,26 +3,31 @@
 Every search is kept as it ends, so that a stage that was stopped goes on with the next, and more starts add to those there are.
 """
 
-from concurrent.futures import ThreadPoolExecutor
+import math
+from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 
 from scenes.faults import Fault, SceneError
 from scenes.files import content_hash, source_hash, write_json, write_text
-from scenes.scene import Scene
+from scenes.scene import Scene, load
 from studies import published
 from studies.inference import inputs, misfit, solutions, toml
 from studies.progress import Board
 from studies.report import paper as drawn
 from studies.report.chart import to_files
+from studies.stages import compare
 from studies.store import SOURCES
-from studies.study import Study, read
+from studies.study import Study, StudyError, read
 
 NAME = "paper"
 SCENE = "paper_like.toml"
+CATALOGUED = "paper_like"  # the best set of those who made the catalogue
 STRESSES = (0.0, 1.0)  # without and with the rates that the paper calls negligible
+_WRITTEN = 1e-5  # relative: a scene file has nine digits of most numbers, six of the mounts
 _SEARCHED = ("scenes", "lowfi", "studies/inference", "studies/published")  # a search outlives a change of anything else
 
 
@@ -35,30 +40,37 @@ class Asked:
 
 
 def run(study: Study, asked: Asked = Asked()) -> dict:
-    """The searches, what they tell of every input, and the best set beside the printed tables; writes it as a scene too."""
+    """The searches, what they tell of every input, and the best set beside the printed tables; writes it as a scene too.
+
+    Raises SceneError for a scene that ``require`` refuses, StudyError where the best set could not be kept as a scene file.
+    """
     require(study.scene)
 
     def make() -> tuple[dict, list[Path]]:
-        found = _searches(study, asked)
+        base = _base(study.scene)
+        with TemporaryDirectory() as folder:  # before the searches, which are dear, and not only after them
+            _write(base, np.full(len(inputs.UNKNOWNS), 0.5), np.zeros((5, 3)), Path(folder, SCENE))
+        found = _searches(study, base, asked)
         best = min(found, key=misfit_of)
         path = study.path(SCENE)
-        write_text(path, toml.scene(study.scene, inputs.values(best.shares), best.rates))
+        _write(base, best.shares, best.rates, path)
         result = {"asked": {"starts": asked.starts, "plan": _plain(asked.plan)},
                   "admissible_deg_s": solutions.ADMISSIBLE,
                   "negligible_deg_s": misfit.NEGLIGIBLE, "scatter_deg_s": misfit.SCATTER.tolist(),
                   "searches": [_summary(item) for item in found], "best": found.index(best), "inputs": _told(found, best),
+                  "admissible": _counted(found),
                   "front": solutions.front(*np.vstack([item.front for item in found]).T).tolist(), "slips": published.slips(),
-                  "headline": published.headline(), "ours": _speed(study),
-                  "scene_file": study.relative(path)}
+                  "headline": published.headline(), "scene_file": study.relative(path)}
         pictures = [file for chart in drawn.charts(result) for file in to_files(chart, study.path("figures"))]
         return result, [path, *pictures]
 
-    return study.stage(NAME, _key(study, asked), make)
+    return _with_present(study, study.stage(NAME, _key(study, asked), make))
 
 
 def stored(study: Study) -> dict | None:
     """The result, if it was made from the present scene, code and settings."""
-    return study.stored(NAME, lambda found: _key(study, _asked(found["asked"])))
+    found = study.stored(NAME, lambda found: _key(study, _asked(found["asked"])))
+    return found and _with_present(study, found)
 
 
 def require(scene: Scene) -> None:
@@ -66,6 +78,9 @@ def require(scene: Scene) -> None:
     impact = scene.contact is not None and scene.contact.law == "impact"
     corners = {(x > 0.0, y > 0.0, z > 0.0) for x, y, z in (pad.position for pad in scene.pads)}
     wrong = [Fault(scene.name, key, given, expected) for holds, key, given, expected in (
+        (scene.rail.GIVEN_BY == "section", "rail", f"a {scene.rail.GIVEN_BY}", "the built-in section, whose ends are searched"),
+        (scene.thermal is None, "thermal", "a table", "absent, for the searches have rails that stand where they are drawn"),
+        (scene.flexibility is None, "flexibility", "a table", "absent, for the searches have rails that do not bend"),
         (impact, "contact.law", "another law, or no contact", "impact, of which the paper prints the constants"),
         (scene.thrust.kind == "gaussian", "thrust.kind", scene.thrust.kind, "gaussian, as the paper fits its thrust"),
         (scene.friction is not None and hasattr(scene.friction, "static"), "friction", "absent", "a table with static and dynamic"),
@@ -75,10 +90,41 @@ def require(scene: Scene) -> None:
         raise SceneError(wrong)
 
 
-def _searches(study: Study, asked: Asked) -> list[solutions.Search]:
-    base = study.scene.replace({"thrust_offset.misalignment.axial": f"{published.angles()[1][0]} deg"})
+def _base(scene: Scene) -> Scene:
+    """The scene with the misalignment that the paper's Table 1 has."""
+    return scene.replace({"thrust_offset.misalignment.axial": f"{published.angles()[1][0]} deg"})
+
+
+def _write(base: Scene, shares: np.ndarray, rates: np.ndarray, path: Path) -> None:
+    """Write the set at ``shares`` (p,) as a scene that extends ``base`` by its name. Raises StudyError unless the file loads and is
+    the scene that was searched: what was put over a file of the catalogue is not in it."""
+    write_text(path, toml.scene(base, inputs.values(shares), rates))
+    cannot = f"the best set cannot be kept as {path.name}, which extends {base.name!r} of the catalogue"
+    try:
+        kept = load(path)
+    except SceneError as fault:
+        raise StudyError(f"{cannot}, for it does not load: {fault}") from fault
+    if other := _differing(kept.physics(), misfit.Launcher(base).scene(shares).physics()):
+        raise StudyError(f"{cannot}, for the scene given here is another: {', '.join(other)}")
+
+
+def _differing(first, second, key: str = "") -> list[str]:
+    """Dotted keys at which two scenes (``Scene.physics``) are not the same to the digits of a scene file."""
+    if isinstance(first, dict) and isinstance(second, dict):
+        return [name for entry in {**first, **second}
+                for name in _differing(first.get(entry), second.get(entry), f"{key}.{entry}".lstrip("."))]
+    if isinstance(first, list) and isinstance(second, list) and len(first) == len(second):
+        return [name for number, pair in enumerate(zip(first, second)) for name in _differing(*pair, f"{key}.{number}")]
+    if isinstance(first, float) and isinstance(second, float):
+        return [] if math.isclose(first, second, rel_tol=_WRITTEN, abs_tol=1e-12) else [key]
+    return [] if first == second else [key]
+
+
+def _searches(study: Study, base: Scene, asked: Asked) -> list[solutions.Search]:
+    """Every search in its order, ``workers`` at a time; on Ctrl-C none is waited for or begun."""
     plans = [(stress, seed) for seed in range(asked.starts) for stress in STRESSES]
-    with Board(NAME, len(plans)) as board, ThreadPoolExecutor(study.settings.workers) as pool:
+    pool = ThreadPoolExecutor(study.settings.workers)
+    with Board(NAME, len(plans)) as board:
 
         def one(stress: float, seed: int) -> solutions.Search:
             path = study.path(f"{NAME}/search-{stress:g}-{seed}.json")
@@ -94,7 +140,16 @@ def _searches(study: Study, asked: Asked) -> list[solutions.Search]:
                                   f"largest rate of conditions 1 and 5 {solutions.largest_negligible(found.rates):.3g} deg/s")
             return found
 
-        return [item.result() for item in [pool.submit(one, *plan) for plan in plans]]
+        pending = [pool.submit(one, *plan) for plan in plans]
+        try:
+            for future in as_completed(pending):
+                future.result()
+        except BaseException:
+            board.stop()  # searches end at their next report
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
+    pool.shutdown()
+    return [future.result() for future in pending]
 
 
 def misfit_of(found: solutions.Search) -> float:
@@ -125,13 +180,24 @@ def _told(found: list[solutions.Search], best: solutions.Search) -> list[dict]:
     return rows
 
 
-def _speed(study: Study) -> dict | None:
-    """What the agreement study measured of both fidelities, if it was made."""
-    return (read(study.path("agreement.json")) or {}).get("speedup")
+def _counted(found: list[solutions.Search]) -> dict[str, int]:
+    """How many admissible points were kept, of how many searches, and the most of one."""
+    counts = [len(item.admissible) for item in found]
+    return {"points": sum(counts), "searches": sum(count > 0 for count in counts), "most_of_one": max(counts)}
+
+
+def _with_present(study: Study, found: dict) -> dict:
+    """The result with what stands beside it now, which comes and goes without it: the cost of both fidelities where the present
+    agreement study measured it, and whether the best set is the catalogue's."""
+    kept = load(CATALOGUED)
+    best = misfit.Launcher(_base(study.scene)).scene(inputs.shares(found["searches"][found["best"]]["values"]))
+    return found | {"ours": (compare.stored(study) or {}).get("speedup"),
+                    "catalogue": {"name": kept.name, "same": not _differing(kept.physics(), best.physics()),
+                                  "description": kept.description}}
 
 
 def _key(study: Study, asked: Asked) -> str:
-    return study.key(SOURCES["lowfi"], NAME, asked.starts, _plain(asked.plan), _speed(study))
+    return study.key(SOURCES["lowfi"], NAME, asked.starts, _plain(asked.plan))
 
 
 def _asked(plain: dict) -> Asked:
@@ -149,8 +215,12 @@ def lines(found: dict) -> list[str]:
     best = found["searches"][found["best"]]
     said = [f"best of {len(found['searches'])} searches: a printed rate missed by {best['largest_error_deg_s']:.3g} deg/s at most, "
             f"a deviation by {best['largest_deviation_error_deg_s']:.3g} deg/s; rates of conditions 1 and 5 up to "
-            f"{best['largest_negligible_deg_s']:.3g} deg/s"]
+            f"{best['largest_negligible_deg_s']:.3g} deg/s", drawn.in_catalogue(found), drawn.admissible(found)]
     for item in found["inputs"]:
-        kept = "nothing admissible" if item["share"] is None else f"admissible {item['from']:.3g} to {item['to']:.3g}"
+        kept = "nothing admissible" if item["share"] is None else f"admissible at least {item['from']:.3g} to {item['to']:.3g}"
         said.append(f"  {item['name']:16}{item['best']:.4g} {item['unit']}, {kept} of {item['low']:.3g} to {item['high']:.3g}")
-    return [*said, *(f"  note          {words}" for words in found["slips"]), f"  scene         {found['scene_file']}"]
+    ours = found["ours"]
+    cost = (f"{ours['highfi_wall_s']:.3g} s in finite elements, {1e3 * ours['lowfi_wall_s']:.3g} ms calibrated: "
+            f"{ours['ratio']:,.0f} times as fast" if ours else f"not measured yet: make compare SCENE={found['scene']} does it")
+    return [*said, *(f"  note          {words}" for words in found["slips"]), f"  one case      {cost}",
+            f"  scene         {found['scene_file']}"]

@@ -1,6 +1,10 @@
 """The inference of unpublished inputs: printed tables, bodies that can exist, searches that find what they were made from."""
 
+import json
 import math
+import signal
+import threading
+import time
 
 import numpy as np
 import pytest
@@ -11,11 +15,12 @@ from lowfi.numerics import Numerics
 from scenes.faults import SceneError
 from studies import published
 from studies.inference import inputs, misfit, solutions, toml
+from studies.progress import Interrupted
 from studies.report import paper as section
 from studies.report.markup import Html
 from studies.settings import Settings
-from studies.stages import paper
-from studies.study import Study
+from studies.stages import compare, paper
+from studies.study import Study, StudyError
 
 BASE = scenes.load("reference")
 COUNT = len(inputs.UNKNOWNS)
@@ -148,3 +153,153 @@ def test_catalogue_scene_gives_the_printed_rates():
     assert errors[7] < 0.2 and f"within {errors[8]:.2g} deg/s" in kept.description
     assert solutions.largest_negligible(found) < 0.4 and kept.provenance["thrust.arm"] == "inferred"
     assert np.abs(misfit.nine(rates(BASE))).max() > 3.0
+
+
+def _stub(admissible: tuple[int, ...] = (2, 0)):
+    """In place of ``solutions.run``: an end at once, each search another, with ``admissible`` points by stress."""
+    def run(launcher_of, stress, seed, plan, progress):
+        table = published.sensitivity()
+        rates = np.vstack([[0.1, 0.2, 0.4 + seed], table.baseline + 0.01 * (1 + stress), [0.1, 0.1, 0.1]])
+        points = np.linspace(0.4, 0.6, admissible[int(stress)])[:, None] * np.ones(COUNT)
+        return solutions.Search(stress, seed, np.full(COUNT, 0.5 + 0.01 * stress), rates, table.changed + 0.0204 * (1 + stress),
+                                points, np.array([[0.005, 0.5], [0.02, 0.3]]))
+
+    return run
+
+
+@pytest.fixture
+def quick(tmp_path, monkeypatch):
+    """A study of searches that take no time, its result."""
+    monkeypatch.setattr(solutions, "run", _stub())
+    study = Study(BASE, tmp_path, Settings(workers=1))
+    return study, paper.run(study, SMALL)
+
+
+def _page(found: dict) -> str:
+    return section.draw(found, lambda chart, words: Html(words))
+
+
+def test_three_measures_are_drawn_by_pairs(quick):
+    """Every pair of the three has its panel with the end of every search in it, and the front only where it is of these two."""
+    found = quick[1]
+    keys = {"nine rates": "largest_error_deg_s", "54 deviations": "largest_deviation_error_deg_s",
+            "conditions 1 and 5": "largest_negligible_deg_s"}
+    trade, beside = section.charts(found)
+    assert len(trade.panels) == 3 and len(beside.panels) == 2
+    pairs = set()
+    for panel in trade.panels:
+        across, upwards = (next(key for words, key in keys.items() if words in label) for label in (panel.x_label, panel.y_label))
+        pairs.add(frozenset((across, upwards)))
+        drawn = {line.name: list(zip(line.x, line.y)) for line in panel.lines}
+        for item, name in zip(found["searches"], ("ended, three conditions asked", "ended, all five asked"), strict=True):
+            assert drawn[name] == [(item[across], item[upwards])]
+        best = found["searches"][found["best"]]
+        assert drawn["best of all"] == [(best[across], best[upwards])]
+        assert ("front of all met" in drawn) == ("54" not in panel.x_label + panel.y_label)
+    assert len(pairs) == 3
+
+
+def test_printed_deviations_stand_beside_ours(quick):
+    """Every deviation, and beside it 0.0104 deg/s more, by which the best of the stub is off."""
+    found = quick[1]
+    printed, page = published.sensitivity(), _page(found)
+    theirs = printed.deviations()
+    assert found["best"] == 0
+    for place, row in np.ndindex(3, 6):
+        for value in theirs[place, row]:
+            assert f"{value:+.3f} / {value + 0.0104:+.3f}" in page
+    ours = published.Sensitivity(printed.baseline + 0.01, printed.changed + 0.0204).largest_relative()
+    for table in (printed.largest_relative(), ours):
+        assert "".join(f'<td class="number">{100.0 * share:.2f} %</td>' for share in table) in page
+    assert not np.allclose(ours, printed.largest_relative(), rtol=0.01)
+
+
+def test_ranges_say_how_few_searches_they_come_from(quick, tmp_path, monkeypatch):
+    study, found = quick
+    said = "2, kept from 1 of 2 searches, 2 of them from one"
+    assert found["admissible"] == {"points": 2, "searches": 1, "most_of_one": 2}
+    for text in (_page(found), "\n".join(paper.lines(found))):
+        assert said in text and "at least" in text
+    far = found | {"admissible_deg_s": 0.5 * found["searches"][found["best"]]["largest_deviation_error_deg_s"]}
+    assert "best set is none of them" in _page(far) and "best set is none of them" not in _page(found)
+    monkeypatch.setattr(solutions, "run", _stub(admissible=(0, 0)))
+    none = paper.run(Study(BASE, tmp_path / "none", Settings(workers=1)), SMALL)
+    for text in (_page(none), "\n".join(paper.lines(none))):
+        assert "nothing is told of any input" in text
+    assert "admissible at least" not in "\n".join(paper.lines(none))
+
+
+def test_headline_has_our_cost_of_the_present_code_only(quick, monkeypatch):
+    """An agreement.json of other code is passed over, and the stage is found again when one is made."""
+    study, _ = quick
+    speed = {"highfi_wall_s": 60.0, "lowfi_wall_s": 2e-3, "ratio": 30000.0}
+    study.path("agreement.json").write_text(json.dumps({"key": "of other code", "speedup": speed}))
+    stale = paper.stored(study)
+    for text in (_page(stale), "\n".join(paper.lines(stale))):
+        assert "make compare SCENE=reference" in text and "30,000" not in text
+    monkeypatch.setattr(compare, "stored", lambda _: {"speedup": speed})
+    fresh = paper.stored(study)
+    for text in (_page(fresh), "\n".join(paper.lines(fresh))):
+        assert "make compare" not in text and "30,000" in text
+    monkeypatch.setattr(solutions, "run", lambda *_: pytest.fail("searched again"))
+    assert paper.run(study, SMALL) == fresh
+
+
+def test_interrupt_ends_the_running_search_and_begins_no_other(tmp_path, monkeypatch):
+    begun, ended, finished = [], [], []
+
+    def run(launcher_of, stress, seed, plan, progress):
+        begun.append((stress, seed))
+        signal.pthread_kill(threading.main_thread().ident, signal.SIGINT)
+        for _ in range(3000):  # far longer than a busy machine takes to hand the signal on
+            time.sleep(0.01)
+            try:
+                progress(0.5)
+            except Interrupted:
+                ended.append((stress, seed))
+                raise
+        finished.append((stress, seed))
+        return _stub()(launcher_of, stress, seed, plan, progress)
+
+    monkeypatch.setattr(solutions, "run", run)
+    study = Study(BASE, tmp_path, Settings(workers=1))
+    with pytest.raises(KeyboardInterrupt):
+        paper.run(study, paper.Asked(2, SMALL.plan))
+    while not ended and not finished:
+        time.sleep(0.01)
+    assert begun == ended == [(0.0, 0)] and not finished
+    assert not study.path("paper.json").exists() and not study.path("paper").exists()
+
+
+def test_scene_that_no_search_could_meet_is_refused_before_any(tmp_path, monkeypatch):
+    """A rail from a file keeps its shape, warm rails need walls, and modes too. Control: the reference scene is let through."""
+    monkeypatch.setattr(solutions, "run", lambda *_: pytest.fail("searched"))
+    for scene, keys in ((scenes.load("channel"), {"rail"}),
+                        (BASE.replace({"thermal.mean": 20.0, "flexibility.modes": 4}), {"thermal", "flexibility"})):
+        with pytest.raises(SceneError) as refused:
+            paper.run(Study(scene, tmp_path, Settings()))
+        assert {fault.key for fault in refused.value.faults} == keys and not any(tmp_path.iterdir())
+    paper.require(BASE)
+
+
+def test_a_set_that_no_scene_file_could_hold_is_told_before_any_search(tmp_path, monkeypatch):
+    """The file extends a scene of the catalogue by name: one that is not there, or was changed by an override, would be lost."""
+    monkeypatch.setattr(solutions, "run", lambda *_: pytest.fail("searched"))
+    path = tmp_path / "mine.toml"
+    path.write_text('extends = "reference"\nname = "mine"\n')
+    with pytest.raises(StudyError, match="paper_like.toml, which extends 'mine'.*does not load"):
+        paper.run(Study(scenes.load(path), tmp_path / "out", Settings()), SMALL)
+    with pytest.raises(StudyError, match="is another: rail.material.density$"):
+        paper.run(Study(BASE.replace({"rail.material.density": 2700.0}), tmp_path / "out", Settings()), SMALL)
+    assert not (tmp_path / "out").exists()
+
+
+def test_page_says_whether_the_best_set_is_the_catalogue_s(quick, monkeypatch):
+    """Control: a catalogue of which this run's scene is part."""
+    study, found = quick
+    for text in (_page(found), "\n".join(paper.lines(found))):
+        assert "It is not the catalogue&#x27;s scene paper_like" in text or "It is not the catalogue's scene paper_like" in text
+    monkeypatch.setattr(paper, "CATALOGUED", study.path("paper_like.toml"))
+    same = paper.stored(study)
+    for text in (_page(same), "\n".join(paper.lines(same))):
+        assert "It is the catalogue&#x27;s scene paper_like." in text or "It is the catalogue's scene paper_like." in text
