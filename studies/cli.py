@@ -193,7 +193,19 @@ def view(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = Non
         print("\n".join(f"{folder / path}" for path in (found["collection"], *found["pictures"].values())))
 
 
-_stage("report", "All of it on one self-contained page; writes report.html and figures/.")
+@app.command()
+def report(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = None,
+           every: Annotated[bool, typer.Option("--every", help="Make every study that has no present result first (an hour); one "
+                                               "that the scene gives no occasion for says so on the page.")] = False,
+           element_size: ElementSize = None, workers: Workers = None, json_: Json = False) -> None:
+    """All of it on one self-contained page; writes report.html and figures/."""
+
+    def work() -> dict:
+        from studies.stages import report as stage
+
+        return stage.run(study_of(scene, out, set_, element_size=element_size, workers=workers), every)
+
+    guarded(work, json_)
 
 
 @app.command()
@@ -211,11 +223,15 @@ def run(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = None
     """Run one condition in one model and print what the payload leaves with."""
 
     def work() -> dict:
+        from scenes.faults import Fault, SceneError
         from studies import single
 
         study = study_of(scene, out, set_, [condition], element_size, checkpoint_every=checkpoint_every, resume=resume)
         if accuracy is None and budget is None:
             return single.run(study, condition, fidelity.value, calibration, walls, quiet=json_)
+        given = {"--walls": walls, "--calibration": calibration, "--fidelity": fidelity is Fidelity.highfi}
+        if wrong := [name for name, is_given in given.items() if is_given]:
+            raise SceneError([Fault(name, "option", "given", "none: --accuracy and --budget choose the model") for name in wrong])
         limits = quantity("--accuracy", accuracy, "deg/s"), quantity("--budget", budget, "s")
         return single.chosen(study, condition, *limits, quiet=json_)
 

@@ -11,7 +11,9 @@ from pathlib import Path
 from scenes.files import write_text
 from studies.agreement.verdicts import FINITE_ELEMENTS
 from studies.bench import reference
-from studies.report import growth, scaling
+from studies.cost import sureness
+from studies.report import growth, rails, scaling
+from studies.stages.report import beside
 from studies.study import read
 
 _ROOT = Path(__file__).resolve().parent.parent
@@ -19,23 +21,25 @@ _BEGIN, _END = "<!-- results: python -m studies.readme -->", "<!-- end of result
 
 
 def main(folder: Path) -> None:
-    """Replace the results section of README.md and the picture beside it."""
+    """Replace the results section of README.md and the pictures beside it."""
     readme = _ROOT / "README.md"
     before, rest = readme.read_text().split(_BEGIN)
     after = rest.split(_END)[1]
     write_text(readme, f"{before}{_BEGIN}\n{section(folder)}\n{_END}{after}")
     (_ROOT / "docs").mkdir(exist_ok=True)
-    shutil.copyfile(folder / "figures" / "figure6.png", _ROOT / "docs" / "figure6.png")
+    for name in ("figure6.png", "cost.png"):
+        shutil.copyfile(folder / "figures" / name, _ROOT / "docs" / name)
 
 
 def section(folder: Path) -> str:
     """Markdown of the agreement, the speed-up and the kept promises in ``folder``."""
     agreement, highfi, lowfi = (json.loads((folder / f"{name}.json").read_text()) for name in ("agreement", "highfi", "lowfi"))
-    parts = [_agreement(agreement), *_growth(agreement["growth"]), _speed(agreement), _promises(highfi, lowfi)]
+    refined = read(folder / "convergence.json")
+    parts = [_agreement(agreement), *_growth(agreement["growth"]), _speed(agreement), *_equal(refined), _promises(highfi, lowfi)]
+    parts += [_rails(found)] if (found := beside(folder)) else []
     if (found := read(folder / "cost_study.json")) is not None:
-        parts += [_cost(found), _scaling(found["scaling"])]
-    if (found := read(folder / "convergence.json")) is not None:
-        parts.append(_convergence(found))
+        parts += [_ladder(found), _cost(found), _scaling(found["scaling"])]
+    parts += [_convergence(refined)] if refined is not None else []
     if (found := reference.stored(folder.parent)) is not None:
         parts += [_bench(found["rows"])] if found["rows"] else []
         parts += [_surrogate(found["lowfi"])] if found["lowfi"] else []
@@ -76,6 +80,36 @@ def _speed(agreement: dict) -> str:
             f"{1e3 * found['lowfi_wall_s']:.3g} ms on compliant walls; {plain['ratio']:,.0f} times "
             f"({1e3 * plain['lowfi_wall_s']:.3g} ms) for the calibrated surrogate. The same case, everything but compilation "
             f"included, on {machine['cores']} cores of {machine['processor']}.")
+
+
+def _equal(refined: dict | None) -> list[str]:
+    """The speed-up on the mesh that is as sure as the surrogate is exact, where the error of the reference was studied."""
+    if refined is None or refined["equal_accuracy"] is None:
+        return []
+    said = sureness.sentence(refined["equal_accuracy"])
+    return [f"{said[0].upper()}{said[1:]} (`make convergence`). The mesh above is the one that every other table stands on."]
+
+
+def _rails(found: list[dict]) -> str:
+    lines = ["Other rails, each calibrated and judged by itself (`make rails`):", "", f"| {' | '.join(rails.HEADS)} |",
+             "|---" * len(rails.HEADS) + "|"]
+    return "\n".join([*lines, *(f"| {' | '.join(map(str, row))} |" for row in rails.rows(found))])
+
+
+def _ladder(found: dict) -> str:
+    band = found["band_deg_s"]
+    lines = [f"What accuracy costs in time (`make cost`, {found['condition']}): errors against the finest mesh, whose own "
+             f"uncertainty is {_number(band)} deg/s; smaller ones count as that. Bold: none faster is as good.", "",
+             "![Errors of all models against wall time](docs/cost.png)", "",
+             "| model | numerics | wall time | settled rates, deg/s | rate L2, % |", "|---|---|---|---|---|"]
+    for point in found["points"]:
+        mark = "**" if point["pareto"] else ""
+        wall = point["wall_s"]
+        errors = ["the yardstick" if value is None else _number(factor * value)
+                  for value, factor in ((point["error_deg_s"], 1.0), (point["curve_error"], 100.0))]
+        lines.append(f"| {mark}{point['model']}{mark} | {point['numerics']} | "
+                     f"{f'{wall:.3g} s' if wall >= 1.0 else f'{1e3 * wall:.2g} ms'} | {' | '.join(errors)} |")
+    return "\n".join(lines)
 
 
 def _cost(found: dict) -> str:

@@ -79,7 +79,6 @@ class Study:
         import lowfi
         from studies.stages.walls import of_law
 
-        scene = self.condition(name).replace(overrides or {})
         label = f"{name}{tag}{'-calibrated' if calibration else ''}{'-walls' if walls else ''}"
         numbers = _numerics(lowfi.Numerics, **numerics)
         rigid = {} if walls else {"flexibility": None}
@@ -123,7 +122,7 @@ class Study:
         found = read(self.path(f"{name}.json"))
         try:
             return found if found and found["key"] == key(found) else None
-        except (SceneError, KeyError, TypeError, ValueError):
+        except (SceneError, OSError, KeyError, TypeError, ValueError):
             return None
 
     def _tell(self, name: str, words: str) -> None:

@@ -8,6 +8,7 @@ from scenes import ledger
 from scenes.effects import thrust_law
 from scenes.scene import Scene
 from scenes.trajectory import Trajectory
+from studies.cost import choice
 from studies.refinement.contact_loads import by_pad
 from studies.report.chart import AMBER, AXIS_COLOURS, GREY, NAVY, TEAL, VERMILION, Chart, Line, Panel
 
@@ -94,26 +95,41 @@ def energy_ledgers(runs: Runs, condition: str) -> Chart:
 
 
 def cost_picture(cost: dict) -> Chart:
-    """Error against wall time, one line per model, with the band of the reference's own uncertainty; and the part of the
-    surrogate's error that a tighter tolerance can buy off."""
+    """Errors of the settled rates and of the curves against wall time, one line per model, with the band of the reference's own
+    uncertainty and the front of the best; and the part of the surrogate's error that a tighter tolerance can buy off."""
     looks = (("s", "-"), ("^", ":"), ("o", "--"), ("v", "-."), ("D", "-"), ("o", ":"))
     models = dict.fromkeys(point["model"] for point in cost["points"])
     look = {model: (colour, *rest) for model, colour, rest in zip(models, (NAVY, GREY, AMBER, TEAL, VERMILION, NAVY), looks)}
     band = (cost["band_deg_s"], "the reference's own uncertainty") if cost["band_deg_s"] else None
+    settled = [point | {"error_deg_s": cost["band_deg_s"] if point["error_deg_s"] is None else point["error_deg_s"]}
+               for point in cost["points"]]
+    curves = [point | {"curve_error": point["curve_error"] and 100.0 * point["curve_error"]} for point in cost["points"]]
     panels = []
-    for title, error, shaded in (("against the finest mesh", "error_deg_s", band),
-                                 ("of which time integration, surrogate", "integration_error_deg_s", None)):
-        lines = [_cost_line([p for p in cost["points"] if p["model"] == model and (p[error] or 0.0) > 0.0], error, model, *style)
+    for title, points, error, label, shaded in (
+            ("settled rates, against the finest mesh", settled, "error_deg_s", "error of the settled rates (deg/s)", band),
+            ("curves of the rates, against the finest mesh", curves, "curve_error", "rate L2 (%)", None),
+            ("settled rates, of which time integration", cost["points"], "integration_error_deg_s",
+             "error of the settled rates (deg/s)", None)):
+        lines = [_cost_line([p for p in points if p["model"] == model and (p[error] or 0.0) > 0.0], error, model, *style)
                  for model, style in look.items()]
-        panels.append(Panel(title, "wall time of one run (s)", "error of the settled rates (deg/s)",
-                            [line for line in lines if len(line.x)], True, shaded))
-    return Chart("cost", [panel for panel in panels if panel.lines], columns=2, height=380)
+        front = [_front(cost)] if shaded else []
+        shown = [line for line in front + lines if len(line.x)]
+        panels.append(Panel(title, "wall time of one run (s)", label, shown, True, shaded))
+    return Chart("cost", [panel for panel in panels if panel.lines], columns=3, height=380)
+
+
+def _front(cost: dict) -> Line:
+    """Steps from each of the best to the next: errors below the band count as the band."""
+    best = sorted((p["wall_s"], p["trusted_deg_s"]) for p in choice.trusted(cost["points"], cost["band_deg_s"]) if p["pareto"])
+    walls, errors = [wall for wall, _ in best], [error for _, error in best]
+    return Line([wall for pair in zip(walls, walls[1:] + [max(p["wall_s"] for p in cost["points"])]) for wall in pair],
+                [error for error in errors for _ in range(2)], "front of the best", "#000000", 3.0, "-", opacity=0.25)
 
 
 def _cost_line(points: list[dict], error: str, model: str, colour: str, marker: str, dash: str) -> Line:
     """One model; tolerances are labelled only where they matter, in the panel of the time integration, and once for all models."""
     labels = [point["numerics"].split(",")[0].removeprefix("tolerance ") for point in points]
-    if "surrogate" in model and (error == "error_deg_s" or "compliant" not in model):
+    if "surrogate" in model and (error != "integration_error_deg_s" or "compliant" not in model):
         labels = [""] * len(labels)
     return Line([p["wall_s"] for p in points], [p[error] for p in points], model, colour, 1.6, dash, marker=marker,
                 labels=tuple(labels))

@@ -8,7 +8,7 @@ from pathlib import Path
 from scenes.scene import Scene
 from scenes.trajectory import versions
 from studies import machine
-from studies.report import answers, compliance, convergence, figures, growth, inputs, posterior, scaling, stress, tables
+from studies.report import answers, compliance, convergence, figures, growth, inputs, posterior, rails, scaling, stress, tables
 from studies.report.chart import Chart, to_files, to_html
 from studies.report.figures import Runs
 from studies.report.markup import Html, caption, code, number, paragraph, section, table
@@ -18,8 +18,8 @@ from studies.report.style import CSS
 _CONTENTS = (("answer", "Answer"), ("scene", "Scene"), ("mesh", "Mesh"), ("compliance", "Compliance"), ("thrust", "Thrust"),
              ("figure6", "Curves"), ("contact-forces", "Contact"), ("energy", "Energy"), ("stress", "Stress"),
              ("calibration", "Calibration"), ("posterior", "Uncertainty"), ("agreement-section", "Agreement"),
-             ("growth-section", "Growth of 1 µm"), ("speedup", "Speed"), ("cost", "Cost"), ("convergence", "Convergence"),
-             ("bench", "Solvers"), ("stability", "Hard cases"), ("ablation", "Ablation"),
+             ("growth-section", "Growth of 1 µm"), ("speedup", "Speed"), ("rails", "Other rails"), ("cost", "Cost"),
+             ("convergence", "Convergence"), ("bench", "Solvers"), ("stability", "Hard cases"), ("ablation", "Ablation"),
              *((item.name, item.link) for item in answers.ANSWERS), ("promises", "Promises"), ("colophon", "Origin"))
 
 
@@ -38,9 +38,10 @@ class Page:
                         self._contact(), self._energy(), self._stress(),
                         self._of("calibration", "calibration", "Calibration", tables.calibration, "calibrate"), self._posterior(),
                         self._of("agreement", "agreement-section", "Agreement with the reference", tables.agreement, "compare"),
-                        self._growth(), self._of("agreement", "speedup", "Speed", tables.speedups, "compare"),
-                        self._of("cost_study", "cost", "What accuracy costs", self._cost, "cost"), self._convergence(),
-                        self._bench(), self._of("stability", "stability", "Hard cases", tables.stability, "stability"),
+                        self._growth(), self._of("agreement", "speedup", "Speed", self._speed, "compare"),
+                        self._rails(), self._of("cost_study", "cost", "What accuracy costs", self._cost, "cost"),
+                        self._convergence(), self._bench(),
+                        self._of("stability", "stability", "Hard cases", tables.stability, "stability"),
                         self._of("ablation", "ablation", "Only what the scene calls for", tables.ablation, "ablation"),
                         *map(self._study, answers.ANSWERS), render(promises(self._rows(), self.documents)), self._colophon()])
         links = " ".join(f'<a href="#{name}">{title}</a>' for name, title in _CONTENTS if f'id="{name}"' in body)
@@ -89,6 +90,9 @@ class Page:
             facts = ((f"{speed['highfi_wall_s']:.3g} s", "one reference run"),
                      (f"{1e3 * speed['lowfi_wall_s']:.3g} ms", "one surrogate run"),
                      (f"{speed['ratio']:,.0f} ×", f"faster ({speed['low']:,.0f} to {speed['high']:,.0f})"))
+            if equal := (self.documents.get("convergence") or {}).get("equal_accuracy"):
+                facts += ((f"{equal['ratio']:,.0f} ×", f"{'' if equal['surer'] else 'at least, '}at equal accuracy (mesh of "
+                                                       f"{1e3 * equal['element_size_m']:g} mm)"),)
             boxes = '<div class="figures">' + "".join(f"<div><b>{value}</b><span>{words}</span></div>"
                                                       for value, words in facts) + "</div>"
         notices = "".join(f'<div class="notice">Implausible: {escape(words)}</div>' for words in self.scene.warnings)
@@ -172,11 +176,20 @@ class Page:
             return section("stress", "Stress of the rails", self._missing("highfi", "highfi"))
         return stress.shown(rows, self.documents.get("view") or [], self.folder, self.scene.name)
 
+    def _speed(self, found: dict) -> Html:
+        return tables.speedups(found, (self.documents.get("convergence") or {}).get("equal_accuracy"))
+
+    def _rails(self) -> Html:
+        """Other scenes with results beside these; nothing without any."""
+        found = self.documents.get("rails")
+        return section("rails", "Other rails", rails.table(found)) if found else Html("")
+
     def _cost(self, found: dict) -> Html:
         return section("cost", "What accuracy costs", self._figure(
             figures.cost_picture(found), f"Condition {found['condition']}. Error against the finest finite-element mesh, whose own "
-            "uncertainty is the band: an error inside it cannot be told from zero. Right: what a tighter tolerance can still buy. "
-            "Labels: element size, tolerance."), tables.cost(found), Html("<h3>How cost grows</h3>"),
+            "uncertainty is the band: an error inside it cannot be told from zero, and counts as the band where the front of the "
+            "best is drawn; the finest mesh stands at it. Right: what a tighter tolerance can still buy. Labels: element size, "
+            "tolerance."), tables.cost(found), Html("<h3>How cost grows</h3>"),
             self._figure(scaling.picture(found["scaling"]), scaling.WORDS.format(condition=found["condition"])),
             scaling.tables(found["scaling"]))
 
@@ -212,7 +225,7 @@ class Page:
         facts = [("made", datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%d %H:%M UTC")),
                  ("machine", f"{here['processor']}, {here['cores']} cores, {here['memory_gib']} GiB, {here['system']}"),
                  ("Python", here["python"]), *versions().items(), ("scene hash", code(self.scene.hash))]
-        keys = [(stage, code(found["key"])) for stage, found in self.documents.items() if found and stage != "view"]
+        keys = [(stage, code(found["key"])) for stage, found in self.documents.items() if found and stage not in ("view", "rails")]
         return section("colophon", "Where these numbers come from", table(("", ""), facts),
                        table(("result file", "key: hash of scene, code and numerics"),
                              [(f"{stage}.json", key) for stage, key in keys]))

@@ -2,6 +2,8 @@
 
 from html import escape
 
+from studies import published
+from studies.cost import sureness
 from studies.report.markup import Html, caption, code, fold, number, paragraph, percent, section, table
 
 _INTERVALS = ("Intervals are linear and take what the fit leaves for scatter about a model that is right. Model error is not in "
@@ -153,15 +155,27 @@ def _interval(ends: list[float | None]) -> Html | str:
     return "not told" if None in ends else Html(f"{number(ends[0], 4)} to {number(ends[1], 4)}")
 
 
-def speedups(document: dict) -> Html:
-    """Wall times of the reference and of two surrogates on one machine, their ratios and the scatter."""
+def speedups(document: dict, equal: dict | None = None) -> Html:
+    """Wall times of the reference and of two surrogates on one machine, their ratios and the scatter; and those at ``equal``
+    accuracy, where the error of the reference was studied."""
     found = document["speedup_compliant"]
     machine = found["hardware"]
     return section("speedup", "Speed", paragraph("The surrogate on compliant walls:"), _speedup(found),
                    paragraph("The calibrated surrogate:"),
                    _speedup(document["speedup"]), caption(
         f"Condition {found['condition']}, all models by turns in one go, all included but compilation, on {machine['processor']}, "
-        f"{machine['cores']} cores, {machine['memory_gib']} GiB, Python {machine['python']}."))
+        f"{machine['cores']} cores, {machine['memory_gib']} GiB, Python {machine['python']}."),
+                   _equal(equal))
+
+
+def _equal(found: dict | None) -> Html:
+    """The mesh above is fixed; the one that a speed-up should be measured on is as sure as the surrogate is exact."""
+    if found is None:
+        return paragraph("How much faster at equal accuracy: make convergence tells, on the mesh that is as sure as the surrogate "
+                         "is exact.")
+    said = sureness.sentence(found)
+    asked = float(published.headline()["speedup"])
+    return paragraph(f"{said[0].upper()}{said[1:]}. The paper has {asked:,.0f} for its two models.")
 
 
 def _speedup(found: dict) -> Html:
@@ -188,12 +202,14 @@ def cost(document: dict) -> Html:
     """Error against wall time, as numbers."""
     rows = [(p["model"], p["numerics"], f"{p['wall_s']:.3g}",
              "the yardstick" if p["error_deg_s"] is None else number(p["error_deg_s"]),
+             "the yardstick" if p["curve_error"] is None else number(100.0 * p["curve_error"]),
              number(p["integration_error_deg_s"]), "best at its price" if p["pareto"] else "") for p in document["points"]]
     same = [(m["model"], f"{m['numerics']}, {1e3 * m['wall_s']:.3g} ms", number(m["error_deg_s"]),
              f"{m['mesh']}, {m['mesh_wall_s']:.3g} s",
              "the yardstick" if m["mesh_error_deg_s"] is None else number(m["mesh_error_deg_s"]), f"{m['ratio']:,.0f}")
             for m in document["matched"]]
-    return Html(table(("model", "numerics", "wall time (s)", "error (deg/s)", "of which time integration (deg/s)", ""), rows)
+    return Html(table(("model", "numerics", "wall time (s)", "error (deg/s)", "rate L2 (%)", "of which time integration (deg/s)",
+                       ""), rows)
                 + paragraph("What the same accuracy costs with finite elements: "
                             "the coarsest mesh that is no less exact than each surrogate.")
                 + table(("surrogate", "as fast as it is so exact", "error (deg/s)", "mesh", "error (deg/s)", "times as long"),

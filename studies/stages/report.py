@@ -1,15 +1,21 @@
 """Stage ``report``: the stages that compare both models, then one page of their results, and of what is there already: the error of
 the reference, the posterior of the constants, a benchmark, and the studies that answer an engineer's questions."""
 
+import importlib
+from dataclasses import replace
 from pathlib import Path
 from typing import Callable
 
+import scenes
+from scenes.faults import SceneError
 from scenes.files import content_hash, write_text
 from studies.bench import reference
+from studies.progress import say
 from studies.report.answers import ANSWERS
 from studies.stages import ablation, calibrate, compare, convergence, cost, mesh, posterior, runs, stability, view, walls
+from studies.settings import defaults
 from studies.store import Run
-from studies.study import Study, StudyError
+from studies.study import Study, StudyError, read
 
 STAGES: dict[str, Callable[[Study], dict]] = {
     "mesh": mesh.run, "highfi": lambda study: runs.run(study, "highfi"), "lowfi": lambda study: runs.run(study, "lowfi"),
@@ -18,22 +24,27 @@ STAGES: dict[str, Callable[[Study], dict]] = {
     "ablation": ablation.run}
 
 
-def run(study: Study) -> dict:
-    """Runs what is missing and writes report.html; ``failed`` repeats what failed in any stage."""
+OPTIONAL = (convergence.NAME, posterior.NAME, *(item.name for item in ANSWERS))  # each has a module here by that name
+
+
+def run(study: Study, every: bool = False) -> dict:
+    """Runs what is missing and writes report.html; ``failed`` repeats what failed in any stage. With ``every``, each study that has
+    no present result is made too; one that the scene gives no occasion for says so on the page."""
     documents, problems = {}, {}
     for name, stage in STAGES.items():
         try:
             documents[name] = stage(study)
         except StudyError as fault:
             documents[name], problems[name] = None, str(fault)
+    absent = _made(study) if every else {}
     there = ({convergence.NAME: convergence.stored(study), posterior.NAME: posterior.stored(study),
               "bench": reference.stored(study.folder.parent), "view": view.stored(study)}
-             | {item.name: item.stored(study) for item in ANSWERS})
+             | {item.name: item.stored(study) for item in ANSWERS} | {"rails": beside(study.folder)})
 
     def make() -> tuple[dict, list[Path]]:
         from studies.report.page import Page
 
-        page = Page(study.scene, study.folder, documents | there, _trajectories(study, documents), problems)
+        page = Page(study.scene, study.folder, documents | there, _trajectories(study, documents), problems | absent)
         path = study.path("report.html")
         write_text(path, page.render())
         return {"report": study.relative(path), "failed": _failed(documents, problems)}, [path, *page.pictures]
@@ -41,8 +52,36 @@ def run(study: Study) -> dict:
     keys = {name: found and found["key"] for name, found in documents.items()}
     made_at = {name: study.path(f"{name}.json").read_text() for name, found in documents.items() if found}
     shown = study.key(("scenes", "studies"), study.scene.resolved().get("flight"))
-    key = content_hash(keys, content_hash(made_at), content_hash(there), problems, shown)
+    key = content_hash(keys, content_hash(made_at), content_hash(there), problems | absent, shown)
     return study.stage("report", key, make)
+
+
+def _made(study: Study) -> dict[str, str]:
+    """Make every optional study without a present result; why not, by name, where the scene or its settings do not allow it."""
+    reasons = {}
+    for name in OPTIONAL:
+        module = importlib.import_module(f"studies.stages.{name}")
+        try:
+            if module.stored(study) is None:
+                module.run(study)
+        except (SceneError, StudyError) as fault:
+            reasons[name] = str(fault)
+            say(f"{name}: not made\n{fault}")
+    return reasons
+
+
+def beside(folder: Path) -> list[dict]:
+    """Agreement and constants of the catalogue's scenes whose folders lie beside ``folder``, made from the present code."""
+    found = []
+    for path in sorted(folder.parent.glob("*/agreement.json")):
+        name, size = path.parent.name, (read(path) or {}).get("element_size_m")
+        if path.parent == folder or name not in scenes.catalog() or size is None:
+            continue
+        other = Study(scenes.load(name), path.parent, replace(defaults(name), element_size=size))
+        if agreement := compare.stored(other):
+            calibration = read(other.path("calibration.json"))
+            found.append({"name": name, "element_size_m": size, "agreement": agreement, "constants": calibration["constants"]})
+    return found
 
 
 def _failed(documents: dict, problems: dict[str, str]) -> list[str]:

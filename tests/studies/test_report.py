@@ -6,13 +6,16 @@ import numpy as np
 import pytest
 
 import scenes
-from studies.report import figures, inputs, tables
+from studies.report import figures, inputs, rails, tables
 from studies.report.chart import Chart, Line, Panel, to_files, to_html
 from studies.report.figures import Runs
 from studies.report.markup import number, table
 from studies.report.page import Page
 from studies.report.promises import promises
+from studies.settings import defaults
+from studies.stages import report as stage
 from studies.stages.runs import row
+from studies.study import Study
 from tests.studies.synthetic import flight
 
 
@@ -74,8 +77,10 @@ def test_page_of_a_reference_alone_names_the_targets_that_make_the_rest(tmp_path
     runs = {name: flight(lambda t: np.outer(np.sin(100.0 * t), [0.1, 0.2, 0.3])) for name in ("phi15", "phi60")}
     rows = [row(name, run, f"highfi/{name}.nc") for name, run in runs.items()
             if run.cost.update(elements=1, ns_per_element_step=1.0) is None]
-    page = Page(scene, tmp_path, {"highfi": {"key": "k", "conditions": rows}}, Runs(runs, {}, {}),
+    other = {"name": "thin", "element_size_m": 4e-3, "constants": {}, "agreement": {"fitted": [], "held_out": [], "compliant": []}}
+    page = Page(scene, tmp_path, {"highfi": {"key": "k", "conditions": rows}, "rails": [other]}, Runs(runs, {}, {}),
                 {"calibration": "phi15 diverged"}).render()
+    assert 'id="rails"' in page and "0 of 0" in page
     for target in ("mesh", "compare", "cost", "stability", "ablation"):
         assert f"make {target} SCENE=tiny" in page
     assert "phi15 diverged" in page
@@ -102,6 +107,48 @@ def test_figures_of_one_condition():
     runs = Runs({"phi15": flight(pad_force=force)}, {}, {"phi15": flight()})
     assert [panel.title for panel in figures.contact_forces(scene, runs, "phi15").panels] == ["pad 2 (rear, -y +z)"]
     assert len(figures.figure6(runs, ["phi15"]).panels) == 2
+
+
+def judged(condition, l2, settled, touches=True, converged=True, passes=True):
+    return {"condition": condition, "rate_relative_l2": l2, "settled_rate_error_deg_s": settled, "touches": touches,
+            "reference_converged": converged, "passes": passes}
+
+
+def test_other_rails_are_judged_where_a_pad_touches_and_the_reference_is_converged():
+    agreement = {"fitted": [judged("phi15", 0.05, 0.2)], "held_out": [judged("h1", 0.12, 0.3, passes=False)],
+                 "compliant": [judged("phi15", 0.003, 0.01), judged("h1", 0.005, 0.02), judged("h5", 0.9, 9.0, touches=False),
+                               judged("h8", 0.8, 8.0, converged=False, passes=False), judged("h9", None, None, passes=False)]}
+    springs, walls = rails.rows([{"name": "thin", "element_size_m": 4e-3, "agreement": agreement, "constants": {}}])
+    assert springs == ("thin", "4 mm", "calibrated", "2 of 2", "1", "12", "0.3", "")
+    assert walls == ("thin", "4 mm", "compliant walls", "3 of 4", "2", "0.5", "0.02", "h8")
+    shown = rails.table([{"name": "thin", "element_size_m": 4e-3, "agreement": agreement, "constants": {"contact.stiffness": 2e7}}])
+    assert "stiffness 2e+07" in shown
+
+
+def test_front_of_the_best_counts_errors_below_the_band_as_the_band():
+    def point(model, error, wall, pareto):
+        return {"model": model, "rung": model, "numerics": "-", "error_deg_s": error, "curve_error": error and 0.1 * error,
+                "integration_error_deg_s": None, "wall_s": wall, "status": "exited", "pareto": pareto}
+
+    chart = figures.cost_picture({"band_deg_s": 0.04, "points": [point("rough", 0.3, 1e-3, True), point("fine", 0.01, 5e-3, True),
+                                                                 point("mesh", None, 9.0, False)]})
+    settled, curves = chart.panels
+    assert [line.name for line in settled.lines] == ["front of the best", "rough", "fine", "mesh"]
+    assert (settled.lines[0].x, settled.lines[0].y) == ([1e-3, 5e-3, 5e-3, 9.0], [0.3, 0.3, 0.04, 0.04])
+    assert settled.lines[3].y == [0.04] and [line.name for line in curves.lines] == ["rough", "fine"]
+    assert curves.lines[0].y == pytest.approx([3.0])
+
+
+def test_a_study_the_scene_gives_no_occasion_for_stops_nothing(tmp_path, monkeypatch):
+    """A scene that says nothing of a flight. Control: without being asked for, it is a target that is named."""
+    monkeypatch.setattr(stage, "STAGES", {name: lambda _: None for name in stage.STAGES})
+    monkeypatch.setattr(stage, "OPTIONAL", ("flight",))
+    study = Study(scenes.load("tiny").replace({"flight": None}), tmp_path / "tiny", defaults("tiny"))
+    page = study.path("report.html")
+    stage.run(study)
+    assert "make flight SCENE=tiny" in page.read_text()
+    found = stage.run(study, every=True)
+    assert found["failed"] == [] and "make flight SCENE=tiny" not in page.read_text() and "[flight]" in page.read_text()
 
 
 def test_agreement_names_conditions_outside_the_calibration():

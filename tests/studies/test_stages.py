@@ -67,8 +67,11 @@ def test_surrogate_is_timed_by_turns(monkeypatch, tmp_path):
 
 
 def test_pareto_front():
-    points = [{"error_deg_s": error, "wall_s": wall} for error, wall in ((1.0, 1.0), (0.5, 2.0), (0.6, 3.0), (None, 0.1))]
-    assert [point["pareto"] for point in cost.marked(points)] == [True, True, False, False]
+    """Two that cannot be told from the yardstick, whose error is its band, are as good as each other: the faster one is best."""
+    points = [{"model": "a", "rung": "a", "setting": setting, "error_deg_s": error, "wall_s": wall, "status": "exited"}
+              for setting, (error, wall) in enumerate(((1.0, 1.0), (0.5, 2.0), (0.6, 3.0), (None, 9.0), (0.1, 6.0), (0.05, 7.0)))]
+    assert [point["pareto"] for point in cost.marked(points, 0.2)] == [True, True, False, False, True, False]
+    assert [point["pareto"] for point in cost.marked(points, None)] == [True, True, False, False, True, True]
 
 
 def test_matched_meshes():
