@@ -11,6 +11,7 @@ from calibrate.intervals import half_widths, independent
 from calibrate.objective import Parts, Target
 from calibrate.parameters import Parameter
 from calibrate.search import Found, Plan
+from scenes import validity
 from scenes.scene import Scene
 
 _ON_BOUND = 1e-3  # share of the bounds within which a value counts as lying on one
@@ -70,10 +71,8 @@ def _on_bound(shares: np.ndarray) -> np.ndarray:
 
 def valid(scene: Scene, references: dict[str, Curves]) -> dict[str, list[float]]:
     """Smallest and largest of what the constants were found for, over the conditions used (SI)."""
-    rows = [scene.condition(name).loads | {"exit_speed_m_s": reference.speed, "pad_force_peak_n": reference.pad_force}
-            for name, reference in references.items()]
-    known = {key: [row[key] for row in rows if row[key] is not None] for key in rows[0]}
-    return {key: [min(values), max(values)] for key, values in known.items() if values}
+    return validity.ranges([scene.condition(name).loads | {"exit_speed_m_s": reference.speed, "pad_force_peak_n": reference.pad_force}
+                            for name, reference in references.items()])
 
 
 def provenance(scene: Scene, references: dict[str, Curves], constants: dict[str, float], found: Found, plan: Plan, seed: int,

@@ -2,7 +2,9 @@
 
 import threading
 import time
-from typing import Callable
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
+from typing import Callable, Iterator
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
@@ -75,6 +77,20 @@ class Board:
             if label not in self._tasks:
                 self._tasks[label] = self._bars.add_task(f"  {label}", total=1.0)
             self._bars.update(self._tasks[label], completed=fraction)
+
+
+@contextmanager
+def team(board: Board, workers: int) -> Iterator[ThreadPoolExecutor]:
+    """Threads for the runs of ``board``. Whatever ends the block early, Ctrl-C above all, makes running ones stop at their next
+    report: none is waited for (a kernel may still be compiled), and none of those that wait is begun."""
+    pool = ThreadPoolExecutor(workers)
+    try:
+        yield pool
+    except BaseException:
+        board.stop()
+        pool.shutdown(wait=False, cancel_futures=True)
+        raise
+    pool.shutdown()
 
 
 def say(text: str) -> None:

@@ -9,7 +9,7 @@ release the interpreter, and the mesh generator, which insists on the main threa
 """
 
 import functools
-from concurrent.futures import ThreadPoolExecutor, as_completed
+from concurrent.futures import as_completed
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, Callable, Sequence
@@ -19,7 +19,7 @@ from scenes.files import content_hash, discard, source_hash
 from scenes.scene import Scene
 from scenes.trajectory import Trajectory
 from scenes.walls import Walls
-from studies.progress import Board, say
+from studies.progress import Board, say, team
 
 SOURCES = {"highfi": ("scenes", "meshes", "highfi"), "lowfi": ("scenes", "lowfi"),
            "calibrated": ("scenes", "meshes", "highfi", "lowfi", "calibrate")}
@@ -114,18 +114,10 @@ class Store:
         made: dict[str, Trajectory] = {}
         # Side by side each run is best left alone with one processor: threads of one run would wait for each other.
         threads = None if min(self.workers, len(runs)) == 1 else 1
-        pool = ThreadPoolExecutor(self.workers)
-        with Board(title, len(runs)) as board:
+        with Board(title, len(runs)) as board, team(board, self.workers) as pool:
             pending = {pool.submit(self._one, run, board, threads): run for run in runs}
-            try:
-                for future in as_completed(pending):
-                    made[pending[future].key] = future.result()
-            except BaseException:
-                # Kernels stop at their next report; nobody waits for one that is still being compiled.
-                board.stop()
-                pool.shutdown(wait=False, cancel_futures=True)
-                raise
-        pool.shutdown()
+            for future in as_completed(pending):
+                made[pending[future].key] = future.result()
         return made
 
     def _one(self, run: Run, board: Board, threads: int | None) -> Trajectory:

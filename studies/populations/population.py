@@ -19,7 +19,7 @@ from lowfi.store import StoreError
 from scenes.calibration import Calibration
 from scenes.scene import Scene
 from scenes.walls import Walls
-from studies.populations import moments, regime
+from studies.populations import regime
 from studies.progress import Board
 from studies.stages import calibrate
 from studies.stages import walls as wall_stage
@@ -30,8 +30,7 @@ TOLERANCE = 1e-2  # relative error of a step: 95 % of reference cases within 0.2
 
 class Surrogate(NamedTuple):
     """A scene whose contact constants are the calibrated ones, the calibration they come from, and walls that give way, rigid ones
-    under a law where the rails are warm, or none; the largest transverse ``moment`` impulse (N m s) of the conditions it was
-    fitted to, None where that is not judged.
+    under a law where the rails are warm, or none.
 
     A scene without contact has none of them.
     """
@@ -39,7 +38,6 @@ class Surrogate(NamedTuple):
     scene: Scene
     calibration: Calibration | None
     walls: Walls | None
-    moment: float | None = None
 
     @property
     def words(self) -> str:
@@ -76,8 +74,7 @@ def surrogate(study: Study, walls: bool = False, condition: str | None = None) -
     if walls:
         return Surrogate(scene, None, wall_stage.load(study, scene))
     fitted = calibrate.load(study)
-    moment = moments.largest([study.condition(name) for name in study.fitted()])
-    return Surrogate(fitted.apply(on_springs(scene)), fitted, wall_stage.of_law(study, scene), moment)
+    return Surrogate(fitted.apply(on_springs(scene)), fitted, wall_stage.of_law(study, scene))
 
 
 def on_springs(scene: Scene) -> Scene:

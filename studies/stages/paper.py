@@ -4,7 +4,7 @@ Every search is kept as it ends, so that a stage that was stopped goes on with t
 """
 
 import math
-from concurrent.futures import ThreadPoolExecutor, as_completed
+from concurrent.futures import as_completed
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -16,7 +16,7 @@ from scenes.files import content_hash, source_hash, write_json, write_text
 from scenes.scene import Scene, load
 from studies import published
 from studies.inference import inputs, misfit, solutions, toml
-from studies.progress import Board
+from studies.progress import Board, team
 from studies.report import paper as drawn
 from studies.report.chart import to_files
 from studies.stages import compare
@@ -123,8 +123,7 @@ def _differing(first, second, key: str = "") -> list[str]:
 def _searches(study: Study, base: Scene, asked: Asked) -> list[solutions.Search]:
     """Every search in its order, ``workers`` at a time; on Ctrl-C none is waited for or begun."""
     plans = [(stress, seed) for seed in range(asked.starts) for stress in STRESSES]
-    pool = ThreadPoolExecutor(study.settings.workers)
-    with Board(NAME, len(plans)) as board:
+    with Board(NAME, len(plans)) as board, team(board, study.settings.workers) as pool:
 
         def one(stress: float, seed: int) -> solutions.Search:
             path = study.path(f"{NAME}/search-{stress:g}-{seed}.json")
@@ -141,14 +140,8 @@ def _searches(study: Study, base: Scene, asked: Asked) -> list[solutions.Search]
             return found
 
         pending = [pool.submit(one, *plan) for plan in plans]
-        try:
-            for future in as_completed(pending):
-                future.result()
-        except BaseException:
-            board.stop()  # searches end at their next report
-            pool.shutdown(wait=False, cancel_futures=True)
-            raise
-    pool.shutdown()
+        for future in as_completed(pending):
+            future.result()
     return [future.result() for future in pending]
 
 

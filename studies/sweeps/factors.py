@@ -11,8 +11,8 @@ import numpy as np
 
 from lowfi.rows import Listed, numbers
 from scenes import model as models
+from scenes import moments
 from scenes.scene import Scene
-from studies.populations import moments
 
 
 class Factor(NamedTuple):

@@ -8,7 +8,7 @@ import pytest
 from typer.testing import CliRunner
 
 from lowfi import store as stores
-from scenes import Calibration, load
+from scenes import Calibration, load, validity
 from studies.cli import app
 from studies.settings import Settings
 from studies.stages import ensemble
@@ -45,7 +45,7 @@ def test_a_scene_outside_its_calibration_is_said_once(tmp_path):
     """Control: the scene the constants were found for says nothing."""
     scene = load("reference")
     found = Calibration({}, [], [], [], [], [], [], np.empty((0, 0)), [], {}, [], 0.0,
-                        {key: [value, value] for key, value in scene.loads.items()}, {"geometry_hash": scene.geometry_hash})
+                        validity.ranges([scene.loads]), {"geometry_hash": scene.geometry_hash})
     for changed, count in ({}, 0), ({"thrust.peak": "9 kN"}, 3):
         study = Study(scene.replace(changed), tmp_path, Settings())
         with pytest.MonkeyPatch.context() as patch:

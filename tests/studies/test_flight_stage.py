@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from scenes import load
+from scenes import load, validity
 from scenes.calibration import Calibration
 from studies.cli import app
 from studies.flight import summary
@@ -93,7 +93,7 @@ def test_a_condition_outside_the_calibration_is_marked(tmp_path, monkeypatch):
     its error."""
     scene = load("reference")
     fitted = Calibration({}, [], [], [], [], [], [], np.empty((0, 0)), [], {}, [], 0.0,
-                         {key: [value, value] for key, value in scene.loads.items()}, {"geometry_hash": scene.geometry_hash})
+                         validity.ranges([scene.loads]), {"geometry_hash": scene.geometry_hash})
     monkeypatch.setattr(calibrate, "load", lambda study: fitted)
     monkeypatch.setattr(chart, "to_files", lambda *_: [])
     source = tmp_path / "mine.toml"

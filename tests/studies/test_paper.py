@@ -5,6 +5,7 @@ import math
 import signal
 import threading
 import time
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -245,12 +246,16 @@ def test_headline_has_our_cost_of_the_present_code_only(quick, monkeypatch):
     assert paper.run(study, SMALL) == fresh
 
 
-def test_interrupt_ends_the_running_search_and_begins_no_other(tmp_path, monkeypatch):
+@pytest.mark.parametrize("begins", ["while it waits", "before it waits"])
+def test_interrupt_ends_the_running_search_and_begins_no_other(tmp_path, monkeypatch, begins):
+    """Whether Ctrl-C comes when all searches are asked for, or when only the first one is."""
     begun, ended, finished = [], [], []
+    asked_for_all = threading.Event()
 
     def run(launcher_of, stress, seed, plan, progress):
         begun.append((stress, seed))
-        signal.pthread_kill(threading.main_thread().ident, signal.SIGINT)
+        if asked_for_all.wait(0.0 if begins == "before it waits" else 30.0):
+            signal.pthread_kill(threading.main_thread().ident, signal.SIGINT)
         for _ in range(3000):  # far longer than a busy machine takes to hand the signal on
             time.sleep(0.01)
             try:
@@ -261,6 +266,21 @@ def test_interrupt_ends_the_running_search_and_begins_no_other(tmp_path, monkeyp
         finished.append((stress, seed))
         return _stub()(launcher_of, stress, seed, plan, progress)
 
+    def submit(pool, *task):
+        if begins == "before it waits" and begun:
+            raise KeyboardInterrupt
+        future = ask(pool, *task)
+        while begins == "before it waits" and not begun:
+            time.sleep(0.001)
+        return future
+
+    def as_completed(futures):
+        asked_for_all.set()
+        return wait_for(futures)
+
+    ask, wait_for = ThreadPoolExecutor.submit, paper.as_completed
+    monkeypatch.setattr(ThreadPoolExecutor, "submit", submit)
+    monkeypatch.setattr(paper, "as_completed", as_completed)
     monkeypatch.setattr(solutions, "run", run)
     study = Study(BASE, tmp_path, Settings(workers=1))
     with pytest.raises(KeyboardInterrupt):

@@ -8,10 +8,10 @@ import pytest
 import lowfi
 from lowfi.numerics import Numerics
 from lowfi.rows import Listed, numbers
-from scenes import load
+from scenes import load, moments, validity
 from scenes.calibration import Calibration
 from scenes.effects import thrust_offset
-from studies.populations import answers, moments, population, regime
+from studies.populations import answers, population, regime
 from studies.populations.population import Surrogate
 from studies.settings import Settings
 from studies.study import Study
@@ -19,8 +19,9 @@ from studies.sweeps import factors
 
 SCENE = load("reference")
 FITTED = Calibration({}, [], [], [], [], [], [], np.zeros((0, 0)), [], {}, [], 0.0,
-                     valid={name: [value, value] for name, value in SCENE.loads.items()},
+                     valid=validity.ranges([SCENE.loads]),
                      provenance={"geometry_hash": SCENE.geometry_hash})
+FITTED_HERE = Surrogate(SCENE, FITTED, None)
 ROWS = [{"contact.clearance": 0.25e-3, "payload.mass": 9.9, "thrust.peak": 6000.0},
         {"contact.clearance": 0.26e-3, "payload.mass": 9.9, "thrust.peak": 6000.0},
         {"contact.clearance": 0.20e-3, "payload.mass": 9.9, "thrust.peak": 6000.0},
@@ -34,46 +35,40 @@ def columns_of(rows):
 
 
 def test_cases_outside_a_calibration_are_those_it_says_are():
-    found = regime.outside(Surrogate(SCENE, FITTED, None), columns_of(ROWS), len(ROWS))
+    found = regime.outside(FITTED_HERE, columns_of(ROWS), len(ROWS))
     assert found.tolist() == [bool(FITTED.outside(SCENE.replace(row))) for row in ROWS] == [False, False, True, True, True, False]
 
 
 @pytest.mark.parametrize("model, expected", [(Surrogate(SCENE, None, None), False),
                                              (Surrogate(SCENE.replace({"thrust.peak": "9 kN"}), FITTED, None), True)])
-def test_offsets_do_not_decide_what_is_outside_where_no_moment_is_known(model, expected):
+def test_the_angle_of_an_error_does_not_decide_what_is_outside(model, expected):
     offsets = {"thrust_offset.misalignment.radial": np.linspace(0.0, 6.0, 7)}
     assert regime.outside(model, offsets, 7).tolist() == [expected] * 7
-    assert regime.outside(Surrogate(SCENE, FITTED, None), {"rail.thickness": np.array([4e-3])}, 1).all()
+    assert regime.outside(FITTED_HERE, {"rail.thickness": np.array([4e-3])}, 1).all()
 
 
-@pytest.fixture
-def fitted_at_a_tenth(tmp_path, monkeypatch):
-    """The surrogate of the reference scene, whose fitted conditions have 0.1 deg of misalignment each."""
-    monkeypatch.setattr(population.calibrate, "load", lambda _: FITTED)
-    return population.surrogate(Study(SCENE, tmp_path, Settings()))
-
-
-def test_an_error_larger_than_those_of_the_fit_is_outside(fitted_at_a_tenth):
-    """The sweep of one error at a time, whose 0.1 deg at an arm of 0.1 m are 0.17 mm of eccentricity. Control: the ranges of the
-    calibration itself tell none of the cases apart."""
-    alone = fitted_at_a_tenth._replace(scene=factors.alone(SCENE))
+def test_an_error_larger_than_those_of_the_fit_is_outside():
+    """The sweep of one error at a time, whose 0.1 deg at an arm of 0.1 m are 0.17 mm of eccentricity. Control: the ranges of
+    thrust and clearance tell none of the cases apart."""
+    alone = Surrogate(factors.alone(SCENE), FITTED, None)
     cases = factors.cases(factors.angles(8))
     inputs = dict(zip(cases.keys, numbers(cases.keys, cases.rows(0, 240)).T))
     found = regime.outside(alone, inputs, 240).reshape(3, len(factors.SIZES), 8)
-    limit = 1.0 + regime.validity.MARGIN
+    limit = 1.0 + validity.MARGIN
     largest = limit * 0.1, *[limit * 100.0 * np.sin(np.radians(0.1))] * 2  # deg, mm, mm
     assert found.tolist() == [[[size > most] * 8 for size in factors.SIZES] for most in largest]
-    assert not regime.outside(alone._replace(moment=None), inputs, 240).any()
+    of_thrust = {key: span for key, span in FITTED.valid.items() if key != "moment_impulse_nms"}
+    assert not regime.outside(alone._replace(calibration=replace(FITTED, valid=of_thrust)), inputs, 240).any()
     at_once = regime.outside(alone, {"thrust_offset.misalignment.axial": np.linspace(0.0, 0.02, 10**6)}, 10**6)
     assert at_once.sum() == pytest.approx(10**6 * (1.0 - limit * np.radians(0.1) / 0.02), rel=1e-4)
 
 
-def test_a_nan_stands_for_the_scene_s_own_number(fitted_at_a_tenth):
+def test_a_nan_stands_for_the_scene_s_own_number():
     """Lists of cases with different keys have it where a case does not change a number."""
     nothing, other = np.array([np.nan, np.nan]), np.array([np.nan, 9e9])
     for key in ("contact.clearance", "payload.mass", "thrust.peak", "thrust_offset.misalignment.axial"):
-        assert not regime.outside(fitted_at_a_tenth, {key: nothing}, 2).any()
-        assert regime.outside(fitted_at_a_tenth, {key: other if "axial" not in key else np.array([np.nan, 0.1])}, 2).tolist() == [
+        assert not regime.outside(FITTED_HERE, {key: nothing}, 2).any()
+        assert regime.outside(FITTED_HERE, {key: other if "axial" not in key else np.array([np.nan, 0.1])}, 2).tolist() == [
             False, True]
 
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from scenes import load
+from scenes import load, validity
 from scenes.calibration import Calibration
 from scenes.faults import SceneError
 from studies.cli import app
@@ -33,7 +33,7 @@ def fitted(monkeypatch):
     """A calibration without constants in place of one that takes the reference minutes to make."""
     scene = load("reference")
     found = Calibration({}, [], [], [], [], [], [], np.empty((0, 0)), [], {}, [], 0.0,
-                        {key: [value, value] for key, value in scene.loads.items()}, {"geometry_hash": scene.geometry_hash})
+                        validity.ranges([scene.loads]), {"geometry_hash": scene.geometry_hash})
     monkeypatch.setattr(calibrate, "load", lambda study: found)
 
 

@@ -13,12 +13,10 @@ from typing import Mapping
 
 import numpy as np
 
-from scenes.scene import Scene
-
 Inputs = Mapping[str, np.ndarray]
 
 
-def column(scene: Scene, inputs: Inputs, key: str) -> np.ndarray | float:
+def column(scene, inputs: Inputs, key: str) -> np.ndarray | float:
     """The numbers (n,) under a dotted ``key`` in ``inputs``, SI; the scene's own, zero where it has none, where a case has
     none (NaN)."""
     own = reduce(lambda table, part: getattr(table, part, None), key.split("."), scene)
@@ -27,7 +25,7 @@ def column(scene: Scene, inputs: Inputs, key: str) -> np.ndarray | float:
     return own if values is None else np.where(np.isnan(values), own, values)
 
 
-def moment_impulses(scene: Scene, inputs: Inputs, impulse: np.ndarray | float) -> np.ndarray:
+def moment_impulses(scene, inputs: Inputs, impulse: np.ndarray | float) -> np.ndarray:
     """Moment impulses (n,3) or (3,) in N m s, body axes, about the mass centre, of variations of ``scene`` by ``inputs`` (n,), SI,
     whose thrusts have the ``impulse`` (n,) in N s."""
     def offset(table: str) -> tuple:
@@ -42,12 +40,7 @@ def moment_impulses(scene: Scene, inputs: Inputs, impulse: np.ndarray | float) -
     return np.asarray(impulse)[..., None] * np.cross(np.stack(place, axis=-1), np.stack(direction, axis=-1))
 
 
-def transverse(scene: Scene, inputs: Inputs, impulse: np.ndarray | float) -> np.ndarray:
+def transverse(scene, inputs: Inputs, impulse: np.ndarray | float) -> np.ndarray:
     """Size (n,) or () of the part of the moment impulse across the axis, |L_yz| in N m s: what turns a payload against its
     rails."""
     return np.hypot(*np.moveaxis(moment_impulses(scene, inputs, impulse)[..., 1:], -1, 0))
-
-
-def largest(scenes: list[Scene]) -> float:
-    """Largest transverse moment impulse of ``scenes``, N m s."""
-    return max(float(transverse(scene, {}, scene.loads["thrust_impulse_ns"])) for scene in scenes)
