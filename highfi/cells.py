@@ -2,7 +2,8 @@
 
 A hexahedron is checked at its corners, where J = e1 . (e2 x e3) with e the three edges that leave a corner. In a tetrahedron det J
 is a cubic polynomial, which lies between the smallest and the largest of its 20 Bernstein coefficients: where all of them are
-positive it is positive everywhere, also between curved edges. Both orders of nodes are those of VTK, in which meshio hands them over.
+positive it is positive everywhere, also between curved edges. Both orders of nodes are those of VTK,
+in which meshio hands them over.
 """
 
 from itertools import product

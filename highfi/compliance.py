@@ -41,11 +41,11 @@ _SINGULAR = 1e-6  # of the largest eigenvalue of G: patterns that hardly differ 
 
 class Compliance(NamedTuple):
     """travel (s,) m of the payload along X since ignition; matrix (s,f,p,f,p) m/N between f pad faces and p patterns, zero between
-    faces on different rails; gram (s,f,p,p), zero where a face has no wall; rail (f,) the number of the rail under each, -1 without;
-    half (f,2) m, half the size of each face along xi and eta, negative where eta runs against the axis; frequency (r,n) rad/s of
-    the modes of each rail and their shape V (s,f,p,n) 1/kg^0.5; warm (s,f,p,t) m, the mean displacement away from the payload, by
-    pattern, of one of each of the t fields of temperature. Near an end of the rail a face stays at the last place where all of it
-    is on the rail."""
+    faces on different rails; gram (s,f,p,p), zero where a face has no wall; rail (f,) the number of the rail under each, -1
+    without; half (f,2) m, half the size of each face along xi and eta, negative where eta runs against the axis; frequency (r,n)
+    rad/s of the modes of each rail and their shape V (s,f,p,n) 1/kg^0.5; warm (s,f,p,t) m, the mean displacement away from the
+    payload, by pattern, of one of each of the t fields of temperature. Near an end of the rail a face stays at the last place where
+    all of it is on the rail."""
 
     travel: np.ndarray
     matrix: np.ndarray
@@ -166,7 +166,8 @@ class _Patches:
         answer = [loads.T @ clamped.solve(loads[:, start:start + _BATCH].toarray()) for start in range(0, loads.shape[1], _BATCH)]
         frequency, shape = vibration.modes(clamped.stiffness, np.repeat(operator.mass, 3)[clamped.free], clamped.solve, modes)
         under = len(self.found), self._patterns
-        return np.concatenate(answer, axis=1).reshape(2 * under), warm.reshape(*under, FIELDS), frequency, (loads.T @ shape).reshape(*under, modes)
+        return (np.concatenate(answer, axis=1).reshape(2 * under), warm.reshape(*under, FIELDS), frequency,
+                (loads.T @ shape).reshape(*under, modes))
 
     def _loads(self) -> csc_array:
         """Nodal loads (3n,mp) of all patterns at all places."""

@@ -1,8 +1,8 @@
 """Internal force of the rails and the motion of their nodes, by whichever kernel the mesh allows, shared among threads.
 
-On an extruded mesh each thread sweeps over its own chunks of pencils: a chunk moves, and the force of a chunk follows as soon as all
-it hangs on has moved, while that is still in the cache. Chunks that hang on another thread's wait for the barrier. A general mesh
-is cut into slabs along X: elements of two even slabs share no node, nor do those of two odd ones.
+On an extruded mesh each thread sweeps over its own chunks of pencils: a chunk moves, and the force of a chunk follows as soon as
+all it hangs on has moved, while that is still in the cache. Chunks that hang on another thread's wait for the barrier. A general
+mesh is cut into slabs along X: elements of two even slabs share no node, nor do those of two odd ones.
 """
 
 from highfi.damping import add_damping

@@ -49,7 +49,8 @@ def axial_velocity_of_platform(state, frame, base):
 
 @kernel
 def add_work(rail, surface, payload, frame, drive, friction, gravity, state, active, pose, thrust, half, ahead):
-    """Add half a step of work, total and axial, at the velocities of ``pose`` and those of the nodes once kicked over ``ahead`` (s)."""
+    """Add half a step of work, total and axial, at the velocities of ``pose``
+    and those of the nodes once kicked over ``ahead`` (s)."""
     force, moment, point = thrust
     work, v = state.work, state.payload.velocity
     rate = body_rate(state.payload, payload.inverse_inertia)

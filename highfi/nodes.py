@@ -59,7 +59,8 @@ def _move_in_frame(x, y, z, inverse_mass, u, v, w, p, q, r, a, b, c, motion, dt,
                                           motion[11])
     for node in range(first, last):
         m = inverse_mass[node]
-        px, py, pz = _kicked(p[node], a[node], m, gx, dt), _kicked(q[node], b[node], m, gy, dt), _kicked(r[node], c[node], m, gz, dt)
+        px, py, pz = (_kicked(p[node], a[node], m, gx, dt), _kicked(q[node], b[node], m, gy, dt),
+                      _kicked(r[node], c[node], m, gz, dt))
         dx, dy, dz = u[node] + dt * (px - fx), v[node] + dt * (py - fy), w[node] + dt * (pz - fz)
         ax, ay, az = x[node] + dx, y[node] + dy, z[node] + dz
         u[node] = dx + (t0 * ax + t1 * ay + t2 * az) if m > 0.0 else 0.0

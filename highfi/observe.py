@@ -2,8 +2,8 @@
 
     v(n) = (v(n-1/2) + v(n+1/2)) / 2,     kinetic energy = v(n-1/2) M v(n+1/2) / 2
 
-The second form makes kinetic plus strain energy an exact invariant of central differences for a linear system. Plain NumPy: a sample
-is taken once in a hundred steps, and another kernel would only take time to compile.
+The second form makes kinetic plus strain energy an exact invariant of central differences for a linear system. Plain NumPy: a
+sample is taken once in a hundred steps, and another kernel would only take time to compile.
 """
 
 from typing import NamedTuple

@@ -131,12 +131,12 @@ class _Sweep:
 
 @intrinsic
 def _pencil(typing, values, members, numbers, counts, weights, force, lanes, pattern, kind, member, number, base, layers, plane):
-    """Force of a pencil of ``layers`` nodes from number ``base`` on, without what the end layers alone have; its sum of u x f is added
-    to the rows of ``lanes``.
+    """Force of a pencil of ``layers`` nodes from number ``base`` on, without what the end layers alone have; its sum of u x f is
+    added to the rows of ``lanes``.
 
     It has ``counts[kind + k]`` groups of each kind, their members from ``member`` and their numbers from ``number`` on; ``weights``
-    are the layers' parts of d, then WIDTH zeros. Arrays are flat: values and force (3 * plane), lanes (3 * WIDTH). No bounds are checked. The commonest
-    patterns of groups have code of their own, without loops over them.
+    are the layers' parts of d, then WIDTH zeros. Arrays are flat: values and force (3 * plane), lanes (3 * WIDTH). No bounds are
+    checked. The commonest patterns of groups have code of their own, without loops over them.
     """
     size = types.intp
     signature = types.void(values, members, numbers, counts, weights, force, lanes, size, size, size, size, size, size, size)
@@ -164,8 +164,8 @@ def _pencil(typing, values, members, numbers, counts, weights, force, lanes, pat
 
 @kernel
 def pencil_force(pencils, displacement, force, first, last, lanes, turn):
-    """Set the part of ``force`` (N) at section points ``first`` to ``last`` to that of K u, both (3, s * stride) in rows, and ``turn``
-    (3,) to their sum of u x K u (N m). ``lanes``: room for (3, WIDTH) numbers on a cache line."""
+    """Set the part of ``force`` (N) at section points ``first`` to ``last`` to that of K u, both (3, s * stride) in rows, and
+    ``turn`` (3,) to their sum of u x K u (N m). ``lanes``: room for (3, WIDTH) numbers on a cache line."""
     groups, plane = pencils.groups, displacement.shape[1]
     kinds, counts = groups.counts.shape[1], groups.counts.reshape(groups.counts.size)
     values, forces, flat = displacement.reshape(displacement.size), force.reshape(force.size), lanes.reshape(lanes.size)

@@ -29,9 +29,9 @@ _ODD = 1e-9  # relative size of the blocks that the mirror symmetry forbids
 
 class Pencils(NamedTuple):
     """groups of neighbours, members by the number of their first node, with D, L and O; for the end layers first (s+1,), neighbour
-    (q,) number of the first node and ends (q,4) N/m, E xy xz yx zx; weights (stride + LANES,) of D in each layer; layers n and stride, the
-    padded length of a pencil; chunks (c+1,) first pencil of each bundle that is worked on at once, with the lowest (c,) chunk that it
-    hangs on, and the highest (c,) that it or one before does."""
+    (q,) number of the first node and ends (q,4) N/m, E xy xz yx zx; weights (stride + LANES,) of D in each layer; layers n and
+    stride, the padded length of a pencil; chunks (c+1,) first pencil of each bundle that is worked on at once, with the lowest (c,)
+    chunk that it hangs on, and the highest (c,) that it or one before does."""
 
     groups: Groups
     first: np.ndarray

@@ -26,8 +26,8 @@ class Elements(NamedTuple):
 class Rail(NamedTuple):
     """Constant: points (n,3) m; mass (n,) kg; inverse_mass (n,) 1/kg, zero where clamped; clamped (k,) node numbers in
     ascending order, held (b+1,) the first of them in each block; either
-    pencils, of an extruded mesh, or elements, the other one None; blocks (b+1,) first node of each run of nodes that is worked on at
-    once, the nodes of a chunk of pencils; damping, None where the scene has none."""
+    pencils, of an extruded mesh, or elements, the other one None; blocks (b+1,) first node of each run of nodes that is worked on
+    at once, the nodes of a chunk of pencils; damping, None where the scene has none."""
 
     points: np.ndarray
     mass: np.ndarray
@@ -82,7 +82,8 @@ class Frame(NamedTuple):
 
 
 class Drive(NamedTuple):
-    """Constant: thrust arm behind the nominal centre (m), whether the platform takes the reaction; mass of the moving nodes (kg)."""
+    """Constant: thrust arm behind the nominal centre (m), whether the platform takes the reaction;
+    mass of the moving nodes (kg)."""
 
     arm: float
     reacts_on_platform: bool
@@ -101,8 +102,8 @@ class Body(NamedTuple):
 
 class History(NamedTuple):
     """Evolving, with structural damping only: what one step leaves to the next. elastic (n,3) N: K u; displacement (n,3) m; force
-    (n,3) N: what damping adds to the resistance; and of each block drag (b,6): force and moment, about the frame's origin and at the
-    undeformed places, of the part proportional to mass (N, N m); loss (b,) J: energy taken over the step."""
+    (n,3) N: what damping adds to the resistance; and of each block drag (b,6): force and moment, about the frame's origin and at
+    the undeformed places, of the part proportional to mass (N, N m); loss (b,) J: energy taken over the step."""
 
     elastic: np.ndarray
     displacement: np.ndarray
@@ -143,9 +144,9 @@ class State(NamedTuple):
 
 class Active(NamedTuple):
     """Evolving: where contact is now. count (g,2): border points and nodes of each group in use; point (k,2) facet and Gauss point,
-    face (k,) and energy (k,) J stored of loaded points near the border of their face; node (m,) numbers of the nodes that carry load;
-    seen (n,) whether a node is among them; drag (n,3) N: their shares of the friction on the payload in frame axes; node_damping (n,)
-    N s/m that friction brings to them; wait (f,) steps for which a face cannot touch."""
+    face (k,) and energy (k,) J stored of loaded points near the border of their face; node (m,) numbers of the nodes that carry
+    load; seen (n,) whether a node is among them; drag (n,3) N: their shares of the friction on the payload in frame axes;
+    node_damping (n,) N s/m that friction brings to them; wait (f,) steps for which a face cannot touch."""
 
     count: np.ndarray
     point: np.ndarray

@@ -9,7 +9,8 @@ from highfi.mesh import MeshError
 
 
 class Clamped:
-    """The ``stiffness`` of ``operator`` with its fixed nodes held, among the degrees of freedom that are ``free``. Raises MeshError where nothing holds it."""
+    """The ``stiffness`` of ``operator`` with its fixed nodes held, among the degrees of freedom that are ``free``.
+    Raises MeshError where nothing holds it."""
 
     def __init__(self, operator: assembly.Operator):
         if operator.free.all():

@@ -93,7 +93,8 @@ def _rail(points: np.ndarray, operator: assembly.Operator, damping: Damping | No
 
 
 def along_x(points: np.ndarray) -> np.ndarray:
-    """Number (n,) of each node of a mesh of any shape: those near each other along X come together, so that they meet in the cache."""
+    """Number (n,) of each node of a mesh of any shape: those near each other along X come together,
+    so that they meet in the cache."""
     number = np.empty(len(points), dtype=np.int64)
     x, y, z = np.round(points / _SAME).T
     number[np.lexsort((z, y, x))] = np.arange(len(points))

@@ -11,7 +11,8 @@ from scipy.sparse import csc_array, diags_array
 from scipy.sparse.linalg import LinearOperator, eigsh
 
 
-def modes(stiffness: csc_array, mass: np.ndarray, solve: Callable[[np.ndarray], np.ndarray], count: int) -> tuple[np.ndarray, np.ndarray]:
+def modes(stiffness: csc_array, mass: np.ndarray, solve: Callable[[np.ndarray], np.ndarray],
+          count: int) -> tuple[np.ndarray, np.ndarray]:
     """Frequencies (n,) rad/s, ascending, and shapes (d,n) 1/kg^0.5 of the lowest ``count`` modes over d freedoms that nothing
     holds, of ``stiffness`` (d,d) N/m and ``mass`` (d,) kg; ``solve`` answers the displacement (m) under a load (N).
 
@@ -26,7 +27,8 @@ def modes(stiffness: csc_array, mass: np.ndarray, solve: Callable[[np.ndarray], 
         root = np.sqrt(mass)
         squares, shapes = eigh(stiffness.toarray() / root / root[:, None], subset_by_index=(0, count - 1))
         return np.sqrt(squares), shapes / root[:, None]
-    start = np.random.default_rng(1).standard_normal(freedoms)  # the same bits each time; nothing symmetric, or half the modes stay unseen
+    # The same bits each time; nothing symmetric, or half the modes stay unseen.
+    start = np.random.default_rng(1).standard_normal(freedoms)
     squares, shapes = eigsh(stiffness, count, diags_array(mass), sigma=0.0, v0=start,
                             OPinv=LinearOperator(stiffness.shape, matvec=solve, dtype=float))
     return np.sqrt(squares), shapes

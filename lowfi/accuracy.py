@@ -1,7 +1,7 @@
 """Local error of a step, as speeds at the pads, against what is allowed.
 
-With the error e of each slot, the spin error e_w = R I^-1 R' (e_A - e_r x m v - r x m e_v), the distance ``reach`` of the farthest pad
-from the mass centre and the step h, each body's ratio is the largest of::
+With the error e of each slot, the spin error e_w = R I^-1 R' (e_A - e_r x m v - r x m e_v), the distance ``reach`` of the farthest
+pad from the mass centre and the step h, each body's ratio is the largest of::
 
     |e_v| across, reach |e_w|, |e_r| / h across, 2 reach |e_q| / h      over   rtol (floor + |v| across + reach |w|)
     |e_v| along X, |e_r| / h along X                                     over   rtol (floor + |v| along X)
@@ -38,7 +38,8 @@ def error_ratio(tolerance, payload, platform, walls, dt, stages, end, error):
     scratch."""
     local_error(dt, stages, modal_size(walls), error)
     ratio = _body_ratio(tolerance, payload.mass, payload.inverse_inertia, dt, error[:BODY_SIZE], end[:BODY_SIZE])
-    return worse(worse(ratio, _platform_ratio(tolerance, platform, dt, error, end)), _rail_ratio(tolerance, payload, walls, error, end))
+    return worse(worse(ratio, _platform_ratio(tolerance, platform, dt, error, end)),
+                 _rail_ratio(tolerance, payload, walls, error, end))
 
 
 @inlined
@@ -68,7 +69,8 @@ def _modal_ratio(tolerance, payload, modes, error, end):
     ratio = 0.0
     if modes is not None:
         body = motion(payload.mass, payload.inverse_inertia, end, PAYLOAD)
-        across = tolerance.floor + np.hypot(body.velocity[1], body.velocity[2]) + tolerance.reach * np.sqrt(rotation.dot(body.rate, body.rate))
+        across = (tolerance.floor + np.hypot(body.velocity[1], body.velocity[2])
+                  + tolerance.reach * np.sqrt(rotation.dot(body.rate, body.rate)))
         kinetic, strain = energies(modes, error)
         ratio = np.sqrt(2.0 * (kinetic + strain) / payload.mass) / (across * tolerance.relative)
     return ratio

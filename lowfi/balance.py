@@ -37,7 +37,8 @@ def ledgers(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return total, across
 
 
-def checks(rows: np.ndarray, moved: Motion, total: np.ndarray, across: np.ndarray, mass: float, clock: np.ndarray) -> dict[str, float]:
+def checks(rows: np.ndarray, moved: Motion, total: np.ndarray, across: np.ndarray, mass: float,
+           clock: np.ndarray) -> dict[str, float]:
     """The kept promises. Momentum errors are relative to the largest momentum, of the payload or of the whole, in the run."""
     own = mass * moved.velocity
     norms = [np.sqrt(np.einsum("ni,ni->n", q, q)) for q in (moved.quaternion, moved.platform_quaternion)]

@@ -1,4 +1,5 @@
-"""Sets up the cases of an ensemble: what a scene fixes once, what each row changes, and groups of cases that one kernel call runs."""
+"""Sets up the cases of an ensemble: what a scene fixes once, what each row changes,
+and groups of cases that one kernel call runs."""
 
 import time as clock
 from typing import Any, Callable, Mapping, NamedTuple, Sequence
@@ -71,7 +72,8 @@ class Family:
             group.rows.append((number, row))
             group.cases.append(built.model)
         found = [lambda group=group: self._settled(group) for group in groups.values()]
-        return found + [lambda pair=pair: [(pair[0], pair[1] if isinstance(pair[1], Case) else self._whole(pair[1]))] for pair in alone]
+        return found + [lambda pair=pair: [(pair[0], pair[1] if isinstance(pair[1], Case) else self._whole(pair[1]))]
+                        for pair in alone]
 
     def _require_walls(self, built: Built) -> None:
         scene, base = built.scene, self.base.scene
@@ -99,7 +101,8 @@ class Family:
         return plan.make(model, interval, end_of(scene) * interval, self.numerics)
 
     def kernels(self, table: Sequence[Mapping[str, Any]]) -> list[Callable[[], np.ndarray]]:
-        """Calls of the bare kernel for the groups of ``table``, set up beforehand: each returns ``settle``'s results. For timing."""
+        """Calls of the bare kernel for the groups of ``table``, set up beforehand: each returns ``settle``'s results.
+        For timing."""
         groups: dict[tuple, _Group] = {}
         for number, row in enumerate(table):
             built = models.built(self.variations.of(row), self.base)
@@ -113,14 +116,15 @@ class Family:
         under_pads = wall_record.under_pads(group.built.scene, model, self.walls)
         under_law = bow.under_pads(group.built.scene, model, self.walls)
         common, first = system.build(model, ledger=False, walls=under_pads, bow=under_law), plan.first_step(planned)
-        ends = settle.Ends(end_of(group.built.scene), marks.settled_thrust, marks.spent_thrust, marks.constant_thrust, marks.jam_speed,
-                           max(1, round(outcome.JAM_DURATION / planned.interval)))
-        loop, room, cases = march.ready(common, state.initial(model), first), settle.scratch(planned.interval), _stacked(common, group)
+        ends = settle.Ends(end_of(group.built.scene), marks.settled_thrust, marks.spent_thrust, marks.constant_thrust,
+                           marks.jam_speed, max(1, round(outcome.JAM_DURATION / planned.interval)))
+        loop, room, cases = (march.ready(common, state.initial(model), first), settle.scratch(planned.interval),
+                             _stacked(common, group))
         results = np.zeros((len(group.cases), settle.RESULT_SIZE))
 
         def call() -> np.ndarray:
-            settle.settle(common, planned, self.numerics.relative_tolerance, self.numerics.speed_floor, ends, cases, first, loop, room,
-                          results)
+            settle.settle(common, planned, self.numerics.relative_tolerance, self.numerics.speed_floor, ends, cases, first, loop,
+                          room, results)
             return results
 
         return call
@@ -137,8 +141,9 @@ class Family:
             return self._whole(row)
         found = outcome.Outcome()
         if status == settle.EXITED:
-            found = outcome.settled(float(result[settle.EXIT]), float(result[settle.WINDOW]), result[settle.VELOCITY:settle.VELOCITY + 3],
-                                    result[settle.RATE:settle.RATE + 3], *settle.bodies(result))
+            found = outcome.settled(float(result[settle.EXIT]), float(result[settle.WINDOW]),
+                                    result[settle.VELOCITY:settle.VELOCITY + 3], result[settle.RATE:settle.RATE + 3],
+                                    *settle.bodies(result))
         return Case(_STATUS[status], "", found, int(result[settle.TAKEN_STEPS]), share)
 
     def _whole(self, row: Mapping[str, Any]) -> Case:
@@ -158,7 +163,7 @@ def _stacked(common: system.System, group: _Group) -> settle.Cases:
     edges[:, :, 0] -= nominal.half_length
     offset = common.thrust_offset is not None
     return settle.Cases(
-        np.array([model.payload.mass for model in models_]), np.stack([model.payload.inverse_inertia for model in models_]), faces, edges,
-        np.array([model.thrust_offset.direction for model in models_]) if offset else None,
+        np.array([model.payload.mass for model in models_]), np.stack([model.payload.inverse_inertia for model in models_]),
+        faces, edges, np.array([model.thrust_offset.direction for model in models_]) if offset else None,
         np.array([model.thrust_offset.arm for model in models_]) if offset else None,
         np.stack([state.initial(model) for model in models_]), np.sqrt((centre**2).sum(axis=2).max(axis=1)))

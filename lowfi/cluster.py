@@ -1,7 +1,8 @@
 """The chunks of an ensemble on a Dask cluster: workers run them, this process alone draws the cases and writes the store.
 
-A worker that dies loses nothing but time: its chunks go to others. A scheduler that is lost ends the run with a message, and the store
-goes on from there. Sources and library versions of every worker must be those of this process, else the bits would not be the same.
+A worker that dies loses nothing but time: its chunks go to others. A scheduler that is lost ends the run with a message, and the
+store goes on from there. Sources and library versions of every worker must be those of this process,
+else the bits would not be the same.
 """
 
 import threading

@@ -10,11 +10,11 @@ from scenes.jit import contains, machine_code
 from scenes.scene import Scene
 from scenes.walls import Walls
 
-# A function that only this effect calls. Mass offset and initial state are numbers without code, and so is the damping of rails that
-# vibrate; walls that give way have the temperature in their own.
+# A function that only this effect calls. Mass offset and initial state are numbers without code, and so is the damping of rails
+# that vibrate; walls that give way have the temperature in their own.
 LAWS = {"contact": touch.load, "walls": solution.solve, "flexibility": modes.swing, "friction": coefficient_over_speed,
-        "sticking": grip.traction, "gravity": equations._weigh, "platform": touch._relative_turn, "thrust_offset": equations._offset_line,
-        "thermal": bow.stand}
+        "sticking": grip.traction, "gravity": equations._weigh, "platform": touch._relative_turn,
+        "thrust_offset": equations._offset_line, "thermal": bow.stand}
 
 
 def compiled_effects(scene: Scene, numerics: Numerics | None = None, walls: Walls | None = None) -> dict[str, bool]:

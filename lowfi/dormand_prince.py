@@ -2,9 +2,10 @@
 
     k_i = f(t + c_i h, y + h sum_j a_ij k_j),    y(t + theta h) = y + h sum_i b_i(theta) k_i,    error = h sum_i e_i k_i
 
-The last stage is the first of the next step. Sources: Dormand and Prince, J. Comp. Appl. Math. 6 (1980) 19; Shampine, Math. Comp. 46
-(1986) 135. For y' = z y the method multiplies y by R(z) = 1 + z + z^2/2 + z^3/6 + z^4/24 + z^5/120 + z^6/600, and |R| <= 1 on the
-whole half disc |z| <= STABLE_RADIUS, Re z <= 0: no linear mode, oscillating or damped, grows while h |eigenvalue| stays below it.
+The last stage is the first of the next step. Sources: Dormand and Prince, J. Comp. Appl. Math. 6 (1980) 19; Shampine, Math. Comp.
+46 (1986) 135. For y' = z y the method multiplies y by R(z) = 1 + z + z^2/2 + z^3/6 + z^4/24 + z^5/120 + z^6/600, and |R| <= 1 on
+the whole half disc |z| <= STABLE_RADIUS, Re z <= 0: no linear mode, oscillating or damped,
+grows while h |eigenvalue| stays below it.
 """
 
 import numpy as np
@@ -106,8 +107,8 @@ def _difference(h, k, j):
 def interpolate(dt, theta, start, stages, size, modal, out):
     """The first ``size`` slots of the state, and ``modal`` numbers of modes, at ``theta`` in 0..1 of a step."""
     h = dt * theta
-    b0, b2, b3, b4, b5, b6 = (_polynomial(0, theta), _polynomial(2, theta), _polynomial(3, theta), _polynomial(4, theta), _polynomial(5, theta),
-                              _polynomial(6, theta))
+    b0, b2, b3, b4, b5, b6 = (_polynomial(0, theta), _polynomial(2, theta), _polynomial(3, theta), _polynomial(4, theta),
+                              _polynomial(5, theta), _polynomial(6, theta))
     for j in range(size):
         out[j] = start[j] + h * (b0 * stages[0, j] + b2 * stages[2, j] + b3 * stages[3, j] + b4 * stages[4, j] + b5 * stages[5, j]
                                  + b6 * stages[6, j])

@@ -1,4 +1,5 @@
-"""Many runs at once in threads: kernels release the interpreter lock, and runs share nothing, so the worker count changes no bit."""
+"""Many runs at once in threads: kernels release the interpreter lock, and runs share nothing,
+so the worker count changes no bit."""
 
 import os
 from collections import deque
@@ -38,11 +39,11 @@ def run_many(scene: Scene, table: Sequence[Mapping[str, Any]] | Uncertainty, cal
              walls: Walls | None = None) -> "xarray.Dataset":
     """Run ``scene`` once per row of ``table``, a row being dotted overrides as in ``Scene.replace``, or per draw of an Uncertainty.
 
-    The values are those of ``lowfi.run`` to the last bit, with its ``calibration`` and ``walls``; no curves are kept. A row the scene refuses has the status ``refused`` and the
-    reason as its message; the others run. Settled values are NaN where a run has none. ``wall_s`` of a case is its share of the piece it
-    ran in. The attributes count ``asked = ok + refused + failed``, failed being the diverged. With a ``store``, a folder, cases go
-    there chunk by chunk and what it holds already is not run again (``lowfi.fill``, which needs no room for all results); it has no
-    ``wall_s``.
+    The values are those of ``lowfi.run`` to the last bit, with its ``calibration`` and ``walls``; no curves are kept. A row the
+    scene refuses has the status ``refused`` and the reason as its message; the others run. Settled values are NaN where a run has
+    none. ``wall_s`` of a case is its share of the piece it ran in. The attributes count ``asked = ok + refused + failed``, failed
+    being the diverged. With a ``store``, a folder, cases go there chunk by chunk and what it holds already is not run again
+    (``lowfi.fill``, which needs no room for all results); it has no ``wall_s``.
     """
     source, numerics = Drawn(table) if isinstance(table, Uncertainty) else Listed(table), numerics or Numerics()
     if store is not None:
@@ -90,7 +91,8 @@ def _dataset(found: columns.Columns, messages: list[str]) -> "xarray.Dataset":
 
     dimensions = {name: ("case", "axis") if name in columns.VECTORS else "case" for name in columns.UNITS}
     variables = {
-        "status": ("case", np.array(columns.STATUSES, dtype=object)[found.status]), "message": ("case", np.array(messages, dtype=object)),
+        "status": ("case", np.array(columns.STATUSES, dtype=object)[found.status]),
+        "message": ("case", np.array(messages, dtype=object)),
         **{name: (dimensions[name], getattr(found, name), {"units": unit}) for name, unit in columns.UNITS.items()},
         "steps": ("case", found.steps)}
     return xarray.Dataset(variables, {"case": np.arange(len(messages)), "axis": list(_AXES)}, attrs=columns.counts(found.status))

@@ -26,7 +26,8 @@ def derivative(system, active, grip, time, state, out):
     body = slot.motion(system.payload.mass, system.payload.inverse_inertia, state, PAYLOAD)
     base = slot.frame(system.platform, state)
     out[:] = 0.0
-    add_thrust(system.thrust, system.thrust_offset, system.platform, system.reacts_on_platform, system.ledger, time, body, base, out)
+    add_thrust(system.thrust, system.thrust_offset, system.platform, system.reacts_on_platform, system.ledger, time, body, base,
+               out)
     add_gravity(system.gravity, system.payload, system.platform, system.ledger, body, base, out)
     add_contact(system.contact, system.friction, system.sticking, system.faces, system.platform, system.ledger, active, grip, body,
                 base, out)
@@ -163,7 +164,8 @@ def add_walls(walls, friction, faces, platform, ledger, active, body, base, stat
             for k in range(count):
                 face = walls.room.order[k]
                 if walls.room.force[face, 0] > 0.0:
-                    _press(wall_load(walls, friction, platform, faces, face, body, base), friction, platform, ledger, body, base, out)
+                    _press(wall_load(walls, friction, platform, faces, face, body, base), friction, platform, ledger,
+                           body, base, out)
                     _lean(walls, faces, face, platform, ledger, body, base, out)
             if count > 0:
                 _drive(walls, count, platform, ledger, body, base, out)

@@ -1,10 +1,10 @@
 """Where inside a step the right-hand side changes its law: a face closes or opens, its force is cut off, it leaves the rail.
 
-A face that is open when a step begins is not felt within it: the step passes through the wall, the instant of touching is found on its
-interpolant (regula falsi of the Illinois kind), and the step ends there: on its interpolant where the law was one and the same all along
-and the error leaves room, else by taking it again up to there. So no step crosses a jump, none is rejected for one, and no contact is too
-short to be seen. A gap that closes and opens again by itself is found from the cubic through its ends. Where friction sticks, a
-face that slips or stops ends the step likewise.
+A face that is open when a step begins is not felt within it: the step passes through the wall, the instant of touching is found on
+its interpolant (regula falsi of the Illinois kind), and the step ends there: on its interpolant where the law was one and the same
+all along and the error leaves room, else by taking it again up to there. So no step crosses a jump, none is rejected for one, and
+no contact is too short to be seen. A gap that closes and opens again by itself is found from the cubic through its ends. Where
+friction sticks, a face that slips or stops ends the step likewise.
 """
 
 import numpy as np
@@ -69,10 +69,10 @@ def _pull(face):
 
 
 @inlined
-def first_event(laws, walls, sticking, payload, platform, faces, rail, engaged, active, grip, before, after, dt, span, start, stages,
-                work):
-    """Fraction (0..1] of the first ``span`` of a step at which it must end, and the face to blame; ``before`` and ``after`` survey the
-    ends of that part.
+def first_event(laws, walls, sticking, payload, platform, faces, rail, engaged, active, grip, before, after, dt, span, start,
+                stages, work):
+    """Fraction (0..1] of the first ``span`` of a step at which it must end, and the face to blame; ``before`` and ``after`` survey
+    the ends of that part.
 
     ``rail`` is its start and end (m); ``work``, as long as ``start``, is scratch.
     """
@@ -82,15 +82,16 @@ def first_event(laws, walls, sticking, payload, platform, faces, rail, engaged, 
             if before[i, MODE] == OPEN and after[i, MODE] == OPEN:
                 theta = 1.0
                 if engaged[i]:
-                    theta = _grazing(before[i, DEPTH], after[i, DEPTH], span * dt * before[i, CLOSING], span * dt * after[i, CLOSING])
+                    theta = _grazing(before[i, DEPTH], after[i, DEPTH], span * dt * before[i, CLOSING],
+                                     span * dt * after[i, CLOSING])
                 if theta < first:
                     first, blamed = theta, i
                 continue
             for kind in (DEPTH, PULL, ALONG):
                 level = _level(rail, engaged[i], kind, before[i], after[i])
                 if not np.isnan(level):
-                    theta = _locate(laws, walls, sticking, grips.row_of(sticking, grip, i), payload, platform, faces, i, active, kind,
-                                    before[i], after[i], level, dt, span, start, stages, work)
+                    theta = _locate(laws, walls, sticking, grips.row_of(sticking, grip, i), payload, platform, faces, i, active,
+                                    kind, before[i], after[i], level, dt, span, start, stages, work)
                     if theta < first and (theta > SOONEST or (kind == DEPTH and after[i, DEPTH] > 0.0)):
                         first, blamed = theta, i
         first, blamed = _change_of_grip(laws, walls, sticking, payload, platform, faces, engaged, active, grip, before, after, dt,
@@ -99,10 +100,11 @@ def first_event(laws, walls, sticking, payload, platform, faces, rail, engaged, 
         for i in range(engaged.size):
             theta = 1.0
             if engaged[i] and not active[i] and after[i, DEPTH] > BEYOND > before[i, DEPTH]:
-                theta = _locate(laws, walls, sticking, None, payload, platform, faces, i, active, DEPTH, before[i], after[i], BEYOND, dt,
-                                span, start, stages, work)
+                theta = _locate(laws, walls, sticking, None, payload, platform, faces, i, active, DEPTH, before[i], after[i],
+                                BEYOND, dt, span, start, stages, work)
             elif engaged[i] and not active[i] and after[i, MODE] == OPEN:
-                theta = _grazing(before[i, DEPTH], after[i, DEPTH], span * dt * before[i, CLOSING], span * dt * after[i, CLOSING])
+                theta = _grazing(before[i, DEPTH], after[i, DEPTH], span * dt * before[i, CLOSING],
+                                 span * dt * after[i, CLOSING])
             if theta < first:
                 first, blamed = theta, i
     return first, blamed
@@ -116,8 +118,8 @@ def _change_of_grip(laws, walls, sticking, payload, platform, faces, engaged, ac
         for i in range(engaged.size):
             level = grips.last_margin(grip[i], before[i, MARGIN])
             if engaged[i] and before[i, MODE] != OPEN and before[i, MARGIN] > level > after[i, MARGIN]:
-                theta = _locate(laws, walls, sticking, grip[i], payload, platform, faces, i, active, MARGIN, before[i], after[i], level,
-                                dt, span, start, stages, work)
+                theta = _locate(laws, walls, sticking, grip[i], payload, platform, faces, i, active, MARGIN, before[i], after[i],
+                                level, dt, span, start, stages, work)
                 if SOONEST < theta < first:
                     first, blamed = theta, i
     return first, blamed
@@ -188,8 +190,8 @@ def _pull_at(laws, platform, face, p, body, base):
 
 
 @inlined
-def _locate(laws, walls, sticking, row, payload, platform, faces, number, active, kind, before, after, level, dt, span, start, stages,
-            work):
+def _locate(laws, walls, sticking, row, payload, platform, faces, number, active, kind, before, after, level, dt, span, start,
+            stages, work):
     """Fraction of the first ``span`` of a step at which the quantity passes ``level``; ``before`` and ``after`` survey its ends."""
     low, high, side = 0.0, 1.0, 0
     f_low, f_high = before[kind] - level, after[kind] - level

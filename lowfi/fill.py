@@ -16,8 +16,8 @@ def fill(ensemble: Ensemble, store: Store, workers: int | None = None, scheduler
          progress: Callable[[int], None] | None = None) -> int:
     """Run what ``store`` lacks, ``workers`` threads at a time or on the Dask cluster at ``scheduler``; how many cases that were.
 
-    ``progress`` is called with the number of cases stored. Raises StoreError when it cannot go on; what is stored stays, and the next
-    call goes on from there.
+    ``progress`` is called with the number of cases stored. Raises StoreError when it cannot go on; what is stored stays, and the
+    next call goes on from there.
     """
     pending = store.pending()
     missing = sum(end - begin for begin, end in map(store.bounds, pending))

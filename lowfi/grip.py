@@ -7,8 +7,8 @@ normal force N, the direction e of a slide and the capture speed s_c, the force 
     sliding   F = -mu_d N g/|g|,   g = u + (s_c + |u.e| - u.e) e        until u.e = 0
 
 Sliding, that is Coulomb's law with its direction turned by at most s_c/|u|; along a straight line it is one and the same force
-before the stop and after it, so a step may pass the stop, which is found on its interpolant as a touch is. There the face is held if
-|u| <= s_c, else e is turned to u. Like the set of touching faces, all this is constant within a step.
+before the stop and after it, so a step may pass the stop, which is found on its interpolant as a touch is. There the face is held
+if |u| <= s_c, else e is turned to u. Like the set of touching faces, all this is constant within a step.
 
 The spring keeps its stretch while the face slides, as the bristles of a brush do, and is taken up with it, up to the force mu_d N,
 where the face is held again; what it does not take up is lost as friction. Taken up slack it would overshoot under any load near

@@ -6,8 +6,8 @@ the traces bound the spectra of K and C, hence every eigenvalue s::
 
     |s| <= S = C/2 + sqrt(C^2/4 + K),   K = sum_i |k_i| w_i(n),   C = sum_i |c_i| w_i(n) + N_i |mu'| (w_i(t1) + w_i(t2))
 
-and no step is taken above ``STABLE_RADIUS / S`` (``lowfi.dormand_prince``). |mu'| is the larger of mu/s and |d mu/ds| at the slip now.
-Under the law that sticks a held face adds its spring and damper in both tangents, a sliding one N mu_d/|g| across g
+and no step is taken above ``STABLE_RADIUS / S`` (``lowfi.dormand_prince``). |mu'| is the larger of mu/s and |d mu/ds| at the slip
+now. Under the law that sticks a held face adds its spring and damper in both tangents, a sliding one N mu_d/|g| across g
 (``lowfi.grip``).
 """
 

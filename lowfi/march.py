@@ -21,8 +21,9 @@ from scenes.memory import zeros
 
 # What ``march`` returns: all samples taken, or why it stopped before.
 SAMPLED, PASSED, UNDERFLOW, OUT_OF_STEPS, NOT_FINITE = range(5)
-# Slots of Loop.clock: ends of the last step and its size before an event cut it (s), the fraction kept, step the controller wants (s),
-# bound of the contact's rates at the end (1/s), smallest proven limit met (s), largest step over its limit (1), largest friction and damping power (W, not above zero).
+# Slots of Loop.clock: ends of the last step and its size before an event cut it (s), the fraction kept, step the controller
+# wants (s), bound of the contact's rates at the end (1/s), smallest proven limit met (s), largest step over its limit (1), largest
+# friction and damping power (W, not above zero).
 BEGAN, NOW, SIZE, SPAN, WANTED, RATE, LIMIT, LIMIT_USED, FRICTION_POWER, DAMPING_POWER, CLOCK_SIZE = range(11)
 # Slots of Loop.count.
 SEGMENT, STEPS, REJECTED, EVENTS, EVALUATIONS, TAKEN, COUNT_SIZE = range(7)
@@ -122,8 +123,8 @@ def _let_go(grip):
 
 @inlined
 def _survey(system, loop):
-    survey(system.contact, system.walls, system.sticking, system.faces, system.platform, system.payload, loop.active, loop.grip, loop.end,
-           loop.after)
+    survey(system.contact, system.walls, system.sticking, system.faces, system.platform, system.payload, loop.active, loop.grip,
+           loop.end, loop.after)
 
 
 @inlined
@@ -144,15 +145,16 @@ def _fastest_rate(system, loop, state, ahead):
 def _rate_on_walls(walls, system, loop, state):
     rate = 0.0
     if walls is not None:
-        stiffness, damping = stiffness_and_damping(walls, system.friction, system.faces, system.platform, system.payload, loop.active, state)
+        stiffness, damping = stiffness_and_damping(walls, system.friction, system.faces, system.platform, system.payload,
+                                                   loop.active, state)
         rate = 0.5 * damping + np.sqrt(0.25 * damping * damping + stiffness)
     return rate
 
 
 @kernel
 def march(system, plan, tolerance, loop, last, until_passed, rows, forces):
-    """Take samples up to number ``last`` into ``rows`` (n, SAMPLE_SIZE) and ``forces`` (n, f, 3), or, if ``until_passed``, up to the
-    first one with every trailing edge past the rail end."""
+    """Take samples up to number ``last`` into ``rows`` (n, SAMPLE_SIZE) and ``forces`` (n, f, 3), or, if ``until_passed``, up to
+    the first one with every trailing edge past the rail end."""
     clock, count = loop.clock, loop.count
     for number in range(count[TAKEN], last + 1):
         time = number * plan.interval
@@ -164,8 +166,8 @@ def march(system, plan, tolerance, loop, last, until_passed, rows, forces):
         if time == clock[NOW]:
             slot.copy_all(loop.end, loop.work, slot.modal_size(system.walls))
         else:
-            interpolate(clock[SIZE], (time - clock[BEGAN]) / clock[SIZE], loop.start, loop.stages, slot.STATE_SIZE, slot.modal_size(system.walls),
-                        loop.work)
+            interpolate(clock[SIZE], (time - clock[BEGAN]) / clock[SIZE], loop.start, loop.stages, slot.STATE_SIZE,
+                        slot.modal_size(system.walls), loop.work)
         # Before the first step nothing is felt yet, and every face may press.
         felt_ = loop.active if count[STEPS] > 0 else loop.engaged
         if not observe(system, loop.engaged, felt_, loop.grip, loop.work, rows[number], forces[number]):
@@ -230,7 +232,8 @@ def _release(walls, system, loop, left, sign):
     """Book what faces that ``left`` the walls took with them: the energy in the walls before less that after."""
     if walls is not None:
         if left:
-            loop.start[slot.RELEASED] += sign * energy_on_walls(walls, system.faces, system.platform, system.payload, loop.active, loop.start)
+            loop.start[slot.RELEASED] += sign * energy_on_walls(walls, system.faces, system.platform, system.payload,
+                                                                loop.active, loop.start)
 
 
 @inlined
@@ -243,7 +246,8 @@ def _while_hanging(walls, system, loop):
 
 @inlined
 def _foreseen(system, loop, dt):
-    """``dt`` (s), less where the proven limit will certainly have fallen below it when such a step ends: a guess that saves attempts."""
+    """``dt`` (s), less where the proven limit will certainly have fallen below it when such a step ends:
+    a guess that saves attempts."""
     touching = False
     for felt_now in loop.active:
         touching = touching or felt_now
@@ -256,12 +260,13 @@ def _foreseen(system, loop, dt):
 
 @inlined
 def _land(system, loop, dt):
-    """Cut the step at its first event: the fraction kept, with ``loop.end`` and its survey there, or a face to be felt from the start."""
+    """Cut the step at its first event: the fraction kept, with ``loop.end`` and its survey there,
+    or a face to be felt from the start."""
     span = 1.0
     for _ in range(_LANDINGS):
         theta, face = first_event(system.contact, system.walls, system.sticking, system.payload, system.platform, system.faces,
-                                  (system.rail_start, system.rail_end), loop.engaged, loop.active, loop.grip, loop.before, loop.after,
-                                  dt, span, loop.start, loop.stages, loop.work)
+                                  (system.rail_start, system.rail_end), loop.engaged, loop.active, loop.grip, loop.before,
+                                  loop.after, dt, span, loop.start, loop.stages, loop.work)
         if theta >= 1.0 - 1e-9:
             return span, -1
         if theta * span <= SOONEST or loop.clock[BEGAN] + 0.01 * theta * span * dt == loop.clock[BEGAN]:

@@ -66,7 +66,8 @@ def prepared(scene: Scene, steps_per_sample: int, samples: int, interval: float,
 
 def _start(model) -> np.ndarray:
     first = model.initial
-    payload = [*np.add(model.payload.mass_centre, first.position), *first.velocity, *rotation.exponential(first.attitude), *first.rate]
+    payload = [*np.add(model.payload.mass_centre, first.position), *first.velocity, *rotation.exponential(first.attitude),
+               *first.rate]
     if model.platform is None:
         return np.array(payload + [0.0] * 6 + [1.0] + [0.0] * 6)
     return np.array(payload + [*model.platform.mass_centre, *first.platform_velocity, 1.0, 0.0, 0.0, 0.0, *first.platform_rate])

@@ -7,7 +7,8 @@ from lowfi.numerics import Numerics
 from scenes.effects import thrust_law
 from scenes.model import Model
 
-# A Gaussian is below 2e-14 of its peak beyond this many widths, and the stages of a step inside, at most half of it apart, see four points in any three widths.
+# A Gaussian is below 2e-14 of its peak beyond this many widths, and the stages of a step inside, at most half of it apart,
+# see four points in any three widths.
 _REACH, _SHARE = 8.0, 1.5
 
 

@@ -18,8 +18,8 @@ _LIBRARIES = ("numpy", "scipy", "numba", "llvmlite")  # whose version may change
 
 
 class Ensemble(NamedTuple):
-    """A scene, where its cases come from (``lowfi.rows``, ``lowfi.table``), calibrated constants or none, numerics, and walls that give
-    way or none."""
+    """A scene, where its cases come from (``lowfi.rows``, ``lowfi.table``), calibrated constants or none, numerics, and walls that
+    give way or none."""
 
     scene: Scene
     source: Any
@@ -34,8 +34,8 @@ class Ensemble(NamedTuple):
     def identity(self) -> dict:
         """Everything the numbers depend on, as JSON."""
         return {"scene": self.scene.hash, "cases": self.source.identity, "numerics": self.numerics.as_dict(),
-                "calibration": self.calibration.constants if self.calibration else {}, "walls": self.walls.hash if self.walls else "",
-                "chunk": stores.CHUNK} | code()
+                "calibration": self.calibration.constants if self.calibration else {},
+                "walls": self.walls.hash if self.walls else "", "chunk": stores.CHUNK} | code()
 
     @property
     def key(self) -> str:
@@ -45,7 +45,8 @@ class Ensemble(NamedTuple):
     def store(self, path: str | Path) -> stores.Store:
         """The store of this ensemble at ``path``, made when there is none. Raises StoreError."""
         rerun = "case n has the inputs stored under n, and is drawn again from seed and n alone: tipoff ensemble ... --case n"
-        return stores.Store(path, self.source.asked, self.source.keys, self.identity(), {"scene": self.scene.resolved(), "rerun": rerun})
+        return stores.Store(path, self.source.asked, self.source.keys, self.identity(),
+                            {"scene": self.scene.resolved(), "rerun": rerun})
 
     def case(self, number: int) -> tuple[Mapping[str, Any], Case]:
         """Inputs and result of one case, run alone, to the same bits."""

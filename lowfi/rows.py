@@ -1,7 +1,8 @@
 """Where the cases of an ensemble come from: drawn by number, or listed by a program; ``lowfi.table`` reads them from a file.
 
-All answer alike: ``asked`` cases with ``keys``, an ``identity`` (JSON) that tells one ensemble from another, and ``rows(begin, end)``, a
-list of dotted overrides as ``Scene.replace`` takes them, made when it is asked for, so that drawn cases are never held all at once.
+All answer alike: ``asked`` cases with ``keys``, an ``identity`` (JSON) that tells one ensemble from another, and
+``rows(begin, end)``, a list of dotted overrides as ``Scene.replace`` takes them, made when it is asked for, so that drawn cases are
+never held all at once.
 """
 
 import hashlib

@@ -134,7 +134,8 @@ class Run:
             scene=self.scene.resolved(), numerics=self.numerics.as_dict())
 
     def _cost(self) -> dict[str, float]:
-        """Counts; dt_limit_s is the smallest proven limit met while anything touched, limit_used the largest step over its limit."""
+        """Counts; dt_limit_s is the smallest proven limit met while anything touched,
+        limit_used the largest step over its limit."""
         clock_, count = self.loop.clock, self.loop.count
         steps, limit = int(count[STEPS]), float(clock_[LIMIT])
         cost = {"steps": steps, "rhs_evaluations": int(count[EVALUATIONS]), "rejected": int(count[REJECTED]),

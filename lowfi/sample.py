@@ -25,8 +25,8 @@ SAMPLE_SIZE = GIVEN + 6
 
 @kernel
 def observe(system, engaged, active, grip, state, row, forces):
-    """Fill ``row`` (SAMPLE_SIZE,) and ``forces`` (f,3) N on the payload in scene axes; False where a number is not finite. Walls that give
-    way are pressed by the ``active`` faces (f,)."""
+    """Fill ``row`` (SAMPLE_SIZE,) and ``forces`` (f,3) N on the payload in scene axes; False where a number is not finite. Walls
+    that give way are pressed by the ``active`` faces (f,)."""
     payload = system.payload
     body, base = slot.motion(payload.mass, payload.inverse_inertia, state, PAYLOAD), slot.frame(system.platform, state)
     row[:] = 0.0
@@ -50,7 +50,8 @@ def observe(system, engaged, active, grip, state, row, forces):
 @inlined
 def posture(system, state, row):
     """Fill only what ``row`` tells of the motion: its first two bodies."""
-    _place(state, slot.motion(system.payload.mass, system.payload.inverse_inertia, state, PAYLOAD), slot.frame(system.platform, state), row)
+    _place(state, slot.motion(system.payload.mass, system.payload.inverse_inertia, state, PAYLOAD),
+           slot.frame(system.platform, state), row)
 
 
 @inlined
@@ -138,7 +139,8 @@ def _press(laws, friction, sticking, faces, platform, engaged, grip, body, base,
 
 @kernel
 def _press_walls(walls, friction, faces, platform, active, body, base, state, forces):
-    """The same on walls that give way. A sample leaves no trace: the next step begins with the displacement that the last one left."""
+    """The same on walls that give way. A sample leaves no trace:
+    the next step begins with the displacement that the last one left."""
     energy = 0.0
     if walls is not None:
         _keep(walls.room.displacement, walls.room.kept)

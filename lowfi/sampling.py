@@ -2,8 +2,8 @@
 cases are cut into chunks, and whoever draws them.
 
 Plain sampling takes 52 bits per number from the counter-based generator Philox (Salmon et al., SC 2011), keyed by the seed, its
-counter set to the case, so a case costs the same wherever it stands. Sobol' (``scipy.stats.qmc``) is wound forward to the case. A Latin
-hypercube exists as a whole only, and is held in memory.
+counter set to the case, so a case costs the same wherever it stands. Sobol' (``scipy.stats.qmc``) is wound forward to the case. A
+Latin hypercube exists as a whole only, and is held in memory.
 """
 
 import warnings
@@ -32,7 +32,8 @@ class Points:
         if uncertainty.sampling == "latin-hypercube":
             if uncertainty.cases * self._size > MOST_HELD:
                 raise SceneError([Fault("vary", "sampling", f"latin-hypercube of {uncertainty.cases:,} cases and {self._size} keys",
-                                        f"at most {MOST_HELD // self._size:,} cases, for it is held in memory, or random or sobol")])
+                                        f"at most {MOST_HELD // self._size:,} cases, for it is held in memory, "
+                                        "or random or sobol")])
             self._held = scipy.stats.qmc.LatinHypercube(self._size, rng=np.random.default_rng(self._seed)).random(uncertainty.cases)
         if uncertainty.sampling == "sobol":
             if self._size > scipy.stats.qmc.Sobol.MAXDIM or uncertainty.cases > 2**_SOBOL_BITS:

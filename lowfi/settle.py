@@ -1,4 +1,5 @@
-"""Cases without their curves: the same steps as ``lowfi.march``, with only the samples taken that exit and settled window are read from.
+"""Cases without their curves: the same steps as ``lowfi.march``,
+with only the samples taken that exit and settled window are read from.
 
 Bit for bit what ``lowfi.run`` finds, or no answer: whatever is not a plain exit, or a plain end of time, is left to ``lowfi.run``.
 """
@@ -44,7 +45,8 @@ class Cases(NamedTuple):
 
 
 class Scratch(NamedTuple):
-    """Samples near the exit and in the window (m, ROW_SIZE), their numbers (2,2) as first and count, and columns (2, m) and (m,3) for splines."""
+    """Samples near the exit and in the window (m, ROW_SIZE), their numbers (2,2) as first and count,
+    and columns (2, m) and (m,3) for splines."""
 
     exit: np.ndarray
     window: np.ndarray
@@ -53,7 +55,8 @@ class Scratch(NamedTuple):
 
 
 class Ends(NamedTuple):
-    """Last sample number; thrust below 0.1 % and 1 % of its peak (s); whether it is constant; jam speed (m/s); samples between looks."""
+    """Last sample number; thrust below 0.1 % and 1 % of its peak (s); whether it is constant; jam speed (m/s);
+    samples between looks."""
 
     last: int
     settled_thrust: float
@@ -64,11 +67,13 @@ class Ends(NamedTuple):
 
 
 def bodies(result: np.ndarray) -> list[np.ndarray]:
-    """Of one row of results, at exit: position and quaternion of the payload, position, velocity, quaternion and rate of the platform."""
+    """Of one row of results, at exit: position and quaternion of the payload, position, velocity,
+    quaternion and rate of the platform."""
     row = result[AT_EXIT:AT_EXIT + ROW_SIZE]
     place, base, q = slot.PLACE, slot.PLATFORM, slot.QUATERNION
     speed, spin = base + slot.VELOCITY, base + MEASURED
-    return [row[place:place + 3], row[q:q + 4], row[base:base + 3], row[speed:speed + 3], row[base + q:base + q + 4], row[spin:spin + 3]]
+    return [row[place:place + 3], row[q:q + 4], row[base:base + 3], row[speed:speed + 3],
+            row[base + q:base + q + 4], row[spin:spin + 3]]
 
 
 def scratch(interval: float) -> Scratch:
@@ -83,15 +88,16 @@ def settle(common, plan, relative, floor, ends, cases, first_step, loop, room, r
     for n in range(results.shape[0]):
         system = _system(common, cases, n)
         reset(system, cases.start[n], first_step, loop)
-        results[n, STATUS] = _one(system, plan, Tolerance(relative, floor, cases.reach[n]), ends, cases.edges[n], loop, room, results[n])
+        results[n, STATUS] = _one(system, plan, Tolerance(relative, floor, cases.reach[n]), ends, cases.edges[n],
+                                  loop, room, results[n])
         results[n, TAKEN_STEPS], results[n, RIGHT_HAND_SIDES] = loop.count[STEPS], loop.count[EVALUATIONS]
 
 
 @kernel
 def _system(common, cases, n):
-    return System(Body(cases.mass[n], cases.inverse_inertia[n]), common.platform, cases.faces[n], common.rail_start, common.rail_end,
-                  common.thrust, common.reacts_on_platform, _offset(cases.direction, cases.arm, n), common.contact, common.walls, common.friction,
-                  common.sticking, common.gravity, common.ledger)
+    return System(Body(cases.mass[n], cases.inverse_inertia[n]), common.platform, cases.faces[n], common.rail_start,
+                  common.rail_end, common.thrust, common.reacts_on_platform, _offset(cases.direction, cases.arm, n), common.contact,
+                  common.walls, common.friction, common.sticking, common.gravity, common.ledger)
 
 
 @kernel
@@ -145,7 +151,8 @@ def _one(system, plan, tolerance, ends, edges, loop, room, result):
     window = max(exit_at + outcome.SETTLE_DELAY, ends.settled_thrust)
     last = min(last, int(np.ceil((window + outcome.SETTLE_WINDOW) / interval)) + 2)
     every = outcome.thinning(interval)
-    first = last - every * ((last - int(window / interval) + 2) // every + _NEAR)  # more than the spline needs, for the exit is found once more
+    # More than the spline needs, for the exit is found once more.
+    first = last - every * ((last - int(window / interval) + 2) // every + _NEAR)
     stored = 0
     while number <= last:
         while clock[NOW] < number * interval:
@@ -165,8 +172,8 @@ def _one(system, plan, tolerance, ends, edges, loop, room, result):
     first = last - every * (stored - 1)
     exit_at = _exit(system, edges, exit_rows[:kept], past - _NEAR, _NEAR, interval, columns, room.slopes)
     slot.copy(exit_rows[_NEAR], result[AT_EXIT:], ROW_SIZE)
-    return _judge(exit_at, max(exit_at + outcome.SETTLE_DELAY, ends.settled_thrust), first, every, room.window[:stored], interval, columns,
-                  room.slopes, result)
+    return _judge(exit_at, max(exit_at + outcome.SETTLE_DELAY, ends.settled_thrust), first, every, room.window[:stored], interval,
+                  columns, room.slopes, result)
 
 
 @kernel
@@ -242,7 +249,8 @@ def _edge(system, loop, row):
 def _course(loop, before, after, interval):
     """Mean speed (m/s) of the rearmost edge in the last step, and how far (m) a sample may lie ahead of the chord and still matter.
 
-    A cubic leaves its chord by at most 4/27 h (|v0 - c| + |v1 - c|); twice that is allowed, and the samples that an exit needs before it.
+    A cubic leaves its chord by at most 4/27 h (|v0 - c| + |v1 - c|); twice that is allowed,
+    and the samples that an exit needs before it.
     """
     lasted = loop.clock[NOW] - loop.clock[BEGAN]
     chord = (after - before) / lasted if lasted > 0.0 else 0.0

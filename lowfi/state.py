@@ -24,7 +24,8 @@ PLACE, VELOCITY, QUATERNION, MOMENT, BODY_SIZE = 0, 3, 6, 10, 13
 PAYLOAD, PLATFORM, IMPULSE, TURN, WORK = 0, 13, 26, 29, 32
 DYNAMIC_SIZE = 26  # what the equations of motion depend on, besides modes
 # Slots of work and loss (J), total and axial part.
-THRUST, THRUST_AXIAL, GRAVITY, GRAVITY_AXIAL, FRICTION, FRICTION_AXIAL, DAMPING, RELEASED, CONTACT_AXIAL, STRUCTURAL = range(WORK, WORK + 10)
+(THRUST, THRUST_AXIAL, GRAVITY, GRAVITY_AXIAL, FRICTION, FRICTION_AXIAL, DAMPING, RELEASED, CONTACT_AXIAL,
+ STRUCTURAL) = range(WORK, WORK + 10)
 WORK_SIZE = 10
 STATE_SIZE = 48  # WORK + WORK_SIZE, filled up to whole cache lines: rows of stages are read as vectors of eight
 

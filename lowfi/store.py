@@ -1,7 +1,9 @@
 """Results of an ensemble in a folder, chunk by chunk, so that it may stop at any instant and go on later::
 
-    cases.zarr/     a zarr group: status, exit_time, velocity ... and inputs/<dotted key>, SI, one chunk per 4096 cases, with checksums
-    done/000012.json   written last, in one piece: chunk 12 is whole; the digest of its numbers, its counts, and each case that failed
+    cases.zarr/     a zarr group: status, exit_time, velocity ... and inputs/<dotted key>, SI, one chunk per 4096 cases,
+                    with checksums
+    done/000012.json   written last, in one piece: chunk 12 is whole; the digest of its numbers, its counts,
+                       and each case that failed
 
 A chunk counts as done once its file in done/ is there and the digest of what is read back agrees; any other is run again. No time
 or place is stored, so two runs of one ensemble leave the same numbers, whoever ran them.
@@ -46,8 +48,8 @@ class Chunk(NamedTuple):
 class Store:
     """The store of ``asked`` cases with inputs under the dotted ``names``, at ``path``: opened, or made when there is none.
 
-    ``identity`` (JSON) is everything the numbers depend on; ``attributes`` are kept beside them. Raises StoreError for a folder that is
-    no store, or one of another identity.
+    ``identity`` (JSON) is everything the numbers depend on; ``attributes`` are kept beside them. Raises StoreError for a folder
+    that is no store, or one of another identity.
     """
 
     def __init__(self, path: str | Path, asked: int, names: Sequence[str], identity: dict, attributes: dict):
@@ -90,10 +92,12 @@ class Store:
             group = _zarr().open_group(self.path / "cases.zarr", mode="r+")
             found, expected = group.attrs["identity"], json.loads(json.dumps(identity))
             if other := [name for name in expected if found.get(name) != expected[name]]:
-                raise StoreError(f"{self.path} holds another ensemble: {', '.join(other)} differ; give another --store, or remove it")
+                raise StoreError(f"{self.path} holds another ensemble: {', '.join(other)} differ; "
+                                 "give another --store, or remove it")
             return {name: group[name] for name in Columns._fields}, [group[f"inputs/{name}"] for name in self.names]
         except (OSError, ValueError, KeyError) as error:
-            raise StoreError(f"{self.path} is no store of an ensemble ({type(error).__name__}: {error}); give another --store") from error
+            raise StoreError(f"{self.path} is no store of an ensemble ({type(error).__name__}: {error}); "
+                             "give another --store") from error
 
     def __len__(self) -> int:
         return -(-self.asked // CHUNK)
@@ -162,7 +166,8 @@ class Store:
 
     def done(self) -> int:
         """Cases that are stored."""
-        return sum(end - begin for begin, end in (self.bounds(number) for number in range(len(self)) if self._mark(number).is_file()))
+        return sum(end - begin
+                   for begin, end in (self.bounds(number) for number in range(len(self)) if self._mark(number).is_file()))
 
     def failures(self) -> list[dict]:
         """Case number, status, reason and inputs of each case that was refused or diverged."""

@@ -41,8 +41,8 @@ class Contact(NamedTuple):
 
 
 class System(NamedTuple):
-    """All records of one run; None where an effect, or the ledger, is absent. faces (f, FACE_SIZE); rail_start and rail_end (m) as in
-    ``Model``. Where walls give way they stand in the place of the contact law."""
+    """All records of one run; None where an effect, or the ledger, is absent. faces (f, FACE_SIZE); rail_start and rail_end (m) as
+    in ``Model``. Where walls give way they stand in the place of the contact law."""
 
     payload: Body
     platform: Body | None

@@ -20,8 +20,8 @@ _TOO_MANY, _TOO_FEW = "cells beyond the header", "a missing cell"
 
 
 class TableFile:
-    """Cases of a CSV file: dotted keys in its header, units in the second line or in each cell, one case a line; an empty cell leaves
-    the scene's own value. A cell that is no number of its unit stays text, for the scene to refuse that one case.
+    """Cases of a CSV file: dotted keys in its header, units in the second line or in each cell, one case a line; an empty cell
+    leaves the scene's own value. A cell that is no number of its unit stays text, for the scene to refuse that one case.
 
     Raises SceneError for a file that cannot be read, and for keys and units that do not fit a scene.
     """

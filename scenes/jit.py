@@ -16,7 +16,8 @@ _KERNEL_PACKAGES = ("scenes", "highfi", "lowfi")
 
 
 def kernel_digest() -> str:
-    """Hexadecimal digest (16 digits) of every source file that may hold a kernel, of the Numba version and its optimisation level."""
+    """Hexadecimal digest (16 digits) of every source file that may hold a kernel,
+    of the Numba version and its optimisation level."""
     root = Path(__file__).resolve().parent.parent
     digest = hashlib.sha256(f"{numba.__version__} {numba.config.OPT!r}".encode())
     for package in _KERNEL_PACKAGES:
@@ -32,8 +33,8 @@ def _cache_directory() -> Path:
     return (Path(chosen) if chosen else default) / kernel_digest()
 
 
-# Kernels are compiled as parts of those that call them, each time from code that was optimised before. At level 3 the first pass turns
-# vectors of states into scalars, which the next one does not mend: the surrogate then takes half as long again.
+# Kernels are compiled as parts of those that call them, each time from code that was optimised before. At level 3 the first pass
+# turns vectors of states into scalars, which the next one does not mend: the surrogate then takes half as long again.
 if "NUMBA_OPT" not in os.environ:
     numba.config.OPT = type(numba.config.OPT)("max")
 
@@ -64,8 +65,8 @@ def machine_code(kernel, arguments: tuple) -> bytes:
 
 
 def contains(code: bytes, function) -> bool:
-    """Whether object ``code`` holds the compiled ``function``, called or inlined: Numba leaves one symbol for each, in which module and
-    name stand with their lengths, so that no other name can be taken for it."""
+    """Whether object ``code`` holds the compiled ``function``, called or inlined: Numba leaves one symbol for each, in which module
+    and name stand with their lengths, so that no other name can be taken for it."""
     python = function.py_func
     parts = (*python.__module__.split("."), *python.__qualname__.split("."))
     return ("NumbaEnv" + "".join(f"{len(part)}{part}" for part in parts) + "B").encode() in code

@@ -106,11 +106,13 @@ def built(scene: Scene, known: Built | None = None) -> Built:
         contact=known.model.contact if kept("contact") else contact.laws(scene.contact.record()) if touching else None,
         penalty=scene.contact.penalty if touching else None,
         # Friction without contact has no normal force to act on, so it is absent too.
-        friction=known.model.friction if kept("friction", "contact") else scene.friction.record() if scene.friction and touching else None,
+        friction=(known.model.friction if kept("friction", "contact")
+                  else scene.friction.record() if scene.friction and touching else None),
         platform=platform,
         gravity=scene.gravity.record() if scene.gravity else None,
         # Nothing presses a rail without contact either.
-        flexibility=scene.flexibility.record(scene.rail.damping and scene.rail.damping.record()) if scene.flexibility and touching else None,
+        flexibility=(scene.flexibility.record(scene.rail.damping and scene.rail.damping.record())
+                     if scene.flexibility and touching else None),
         thermal=known.model.thermal if kept("rail", "thermal") else scene.thermal.record(scene.rail) if scene.thermal else None,
         initial=known.model.initial if kept("initial") else scene.initial.record() if scene.initial else Initial(),
         thrust_arm=scene.thrust.arm,

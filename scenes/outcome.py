@@ -40,8 +40,9 @@ class Motion(NamedTuple):
 
 class Outcome(NamedTuple):
     """Exit time (s), settled window start (s), means over it: velocity (m/s), rate (rad/s); lateral velocity (m/s), direction
-    error of the velocity (rad). At the first sample past the exit: attitude of the payload as a rotation vector (rad), its position (m),
-    and position (m), velocity (m/s), attitude (rad) and rate (rad/s) of the platform. All None unless the payload exited and settled."""
+    error of the velocity (rad). At the first sample past the exit: attitude of the payload as a rotation vector (rad), its
+    position (m), and position (m), velocity (m/s), attitude (rad) and rate (rad/s) of the platform. All None unless the payload
+    exited and settled."""
 
     exit_time: float | None = None
     window_start: float | None = None
@@ -97,7 +98,8 @@ def relative_motion(motion) -> dict[str, np.ndarray]:
 def clearance_to_exit(motion, marks: Milestones) -> np.ndarray:
     """Distance (n,) m by which the rearmost trailing edge is past the rail end (negative while on the rail)."""
     past = np.empty((len(motion.time), 1))
-    distances(motion.position, motion.quaternion, motion.platform_position, motion.platform_quaternion, marks.edges, marks.rail_end, past)
+    distances(motion.position, motion.quaternion, motion.platform_position, motion.platform_quaternion, marks.edges, marks.rail_end,
+              past)
     return past[:, 0]
 
 
@@ -129,13 +131,14 @@ def exit_time(motion, marks: Milestones) -> float | None:
     if after[0] == 0:
         return float(motion.time[0])
     near = slice(max(after[0] - AROUND, 0), after[0] + AROUND)
-    return crossed(motion.time[near], past[near, None], after[0] - near.start, np.empty(past[near].size), np.empty((past[near].size, 1)))
+    return crossed(motion.time[near], past[near, None], after[0] - near.start, np.empty(past[near].size),
+                   np.empty((past[near].size, 1)))
 
 
 @kernel
 def crossed(time, past, after, work, slope):
-    """Instant (s) between samples ``after`` - 1 and ``after`` at which ``past`` (n,1) m passes zero; ``work`` (n,) and ``slope`` (n,1)
-    are scratch."""
+    """Instant (s) between samples ``after`` - 1 and ``after`` at which ``past`` (n,1) m passes zero; ``work`` (n,) and
+    ``slope`` (n,1) are scratch."""
     if time.size >= 4:
         spline.slopes(time, past, work, slope)
         return spline.crossing(time, past, slope, after - 1)
@@ -214,8 +217,8 @@ def judge(motion, marks: Milestones) -> tuple[str, Outcome]:
 def settled(exit_at: float, start: float, velocity: np.ndarray, rate: np.ndarray, position: np.ndarray, attitude: np.ndarray,
             platform_position: np.ndarray, platform_velocity: np.ndarray, platform_attitude: np.ndarray,
             platform_rate: np.ndarray) -> Outcome:
-    """Outcome of an exit at ``exit_at`` (s) with these means over the window from ``start`` (s), and both bodies at exit, their attitudes
-    as quaternions."""
+    """Outcome of an exit at ``exit_at`` (s) with these means over the window from ``start`` (s), and both bodies at exit, their
+    attitudes as quaternions."""
     lateral = float(np.hypot(velocity[1], velocity[2]))
     return Outcome(exit_at, start, velocity.tolist(), rate.tolist(), lateral, float(np.arctan2(lateral, velocity[0])),
                    rotation.vector(attitude.tolist()), position.tolist(), platform_position.tolist(), platform_velocity.tolist(),

@@ -12,7 +12,8 @@ from scenes.jit import kernel
 
 @kernel
 def slopes(x, y, work, out):
-    """Slopes ``out`` (n,k) of the splines through the columns of ``y`` (n,k) at rising ``x`` (n,), n at least 4; ``work`` (n,) is scratch."""
+    """Slopes ``out`` (n,k) of the splines through the columns of ``y`` (n,k) at rising ``x`` (n,), n at least 4;
+    ``work`` (n,) is scratch."""
     last, columns = x.size - 1, y.shape[1]
     before, after, both = x[1] - x[0], x[2] - x[1], x[2] - x[0]
     p, q = (before + 2.0 * both) / (both * before), before * before / (both * after * after)
@@ -59,7 +60,8 @@ def _antiderivative(x, y, slope, i, k, at):
 
 @kernel
 def crossing(x, y, slope, i):
-    """Where, in the only column, piece ``i``, not above zero at its begin and above zero at its end, passes zero: bisection to the last bit."""
+    """Where, in the only column, piece ``i``, not above zero at its begin and above zero at its end, passes zero:
+    bisection to the last bit."""
     h = x[i + 1] - x[i]
     d = (y[i + 1, 0] - y[i, 0]) / h
     b, a = (3.0 * d - 2.0 * slope[i, 0] - slope[i + 1, 0]) / h, (slope[i, 0] + slope[i + 1, 0] - 2.0 * d) / (h * h)

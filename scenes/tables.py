@@ -49,8 +49,8 @@ class OutputTable(Table):
 
 
 class AgreementTable(Table):
-    """``[agreement]``: conditions that are fitted, those only scored, those that give the floor and the refinement error; and up to which
-    relative L2 of the rates and error of a settled rate (rad/s) a surrogate is said to agree."""
+    """``[agreement]``: conditions that are fitted, those only scored, those that give the floor and the refinement error; and up to
+    which relative L2 of the rates and error of a settled rate (rad/s) a surrogate is said to agree."""
 
     fitted: tuple[str, ...] = ()
     held_out: tuple[str, ...] = ()

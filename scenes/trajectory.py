@@ -64,9 +64,9 @@ class Trajectory:
     and what a fidelity adds, ``scene`` the resolved inputs. A diverged or refused run has no settled values.
 
     A run with flexible rails also says what they bear. ``stress``: peak_stress_pa, the largest von Mises stress, at
-    peak_stress_place_m (scene axes, undeformed) of peak_stress_rail at peak_stress_time_s; yield_strength_pa or None; largest_strain,
-    largest_rotation_rad; warnings, words about what these make doubtful; patch_places_m of the w patches whose mean stress in platform
-    axes is ``wall_stress`` (n,w,6) Pa. A rigid rail has none: None, and no patches;
+    peak_stress_place_m (scene axes, undeformed) of peak_stress_rail at peak_stress_time_s; yield_strength_pa or None;
+    largest_strain, largest_rotation_rad; warnings, words about what these make doubtful; patch_places_m of the w patches whose mean
+    stress in platform axes is ``wall_stress`` (n,w,6) Pa. A rigid rail has none: None, and no patches;
     nor does a run that diverged say how strong its rails must be.
 
     Raises ValueError for an unknown status, arrays that do not fit each other, and any NaN or inf, naming where it is.
@@ -101,7 +101,8 @@ class Trajectory:
             raise ValueError(f"status {self.status!r}, expected one of {STATUSES}")
         if self.wall_stress is None:
             object.__setattr__(self, "wall_stress", np.zeros((np.size(self.time), 0, len(_STRESS))))
-        widths = {"stress_component": len(_STRESS), "axis": 3, "component": 4, "entry": len(ledger.ENTRIES), "time": np.size(self.time)}
+        widths = {"stress_component": len(_STRESS), "axis": 3, "component": 4, "entry": len(ledger.ENTRIES),
+                  "time": np.size(self.time)}
         for name, dimensions in ({"time": ("time",)} | _DIMENSIONS).items():
             shape = np.shape(getattr(self, name))
             if len(shape) != len(dimensions) or any(widths.get(d, n) != n for d, n in zip(dimensions, shape)):

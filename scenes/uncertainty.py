@@ -1,4 +1,5 @@
-"""What varies in an ensemble: distributions under dotted keys, the number of cases, a seed and a way of sampling, from a TOML file::
+"""What varies in an ensemble: distributions under dotted keys, the number of cases, a seed and a way of sampling,
+from a TOML file::
 
     cases = 1000
     seed = 1
@@ -9,7 +10,8 @@
     mean = "0 deg"
     sd = "0.033 deg"
 
-A scene says what is nominal, this file what is not certain about it. Quantities carry the dimension the scene asks for under that key.
+A scene says what is nominal, this file what is not certain about it.
+Quantities carry the dimension the scene asks for under that key.
 """
 
 from pathlib import Path
@@ -38,7 +40,8 @@ class _File(Table):
 
 
 class Uncertainty(NamedTuple):
-    """``cases`` to be drawn with ``seed`` by ``sampling``: the numbers under the dotted keys of ``vary``, each by its distribution."""
+    """``cases`` to be drawn with ``seed`` by ``sampling``: the numbers under the dotted keys of ``vary``,
+    each by its distribution."""
 
     cases: int
     seed: int
@@ -47,7 +50,8 @@ class Uncertainty(NamedTuple):
 
     def resolved(self) -> dict:
         """What the numbers of a case depend on, in SI, as written into result files."""
-        return self._asdict() | {"vary": {key: item.model_dump(mode="json", exclude={"provenance"}) for key, item in self.vary.items()}}
+        return self._asdict() | {"vary": {key: item.model_dump(mode="json", exclude={"provenance"})
+                                          for key, item in self.vary.items()}}
 
 
 def load(name_or_path: str | Path, scene: Scene, **changed: Any) -> Uncertainty:

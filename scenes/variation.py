@@ -72,7 +72,8 @@ class Variations:
 
     def _adapter(self, key: tuple, field) -> TypeAdapter:
         if key not in self._adapters:
-            self._adapters[key] = TypeAdapter(Annotated[(field.annotation, *field.metadata)] if field.metadata else field.annotation)
+            self._adapters[key] = TypeAdapter(Annotated[(field.annotation, *field.metadata)] if field.metadata
+                                              else field.annotation)
         return self._adapters[key]
 
     def _leaves(self, names: tuple[str, ...], scene: Scene) -> tuple[Scene, list[_Leaf]] | None:
@@ -83,7 +84,8 @@ class Variations:
             table: Any = scene
             for part in path:
                 table = table.__dict__.get(part) if isinstance(table, Table) and _free(type(table), table is scene) else None
-            if not (isinstance(table, Table) and table is not scene and _free(type(table)) and isinstance(getattr(table, last, None), float)):
+            if not (isinstance(table, Table) and table is not scene and _free(type(table))
+                    and isinstance(getattr(table, last, None), float)):
                 return None
             leaves.append(_Leaf(table.__dict__, last, self._adapter((type(table), last), type(table).model_fields[last])))
         return scene, leaves

@@ -5,16 +5,16 @@ On pad face i, with xi along the rail and eta across it in [-1, 1], a pressure p
     u_i = sum_a U_ia phi_a(xi, eta),   P_jb = integral over face j of p phi_b dA,   U_ia = sum_jb F_iajb(travel) P_jb
     phi = 1, xi, eta, xi^2, xi eta, eta^2
 
-F is symmetric and positive definite: the flexibility of linear statics, at every place the pads come to. Near an end of the rail a face
-keeps the last place where all of it has a wall under it, and xi goes on from there.
+F is symmetric and positive definite: the flexibility of linear statics, at every place the pads come to. Near an end of the rail a
+face keeps the last place where all of it has a wall under it, and xi goes on from there.
 
 Of this the lowest modes of the rail, mass-normalised and of frequencies omega_m, bring a part; without it statics has the rest::
 
     U = F_res P + W q,   F_res = F - sum_m W_m W_m' / omega_m^2,   W_iam(travel) the displacement in mode m
 
-F_res is positive semidefinite, for it is what the other modes would bring. Where the rail is warm (``scenes.effects.thermal``) its walls
-stand away from their places before anything presses them, by T = sum_t amount_t warm_t of the same patterns, on top of which comes U;
-walls known to be warm and rigid have no F.
+F_res is positive semidefinite, for it is what the other modes would bring. Where the rail is warm (``scenes.effects.thermal``) its
+walls stand away from their places before anything presses them, by T = sum_t amount_t warm_t of the same patterns, on top of which
+comes U; walls known to be warm and rigid have no F.
 """
 
 import hashlib
@@ -80,7 +80,8 @@ class Walls:
         together = (self.rail[:, None] == self.rail)[:, None, :, None]
         rest = self.flexibility - together * np.einsum("siam,sjbm->siajb", part, part)
         size = rest.shape[1] * PATTERNS
-        lowest, largest = (np.linalg.eigvalsh(table.reshape(-1, size, size))[:, end] for table, end in ((rest, 0), (self.flexibility, -1)))
+        lowest, largest = (np.linalg.eigvalsh(table.reshape(-1, size, size))[:, end]
+                           for table, end in ((rest, 0), (self.flexibility, -1)))
         if not (lowest >= -_ROUNDING * largest).all():
             raise ValueError(f"modes: given {modes} that give way more than the whole wall, expected modes of the same rail")
         return rest
@@ -129,7 +130,8 @@ class Walls:
         """Raises SceneError where ``scene`` has another rail or other pads than these walls were found for, or a temperature of
         which they do not know."""
         if self.made_for != digest(scene):
-            raise SceneError([Fault(scene.name, "rail", "another rail, or other pads", "those the walls were found for: find them anew")])
+            raise SceneError([Fault(scene.name, "rail", "another rail, or other pads",
+                                    "those the walls were found for: find them anew")])
         if scene.thermal is not None and self.warm is None:
             raise SceneError([Fault(scene.name, "thermal", "walls that know of no temperature",
                                     "walls found for warm rails: find them anew")])
@@ -155,8 +157,8 @@ class Walls:
         """Raises ValueError where shapes do not belong together or a number is not finite."""
         stations, faces = self.travel.size, self.rail.size
         modes = self.frequency.shape[-1]
-        expected = {"travel": (stations,), "flexibility": (stations, faces, PATTERNS, faces, PATTERNS), "rail": (faces,), "half": (faces, 2),
-                    "frequency": (int(self.rail.max()) + 1, modes), "shape": (stations, faces, PATTERNS, modes)}
+        expected = {"travel": (stations,), "flexibility": (stations, faces, PATTERNS, faces, PATTERNS), "rail": (faces,),
+                    "half": (faces, 2), "frequency": (int(self.rail.max()) + 1, modes), "shape": (stations, faces, PATTERNS, modes)}
         if self.warm is not None:
             expected["warm"] = (FIELDS, stations, faces, PATTERNS)
         for name, shape in expected.items():
@@ -175,7 +177,8 @@ def require_modes(scene: Scene, walls: Walls | None) -> None:
         raise SceneError([Fault(scene.name, "flexibility", "modes of rails without their walls",
                                 "walls too (tipoff run --walls, highfi.walls), or no such table")])
     if (known := walls.frequency.shape[1]) < scene.flexibility.modes:
-        raise SceneError([Fault(scene.name, "flexibility.modes", str(scene.flexibility.modes), f"at most {known}, the modes these walls have")])
+        raise SceneError([Fault(scene.name, "flexibility.modes", str(scene.flexibility.modes),
+                                f"at most {known}, the modes these walls have")])
 
 
 def cubic(travel: np.ndarray, values: np.ndarray) -> np.ndarray:
@@ -189,7 +192,8 @@ def cubic(travel: np.ndarray, values: np.ndarray) -> np.ndarray:
 
 
 def digest(scene: Scene) -> str:
-    """Hexadecimal digest of what walls depend on. The clearance is not part of it: it moves pads over a leg by a hundredth of its width."""
+    """Hexadecimal digest of what walls depend on. The clearance is not part of it:
+    it moves pads over a leg by a hundredth of its width."""
     described = scene.model_dump(mode="json", include={"rail", "pads"})
     described["rail"] |= scene.rail.contents()
     described["rail"].pop("damping", None)  # statics

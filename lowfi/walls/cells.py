@@ -4,9 +4,9 @@ With the lever (p_0, a, b) of the rigid face and the displacement U of its wall 
 
     p = p_0 + a xi + b eta - relief (xi^4 + eta^4) - sum_a U_a phi_a(xi', eta'),   pressure = penalty max(0, p)
 
-where the crown is its mean over the cell and xi' = xi + shift, eta' = eta + aside is the place on the wall, which was found for pads
-that stand midway between all rails: 0.25 mm aside, the leg of an L, held along one edge only, is three percent softer or stiffer. Of
-rows of cells that hang over an end of the rail only the part over the wall counts, their sums taken as piecewise linear
+where the crown is its mean over the cell and xi' = xi + shift, eta' = eta + aside is the place on the wall, which was found for
+pads that stand midway between all rails: 0.25 mm aside, the leg of an L, held along one edge only, is three percent softer or
+stiffer. Of rows of cells that hang over an end of the rail only the part over the wall counts, their sums taken as piecewise linear
 between the middles of the rows.
 """
 
@@ -23,8 +23,8 @@ _EASED = 0.1  # in xi: where a pad comes to hang over an end, its place on the w
 
 @inlined
 def reaches(walls, face, middle):
-    """Whether the face with its middle at X = ``middle`` (m) is over a wall, by more than a last strip: what is left of a loaded face
-    there is so stiff that no step could follow it."""
+    """Whether the face with its middle at X = ``middle`` (m) is over a wall, by more than a last strip: what is left of a loaded
+    face there is so stiff that no step could follow it."""
     half = walls.half[face, 0] * (1.0 - LAST_STRIP)
     return middle + half > walls.start and middle - half < walls.end
 
@@ -65,8 +65,8 @@ def cover(walls, half, middle, row):
 
 @inlined
 def _behind(walls, row, xi):
-    """Share of a row of cells behind an end of the rail at ``xi``, and its slope: what two neighbouring rows hold changes evenly from
-    one's middle to the other's, so the rate at which energy is left behind does not jump."""
+    """Share of a row of cells behind an end of the rail at ``xi``, and its slope: what two neighbouring rows hold changes evenly
+    from one's middle to the other's, so the rate at which energy is left behind does not jump."""
     away = 0.5 * walls.node.size * (xi - walls.node[row])  # in cells
     outermost = row == 0 if away < 0.0 else row == walls.node.size - 1
     reach = 0.5 if outermost else 1.0

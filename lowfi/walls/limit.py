@@ -1,8 +1,9 @@
 """The proven step limit on walls that give way: stiffness and damping of the faces of each rail (``lowfi.limits`` has the bound).
 
-With the tangent T = K (1 + F K)^-1 of ``lowfi.walls.solution`` and the wrenches g of depth, tilt along and tilt across of each rigid
-face, the linearised springs are sum_ab T_ab g_a g_b', and the trace over both bodies bounds what they can do. A way across the rail along
-a wall of slope du/deta' = U_2 + xi' U_4 + 2 eta' U_5 is a depth and tilts too, so each g has its part of a force there::
+With the tangent T = K (1 + F K)^-1 of ``lowfi.walls.solution`` and the wrenches g of depth, tilt along and tilt across of each
+rigid face, the linearised springs are sum_ab T_ab g_a g_b', and the trace over both bodies bounds what they can do. A way across
+the rail along a wall of slope du/deta' = U_2 + xi' U_4 + 2 eta' U_5 is a depth and tilts too,
+so each g has its part of a force there::
 
     K = sum over rails of sum_ab T_ab (g_a . M^-1 g_b)
 
@@ -42,7 +43,8 @@ def stiffness_and_damping(walls, friction, faces, platform, payload, active, sta
                 dampers += friction_damping(friction, now, platform, payload, body, base, outward(faces[face], base))
         if count > 0:
             columns = _tangent(walls, count)
-            springs += _trace(walls, faces, platform, payload, count, body, base) + _trace_of_modes(walls.modes, walls.room, count, columns)
+            springs += (_trace(walls, faces, platform, payload, count, body, base)
+                        + _trace_of_modes(walls.modes, walls.room, count, columns))
     return springs + square, dampers + drag
 
 
@@ -101,7 +103,8 @@ def _trace_of_modes(modes, room, count, first):
             face = room.order[k]
             for a in range(PATTERNS):
                 for i in range(modes.square.shape[1]):
-                    total += _pressure(modes, room, face, a, i) * (modes.shape[face, i, a] - room.right[k * PATTERNS + a, first + i])
+                    total += (_pressure(modes, room, face, a, i)
+                              * (modes.shape[face, i, a] - room.right[k * PATTERNS + a, first + i]))
     return total
 
 

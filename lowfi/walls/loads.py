@@ -8,8 +8,8 @@ face hangs over an end)::
 
     X = P' F' P / 2 + P' (T' + W' q) + sum of pressure d(xi')/dx du/dxi'
 
-which acts on payload and platform at the payload's mass centre, since that is the place whose way counts. Where the pad moves across the
-rail, eta' moves with its middle, and there the slope of the wall pushes::
+which acts on payload and platform at the payload's mass centre, since that is the place whose way counts. Where the pad moves
+across the rail, eta' moves with its middle, and there the slope of the wall pushes::
 
     Y = sum of pressure d(eta')/dy du/deta'
 
@@ -35,27 +35,31 @@ def load(walls, friction, platform, faces, face, body, base):
     across = half[1] * (force[2] / force[0] - lever[ASIDE])
     wide_along_y = faces[face, NORMAL_Y] == 0.0  # the normal is along z
     arm = rotation.rotate(body.turn, (faces[face, 0] + half[0] * (force[1] / force[0] - lever[SHIFT]),
-                                      faces[face, 1] + (across if wide_along_y else 0.0), faces[face, 2] + (0.0 if wide_along_y else across)))
+                                      faces[face, 1] + (across if wide_along_y else 0.0),
+                                      faces[face, 2] + (0.0 if wide_along_y else across)))
     point = (body.place[0] + arm[0], body.place[1] + arm[1], body.place[2] + arm[2])
     n, u = outward(faces[face], base), relative_velocity(platform, body, base, point)
     closing = rotation.dot(u, n)
     slip = (u[0] - closing * n[0], u[1] - closing * n[1], u[2] - closing * n[2])
-    return Load(point, (-force[0] * n[0], -force[0] * n[1], -force[0] * n[2]), friction_force(friction, force[0], slip), slip, closing,
-                force[0], force[0])
+    return Load(point, (-force[0] * n[0], -force[0] * n[1], -force[0] * n[2]), friction_force(friction, force[0], slip), slip,
+                closing, force[0], force[0])
 
 
 @inlined
 def lean(walls, faces, face, body, base):
-    """Force (N) across the rail on the payload by the slope of the wall under a pressed face, and where it acts (m), in scene axes."""
+    """Force (N) across the rail on the payload by the slope of the wall under a pressed face, and where it acts (m),
+    in scene axes."""
     u, force = walls.room.displacement[face], walls.room.force[face]
     size = (u[2] * force[0] + u[4] * force[1] + 2.0 * u[5] * force[2]) / walls.half[face, 1]
     wide_along_y = faces[face, NORMAL_Y] == 0.0
-    return rotation.rotate(base.turn, (0.0, size if wide_along_y else 0.0, 0.0 if wide_along_y else size)), pad_point(faces[face], body)
+    return (rotation.rotate(base.turn, (0.0, size if wide_along_y else 0.0, 0.0 if wide_along_y else size)),
+            pad_point(faces[face], body))
 
 
 @kernel
 def drive(walls, count):
-    """Force (N) along the rail on the payload by the ``count`` faces solved for, and the energy (J/m) its way takes from the wall."""
+    """Force (N) along the rail on the payload by the ``count`` faces solved for,
+    and the energy (J/m) its way takes from the wall."""
     room, pull, fading = walls.room, 0.0, 0.0
     for i in range(count):
         face = room.order[i]

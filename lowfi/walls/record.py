@@ -19,9 +19,9 @@ DEGREES = 5  # of the moments of pressed cells: products of two patterns reach t
 
 
 class Room(NamedTuple):
-    """Scratch of one run. lever (f, LEVER_SIZE); displacement (f,p) m of the walls, the next first guess, and the same ``kept`` aside;
-    force (f,p) N; moment (f, DEGREES, DEGREES) N/m; order (m,) faces solved for at once; and over those, w = m p: flexibility and its
-    slope along the travel (w,w), matrix (w,w), right (w, 3 m + n) with n modes."""
+    """Scratch of one run. lever (f, LEVER_SIZE); displacement (f,p) m of the walls, the next first guess, and the same ``kept``
+    aside; force (f,p) N; moment (f, DEGREES, DEGREES) N/m; order (m,) faces solved for at once; and over those, w = m p:
+    flexibility and its slope along the travel (w,w), matrix (w,w), right (w, 3 m + n) with n modes."""
 
     lever: np.ndarray
     displacement: np.ndarray
@@ -59,10 +59,10 @@ class Warm(NamedTuple):
 
 
 class Walls(NamedTuple):
-    """cubic (s-1,f,f,p,p,4): flexibility (m/N) between stations as powers of the way (m) from the one before, which stand ``spacing``
-    apart from the X ``origin`` (m) of the first face at ignition on; members (r,m) faces on each rail, -1 for none;
-    rail (f,) and half (f,2) as in ``scenes.walls``; across (f,) m, where on the other axis across the rail the middle of each face stands
-    that the walls were found for; relief (f,) m; penalty (N/m3); start and end (m) of the rail; node (n,) middle of
+    """cubic (s-1,f,f,p,p,4): flexibility (m/N) between stations as powers of the way (m) from the one before, which stand
+    ``spacing`` apart from the X ``origin`` (m) of the first face at ignition on; members (r,m) faces on each rail, -1 for none;
+    rail (f,) and half (f,2) as in ``scenes.walls``; across (f,) m, where on the other axis across the rail the middle of each face
+    stands that the walls were found for; relief (f,) m; penalty (N/m3); start and end (m) of the rail; node (n,) middle of
     the cells in xi and eta, and crown (n,) the means of xi^4 over them; warm, None where no rail is."""
 
     cubic: np.ndarray
@@ -108,8 +108,8 @@ def build(found: data.Walls, model: Model, cells: int = CELLS) -> Walls:
     flexibility, shape = found.cubic(model.flexibility.modes if model.flexibility else 0)
     modes = _modes(found, shape, model.flexibility) if shape.size else None
     return Walls(flexibility, float(nominal[0, 0]), spacing, members, found.rail, found.half,
-                 nominal[np.arange(faces.axis.size), 3 - faces.axis], faces.relief, float(model.penalty), float(model.rail_start), float(model.rail_end),
-                 0.5 * (edges[1:] + edges[:-1]), crown, modes, _warm(found, model),
+                 nominal[np.arange(faces.axis.size), 3 - faces.axis], faces.relief, float(model.penalty), float(model.rail_start),
+                 float(model.rail_end), 0.5 * (edges[1:] + edges[:-1]), crown, modes, _warm(found, model),
                  _room(faces.axis.size, members.shape[1], shape.shape[2]))
 
 
@@ -129,10 +129,12 @@ def _modes(found: data.Walls, cubic: np.ndarray, flexibility: Flexibility) -> Mo
     square = found.frequency[:, :flexibility.modes]**2
     mass_rate, stiffness_time = flexibility.damping or (0.0, 0.0)
     faces = (found.rail.size, data.PATTERNS)
-    return Modes(square, mass_rate + stiffness_time * square, cubic, zeros((faces[0], flexibility.modes, faces[1])), *(zeros(faces) for _ in range(3)))
+    return Modes(square, mass_rate + stiffness_time * square, cubic, zeros((faces[0], flexibility.modes, faces[1])),
+                 *(zeros(faces) for _ in range(3)))
 
 
 def _room(faces: int, members: int, modes: int) -> Room:
     wide, by_pattern = members * data.PATTERNS, (faces, data.PATTERNS)
-    return Room(zeros((faces, LEVER_SIZE)), zeros(by_pattern), zeros(by_pattern), zeros(by_pattern), zeros((faces, DEGREES, DEGREES)),
-                np.zeros(members, dtype=np.int64), zeros((wide, wide)), zeros((wide, wide)), zeros((wide, wide)), zeros((wide, 3 * members + modes)))
+    return Room(zeros((faces, LEVER_SIZE)), zeros(by_pattern), zeros(by_pattern), zeros(by_pattern),
+                zeros((faces, DEGREES, DEGREES)), np.zeros(members, dtype=np.int64), zeros((wide, wide)), zeros((wide, wide)),
+                zeros((wide, wide)), zeros((wide, 3 * members + modes)))

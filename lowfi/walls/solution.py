@@ -1,10 +1,12 @@
 """Displacement of the walls of one rail under the faces that press it, by Newton's method on piecewise linear equations.
 
-    U = T + F P(U) + W q,    (1 + F K) dU = T + F P + W q - U,    K_iab = dP_ia/d(-U_ib) = sum over pressed cells of penalty dA phi_a phi_b
+    U = T + F P(U) + W q,    (1 + F K) dU = T + F P + W q - U,
+    K_iab = dP_ia/d(-U_ib) = sum over pressed cells of penalty dA phi_a phi_b
 
-W q is what the rail's modes make of it (``lowfi.walls.modes``), F the rest; without modes there is only F. T is where walls stand that
-are warm (``lowfi.walls.warm``), zero otherwise. P is the gradient of a convex potential, so the solution is one; while the pressed cells
-do not change the equations are linear, and the last correction is exact. The displacement of the solution before is the first guess.
+W q is what the rail's modes make of it (``lowfi.walls.modes``), F the rest; without modes there is only F. T is where walls stand
+that are warm (``lowfi.walls.warm``), zero otherwise. P is the gradient of a convex potential, so the solution is one; while the
+pressed cells do not change the equations are linear, and the last correction is exact. The displacement of the solution before is
+the first guess.
 """
 
 import numpy as np

@@ -18,16 +18,16 @@ _THERE = 1e-9  # m, how far beyond its aim a step goes
 
 @kernel
 def depth(walls, faces, face, active, place, turn, state):
-    """Deepest penetration (m) of a face: negative across the gap, which other faces on the rail may narrow. ``active`` (f,) tells which
-    faces press."""
+    """Deepest penetration (m) of a face: negative across the gap, which other faces on the rail may narrow. ``active`` (f,) tells
+    which faces press."""
     count = solve(walls, faces, walls.rail[face], active, place, turn, state)
     return _deepest(walls, faces, face, count, active, place, turn, state)[0]
 
 
 @kernel
 def _deepest(walls, faces, face, count, active, place, turn, state):
-    """The same after ``solve``, and xi and eta of the deepest cell. A face past the end has the depth it would have there: else a touch
-    in the step in which it leaves would not be seen."""
+    """The same after ``solve``, and xi and eta of the deepest cell. A face past the end has the depth it would have there: else a
+    touch in the step in which it leaves would not be seen."""
     if not active[face]:
         take_lever(walls, faces, face, place, turn)
     displacement = walls.room.displacement[face]
@@ -66,9 +66,9 @@ def survey(walls, faces, platform, payload, active, state, columns, out):
 
 @kernel
 def while_hanging(walls, faces, platform, payload, active, state):
-    """Longest step (s) where an ``active`` face (f,) comes to an end of the rail. The rate at which it leaves energy behind jumps as it
-    begins to hang over and bends with every row of cells that leaves, which no error estimate sees; and its last strip leaves at once.
-    So a step goes no farther than up to either, and a quarter of a cell at most."""
+    """Longest step (s) where an ``active`` face (f,) comes to an end of the rail. The rate at which it leaves energy behind jumps
+    as it begins to hang over and bends with every row of cells that leaves, which no error estimate sees; and its last strip leaves
+    at once. So a step goes no farther than up to either, and a quarter of a cell at most."""
     body, base = slot.motion(payload.mass, payload.inverse_inertia, state, slot.PAYLOAD), slot.frame(platform, state)
     place, turn = relative_pose(platform, body, base)
     drift, _ = relative_motion(platform, body, base, place, turn)

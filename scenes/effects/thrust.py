@@ -14,13 +14,13 @@ import numpy as np
 from pydantic import AfterValidator, Field, PrivateAttr, ValidationInfo, field_validator, model_validator
 
 from scenes.effects.measured import GaussianFit, MeasuredCurve, fit_gaussian, read_curve
-from scenes.effects.thrust_law import (ROOT_TWO_PI, Curve, Pulses, Thrust, burnout, burnouts, corners, impulse, kept, magnitude, peak,
-                                       sample, shortest_feature)
+from scenes.effects.thrust_law import (ROOT_TWO_PI, Curve, Pulses, Thrust, burnout, burnouts, corners, impulse, kept, magnitude,
+                                       peak, sample, shortest_feature)
 from scenes.table import Table, at_least_one
 from scenes.units import Force, Impulse, NonNegativeTime, PositiveLength, PositiveNumber, PositiveTime, Time
 
-__all__ = ["Curve", "Pulse", "Pulses", "Thrust", "ThrustTable", "burnout", "burnouts", "corners", "impulse", "magnitude", "peak", "sample",
-           "shortest_feature"]
+__all__ = ["Curve", "Pulse", "Pulses", "Thrust", "ThrustTable", "burnout", "burnouts", "corners", "impulse", "magnitude", "peak",
+           "sample", "shortest_feature"]
 
 
 class Pulse(Table):
