@@ -71,8 +71,9 @@ def _on_bound(shares: np.ndarray) -> np.ndarray:
 
 def valid(scene: Scene, references: dict[str, Curves]) -> dict[str, list[float]]:
     """Smallest and largest of what the constants were found for, over the conditions used (SI)."""
-    return validity.ranges([scene.condition(name).loads | {"exit_speed_m_s": reference.speed, "pad_force_peak_n": reference.pad_force}
-                            for name, reference in references.items()])
+    return validity.ranges([
+        scene.condition(name).loads | {"exit_speed_m_s": reference.speed, "pad_force_peak_n": reference.pad_force}
+        for name, reference in references.items()])
 
 
 def provenance(scene: Scene, references: dict[str, Curves], constants: dict[str, float], found: Found, plan: Plan, seed: int,

@@ -2,6 +2,7 @@
 so the worker count changes no bit."""
 
 import os
+import warnings
 from collections import deque
 from concurrent.futures import ThreadPoolExecutor
 from itertools import chain
@@ -43,8 +44,11 @@ def run_many(scene: Scene, table: Sequence[Mapping[str, Any]] | Uncertainty, cal
     scene refuses has the status ``refused`` and the reason as its message; the others run. Settled values are NaN where a run has
     none. ``wall_s`` of a case is its share of the piece it ran in. The attributes count ``asked = ok + refused + failed``, failed
     being the diverged. With a ``store``, a folder, cases go there chunk by chunk and what it holds already is not run again
-    (``lowfi.fill``, which needs no room for all results); it has no ``wall_s``.
+    (``lowfi.fill``, which needs no room for all results); it has no ``wall_s``. Warns where ``scene``, before any override, lies
+    outside what the calibration was made for.
     """
+    for words in calibration.outside(scene) if calibration else ():
+        warnings.warn(f"outside the calibration: {words}", stacklevel=2)
     source, numerics = Drawn(table) if isinstance(table, Uncertainty) else Listed(table), numerics or Numerics()
     if store is not None:
         from lowfi.request import Ensemble

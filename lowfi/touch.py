@@ -108,6 +108,13 @@ def outward(face, base):
 
 
 @inlined
+def along_width(face, size):
+    """Vector of ``size`` along the width of ``face``: in its plane, across the rail, in the axes of payload or platform."""
+    aside = size if face[NORMAL_Y] == 0.0 else 0.0
+    return (0.0, aside, size - aside)
+
+
+@inlined
 def gradient(bow, face, base, point):
     """What a step of the pad's ``point`` (m, scene axes) adds to the penetration: the normal of the wall, bowed or straight."""
     if bow is not None:

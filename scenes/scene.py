@@ -32,7 +32,8 @@ from scenes.tables import AgreementTable, OutputTable, PadTable, PayloadTable
 from scenes.units import PositiveTime
 
 CATALOG = reading.CATALOG
-EFFECTS = ("thrust_offset", "mass_offset", "initial", "contact", "friction", "platform", "gravity", "thermal", "rail.damping", "flexibility")
+EFFECTS = ("thrust_offset", "mass_offset", "initial", "contact", "friction", "platform", "gravity", "thermal", "rail.damping",
+           "flexibility")
 NOMINAL = "nominal"  # the scene itself, named like a condition
 _BESIDE = ("conditions", "agreement", "provenance")
 _NOT_PHYSICS = {"name", "description", "flight", *_BESIDE}  # what comes after the exit changes nothing before it

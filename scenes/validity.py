@@ -1,9 +1,9 @@
-"""What constants were found for: size of the thrust, its moment, speed, clearance, rail and pads; and how far a scene lies from that.
+"""What constants were found for: size of the thrust, its moment, speed, clearance, rail and pads; and how far a scene is from that.
 
 A contact law fitted at one load and speed is extrapolated at another. One run passes through every load below its peak, so a range
-may consist of one value; a scene is called outside where it leaves the range by more than ``MARGIN`` of its end. The transverse moment
-impulse is what the errors of assembly change: constants fitted where an error of 0.1 deg presses pads on rails are extrapolated at
-1 deg. Less of it than in the conditions of the fit is no extrapolation.
+may consist of one value; a scene is called outside where it leaves the range by more than ``MARGIN`` of its end. The transverse
+moment impulse is what the errors of assembly change: constants fitted where an error of 0.1 deg presses pads on rails are
+extrapolated at 1 deg. Less of it than in the conditions of the fit is no extrapolation.
 """
 
 import numpy as np

@@ -134,8 +134,7 @@ def test_files_are_short():
 
 
 def test_lines_are_short():
-    """Those of scenes, highfi and lowfi are left as they are: their sources are hashed, and what was run on them is dear."""
-    long = [f"{path.relative_to(ROOT)}:{number}" for path in sources("studies", "calibrate", "meshes", "tests")
+    long = [f"{path.relative_to(ROOT)}:{number}" for path in sources(*PACKAGES, "tests")
             for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1) if len(line) > 132]
     assert long == []
 

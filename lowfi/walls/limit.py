@@ -13,12 +13,11 @@ of each (Weyl), and the trace of what contact does to them, W' T W.
 
 from lowfi import state as slot
 from lowfi.limits import friction_damping
-from lowfi.touch import outward, pad_point, relative_pose
+from lowfi.touch import along_width, outward, pad_point, relative_pose
 from lowfi.walls.loads import load
 from lowfi.walls.modes import fastest
 from lowfi.walls.record import ASIDE, SHIFT
 from lowfi.walls.solution import eliminate, fill_matrix, solve, stiffness
-from lowfi.system import NORMAL_Y
 from scenes import rotation
 from scenes.jit import inlined, kernel
 from scenes.walls import PATTERNS
@@ -158,14 +157,10 @@ def _trace(walls, faces, platform, payload, count, body, base):
 def _wrench(walls, faces, face, rigid, body, base):
     """Force, a point it acts at (m), and couple that belong to a rigid motion of the face."""
     n, half = outward(faces[face], base), walls.half[face]
-    wide_along_y = faces[face, NORMAL_Y] == 0.0
-    sinks = -_by_slope(walls.room, face, rigid) / half[1]
-    aside = rotation.rotate(base.turn, (0.0, sinks if wide_along_y else 0.0, 0.0 if wide_along_y else sinks))
+    aside = rotation.rotate(base.turn, along_width(faces[face], -_by_slope(walls.room, face, rigid) / half[1]))
     if rigid == 0:
         return (n[0] + aside[0], n[1] + aside[1], n[2] + aside[2]), pad_point(faces[face], body), (0.0, 0.0, 0.0)
-    edge = (half[0], 0.0, 0.0)
-    if rigid == 2:
-        edge = (0.0, half[1], 0.0) if wide_along_y else (0.0, 0.0, half[1])
+    edge = along_width(faces[face], half[1]) if rigid == 2 else (half[0], 0.0, 0.0)
     return aside, pad_point(faces[face], body), rotation.cross(rotation.rotate(body.turn, edge), n)
 
 

@@ -16,8 +16,7 @@ across the rail, eta' moves with its middle, and there the slope of the wall pus
 Energy still under the part of a pad that leaves the wall is lost.
 """
 
-from lowfi.system import NORMAL_Y
-from lowfi.touch import Load, friction_force, outward, pad_point, relative_velocity
+from lowfi.touch import Load, along_width, friction_force, outward, pad_point, relative_velocity
 from lowfi.walls import warm
 from lowfi.walls.cells import stored
 from lowfi.walls.modes import offset, slope
@@ -32,11 +31,9 @@ def load(walls, friction, platform, faces, face, body, base):
     """Load of a pressed face, after ``solve``; the wall's own velocity is left out."""
     room = walls.room
     force, lever, half = room.force[face], room.lever[face], walls.half[face]
-    across = half[1] * (force[2] / force[0] - lever[ASIDE])
-    wide_along_y = faces[face, NORMAL_Y] == 0.0  # the normal is along z
+    across = along_width(faces[face], half[1] * (force[2] / force[0] - lever[ASIDE]))
     arm = rotation.rotate(body.turn, (faces[face, 0] + half[0] * (force[1] / force[0] - lever[SHIFT]),
-                                      faces[face, 1] + (across if wide_along_y else 0.0),
-                                      faces[face, 2] + (0.0 if wide_along_y else across)))
+                                      faces[face, 1] + across[1], faces[face, 2] + across[2]))
     point = (body.place[0] + arm[0], body.place[1] + arm[1], body.place[2] + arm[2])
     n, u = outward(faces[face], base), relative_velocity(platform, body, base, point)
     closing = rotation.dot(u, n)
@@ -51,9 +48,7 @@ def lean(walls, faces, face, body, base):
     in scene axes."""
     u, force = walls.room.displacement[face], walls.room.force[face]
     size = (u[2] * force[0] + u[4] * force[1] + 2.0 * u[5] * force[2]) / walls.half[face, 1]
-    wide_along_y = faces[face, NORMAL_Y] == 0.0
-    return (rotation.rotate(base.turn, (0.0, size if wide_along_y else 0.0, 0.0 if wide_along_y else size)),
-            pad_point(faces[face], body))
+    return rotation.rotate(base.turn, along_width(faces[face], size)), pad_point(faces[face], body)
 
 
 @kernel

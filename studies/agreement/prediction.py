@@ -6,8 +6,8 @@ the reference's lie inside.
 The first term alone scatters by the constants; with the second it says where the reference should be. If 95 % of n intervals are
 to hold their value, the number that do scatters binomially, provided the n are independent of each other. The three axes of a
 condition are not, nor conditions a few degrees apart, so the band is the narrowest there could be. A condition in which no pad
-touches tests none of this and is left out, and so is one whose reference is not converged (``studies.agreement.verdicts``): it is not
-known what should lie inside.
+touches tests none of this and is left out, and so is one whose reference is not converged (``studies.agreement.verdicts``): it is
+not known what should lie inside.
 """
 
 from typing import Callable, Mapping

@@ -40,7 +40,8 @@ class Rung(NamedTuple):
 
 def rungs(study: Study, conditions: Iterable[str] | None = None) -> list[Rung]:
     """The surrogates of a scene for ``conditions``, else for all, from the plainest up: with its own constants, with calibrated
-    ones, on walls that give way as statics has them, where nothing is fitted, and on the same with the lowest modes of the rails."""
+    ones, on walls that give way as statics has them, where nothing is fitted, and on the same with the lowest modes of the
+    rails."""
     on_walls = compliant(study, study.conditions if conditions is None else conditions)
     return [Rung("uncalibrated", "surrogate, uncalibrated"), Rung("calibrated", "surrogate, calibrated", calibrate.load(study)),
             on_walls, on_walls._replace(name="modal", title="surrogate, modal rail", modes=study.settings.rail_modes)]

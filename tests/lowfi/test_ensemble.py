@@ -5,7 +5,7 @@ import pytest
 
 import lowfi
 from lowfi import columns
-from scenes import load
+from scenes import Calibration, load, validity
 from scenes.faults import SceneError
 from studies.bench.surrogate import varied
 
@@ -77,3 +77,13 @@ def test_curves_keep_their_order():
 def test_an_empty_table_is_an_empty_result():
     found = lowfi.run_many(load("reference"), [])
     assert found.sizes["case"] == 0 and found.attrs["asked"] == 0
+
+
+def test_a_scene_outside_a_calibration_is_warned_of(recwarn):
+    """Control: the scene that the constants were found for, where nothing is said."""
+    base = load("reference")
+    known = Calibration({}, [], [], [], [], [], [], np.zeros((0, 0)), [], {}, [], 0.0, validity.ranges([base.loads]))
+    lowfi.run_many(base, ROWS[:1], known)
+    assert not [item for item in recwarn if item.category is UserWarning]
+    with pytest.warns(UserWarning, match="outside the calibration: thrust peak"):
+        lowfi.run_many(base.replace({"thrust.peak": "9 kN"}), ROWS[:1], known)
