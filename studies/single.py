@@ -38,6 +38,7 @@ def chosen(study: Study, condition: str, accuracy: float | None, budget: float |
         asked = study.highfi(condition, element_size=point["setting"])
     else:
         rung = next(rung for rung in cost.surrogates(whole, [condition]) if rung.name == point["rung"])
+        rung = rung if point["modes"] is None else rung._replace(modes=point["modes"])
         asked = rung.ask(study, condition, relative_tolerance=point["setting"])
     return _made(study, condition, asked, quiet) | {"chosen": point}
 

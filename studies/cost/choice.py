@@ -2,7 +2,8 @@
 
 A point of the cost study counts with its error against the finest mesh and the uncertainty of that mesh, of which the larger is
 what it can be trusted to; the finest mesh itself with its uncertainty. That was measured on one condition. On another, each model
-counts with its error there, and with the uncertainty of the reference there, as the agreement study found them, where that is more.
+counts with its error there, and with the uncertainty of the reference there, as the agreement study found them, where that is more;
+one that the agreement study does not have, with other modes of the rails, can be trusted to nothing there.
 """
 
 import math
@@ -50,7 +51,8 @@ def trusted(points: list[dict], band: float | None, there: dict[str, float] | No
     for point in points:
         error = point["error_deg_s"] if point["error_deg_s"] is not None else band
         if error is not None and point["status"] == "exited":
-            known.append(point | {"trusted_deg_s": max(error, band or 0.0, (there or {}).get(point["rung"], 0.0))})
+            judged = 0.0 if not there else math.inf if point["modes"] is not None else there.get(point["rung"], 0.0)
+            known.append(point | {"trusted_deg_s": max(error, band or 0.0, judged)})
     return known
 
 

@@ -22,13 +22,13 @@ _GAP = 106.0  # px between rows: an axis label, and the title below it
 _FONT = 'system-ui, "Segoe UI", Roboto, "Liberation Sans", sans-serif'
 _INK, _RULE = "#24292f", "#e3e6ea"
 _PLOTLY_DASH = {"-": "solid", "--": "dash", "-.": "dashdot", ":": "dot", "": "solid"}
-_PLOTLY_MARKER = {"o": "circle", "s": "square", "^": "triangle-up", "v": "triangle-down", "D": "diamond", "": "circle"}
+_PLOTLY_MARKER = {"o": "circle", "s": "square", "^": "triangle-up", "v": "triangle-down", "D": "diamond", "": "circle", "x": "x"}
 
 
 @dataclass(frozen=True)
 class Line:
-    """One curve (x, y); ``dash`` as in matplotlib, "" for markers only; ``marker`` "o", "s", "^", "v", "D" or ""; ``labels`` are
-    texts at the points, ``size`` that of a marker (px)."""
+    """One curve (x, y); ``dash`` as in matplotlib, "" for markers only; ``marker`` "o", "s", "^", "v", "D", "x" or ""; ``labels``
+    are texts at the points, ``size`` that of a marker (px)."""
 
     x: Sequence[float]
     y: Sequence[float]

@@ -97,9 +97,9 @@ def energy_ledgers(runs: Runs, condition: str) -> Chart:
 def cost_picture(cost: dict) -> Chart:
     """Errors of the settled rates and of the curves against wall time, one line per model, with the band of the reference's own
     uncertainty and the front of the best; and the part of the surrogate's error that a tighter tolerance can buy off."""
-    looks = (("s", "-"), ("^", ":"), ("o", "--"), ("v", "-."), ("D", "-"), ("o", ":"))
+    looks = (("s", "-"), ("^", ":"), ("o", "--"), ("v", "-."), ("D", "-"), ("o", ":"), ("x", ""))
     models = dict.fromkeys(point["model"] for point in cost["points"])
-    look = {model: (colour, *rest) for model, colour, rest in zip(models, (NAVY, GREY, AMBER, TEAL, VERMILION, NAVY), looks)}
+    look = {model: (colour, *rest) for model, colour, rest in zip(models, (NAVY, GREY, AMBER, TEAL, VERMILION, NAVY, NAVY), looks)}
     band = (cost["band_deg_s"], "the reference's own uncertainty") if cost["band_deg_s"] else None
     settled = [point | {"error_deg_s": cost["band_deg_s"] if point["error_deg_s"] is None else point["error_deg_s"]}
                for point in cost["points"]]
@@ -127,9 +127,11 @@ def _front(cost: dict) -> Line:
 
 
 def _cost_line(points: list[dict], error: str, model: str, colour: str, marker: str, dash: str) -> Line:
-    """One model; tolerances are labelled only where they matter, in the panel of the time integration, and once for all models."""
+    """One model; tolerances are labelled only where they matter, in the panel of the time integration, and once for all models,
+    numbers of modes wherever they are varied."""
     labels = [point["numerics"].split(",")[0].removeprefix("tolerance ") for point in points]
-    if "surrogate" in model and (error != "integration_error_deg_s" or "compliant" not in model):
+    varied = any(point["modes"] for point in points)
+    if "surrogate" in model and not varied and (error != "integration_error_deg_s" or "compliant" not in model):
         labels = [""] * len(labels)
     return Line([p["wall_s"] for p in points], [p[error] for p in points], model, colour, 1.6, dash, marker=marker,
                 labels=tuple(labels))

@@ -13,6 +13,7 @@ import statistics
 from pathlib import Path
 from typing import Iterable
 
+from lowfi.numerics import Numerics
 from scenes.files import write_json
 from scenes.trajectory import Trajectory
 from studies import machine
@@ -27,21 +28,24 @@ from studies.stages.compare import Rung, refined, rungs
 from studies.store import SOURCES, Run
 from studies.study import Study, read
 
+BY_MODES = "surrogate, modal rail, modes varied"
+MODES = (1, 2, 8)  # of each rail, beside those of the agreement study
 STIFFNESS_ALONG = "surrogate, stiffness along the rail"  # mean pressure, each face by itself
 NAME, POINTS = "cost_study", "cost.json"
 
 
 def run(study: Study) -> dict:
-    """``points``: model, rung, numerics, setting (element size in m or relative tolerance), error_deg_s, curve_error (rate L2),
-    wall_s, pareto; ``band_deg_s``: uncertainty of the yardstick; ``matched``; ``scaling`` over ``elements``, ``pads`` and
-    ``effects``."""
+    """``points``: model, rung, numerics, setting (element size in m or relative tolerance), modes (None where the rung has its
+    own), error_deg_s, curve_error (rate L2), wall_s, pareto; ``band_deg_s``: uncertainty of the yardstick; ``matched``;
+    ``scaling`` over ``elements``, ``pads`` and ``effects``."""
     name = _condition(study)
     ladder = surrogates(study)
 
     def make() -> tuple[dict, list[Path]]:
         finest, band, points = _reference_points(study, name)
         for rung in ladder:
-            points += _surrogate_points(study, name, rung, finest)
+            points += _surrogate_points(study, name, rung, finest, study.settings.tolerances)
+        points += _points_by_modes(study, name, ladder[-1], finest)
         growing = {"elements": scaling.elements(study, name), "pads": scaling.pads(study, name),
                    "effects": scaling.effects(study.condition(name), ablation.run(study))}
         path, points = study.path(POINTS), marked(points, band)
@@ -81,7 +85,7 @@ def _reference_points(study: Study, name: str) -> tuple[Trajectory, float | None
              *refined(study, name).values()]
     coarsest, coarse, finest, *changed = study.store.fill("cost, meshes", asked)
     band = verdicts.largest(verdicts.settled_change(coarse, run) for run in (finest, *changed))
-    points = [{"model": FINITE_ELEMENTS, "rung": "highfi", "setting": size,
+    points = [{"model": FINITE_ELEMENTS, "rung": "highfi", "setting": size, "modes": None,
                "numerics": f"{1e3 * size:g} mm, {found.cost['elements']:,} elements",
                **(dict.fromkeys(("error_deg_s", "curve_error")) if found is finest else _errors(finest, found)),
                "integration_error_deg_s": None, "wall_s": wall, "status": found.status}
@@ -105,13 +109,20 @@ def _errors(finest: Trajectory, found: Trajectory) -> dict[str, float | None]:
     return {"error_deg_s": verdicts.settled_change(finest, found), "curve_error": compare(finest, found).rate_relative_l2}
 
 
-def _surrogate_points(study: Study, name: str, rung: Rung, finest: Trajectory) -> list[dict]:
-    tolerances = sorted(study.settings.tolerances)
+def _points_by_modes(study: Study, name: str, rung: Rung, finest: Trajectory) -> list[dict]:
+    """What more or fewer modes buy, at the tolerance of all other studies."""
+    return [point | {"model": BY_MODES, "numerics": f"{count} mode{'s' * (count > 1)}", "modes": count}
+            for count in MODES if count != rung.modes
+            for point in _surrogate_points(study, name, rung._replace(modes=count), finest, [Numerics().relative_tolerance])]
+
+
+def _surrogate_points(study: Study, name: str, rung: Rung, finest: Trajectory, tolerances: Iterable[float]) -> list[dict]:
+    tolerances = sorted(tolerances)
     asked = [rung.ask(study, name, relative_tolerance=tolerance) for tolerance in tolerances]
     warm_up(asked[0])
     measured = [[timed(run) for _ in range(study.settings.lowfi_repeats)] for run in asked]
     runs = [repeats[0][0] for repeats in measured]
-    return [{"model": rung.title, "rung": rung.name, "setting": tolerance, "numerics": f"tolerance {tolerance:g}",
+    return [{"model": rung.title, "rung": rung.name, "setting": tolerance, "modes": None, "numerics": f"tolerance {tolerance:g}",
              **_errors(finest, found),
              "integration_error_deg_s": verdicts.settled_change(runs[0], found) if found is not runs[0] else None,
              "wall_s": statistics.median(wall for _, wall, _ in repeats), "status": found.status}
@@ -121,7 +132,9 @@ def _surrogate_points(study: Study, name: str, rung: Rung, finest: Trajectory) -
 def matched(points: list[dict]) -> list[dict]:
     """For each surrogate: the cheapest mesh that is as exact, and how many times longer it takes. A surrogate's error is that at
     its tightest tolerance, for errors of the steps may cancel it by luck; its time that of the loosest one that adds no tenth to
-    it. The finest mesh, the yardstick, is as exact as anything can be told to be."""
+    it. The finest mesh, the yardstick, is as exact as anything can be told to be. Other numbers of modes are left out, for no
+    tolerance was varied there."""
+    points = [point for point in points if point["modes"] is None]
     meshes = [point for point in points if point["model"] == FINITE_ELEMENTS]
     found = []
     for model in dict.fromkeys(point["model"] for point in points if point["model"] != FINITE_ELEMENTS):
@@ -145,5 +158,5 @@ def marked(points: list[dict], band: float | None) -> list[dict]:
     def beaten(point: dict) -> bool:
         return any(other["trusted_deg_s"] <= point["trusted_deg_s"] and other["wall_s"] < point["wall_s"] for other in known)
 
-    best = [(point["model"], point["setting"]) for point in known if not beaten(point)]
-    return [point | {"pareto": (point["model"], point["setting"]) in best} for point in points]
+    best = [(point["model"], point["numerics"]) for point in known if not beaten(point)]
+    return [point | {"pareto": (point["model"], point["numerics"]) in best} for point in points]

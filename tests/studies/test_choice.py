@@ -16,8 +16,8 @@ POINTS = [("rigid", 0.9, 0.002), ("rigid fine", 0.85, 0.004), ("compliant", 0.05
 
 
 COST = {"condition": "phi15", "band_deg_s": 0.02, "points": [
-    {"model": name, "rung": "highfi" if "mm" in name else name.split()[0], "numerics": "-", "setting": 1.0, "error_deg_s": error,
-     "wall_s": wall, "status": "diverged" if name == "lost" else "exited"} for name, error, wall in POINTS]}
+    {"model": name, "rung": "highfi" if "mm" in name else name.split()[0], "numerics": "-", "setting": 1.0, "modes": None,
+     "error_deg_s": error, "wall_s": wall, "status": "diverged" if name == "lost" else "exited"} for name, error, wall in POINTS]}
 
 
 @pytest.mark.parametrize("accuracy, budget, expected", [
@@ -68,6 +68,15 @@ def test_what_holds_on_one_condition_is_not_promised_of_another():
         choose(COST, "h8", agreement(0.01, None), 0.03)
     for unknown in (None, agreement(13.0, 9.0)):
         assert choose(COST, "nominal", unknown, 0.03)["why"].endswith("nothing is known of nominal")
+
+
+def test_other_modes_are_chosen_only_where_they_were_measured():
+    fewer = {"model": "fewer", "rung": "modal", "numerics": "1 mode", "setting": 1.0, "modes": 1, "error_deg_s": 0.03,
+             "wall_s": 0.0001, "status": "exited"}
+    cost = COST | {"points": [*COST["points"], fewer]}
+    assert choose(cost, "phi15", agreement(13.0, 9.0), 0.05)["model"] == "fewer"
+    assert choose(cost, "nominal", agreement(13.0, 9.0), 0.05)["model"] == "fewer"  # where no model is known any better
+    assert choose(cost, "phi60", agreement(13.0, 9.0), 0.05)["model"] == "compliant"
 
 
 def test_every_rung_is_known_elsewhere():

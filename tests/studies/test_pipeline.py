@@ -123,6 +123,7 @@ def test_cost_has_three_meshes_and_three_tolerances(pipeline):
               for model in ("finite elements", "surrogate, uncalibrated", "surrogate, calibrated",
                             "surrogate, stiffness along the rail", "surrogate, compliant walls", "surrogate, modal rail")]
     assert all(count >= 3 for count in counts)
+    assert [point["numerics"] for point in points if point["modes"]] == ["1 mode", "2 modes", "8 modes"]
     assert len(result(pipeline[0], "cost_study")["matched"]) == 5
     assert any(point["pareto"] for point in points)
 

@@ -68,23 +68,26 @@ def test_surrogate_is_timed_by_turns(monkeypatch, tmp_path):
 
 def test_pareto_front():
     """Two that cannot be told from the yardstick, whose error is its band, are as good as each other: the faster one is best."""
-    points = [{"model": "a", "rung": "a", "setting": setting, "error_deg_s": error, "wall_s": wall, "status": "exited"}
+    points = [{"model": "a", "rung": "a", "setting": setting, "numerics": f"{setting}", "modes": None, "error_deg_s": error,
+               "wall_s": wall, "status": "exited"}
               for setting, (error, wall) in enumerate(((1.0, 1.0), (0.5, 2.0), (0.6, 3.0), (None, 9.0), (0.1, 6.0), (0.05, 7.0)))]
     assert [point["pareto"] for point in cost.marked(points, 0.2)] == [True, True, False, False, True, False]
     assert [point["pareto"] for point in cost.marked(points, None)] == [True, True, False, False, True, True]
 
 
 def test_matched_meshes():
-    """An error that a loose tolerance hides by luck does not count, nor the time of one that spoils the model."""
+    """An error that a loose tolerance hides by luck does not count, nor the time of one that spoils the model, nor what another
+    number of modes reached."""
     def point(model, setting, error, integration, wall):
-        return {"model": model, "setting": setting, "numerics": f"{setting:g}", "error_deg_s": error,
+        return {"model": model, "setting": setting, "numerics": f"{setting:g}", "modes": None, "error_deg_s": error,
                 "integration_error_deg_s": integration, "wall_s": wall}
 
     meshes = [point(cost.FINITE_ELEMENTS, *rest)
               for rest in ((8.0, 0.07, None, 3.0), (4.0, 0.02, None, 6.0), (2.0, None, None, 40.0))]
     lucky = [point("lucky", *rest) for rest in ((1e-2, 0.001, 0.04, 0.001), (1e-4, 0.031, 0.001, 0.002), (1e-8, 0.03, None, 0.004))]
     exact = [point("exact", *rest) for rest in ((1e-4, 0.011, 0.001, 0.002), (1e-8, 0.01, None, 0.004))]
-    first, second = cost.matched([*meshes, *lucky, *exact])
+    modes = point("exact", 2e-7, 0.001, None, 1e-4) | {"modes": 8}
+    first, second = cost.matched([*meshes, *lucky, *exact, modes])
     assert (first["error_deg_s"], first["numerics"], first["mesh"], first["ratio"]) == (0.03, "0.0001", "4", 3000.0)
     assert (second["error_deg_s"], second["numerics"], second["mesh"], second["mesh_error_deg_s"]) == (0.01, "0.0001", "2", None)
 
