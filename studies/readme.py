@@ -9,10 +9,11 @@ import sys
 from pathlib import Path
 
 from scenes.files import write_text
-from studies.agreement.verdicts import FINITE_ELEMENTS
+from studies.agreement.verdicts import CONVERGED_DEG_S, FINITE_ELEMENTS
 from studies.bench import reference
 from studies.cost import sureness
 from studies.report import growth, rails, scaling
+from studies.stages.compare import COMPLIANT
 from studies.stages.report import beside
 from studies.study import read
 
@@ -34,10 +35,11 @@ def main(folder: Path) -> None:
 def section(folder: Path) -> str:
     """Markdown of the agreement, the speed-up and the kept promises in ``folder``."""
     agreement, highfi, lowfi = (json.loads((folder / f"{name}.json").read_text()) for name in ("agreement", "highfi", "lowfi"))
-    refined = read(folder / "convergence.json")
-    parts = [_agreement(agreement), *_growth(agreement["growth"]), _speed(agreement), *_equal(refined), _promises(highfi, lowfi)]
+    refined, cost = (read(folder / f"{name}.json") for name in ("convergence", "cost_study"))
+    parts = [_agreement(agreement), *_stiffer(agreement["stiffer"]), *_growth(agreement["growth"]), _speed(agreement),
+             *_equal(refined, cost), _promises(highfi, lowfi)]
     parts += [_rails(found)] if (found := beside(folder)) else []
-    if (found := read(folder / "cost_study.json")) is not None:
+    if (found := cost) is not None:
         parts += [_ladder(found), _cost(found), _scaling(found["scaling"])]
     parts += [_convergence(refined)] if refined is not None else []
     if (found := reference.stored(folder.parent)) is not None:
@@ -64,6 +66,16 @@ def _agreement(found: dict) -> str:
     return "\n".join(lines)
 
 
+def _stiffer(found: list[dict]) -> list[str]:
+    """How the models move together where the penalty, which both share, is what the reference is not sure of."""
+    moved = [row for row in found if (row["reference_change_deg_s"] or 0.0) > CONVERGED_DEG_S]
+    lines = [f"- {row['condition']}: the reference moves by {_number(row['reference_change_deg_s'])} deg/s, the surrogate by "
+             f"{_number(row['surrogate_change_deg_s'])}; {_number(row['apart_deg_s'])} apart before, "
+             f"{_number(row['apart_with_more_deg_s'])} after" for row in moved]
+    return ["Where four times the penalty alone takes the reference's convergence, on the coarse mesh, and the surrogate on "
+            "compliant walls with\nthe same penalty:\n\n" + "\n".join(lines)] if lines else []
+
+
 def _pair(row: dict) -> str:
     return f"{_number(row['rate_relative_l2'])} / {_number(row['settled_rate_error_deg_s'])}"
 
@@ -82,12 +94,16 @@ def _speed(agreement: dict) -> str:
             f"included, on {machine['cores']} cores of {machine['processor']}.")
 
 
-def _equal(refined: dict | None) -> list[str]:
-    """The speed-up on the mesh that is as sure as the surrogate is exact, where the error of the reference was studied."""
+def _equal(refined: dict | None, cost: dict | None) -> list[str]:
+    """The speed-up on the mesh that is as sure as the surrogate is exact, where the error of the reference was studied; and on the
+    mesh that is as near, where cost was."""
     if refined is None or refined["equal_accuracy"] is None:
         return []
     said = sureness.sentence(refined["equal_accuracy"])
-    return [f"{said[0].upper()}{said[1:]} (`make convergence`). The mesh above is the one that every other table stands on."]
+    near = [f" By distance from the finest mesh of the cost table alone {row['mesh'].split(',')[0]} would do: "
+            f"{row['ratio']:,.0f} times." for row in (cost["matched"] if cost else ()) if row["model"] == COMPLIANT]
+    return [f"{said[0].upper()}{said[1:]} (`make convergence`). The mesh above is the one that every other table stands on."
+            + "".join(near)]
 
 
 def _rails(found: list[dict]) -> str:

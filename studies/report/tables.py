@@ -30,6 +30,7 @@ def agreement(document: dict) -> Html:
                    paragraph("On walls that give way as the statics of the rail has them, nothing fitted (the role is that of the "
                              "condition in the calibration of the other surrogates): " + summary(document["compliant"])),
                    judged(document["compliant"], "agreement"), caption(legend), _further(document["compliant"]), _simpler(document),
+                   _stiffer(document["stiffer"]),
                    paragraph("One spring and damper per pad face, calibrated on the fitted conditions: "
                              + summary(document["fitted"], "fitted ") + "; " + summary(document["held_out"], "held-out ")),
                    judged(calibrated, "agreement-calibrated"), _outside(calibrated), _further(calibrated),
@@ -57,6 +58,18 @@ def _simpler(document: dict) -> Html:
     return fold("what the parts of the flexibility are worth: rate L2 (%) and settled error (deg/s) when the surrogate knows less, "
                 "or more",
                 table(("walls", *names), rows, dense=True))
+
+
+def _stiffer(found: list[dict]) -> Html:
+    """What the penalty makes uncertain, and what of it is a difference of the models."""
+    if not found:
+        return Html("")
+    rows = [(item["condition"], *(number(item[key], 2) for key in (
+        "reference_change_deg_s", "surrogate_change_deg_s", "apart_deg_s", "apart_with_more_deg_s"))) for item in found]
+    return fold("four times the penalty in both models: how far settled rates move, and how far apart the models are (deg/s)",
+                table(("condition", "the reference moves by", "the surrogate moves by", "apart before", "apart after"), rows),
+                caption("The reference on the coarse mesh. Where both move alike the stiffness of the penalty makes the answer "
+                        "uncertain, and the agreement of the models does not depend on it."))
 
 
 def _errors(row: dict) -> str:

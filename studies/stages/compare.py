@@ -19,6 +19,7 @@ from studies.study import Study, read, require_success
 
 _SIMPLER = {"mean pressure of each face by itself": (1, False), "mean pressure": (1, True), "pressure and its tilt": (3, True),
             "all, each face by itself": (PATTERNS, False)}
+COMPLIANT = "surrogate, compliant walls"
 
 
 class Rung(NamedTuple):
@@ -49,12 +50,12 @@ def rungs(study: Study, conditions: Iterable[str] | None = None) -> list[Rung]:
 
 def compliant(study: Study, conditions: Iterable[str]) -> Rung:
     """The surrogate on walls that give way, for ``conditions``."""
-    return Rung("compliant", "surrogate, compliant walls", walls=walls.under(study, conditions))
+    return Rung("compliant", COMPLIANT, walls=walls.under(study, conditions))
 
 
 def run(study: Study) -> dict:
     """``uncalibrated``, ``fitted``, ``held_out``, ``compliant`` and ``modal`` rows, ``floor`` and ``refinement`` as measured,
-    ``growth`` of 1 um, ``speedup`` of the calibrated and of the compliant surrogate, ``simpler`` walls."""
+    ``growth`` of 1 um, ``speedup`` of the calibrated and of the compliant surrogate, ``simpler`` walls, ``stiffer`` penalty."""
     study.fitted()
     _, calibrated, on_walls, modal = ladder = rungs(study)
     gates = verdicts.gates(study.scene)
@@ -72,7 +73,7 @@ def run(study: Study) -> dict:
                 "converged_deg_s": verdicts.CONVERGED_DEG_S, "clearance_change_m": study.settings.clearance_change,
                 "floor": [asdict(item) for item in sum(own.values(), floor)], "refinement": [asdict(item) for item in changes],
                 "growth": [asdict(item) for item in _growths(study, on_walls, table["compliant"])],
-                "simpler": _simpler(study, on_walls, highfi),
+                "simpler": _simpler(study, on_walls, highfi), "stiffer": _stiffer(study, on_walls),
                 **dict(zip(("speedup", "speedup_compliant"), _speedups(study, [calibrated, on_walls])))}, []
 
     return study.stage("agreement", _key(study, calibrated.calibration.constants), make)
@@ -109,6 +110,23 @@ def _simpler(study: Study, compliant: Rung, highfi: dict[str, Trajectory]) -> li
             found.append({"walls": words, "patterns": patterns, "coupled": coupled, "condition": name,
                           "rate_relative_l2": difference.rate_relative_l2,
                           "settled_rate_error_deg_s": difference.settled_rate_error_deg_s})
+    return found
+
+
+def _stiffer(study: Study, compliant: Rung) -> list[dict]:
+    """What four times the penalty moves in either model, and how far apart they are with it, the reference on the coarse mesh: a
+    stiffness that both share makes the reference uncertain, but is no difference between them."""
+    names = [name for name in study.conditions if name in study.scene.agreement.refined and study.scene.contact is not None]
+    groups = {name: (study.coarse(name), refined(study, name)["penalty"], compliant.ask(study, name),
+                     compliant.ask(study, name, _more_penalty(study), "-penalty")) for name in names}
+    runs = iter(study.store.fill("penalty", [run for group in groups.values() for run in group]))
+    found = []
+    for name, group in groups.items():
+        reference, stiff_reference, surrogate, stiff_surrogate = (next(runs) for _ in group)
+        found.append({"condition": name, "reference_change_deg_s": verdicts.settled_change(reference, stiff_reference),
+                      "surrogate_change_deg_s": verdicts.settled_change(surrogate, stiff_surrogate),
+                      "apart_deg_s": verdicts.settled_change(reference, surrogate),
+                      "apart_with_more_deg_s": verdicts.settled_change(stiff_reference, stiff_surrogate)})
     return found
 
 
@@ -164,8 +182,12 @@ def refined(study: Study, name: str) -> dict[str, Run]:
     """Runs on the coarse mesh with half the step and with four times the penalty."""
     runs = {"step": study.coarse(name, tag="-step", safety=0.45)}
     if study.scene.contact is not None:
-        runs["penalty"] = study.coarse(name, {"contact.penalty": 4.0 * study.scene.contact.penalty}, "-penalty")
+        runs["penalty"] = study.coarse(name, _more_penalty(study), "-penalty")
     return runs
+
+
+def _more_penalty(study: Study) -> dict[str, float]:
+    return {"contact.penalty": 4.0 * study.scene.contact.penalty}
 
 
 def _speedups(study: Study, ladder: list[Rung]) -> list[dict]:

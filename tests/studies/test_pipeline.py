@@ -10,6 +10,7 @@ from typer.testing import CliRunner
 import calibrate
 from calibrate.chain import Plan
 from calibrate.posterior import Effort
+from scenes import load
 from scenes.calibration import Calibration
 from scenes.trajectory import Trajectory
 from studies.cli import app
@@ -92,6 +93,16 @@ def test_walls_from_statics_need_no_calibration(pipeline):
     simpler = {row["condition"]: row["rate_relative_l2"] for row in found["simpler"] if row["walls"] == "mean pressure"}
     assert all(compliant[name] < 0.02 and compliant[name] < fitted[name] and compliant[name] < simpler[name] for name in fitted)
     assert result(pipeline[0], "walls")["stations"] >= 2
+
+
+def test_both_models_move_alike_with_the_penalty_they_share(pipeline):
+    """Control: neither stays where it was."""
+    found = result(pipeline[0], "agreement")["stiffer"]
+    assert [row["condition"] for row in found] == list(load("tiny").agreement.refined)
+    for row in found:
+        moved = row["reference_change_deg_s"]
+        assert moved > 0.0 and row["surrogate_change_deg_s"] == pytest.approx(moved, rel=0.5)
+        assert row["apart_with_more_deg_s"] < 2.0 * row["apart_deg_s"] + 0.1 * moved
 
 
 def test_calibration_brings_the_fitted_conditions_closer(pipeline):

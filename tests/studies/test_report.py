@@ -128,7 +128,8 @@ def test_other_rails_are_judged_where_a_pad_touches_and_the_reference_is_converg
 def test_front_of_the_best_counts_errors_below_the_band_as_the_band():
     def point(model, error, wall, pareto):
         return {"model": model, "rung": model, "numerics": "-", "modes": None, "error_deg_s": error,
-                "curve_error": error and 0.1 * error, "integration_error_deg_s": None, "wall_s": wall, "status": "exited", "pareto": pareto}
+                "curve_error": error and 0.1 * error, "integration_error_deg_s": None, "wall_s": wall,
+                "status": "exited", "pareto": pareto}
 
     chart = figures.cost_picture({"band_deg_s": 0.04, "points": [point("rough", 0.3, 1e-3, True), point("fine", 0.01, 5e-3, True),
                                                                  point("mesh", None, 9.0, False)]})
