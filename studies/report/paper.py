@@ -6,8 +6,10 @@ from typing import Callable
 import numpy as np
 
 from studies import published
+from studies.paper import told
+from studies.populations import answers
 from studies.report.chart import AMBER, GREY, NAVY, TEAL, VERMILION, Chart, Line, Panel
-from studies.report.markup import Html, code, fold, number, paragraph, table
+from studies.report.markup import Html, caption, code, fold, number, paragraph, table
 
 _AXES = tuple(zip("xyz", (NAVY, VERMILION, AMBER), ("o", "s", "^")))
 _NINE = ("largest_error_deg_s", "largest error of nine rates, deg/s")
@@ -15,7 +17,8 @@ _QUIET = ("largest_negligible_deg_s", "largest rate, conditions 1 and 5, deg/s")
 _DEVIATIONS = ("largest_deviation_error_deg_s", "largest error of 54 deviations, deg/s")
 _PAIRS = (("Nine rates, conditions 1 and 5", _NINE, _QUIET), ("Nine rates, 54 deviations", _NINE, _DEVIATIONS),
           ("54 deviations, conditions 1 and 5", _DEVIATIONS, _QUIET))
-_UNITS = {"k": "N/mm^e", "c": "N s/mm", "d": "mm"}
+_AT_EXIT = ("What the best set leaves its rail with, of one more run of each condition, which the radial misalignment tells "
+            "apart. The paper prints rates only, those of conditions 2 to 4. {calibration}")
 
 
 def draw(found: dict, figure: Callable[[Chart, str], Html]) -> Html:
@@ -30,8 +33,8 @@ def draw(found: dict, figure: Callable[[Chart, str], Html]) -> Html:
              "largest rate on conditions 1 and 5 is "
              f"{best['largest_negligible_deg_s']:.2g} deg/s. It is inferred, one of many that would do. {in_catalogue(found)}")
     return Html(paragraph(words) + figure(trade, _TRADED) + paragraph(_verdict(found)) + figure(beside, _BESIDE) + _table2(best)
-                + _deviations(best) + _inputs(found) + fold("Every search", _searches(found)) + _headline(found)
-                + paragraph("On the printed numbers: " + " ".join(found["slips"])))
+                + _deviations(best) + _at_exit(found["exit"]) + _inputs(found) + fold("Every search", _searches(found))
+                + _headline(found) + paragraph("On the printed numbers: " + " ".join(found["slips"])))
 
 
 _TRADED = ("Where searches ended, each with all three: the largest error of the nine printed rates, the largest error of their 54 "
@@ -103,8 +106,8 @@ def _table2(best: dict) -> Html:
     rows = []
     for place, condition in enumerate(published.SENSITIVE):
         rows.append((str(condition), "baseline", *_pairs(printed.baseline[place], nominal[place])))
-        rows += [(str(condition), f"{name} = {value:g} {_UNITS[name]}", *_pairs(printed.changed[place, row], changed[place, row]))
-                 for row, (name, value) in enumerate(published.CHANGES)]
+        rows += [(str(condition), words, *_pairs(printed.changed[place, row], changed[place, row]))
+                 for row, words in enumerate(told.CHANGES)]
     return fold("Table 2, printed and found", table(("condition", "constant", *(f"{axis}, {kind} (deg/s)" for axis in "xyz"
                                                                                for kind in ("printed", "found"))),
                                                     rows, dense=True))
@@ -119,15 +122,23 @@ def _deviations(best: dict) -> Html:
     printed = published.sensitivity()
     ours = published.Sensitivity(np.array(best["rates_deg_s"])[1:4], np.array(best["changed_deg_s"]))
     theirs, found = printed.deviations(), ours.deviations()
-    rows = [(str(condition), f"{name} = {value:g} {_UNITS[name]}",
+    rows = [(str(condition), words,
              *(f"{first:+.3f} / {second:+.3f}" for first, second in zip(theirs[place, row], found[place, row])))
-            for place, condition in enumerate(published.SENSITIVE) for row, (name, value) in enumerate(published.CHANGES)]
+            for place, condition in enumerate(published.SENSITIVE) for row, words in enumerate(told.CHANGES)]
     largest = [(kind, *(f"{100.0 * share:.2f} %" for share in table_2.largest_relative()))
                for kind, table_2 in (("printed", printed), ("ours", ours))]
     return Html(paragraph("Largest deviation by axis as a share of the rate, on conditions 2 and 4; about z that of condition 3 is "
                           "nearly zero.") + table(("", "x", "y", "z"), largest)
                 + fold("54 deviations, printed and ours", table(("condition", "constant", *(f"{axis}, printed / ours (deg/s)"
                                                                                           for axis in "xyz")), rows, dense=True)))
+
+
+def _at_exit(found: dict) -> Html:
+    """What the best set leaves its rail with, by condition; a dash where it did not settle."""
+    rows = [(str(row["condition"]), f"{row['radial_misalignment_deg']:g}", row["status"].replace("_", " "),
+             *(number(row[item.name]) for item in answers.ALL)) for row in found["conditions"]]
+    heads = ("condition", "radial misalignment (deg)", "ended", *(f"{item.label} ({item.unit})" for item in answers.ALL))
+    return Html(table(heads, rows, dense=True) + caption(_AT_EXIT.format(**found)))
 
 
 def _verdict(found: dict) -> str:

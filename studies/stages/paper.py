@@ -16,6 +16,7 @@ from scenes.files import content_hash, source_hash, write_json, write_text
 from scenes.scene import Scene, load
 from studies import published
 from studies.inference import inputs, misfit, solutions, toml
+from studies.paper import exits, results, told
 from studies.progress import Board, team
 from studies.report import paper as drawn
 from studies.report.chart import to_files
@@ -40,7 +41,8 @@ class Asked:
 
 
 def run(study: Study, asked: Asked = Asked()) -> dict:
-    """The searches, what they tell of every input, and the best set beside the printed tables; writes it as a scene too.
+    """The searches, what they tell of every input, and the best set beside the printed tables; writes it as a scene too,
+    and every end and admissible point as netCDF.
 
     Raises SceneError for a scene that ``require`` refuses, StudyError where the best set could not be kept as a scene file.
     """
@@ -51,18 +53,20 @@ def run(study: Study, asked: Asked = Asked()) -> dict:
         with TemporaryDirectory() as folder:  # before the searches, which are dear, and not only after them
             _write(base, np.full(len(inputs.UNKNOWNS), 0.5), np.zeros((5, 3)), Path(folder, SCENE))
         found = _searches(study, base, asked)
-        best = min(found, key=misfit_of)
-        path = study.path(SCENE)
+        best = min(found, key=told.misfit_of)
+        path, data = study.path(SCENE), study.path(f"{NAME}.nc")
         _write(base, best.shares, best.rates, path)
+        left = exits.run(misfit.Launcher(base, asked.plan.tolerances[-1]), best.shares)
+        results.save(data, found, found.index(best), left)
         result = {"asked": {"starts": asked.starts, "plan": _plain(asked.plan)},
                   "admissible_deg_s": solutions.ADMISSIBLE,
                   "negligible_deg_s": misfit.NEGLIGIBLE, "scatter_deg_s": misfit.SCATTER.tolist(),
-                  "searches": [_summary(item) for item in found], "best": found.index(best), "inputs": _told(found, best),
-                  "admissible": _counted(found),
-                  "front": solutions.front(*np.vstack([item.front for item in found]).T).tolist(), "slips": published.slips(),
-                  "headline": published.headline(), "scene_file": study.relative(path)}
+                  "searches": [told.summary(item) for item in found], "best": found.index(best),
+                  "inputs": told.ranges(found, best), "admissible": told.counted(found), "exit": exits.told(left),
+                  "front": told.front(found).tolist(), "slips": published.slips(),
+                  "headline": published.headline(), "scene_file": study.relative(path), "data": study.relative(data)}
         pictures = [file for chart in drawn.charts(result) for file in to_files(chart, study.path("figures"))]
-        return result, [path, *pictures]
+        return result, [path, data, *pictures]
 
     return _with_present(study, study.stage(NAME, _key(study, asked), make))
 
@@ -145,40 +149,6 @@ def _searches(study: Study, base: Scene, asked: Asked) -> list[solutions.Search]
     return [future.result() for future in pending]
 
 
-def misfit_of(found: solutions.Search) -> float:
-    """Misfit with the rates of conditions 1 and 5 at full weight, whatever the search gave them."""
-    return misfit.whole(found.rates, found.changed, 1.0)
-
-
-def _summary(found: solutions.Search) -> dict:
-    return {"stress": found.stress, "seed": found.seed, "largest_error_deg_s": float(np.abs(misfit.nine(found.rates)).max()),
-            "largest_negligible_deg_s": solutions.largest_negligible(found.rates),
-            "largest_deviation_error_deg_s": solutions.largest_of_deviations(found.rates, found.changed),
-            "misfit": misfit_of(found),
-            "rates_deg_s": found.rates.tolist(), "changed_deg_s": found.changed.tolist(), "values": inputs.values(found.shares),
-            "admissible": len(found.admissible)}
-
-
-def _told(found: list[solutions.Search], best: solutions.Search) -> list[dict]:
-    """Every input: bounds, best, range of the admissible set and its share of the bounds on the scale of the search; None where the
-    set is empty."""
-    points = np.vstack([item.admissible for item in found])
-    rows = []
-    for number, item in enumerate(inputs.UNKNOWNS):
-        ends = [float(end) for end in np.quantile(points[:, number], (0.0, 1.0))] if len(points) else None
-        rows.append({"name": item.name, "unit": item.unit, "low": item.factor * item.low, "high": item.factor * item.high,
-                     "best": item.factor * item.value(best.shares[number]),
-                     "from": ends and item.factor * item.value(ends[0]), "to": ends and item.factor * item.value(ends[1]),
-                     "share": ends and ends[1] - ends[0], "reason": item.reason})
-    return rows
-
-
-def _counted(found: list[solutions.Search]) -> dict[str, int]:
-    """How many admissible points were kept, of how many searches, and the most of one."""
-    counts = [len(item.admissible) for item in found]
-    return {"points": sum(counts), "searches": sum(count > 0 for count in counts), "most_of_one": max(counts)}
-
-
 def _with_present(study: Study, found: dict) -> dict:
     """The result with what stands beside it now, which comes and goes without it: the cost of both fidelities where the present
     agreement study measured it, and whether the best set is the catalogue's."""
@@ -215,5 +185,6 @@ def lines(found: dict) -> list[str]:
     ours = found["ours"]
     cost = (f"{ours['highfi_wall_s']:.3g} s in finite elements, {1e3 * ours['lowfi_wall_s']:.3g} ms calibrated: "
             f"{ours['ratio']:,.0f} times as fast" if ours else f"not measured yet: make compare SCENE={found['scene']} does it")
+    said += exits.lines(found["exit"])
     return [*said, *(f"  note          {words}" for words in found["slips"]), f"  one case      {cost}",
-            f"  scene         {found['scene_file']}"]
+            f"  scene         {found['scene_file']}", f"  data          {found['data']}"]

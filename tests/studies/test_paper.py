@@ -18,14 +18,11 @@ from studies import published
 from studies.inference import inputs, misfit, solutions, toml
 from studies.progress import Interrupted
 from studies.report import paper as section
-from studies.report.markup import Html
 from studies.settings import Settings
 from studies.stages import compare, paper
 from studies.study import Study, StudyError
+from tests.studies.searched import BASE, COUNT, SMALL, page, stub
 
-BASE = scenes.load("reference")
-COUNT = len(inputs.UNKNOWNS)
-SMALL = paper.Asked(1, solutions.Plan(points=6, descents=1, pool=1, hops=1, kept=3))
 
 
 def test_deviations_are_those_of_the_printed_table():
@@ -123,7 +120,7 @@ def test_stage_keeps_searches_and_is_skipped(tmp_path, monkeypatch):
     found = paper.run(study, SMALL)
     assert len(found["searches"]) == 2 and len(found["inputs"]) == COUNT and paper.stored(study) == found
     assert (tmp_path / "figures" / "paper.svg").is_file() and scenes.load(tmp_path / "paper_like.toml").name == "paper_like"
-    assert "Table 2, printed and found" in section.draw(found, lambda chart, words: Html(words))
+    assert "Table 2, printed and found" in page(found)
     assert any("36 h" in line for line in paper.lines(found))
     monkeypatch.setattr(solutions, "run", lambda *_: pytest.fail("searched again"))
     assert paper.run(study, SMALL) == found
@@ -156,28 +153,12 @@ def test_catalogue_scene_gives_the_printed_rates():
     assert np.abs(misfit.nine(rates(BASE))).max() > 3.0
 
 
-def _stub(admissible: tuple[int, ...] = (2, 0)):
-    """In place of ``solutions.run``: an end at once, each search another, with ``admissible`` points by stress."""
-    def run(launcher_of, stress, seed, plan, progress):
-        table = published.sensitivity()
-        rates = np.vstack([[0.1, 0.2, 0.4 + seed], table.baseline + 0.01 * (1 + stress), [0.1, 0.1, 0.1]])
-        points = np.linspace(0.4, 0.6, admissible[int(stress)])[:, None] * np.ones(COUNT)
-        return solutions.Search(stress, seed, np.full(COUNT, 0.5 + 0.01 * stress), rates, table.changed + 0.0204 * (1 + stress),
-                                points, np.array([[0.005, 0.5], [0.02, 0.3]]))
-
-    return run
-
-
 @pytest.fixture
 def quick(tmp_path, monkeypatch):
     """A study of searches that take no time, its result."""
-    monkeypatch.setattr(solutions, "run", _stub())
+    monkeypatch.setattr(solutions, "run", stub())
     study = Study(BASE, tmp_path, Settings(workers=1))
     return study, paper.run(study, SMALL)
-
-
-def _page(found: dict) -> str:
-    return section.draw(found, lambda chart, words: Html(words))
 
 
 def test_three_measures_are_drawn_by_pairs(quick):
@@ -203,15 +184,15 @@ def test_three_measures_are_drawn_by_pairs(quick):
 def test_printed_deviations_stand_beside_ours(quick):
     """Every deviation, and beside it 0.0104 deg/s more, by which the best of the stub is off."""
     found = quick[1]
-    printed, page = published.sensitivity(), _page(found)
+    printed, drawn = published.sensitivity(), page(found)
     theirs = printed.deviations()
     assert found["best"] == 0
     for place, row in np.ndindex(3, 6):
         for value in theirs[place, row]:
-            assert f"{value:+.3f} / {value + 0.0104:+.3f}" in page
+            assert f"{value:+.3f} / {value + 0.0104:+.3f}" in drawn
     ours = published.Sensitivity(printed.baseline + 0.01, printed.changed + 0.0204).largest_relative()
     for table in (printed.largest_relative(), ours):
-        assert "".join(f'<td class="number">{100.0 * share:.2f} %</td>' for share in table) in page
+        assert "".join(f'<td class="number">{100.0 * share:.2f} %</td>' for share in table) in drawn
     assert not np.allclose(ours, printed.largest_relative(), rtol=0.01)
 
 
@@ -219,13 +200,13 @@ def test_ranges_say_how_few_searches_they_come_from(quick, tmp_path, monkeypatch
     study, found = quick
     said = "2, kept from 1 of 2 searches, 2 of them from one"
     assert found["admissible"] == {"points": 2, "searches": 1, "most_of_one": 2}
-    for text in (_page(found), "\n".join(paper.lines(found))):
+    for text in (page(found), "\n".join(paper.lines(found))):
         assert said in text and "at least" in text
     far = found | {"admissible_deg_s": 0.5 * found["searches"][found["best"]]["largest_deviation_error_deg_s"]}
-    assert "best set is none of them" in _page(far) and "best set is none of them" not in _page(found)
-    monkeypatch.setattr(solutions, "run", _stub(admissible=(0, 0)))
+    assert "best set is none of them" in page(far) and "best set is none of them" not in page(found)
+    monkeypatch.setattr(solutions, "run", stub(admissible=(0, 0)))
     none = paper.run(Study(BASE, tmp_path / "none", Settings(workers=1)), SMALL)
-    for text in (_page(none), "\n".join(paper.lines(none))):
+    for text in (page(none), "\n".join(paper.lines(none))):
         assert "nothing is told of any input" in text
     assert "admissible at least" not in "\n".join(paper.lines(none))
 
@@ -236,11 +217,11 @@ def test_headline_has_our_cost_of_the_present_code_only(quick, monkeypatch):
     speed = {"highfi_wall_s": 60.0, "lowfi_wall_s": 2e-3, "ratio": 30000.0}
     study.path("agreement.json").write_text(json.dumps({"key": "of other code", "speedup": speed}))
     stale = paper.stored(study)
-    for text in (_page(stale), "\n".join(paper.lines(stale))):
+    for text in (page(stale), "\n".join(paper.lines(stale))):
         assert "make compare SCENE=reference" in text and "30,000" not in text
     monkeypatch.setattr(compare, "stored", lambda _: {"speedup": speed})
     fresh = paper.stored(study)
-    for text in (_page(fresh), "\n".join(paper.lines(fresh))):
+    for text in (page(fresh), "\n".join(paper.lines(fresh))):
         assert "make compare" not in text and "30,000" in text
     monkeypatch.setattr(solutions, "run", lambda *_: pytest.fail("searched again"))
     assert paper.run(study, SMALL) == fresh
@@ -264,7 +245,7 @@ def test_interrupt_ends_the_running_search_and_begins_no_other(tmp_path, monkeyp
                 ended.append((stress, seed))
                 raise
         finished.append((stress, seed))
-        return _stub()(launcher_of, stress, seed, plan, progress)
+        return stub()(launcher_of, stress, seed, plan, progress)
 
     def submit(pool, *task):
         if begins == "before it waits" and begun:
@@ -317,9 +298,9 @@ def test_a_set_that_no_scene_file_could_hold_is_told_before_any_search(tmp_path,
 def test_page_says_whether_the_best_set_is_the_catalogue_s(quick, monkeypatch):
     """Control: a catalogue of which this run's scene is part."""
     study, found = quick
-    for text in (_page(found), "\n".join(paper.lines(found))):
+    for text in (page(found), "\n".join(paper.lines(found))):
         assert "It is not the catalogue&#x27;s scene paper_like" in text or "It is not the catalogue's scene paper_like" in text
     monkeypatch.setattr(paper, "CATALOGUED", study.path("paper_like.toml"))
     same = paper.stored(study)
-    for text in (_page(same), "\n".join(paper.lines(same))):
+    for text in (page(same), "\n".join(paper.lines(same))):
         assert "It is the catalogue&#x27;s scene paper_like." in text or "It is the catalogue's scene paper_like." in text

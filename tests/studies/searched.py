@@ -1,0 +1,31 @@
+"""Searches for the paper's inputs that take no time, for tests of what is made of their ends."""
+
+import numpy as np
+
+import scenes
+from studies import published
+from studies.inference import inputs, solutions
+from studies.report import paper as section
+from studies.report.markup import Html
+from studies.stages import paper
+
+BASE = scenes.load("reference")
+COUNT = len(inputs.UNKNOWNS)
+SMALL = paper.Asked(1, solutions.Plan(points=6, descents=1, pool=1, hops=1, kept=3))
+
+
+def stub(admissible: tuple[int, ...] = (2, 0)):
+    """In place of ``solutions.run``: an end at once, each search another, with ``admissible`` points by stress."""
+    def run(launcher_of, stress, seed, plan, progress):
+        table = published.sensitivity()
+        rates = np.vstack([[0.1, 0.2, 0.4 + seed], table.baseline + 0.01 * (1 + stress), [0.1, 0.1, 0.1]])
+        points = np.linspace(0.4, 0.6, admissible[int(stress)])[:, None] * np.ones(COUNT)
+        return solutions.Search(stress, seed, np.full(COUNT, 0.5 + 0.01 * stress), rates, table.changed + 0.0204 * (1 + stress),
+                                points, np.array([[0.005, 0.5], [0.02, 0.3]]))
+
+    return run
+
+
+def page(found: dict) -> str:
+    """The section of a result, with captions in place of its figures."""
+    return section.draw(found, lambda chart, words: Html(words))
