@@ -14,7 +14,7 @@ from scenes.scene import Scene
 from scenes.uncertainty import Uncertainty
 from studies.flight import bodies
 from studies.flight.flown import Flown
-from studies.populations import answers, order_statistics
+from studies.populations import answers, marks, order_statistics
 from studies.populations.population import Population
 
 if TYPE_CHECKING:
@@ -84,7 +84,8 @@ def cases(found: Flown, population: Population, uncertainty: Uncertainty) -> dic
             "quantiles": {name: _quantiles(values[~np.isnan(values)], independent) for name, values in judged.items()},
             "limit_open": 0 if np.isnan(found.limit).all() else int(np.isnan(found.limit).sum()),  # all: none was asked for
             "touch": _share(found.clearance[told] <= 0.0, independent), "not_reached": _share(~reached, independent),
-            "points_m": [[float(f"{value:.6g}") for value in point] for point in points]}
+            "points_m": [[float(f"{value:.6g}") for value in point] for point in points],
+            "points_outside": population.outside[settled][reached][:_SCATTERED].tolist()}
 
 
 def _quantiles(values: np.ndarray, independent: bool) -> list[dict]:
@@ -107,13 +108,16 @@ def _share(flags: np.ndarray, independent: bool) -> dict | None:
     return {"count": count, "of": len(flags), "share": count / len(flags), "low": ends[0], "high": ends[1]}
 
 
-def dataset(names: list[str], single: Flown | None, exits: Outcome | None, many: Flown, left: Columns) -> "xarray.Dataset":
-    """Every quantity by condition, as it flew and with which ``exits``, and by case, with its unit in its name."""
+def dataset(names: list[str], single: Flown | None, exits: Outcome | None, many: Flown, left: Columns,
+            outside: np.ndarray) -> "xarray.Dataset":
+    """Every quantity by condition, as it flew and with which ``exits``, and by case, with its unit in its name; whether the case is
+    ``outside`` (n,) what the calibration was made for."""
     import xarray
 
     variables = {item.name: ("case", item.of(left)) for item in answers.ALL}
     variables |= {item.name: ("case", item.of(many)) for item in QUANTITIES}
     variables |= {name: ("case", of(many)) for name, of in _SIDES.items()}
+    variables[marks.NAME] = ("case", outside, {"long_name": marks.WORDS})
     if single is not None:
         variables |= {f"condition_{item.name}": ("condition", item.of(exits)) for item in answers.ALL}
         variables |= {f"condition_{item.name}": ("condition", item.of(single)) for item in QUANTITIES}

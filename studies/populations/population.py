@@ -3,7 +3,7 @@ asks.
 
 The surrogate is the calibrated one, with its constants laid over the scene, so that a case may vary them like any other number; or
 the one on walls that give way, to which nothing is fitted. A store that was left half filled is gone on with, and one that is whole
-is only read.
+is only read; which of its cases are outside the calibration is judged, and kept in it, every time.
 """
 
 from typing import Any, NamedTuple
@@ -19,7 +19,7 @@ from lowfi.store import StoreError
 from scenes.calibration import Calibration
 from scenes.scene import Scene
 from scenes.walls import Walls
-from studies.populations import regime
+from studies.populations import marks, regime
 from studies.progress import Board
 from studies.stages import calibrate
 from studies.stages import walls as wall_stage
@@ -83,7 +83,8 @@ def on_springs(scene: Scene) -> Scene:
 
 
 def run(study: Study, name: str, model: Surrogate, source, tolerance: float = TOLERANCE) -> Population:
-    """Every case of ``source`` (``lowfi.rows``), in a store called after ``name``. Raises StudyError when it cannot go on."""
+    """Every case of ``source`` (``lowfi.rows``), in a store called after ``name``, with marks on those outside the calibration.
+    Raises StudyError when it cannot go on."""
     ensemble = Ensemble(model.scene, source, None, Numerics(relative_tolerance=tolerance), model.walls)
     path = study.path(f"{name}-{ensemble.key[:8]}")
     try:
@@ -93,8 +94,9 @@ def run(study: Study, name: str, model: Surrogate, source, tolerance: float = TO
             report = board.callback(label)
             fill(ensemble, store, study.settings.workers, progress=lambda stored: report(stored / store.asked))
         results, inputs = store.read(0, store.asked)
+        named = dict(zip(store.names, inputs.T))
+        outside = regime.outside(model, named, store.asked)
+        marks.keep(path, outside, model.calibration)
     except StoreError as fault:
         raise StudyError(str(fault)) from fault
-    named = dict(zip(store.names, inputs.T))
-    return Population(named, results, regime.outside(model, named, store.asked), study.relative(path),
-                      columns.counts(results.status))
+    return Population(named, results, outside, study.relative(path), columns.counts(results.status))

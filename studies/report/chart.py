@@ -16,8 +16,8 @@ from scenes.files import replacing
 
 NAVY, VERMILION, AMBER, TEAL, GREY = "#1d3461", "#d1495b", "#e8a33d", "#2e8b7a", "#7a7f87"
 AXIS_COLOURS = {"x": NAVY, "y": VERMILION, "z": AMBER}
-_POINTS = 500  # kept of each line on the page
 _VECTORS = 5000  # points of a line in an SVG, beyond which it holds a picture of them
+_EDGE = 0.8  # pt, of a hollow marker: its middle is to be seen at three points across
 _GAP = 106.0  # px between rows: an axis label, and the title below it
 _FONT = 'system-ui, "Segoe UI", Roboto, "Liberation Sans", sans-serif'
 _INK, _RULE = "#24292f", "#e3e6ea"
@@ -27,8 +27,9 @@ _PLOTLY_MARKER = {"o": "circle", "s": "square", "^": "triangle-up", "v": "triang
 
 @dataclass(frozen=True)
 class Line:
-    """One curve (x, y); ``dash`` as in matplotlib, "" for markers only; ``marker`` "o", "s", "^", "v", "D", "x" or ""; ``labels``
-    are texts at the points, ``size`` that of a marker (px)."""
+    """One curve (x, y); ``dash`` as in matplotlib, "" for markers only; ``marker`` "o", "s", "^", "v", "D", "x" or "", ``hollow``
+    if it is white inside; ``labels`` are texts at the points, ``size`` that of a marker (px); about ``kept`` points are on the
+    page."""
 
     x: Sequence[float]
     y: Sequence[float]
@@ -41,6 +42,8 @@ class Line:
     legend: bool = True
     labels: tuple[str, ...] = ()
     size: float = 9.0
+    hollow: bool = False
+    kept: int = 500
 
 
 @dataclass(frozen=True)
@@ -110,7 +113,7 @@ def to_html(chart: Chart | Picture) -> str:
                 x=x, y=y, name=line.name, legendgroup=line.name, opacity=line.opacity, text=list(line.labels) or None,
                 showlegend=line.legend and line.name not in shown, mode=_mode(line), textposition="top center",
                 line={"color": line.colour, "width": line.width, "dash": _PLOTLY_DASH[line.dash]},
-                marker={"symbol": _PLOTLY_MARKER[line.marker], "size": line.size}),
+                marker={"symbol": _PLOTLY_MARKER[line.marker], "size": line.size, **_inside(line)}),
                 **place)
             shown |= {line.name} if line.legend else set()
         x_kind = _log_axis(_across(panel), panel.ticks) if panel.log else {"type": "log", "dtick": 1} if panel.log_x else {}
@@ -151,7 +154,8 @@ def to_files(chart: Chart | Picture, folder: Path) -> list[Path]:
         for line in panel.lines:
             handle, = axes.plot(line.x, line.y, color=line.colour, linewidth=0.75 * line.width, linestyle=line.dash or "none",
                                 alpha=line.opacity, marker=line.marker or None, markersize=line.size * 2.0 / 3.0,
-                                rasterized=len(line.x) > _VECTORS)
+                                rasterized=len(line.x) > _VECTORS,
+                                **({"markerfacecolor": "white", "markeredgewidth": _EDGE} if line.hollow else {}))
             if line.legend:
                 handles.setdefault(line.name, handle)
             for x, y, label in zip(line.x, line.y, line.labels):
@@ -230,9 +234,14 @@ def _mode(line: Line) -> str:
     return "+".join(parts)
 
 
+def _inside(line: Line) -> dict:
+    """What makes a marker of plotly hollow."""
+    return {"color": "white", "line": {"color": line.colour, "width": _EDGE * 4.0 / 3.0}} if line.hollow else {}
+
+
 def _thinned(line: Line) -> tuple[list, list]:
-    """At most about 500 points, and six digits, which no screen can tell from all of them."""
+    """About as many points as are kept, and six digits, which no screen can tell from all of them."""
     x, y = np.asarray(line.x, dtype=float), np.asarray(line.y, dtype=float)
-    every = max(1, x.size // _POINTS)
-    keep = np.unique(np.append(np.arange(0, x.size, every), x.size - 1))
+    every = max(1, x.size // line.kept)
+    keep = np.unique(np.append(np.arange(0, x.size, every), np.arange(x.size)[-1:]))
     return [float(f"{value:.6g}") for value in x[keep]], [float(f"{value:.6g}") for value in y[keep]]

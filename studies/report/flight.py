@@ -5,6 +5,7 @@ from typing import Callable
 
 from studies.flight.summary import WORDS, doubts
 from studies.populations import answers
+from studies.report import outside
 from studies.report.chart import AMBER, GREY, NAVY, TEAL, VERMILION, Chart, Line, Panel
 from studies.report.markup import Html, caption, number, paragraph, table
 
@@ -60,7 +61,7 @@ def charts(found: dict) -> list[tuple[Chart, str]]:
     if any(curve.get("clearance_s") for curve in curves):
         drawn.append((_clearance(curves), _CLEARANCE))
     if found["cases"]["points_m"]:
-        drawn.append((_scatter(found), _SCATTER))
+        drawn.append((_scatter(found), _SCATTER + (outside.WORDS if any(found["cases"]["points_outside"]) else "")))
     return drawn
 
 
@@ -107,9 +108,9 @@ def _scatter(found: dict) -> Chart:
     errors = [math.hypot(a - c, b - d) for a, b, c, d in many["points_m"]]
     shares = [*_exceeded(many, "miss_m", list(map(math.hypot, y, z)), "in all", NAVY, "-"),
               *_exceeded(many, "tip_off_miss_m", errors, "by errors alone", AMBER, "--")]
-    marks = [Line(y, z, "case", NAVY, 1.0, "", 0.35, marker="o", size=3.0),
+    marks = [*outside.points(Line(y, z, "case", NAVY, 1.0, "", 0.35, marker="o", size=3.0), many["points_outside"]),
              Line(orbital_y[:1], orbital_z[:1], "without errors", VERMILION, 1.0, "", marker="o"),
-             Line([0.0], [0.0], "target", "#000000", 1.0, "", marker="D")]
+             Line([0.0], [0.0], "target", "#000000", 1.0, "", marker="D"), *outside.key(many["points_outside"])]
     return Chart("flight-miss", [Panel(f"{len(y):,} of {many['settled']:,} cases in the plane of the target",
                                        "y (m)", "z (m)", marks),
                                  Panel("cases that miss by more", "miss (m)", "share (%)", shares)], columns=2, height=360)

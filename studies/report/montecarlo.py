@@ -4,17 +4,20 @@ from html import escape
 
 import numpy as np
 
+from studies.report import outside
 from studies.report.chart import AMBER, GREY, NAVY, TEAL, VERMILION, Chart, Line, Panel
-from studies.report.markup import Html, caption, fold, number, paragraph, table
+from studies.report.markup import Html, caption, fold, number, paragraph, percent, table
 
 _RATES = ("rate_x_deg_s", "rate_y_deg_s", "rate_z_deg_s")
 _LOOKS = {0.5: (NAVY, "-", "o"), 0.95: (VERMILION, "--", "s"), 0.99: (TEAL, "-.", "^")}
 _HISTOGRAMS = ("Densities of the settled rates. Broad pale: the first {paper_cases:,} cases, as many as the paper has in its "
-               "Figure 9. Thin: all of them.")
+               "Figure 9. Thin: all of them.{share}")
+_SHARE = (" Dashed: those of them that are outside what the calibration was made for; its area is their share, {share} % of "
+          "what settled.")
 _CONVERGENCE = ("Left: quantiles of each rate from the first cases, with their 95 % bounds from order statistics (dotted). "
                 "Right: half the width of these bounds; the grey lines fall with the root of the number of cases.")
 _MODELS = ("The same {cases:,} draws on calibrated springs and on walls that give way. On the grey line both agree; what lies off "
-           "it is the uncertainty of the model.")
+           "it is the uncertainty of the model.{hollow}")
 _BOUNDS = ("Small: 95 % bounds from order statistics, which hold whatever the distribution is; a dash where the cases are too few "
            "for one. The second line of each is of the paper's number of cases.")
 _READINGS = ("{cases:,} cases each, deg/s, drawn apart from the study's own. Distance: the largest between the distribution "
@@ -26,9 +29,15 @@ _PAPER = ("The paper prints no number of its Monte Carlo study, only histograms 
 
 def charts(found: dict) -> list[tuple[Chart, str]]:
     """Each figure with its caption."""
-    made = [(_histograms(found), _HISTOGRAMS.format(**found)), (_convergence(found), _CONVERGENCE)]
+    count = found["settled_outside"]
+    share = _SHARE.format(share=f"{100.0 * count / found['settled']:.3g}") if count else ""
+    made = [(_histograms(found), _HISTOGRAMS.format(paper_cases=found["paper_cases"], share=share)),
+            (_convergence(found), _CONVERGENCE)]
     models = found["models"]
-    return made + ([(_models(models), _MODELS.format(**models))] if models and models["quantities"] else [])
+    if models and models["quantities"]:
+        hollow = outside.WORDS if any(models["pairs_outside"]) else ""
+        made.append((_models(models), _MODELS.format(cases=models["cases"], hollow=hollow)))
+    return made
 
 
 def draw(found: dict, figure) -> Html:
@@ -45,10 +54,12 @@ def _histograms(found: dict) -> Chart:
         if item["name"] not in (*_RATES, "rate_deg_s"):
             continue
         edges, bars = np.repeat(item["histogram"]["edges"], 2), item["histogram"]
-        outline = {name: np.pad(np.repeat(bars[name], 2), 1) for name in ("first", "all")}
-        panels.append(Panel(item["label"], f"{item['label']} ({item['unit']})", f"density (1/({item['unit']}))", [
-            Line(edges, outline["first"], f"first {found['paper_cases']:,} cases", AMBER, 4.0, opacity=0.55),
-            Line(edges, outline["all"], f"all {found['counts']['asked']:,} cases", NAVY, 1.4)]))
+        outline = {name: np.pad(np.repeat(bars[name], 2), 1) for name in ("first", "all", "outside") if bars[name]}
+        lines = [Line(edges, outline["first"], f"first {found['paper_cases']:,} cases", AMBER, 4.0, opacity=0.55),
+                 Line(edges, outline["all"], f"all {found['counts']['asked']:,} cases", NAVY, 1.4)]
+        if "outside" in outline:
+            lines.append(Line(edges, outline["outside"], "outside the calibration", VERMILION, 1.8, "--"))
+        panels.append(Panel(item["label"], f"{item['label']} ({item['unit']})", f"density (1/({item['unit']}))", lines))
     return Chart("montecarlo-histograms", panels, columns=2, height=280)
 
 
@@ -79,13 +90,13 @@ def _converging(label: str, found: list[dict]) -> list[Panel]:
 
 
 def _models(models: dict) -> Chart:
-    panels = []
+    panels, flags = [], models["pairs_outside"]
     for name in _RATES:
         pair, label = models["pairs"][name], next(row["label"] for row in models["quantities"] if row["name"] == name)
         low, high = min(map(min, pair.values())), max(map(max, pair.values()))
+        cases = Line(pair["springs"], pair["walls"], "a case", NAVY, dash="", marker="o", size=3.5, opacity=0.45)
         panels.append(Panel(label, "on springs (deg/s)", "on walls (deg/s)", [
-            Line([low, high], [low, high], "both agree", GREY, 1.2),
-            Line(pair["springs"], pair["walls"], "a case", NAVY, dash="", marker="o", size=3.5, opacity=0.45)]))
+            Line([low, high], [low, high], "both agree", GREY, 1.2), *outside.points(cases, flags), *outside.key(flags)]))
     return Chart("montecarlo-models", panels, columns=3, height=300)
 
 
@@ -109,9 +120,12 @@ def _quantities(found: dict) -> Html:
 
 
 def _tails(found: dict) -> Html:
-    rows = [(row["limit"], f"{row['above']:,} of {row['cases']:,}", number(row["share"]), f"{row['low']:.3g} to {row['high']:.3g}")
+    rows = [(row["limit"], f"{row['above']:,} of {row['cases']:,}", number(row["share"]), f"{row['low']:.3g} to {row['high']:.3g}",
+             *([percent(row["outside"] / row["above"] if row["above"] else None)] if found["outside"] else []))
             for row in found["tails"]]
-    return Html(table(("limit", "cases above", "probability of being above", "95 % bounds (Clopper and Pearson)"), rows) + caption(
+    heads = ("limit", "cases above", "probability of being above", "95 % bounds (Clopper and Pearson)",
+             *(["of these outside the calibration (%)"] if found["outside"] else []))
+    return Html(table(heads, rows) + caption(
         "A rate about an axis counts by its magnitude. A case that did not settle counts as above every limit."))
 
 

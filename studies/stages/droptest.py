@@ -139,7 +139,8 @@ def result(study: Study, drops: list[Drop], cases: Population, independent: bool
     return {"simulated_logs": all(drop.sheet.simulated for drop in drops), "tests": tests, **joint(tests, rates),
             "cases": {**cases.counts, "settled": int(settled.sum()), "outside_calibration": int(cases.outside.sum()),
                       "quantiles": quantiles(cases.results, settled, independent),
-                      "store": cases.store, "shown_deg_s": np.round(rates[:_SHOWN], 4).tolist()}}
+                      "store": cases.store, "shown_deg_s": np.round(rates[:_SHOWN], 4).tolist(),
+                      "shown_outside": cases.outside[settled][:_SHOWN].tolist()}}
 
 
 def _doubts(study: Study, drop: Drop, exits: np.ndarray) -> list[str]:

@@ -48,10 +48,10 @@ def run(study: Study, asked: Asked = Asked()) -> dict:
         from studies.report import flight as page
 
         rows, shapes, single, exits = _conditions(study, asked)
-        cases, many, left = _cases(study, asked, drawn)
+        cases, many, left, outside = _cases(study, asked, drawn)
         found = {"asked": asdict(asked), "flight": summary.orbit(study.scene), "conditions": rows, "curves": shapes, "cases": cases}
         data = study.path(f"{NAME}.nc")
-        labelled = summary.dataset([row["condition"] for row in rows if row["flown"]], single, exits, many, left)
+        labelled = summary.dataset([row["condition"] for row in rows if row["flown"]], single, exits, many, left, outside)
         with replacing(data) as temporary:
             labelled.to_netcdf(temporary, engine="h5netcdf")
         pictures = [path for drawing, _ in page.charts(found) for path in chart.to_files(drawing, study.path("figures"))]
@@ -104,8 +104,9 @@ def _conditions(study: Study, asked: Asked) -> tuple[list[dict], list[dict], flo
                             else (None, None)))
 
 
-def _cases(study: Study, asked: Asked, drawn: Drawn) -> tuple[dict, flown.Flown, Columns]:
-    """Distributions over the cases of ``drawn``, what was found for each that settled, and what these left their rails with."""
+def _cases(study: Study, asked: Asked, drawn: Drawn) -> tuple[dict, flown.Flown, Columns, np.ndarray]:
+    """Distributions over the cases of ``drawn``, what was found for each that settled, what these left their rails with, and
+    whether they are outside the calibration."""
     model = population.surrogate(study, asked.walls)
     cases = population.run(study, NAME, model, drawn)
     which = np.flatnonzero(cases.settled)
@@ -118,4 +119,4 @@ def _cases(study: Study, asked: Asked, drawn: Drawn) -> tuple[dict, flown.Flown,
         left = Columns(*(part[which] for part in cases.results))
         many = flown.fly(study.scene.flight.record(), parted, bodies.start(left), board.callback(label))
         board.finished(label, "flown")
-    return summary.cases(many, cases, drawn.uncertainty), many, left
+    return summary.cases(many, cases, drawn.uncertainty), many, left, cases.outside[which]

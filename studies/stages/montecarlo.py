@@ -55,9 +55,10 @@ def run(study: Study, asked: Asked = Asked()) -> dict:
                              f"{found.store}/done")
         made = {"asked": _plain(asked), "reading": asked.reading.words, "surrogate": model.words, "store": found.store,
                 "counts": found.counts, "settled": settled, "outside": int(found.outside.sum()),
-                "confidence": spread.CONFIDENCE, "paper_cases": min(PAPER, asked.cases),
+                "settled_outside": int((found.outside & found.settled).sum()), "confidence": spread.CONFIDENCE,
+                "paper_cases": min(PAPER, asked.cases),
                 "quantities": [_quantity(item, found) for item in answers.ALL],
-                "tails": [_tail(limit, np.degrees(found.results.rate)) for limit in limits],
+                "tails": [_tail(limit, np.degrees(found.results.rate), found.outside) for limit in limits],
                 "convergence": [{"name": item.name, **row} for item in _RATES
                                 for row in spread.convergence(item.of(found.results), _CONVERGING)],
                 "readings": _readings(study, asked, model, found), "models": _models(study, asked, found)}
@@ -89,15 +90,16 @@ def _quantity(quantity: answers.Quantity, found: Population) -> dict:
     values, first = _settled(quantity, found), _settled(quantity, found, PAPER)
     return {"name": quantity.name, "label": quantity.label, "unit": quantity.unit, **spread.moments(values),
             "quantiles": spread.quantiles(values), "first": spread.quantiles(first) if first.size else None,
-            "histogram": spread.histograms(first, values)}
+            "histogram": spread.histograms(first, values, found.outside[found.settled])}
 
 
-def _tail(limit: exceedance.Limit, rates: np.ndarray) -> dict:
-    """How often ``rates`` (n,3), deg/s, are above ``limit``."""
-    count = int(exceedance.above(rates, limit).sum())
+def _tail(limit: exceedance.Limit, rates: np.ndarray, outside: np.ndarray) -> dict:
+    """How often ``rates`` (n,3), deg/s, are above ``limit``, and how many of those cases are ``outside`` (n,) the calibration."""
+    above = exceedance.above(rates, limit)
+    count = int(above.sum())
     low, high = exceedance.bounds(count, len(rates), spread.CONFIDENCE)
     return {"limit": limit.words, **limit._asdict(), "above": count, "cases": len(rates), "share": count / len(rates),
-            "low": low, "high": high}
+            "low": low, "high": high, "outside": int((above & outside).sum())}
 
 
 def _readings(study: Study, asked: Asked, model: Surrogate, found: Population) -> list[dict]:
@@ -144,8 +146,9 @@ def _models(study: Study, asked: Asked, found: Population) -> dict | None:
                      **{name: spread.quantiles(values, (0.5, 0.95, 0.99)) for name, values in zip(names, (one, two))}})
     pairs = {item.name: {name: np.round(item.of(results)[:cases][both], 4).tolist()
                          for name, results in zip(names, (found.results, other.results))} for item in _RATES}
-    return {"cases": cases, "both_settled": int(both.sum()), "outside": int((found.outside[:cases] | other.outside).sum()),
-            "quantities": rows, "pairs": pairs}
+    outside = found.outside[:cases] | other.outside  # of the springs: no case is outside of walls
+    return {"cases": cases, "both_settled": int(both.sum()), "outside": int(outside.sum()), "quantities": rows, "pairs": pairs,
+            "pairs_outside": outside[both].tolist()}
 
 
 def _findings(made: dict) -> list[str]:
@@ -178,7 +181,8 @@ def _numbers(made: dict) -> list[str]:
         row = next(row for row in item["quantiles"] if row["share"] == 0.99)
         said.append(f"{item['label']}: sd {item['sd']:.4g} ± {item['sd_error']:.2g}, 99 % below {_in_bounds(row)} {item['unit']}")
     return said + [f"{row['limit']}: above it in {row['above']:,} of {row['cases']:,}, probability {row['share']:.3g} "
-                   f"[{row['low']:.3g}, {row['high']:.3g}]" for row in made["tails"]]
+                   f"[{row['low']:.3g}, {row['high']:.3g}]"
+                   + (f", {row['outside']:,} of them outside the calibration" if row["outside"] else "") for row in made["tails"]]
 
 
 def _in_bounds(row: dict) -> str:

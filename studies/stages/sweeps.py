@@ -90,6 +90,7 @@ def _factor(model: Surrogate, factor: Factor, directions: np.ndarray, found: Pop
     free_largest = {item.name: abs(column).max(axis=1) for item, column in zip(JUDGED, [*np.moveaxis(free, 2, 0), free_total])}
     return {"name": factor.name, "label": factor.label, "unit": factor.unit, "paper": published.PLATEAUS[factor.name],
             "sizes": SIZES.tolist(), "angles_deg": np.degrees(directions).tolist(),
+            "outside": found.outside[part].reshape(shape).tolist(),
             "values": {name: _plain(table) for name, table in values.items()},
             "largest": {name: _plain(knee.largest(abs(table))) for name, table in values.items()},
             "free": {name: _plain(curve) for name, curve in free_largest.items()},

@@ -109,6 +109,28 @@ def test_a_condition_outside_the_calibration_is_marked(tmp_path, monkeypatch):
     assert drawn.count('class="doubt"') == 2 and "weak is outside" in drawn
 
 
+def test_cases_outside_the_calibration_are_marked_one_by_one(tmp_path, monkeypatch):
+    """In the data, in the list of what is drawn, and hollow in the scatter. Control: where nothing was fitted all are as before."""
+    scene = load("reference")
+    fitted = Calibration({}, [], [], [], [], [], [], np.empty((0, 0)), [], {}, [], 0.0,
+                         validity.ranges([scene.loads]), {"geometry_hash": scene.geometry_hash})
+    monkeypatch.setattr(chart, "to_files", lambda *_: [])
+    for calibration in (fitted, None):
+        monkeypatch.setattr(population, "surrogate", lambda study, *_: Surrogate(study.scene, calibration, None))
+        study = Study(scene, tmp_path / str(calibration is None), Settings(workers=1), ("phi60",))
+        found = flight.run(study, flight.Asked(cases=40))
+        with xarray.open_dataset(study.path(found["data"]), engine="h5netcdf") as data:
+            kept = data["outside_calibration"].values.astype(bool)
+            reached = np.isfinite(data["passes_s"].values)
+        assert kept.sum() == found["cases"]["outside"] and found["cases"]["points_outside"] == kept[reached].tolist()
+        assert (0 < kept.sum() < 40) == (calibration is not None)
+        drawing, words = section.charts(found)[-1]
+        lines = drawing.panels[0].lines
+        assert [len(line.x) for line in lines if line.name == "case"] == [40 - kept.sum()]
+        assert sum(len(line.x) for line in lines if line.hollow and not line.legend) == kept.sum()
+        assert ("Hollow" in words) == any(line.hollow for line in lines) == (calibration is not None)
+
+
 def test_without_an_exit_there_is_no_flight(tmp_path, uncalibrated):
     result = call("--condition", "phi35", "--cases", 4, "--set", "duration=20 ms", "--out", tmp_path)
     assert result.exit_code == 1 and "none of 4 cases left the rail" in result.stderr

@@ -3,15 +3,19 @@ scene."""
 
 import json
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from scenes import load
+from scenes import load, validity
+from scenes.calibration import Calibration
 from studies.cli import app
 from studies.populations import answers, population
 from studies.populations.population import Surrogate
+from studies.report import outside
+from studies.report import sweep_figures as drawing
 from studies.report import sweeps as sections
 from studies.report.markup import Html
 from studies.settings import Settings
@@ -90,6 +94,49 @@ def test_sides_of_forces():
     rate = np.zeros((2, 4, 3))
     rate[:, 2:, 1] = 3.0
     assert sides.jumps(walls, rate) == (3.0, 0.0) and sides.jumps(np.full((2, 4), "a"), rate)[0] is None
+
+
+def test_where_the_calibration_ends_is_seen_in_every_figure(tmp_path, monkeypatch):
+    """Errors beyond that of the fit: in the result case by case, in the scatter and the growth hollow, on the maps a line between
+    inside and outside. Controls: nothing fitted, as on walls, and all outside, which no line parts."""
+    for module in (sweeps, factors):
+        monkeypatch.setattr(module, "FACTORS", factors.FACTORS[1:2])
+    monkeypatch.setattr(sweeps, "to_files", lambda *_: [])
+    monkeypatch.setattr(burnout, "other_way", lambda _: None)
+    scene, ends = load("tiny"), 0.45  # mm: the limit of the fit is between two sizes
+    valid = validity.ranges([scene.loads]) | {
+        "moment_impulse_nms": [0.0, ends * 1e-3 * scene.loads["thrust_impulse_ns"] / (1.0 + validity.MARGIN)]}
+    near = Calibration({}, [], [], [], [], [], [], np.zeros((0, 0)), [], {}, [], 0.0, valid=valid)
+    far = replace(near, valid=valid | {"thrust_peak_n": [1e-3, 1e-3]})
+    for fitted, share in ((near, 0.6), (far, 1.0), (None, 0.0)):
+        monkeypatch.setattr(population, "surrogate", lambda study, *_: Surrogate(study.scene, fitted, None))
+        found = sweeps.run(Study(scene, tmp_path / str(share), Settings(workers=1)), sweeps.Asked(angles=8))
+        factor, = found["launches"][0]["factors"]
+        flags = np.array(factor["outside"])
+        assert flags.tolist() == [[share == 1.0 or bool(fitted) and size > ends] * 8 for size in factors.SIZES]
+        assert found["launches"][0]["outside"] == flags.sum() == share * 80
+        (growth, grown), (scatter, scattered), (polar, mapped) = drawing.pictures(found)
+        for panel in scatter.panels:
+            counts = {hollow: sum(np.isfinite(line.x).sum() for line in panel.lines if line.hollow == hollow)
+                      for hollow in (False, True)}
+            assert counts == {False: 3 * (80 - flags.sum()), True: 3 * flags.sum()}
+            assert [line.name for line in panel.lines if line.legend and line.hollow] == [outside.NAME] * (share > 0.0)
+        if share == 0.6:
+            assert all((line.x > ends).all() == line.hollow for line in scatter.panels[0].lines if len(line.x) > 1)
+        sizes = [line.x.tolist() for line in growth.panels[0].lines if line.hollow and not line.legend]
+        assert sizes == [factors.SIZES[flags.any(axis=1)].tolist()] * (3 if share else 0)
+        assert [("Hollow" in words) for words in (grown, scattered)] == [share > 0.0] * 2
+        assert ("Dashed" in mapped, "All of it" in mapped) == (0.0 < share < 1.0, share == 1.0)
+        radii = [_dashed(axes) for axes in polar.figure.axes[:5]]
+        assert radii == ([[pytest.approx(ends)]] if share == 0.6 else [[]]) * 5
+        legends = [text.get_text() for axes in polar.figure.axes if axes.get_legend() for text in axes.get_legend().get_texts()]
+        assert ("the calibration ends" in legends) == (share == 0.6) and "no contact" in legends
+
+
+def _dashed(axes) -> list[float]:
+    """Radii of the dashed lines on a map."""
+    lines = [item for item in axes.collections if item.get_linestyle()[0][1] is not None]
+    return sorted({round(float(radius), 9) for item in lines for path in item.get_paths() for radius in path.vertices[:, 1]})
 
 
 def test_the_command_with_contact(tmp_path, monkeypatch):

@@ -205,6 +205,25 @@ def test_cases_that_do_not_settle_are_left_out_and_counted_and_too_few_are_refus
         stage.result(study, drops, population(rates[:40]))
 
 
+def test_cases_outside_the_calibration_are_hollow_dots(tmp_path):
+    """Those that settled, in every panel of the cloud. Control: with none outside the figure and its caption are as before."""
+    study, drops = Study(load("reference"), tmp_path, Settings()), [stage.analyse(path) for path in shipped.sheets()[:1]]
+    rates = np.random.default_rng(1).normal(0.0, 8.0, (100, 3))
+    rates[:30] = np.nan
+    for first, hollow in ((20, 70), (60, 40), (100, 0)):
+        cases = population(rates)
+        cases.outside[first:] = True
+        found = stage.result(study, drops, cases)
+        assert found["cases"]["outside_calibration"] == 100 - first and sum(found["cases"]["shown_outside"]) == hollow
+        for panel in page._clouds(found):
+            drawn = {line.hollow: np.isfinite(line.x).sum() for line in panel.lines if len(line.x) > 1 and not line.dash}
+            assert drawn.get(True, 0) == hollow and drawn.get(False, 0) == 70 - hollow
+            assert sum(line.hollow and line.legend for line in panel.lines) == (hollow > 0)
+        found |= {"surrogate": "calibrated", "request": asdict(stage.Asked()), "varied": {"seed": 1}}
+        found["summary"] = stage.summary("reference", found)
+        assert ("Hollow" in page.draw(found, lambda drawing, words: Html(words))) == (hollow > 0)
+
+
 @pytest.mark.parametrize("width, p", [(8.0, "do not contradict"), (0.05, "contradict"), (2000.0, "contradict")])
 def test_verdict_for_models_that_fit_that_are_too_narrow_and_too_wide(tmp_path, width, p):
     """Three tests of one size, in a cloud of about that size, one far too small and one far too large; in its range they are."""
