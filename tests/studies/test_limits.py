@@ -9,7 +9,7 @@ from scipy import stats
 from typer.testing import CliRunner
 
 from lowfi.rows import numbers
-from scenes import load
+from scenes import load, validity
 from scenes.calibration import Calibration
 from studies.cli import app
 from studies.limits import constants, within
@@ -153,6 +153,22 @@ def test_values_are_kept_with_names_units_and_scale(study, found, monkeypatch):
     assert np.array_equal(third.values(0.5), values, equal_nan=True)
     for row in found["rows"]:
         assert [item["name"] for item in row["beside"]] == [item.name for item in answers.ALL]
+
+
+def test_cases_outside_the_calibration_are_marked_in_the_file(tmp_path):
+    """By the ranges the file was made with; control: a wider range has a file of its own, where none is marked."""
+    study = Study(load("reference"), tmp_path, Settings(workers=1))
+    ranges = validity.ranges([study.scene.loads])
+    for most, marked in ((ranges["moment_impulse_nms"][1], True), (1e3, False)):
+        fitted = Calibration({}, [], [], [], [], [], [], np.zeros((0, 0)), [], {}, [], 0.0,
+                             ranges | {"moment_impulse_nms": [0.0, most]})
+        cases = within.Cases(study, "limits", Surrogate(study.scene, fitted, None), {"misalignment": 0.01}, 20, 3)
+        before = set(tmp_path.rglob("*.nc"))
+        cases.values(1.0)
+        made, = set(tmp_path.rglob("*.nc")) - before
+        outside = xarray.load_dataset(made, engine="h5netcdf")["outside_calibration"]
+        assert int(outside.sum()) == cases.outside(1.0) and outside.dtype == bool
+        assert bool(outside.any()) == marked and not outside.all()
 
 
 @pytest.mark.parametrize("tolerances, advised", [("advised", 1.0), ("table3", None)])
