@@ -57,7 +57,7 @@ def quantity(option: str, text: str | None, unit: str) -> float | None:
 def guarded(work: Callable[[], dict], as_json: bool = False) -> dict:
     """Run ``work``; turn bad input and failed runs into messages and exit codes."""
     from scenes.faults import SceneError
-    from studies.study import StudyError
+    from studies.study import INPUT_FAULTS, StudyError
 
     try:
         result = work()
@@ -69,7 +69,7 @@ def guarded(work: Callable[[], dict], as_json: bool = False) -> dict:
         print("tipoff: stopped; what was finished is kept, and the same command goes on from there", file=sys.stderr, flush=True)
         os._exit(130)  # at once: files are complete at any moment, and a thread that compiles would hold the process for seconds
     except ValueError as fault:
-        if type(fault).__name__ not in ("MeshError", "StepError", "CalibrationError"):
+        if type(fault).__name__ not in INPUT_FAULTS:
             raise
         stop(f"{type(fault).__name__}: {fault}", 2)
     if as_json:

@@ -11,20 +11,17 @@ import typer
 
 from studies.asked import guarded, quantity, study_of
 from studies.commands import add_all
+from studies.helptext import flow
 from studies.options import (CheckpointEvery, Conditions, ElementSize, Fidelity, Json, OnWalls, Out, Resume, Sampling,
                              SceneName, Set, Workers)
 
 EXAMPLES = """Examples:
 
-  tipoff report                              the whole page, reference scene
-
-  tipoff run --condition phi35               one quick surrogate run
-
+  tipoff report                              # the whole page, reference scene
+  tipoff run --condition phi35 --walls       # one quick surrogate run
   tipoff run --fidelity highfi --element-size 8 --set thrust.peak="7 kN"
-
-  tipoff compare --scene tiny --json         the agreement table as JSON
-
-  tipoff highfi --scene my_launcher.toml     a scene of your own
+  tipoff compare --scene tiny --json         # the agreement table as JSON
+  tipoff highfi --scene my_launcher.toml     # a scene of your own, begun as a copy of one that tipoff scenes lists
 """
 
 app = typer.Typer(no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False, rich_markup_mode="rich",
@@ -94,7 +91,8 @@ def calibrate(scene: SceneName = "reference", out: Out = Path("out"), set_: Set 
               condition: Annotated[Optional[str], typer.Option("--condition", metavar="NAME",
                                    help="Condition of a file without NAME; default: the scene itself.")] = None,
               settled_from: Annotated[Optional[str], typer.Option("--settled-from", metavar="TIME",
-                                      help="Begin of the 2 ms whose means are settled; default: the last of a file.")] = None,
+                                      help="Start of the 2 ms whose means are the settled values; default: the last 2 ms of "
+                                           "a file.")] = None,
               element_size: ElementSize = None, workers: Workers = None, json_: Json = False) -> None:
     """Fit the surrogate's contact constants to the reference; writes calibration.toml and calibration.json.
 
@@ -103,7 +101,7 @@ def calibrate(scene: SceneName = "reference", out: Out = Path("out"), set_: Set 
       tipoff calibrate --reference phi15=test15.csv --reference phi60=test60.csv --settled-from "44 ms"
 
     A file has the columns time, velocity_x (inertial, along the rail), rate_x, rate_y and rate_z (inertial, in payload body axes),
-    from ignition on, at any instants, with units in the header, rate_x \\[deg/s], or in the second line. Others are passed over.
+    from ignition on, at any instants, with units in the header, rate_x \\[deg/s], or in the second line. Other columns are ignored.
     """
 
     def work() -> dict:
@@ -176,7 +174,6 @@ def view(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = Non
     "contact pressure (Pa)", and play.
 
       tipoff view --condition phi60 --frames 120
-
       tipoff view --scene my_launcher.toml --element-size 4 --exaggeration 500
 
     Pictures (peak.png, ejection.webp) need pyvista, which `make pictures` installs; the files for ParaView need nothing more.
@@ -198,7 +195,11 @@ def report(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = N
            every: Annotated[bool, typer.Option("--every", help="Make every study that has no present result first (an hour); one "
                                                "that the scene gives no occasion for says so on the page.")] = False,
            element_size: ElementSize = None, workers: Workers = None, json_: Json = False) -> None:
-    """All of it on one self-contained page; writes report.html and figures/."""
+    """All of it on one self-contained page; writes report.html and figures/.
+
+    Makes mesh, highfi, lowfi, walls, calibrate, compare, cost, stability and ablation where they are out of date (half an hour the
+    first time); every other study is shown if it was made, or made with --every.
+    """
 
     def work() -> dict:
         from studies.stages import report as stage
@@ -220,7 +221,15 @@ def run(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = None
                                          "most exact model that make cost found so fast.")] = None,
         element_size: ElementSize = None, checkpoint_every: CheckpointEvery = None, resume: Resume = True,
         json_: Json = False) -> None:
-    """Run one condition in one model and print what the payload leaves with."""
+    """Run one condition in one model and print what the payload leaves with.
+
+    The model is the surrogate on the scene's own contact constants unless --walls, --calibration or --fidelity highfi says
+    otherwise; of the surrogates the one on --walls is closest to the reference by far. --accuracy and --budget choose from what
+    make cost measured.
+
+      tipoff run --condition phi35 --walls
+      tipoff run --condition h4 --accuracy "0.1 deg/s"
+    """
 
     def work() -> dict:
         from scenes.faults import Fault, SceneError
@@ -267,23 +276,17 @@ def ensemble(scene: SceneName = "reference", out: Out = Path("out"), set_: Set =
     A file of distributions says what varies; --cases, --seed and --sampling may say otherwise:
 
       \\[vary."payload.mass"]
-
       distribution = "normal"
-
       mean = "9.9 kg"
-
       sd = "20 g"
 
     The others are fixed (value), uniform (low, high), truncated-normal (mean, sd, low, high, rule "redraw" or "clip") and rayleigh
     (scale). A table has dotted keys in its first line, units in the second or in each cell, and one case in every further line.
 
       tipoff ensemble --cases 1000000
-
       tipoff ensemble --vary my_errors.toml --sampling sobol --cases 4096
-
       tipoff ensemble --table cases.csv --store out/night
-
-      tipoff ensemble --cases 1000000 --case 1234       that case alone, compared with its stored result
+      tipoff ensemble --cases 1000000 --case 1234    # that case alone, beside its stored bits
 
     Stopped, killed or out of disk, the same command goes on from there to the same bits. A bad case is refused by itself and listed
     with its inputs and the reason in the store (done/*.json). xarray.open_zarr(STORE + "/cases.zarr") reads the results.
@@ -330,12 +333,26 @@ def bench(out: Out = Path("out"),
 
 
 @app.command("scenes")
-def list_scenes(json_: Json = False) -> None:
-    """List the catalogue: name, conditions, description."""
+def list_scenes(show: Annotated[Optional[str], typer.Option("--show", metavar="NAME",
+                                help="Print the file of this one, to begin one's own with.")] = None,
+                json_: Json = False) -> None:
+    """List the catalogue: name, conditions, description.
+
+      tipoff scenes --show reference > my_launcher.toml
+    """
 
     def work() -> dict:
         import scenes
+        from scenes.faults import Fault, SceneError
+        from scenes.scene import CATALOG
 
+        if show is not None:
+            if show not in scenes.catalog():
+                raise SceneError([Fault("--show", "scene", show, f"one of {', '.join(scenes.catalog())}")])
+            text = (CATALOG / f"{show}.toml").read_text(encoding="utf-8")
+            if not json_:
+                print(text, end="")
+            return {"scene": show, "file": text}
         found = {name: scenes.load(name) for name in scenes.catalog()}
         if not json_:
             for name, item in found.items():
@@ -353,6 +370,8 @@ def doctor() -> None:
 
     raise typer.Exit(check.main())
 
+
+flow(app)
 
 if __name__ == "__main__":
     app()

@@ -1,4 +1,5 @@
-"""Writes the figures of README.md from the result files of ``make report``, so that no number in it is typed by hand.
+"""Writes the figures of README.md and docs/results.md from the result files of ``make full-report``, so that no number in them is
+typed by hand.
 
     python -m studies.readme [FOLDER]        default out/reference
 """
@@ -13,34 +14,49 @@ from studies.agreement.verdicts import CONVERGED_DEG_S, FINITE_ELEMENTS
 from studies.bench import reference
 from studies.cost import sureness
 from studies.report import growth, rails, scaling
+from studies.stages import convergence
 from studies.stages.compare import COMPLIANT
 from studies.stages.report import beside
 from studies.study import read
 
 _ROOT = Path(__file__).resolve().parent.parent
+_TITLE = """# Further results on the reference scene
+
+Written by `python -m studies.readme` from the files of `make full-report` and `make bench`; times of different tables may be those
+of different days and are not to be divided by each other. Terms are those of README."""
 _BEGIN, _END = "<!-- results: python -m studies.readme -->", "<!-- end of results -->"
 
 
 def main(folder: Path) -> None:
-    """Replace the results section of README.md and the pictures beside it."""
+    """Replace the results section of README.md, the page of further results, and the pictures beside it."""
     readme = _ROOT / "README.md"
     before, rest = readme.read_text().split(_BEGIN)
     after = rest.split(_END)[1]
     write_text(readme, f"{before}{_BEGIN}\n{section(folder)}\n{_END}{after}")
     (_ROOT / "docs").mkdir(exist_ok=True)
+    write_text(_ROOT / "docs" / "results.md", f"{_TITLE}\n\n{details(folder)}\n")
     for name in ("figure6.png", "cost.png"):
         shutil.copyfile(folder / "figures" / name, _ROOT / "docs" / name)
 
 
 def section(folder: Path) -> str:
-    """Markdown of the agreement, the speed-up and the kept promises in ``folder``."""
-    agreement, highfi, lowfi = (json.loads((folder / f"{name}.json").read_text()) for name in ("agreement", "highfi", "lowfi"))
+    """Markdown of what was found: agreement, speed-up, other rails, and what accuracy costs."""
+    agreement = json.loads((folder / "agreement.json").read_text())
     refined, cost = (read(folder / f"{name}.json") for name in ("convergence", "cost_study"))
     parts = [_agreement(agreement), *_stiffer(agreement["stiffer"]), *_growth(agreement["growth"]), _speed(agreement),
-             *_equal(refined, cost), _promises(highfi, lowfi)]
+             *_equal(refined, cost)]
     parts += [_rails(found)] if (found := beside(folder)) else []
-    if (found := cost) is not None:
-        parts += [_ladder(found), _cost(found), _scaling(found["scaling"])]
+    parts += [_blind(found)] if (found := read(folder / "blind.json")) is not None else []
+    parts += [_ladder(cost)] if cost is not None else []
+    return "\n\n".join(parts)
+
+
+def details(folder: Path) -> str:
+    """Markdown of the rest: kept promises, what a mesh costs, the error of the reference itself, and speeds."""
+    highfi, lowfi = (json.loads((folder / f"{name}.json").read_text()) for name in ("highfi", "lowfi"))
+    refined, cost = (read(folder / f"{name}.json") for name in ("convergence", "cost_study"))
+    parts = [_promises(highfi, lowfi)]
+    parts += [_cost(cost), _scaling(cost["scaling"])] if cost is not None else []
     parts += [_convergence(refined)] if refined is not None else []
     if (found := reference.stored(folder.parent)) is not None:
         parts += [_bench(found["rows"])] if found["rows"] else []
@@ -51,13 +67,13 @@ def section(folder: Path) -> str:
 def _agreement(found: dict) -> str:
     before = {row["condition"]: row for row in found["uncalibrated"]}
     fitted = {row["condition"]: row for row in found["fitted"] + found["held_out"]}
-    lines = ["Rates of the surrogates against the reference (rate L2 / settled error in deg/s), and what bounds any such claim: "
-             "the floor is",
-             "the change by 1 um of clearance, the uncertainty that of the reference itself under refinement. Nothing is fitted on "
-             "compliant",
-             "walls; the role is that of the condition in the calibration of the others. The verdict is on compliant walls.", "",
-             "| condition | role | uncalibrated | calibrated | compliant walls | floor, deg/s | reference uncertainty, deg/s | "
-             "verdict |",
+    lines = ["Rates of the surrogates against the reference (rate L2 in % / largest error of a settled rate in deg/s), and what "
+             "bounds any",
+             "such claim. Nothing is fitted on compliant walls; the role is that of the condition in the calibration of the "
+             "springs.",
+             "The verdict is on compliant walls.", "",
+             "| condition | role | springs, uncalibrated | springs, calibrated | compliant walls | floor, deg/s | "
+             "reference uncertainty, deg/s | verdict |",
              "|---|---|---|---|---|---|---|---|"]
     for row in found["compliant"]:
         lines.append(f"| {row['condition']} | {row['role'].replace('_', ' ')} | {_pair(before[row['condition']])} | "
@@ -76,8 +92,21 @@ def _stiffer(found: list[dict]) -> list[str]:
             "compliant walls with\nthe same penalty:\n\n" + "\n".join(lines)] if lines else []
 
 
+def _blind(found: dict) -> str:
+    """Conditions drawn after all code was written, as the agreement table has the scene's own."""
+    springs = {row["condition"]: row for row in found["calibrated"]}
+    lines = [f"{len(springs)} conditions drawn afterwards, with errors as in the paper's Table 3 (`make blind`; another line of "
+             "code draws others):", "",
+             "| condition | springs, calibrated | compliant walls | floor, deg/s | reference uncertainty, deg/s | verdict |",
+             "|---|---|---|---|---|---|"]
+    lines += [f"| {row['condition']} | {_pair(springs[row['condition']])} | {_pair(row)} | {_number(row['floor_deg_s'])} | "
+              f"{_number(row['reference_uncertainty_deg_s'])} | {row['verdict']} |" for row in found["compliant"]]
+    return "\n".join(lines)
+
+
 def _pair(row: dict) -> str:
-    return f"{_number(row['rate_relative_l2'])} / {_number(row['settled_rate_error_deg_s'])}"
+    curve = row["rate_relative_l2"]
+    return f"{_number(None if curve is None else 100.0 * curve)} / {_number(row['settled_rate_error_deg_s'])}"
 
 
 def _number(value: float | None) -> str:
@@ -100,10 +129,10 @@ def _equal(refined: dict | None, cost: dict | None) -> list[str]:
     if refined is None or refined["equal_accuracy"] is None:
         return []
     said = sureness.sentence(refined["equal_accuracy"])
-    near = [f" By distance from the finest mesh of the cost table alone {row['mesh'].split(',')[0]} would do: "
-            f"{row['ratio']:,.0f} times." for row in (cost["matched"] if cost else ()) if row["model"] == COMPLIANT]
-    return [f"{said[0].upper()}{said[1:]} (`make convergence`). The mesh above is the one that every other table stands on."
-            + "".join(near)]
+    near = [f"\nWhat equal accuracy means decides: by its distance from the finest mesh of the cost table, whatever that is itself "
+            f"sure of,\n{row['mesh'].split(',')[0]} would do, {row['ratio']:,.0f} times. The mesh of the paragraph above is the "
+            "one that every other table stands on." for row in (cost["matched"] if cost else ()) if row["model"] == COMPLIANT]
+    return [f"{said[0].upper()}{said[1:]} (`make convergence`)." + "".join(near)]
 
 
 def _rails(found: list[dict]) -> str:
@@ -177,7 +206,9 @@ def _convergence(found: dict) -> str:
     sizes = [row for row in found["quantities"] if row["parameter"] == "element size"]
     heads = [f"{1e3 * size:g} mm" for size in sizes[0]["sizes"]]
     lines = [f"Error of the reference itself (`make convergence`, {found['condition']}):", "",
-             *(f"- {line}" for line in found["summary"]),
+             *(f"- {line}" for line in convergence.summary(found["condition"], found["quantities"], found["penalty"],
+                                                           found["quadrature"], found["coarse_size_m"])
+               + convergence.told(found["ripple"])),
              "", f"| quantity | {' | '.join(heads)} | order | ± at {heads[-1]} |", "|---" * (len(heads) + 3) + "|"]
     for row in sizes:
         values = " | ".join("-" if value is None else f"{value:.5g}" for value in row["values"])

@@ -1,6 +1,6 @@
 """Numerical choices of the studies: how fine, how many repeats. A scene says nothing about them.
 
-The reference mesh of 2 mm is the finest that keeps `make report` inside 20 minutes on two cores. What a change of clearance,
+The reference mesh of 2 mm is the finest with which `make report` takes half an hour on two cores. What a change of clearance,
 penalty or step moves is a difference of two runs, and those run on twice the element size; so does the mesh that shows what
 refining still changes. Finer meshes belong to the convergence study.
 """
@@ -11,6 +11,8 @@ from dataclasses import asdict, dataclass
 from scenes.files import content_hash
 
 _BESIDE_RESULTS = ("workers", "checkpoint_every", "resume")  # how a run is made, not what comes out
+
+COARSER = 2.0  # times the element size, where many runs are needed
 
 
 @dataclass(frozen=True)
@@ -38,7 +40,7 @@ class Settings:
     @property
     def coarse_size(self) -> float:
         """Element size (m) where many runs are needed and their differences matter more than their values."""
-        return 2.0 * self.element_size
+        return COARSER * self.element_size
 
     @property
     def mesh_sizes(self) -> tuple[float, ...]:

@@ -6,6 +6,7 @@ from pathlib import Path
 from scenes.calibration import Calibration
 from scenes.faults import Fault, SceneError
 from scenes.walls import require_modes
+from studies import words
 from studies.cost import choice
 from studies.progress import say
 from studies.stages import compare, cost, walls
@@ -47,13 +48,20 @@ def _made(study: Study, condition: str, asked: Run, quiet: bool) -> dict:
     found = study.store.get(asked)
     result = row(condition, found, study.relative(study.store.path(asked)))
     if not quiet:
-        print("\n".join(lines(result, asked.fidelity, study)))
+        print("\n".join(lines(result, model(asked), study)))
     return result | {"failed": [f"{condition}: {found.status}: {found.message}"] if found.status in FAILED else []}
 
 
-def lines(result: dict, fidelity: str, study: Study) -> list[str]:
+def model(asked: Run) -> str:
+    """What a run is made with, in words."""
+    if asked.fidelity == "highfi":
+        return f"finite elements of {1e3 * asked.numerics.element_size:g} mm"
+    return f"surrogate on {words.touched(asked.scene, asked.calibration, asked.walls)}"
+
+
+def lines(result: dict, made_with: str, study: Study) -> list[str]:
     """The outcome in words and units."""
-    said = [f"{study.scene.name} / {result['condition']}, {fidelity}: {result['status']}"
+    said = [f"{study.scene.name} / {result['condition']}, {made_with}: {result['status']}"
             + (f" ({result['message']})" if result["message"] else "")]
     if result["exit_time_s"] is not None:
         said.append(f"  exit          {1e3 * result['exit_time_s']:.4g} ms after ignition")

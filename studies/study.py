@@ -22,6 +22,7 @@ from studies.settings import Settings
 from studies.store import Run, Store, code_hash
 
 FAILED = ("diverged", "refused")
+INPUT_FAULTS = ("MeshError", "StepError", "CalibrationError")  # by name, for the libraries behind them are heavy
 
 
 class StudyError(RuntimeError):

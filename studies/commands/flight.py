@@ -31,15 +31,12 @@ def flight(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = N
     Every condition, and many cases with errors of assembly; writes flight.json, flight.nc and figures. The scene says where:
 
       \\[flight]
-
       altitude = "500 km"
-
       range = "100 m"
 
     azimuth, elevation and roll turn the launch axis out of the flight direction. Options take the place of what the table says:
 
       tipoff flight --range "1 km" --cases 10000 --walls
-
       tipoff flight --scene my_launcher.toml --altitude "600 km" --range "200 m" --set flight.elevation="90 deg"
     """
 

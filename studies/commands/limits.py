@@ -41,7 +41,6 @@ def add(app: typer.Typer) -> None:
         Each alone, all together, and misalignment against mass eccentricity; with what is not certain.
 
           tipoff limits --limit "x=2 deg/s" --limit "5 deg/s" --probability 0.99
-
           tipoff limits --limit "10 deg/s" --others zero --tolerances table3
         """
 

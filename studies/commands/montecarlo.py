@@ -39,7 +39,6 @@ def add(app: typer.Typer) -> None:
         The first thousand cases are the paper's number. All readings of the table are compared, and both surrogates on equal draws.
 
           tipoff montecarlo --cases 1000000 --limit "x=2 deg/s" --limit "8 deg/s"
-
           tipoff montecarlo --reading half --angles shared --initial
         """
 

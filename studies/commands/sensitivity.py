@@ -27,19 +27,13 @@ def sensitivity(scene: SceneName = "reference", out: Out = Path("out"), set_: Se
     A file of tolerances holds a distribution for the number itself, or for a factor of the number that the surrogate has:
 
       \\[factor."friction.dynamic"]
-
       distribution = "uniform"
-
       low = "0.75"
-
       high = "1.25"
 
       \\[vary."thrust_offset.misalignment.y"]      y and z are components of an offset
-
       distribution = "normal"
-
       mean = "0 deg"
-
       sd = "0.1 deg"
     """
 

@@ -3,12 +3,16 @@
 A point of the cost study counts with its error against the finest mesh and the uncertainty of that mesh, of which the larger is
 what it can be trusted to; the finest mesh itself with its uncertainty. That was measured on one condition. On another, each model
 counts with its error there, and with the uncertainty of the reference there, as the agreement study found them, where that is more;
-one that the agreement study does not have, with other modes of the rails, can be trusted to nothing there.
+one that the agreement study does not have, with other modes of the rails or on a coarser mesh than its coarse one, is not known
+there, and never chosen.
 """
 
 import math
 
+from studies.settings import COARSER
 from studies.study import StudyError
+
+_ROUNDING = 1e-9
 
 
 def choose(cost: dict, condition: str, agreement: dict | None, accuracy: float | None = None, budget: float | None = None) -> dict:
@@ -19,7 +23,8 @@ def choose(cost: dict, condition: str, agreement: dict | None, accuracy: float |
     """
     there = {} if condition == cost["condition"] else elsewhere(agreement, condition)
     points = trusted(cost["points"], cost["band_deg_s"], there)
-    fit = [point for point in points if _within(point["trusted_deg_s"], accuracy) and _within(point["wall_s"], budget)]
+    fit = [point for point in points if math.isfinite(point["trusted_deg_s"])
+           and _within(point["trusted_deg_s"], accuracy) and _within(point["wall_s"], budget)]
     if not fit:
         raise StudyError(_refusal(points, accuracy, budget) + _measured(cost, condition, there))
     by_time, by_error = (lambda p: (p["wall_s"], p["trusted_deg_s"])), (lambda p: (p["trusted_deg_s"], p["wall_s"]))
@@ -31,7 +36,7 @@ def choose(cost: dict, condition: str, agreement: dict | None, accuracy: float |
 
 def elsewhere(agreement: dict | None, condition: str) -> dict[str, float]:
     """What each rung can be trusted to (deg/s) on a condition of the ``agreement`` study, infinite where that is not known; empty
-    without one, or for a condition that it does not have."""
+    without one, or for a condition that it does not have. Of the meshes, ``coarsest_m`` is the coarsest whose error is known."""
     rungs = {} if agreement is None else {
         "uncalibrated": agreement["uncalibrated"], "calibrated": agreement["fitted"] + agreement["held_out"],
         "compliant": agreement["compliant"], "modal": agreement["modal"]}
@@ -42,7 +47,7 @@ def elsewhere(agreement: dict | None, condition: str) -> dict[str, float]:
     alone = next(row for row in agreement["simpler"]
                  if (row["condition"], row["patterns"], row["coupled"]) == (condition, 1, False))
     return {rung: max(unsure, _known(row["settled_rate_error_deg_s"])) for rung, row in (found | {"along": alone}).items()} | {
-        "highfi": unsure}
+        "highfi": unsure, "coarsest_m": COARSER * agreement["element_size_m"]}
 
 
 def trusted(points: list[dict], band: float | None, there: dict[str, float] | None = None) -> list[dict]:
@@ -51,9 +56,13 @@ def trusted(points: list[dict], band: float | None, there: dict[str, float] | No
     for point in points:
         error = point["error_deg_s"] if point["error_deg_s"] is not None else band
         if error is not None and point["status"] == "exited":
-            judged = 0.0 if not there else math.inf if point["modes"] is not None else there.get(point["rung"], 0.0)
-            known.append(point | {"trusted_deg_s": max(error, band or 0.0, judged)})
+            known.append(point | {"trusted_deg_s": max(error, band or 0.0, _elsewhere(point, there) if there else 0.0)})
     return known
+
+
+def _elsewhere(point: dict, there: dict[str, float]) -> float:
+    too_coarse = point["rung"] == "highfi" and point["setting"] > (1.0 + _ROUNDING) * there["coarsest_m"]
+    return math.inf if too_coarse or point["modes"] is not None else there.get(point["rung"], math.inf)
 
 
 def _known(value: float | None) -> float:

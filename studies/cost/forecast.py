@@ -12,6 +12,7 @@ import importlib
 import json
 import math
 import threading
+from collections import Counter
 from pathlib import Path
 from typing import Callable, NamedTuple, Sequence
 
@@ -63,8 +64,9 @@ def _line(study: Study, asked: Sequence[Run], rest: Callable[[], float], name: s
     for package in ("calibrate", "highfi", "h5py"):
         importlib.import_module(package)  # what is loaded in any case is no delay
     missing = [run for run in asked if not study.store.path(run).is_file()]
-    reference, seconds = in_time(lambda: (_reference(missing[0], pace(study)) if missing else None, rest())) or (None, None)
-    return words(len(missing), min(study.settings.workers, len(missing)), reference, work(name, seconds, bound))
+    together = min(study.settings.workers, len(missing))
+    reference, seconds = in_time(lambda: (_references(missing, together, pace(study)), rest())) or (None, None)
+    return words(len(missing), together, reference, work(name, seconds, bound))
 
 
 def work(name: str, seconds: float | None, bound: str = "about") -> str:
@@ -73,14 +75,14 @@ def work(name: str, seconds: float | None, bound: str = "about") -> str:
 
 
 def words(missing: int, together: int, reference: tuple[float, str] | None, after: str) -> str:
-    """The line: runs ``missing``, so many ``together``, seconds of one and where they are from, and what comes ``after``."""
+    """The line: runs ``missing``, so many ``together``, seconds of all and where they are from, and what comes ``after``."""
     if not missing:
         return f"no reference run to make; {after}"
     head = f"{missing} reference run{'s' if missing > 1 else ''} to make" + (f", {together} at a time" if together > 1 else "")
     if reference is None:
         return f"{head}: how long is not known, nothing like them was run; then {after}"
-    each, source = reference
-    return f"{head}: about {span(math.ceil(missing / together) * each)}{source}{_COMPILED if _is_cold() else ''}; then {after}"
+    seconds, source = reference
+    return f"{head}: about {span(seconds)}{source}{_COMPILED if _is_cold() else ''}; then {after}"
 
 
 def span(seconds: float) -> str:
@@ -124,6 +126,14 @@ def in_time(work: Callable):
     thread.start()
     thread.join(PATIENCE)
     return found[0] if found else None
+
+
+def _references(missing: Sequence[Run], together: int, known: Pace) -> tuple[float, str] | None:
+    """Seconds of all ``missing`` runs, so many ``together``, those of one mesh after those of another; None as for one of them."""
+    each = Counter(_reference(run, known) for run in missing)
+    if not each or None in each:
+        return None
+    return sum(math.ceil(count / together) * seconds for (seconds, _), count in each.items()), known.source
 
 
 def _reference(run: Run, known: Pace) -> tuple[float, str] | None:

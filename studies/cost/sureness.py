@@ -38,8 +38,9 @@ def coarsest(sizes: Sequence[float], uncertain: Sequence[float], error: float) -
 def sentence(found: dict) -> str:
     """The speed-up in words."""
     size, wall = f"{1e3 * found['element_size_m']:g} mm", f"{found['highfi_wall_s']:.3g} s"
-    mesh = (f"{size} is the coarsest mesh that is surer ({found['mesh_uncertainty_deg_s']:.2g})" if found["surer"]
-            else f"no mesh down to {size} is surer ({found['mesh_uncertainty_deg_s']:.2g})")
+    known = f"({found['mesh_uncertainty_deg_s']:.2g} by all meshes; penalty and quadrature not counted)"
+    mesh = (f"{size} is the coarsest mesh whose discretisation error is smaller {known}" if found["surer"]
+            else f"no mesh down to {size} has a smaller discretisation error {known}")
     least = "" if found["surer"] else "at least "
     ratio = f"{least}{found['ratio']:,.0f} times ({found['low']:,.0f} to {found['high']:,.0f})"
     return (f"speed at equal accuracy on {found['condition']}: on compliant walls the surrogate is within "

@@ -2,7 +2,7 @@
 asks.
 
 The surrogate is the calibrated one, with its constants laid over the scene, so that a case may vary them like any other number; or
-the one on walls that give way, to which nothing is fitted. A store that was left half filled is gone on with, and one that is whole
+the one on compliant walls, to which nothing is fitted. A store that was left half filled is gone on with, and one that is whole
 is only read; which of its cases are outside the calibration is judged, and kept in it, every time.
 """
 
@@ -19,6 +19,7 @@ from lowfi.store import StoreError
 from scenes.calibration import Calibration
 from scenes.scene import Scene
 from scenes.walls import Walls
+from studies import words
 from studies.populations import marks, regime
 from studies.progress import Board
 from studies.stages import calibrate
@@ -29,7 +30,7 @@ TOLERANCE = 1e-2  # relative error of a step: 95 % of reference cases within 0.2
 
 
 class Surrogate(NamedTuple):
-    """A scene whose contact constants are the calibrated ones, the calibration they come from, and walls that give way, rigid ones
+    """A scene whose contact constants are the calibrated ones, the calibration they come from, and compliant walls, rigid ones
     under a law where the rails are warm, or none.
 
     A scene without contact has none of them.
@@ -42,7 +43,7 @@ class Surrogate(NamedTuple):
     @property
     def words(self) -> str:
         """What pads touch, in words."""
-        return "calibrated springs" if self.calibration else "walls that give way" if self.walls else "no contact"
+        return words.touched(self.scene, self.calibration, self.walls)
 
     def at(self, overrides: dict[str, Any]) -> "Surrogate":
         """The same on a changed scene."""
@@ -78,7 +79,7 @@ def surrogate(study: Study, walls: bool = False, condition: str | None = None) -
 
 
 def on_springs(scene: Scene) -> Scene:
-    """The scene without rails that swing: only walls that give way know their modes."""
+    """The scene without rails that swing: only compliant walls know their modes."""
     return scene if scene.flexibility is None else scene.replace({"flexibility": None})
 
 

@@ -8,6 +8,7 @@ from lowfi import columns
 from lowfi.request import Ensemble
 from lowfi.rows import Drawn
 from lowfi.store import Store
+from studies import words
 from studies.populations import order_statistics
 
 SHARES = (0.05, 0.5, 0.95, 0.99, 0.9973)
@@ -24,7 +25,8 @@ def of(ensemble: Ensemble, store: Store) -> dict:
     status, settled, failures = store.column("status"), np.isfinite(store.column("exit_time")), store.failures()
     counts, why = columns.counts(status), _no_bounds(ensemble.source)
     values = {name: _values(store, *what)[settled] for name, what in _VALUES.items()} if settled.any() else {}
-    return {"counts": counts, "statuses": {name: int((status == code).sum()) for code, name in enumerate(columns.STATUSES)},
+    return {"surrogate": words.touched(ensemble.scene, ensemble.calibration, ensemble.walls), "counts": counts,
+            "statuses": {name: int((status == code).sum()) for code, name in enumerate(columns.STATUSES)},
             "settled": int(settled.sum()), "confidence": CONFIDENCE, "bounds": why or "order statistics of independent draws",
             "quantiles": {name: _quantiles(found, why is None) for name, found in values.items()},
             "cases": ensemble.source.identity, "provenance": _provenance(ensemble.source), "numerics": ensemble.numerics.as_dict(),
@@ -62,8 +64,8 @@ def _provenance(source) -> dict[str, str]:
 def lines(found: dict) -> list[str]:
     """The summary in words and units."""
     counts, run_ = found["counts"], found["run"]
-    said = [f"{found['scene']}, surrogate: {counts['asked']:,} cases = {counts['ok']:,} ok + {counts['refused']:,} refused + "
-            f"{counts['failed']:,} failed; {found['settled']:,} left the rail and settled"]
+    said = [f"{found['scene']}, surrogate on {found['surrogate']}: {counts['asked']:,} cases = {counts['ok']:,} ok + "
+            f"{counts['refused']:,} refused + {counts['failed']:,} failed; {found['settled']:,} left the rail and settled"]
     said += [f"  {item['status']}       case {item['case']}: {' '.join(item['reason'].split())}" for item in found["failures"]]
     for key, item in found["cases"].get("vary", {}).items():
         rule = f", rule {item['rule']}" if "rule" in item else ""

@@ -16,7 +16,7 @@ _MILLISECONDS = "time after ignition (ms)"
 
 
 class Runs(NamedTuple):
-    """Trajectories by condition: the reference, the surrogate before and after calibration, and on walls that give way (empty where
+    """Trajectories by condition: the reference, the surrogate before and after calibration, and on compliant walls (empty where
     there are none)."""
 
     highfi: dict[str, Trajectory]

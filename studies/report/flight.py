@@ -129,7 +129,7 @@ def _exceeded(many: dict, name: str, values: list[float], words: str, colour: st
 def _words(found: dict) -> str:
     flight = found["flight"]
     limit = "" if flight["pointing_limit_deg"] is None else f" The pointing limit is {flight['pointing_limit_deg']:g} deg."
-    model = "on walls that give way" if found["asked"]["walls"] else "calibrated"
+    model = "on compliant walls" if found["asked"]["walls"] else "calibrated"
     return (f"A target {flight['range_m']:g} m along the launch axis, at rest beside a circular orbit of "
             f"{flight['period_s'] / 60.0:.4g} min; surrogate {model}. Nothing acts after the exit but gravity.{limit}")
 

@@ -16,7 +16,7 @@ _SHARE = (" Dashed: those of them that are outside what the calibration was made
           "what settled.")
 _CONVERGENCE = ("Left: quantiles of each rate from the first cases, with their 95 % bounds from order statistics (dotted). "
                 "Right: half the width of these bounds; the grey lines fall with the root of the number of cases.")
-_MODELS = ("The same {cases:,} draws on calibrated springs and on walls that give way. On the grey line both agree; what lies off "
+_MODELS = ("The same {cases:,} draws on calibrated springs and on compliant walls. On the grey line both agree; what lies off "
            "it is the uncertainty of the model.{hollow}")
 _BOUNDS = ("Small: 95 % bounds from order statistics, which hold whatever the distribution is; a dash where the cases are too few "
            "for one. The second line of each is of the paper's number of cases.")

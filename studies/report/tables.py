@@ -27,7 +27,7 @@ def agreement(document: dict) -> Html:
               "rating of the three rates (1 is perfect); Sprague and Geers over the three rates together.")
     calibrated = [*document["fitted"], *document["held_out"]]
     return section("agreement-section", "Agreement with the reference",
-                   paragraph("On walls that give way as the statics of the rail has them, nothing fitted (the role is that of the "
+                   paragraph("On compliant walls as the statics of the rail has them, nothing fitted (the role is that of the "
                              "condition in the calibration of the other surrogates): " + summary(document["compliant"])),
                    judged(document["compliant"], "agreement"), caption(legend), _further(document["compliant"]), _simpler(document),
                    _stiffer(document["stiffer"]),

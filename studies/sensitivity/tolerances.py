@@ -137,9 +137,9 @@ def _idle(item: Input, scene: Scene, walls: bool) -> str | None:
     if table in ("contact", "friction") and getattr(scene, table) is None:
         return f"the scene has no {table}"
     if walls and item.key in _SPRINGS:
-        return "walls that give way have no such constant"
+        return "compliant walls have no such constant"
     if not walls and item.key == "contact.penalty":
-        return "only walls that give way use it"
+        return "only compliant walls use it"
     if item.key == "contact.exponent" and scene.contact.law == "linear":
         return "the law is linear"
     if item.nominal is None and (item.is_factor or table in ("contact", "friction", "thrust")):

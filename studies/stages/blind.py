@@ -13,7 +13,7 @@ from scenes import uncertainty
 from scenes.files import content_hash, source_hash
 from studies.agreement import verdicts
 from studies.agreement.verdicts import Context
-from studies.stages import calibrate, compare, walls
+from studies.stages import calibrate, compare
 from studies.store import SOURCES
 from studies.study import Study, require_success
 
@@ -35,7 +35,7 @@ def run(study: Study, asked: Asked = Asked()) -> dict:
     drawn."""
     drawn = draw(study, asked)
     ladder = [compare.Rung("calibrated", "surrogate, calibrated", calibrate.load(study)),
-              compare.Rung("compliant", "surrogate, compliant walls", walls=walls.under(drawn, drawn.conditions))]
+              compare.compliant(drawn, drawn.conditions)]
 
     def make() -> tuple[dict, list[Path]]:
         wanted = {name: drawn.highfi(name) for name in drawn.conditions}

@@ -41,7 +41,7 @@ class Rung(NamedTuple):
 
 def rungs(study: Study, conditions: Iterable[str] | None = None) -> list[Rung]:
     """The surrogates of a scene for ``conditions``, else for all, from the plainest up: with its own constants, with calibrated
-    ones, on walls that give way as statics has them, where nothing is fitted, and on the same with the lowest modes of the
+    ones, on compliant walls as statics has them, where nothing is fitted, and on the same with the lowest modes of the
     rails."""
     on_walls = compliant(study, study.conditions if conditions is None else conditions)
     return [Rung("uncalibrated", "surrogate, uncalibrated"), Rung("calibrated", "surrogate, calibrated", calibrate.load(study)),
@@ -49,7 +49,7 @@ def rungs(study: Study, conditions: Iterable[str] | None = None) -> list[Rung]:
 
 
 def compliant(study: Study, conditions: Iterable[str]) -> Rung:
-    """The surrogate on walls that give way, for ``conditions``."""
+    """The surrogate on compliant walls, for ``conditions``."""
     return Rung("compliant", COMPLIANT, walls=walls.under(study, conditions))
 
 
@@ -167,15 +167,23 @@ def clearances(study: Study) -> list[tuple[str, float]]:
 def refinements(study: Study) -> list[Spread]:
     """Spread of the reference under each refinement alone: the mesh from the coarse one to its own, on every condition, for one
     that is chaotic shows itself there; the others on the coarse one, where the scene asks for it."""
-    found = []
-    groups = {name: {"coarse": study.coarse(name), "mesh": study.highfi(name)}
-              | (refined(study, name) if name in study.scene.agreement.refined else {}) for name in study.conditions}
+    found, groups = [], _refinement_runs(study)
     runs = study.store.fill("refinement", [run for group in groups.values() for run in group.values()])
     for name, group in groups.items():
         _, *causes = group
         coarse, *changed = [runs.pop(0) for _ in group]
         found += [spread(name, "reference", cause, coarse, [one]) for cause, one in zip(causes, changed)]
     return found
+
+
+def asked_of_the_reference(study: Study) -> list[Run]:
+    """Every run from which ``refinements`` knows how sure the reference is, its own on every condition among them."""
+    return [run for group in _refinement_runs(study).values() for run in group.values()]
+
+
+def _refinement_runs(study: Study) -> dict[str, dict[str, Run]]:
+    return {name: {"coarse": study.coarse(name), "mesh": study.highfi(name)}
+            | (refined(study, name) if name in study.scene.agreement.refined else {}) for name in study.conditions}
 
 
 def refined(study: Study, name: str) -> dict[str, Run]:

@@ -49,7 +49,7 @@ def run(study: Study, condition: str | None = None) -> dict:
                 "meshes": [{"element_size_m": size, "elements": found.cost["elements"], "dt_s": found.cost["dt_s"],
                             "wall_s": found.cost["wall_s"]} for size, found in zip(study.settings.mesh_sizes, meshes)],
                 "quantities": judged, "penalty": penalty, "quadrature": quadrature, "ripple": ripples, "equal_accuracy": equal,
-                "summary": summary(name, judged, penalty, quadrature) + _told(ripples)
+                "summary": summary(name, judged, penalty, quadrature, study.settings.coarse_size) + told(ripples)
                 + ([sureness.sentence(equal)] if equal else [])}, []
 
     return study.stage(NAME, _key(study, name), make)
@@ -154,7 +154,7 @@ def _at_equal_accuracy(study: Study, name: str, judged: list[dict], meshes: list
                     "mesh_uncertainty_deg_s": mesh.uncertainty, "surer": mesh.surer}
 
 
-def _told(ripples: list[dict]) -> list[str]:
+def told(ripples: list[dict]) -> list[str]:
     """The ripple of the finest mesh in words, if there is one."""
     if not ripples:
         return []
@@ -171,17 +171,17 @@ def _compared(study: Study, title: str, name: str, heads: list[dict], asked: lis
                     "settled_rate_change_deg_s": verdicts.settled_change(nominal, found)} for head, found in zip(heads, runs)]
 
 
-def summary(condition: str, judged: list[dict], penalty: list[dict], quadrature: list[dict]) -> list[str]:
-    """What each table says of the settled rates, one line each."""
-    lines = []
-    for parameter, symbol, factor in (("element size", "mm", 1e3), ("time step", "ns", 1e9)):
+def summary(condition: str, judged: list[dict], penalty: list[dict], quadrature: list[dict], coarse_size: float) -> list[str]:
+    """What each table says of the settled rates, one line each; steps are those on elements of ``coarse_size`` (m)."""
+    lines, share = [], f"{Numerics().safety:g} of the critical step on elements of {1e3 * coarse_size:g} mm"
+    for parameter, symbol, factor, default in (("element size", "mm", 1e3, ""), ("time step", "ns", 1e9, f", {share}")):
         rows = [row for row in judged if row["parameter"] == parameter and row["quantity"].startswith(RATE)]
         worst = max(rows, key=lambda row: row["nominal_uncertainty"] or 0.0)
         if worst["uncertainty"] is None:
             lines.append(f"{parameter} on {condition}: a run did not settle, so nothing is known of its error")
             continue
         lines.append(f"{parameter} on {condition}: settled rates within {worst['nominal_uncertainty']:.2g} deg/s at the "
-                     f"{factor * worst['nominal_size']:.3g} {symbol} of every other stage, within "
+                     f"default {factor * worst['nominal_size']:.3g} {symbol}{default}, within "
                      f"{max(row['uncertainty'] for row in rows):.2g} deg/s at {factor * worst['sizes'][-1]:.3g} {symbol}")
     for title, key, rows in (("penalty stiffness, times", "factor", penalty),
                              ("Gauss points per facet edge,", "points_per_edge", quadrature)):

@@ -32,7 +32,7 @@ def _made(study: Study, calibration: Calibration) -> dict:
 
     roles, workers = _roles(study), study.settings.workers
     asked = {name: study.highfi(name) for name in roles}
-    say(f"  {forecast.posterior(study, list(asked.values()), len(study.fitted()))}")
+    say(f"  {forecast.posterior(study, compare.asked_of_the_reference(study), len(study.fitted()))}")
     references = dict(zip(asked, study.store.fill("highfi", list(asked.values()))))
     require_success(references, "draw a posterior")
     rigid = calibration_stage.rigid_walls(study, asked)

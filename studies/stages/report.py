@@ -15,7 +15,7 @@ from studies.report.answers import ANSWERS
 from studies.stages import ablation, calibrate, compare, convergence, cost, mesh, posterior, runs, stability, view, walls
 from studies.settings import defaults
 from studies.store import Run
-from studies.study import Study, StudyError, read
+from studies.study import INPUT_FAULTS, Study, StudyError, read
 
 STAGES: dict[str, Callable[[Study], dict]] = {
     "mesh": mesh.run, "highfi": lambda study: runs.run(study, "highfi"), "lowfi": lambda study: runs.run(study, "lowfi"),
@@ -64,18 +64,21 @@ def _made(study: Study) -> dict[str, str]:
         try:
             if module.stored(study) is None:
                 module.run(study)
-        except (SceneError, StudyError) as fault:
+        except (StudyError, ValueError) as fault:
+            if not isinstance(fault, (StudyError, SceneError)) and type(fault).__name__ not in INPUT_FAULTS:
+                raise
             reasons[name] = str(fault)
             say(f"{name}: not made\n{fault}")
     return reasons
 
 
 def beside(folder: Path) -> list[dict]:
-    """Agreement and constants of the catalogue's scenes whose folders lie beside ``folder``, made from the present code."""
-    found = []
+    """Agreement and constants of the catalogue's scenes with other rails or pads whose folders lie beside ``folder``, made from the
+    present code."""
+    found, own = [], scenes.load(folder.name).geometry_hash if folder.name in scenes.catalog() else None
     for path in sorted(folder.parent.glob("*/agreement.json")):
         name, size = path.parent.name, (read(path) or {}).get("element_size_m")
-        if path.parent == folder or name not in scenes.catalog() or size is None:
+        if name not in scenes.catalog() or scenes.load(name).geometry_hash == own or size is None:
             continue
         other = Study(scenes.load(name), path.parent, replace(defaults(name), element_size=size))
         if agreement := compare.stored(other):

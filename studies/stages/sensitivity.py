@@ -78,7 +78,7 @@ def _tables(study: Study, model: Surrogate, asked: Asked) -> list[dict]:
     """One table about the constants of the surrogate, and one about the scene's own where a calibration changed them."""
     if model.scene.contact is None:
         return []
-    titled = [("walls that give way" if asked.walls else "calibrated constants", model)]
+    titled = [("compliant walls" if asked.walls else "calibrated constants", model)]
     if not asked.walls and model.scene.contact != study.scene.contact:
         # A law stands on the same rigid walls whatever its constants are: where warm rails have moved them to.
         own = Surrogate(population.on_springs(study.scene), None, model.walls)

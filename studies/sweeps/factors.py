@@ -1,6 +1,6 @@
 """The errors that section 3 of the paper sweeps, one at a time, over size and direction, and what each would do to a free payload.
 
-A free payload of inertia I leaves with w = I^-1 L, where L = J (r x f) is the moment impulse of ``studies.populations.moments``.
+A free payload of inertia I leaves with w = I^-1 L, where L = J (r x f) is the moment impulse of ``scenes.moments``.
 On the reference scene that is 26 deg/s per millimetre of arm: the line that the rail bends. Gyroscopic moments are left out: they
 are quadratic in the rates.
 """

@@ -16,7 +16,8 @@ POINTS = [("rigid", 0.9, 0.002), ("rigid fine", 0.85, 0.004), ("compliant", 0.05
 
 
 COST = {"condition": "phi15", "band_deg_s": 0.02, "points": [
-    {"model": name, "rung": "highfi" if "mm" in name else name.split()[0], "numerics": "-", "setting": 1.0, "modes": None,
+    {"model": name, "rung": "highfi" if "mm" in name else name.split()[0], "numerics": "-",
+     "setting": 1e-3 * int(name[0]) if "mm" in name else 1e-6, "modes": None,
      "error_deg_s": error, "wall_s": wall, "status": "diverged" if name == "lost" else "exited"} for name, error, wall in POINTS]}
 
 
@@ -53,7 +54,8 @@ def agreement(error, unsure):
     rows = [{"condition": "phi60", "settled_rate_error_deg_s": 0.01, "reference_uncertainty_deg_s": 0.01},
             {"condition": "h8", "settled_rate_error_deg_s": error, "reference_uncertainty_deg_s": unsure}]
     simpler = [row | {"patterns": 1, "coupled": False} for row in rows]
-    return {"uncalibrated": rows, "fitted": rows[:1], "held_out": rows[1:], "compliant": rows, "modal": rows, "simpler": simpler}
+    return {"uncalibrated": rows, "fitted": rows[:1], "held_out": rows[1:], "compliant": rows, "modal": rows,
+            "simpler": simpler, "element_size_m": 2e-3}
 
 
 def test_what_holds_on_one_condition_is_not_promised_of_another():
@@ -62,8 +64,8 @@ def test_what_holds_on_one_condition_is_not_promised_of_another():
     assert found["trusted_deg_s"] == 0.02 and found["why"].endswith("errors on phi60 as make compare found them")
     with pytest.raises(StudyError, match="(?s)no model fits.*errors on h8 as make compare"):
         choose(COST, "h8", agreement(13.0, 9.0), 0.03)
-    rigid = choose(COST, "h8", agreement(13.0, 9.0), budget=0.01)  # a rung that is not judged there
-    assert rigid["trusted_deg_s"] == 0.85
+    nearest = choose(COST, "h8", agreement(13.0, 9.0), budget=0.01)  # a rung that is not judged there never counts
+    assert (nearest["model"], nearest["trusted_deg_s"]) == ("compliant", 13.0)
     with pytest.raises(StudyError, match="no model fits"):
         choose(COST, "h8", agreement(0.01, None), 0.03)
     for unknown in (None, agreement(13.0, 9.0)):
@@ -79,9 +81,22 @@ def test_other_modes_are_chosen_only_where_they_were_measured():
     assert choose(cost, "phi60", agreement(13.0, 9.0), 0.05)["model"] == "compliant"
 
 
+def test_what_is_not_known_elsewhere_is_never_chosen():
+    """A mesh coarser than any of the agreement study, and everything where a refinement did not settle. Control: a mesh it has."""
+    coarse = {"model": "8 mm", "rung": "highfi", "numerics": "-", "setting": 8e-3, "modes": None, "error_deg_s": 0.03,
+              "wall_s": 3.0, "status": "exited"}
+    meshes = COST | {"points": [coarse, *(point for point in COST["points"] if point["rung"] == "highfi")]}
+    assert choose(meshes, "phi15", None, 0.05)["model"] == "8 mm"
+    for limit in ({"accuracy": 9.5}, {"budget": 60.0}):
+        assert choose(meshes, "h8", agreement(13.0, 9.0), **limit)["model"] == "4 mm"
+    with pytest.raises(StudyError, match="error unknown"):
+        choose(COST, "h8", agreement(13.0, None), budget=60.0)
+
+
 def test_every_rung_is_known_elsewhere():
     found = elsewhere(agreement(13.0, 9.0), "h8")
-    assert found == {"uncalibrated": 13.0, "calibrated": 13.0, "compliant": 13.0, "modal": 13.0, "along": 13.0, "highfi": 9.0}
+    assert found == {"uncalibrated": 13.0, "calibrated": 13.0, "compliant": 13.0, "modal": 13.0, "along": 13.0, "highfi": 9.0,
+                     "coarsest_m": 4e-3}
 
 
 def test_nothing_is_chosen_without_measured_cost(tmp_path):

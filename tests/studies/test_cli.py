@@ -9,9 +9,11 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
+from scenes.scene import CATALOG
 from scenes.trajectory import Trajectory
 from studies import store as store_module
 from studies.cli import app
+from studies.helptext import flowed
 from tests.studies.synthetic import flight
 
 ROOT = Path(__file__).resolve().parent.parent.parent
@@ -96,7 +98,7 @@ def test_run_prints_the_outcome_with_units(tmp_path, monkeypatch):
     _stub(monkeypatch)
     result = call("run", "--scene", "tiny", "--condition", "phi15", "--fidelity", "highfi", "--out", tmp_path)
     assert result.exit_code == 0
-    assert "tiny / phi15, highfi: exited" in result.stdout
+    assert "tiny / phi15, finite elements of 8 mm: exited" in result.stdout
     assert "m/s (x, y, z)" in result.stdout and "deg/s (x, y, z)" in result.stdout
 
 
@@ -127,3 +129,16 @@ def test_real_process_has_no_traceback_and_answers_help_at_once(tmp_path):
     assert all(stage in answer.stdout for stage in STAGES)
     # The heavy libraries alone take more than a second to import, so this fails as soon as one of them creeps in.
     assert time.monotonic() - started < 1.0
+
+
+def test_help_flows_but_examples_keep_their_lines():
+    assert flowed("First line.\n\nSome prose\nthat goes on.\n\n  [table]\n  key = 1\n") == (
+        "First line.\n\nSome prose that goes on.\n\n  [table]\n  key = 1")
+    shown = CliRunner().invoke(app, ["ensemble", "--help"], env={"COLUMNS": "100", "TERM": "dumb"}).stdout
+    assert 'mean = "9.9 kg"' in shown and "# that case alone" in shown
+
+
+def test_a_scene_of_the_catalogue_is_shown_as_it_is_written():
+    assert CliRunner().invoke(app, ["scenes", "--show", "tiny"]).stdout == (CATALOG / "tiny.toml").read_text()
+    refused = CliRunner().invoke(app, ["scenes", "--show", "nowhere"])
+    assert refused.exit_code == 2 and "reference" in refused.stderr

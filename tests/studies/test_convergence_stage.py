@@ -105,7 +105,7 @@ def test_values_without_order_are_told_apart(study):
     assert y["order"] is None and "not monotone" in y["method"]
     assert y["uncertainty"] == pytest.approx(1.5 * 0.3)
     assert row(found, "element size", "settled rate z")["method"] == "no change at all"
-    assert found["summary"][0] == ("element size on phi15: settled rates within 0.75 deg/s at the 8 mm of every other stage, "
+    assert found["summary"][0] == ("element size on phi15: settled rates within 0.75 deg/s at the default 8 mm, "
                                    "within 0.45 deg/s at 4 mm")
 
 

@@ -46,7 +46,7 @@ def test_a_scene_outside_its_calibration_is_said_once(tmp_path):
     scene = load("reference")
     found = Calibration({}, [], [], [], [], [], [], np.empty((0, 0)), [], {}, [], 0.0,
                         validity.ranges([scene.loads]), {"geometry_hash": scene.geometry_hash})
-    for changed, count in ({}, 0), ({"thrust.peak": "9 kN"}, 3):
+    for changed, count in ({}, 0), ({"thrust.peak": "9 kN"}, 4):
         study = Study(scene.replace(changed), tmp_path, Settings())
         with pytest.MonkeyPatch.context() as patch:
             said = []

@@ -40,8 +40,8 @@ def test_times_are_said_to_a_tenth(seconds, said):
 def test_the_line_counts_waves_of_runs():
     """Five runs of 33 s, two at a time, are three waves."""
     after = forecast.work("the search", 20.0)
-    assert forecast.words(5, 2, (33.0, ""), after).startswith("5 reference runs to make, 2 at a time: about 1 min 40 s")
-    assert forecast.words(5, 2, (33.0, ""), after).endswith("; then the search, about 20 s")
+    assert forecast.words(5, 2, (99.0, ""), after).startswith("5 reference runs to make, 2 at a time: about 1 min 40 s")
+    assert forecast.words(5, 2, (99.0, ""), after).endswith("; then the search, about 20 s")
     assert forecast.words(1, 1, (33.0, ""), after).startswith("1 reference run to make: about 35 s")
     assert forecast.words(0, 0, None, after) == "no reference run to make; the search, about 20 s"
     assert forecast.words(2, 2, None, forecast.work("the search", None)).endswith("was run; then the search")

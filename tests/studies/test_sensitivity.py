@@ -91,7 +91,7 @@ def test_the_command(tiny, tmp_path, monkeypatch):
 
 def test_tables_of_warm_rails_stand_on_the_walls_of_the_model(tmp_path, monkeypatch):
     """Both the calibrated constants and the scene's own, without rails that swing; constants of the law are moved, not the
-    penalty of walls that give way."""
+    penalty of compliant walls."""
     asked = []
 
     def run(_study, _name, model, source, _tolerance):
