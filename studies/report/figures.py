@@ -129,8 +129,8 @@ def _front(cost: dict) -> Line:
 def _cost_line(points: list[dict], error: str, model: str, colour: str, marker: str, dash: str) -> Line:
     """One model; tolerances are labelled only where they matter, in the panel of the time integration, and once for all models,
     numbers of modes wherever they are varied."""
-    labels = [point["numerics"].split(",")[0].removeprefix("tolerance ") for point in points]
     varied = any(point["modes"] for point in points)
+    labels = [str(point["modes"]) if varied else point["numerics"].split(",")[0].removeprefix("tolerance ") for point in points]
     if "surrogate" in model and not varied and (error != "integration_error_deg_s" or "compliant" not in model):
         labels = [""] * len(labels)
     return Line([p["wall_s"] for p in points], [p[error] for p in points], model, colour, 1.6, dash, marker=marker,
