@@ -99,6 +99,6 @@ def _refusal(points: list[dict], accuracy: float | None, budget: float | None) -
         best = min(exact, key=lambda point: point["wall_s"])
         nearest.append(("fastest of all: " if accuracy is None else "cheapest that is so exact: ") + words(best))
     if not nearest:
-        nearest = ["most exact of all: " + words(min(points, key=lambda p: p["trusted_deg_s"])),
+        nearest = ["most exact of all: " + words(min(points, key=lambda p: (p["trusted_deg_s"], p["wall_s"]))),
                    "fastest of all: " + words(min(points, key=lambda p: p["wall_s"]))] if points else ["no model settled"]
     return f"no model fits {asked}\n  " + "\n  ".join(nearest)

@@ -117,3 +117,8 @@ def test_a_model_is_not_both_given_and_chosen(tmp_path, option):
 def test_bad_limits_are_refused(tmp_path, options, words):
     result = CliRunner().invoke(app, ["run", "--scene", "tiny", "--out", str(tmp_path), *options])
     assert result.exit_code == 2 and options[0] in result.stderr and words in result.stderr
+
+
+def test_refusal_of_both_limits_names_the_fastest_of_the_most_exact():
+    with pytest.raises(StudyError, match="(?s)most exact of all: compliant fine, - .*fastest of all: rigid, - "):
+        choose(COST, "phi15", None, accuracy=0.001, budget=0.001)
