@@ -110,7 +110,7 @@ def _pair(row: dict) -> str:
 
 
 def _number(value: float | None) -> str:
-    return "-" if value is None else f"{value:.2g}"
+    return "-" if value is None else f"{value:.2g}" if abs(value) < 99.5 else f"{value:.0f}"
 
 
 def _speed(agreement: dict) -> str:
