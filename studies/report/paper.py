@@ -39,17 +39,20 @@ def draw(found: dict, figure: Callable[[Chart, str], Html]) -> Html:
 
 _TRADED = ("Where searches ended, each with all three: the largest error of the nine printed rates, the largest error of their 54 "
            "deviations, and the largest rate of conditions 1 and 5, two in each panel. Squares were asked for three conditions, "
-           "circles for all five; the diamond has the least misfit. A set has all three only if it lies low and left in every "
-           "panel. The line of the first panel is the front of all that searches met on their way, whatever the deviations there.")
+           "circles for all five; the diamond has the least misfit, the triangle is the catalogue's. A set has all three only if "
+           "it lies low and left in every panel. The line of the first panel is the front of all that searches met on their way, "
+           "whatever the deviations there.")
 _BESIDE = "Printed rates (left) and deviations (right) against those of the best set; on the line they agree."
 
 
 def in_catalogue(found: dict) -> str:
     """Whether the best set is the catalogue's, in words."""
-    kept = found["catalogue"]
+    kept, known = found["catalogue"], found["known"]
     if kept["same"]:
         return f"It is the catalogue's scene {kept['name']}."
-    return f"It is not the catalogue's scene {kept['name']}, which another run found ({kept['description'].rstrip('.')})."
+    return (f"It is not the catalogue's scene {kept['name']}, which another run found; here that misses a printed rate by at most "
+            f"{known['largest_error_deg_s']:.2g} deg/s and a deviation by {known['largest_deviation_error_deg_s']:.2g} deg/s, and "
+            f"its largest rate on conditions 1 and 5 is {known['largest_negligible_deg_s']:.2g} deg/s.")
 
 
 def admissible(found: dict) -> str:
@@ -86,6 +89,9 @@ def _traded(found: dict, title: str, across: tuple[str, str], upwards: tuple[str
     front, best = np.array(found["front"]), found["searches"][found["best"]]
     lines = [Line(front[:, 0], front[:, 1], "front of all met", TEAL)] if (across, upwards) == (_NINE, _QUIET) else []
     lines.append(Line([best[across[0]]], [best[upwards[0]]], "best of all", VERMILION, dash="", marker="D", size=17.0))
+    known = found["known"]
+    lines.append(Line([known[across[0]]], [known[upwards[0]]], f"the catalogue's {known['name']}", TEAL, dash="", marker="^",
+                      size=11.0))
     for asked, name, colour, marker in ((False, "three conditions asked", GREY, "s"), (True, "all five asked", NAVY, "o")):
         ends = [(item[across[0]], item[upwards[0]]) for item in found["searches"] if bool(item["stress"]) is asked]
         lines += [Line(*zip(*ends), f"ended, {name}", colour, dash="", marker=marker)] if ends else []

@@ -16,7 +16,7 @@ from scenes.files import content_hash, source_hash, write_json, write_text
 from scenes.scene import Scene, load
 from studies import published
 from studies.inference import inputs, misfit, solutions, toml
-from studies.paper import exits, results, told
+from studies.paper import exits, known, results, told
 from studies.progress import Board, team
 from studies.report import paper as drawn
 from studies.report.chart import to_files
@@ -63,6 +63,7 @@ def run(study: Study, asked: Asked = Asked()) -> dict:
                   "negligible_deg_s": misfit.NEGLIGIBLE, "scatter_deg_s": misfit.SCATTER.tolist(),
                   "searches": [told.summary(item) for item in found], "best": found.index(best),
                   "inputs": told.ranges(found, best), "admissible": told.counted(found), "exit": exits.told(left),
+                  "known": known.errors(load(CATALOGUED), asked.plan.tolerances[-1]),
                   "front": told.front(found).tolist(), "slips": published.slips(),
                   "headline": published.headline(), "scene_file": study.relative(path), "data": study.relative(data)}
         pictures = [file for chart in drawn.charts(result) for file in to_files(chart, study.path("figures"))]

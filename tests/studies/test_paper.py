@@ -16,6 +16,7 @@ from lowfi.numerics import Numerics
 from scenes.faults import SceneError
 from studies import published
 from studies.inference import inputs, misfit, solutions, toml
+from studies.paper import known
 from studies.progress import Interrupted
 from studies.report import paper as section
 from studies.settings import Settings
@@ -150,6 +151,9 @@ def test_catalogue_scene_gives_the_printed_rates():
     errors = np.sort(np.abs(misfit.nine(found)).ravel())
     assert errors[7] < 0.2 and f"within {errors[8]:.2g} deg/s" in kept.description
     assert solutions.largest_negligible(found) < 0.4 and kept.provenance["thrust.arm"] == "inferred"
+    told = known.errors(kept, 1e-5)
+    assert told["largest_error_deg_s"] == errors[8] and told["largest_negligible_deg_s"] == solutions.largest_negligible(found)
+    assert told["largest_deviation_error_deg_s"] > 1.0  # what it pays: its rates hang on the damping depth
     assert np.abs(misfit.nine(rates(BASE))).max() > 3.0
 
 
