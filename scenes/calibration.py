@@ -47,7 +47,7 @@ class Calibration:
                               if getattr(scene, key.split(".")[0], "unknown") is not None})
 
     def outside(self, scene: Scene) -> list[str]:
-        """In words, where ``scene`` lies outside what the constants were found for: thrust, speed, clearance, rail, pads."""
+        """In words, where ``scene`` is outside what the constants were found for (``scenes.validity``)."""
         return validity.outside(scene, self.valid, self.provenance.get("geometry_hash"))
 
     def save(self, path: str | Path) -> None:
