@@ -12,7 +12,7 @@ ASKED = --scene $(SCENE) --out $(OUT)
 READY = .venv/.ready
 
 .DEFAULT_GOAL := help
-.PHONY: help mesh highfi lowfi calibrate posterior compare blind cost stability ablation ensemble sensitivity sweeps montecarlo limits flight droptest paper report view pictures convergence rails full-report bench test test-slow clean
+.PHONY: help mesh highfi lowfi calibrate compare blind cost stability ablation ensemble sensitivity sweeps montecarlo limits flight droptest paper report view pictures convergence rails full-report bench test test-slow clean
 
 help: ## print this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## /{printf "  make %-12s %s\n", $$1, $$2}' Makefile
@@ -29,9 +29,6 @@ lowfi: $(READY) ## run the rigid surrogate
 
 calibrate: $(READY) ## fit the surrogate's contact constants to the reference
 	$(TIPOFF) calibrate $(ASKED)
-
-posterior: $(READY) ## what the constants and the exit rates may be, given that the surrogate is wrong (minutes)
-	$(TIPOFF) posterior $(ASKED)
 
 compare: $(READY) ## agreement of both, fitted and held-out conditions, beside the floor
 	$(TIPOFF) compare $(ASKED)

@@ -1,9 +1,8 @@
-"""Reference curves to surrogate constants, with what the curves cannot tell said beside them."""
+"""The contact of the surrogate from the finite elements: rail compliance from statics, constants of springs from curves."""
 
 from calibrate.curves import Curves
 from calibrate.faults import CalibrationError
-from calibrate.posterior import posterior
-from calibrate.posterior_record import Posterior, disturbed, draws
+from calibrate.rail_compliance import compliance
 from calibrate.run import run
 
-__all__ = ["CalibrationError", "Curves", "Posterior", "disturbed", "draws", "posterior", "run"]
+__all__ = ["CalibrationError", "Curves", "compliance", "run"]

@@ -17,24 +17,19 @@ from scenes.trajectory import Trajectory
 
 COLUMNS = {"time": "s", "velocity_x": "m/s", "rate_x": "rad/s", "rate_y": "rad/s", "rate_z": "rad/s"}
 LONGEST_STEP = 0.5 * SETTLE_WINDOW  # s; a touch lasts milliseconds, and the settled window must hold samples of its own
-_SAME_TOUCH = 1e-3  # s
 _ROUNDING = 1e-9  # s; a record of exactly the window counts as one
 
 
 class Curves(NamedTuple):
     """From ignition to the end of the settled window: time (n,) s, inertial v_x in scene axes (n,) m/s, inertial rates in body axes
-    (n,3) rad/s; start of the window (s), means over it of the rates (3,) rad/s and of v_x (m/s); where the curves come from, in
-    words; and the largest force on a pad (N) and how often one touched, where they are known."""
+    (n,3) rad/s; start of the window (s), means over it of the rates (3,) rad/s; where the curves come from, in words."""
 
     time: np.ndarray
     velocity: np.ndarray
     rate: np.ndarray
     window_start: float
     settled: np.ndarray
-    speed: float
     source: str
-    pad_force: float | None = None
-    touches: int | None = None
 
     @classmethod
     def from_trajectory(cls, run: Trajectory) -> "Curves":
@@ -42,8 +37,7 @@ class Curves(NamedTuple):
         start = run.outcome.window_start
         keep = _until(run.time, start)
         return cls(run.time[keep], run.velocity[keep, 0], run.rate[keep], start, np.array(run.outcome.rate),
-                   run.outcome.velocity[0], f"{run.fidelity} {run.numerics}", float(np.linalg.norm(run.pad_force, axis=2).max()),
-                   touches(run))
+                   f"{run.model} {run.numerics}")
 
     @classmethod
     def read_csv(cls, path: str | Path, settled_from: float | None = None) -> "Curves":
@@ -65,15 +59,8 @@ class Curves(NamedTuple):
         rate = np.column_stack([found[name] for name in ("rate_x", "rate_y", "rate_z")])
         start = max(time[0], time[-1] - SETTLE_WINDOW) if settled_from is None else settled_from
         keep = _until(time, start)
-        means = _mean(time, np.column_stack([velocity, rate]), start)
-        return cls(time[keep], velocity[keep], rate[keep], float(start), means[1:], float(means[0]),
+        return cls(time[keep], velocity[keep], rate[keep], float(start), _mean(time, rate, start),
                    f"{path}, SHA-256 {hashlib.sha256(data).hexdigest()}, settled from {1e3 * start:.6g} ms")
-
-
-def touches(run: Trajectory) -> int:
-    """How often a pad face began to touch, over all of them; one that lifts off for less than a millisecond did not leave."""
-    pressed = (run.pad_force != 0.0).any(axis=2)
-    return sum(1 + int((np.diff(run.time[face]) > _SAME_TOUCH).sum()) for face in pressed.T if face.any())
 
 
 def _until(time: np.ndarray, start: float) -> np.ndarray:

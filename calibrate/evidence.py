@@ -1,5 +1,4 @@
-"""What stands beside calibrated constants: residuals per condition, open directions, the range they were found in, and from
-what."""
+"""What stands beside calibrated constants: residuals per condition, open directions, and what they were found from."""
 
 import math
 
@@ -11,7 +10,6 @@ from calibrate.intervals import half_widths, independent
 from calibrate.objective import Parts, Target
 from calibrate.parameters import Parameter
 from calibrate.search import Found, Plan
-from scenes import validity
 from scenes.scene import Scene
 
 _ON_BOUND = 1e-3  # share of the bounds within which a value counts as lying on one
@@ -69,13 +67,6 @@ def _on_bound(shares: np.ndarray) -> np.ndarray:
     return (shares <= _ON_BOUND) | (shares >= 1.0 - _ON_BOUND)
 
 
-def valid(scene: Scene, references: dict[str, Curves]) -> dict[str, list[float]]:
-    """Smallest and largest of what the constants were found for, over the conditions used (SI)."""
-    return validity.ranges([
-        scene.condition(name).loads | {"exit_speed_m_s": reference.speed, "pad_force_peak_n": reference.pad_force}
-        for name, reference in references.items()])
-
-
 def provenance(scene: Scene, references: dict[str, Curves], constants: dict[str, float], found: Found, plan: Plan, seed: int,
                evaluations: int, count: float) -> dict[str, str]:
     """Where the constants come from, in words and hashes."""
@@ -83,7 +74,6 @@ def provenance(scene: Scene, references: dict[str, Curves], constants: dict[str,
     ends = "; ".join(f"{value:.6g} at " + ", ".join(f"{share:.4f}" for share in shares) for value, shares in found.basins)
     return {
         "scene": scene.name, "scene_hash": scene.hash,
-        "geometry_hash": scene.geometry_hash,
         "contact_law": f"{scene.contact.law}, k = {constants['contact.stiffness']:.6g} N/m^{exponent:.6g}",
         "references": ", ".join(f"{name}: {item.source}" for name, item in references.items()),
         "search": f"{plan.points} Sobol' points, {plan.starts} starts of CMA-ES, least squares; {evaluations} evaluations; "

@@ -18,7 +18,6 @@ import numpy as np
 import lowfi
 from calibrate.curves import Curves
 from calibrate.faults import CalibrationError
-from calibrate.motion import Motion
 from calibrate.parameters import Parameter, overrides
 from scenes.scene import Scene
 from scenes.trajectory import Trajectory
@@ -74,7 +73,7 @@ class Parts(NamedTuple):
         return np.concatenate([VELOCITY_WEIGHT * self.velocity, self.rate.ravel(), self.settled])
 
 
-def compare(target: Target, result: Trajectory | Motion) -> Parts:
+def compare(target: Target, result: Trajectory) -> Parts:
     """Residuals of a surrogate's run of the target's condition."""
     root = np.sqrt(target.weights)
     moving, turning, leaving = target.amplitudes
@@ -92,14 +91,13 @@ class Objective:
     """Residuals as a function of the parameters' shares (0..1 of their bounds); counts its evaluations.
 
     ``over`` applies a function to every condition, in order: ``map``, or that of a pool of threads, since the surrogate's kernels
-    release the interpreter. No bit of the result depends on the choice. ``run`` is the surrogate, or ``calibrate.motion.run``.
-    ``walls`` are rigid ones, where the rails are warm.
+    release the interpreter. No bit of the result depends on the choice. ``walls`` are rigid ones, where the rails are warm.
     """
 
     def __init__(self, scene: Scene, targets: dict[str, Target], parameters: list[Parameter], numerics=None, over: Callable = map,
-                 run: Callable = lowfi.run, walls: Walls | None = None):
+                 walls: Walls | None = None):
         self.scene, self.targets, self.parameters = scene, targets, parameters
-        self.numerics, self.over, self.run, self.walls = numerics, over, run, walls
+        self.numerics, self.over, self.walls = numerics, over, walls
         self.variations = {name: Variations(wanted.scene) for name, wanted in targets.items()}
         self.evaluations = 0
 
@@ -115,7 +113,7 @@ class Objective:
 
         def one(name: str) -> Parts:
             return compare(self.targets[name],
-                           self.run(self.variations[name].of(changed), numerics=self.numerics, walls=self.walls))
+                           lowfi.run(self.variations[name].of(changed), numerics=self.numerics, walls=self.walls))
 
         return dict(zip(self.targets, self.over(one, self.targets)))
 

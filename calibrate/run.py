@@ -55,7 +55,6 @@ def run(scene: Scene, references: dict[str, Trajectory | Curves], numerics=None,
         residuals={name: evidence.residuals(part, wanted[name]) for name, part in residuals.items()},
         conditions=list(curves),
         objective=found.value,
-        valid=evidence.valid(scene, curves),
         provenance=evidence.provenance(scene, curves, constants, found, plan, seed, objective.evaluations + wide.evaluations,
                                        count),
     )

@@ -27,11 +27,10 @@ from highfi.pressure import Pressed, pressed
 from highfi.run import prepare
 from highfi.statics import Clamped
 from scenes import model as scene_model
-from scenes.effects.flexibility import MOST
 from scenes.effects.thermal import FIELDS
 from scenes.rail import MaterialTable
 from scenes.scene import Scene
-from scenes.walls import PATTERNS, Walls, digest
+from scenes.walls import MODES, PATTERNS, Walls, digest
 
 _BATCH = 64  # loads solved for at once; bounds the memory
 _DIGITS = 9  # of a place in m: faces whose places agree in them share one solution
@@ -57,7 +56,7 @@ class Compliance(NamedTuple):
     warm: np.ndarray
 
 
-def walls(scene: Scene, element_size: float, spacing: float = _SPACING, modes: int = MOST) -> Walls:
+def walls(scene: Scene, element_size: float, spacing: float = _SPACING, modes: int = MODES) -> Walls:
     """Flexibility and lowest ``modes`` of the rails of ``scene`` in elements of about ``element_size`` (m), at stations about
     ``spacing`` (m) apart from ignition until the last pad begins to leave.
 

@@ -26,6 +26,7 @@ from highfi.system import System, build, initial_state
 from highfi.team import gather, processors
 from scenes import ledger, outcome, rotation
 from scenes.effects.friction import require_two_step
+from scenes.fidelity import FINITE_ELEMENTS
 from scenes.scene import Scene
 from scenes.trajectory import Trajectory
 
@@ -252,7 +253,7 @@ class Loop:
                   "friction_power_max": float(-friction.min()), "friction_step_ratio": float(self.damping)}
         pressed = outcome.pressed_at_ignition(self.system.faces, self.forces[0]) if self.forces else ""
         message = "; ".join(filter(None, [self.message, pressed]))
-        return Trajectory(fidelity="highfi", status=status, message=message, **moved._asdict(),
+        return Trajectory(model=FINITE_ELEMENTS, status=status, message=message, **moved._asdict(),
                           pad_force=np.array(self.forces), energy=total, transverse_energy=transverse, outcome=result,
                           checks=checks, cost=cost, scene=self.scene.resolved(), numerics=numerics.as_dict(),
                           stress=None if self.message else self._stress(),

@@ -8,7 +8,7 @@ import numpy as np
 
 from lowfi import bow, march, plan, settle, state, system
 from lowfi.numerics import Numerics
-from lowfi.run import end_of, run
+from lowfi.run import end_of, solved
 from lowfi.walls import record as wall_record
 from scenes import model as models
 from scenes import outcome
@@ -17,7 +17,7 @@ from scenes.faults import SceneError
 from scenes.model import Built
 from scenes.scene import Scene
 from scenes.variation import Variations
-from scenes.walls import Walls, require_modes
+from scenes.walls import Walls
 
 _STATUS = {settle.EXITED: "exited", settle.TIME_LIMIT: "time_limit"}
 
@@ -77,8 +77,6 @@ class Family:
 
     def _require_walls(self, built: Built) -> None:
         scene, base = built.scene, self.base.scene
-        if scene.flexibility is not base.flexibility:
-            require_modes(scene, self.walls)
         if self.walls is not None and not (scene.rail is base.rail and scene.pads is base.pads):
             self.walls.require(scene)
         if scene.thermal is not base.thermal:
@@ -87,7 +85,7 @@ class Family:
     def _group(self, groups: dict, built: Built) -> _Group:
         scene, model = built.scene, built.model
         key = (id(scene.thrust), scene.duration, id(scene.output), id(model.contact), id(model.friction), id(model.gravity),
-               id(model.platform), id(model.thermal), id(built.nominal), model.thrust_offset is None, model.flexibility)
+               id(model.platform), id(model.thermal), id(built.nominal), model.thrust_offset is None)
         if key not in groups:
             same = scene.thrust is self.base.scene.thrust and scene.duration == self.base.scene.duration
             marks = self.marks if same else outcome.milestones(scene, model)
@@ -113,7 +111,7 @@ class Family:
 
     def _kernel(self, group: _Group) -> Callable[[], np.ndarray]:
         model, planned, marks = group.built.model, group.plan, group.marks
-        under_pads = wall_record.under_pads(group.built.scene, model, self.walls)
+        under_pads = wall_record.under_pads(group.built.scene, model, self.walls, self.numerics.modes)
         under_law = bow.under_pads(group.built.scene, model, self.walls)
         common, first = system.build(model, ledger=False, walls=under_pads, bow=under_law), plan.first_step(planned)
         ends = settle.Ends(end_of(group.built.scene), marks.settled_thrust, marks.spent_thrust, marks.constant_thrust,
@@ -148,7 +146,7 @@ class Family:
 
     def _whole(self, row: Mapping[str, Any]) -> Case:
         try:
-            found = run(self.scene.replace(row), calibration=self.calibration, numerics=self.numerics, walls=self.walls)
+            found = solved(self.scene.replace(row), self.calibration, self.numerics, walls=self.walls)
         except SceneError as error:
             return Case("refused", str(error), outcome.Outcome(), 0, 0.0)
         return Case(found.status, found.message, found.outcome, found.cost["steps"], found.cost["wall_s"])

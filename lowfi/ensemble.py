@@ -2,7 +2,6 @@
 so the worker count changes no bit."""
 
 import os
-import warnings
 from collections import deque
 from concurrent.futures import ThreadPoolExecutor
 from itertools import chain
@@ -13,12 +12,12 @@ import numpy as np
 
 from lowfi import columns
 from lowfi.batch import Case, Family
+from lowfi.models import require
 from lowfi.numerics import Numerics
 from lowfi.rows import Drawn, Listed
-from lowfi.run import run
 from scenes.calibration import Calibration
+from scenes.fidelity import COMPLIANT
 from scenes.scene import Scene
-from scenes.trajectory import Trajectory
 from scenes.uncertainty import Uncertainty
 from scenes.walls import Walls
 
@@ -29,26 +28,18 @@ _AXES = ("x", "y", "z")
 PIECE = 256  # cases set up together: enough for the calls to cost nothing, few enough for memory to stay flat
 
 
-def curves(scenes: Sequence[Scene], numerics: Numerics | None = None, workers: int | None = None) -> list[Trajectory]:
-    """One Trajectory per scene, in their order. ``workers`` threads (absent: one per core)."""
-    with ThreadPoolExecutor(_workers(workers)) as pool:
-        return list(pool.map(lambda scene: run(scene, numerics=numerics), scenes))
-
-
-def run_many(scene: Scene, table: Sequence[Mapping[str, Any]] | Uncertainty, calibration: Calibration | None = None,
-             workers: int | None = None, store: str | Path | None = None, numerics: Numerics | None = None,
-             walls: Walls | None = None) -> "xarray.Dataset":
+def run_many(scene: Scene, table: Sequence[Mapping[str, Any]] | Uncertainty, model: str = COMPLIANT, *, walls: Walls | None = None,
+             calibration: Calibration | None = None, numerics: Numerics | None = None, workers: int | None = None,
+             store: str | Path | None = None) -> "xarray.Dataset":
     """Run ``scene`` once per row of ``table``, a row being dotted overrides as in ``Scene.replace``, or per draw of an Uncertainty.
 
-    The values are those of ``lowfi.run`` to the last bit, with its ``calibration`` and ``walls``; no curves are kept. A row the
-    scene refuses has the status ``refused`` and the reason as its message; the others run. Settled values are NaN where a run has
-    none. ``wall_s`` of a case is its share of the piece it ran in. The attributes count ``asked = ok + refused + failed``, failed
-    being the diverged. With a ``store``, a folder, cases go there chunk by chunk and what it holds already is not run again
-    (``lowfi.fill``, which needs no room for all results); it has no ``wall_s``. Warns where ``scene``, before any override, lies
-    outside what the calibration was made for.
+    The values are those of ``lowfi.run`` to the last bit, with its ``model``, ``walls`` and ``calibration``; no curves are kept.
+    A row the scene refuses has the status ``refused`` and the reason as its message; the others run. Settled values are NaN where
+    a run has none. ``wall_s`` of a case is its share of the piece it ran in. The attributes count ``asked = ok + refused +
+    failed``, failed being the diverged. With a ``store``, a folder, cases go there chunk by chunk and what it holds already is
+    not run again (``lowfi.fill``, which needs no room for all results); it has no ``wall_s``.
     """
-    for words in calibration.outside(scene) if calibration else ():
-        warnings.warn(f"outside the calibration: {words}", stacklevel=2)
+    require(scene, model, walls, calibration, numerics)
     source, numerics = Drawn(table) if isinstance(table, Uncertainty) else Listed(table), numerics or Numerics()
     if store is not None:
         from lowfi.request import Ensemble

@@ -3,6 +3,8 @@
 import math
 from dataclasses import asdict, dataclass
 
+from scenes.walls import MODES
+
 # A step of 0.1 % relative error is no longer a solution; below 1e-13 rounding decides.
 _COARSEST, _FINEST = 1e-2, 1e-13
 
@@ -12,12 +14,14 @@ class Numerics:
     """Error control of one run.
 
     ``relative_tolerance``: local error of a step, relative to the speeds of the body; ``speed_floor`` (m/s): speeds below it count
-    as this much, so it is the absolute tolerance divided by the relative one; ``maximum_steps``: a run that needs more is given up.
+    as this much, so it is the absolute tolerance divided by the relative one; ``maximum_steps``: a run that needs more is given up;
+    ``modes``: how many of the lowest modes of each rail vibrate on compliant contact, 0 for a rail without inertia.
     """
 
     relative_tolerance: float = 2e-7
     speed_floor: float = 1e-3
     maximum_steps: int = 500_000
+    modes: int = 0
 
     def __post_init__(self):
         faults = []
@@ -27,6 +31,8 @@ class Numerics:
             faults.append(f"speed_floor: given {self.speed_floor!r}, expected a speed above zero (m/s)")
         if not (isinstance(self.maximum_steps, int) and self.maximum_steps > 0):
             faults.append(f"maximum_steps: given {self.maximum_steps!r}, expected a whole number above zero")
+        if not (type(self.modes) is int and 0 <= self.modes <= MODES):
+            faults.append(f"modes: given {self.modes!r}, expected a whole number from 0 to {MODES}")
         if faults:
             raise ValueError("; ".join(faults))
 

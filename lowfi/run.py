@@ -1,22 +1,24 @@
 """One run of the surrogate: set-up, the sampled time loop, and the Trajectory it leaves."""
 
 import time as clock
-from typing import Callable, Sequence
+from typing import Callable
 
 import numpy as np
 
 from lowfi import balance, bow, march, plan, state, system
 from lowfi.accuracy import Tolerance
 from lowfi.march import EVALUATIONS, EVENTS, LIMIT, LIMIT_USED, NOW, REJECTED, STEPS, TAKEN
+from lowfi.models import require
 from lowfi.numerics import Numerics
 from lowfi.walls import record as wall_record
 from lowfi.sample import SAMPLE_SIZE, relative_axial_speed
 from scenes import model as models
 from scenes import outcome
 from scenes.calibration import Calibration
+from scenes.fidelity import COMPLIANT
 from scenes.scene import Scene
 from scenes.trajectory import Trajectory
-from scenes.walls import Walls
+from scenes.walls import Walls, model_of
 
 _REASONS = {march.UNDERFLOW: "no step is short enough: the state is no longer finite or its equations too stiff",
             march.NOT_FINITE: "a value became infinite",
@@ -24,17 +26,23 @@ _REASONS = {march.UNDERFLOW: "no step is short enough: the state is no longer fi
 _BEYOND_WINDOW = 2  # samples past the settled window, for the spline that averages over it
 
 
-def run(scene: Scene, calibration: Calibration | None = None, numerics: Numerics | None = None,
-        progress: Callable[[float], None] | None = None, walls: Walls | None = None) -> Trajectory:
-    """Solve ``scene`` with rigid rails until the settled window is complete, a jam, or the scene's duration.
+def run(scene: Scene, model: str = COMPLIANT, *, walls: Walls | None = None, calibration: Calibration | None = None,
+        numerics: Numerics | None = None, progress: Callable[[float], None] | None = None) -> Trajectory:
+    """Solve ``scene`` with rigid bodies until the settled window is complete, a jam, or the scene's duration.
 
-    ``calibration`` replaces the scene's contact and friction constants; the message says where the scene lies outside what they
-    were found for. With ``walls`` the pads press walls that give way, through the penalty of the reference, in place of the contact
-    law; at rigid ones, which a warm scene asks for, that law acts where they stand. ``progress`` is called with the fraction of the
-    duration done. Raises SceneError before any stepping; what goes wrong later is the status of the result.
+    The ``model`` is ``compliant``: pads press on the rail compliance ``walls`` (``calibrate.compliance``) through the penalty of
+    the reference; or ``springs``: the scene's contact law at each pad face, with the constants of a ``calibration`` if one is
+    given, on rigid ``walls`` where the rails are warm. ``progress`` is called with the fraction of the duration done. Raises
+    SceneError, every fault listed, before any stepping; what goes wrong later is the status of the result.
     """
+    require(scene, model, walls, calibration, numerics)
+    return solved(scene, calibration, numerics, progress, walls)
+
+
+def solved(scene: Scene, calibration: Calibration | None = None, numerics: Numerics | None = None,
+           progress: Callable[[float], None] | None = None, walls: Walls | None = None) -> Trajectory:
+    """``run`` without its check that options belong to a model: the model is the one that ``walls`` make."""
     began, cpu = clock.perf_counter(), clock.thread_time()
-    outside = calibration.outside(scene) if calibration else []
     scene = calibration.apply(scene) if calibration else scene
     known = len(march.march.overloads)
     setting_up = clock.perf_counter()
@@ -45,7 +53,7 @@ def run(scene: Scene, calibration: Calibration | None = None, numerics: Numerics
     marching = clock.perf_counter()
     run_.march(progress)
     kernel_s = clock.perf_counter() - marching
-    result = run_.trajectory([f"outside the calibration: {words}" for words in outside])
+    result = run_.trajectory()
     result.cost.update(wall_s=clock.perf_counter() - began - compile_s, compile_s=compile_s, kernel_s=kernel_s)
     result.cost["cpu_s"] = clock.thread_time() - (compile_cpu if compile_s else cpu)
     return result
@@ -60,7 +68,7 @@ class Run:
     """State of a run in progress and its samples."""
 
     def __init__(self, scene: Scene, numerics: Numerics, walls: Walls | None = None):
-        self.scene, self.numerics = scene, numerics
+        self.scene, self.numerics, self.walls = scene, numerics, walls
         self.model = model = models.build(scene)
         self.marks = outcome.milestones(scene, model)
         self.interval = scene.output.interval
@@ -68,7 +76,7 @@ class Run:
         self.plan = plan.make(model, self.interval, self.end * self.interval, numerics)
         reach = float(np.sqrt((model.faces.centre**2).sum(axis=1).max()))
         self.tolerance = Tolerance(numerics.relative_tolerance, numerics.speed_floor, reach)
-        self.system = system.build(model, walls=wall_record.under_pads(scene, model, walls),
+        self.system = system.build(model, walls=wall_record.under_pads(scene, model, walls, numerics.modes),
                                    bow=bow.under_pads(scene, model, walls))
         self.loop = march.ready(self.system, state.initial(model), plan.first_step(self.plan))
         self.rows, self.forces = np.zeros((self.end + 1, SAMPLE_SIZE)), np.zeros((self.end + 1, model.faces.axis.size, 3))
@@ -118,17 +126,17 @@ class Run:
     def _motion(self, first: int = 0) -> outcome.Motion:
         return balance.motion(self.rows[first:self.taken], first, self.interval)
 
-    def trajectory(self, warnings: Sequence[str] = ()) -> Trajectory:
-        """The result of the samples taken so far; its message also holds ``warnings``."""
+    def trajectory(self) -> Trajectory:
+        """The result of the samples taken so far."""
         moved, rows = self._motion(), self.rows[:self.taken]
         total, across = balance.ledgers(rows)
         status, result = outcome.judge(moved, self.marks)
         if self.message:
             status, result = "diverged", outcome.Outcome()
         pressed = outcome.pressed_at_ignition(self.model.faces, self.forces[0])
-        message = "; ".join(filter(None, [self.message, pressed, *warnings]))
+        message = "; ".join(filter(None, [self.message, pressed]))
         return Trajectory(
-            fidelity="lowfi", status=status, message=message,
+            model=model_of(self.scene, self.walls), status=status, message=message,
             **moved._asdict(), pad_force=self.forces[:self.taken], energy=total, transverse_energy=across, outcome=result,
             checks=balance.checks(rows, moved, total, across, self.model.payload.mass, self.loop.clock), cost=self._cost(),
             scene=self.scene.resolved(), numerics=self.numerics.as_dict())

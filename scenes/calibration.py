@@ -9,7 +9,6 @@ from pathlib import Path
 
 import numpy as np
 
-from scenes import validity
 from scenes.files import write_text
 from scenes.scene import Scene
 
@@ -21,8 +20,7 @@ class Calibration:
     ``constants`` are dotted overrides in SI, applied to a scene by ``apply``. ``parameters`` name the fitted coordinates
     (with ``values``, their 95 % ``intervals``, infinite where the curves do not tell and without model error, ``lower``, ``upper``
     bounds and ``justification``); ``information`` is the matrix (p,p) of the scaled
-    parameters; ``weak_directions`` describe what the curves cannot tell; ``residuals`` are per condition; ``valid``
-    holds the range of the conditions used.
+    parameters; ``weak_directions`` describe what the curves cannot tell; ``residuals`` are per condition.
     """
 
     constants: dict[str, float]
@@ -37,7 +35,6 @@ class Calibration:
     residuals: dict[str, dict[str, float]]
     conditions: list[str]
     objective: float
-    valid: dict[str, list[float]] = field(default_factory=dict)
     provenance: dict[str, str] = field(default_factory=dict)
     intervals: list[list[float]] = field(default_factory=list)
 
@@ -45,10 +42,6 @@ class Calibration:
         """``scene`` with the calibrated constants; constants of an effect the scene lacks are left out."""
         return scene.replace({key: value for key, value in self.constants.items()
                               if getattr(scene, key.split(".")[0], "unknown") is not None})
-
-    def outside(self, scene: Scene) -> list[str]:
-        """In words, where ``scene`` is outside what the constants were found for (``scenes.validity``)."""
-        return validity.outside(scene, self.valid, self.provenance.get("geometry_hash"))
 
     def save(self, path: str | Path) -> None:
         """Write TOML atomically. Raises ValueError for a NaN (an interval without an end is inf)."""

@@ -10,7 +10,6 @@ import numpy as np
 
 from scenes.body import tensor
 from scenes.effects import contact, thrust, thrust_offset
-from scenes.effects.flexibility import Flexibility
 from scenes.effects.friction import Friction
 from scenes.effects.gravity import Gravity
 from scenes.effects.initial import Initial
@@ -64,7 +63,6 @@ class Model(NamedTuple):
     friction: Friction | Sticking | None
     platform: Platform | None
     gravity: Gravity | None
-    flexibility: Flexibility | None
     thermal: Thermal | None
     initial: Initial
     thrust_arm: float
@@ -110,9 +108,6 @@ def built(scene: Scene, known: Built | None = None) -> Built:
                   else scene.friction.record() if scene.friction and touching else None),
         platform=platform,
         gravity=scene.gravity.record() if scene.gravity else None,
-        # Nothing presses a rail without contact either.
-        flexibility=(scene.flexibility.record(scene.rail.damping and scene.rail.damping.record())
-                     if scene.flexibility and touching else None),
         thermal=known.model.thermal if kept("rail", "thermal") else scene.thermal.record(scene.rail) if scene.thermal else None,
         initial=known.model.initial if kept("initial") else scene.initial.record() if scene.initial else Initial(),
         thrust_arm=scene.thrust.arm,

@@ -12,9 +12,8 @@ from typing import Annotated, Any, Mapping
 from pydantic import AfterValidator, Field, PrivateAttr, ValidationError, ValidationInfo, field_validator
 
 from scenes import overrides as keys
-from scenes import plausibility, reading, roles, validity
+from scenes import plausibility, reading, roles
 from scenes.effects.contact import ContactTable
-from scenes.effects.flexibility import FlexibilityTable
 from scenes.effects.flight import FlightTable
 from scenes.effects.friction import FrictionTable
 from scenes.effects.gravity import GravityTable
@@ -32,8 +31,7 @@ from scenes.tables import AgreementTable, OutputTable, PadTable, PayloadTable
 from scenes.units import PositiveTime
 
 CATALOG = reading.CATALOG
-EFFECTS = ("thrust_offset", "mass_offset", "initial", "contact", "friction", "platform", "gravity", "thermal", "rail.damping",
-           "flexibility")
+EFFECTS = ("thrust_offset", "mass_offset", "initial", "contact", "friction", "platform", "gravity", "thermal", "rail.damping")
 NOMINAL = "nominal"  # the scene itself, named like a condition
 _BESIDE = ("conditions", "agreement", "provenance")
 _NOT_PHYSICS = {"name", "description", "flight", *_BESIDE}  # what comes after the exit changes nothing before it
@@ -56,7 +54,6 @@ class Scene(Table):
     friction: FrictionTable | None = None
     platform: PlatformTable | None = None
     gravity: GravityTable | None = None
-    flexibility: FlexibilityTable | None = None
     flight: FlightTable | None = None
     thermal: ThermalTable | None = Field(None, exclude_if=is_absent)
     output: OutputTable = OutputTable()
@@ -117,16 +114,6 @@ class Scene(Table):
         if measured:
             physics["thrust"].pop("file")
         return content_hash(physics, self.thrust.points() if measured else [])
-
-    @cached_property
-    def loads(self) -> dict[str, float]:
-        """Size of thrust, speed and clearance (SI): what calibrated constants may not be carried far from."""
-        return validity.loads(self)
-
-    @cached_property
-    def geometry_hash(self) -> str:
-        """SHA-256 of rail and pads."""
-        return validity.geometry(self)
 
     @cached_property
     def warnings(self) -> list[str]:

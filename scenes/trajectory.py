@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from scenes import ledger, outcome
+from scenes.fidelity import MODELS
 from scenes.files import replacing
 
 if TYPE_CHECKING:
@@ -61,7 +62,7 @@ class Trajectory:
 
     Arrays have the samples first: time (n,) s, vectors (n,3), quaternions (n,4), pad_force (n,f,3) N, ledgers
     (n, len(ledger.ENTRIES)) J. ``checks`` holds the kept promises (dimensionless), ``cost`` wall_s, compile_s, steps, dt_s
-    and what a fidelity adds, ``scene`` the resolved inputs. A diverged or refused run has no settled values.
+    and what a model adds, ``scene`` the resolved inputs. A diverged or refused run has no settled values.
 
     A run with flexible rails also says what they bear. ``stress``: peak_stress_pa, the largest von Mises stress, at
     peak_stress_place_m (scene axes, undeformed) of peak_stress_rail at peak_stress_time_s; yield_strength_pa or None;
@@ -69,10 +70,11 @@ class Trajectory:
     stress in platform axes is ``wall_stress`` (n,w,6) Pa. A rigid rail has none: None, and no patches;
     nor does a run that diverged say how strong its rails must be.
 
-    Raises ValueError for an unknown status, arrays that do not fit each other, and any NaN or inf, naming where it is.
+    ``model`` is one of ``scenes.fidelity.MODELS``. Raises ValueError for another one, for an unknown status, arrays that do not
+    fit each other, and any NaN or inf, naming where it is.
     """
 
-    fidelity: str
+    model: str
     status: str
     time: np.ndarray
     position: np.ndarray
@@ -99,6 +101,8 @@ class Trajectory:
     def __post_init__(self):
         if self.status not in STATUSES:
             raise ValueError(f"status {self.status!r}, expected one of {STATUSES}")
+        if self.model not in MODELS:
+            raise ValueError(f"model {self.model!r}, expected one of {MODELS}")
         if self.wall_stress is None:
             object.__setattr__(self, "wall_stress", np.zeros((np.size(self.time), 0, len(_STRESS))))
         widths = {"stress_component": len(_STRESS), "axis": 3, "component": 4, "entry": len(ledger.ENTRIES),
@@ -130,7 +134,7 @@ class Trajectory:
             del variables["wall_stress"]  # a dimension of no length means an unlimited one to netCDF
         plain = {name: json.dumps(getattr(self, name), allow_nan=False) for name in _PLAIN}
         return xarray.Dataset(variables, coordinates, attrs={
-            "fidelity": self.fidelity, "status": self.status, "message": self.message,
+            "model": self.model, "status": self.status, "message": self.message,
             "outcome": json.dumps(self.outcome._asdict()), **plain})
 
     def save(self, path: str | Path) -> None:
@@ -150,7 +154,7 @@ class Trajectory:
                 arrays = {name: data[name].values for name in _DIMENSIONS if name in data or name != "wall_stress"}
                 plain = {name: json.loads(data.attrs[name]) for name in _PLAIN}
                 result = outcome.Outcome(**json.loads(data.attrs["outcome"]))
-                return cls(fidelity=data.attrs["fidelity"], status=data.attrs["status"], message=data.attrs["message"],
+                return cls(model=data.attrs["model"], status=data.attrs["status"], message=data.attrs["message"],
                            time=data["time"].values, outcome=result, **arrays, **plain)
         except (OSError, KeyError, TypeError, ValueError, RuntimeError) as error:
             # What HDF5 says of a damaged file depends on where the damage is.

@@ -28,9 +28,11 @@ import numpy as np
 
 from scenes.effects.thermal import FIELDS
 from scenes.faults import Fault, SceneError
+from scenes.fidelity import COMPLIANT, SPRINGS
 from scenes.files import content_hash, replacing
 from scenes.scene import Scene
 
+MODES = 20  # of each rail, kept beside its compliance
 PATTERNS = 6  # phi: all products of powers of xi and eta up to the second degree
 POWERS = np.array([[0, 0], [1, 0], [0, 1], [2, 0], [1, 1], [0, 2]])  # of xi and eta
 
@@ -169,16 +171,17 @@ class Walls:
             raise ValueError(f"travel: given {stations} stations, expected at least 2")
 
 
-def require_modes(scene: Scene, walls: Walls | None) -> None:
-    """Raises SceneError where ``scene`` asks for modes of its rails that ``walls`` do not have."""
-    if scene.flexibility is None or scene.contact is None:
-        return
-    if walls is None:
-        raise SceneError([Fault(scene.name, "flexibility", "modes of rails without their walls",
-                                "walls too (tipoff run --walls, highfi.walls), or no such table")])
-    if (known := walls.frequency.shape[1]) < scene.flexibility.modes:
-        raise SceneError([Fault(scene.name, "flexibility.modes", str(scene.flexibility.modes),
-                                f"at most {known}, the modes these walls have")])
+def model_of(scene: Scene, walls: Walls | None) -> str:
+    """The surrogate that ``scene`` has on ``walls``: springs on rigid ones or on none. Without contact both are one, the
+    default."""
+    flexible = walls is not None and walls.flexibility is not None
+    return COMPLIANT if flexible or scene.contact is None else SPRINGS
+
+
+def require_modes(source: str, walls: Walls | None, modes: int) -> None:
+    """Raises SceneError, naming ``source``, where ``walls`` do not have so many ``modes``."""
+    if walls is not None and modes > (known := walls.frequency.shape[1]):
+        raise SceneError([Fault(source, "numerics.modes", str(modes), f"at most {known}, the modes this rail compliance holds")])
 
 
 def cubic(travel: np.ndarray, values: np.ndarray) -> np.ndarray:

@@ -12,14 +12,14 @@ import typer
 from studies.asked import guarded, quantity, study_of
 from studies.commands import add_all
 from studies.helptext import flow
-from studies.options import (CheckpointEvery, Conditions, ElementSize, Fidelity, Json, OnWalls, Out, Resume, Sampling,
-                             SceneName, Set, Workers)
+from studies.options import (CalibrationFile, CheckpointEvery, Conditions, ElementSize, Json, Model, Modes, Out, Resume, Sampling,
+                             SceneName, Set, Surrogate, SurrogateName, Workers)
 
 EXAMPLES = """Examples:
 
   tipoff report                              # the whole page, reference scene
-  tipoff run --condition phi35 --walls       # one quick surrogate run
-  tipoff run --fidelity highfi --element-size 8 --set thrust.peak="7 kN"
+  tipoff run --condition phi35               # one run of the surrogate: milliseconds
+  tipoff run --model finite-elements --element-size 8 --set thrust.peak="7 kN"
   tipoff compare --scene tiny --json         # the agreement table as JSON
   tipoff highfi --scene my_launcher.toml     # a scene of your own, begun as a copy of one that tipoff scenes lists
 """
@@ -52,7 +52,7 @@ def highfi(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = N
 @app.command()
 def lowfi(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = None, condition: Conditions = None,
           workers: Workers = None, json_: Json = False) -> None:
-    """Run the rigid surrogate, uncalibrated, on every condition; writes lowfi.json and a netCDF file each."""
+    """Run the surrogate, model compliant, on every condition; writes lowfi.json and a netCDF file each."""
     _conditions("lowfi", json_, scene, out, set_, condition, None, workers)
 
 
@@ -83,7 +83,6 @@ def _stage(name: str, summary: str) -> None:
     app.command(name, help=summary)(command)
 
 
-_stage("walls", "How the rails give way under the pads, from the matrices of the reference; writes walls.json.")
 @app.command()
 def calibrate(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = None,
               reference: Annotated[Optional[list[str]], typer.Option("--reference", metavar="[NAME=]FILE",
@@ -93,8 +92,13 @@ def calibrate(scene: SceneName = "reference", out: Out = Path("out"), set_: Set 
               settled_from: Annotated[Optional[str], typer.Option("--settled-from", metavar="TIME",
                                       help="Start of the 2 ms whose means are the settled values; default: the last 2 ms of "
                                            "a file.")] = None,
+              model: Annotated[Optional[SurrogateName], typer.Option("--model",
+                               help="Calibrate this model alone; default: both.")] = None,
               element_size: ElementSize = None, workers: Workers = None, json_: Json = False) -> None:
-    """Fit the surrogate's contact constants to the reference; writes calibration.toml and calibration.json.
+    """Take the surrogate's contact from the finite elements; writes compliance.json, calibration.json and calibration.toml.
+
+    Compliant contact takes the rail's compliance from statics, without a run of the reference; springs are fitted to the
+    reference's curves. --model compliant or --model springs does one of both.
 
     Curves of another code or of a test may take the place of the reference; curves/ then receives both files:
 
@@ -105,35 +109,21 @@ def calibrate(scene: SceneName = "reference", out: Out = Path("out"), set_: Set 
     """
 
     def work() -> dict:
+        from scenes.faults import Fault, SceneError
         from studies.stages import calibrate as stage
 
         start = quantity("--settled-from", settled_from, "s")
         files = stage.named(reference or [], condition, start)
         study = study_of(scene, out, set_, element_size=element_size, workers=workers)
-        return stage.from_files(study, files, start) if files else stage.run(study)
-
-    found = guarded(work, json_)
-    if not json_ and reference:
-        from studies.stages import calibrate as stage
-
-        print("\n".join(stage.lines(found, Path(out) / found["scene"])))
-
-
-@app.command()
-def posterior(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = None, element_size: ElementSize = None,
-              workers: Workers = None, json_: Json = False) -> None:
-    """What the constants and the exit rates may be, given that the surrogate is wrong; takes minutes; writes posterior.json."""
-
-    def work() -> dict:
-        from studies.stages import posterior as stage
-
-        return stage.run(study_of(scene, out, set_, element_size=element_size, workers=workers))
+        if files and model is SurrogateName.compliant:
+            raise SceneError([Fault("--reference", "option", "given", "none with --model compliant: curves are for springs")])
+        return stage.from_files(study, files, start) if files else stage.of_models(study, model and model.value)
 
     found = guarded(work, json_)
     if not json_:
-        from studies.stages import posterior as stage
+        from studies.stages import calibrate as stage
 
-        print("\n".join(stage.lines(found)))
+        print("\n".join(stage.lines(found, Path(out) / found["scene"])))
 
 
 _stage("compare", "Agreement on fitted and held-out conditions beside the floor, and the speed-up; writes agreement.json.")
@@ -197,7 +187,7 @@ def report(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = N
            element_size: ElementSize = None, workers: Workers = None, json_: Json = False) -> None:
     """All of it on one self-contained page; writes report.html and figures/.
 
-    Makes mesh, highfi, lowfi, walls, calibrate, compare, cost, stability and ablation where they are out of date (half an hour the
+    Makes mesh, highfi, lowfi, calibrate, compare, cost, stability and ablation where they are out of date (half an hour the
     first time); every other study is shown if it was made, or made with --every.
     """
 
@@ -212,9 +202,7 @@ def report(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = N
 @app.command()
 def run(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = None,
         condition: Annotated[str, typer.Option("--condition", metavar="NAME", help="Named condition.")] = "nominal",
-        fidelity: Annotated[Fidelity, typer.Option(help="Which model.")] = Fidelity.lowfi,
-        calibration: Annotated[Optional[Path], typer.Option(metavar="FILE", help="calibration.toml for the surrogate.")] = None,
-        walls: OnWalls = False,
+        model: Model = None, modes: Modes = None, calibration: CalibrationFile = None,
         accuracy: Annotated[Optional[str], typer.Option("--accuracy", metavar="RATE", help='Error of the settled rates to be kept, '
                                            '"0.1 deg/s": takes the cheapest model that make cost found so exact.')] = None,
         budget: Annotated[Optional[str], typer.Option("--budget", metavar="TIME", help='Wall time to be kept, "2 s": takes the '
@@ -223,23 +211,25 @@ def run(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = None
         json_: Json = False) -> None:
     """Run one condition in one model and print what the payload leaves with.
 
-    The model is the surrogate on the scene's own contact constants unless --walls, --calibration or --fidelity highfi says
-    otherwise; of the surrogates the one on --walls is closest to the reference by far. --accuracy and --budget choose from what
-    make cost measured.
+    The answer names its model and, where tipoff compare measured it, its error. The rail's compliance is found once per rail and
+    pads. --accuracy and --budget choose a model from what tipoff cost measured.
 
-      tipoff run --condition phi35 --walls
+      tipoff run --condition phi35
+      tipoff run --condition phi35 --model finite-elements
       tipoff run --condition h4 --accuracy "0.1 deg/s"
     """
 
     def work() -> dict:
         from scenes.faults import Fault, SceneError
-        from studies import single
+        from studies import models, single
 
+        asked = models.Asked(model and model.value, calibration, modes)
         study = study_of(scene, out, set_, [condition], element_size, checkpoint_every=checkpoint_every, resume=resume)
         if accuracy is None and budget is None:
-            return single.run(study, condition, fidelity.value, calibration, walls, quiet=json_)
-        given = {"--walls": walls, "--calibration": calibration, "--fidelity": fidelity is Fidelity.highfi}
-        if wrong := [name for name, is_given in given.items() if is_given]:
+            models.require(asked, checkpoint_every=checkpoint_every)
+            return single.run(study, condition, asked, quiet=json_)
+        given = {"--model": model, "--calibration": calibration, "--modes": modes}
+        if wrong := [name for name, value in given.items() if value is not None]:
             raise SceneError([Fault(name, "option", "given", "none: --accuracy and --budget choose the model") for name in wrong])
         limits = quantity("--accuracy", accuracy, "deg/s"), quantity("--budget", budget, "s")
         return single.chosen(study, condition, *limits, quiet=json_)
@@ -265,9 +255,7 @@ def ensemble(scene: SceneName = "reference", out: Out = Path("out"), set_: Set =
                              help="Run case N alone and print it.")] = None,
              tolerance: Annotated[float, typer.Option("--tolerance", metavar="X", help="Relative error of a step; 1e-2 keeps "
                                   "95 % of 20 reference cases to 0.2 % of their rate, 1e-4 to 0.1 %.")] = 1e-2,
-             calibration: Annotated[Optional[Path], typer.Option(metavar="FILE",
-                                    help="calibration.toml for the surrogate.")] = None,
-             walls: OnWalls = False,
+             model: Surrogate = None, modes: Modes = None, calibration: CalibrationFile = None,
              scheduler: Annotated[Optional[str], typer.Option("--scheduler", metavar="ADDRESS",
                                   help="Dask scheduler whose workers run the cases, such as tcp://node1:8786.")] = None,
              workers: Workers = None, json_: Json = False) -> None:
@@ -293,12 +281,14 @@ def ensemble(scene: SceneName = "reference", out: Out = Path("out"), set_: Set =
     """
 
     def work() -> dict:
-        from studies.single import constants
+        from studies import models
         from studies.stages import ensemble as stage
 
-        asked = stage.Asked(vary, table, cases, seed, sampling and sampling.value, store, tolerance, scheduler, workers, walls)
-        study, fitted = study_of(scene, out, set_), constants(calibration)
-        return stage.run(study, asked, fitted) if case is None else stage.case(study, asked, case, fitted)
+        chosen = models.Asked(model and model.value, calibration, modes)
+        models.require(chosen)
+        asked = stage.Asked(vary, table, cases, seed, sampling and sampling.value, store, tolerance, scheduler, workers, chosen)
+        study = study_of(scene, out, set_)
+        return stage.run(study, asked) if case is None else stage.case(study, asked, case)
 
     found = guarded(work, json_)
     if not json_:

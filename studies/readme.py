@@ -9,13 +9,13 @@ import shutil
 import sys
 from pathlib import Path
 
+from scenes.fidelity import COMPLIANT, FINITE_ELEMENTS
 from scenes.files import write_text
-from studies.agreement.verdicts import CONVERGED_DEG_S, FINITE_ELEMENTS
+from studies.agreement.verdicts import CONVERGED_DEG_S
 from studies.bench import reference
 from studies.cost import sureness
 from studies.report import growth, rails, scaling
 from studies.stages import convergence
-from studies.stages.compare import COMPLIANT
 from studies.stages.report import beside
 from studies.study import read
 

@@ -1,35 +1,38 @@
 """One run of one condition in one model, its outcome printed."""
 
-from dataclasses import replace
-from pathlib import Path
-
-from scenes.calibration import Calibration
-from scenes.faults import Fault, SceneError
-from scenes.walls import require_modes
-from studies import words
+from scenes.fidelity import COMPLIANT, FINITE_ELEMENTS, SPRINGS
+from studies import models, words
+from studies.agreement import kept
+from studies.calibrations import constants
 from studies.cost import choice
 from studies.progress import say
-from studies.stages import compare, cost, walls
+from studies.stages import compare, compliance, cost
 from studies.stages.runs import row
 from studies.store import Run
 from studies.study import FAILED, Study, StudyError
 
 
-def run(study: Study, condition: str, fidelity: str, calibration: Path | None = None, on_walls: bool = False,
-        quiet: bool = False) -> dict:
-    """The run's result as a stage would hold it; prints it unless ``quiet``. Raises SceneError for an unreadable calibration."""
-    asked = study.highfi(condition)
-    if fidelity == "lowfi":
-        under = walls.load(study, study.condition(condition)) if on_walls else None
-        require_modes(study.condition(condition), under)
-        asked = study.lowfi(condition, constants(calibration), walls=under)
-    return _made(study, condition, asked, quiet)
+def run(study: Study, condition: str, asked: models.Asked = models.Asked(), quiet: bool = False) -> dict:
+    """The run's result as a stage would hold it; prints it unless ``quiet``. Raises SceneError for an unreadable calibration and
+    for options of another model, StudyError where no model is named and the agreement table rejects the default on
+    ``condition``."""
+    fitted, scene = constants(asked.calibration), study.condition(condition)
+    if asked.model == FINITE_ELEMENTS:
+        return _made(study, condition, study.highfi(condition), quiet)
+    if asked.model == SPRINGS:
+        return _made(study, condition, study.lowfi(condition, fitted), quiet)
+    models.require_accepted(study, asked.name, condition)
+    vibrating = study.lowfi(condition, modes=asked.modes or 0)  # checks the number before the rail compliance is found
+    if scene.contact is None:
+        return _made(study, condition, vibrating, quiet)
+    found = compliance.load(study, scene, judged=False)
+    return _made(study, condition, study.lowfi(condition, walls=found, modes=asked.modes or 0), quiet)
 
 
 def chosen(study: Study, condition: str, accuracy: float | None, budget: float | None, quiet: bool = False) -> dict:
     """The same in the model that measured cost calls for; ``chosen`` says which and why. Raises StudyError when none fits, or
     when no cost was measured for this scene and this code."""
-    whole = replace(study, only=())  # results are those of all conditions, whichever one is asked for
+    whole = study.whole()  # results are those of all conditions, whichever one is asked for
     measured = cost.stored(whole)
     if measured is None:
         raise StudyError(f"no cost was measured for this scene with this code: run tipoff cost --scene {study.scene.name} first")
@@ -46,7 +49,9 @@ def chosen(study: Study, condition: str, accuracy: float | None, budget: float |
 
 def _made(study: Study, condition: str, asked: Run, quiet: bool) -> dict:
     found = study.store.get(asked)
+    calibrated, modes = asked.calibration is not None, getattr(asked.numerics, "modes", 0)
     result = row(condition, found, study.relative(study.store.path(asked)))
+    result["agreement"] = kept.words(study, asked.model, condition, calibrated, modes)
     if not quiet:
         print("\n".join(lines(result, model(asked), study)))
     return result | {"failed": [f"{condition}: {found.status}: {found.message}"] if found.status in FAILED else []}
@@ -55,13 +60,14 @@ def _made(study: Study, condition: str, asked: Run, quiet: bool) -> dict:
 def model(asked: Run) -> str:
     """What a run is made with, in words."""
     if asked.fidelity == "highfi":
-        return f"finite elements of {1e3 * asked.numerics.element_size:g} mm"
-    return f"surrogate on {words.touched(asked.scene, asked.calibration, asked.walls)}"
+        return f"{FINITE_ELEMENTS}, {1e3 * asked.numerics.element_size:g} mm"
+    found, modes = words.model(asked.scene, asked.calibration, asked.walls), asked.numerics.modes
+    return found + (f", {modes} modes of each rail" if modes and asked.model == COMPLIANT else "")
 
 
 def lines(result: dict, made_with: str, study: Study) -> list[str]:
     """The outcome in words and units."""
-    said = [f"{study.scene.name} / {result['condition']}, {made_with}: {result['status']}"
+    said = [f"{study.scene.name} / {result['condition']}, model {made_with}: {result['status']}"
             + (f" ({result['message']})" if result["message"] else "")]
     if result["exit_time_s"] is not None:
         said.append(f"  exit          {1e3 * result['exit_time_s']:.4g} ms after ignition")
@@ -75,16 +81,7 @@ def lines(result: dict, made_with: str, study: Study) -> list[str]:
         said.append(f"  peak stress   {1e-6 * result['peak_stress_pa']:.4g} MPa (von Mises) at x, y, z = {place} mm, rail "
                     f"{result['peak_stress_rail']}, {1e3 * result['peak_stress_time_s']:.4g} ms after ignition")
         said += [f"  warning       {words}" for words in result["warnings"]]
+    said.append(f"  agreement     {result['agreement']}")
     said.append(f"  took          {result['wall_s']:.3g} s, {result['steps']} steps")
     said.append(f"  trajectory    {study.path(result['trajectory'])}")
     return said
-
-
-def constants(path: Path | None) -> Calibration | None:
-    """The calibration in a file, or None without a file. Raises SceneError for one that cannot be read."""
-    if path is None:
-        return None
-    try:
-        return Calibration.load(path)
-    except (OSError, ValueError, TypeError, KeyError) as fault:
-        raise SceneError([Fault(str(path), "file", str(fault), "a calibration written by tipoff calibrate")]) from None

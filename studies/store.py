@@ -15,10 +15,11 @@ from pathlib import Path
 from typing import Any, Callable, Sequence
 
 from scenes.calibration import Calibration
+from scenes.fidelity import FINITE_ELEMENTS
 from scenes.files import content_hash, discard, source_hash
 from scenes.scene import Scene
 from scenes.trajectory import Trajectory
-from scenes.walls import Walls
+from scenes.walls import Walls, model_of
 from studies.progress import Board, say, team
 
 SOURCES = {"highfi": ("scenes", "meshes", "highfi"), "lowfi": ("scenes", "lowfi"),
@@ -38,11 +39,14 @@ class Run:
     walls: Walls | None = None
 
     @property
+    def model(self) -> str:
+        """Name of the model that makes it."""
+        return FINITE_ELEMENTS if self.fidelity == "highfi" else model_of(self.scene, self.walls)
+
+    @property
     def key(self) -> str:
         """Hexadecimal digest of everything the result depends on."""
-        fitted = self.calibration
-        # The range of the constants moves no number, but the warnings of a result are made from it.
-        used = [fitted.constants, fitted.valid, fitted.provenance.get("geometry_hash")] if fitted else None
+        used = self.calibration.constants if self.calibration else None
         return content_hash(self.fidelity, self.scene.hash, asdict(self.numerics), used, self.walls.hash if self.walls else None,
                             code_hash(*SOURCES[self.fidelity]))
 
@@ -56,7 +60,7 @@ def execute(run: Run, progress: Callable[[float], None] | None = None, threads: 
         return highfi.run(run.scene, numerics=run.numerics, progress=progress, threads=threads, **kept)
     import lowfi
 
-    return lowfi.run(run.scene, calibration=run.calibration, numerics=run.numerics, progress=progress, walls=run.walls)
+    return lowfi.run(run.scene, run.model, walls=run.walls, calibration=run.calibration, numerics=run.numerics, progress=progress)
 
 
 def prepare(run: Run) -> None:

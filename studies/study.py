@@ -6,7 +6,7 @@ wrote. It is made again when the key differs, or when one of its files is gone o
 
 import hashlib
 import json
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any, Callable, Iterable
@@ -38,6 +38,10 @@ class Study:
     settings: Settings
     only: tuple[str, ...] = ()
     _told: set = field(default_factory=set, repr=False, compare=False)  # stages already announced
+
+    def whole(self) -> "Study":
+        """The same study of all its conditions: its results do not depend on those that are asked for."""
+        return replace(self, only=()) if self.only else self
 
     @cached_property
     def store(self) -> Store:
@@ -75,15 +79,14 @@ class Study:
 
     def lowfi(self, name: str, calibration: Calibration | None = None, overrides: dict | None = None, tag: str = "",
               walls: Walls | None = None, **numerics: Any) -> Run:
-        """A surrogate run of condition ``name``, with the scene's own contact constants unless calibrated and rails that do not
-        bend, or on ``walls``."""
+        """A surrogate run of condition ``name``: compliant where its rail compliance ``walls`` are given, else on springs, with the
+        scene's own constants unless calibrated."""
         import lowfi
-        from studies.stages.walls import of_law
+        from studies.stages.compliance import of_law
 
-        label = f"{name}{tag}{'-calibrated' if calibration else ''}{'-walls' if walls else ''}"
+        label = f"{name}{tag}{'-calibrated' if calibration else ''}{'-compliant' if walls else ''}"
         numbers = _numerics(lowfi.Numerics, **numerics)
-        rigid = {} if walls else {"flexibility": None}
-        scene = self.condition(name).replace((overrides or {}) | rigid)
+        scene = self.condition(name).replace(overrides or {})
         return Run("lowfi", label, scene, numbers, calibration, walls or of_law(self, scene))
 
     def path(self, name: str) -> Path:

@@ -5,8 +5,8 @@ from typing import NamedTuple
 import numpy as np
 
 from scenes import walls as data
-from scenes.effects.flexibility import Flexibility
 from scenes.effects.friction import require_two_step
+from scenes.effects.structural_damping import Damping
 from scenes.memory import zeros
 from scenes.model import Model
 from scenes.scene import Scene
@@ -83,19 +83,19 @@ class Walls(NamedTuple):
     room: Room
 
 
-def under_pads(scene: Scene, model: Model, found: data.Walls | None) -> Walls | None:
-    """Record of what was ``found`` for the kernels, None without contact and for rigid ones. Raises SceneError for walls of another
-    rail, for the law of friction that sticks, and for modes without walls that have them."""
-    data.require_modes(scene, found)
+def under_pads(scene: Scene, model: Model, found: data.Walls | None, modes: int = 0) -> Walls | None:
+    """Record of what was ``found`` for the kernels, with so many vibrating ``modes`` of each rail; None without contact and for
+    rigid ones. Raises SceneError for walls of another rail or without these modes, and for the law of friction that sticks."""
     if found is None or found.flexibility is None or model.contact is None:
         return None
     found.require(scene)
     require_two_step(scene)
-    return build(found, model)
+    data.require_modes(scene.name, found, modes)
+    return build(found, model, modes=modes, damping=scene.rail.damping and scene.rail.damping.record())
 
 
-def build(found: data.Walls, model: Model, cells: int = CELLS) -> Walls:
-    """Record of ``found`` for the faces of ``model``."""
+def build(found: data.Walls, model: Model, cells: int = CELLS, modes: int = 0, damping: Damping | None = None) -> Walls:
+    """Record of ``found`` for the faces of ``model``; ``modes`` of each rail vibrate, under the ``damping`` of the rails."""
     faces, platform = model.faces, model.platform.mass_centre if model.platform is not None else (0.0, 0.0, 0.0)
     nominal = faces.centre + np.subtract(model.payload.mass_centre, platform)
     spacing = float(found.travel[1] - found.travel[0])
@@ -105,11 +105,11 @@ def build(found: data.Walls, model: Model, cells: int = CELLS) -> Walls:
         row[:rail.size] = rail
     edges = np.linspace(-1.0, 1.0, cells + 1)
     crown = np.diff(edges**5) / (5.0 * np.diff(edges))
-    flexibility, shape = found.cubic(model.flexibility.modes if model.flexibility else 0)
-    modes = _modes(found, shape, model.flexibility) if shape.size else None
+    flexibility, shape = found.cubic(modes)
+    vibrating = _modes(found, shape, damping) if shape.size else None
     return Walls(flexibility, float(nominal[0, 0]), spacing, members, found.rail, found.half,
                  nominal[np.arange(faces.axis.size), 3 - faces.axis], faces.relief, float(model.penalty), float(model.rail_start),
-                 float(model.rail_end), 0.5 * (edges[1:] + edges[:-1]), crown, modes, _warm(found, model),
+                 float(model.rail_end), 0.5 * (edges[1:] + edges[:-1]), crown, vibrating, _warm(found, model),
                  _room(faces.axis.size, members.shape[1], shape.shape[2]))
 
 
@@ -125,11 +125,12 @@ def states(walls: Walls | None) -> int:
     return 2 * walls.modes.square.size if walls is not None and walls.modes is not None else 0
 
 
-def _modes(found: data.Walls, cubic: np.ndarray, flexibility: Flexibility) -> Modes:
-    square = found.frequency[:, :flexibility.modes]**2
-    mass_rate, stiffness_time = flexibility.damping or (0.0, 0.0)
+def _modes(found: data.Walls, cubic: np.ndarray, damping: Damping | None) -> Modes:
+    count = cubic.shape[2]
+    square = found.frequency[:, :count]**2
+    mass_rate, stiffness_time = damping or (0.0, 0.0)
     faces = (found.rail.size, data.PATTERNS)
-    return Modes(square, mass_rate + stiffness_time * square, cubic, zeros((faces[0], flexibility.modes, faces[1])),
+    return Modes(square, mass_rate + stiffness_time * square, cubic, zeros((faces[0], count, faces[1])),
                  *(zeros(faces) for _ in range(3)))
 
 

@@ -22,7 +22,6 @@ VELOCITY_LIMIT = 0.001
 CONVERGED_DEG_S = 0.1
 FLOOR_CAP_DEG_S = 0.1
 NOT_CONVERGED = "reference not converged"
-FINITE_ELEMENTS = "finite elements"  # what results call that model, where surrogates stand beside it
 _SHORT = {"rate_relative_l2": "rate L2", "velocity_relative_l2": "v_x L2", "settled_rate_error_deg_s": "settled rate"}
 
 

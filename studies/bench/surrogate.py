@@ -68,7 +68,7 @@ class _Yardstick:
     def __init__(self, base, rows):
         from lowfi import Numerics, run_many
 
-        tight = run_many(base, rows, numerics=Numerics(relative_tolerance=_TIGHT))
+        tight = run_many(base, rows, "springs", numerics=Numerics(relative_tolerance=_TIGHT))
         self.base, self.rows, self.rates = base, rows, tight.rate.values
         self.scenes = [base.replace(row) for row in rows]
         marks = outcome.milestones(base, model.build(base))
@@ -88,7 +88,7 @@ def _single(yardstick: _Yardstick, asked: float, repeats: int) -> dict:
     dt, baseline_error = _coarsest(STEPS_S, lambda setting: yardstick.error(_plain(yardstick, setting)), asked)
     adaptive, plain, whole = _kernel(yardstick, tolerance), _loops(yardstick, dt), lowfi.Numerics(relative_tolerance=tolerance)
     pieces = {"adaptive": adaptive, "plain": plain,
-              "whole": lambda: [lowfi.run(scene, numerics=whole) for scene in yardstick.scenes]}
+              "whole": lambda: [lowfi.run(scene, "springs", numerics=whole) for scene in yardstick.scenes]}
     times: dict[str, list[float]] = {name: [] for name in pieces}
     for _ in range(repeats):
         for name, piece in pieces.items():
@@ -119,7 +119,7 @@ def _coarsest(settings: tuple[float, ...], error, asked: float) -> tuple[float, 
 def _settled(yardstick: _Yardstick, tolerance: float) -> np.ndarray:
     from lowfi import Numerics, run_many
 
-    return run_many(yardstick.base, yardstick.rows, numerics=Numerics(relative_tolerance=tolerance)).rate.values
+    return run_many(yardstick.base, yardstick.rows, "springs", numerics=Numerics(relative_tolerance=tolerance)).rate.values
 
 
 def _kernel(yardstick: _Yardstick, tolerance: float):
@@ -163,9 +163,9 @@ def _ensemble(base, cases: int, tolerance: float) -> dict:
     from lowfi import Numerics, run_many
 
     rows, numerics = varied(cases, seed=7), Numerics(relative_tolerance=tolerance)
-    run_many(base, rows[:50], numerics=numerics)
+    run_many(base, rows[:50], "springs", numerics=numerics)
     wall, processor = time.perf_counter(), time.process_time()
-    found = run_many(base, rows, numerics=numerics)
+    found = run_many(base, rows, "springs", numerics=numerics)
     spent = time.process_time() - processor
     return {"cases": cases, "cpu_ms_per_case": 1e3 * spent / cases, "wall_s": time.perf_counter() - wall, "ok": found.attrs["ok"],
             "tolerance": tolerance, "peak_memory_bytes": 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss}

@@ -6,7 +6,7 @@ from typing import Annotated, Optional
 import typer
 
 from studies.asked import guarded, study_of
-from studies.options import Json, OnWalls, Out, SceneName, Set, Workers
+from studies.options import Json, Out, SceneName, Set, Surrogate, Workers
 
 
 def add(app: typer.Typer) -> None:
@@ -23,7 +23,7 @@ def droptest(logs: Annotated[Optional[list[Path]], typer.Argument(metavar="[LOG.
              cases: Annotated[int, typer.Option("--cases", metavar="N", min=50, help="Simulated cases to compare with.")] = 1000,
              seed: Annotated[Optional[int], typer.Option("--seed", metavar="N", min=0,
                                                          help="Seed of all draws; default: as the file says.")] = None,
-             walls: OnWalls = False, workers: Workers = None, json_: Json = False) -> None:
+             model: Surrogate = None, workers: Workers = None, json_: Json = False) -> None:
     """From logs of drop tests to rates with their uncertainty, and their place in the simulated distribution.
 
     Writes droptest.json, all signals to droptest.nc, and figures.
@@ -44,7 +44,7 @@ def droptest(logs: Annotated[Optional[list[Path]], typer.Argument(metavar="[LOG.
         from studies.stages import droptest as stage
 
         return stage.run(study_of(scene, out, set_, workers=workers), logs,
-                         stage.Asked(vary, cases, seed, condition, walls))
+                         stage.Asked(vary, cases, seed, condition, model and model.value))
 
     found = guarded(work, json_)
     if not json_:

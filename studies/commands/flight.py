@@ -6,7 +6,7 @@ from typing import Annotated, Optional
 import typer
 
 from studies.asked import guarded, study_of
-from studies.options import Conditions, ElementSize, Json, OnWalls, Out, SceneName, Set, Workers
+from studies.options import Conditions, ElementSize, Json, Out, SceneName, Set, Surrogate, Workers
 
 
 def add(app: typer.Typer) -> None:
@@ -25,7 +25,7 @@ def flight(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = N
                                                         help="Number of cases; default: as the file says.")] = None,
            seed: Annotated[Optional[int], typer.Option(metavar="N", min=0,
                                                        help="Seed of all draws; default: as the file says.")] = None,
-           walls: OnWalls = False, element_size: ElementSize = None, workers: Workers = None, json_: Json = False) -> None:
+           model: Surrogate = None, element_size: ElementSize = None, workers: Workers = None, json_: Json = False) -> None:
     """What becomes of the payload in orbit: miss of a target, pointing, coning, and whether it touches the platform again.
 
     Every condition, and many cases with errors of assembly; writes flight.json, flight.nc and figures. The scene says where:
@@ -36,7 +36,7 @@ def flight(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = N
 
     azimuth, elevation and roll turn the launch axis out of the flight direction. Options take the place of what the table says:
 
-      tipoff flight --range "1 km" --cases 10000 --walls
+      tipoff flight --range "1 km" --cases 10000
       tipoff flight --scene my_launcher.toml --altitude "600 km" --range "200 m" --set flight.elevation="90 deg"
     """
 
@@ -46,7 +46,7 @@ def flight(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = N
         said = {"range": range_, "altitude": altitude, "duration": duration}
         table = [f"flight.{key}={value}" for key, value in said.items() if value is not None]
         study = study_of(scene, out, [*(set_ or []), *table], condition, element_size, workers)
-        return stage.run(study, stage.Asked(vary, cases, seed, walls))
+        return stage.run(study, stage.Asked(vary, cases, seed, model and model.value))
 
     found = guarded(work, json_)
     if not json_:

@@ -7,7 +7,7 @@ from typing import Annotated, Optional
 import typer
 
 from studies.asked import guarded, study_of
-from studies.options import Json, OnWalls, Out, SceneName, Set, Workers
+from studies.options import Json, Out, SceneName, Set, Surrogate, Workers
 
 Tolerances = Enum("Tolerances", {name: name for name in ("advised", "table3")}, type=str)
 Others = Enum("Others", {name: name for name in ("scene", "zero")}, type=str)
@@ -35,7 +35,7 @@ def add(app: typer.Typer) -> None:
     def limits(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = None, limit: Limit = None,
                probability: Probability = 0.99, confidence: Confidence = 0.95, cases: Cases = None,
                tolerances: Scaled = Tolerances.advised, others: Fixed = Others.scene, draws: Draws = 8, condition: Condition = None,
-               seed: Seed = 1, walls: OnWalls = False, workers: Workers = None, json_: Json = False) -> None:
+               seed: Seed = 1, model: Surrogate = None, workers: Workers = None, json_: Json = False) -> None:
         """Tolerances of thrust, mass, clearance and friction that keep the rates below limits at a probability; writes limits.json.
 
         Each alone, all together, and misalignment against mass eccentricity; with what is not certain.
@@ -49,7 +49,7 @@ def add(app: typer.Typer) -> None:
             from studies.stages import limits as stage
 
             asked = Asked(tuple(limit or Asked.limits), probability, confidence, cases, seed, tolerances.value, others.value, draws,
-                          walls, condition)
+                          model and model.value, condition)
             return stage.run(study_of(scene, out, set_, workers=workers), asked)
 
         found = guarded(work, json_)

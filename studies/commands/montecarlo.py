@@ -7,7 +7,7 @@ from typing import Annotated, Optional
 import typer
 
 from studies.asked import guarded, study_of
-from studies.options import Json, OnWalls, Out, SceneName, Set, Workers
+from studies.options import Json, Out, SceneName, Set, Surrogate, Workers
 
 Values = Enum("Values", {name: name for name in ("signed", "half", "components")}, type=str)
 Angles = Enum("Angles", {name: name for name in ("independent", "shared")}, type=str)
@@ -32,7 +32,7 @@ def add(app: typer.Typer) -> None:
     def montecarlo(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = None,
                    cases: Cases = 1_000_000, seed: Seed = 1,
                    reading: Meaning = Values.signed, angles: Direction = Angles.independent, rule: Rule = Rules.redraw,
-                   initial: Initial = False, limit: Limit = None, walls: OnWalls = False, workers: Workers = None,
+                   initial: Initial = False, limit: Limit = None, model: Surrogate = None, workers: Workers = None,
                    json_: Json = False) -> None:
         """Random errors of thrust and mass as in the paper's Table 3: rates, tails, and how sure both are; writes montecarlo.json.
 
@@ -47,7 +47,7 @@ def add(app: typer.Typer) -> None:
             from studies.stages import montecarlo as stage
 
             how = Reading(reading.value, angles.value, rule.value, initial)
-            asked = stage.Asked(cases, seed, how, tuple(limit or stage.Asked.limits), walls)
+            asked = stage.Asked(cases, seed, how, tuple(limit or stage.Asked.limits), model and model.value)
             return stage.run(study_of(scene, out, set_, workers=workers), asked)
 
         found = guarded(work, json_)

@@ -6,7 +6,7 @@ from typing import Annotated, Optional
 import typer
 
 from studies.asked import guarded, study_of
-from studies.options import ElementSize, Json, OnWalls, Out, SceneName, Set, Workers
+from studies.options import ElementSize, Json, Out, SceneName, Set, Surrogate, Workers
 
 
 def add(app: typer.Typer) -> None:
@@ -20,7 +20,7 @@ def sensitivity(scene: SceneName = "reference", out: Out = Path("out"), set_: Se
                 points: Annotated[int, typer.Option("--points", metavar="N", help="Base points of the Sobol' indices, a power "
                                   "of two; each takes one case an input, and two.")] = 1024,
                 seed: Annotated[int, typer.Option("--seed", metavar="N", help="Seed of the points and of the bootstrap.")] = 1,
-                walls: OnWalls = False, element_size: ElementSize = None, workers: Workers = None, json_: Json = False) -> None:
+                model: Surrogate = None, element_size: ElementSize = None, workers: Workers = None, json_: Json = False) -> None:
     """Which numbers the answer depends on: contact constants as in the paper's Table 2, and Sobol' indices; writes
     sensitivity.json.
 
@@ -41,7 +41,7 @@ def sensitivity(scene: SceneName = "reference", out: Out = Path("out"), set_: Se
         from studies.stages import sensitivity as stage
 
         study = study_of(scene, out, set_, element_size=element_size, workers=workers)
-        return stage.run(study, stage.Asked(vary and str(vary), points, seed, walls))
+        return stage.run(study, stage.Asked(vary and str(vary), points, seed, model and model.value))
 
     found = guarded(work, json_)
     if not json_:

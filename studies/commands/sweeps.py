@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from studies.asked import guarded, study_of
-from studies.options import ElementSize, Json, OnWalls, Out, SceneName, Set, Workers
+from studies.options import ElementSize, Json, Out, SceneName, Set, Surrogate, Workers
 
 
 def add(app: typer.Typer) -> None:
@@ -16,7 +16,7 @@ def add(app: typer.Typer) -> None:
 
 def sweeps(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = None,
            angles: Annotated[int, typer.Option("--angles", metavar="N", help="Directions of each size.")] = 120,
-           walls: OnWalls = False, element_size: ElementSize = None, workers: Workers = None, json_: Json = False) -> None:
+           model: Surrogate = None, element_size: ElementSize = None, workers: Workers = None, json_: Json = False) -> None:
     """How large misalignment, thrust and mass eccentricity may be: sizes up to 1 deg and 1 mm in every direction; writes
     sweeps.json.
 
@@ -28,7 +28,7 @@ def sweeps(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = N
         from studies.stages import sweeps as stage
 
         study = study_of(scene, out, set_, element_size=element_size, workers=workers)
-        return stage.run(study, stage.Asked(angles, walls))
+        return stage.run(study, stage.Asked(angles, model and model.value))
 
     found = guarded(work, json_)
     if not json_:

@@ -1,4 +1,4 @@
-"""How long a calibration or its posterior will take, said before it begins.
+"""How long a calibration will take, said before it begins.
 
     time = ceil(runs / at a time) * elements * steps * ns per element and step + evaluations * conditions * time of the surrogate
 
@@ -26,7 +26,6 @@ from studies.study import Study
 PATIENCE = 1.0  # s
 _TYPICAL_NS = 11.0  # per element and step, the 2 mm mesh of the reference scene on one thread of an AMD EPYC
 _TYPICAL_RUN = 3e-3  # s, the surrogate there
-_REDUCED = 0.4  # of the time of a run: what a posterior takes for one, on coarser samples and without ledgers
 _STEP = 0.7  # dt sqrt(E / rho) / h of meshes of the built-in section
 _COMPILED = " and a minute or two to compile, this once"
 _LOOKED_AT = 4  # stored runs, newest first
@@ -52,12 +51,6 @@ def search(study: Study, conditions: int) -> str:
     """The line for a calibration on curves of so many ``conditions``, found in a second at most."""
     importlib.import_module("calibrate")
     return work("the search", in_time(lambda: _search(study, conditions)))
-
-
-def posterior(study: Study, asked: Sequence[Run], fitted: int) -> str:
-    """The line for a posterior of constants found on so many ``fitted`` conditions, and for what it predicts of the reference runs
-    ``asked``, found in a second at most. A chain that is sure of itself ends earlier."""
-    return _line(study, asked, lambda: _draws(study, fitted, len(asked)), "the draws", "at most about")
 
 
 def _line(study: Study, asked: Sequence[Run], rest: Callable[[], float], name: str, bound: str) -> str:
@@ -178,16 +171,6 @@ def _search(study: Study, conditions: int) -> float:
     return search.evaluations(len(parameters.free(study.scene))) * conditions * _surrogate(study.folder)
 
 
-def _draws(study: Study, fitted: int, predicted: int) -> float:
-    """Seconds of the posterior of constants found on ``fitted`` conditions, at most, and of the rates of those ``predicted``."""
-    from calibrate import parameters
-    from calibrate.posterior import Effort
-
-    count = len(parameters.free(study.scene)) + len(parameters.held(study.scene))
-    runs = Effort().evaluations(count) * fitted + Effort().kept * predicted
-    return runs * _REDUCED * _surrogate(study.folder)
-
-
 def _is_cold() -> bool:
     """Whether kernels have yet to be compiled."""
     return not any(Path(numba.config.CACHE_DIR).rglob("*.nbc"))
@@ -198,7 +181,7 @@ def _surrogate(folder: Path) -> float:
     import h5py
 
     found = []
-    springs = [path for path in (folder / "lowfi").glob("*.nc") if "-walls-" not in path.name]
+    springs = [path for path in (folder / "lowfi").glob("*.nc") if "-compliant-" not in path.name]
     for path in sorted(springs, key=_age)[:_LOOKED_AT]:
         try:
             with h5py.File(path) as file:

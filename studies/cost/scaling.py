@@ -22,15 +22,14 @@ import numpy as np
 from scipy.stats import linregress
 
 from scenes.faults import SceneError
+from scenes.fidelity import COMPLIANT, FINITE_ELEMENTS, SPRINGS
 from scenes.rail import MeshTable
 from scenes.scene import Scene
-from studies.agreement.verdicts import FINITE_ELEMENTS
 from studies.cost.timing import timed, warm_up
 from studies.progress import Board
 from studies.store import Run
 from studies.study import Study
 
-SPRINGS, WALLS = "surrogate, springs", "surrogate, compliant walls"
 _TIME = {"highfi": "cpu_s", "lowfi": "kernel_s"}
 _SHARES = (0.125, 0.25, 0.5, 1.0, 2.0)  # of the scene's own number of pads
 _REPEATS = {"highfi": 2, "lowfi": 20}
@@ -93,7 +92,7 @@ def pads(study: Study, name: str) -> list[dict]:
         FINITE_ELEMENTS: [_coarsest(study, name, change, count) for count, change in variants.items()]}
     asked[SPRINGS] = [study.lowfi(name, None, change, f"-pads-{count}") for count, change in variants.items()]
     if study.scene.contact is not None:
-        asked[WALLS] = [study.lowfi(name, None, change, f"-pads-{count}", _walls(study, name, change))
+        asked[COMPLIANT] = [study.lowfi(name, None, change, f"-pads-{count}", _walls(study, name, change))
                         for count, change in variants.items()]
     with Board("cost, pads", len(asked)) as board:
         return [_over_pads(model, runs, list(variants), board) for model, runs in asked.items()]
@@ -171,7 +170,7 @@ def effects(scene: Scene, ablation: dict) -> list[dict]:
     ``ladder``, rungs of effects added to those before, each with the number on; ``effects``, what each costs alone, as the time
     that all take more than all but it; ``asked``, number and time of those of the scene."""
     found = []
-    for fidelity, model in (("highfi", FINITE_ELEMENTS), ("lowfi", SPRINGS)):
+    for fidelity, model in (("highfi", FINITE_ELEMENTS), ("lowfi", COMPLIANT)):
         time = {row["variant"]: row["time_s"] for row in ablation["rows"] if row["fidelity"] == fidelity}
         without = {name.removeprefix("without "): seconds for name, seconds in time.items() if name.startswith("without ")}
         found.append({"model": model, "none_s": time["no effect"], "all_s": time["all effects"],

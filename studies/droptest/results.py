@@ -76,10 +76,8 @@ def quantiles(results: Columns, settled: np.ndarray, independent: bool) -> dict[
 def summary(scene: str, found: dict) -> list[str]:
     """The whole result in words, one line each."""
     cases, tests = found["cases"], found["tests"]
-    count = cases["outside_calibration"]
-    outside = f"; {count:,} of them outside what the calibration was made for" if count else ""
     said = [f"{scene}: {len(tests)} drop tests against {cases['settled']:,} settled of {cases['asked']:,} cases of the surrogate, "
-            f"{found['surrogate']}{outside}; {_drawn(found)}"]
+            f"model {found['model']}; {_drawn(found)}"]
     if any(row["simulated"] for row in tests):
         said.append("  SIMULATED     logs marked so come from a sensor model: they show that the reduction works and say "
                     "nothing of a launcher")

@@ -54,7 +54,7 @@ class Motion(NamedTuple):
 def drop(scene: Scene, tower: Tower, interval: float) -> Motion:
     """A drop of ``scene`` sampled every ``interval`` (s). Raises ValueError where the payload does not settle."""
     began = {f"initial.{body}.{axis}": float(value) for body in ("rate", "platform_rate") for axis, value in zip("xyz", tower.rate)}
-    run = lowfi.run(scene.replace(began))
+    run = lowfi.run(scene.replace(began), "springs")
     if run.outcome.rate is None:
         raise ValueError(f"{scene.name}: {run.status} {run.message}: nothing to measure")
     ignition = tower.hang + tower.fall

@@ -14,7 +14,7 @@ from scenes.scene import Scene
 from scenes.uncertainty import Uncertainty
 from studies.flight import bodies
 from studies.flight.flown import Flown
-from studies.populations import answers, marks, order_statistics
+from studies.populations import answers, order_statistics
 from studies.populations.population import Population
 
 if TYPE_CHECKING:
@@ -79,13 +79,12 @@ def cases(found: Flown, population: Population, uncertainty: Uncertainty) -> dic
     judged |= {item.name: values for item in QUANTITIES if item.name in _JUDGED and np.isfinite(values := item.of(found)).any()}
     points = np.hstack([found.miss, found.orbital])[reached][:_SCATTERED]
     why = "order statistics of independent draws" if independent else f"none: points of {uncertainty.sampling} depend on each other"
-    return {"counts": population.counts, "settled": int(settled.sum()), "outside": int(population.outside[settled].sum()),
+    return {"counts": population.counts, "settled": int(settled.sum()),
             "store": population.store, "confidence": CONFIDENCE, "varied": uncertainty.resolved(), "bounds": why,
             "quantiles": {name: _quantiles(values[~np.isnan(values)], independent) for name, values in judged.items()},
             "limit_open": 0 if np.isnan(found.limit).all() else int(np.isnan(found.limit).sum()),  # all: none was asked for
             "touch": _share(found.clearance[told] <= 0.0, independent), "not_reached": _share(~reached, independent),
-            "points_m": [[float(f"{value:.6g}") for value in point] for point in points],
-            "points_outside": population.outside[settled][reached][:_SCATTERED].tolist()}
+            "points_m": [[float(f"{value:.6g}") for value in point] for point in points]}
 
 
 def _quantiles(values: np.ndarray, independent: bool) -> list[dict]:
@@ -108,16 +107,14 @@ def _share(flags: np.ndarray, independent: bool) -> dict | None:
     return {"count": count, "of": len(flags), "share": count / len(flags), "low": ends[0], "high": ends[1]}
 
 
-def dataset(names: list[str], single: Flown | None, exits: Outcome | None, many: Flown, left: Columns,
-            outside: np.ndarray) -> "xarray.Dataset":
-    """Every quantity by condition, as it flew and with which ``exits``, and by case, with its unit in its name; whether the case is
-    ``outside`` (n,) what the calibration was made for."""
+def dataset(names: list[str], single: Flown | None, exits: Outcome | None, many: Flown,
+            left: Columns) -> "xarray.Dataset":
+    """Every quantity by condition, as it flew and with which ``exits``, and by case, with its unit in its name."""
     import xarray
 
     variables = {item.name: ("case", item.of(left)) for item in answers.ALL}
     variables |= {item.name: ("case", item.of(many)) for item in QUANTITIES}
     variables |= {name: ("case", of(many)) for name, of in _SIDES.items()}
-    variables[marks.NAME] = ("case", outside, {"long_name": marks.WORDS})
     if single is not None:
         variables |= {f"condition_{item.name}": ("condition", item.of(exits)) for item in answers.ALL}
         variables |= {f"condition_{item.name}": ("condition", item.of(single)) for item in QUANTITIES}
@@ -129,11 +126,10 @@ def lines(found: dict) -> list[str]:
     flight, many = found["flight"], found["cases"]
     said = [f"{found['scene']}: target {flight['range_m']:g} m along the launch axis, orbit of {flight['period_s'] / 60.0:.4g} min"]
     for item in found["conditions"]:
-        said.append(f"  {item['condition']:10} " + (_one(item["flown"]) if item["flown"] else item["status"])
-                    + ("; outside the calibration" if item["outside_calibration"] else ""))
+        said.append(f"  {item['condition']:10} " + (_one(item["flown"]) if item["flown"] else item["status"]))
     counts = many["counts"]
     said.append(f"  {counts['asked']:,} cases = {counts['ok']:,} ok + {counts['refused']:,} refused + {counts['failed']:,} failed; "
-                f"{many['settled']:,} flown, {many['outside']:,} of them outside the calibration")
+                f"{many['settled']:,} flown")
     said += [f"  {WORDS[name]:44} " + "  ".join(_quantile(row) for row in rows) for name, rows in many["quantiles"].items()]
     if many["touch"]:
         said.append(f"  touch again                                  {many['touch']['count']:,} of {many['touch']['of']:,}")
@@ -151,8 +147,6 @@ def doubts(found: dict) -> str:
         said.append("the rails are given by a file: the clearance counts them only as far as flight.envelope lists them")
     if left:
         said.append(f"whether {left:,} cases reach the pointing limit stayed open, and they are not counted")
-    said += [f"{row['condition']} is outside what the calibration was made for: {', '.join(row['outside_calibration'])}"
-             for row in found["conditions"] if row["outside_calibration"]]
     return "; ".join(said)
 
 

@@ -4,27 +4,17 @@ from typing import NamedTuple
 
 from lowfi.sampling import Points
 from scenes.calibration import Calibration
+from scenes.fidelity import COMPLIANT
 from scenes.scene import Scene
 from scenes.uncertainty import Uncertainty
 from studies.populations.derived import law
-from studies.stages import compare, posterior
+from studies.stages import compare
 from studies.study import Study, read
 
 _TWO_SIDED_95 = 1.959963984540054  # standard deviations
 
 
-def draws(study: Study, fitted: Calibration, count: int, seed: int) -> tuple[list[dict[str, float]], list[str]]:
-    """``count`` sets of overrides of the study's scene, and the names of the constants that differ in them: from the posterior
-    where there is one (``make posterior``), with all that ties constants together, else from the intervals of the calibration."""
-    if count == 0 or posterior.stored(study) is None:
-        return by_intervals(study.scene, fitted, count, seed)
-    import calibrate
-
-    found = calibrate.Posterior.load(study.path(f"{posterior.NAME}.json"))
-    return calibrate.draws(found, count, seed), found.parameters
-
-
-def by_intervals(scene: Scene, fitted: Calibration, count: int, seed: int) -> tuple[list[dict[str, float]], list[str]]:
+def draws(scene: Scene, fitted: Calibration, count: int, seed: int) -> tuple[list[dict[str, float]], list[str]]:
     """``count`` sets of overrides of ``scene``, and the names of the constants that differ in them.
 
     Each is drawn by itself from the normal distribution of its 95 % interval, and inside it (a Latin hypercube). A constant without
@@ -54,12 +44,13 @@ class Margin(NamedTuple):
     said: str
 
 
-def margin(study: Study, walls: bool) -> Margin:
+def margin(study: Study, model: str) -> Margin:
     """The largest errors on the conditions of ``make compare`` that nothing was fitted to and whose reference is converged:
     elsewhere nobody knows whose error it is. Without any, those the fit itself leaves."""
     if study.scene.contact is None:
         return Margin(dict.fromkeys(("x", "y", "z", "total"), 0.0), "no contact, no error of a contact law")
-    rows = [row for row in (compare.stored(study) or {}).get("compliant" if walls else "held_out", []) if row["role"] == "held_out"]
+    table = (compare.stored(study) or {}).get("compliant" if model == COMPLIANT else "held_out", [])
+    rows = [row for row in table if row["role"] == "held_out"]
     errors = [row["settled_rate_error_xyz_deg_s"] for row in rows
               if row["reference_converged"] and row["settled_rate_error_xyz_deg_s"] is not None]
     if errors:
@@ -68,7 +59,7 @@ def margin(study: Study, walls: bool) -> Margin:
         return Margin(found, f"largest of {len(errors)} held-out conditions; {len(rows) - len(errors)} more have no converged "
                              "reference, and errors there are not known")
     left = [row["settled_rate_error_deg_s"] for row in (read(study.path("calibration.json")) or {}).get("residuals", {}).values()]
-    if walls or not left or None in left:
+    if model == COMPLIANT or not left or None in left:
         return Margin(None, "not measured: make compare measures it")
     worst = max(left)
     return Margin({"x": worst, "y": worst, "z": worst, "total": 3**0.5 * worst},

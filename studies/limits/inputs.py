@@ -15,7 +15,8 @@ _MOST_DRAWS = 1000
 class Asked:
     """``limits`` as ``exceedance.limits`` reads them, all of which a case must keep with ``probability``, to be shown with
     ``confidence`` from ``cases`` (None: ten times the fewest); the ``tolerances`` that are scaled together, advised or table3;
-    errors that do not vary as in the ``scene`` or ``zero``; ``draws`` of the calibrated constants."""
+    errors that do not vary as in the ``scene`` or ``zero``; ``draws`` of calibrated constants of springs; the name of a
+    ``model``, None for the default."""
 
     limits: tuple[str, ...] = ("5 deg/s",)
     probability: float = 0.99
@@ -25,7 +26,7 @@ class Asked:
     tolerances: str = "advised"
     others: str = "scene"
     draws: int = 8
-    walls: bool = False
+    model: str | None = None
     condition: str | None = None
 
 

@@ -7,17 +7,15 @@ from typing import Mapping
 import numpy as np
 
 from scenes.files import replacing
-from studies.populations import answers, marks
+from studies.populations import answers
 
 
-def save(path: Path, values: np.ndarray, outside: np.ndarray, scale: float, tolerances: Mapping[str, float]) -> None:
-    """Write ``values`` (n,k) of ``answers.ALL``, and whether each case is ``outside`` (n,) the calibration, atomically; ``scale``
-    and the ``tolerances`` (SI) there are attributes."""
+def save(path: Path, values: np.ndarray, scale: float, tolerances: Mapping[str, float]) -> None:
+    """Write ``values`` (n,k) of ``answers.ALL`` atomically; ``scale`` and the ``tolerances`` (SI) there are attributes."""
     import xarray
 
     found = xarray.Dataset(
-        {"value": (("case", "quantity"), values, {"long_name": "what a case leaves the rail with, NaN where it did not settle"}),
-         marks.NAME: ("case", outside, {"long_name": marks.WORDS})},
+        {"value": (("case", "quantity"), values, {"long_name": "what a case leaves the rail with, NaN where it did not settle"})},
         {"case": np.arange(len(values)), "quantity": [item.name for item in answers.ALL],
          "units": ("quantity", [item.unit for item in answers.ALL])},
         {"scale": scale, "tolerances_si": json.dumps(dict(tolerances))})

@@ -14,12 +14,10 @@ from lowfi import columns
 from lowfi.ensemble import PIECE, completed
 from lowfi.numerics import Numerics
 from lowfi.request import Ensemble
-from lowfi.rows import numbers
-from scenes.files import content_hash
 from scenes.scene import Scene
 from scenes.uncertainty import Uncertainty
 from studies.limits import results
-from studies.populations import answers, population, regime
+from studies.populations import answers, population
 from studies.populations.derived import Derived, Numbers, around_zero, friction, law
 from studies.populations.population import Surrogate
 from studies.populations.random_factors import ERRORS, pointing
@@ -102,23 +100,14 @@ class Cases:
         """Rates (n,3), deg/s."""
         return self.values(scale)[:, :len(answers.RATES)]
 
-    def outside(self, scale: float) -> int:
-        """How many of the cases lie outside what the constants were found for."""
-        return int(self._outside(self.source(scale)).sum())
-
-    def _outside(self, drawn: Derived) -> np.ndarray:
-        inputs = numbers(drawn.keys, drawn.rows(0, drawn.asked))
-        return regime.outside(self._model, dict(zip(drawn.keys, inputs.T)), drawn.asked)
-
     def _run(self, scale: float) -> np.ndarray:
         drawn = self.source(scale)
         ensemble = Ensemble(self._model.scene, drawn, None, Numerics(relative_tolerance=population.TOLERANCE), self._model.walls)
-        ranges = self._model.calibration and self._model.calibration.valid  # what the marks in the file stand on
-        path = self._study.path(f"{self._folder}/{content_hash(ensemble.key, ranges)[:16]}.nc")
+        path = self._study.path(f"{self._folder}/{ensemble.key[:16]}.nc")
         if (known := results.load(path)) is not None:
             return known
         pieces = (drawn.rows(begin, min(begin + PIECE, drawn.asked)) for begin in range(0, drawn.asked, PIECE))
         found = columns.of([case for piece in completed(ensemble.family(), pieces, self._study.settings.workers) for case in piece])
         values = np.column_stack([quantity.of(found) for quantity in answers.ALL])
-        results.save(path, values, self._outside(drawn), scale, {name: scale * size for name, size in self._tolerances.items()})
+        results.save(path, values, scale, {name: scale * size for name, size in self._tolerances.items()})
         return values

@@ -11,8 +11,7 @@ from studies import published
 from studies.inference import misfit
 from studies.populations import answers
 
-CALIBRATION = ("The contact law has the stiffness, damping and depth that the paper prints and nothing is calibrated, so that "
-               "nothing here is outside what a calibration was made for.")
+CALIBRATION = ("The contact law has the stiffness, damping and depth that the paper prints; nothing is calibrated.")
 _RADIAL = "thrust_offset.misalignment.radial"
 
 
@@ -25,8 +24,8 @@ def run(launcher: misfit.Launcher, shares: np.ndarray) -> Columns:
 
 
 def told(left: Columns) -> dict:
-    """``conditions`` with what each ``left`` its rail with, None where it did not settle, and why none bears a mark of its
-    ``calibration``."""
+    """``conditions`` with what each ``left`` its rail with, None where it did not settle, and where the constants of
+    contact come from."""
     rows = []
     for place, (condition, (_, radial)) in enumerate(published.angles().items()):
         values = {item.name: float(item.of(left)[place]) for item in answers.ALL}

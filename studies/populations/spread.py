@@ -30,15 +30,14 @@ def moments(values: np.ndarray) -> dict:
             "most": float(values.max())}
 
 
-def histograms(first: np.ndarray, values: np.ndarray, outside: np.ndarray) -> dict:
-    """Densities of the ``first`` (m,) of the values and of all (n,), over common edges; zero where there are none. Beside them that
-    of the values ``outside`` (n,) a calibration as a part of all, whose area is their share; None where none is."""
+def histograms(first: np.ndarray, values: np.ndarray) -> dict:
+    """Densities of the ``first`` (m,) of the values and of all (n,), over common edges; zero where there are none."""
     low, high = np.quantile(values, (0.0005, 0.9995))
     edges = np.linspace(low, high if high > low else low + 1e-9, _BINS + 1)
     width = edges[1] - edges[0]
-    parts = {"first": (first, first.size), "all": (values, values.size), "outside": (values[outside], values.size)}
-    densities = {name: (np.histogram(part, edges)[0] / (width * max(whole, 1))).tolist() for name, (part, whole) in parts.items()}
-    return {"edges": edges.tolist()} | densities | ({} if outside.any() else {"outside": None})
+    densities = {name: (np.histogram(part, edges)[0] / (width * max(part.size, 1))).tolist()
+                 for name, part in (("first", first), ("all", values))}
+    return {"edges": edges.tolist()} | densities
 
 
 def convergence(values: np.ndarray, shares: Sequence[float]) -> list[dict]:

@@ -25,7 +25,7 @@ def of(ensemble: Ensemble, store: Store) -> dict:
     status, settled, failures = store.column("status"), np.isfinite(store.column("exit_time")), store.failures()
     counts, why = columns.counts(status), _no_bounds(ensemble.source)
     values = {name: _values(store, *what)[settled] for name, what in _VALUES.items()} if settled.any() else {}
-    return {"surrogate": words.touched(ensemble.scene, ensemble.calibration, ensemble.walls), "counts": counts,
+    return {"model": words.model(ensemble.scene, ensemble.calibration, ensemble.walls), "counts": counts,
             "statuses": {name: int((status == code).sum()) for code, name in enumerate(columns.STATUSES)},
             "settled": int(settled.sum()), "confidence": CONFIDENCE, "bounds": why or "order statistics of independent draws",
             "quantiles": {name: _quantiles(found, why is None) for name, found in values.items()},
@@ -64,7 +64,7 @@ def _provenance(source) -> dict[str, str]:
 def lines(found: dict) -> list[str]:
     """The summary in words and units."""
     counts, run_ = found["counts"], found["run"]
-    said = [f"{found['scene']}, surrogate on {found['surrogate']}: {counts['asked']:,} cases = {counts['ok']:,} ok + "
+    said = [f"{found['scene']}, model {found['model']}: {counts['asked']:,} cases = {counts['ok']:,} ok + "
             f"{counts['refused']:,} refused + {counts['failed']:,} failed; {found['settled']:,} left the rail and settled"]
     said += [f"  {item['status']}       case {item['case']}: {' '.join(item['reason'].split())}" for item in found["failures"]]
     for key, item in found["cases"].get("vary", {}).items():
@@ -75,7 +75,7 @@ def lines(found: dict) -> list[str]:
     speed = f", {run_['cpu_ms_per_case']:.3f} ms of processor time per case" if "cpu_ms_per_case" in run_ else ""
     memory = f"{run_['peak_memory_bytes'] / 1e6:.0f} MB of memory at most"
     said.append(f"  took          {run_['wall_s']:.3g} s for {run_['cases']:,} cases{speed}; {memory}")
-    return [*said, f"  store         {found['store']}"]
+    return [*said, f"  agreement     {found['agreement']}", f"  store         {found['store']}"]
 
 
 def _quantile(row: dict) -> str:

@@ -17,7 +17,6 @@ from scenes.files import replacing
 NAVY, VERMILION, AMBER, TEAL, GREY = "#1d3461", "#d1495b", "#e8a33d", "#2e8b7a", "#7a7f87"
 AXIS_COLOURS = {"x": NAVY, "y": VERMILION, "z": AMBER}
 _VECTORS = 5000  # points of a line in an SVG, beyond which it holds a picture of them
-_EDGE = 0.8  # pt, of a hollow marker: its middle is to be seen at three points across
 _GAP = 106.0  # px between rows: an axis label, and the title below it
 _FONT = 'system-ui, "Segoe UI", Roboto, "Liberation Sans", sans-serif'
 _INK, _RULE = "#24292f", "#e3e6ea"
@@ -27,9 +26,8 @@ _PLOTLY_MARKER = {"o": "circle", "s": "square", "^": "triangle-up", "v": "triang
 
 @dataclass(frozen=True)
 class Line:
-    """One curve (x, y); ``dash`` as in matplotlib, "" for markers only; ``marker`` "o", "s", "^", "v", "D", "x" or "", ``hollow``
-    if it is white inside; ``labels`` are texts at the points, ``size`` that of a marker (px); about ``kept`` points are on the
-    page."""
+    """One curve (x, y); ``dash`` as in matplotlib, "" for markers only; ``marker`` "o", "s", "^", "v", "D", "x" or "";
+    ``labels`` are texts at the points, ``size`` that of a marker (px); about ``kept`` points are on the page."""
 
     x: Sequence[float]
     y: Sequence[float]
@@ -42,7 +40,6 @@ class Line:
     legend: bool = True
     labels: tuple[str, ...] = ()
     size: float = 9.0
-    hollow: bool = False
     kept: int = 500
 
 
@@ -113,7 +110,7 @@ def to_html(chart: Chart | Picture) -> str:
                 x=x, y=y, name=line.name, legendgroup=line.name, opacity=line.opacity, text=list(line.labels) or None,
                 showlegend=line.legend and line.name not in shown, mode=_mode(line), textposition="top center",
                 line={"color": line.colour, "width": line.width, "dash": _PLOTLY_DASH[line.dash]},
-                marker={"symbol": _PLOTLY_MARKER[line.marker], "size": line.size, **_inside(line)}),
+                marker={"symbol": _PLOTLY_MARKER[line.marker], "size": line.size}),
                 **place)
             shown |= {line.name} if line.legend else set()
         x_kind = _log_axis(_across(panel), panel.ticks) if panel.log else {"type": "log", "dtick": 1} if panel.log_x else {}
@@ -154,8 +151,7 @@ def to_files(chart: Chart | Picture, folder: Path) -> list[Path]:
         for line in panel.lines:
             handle, = axes.plot(line.x, line.y, color=line.colour, linewidth=0.75 * line.width, linestyle=line.dash or "none",
                                 alpha=line.opacity, marker=line.marker or None, markersize=line.size * 2.0 / 3.0,
-                                rasterized=len(line.x) > _VECTORS,
-                                **({"markerfacecolor": "white", "markeredgewidth": _EDGE} if line.hollow else {}))
+                                rasterized=len(line.x) > _VECTORS)
             if line.legend:
                 handles.setdefault(line.name, handle)
             for x, y, label in zip(line.x, line.y, line.labels):
@@ -232,11 +228,6 @@ def _decades(values: list[float]) -> tuple[float, float]:
 def _mode(line: Line) -> str:
     parts = (["lines"] if line.dash else []) + (["markers"] if line.marker else []) + (["text"] if line.labels else [])
     return "+".join(parts)
-
-
-def _inside(line: Line) -> dict:
-    """What makes a marker of plotly hollow."""
-    return {"color": "white", "line": {"color": line.colour, "width": _EDGE * 4.0 / 3.0}} if line.hollow else {}
 
 
 def _thinned(line: Line) -> tuple[list, list]:

@@ -7,7 +7,6 @@ import numpy as np
 from studies.droptest import judgement
 from studies.droptest.results import MAGNITUDES, PAIRS
 from studies.populations import answers, spread
-from studies.report import outside
 from studies.report.chart import AMBER, AXIS_COLOURS, GREY, NAVY, TEAL, VERMILION, Chart, Line, Panel
 from studies.report.markup import Html, caption, fold, number, paragraph, table
 
@@ -19,7 +18,7 @@ _RATES = ("Rates in payload body axes, filtered forward and backward with the ch
 _CLOUD = ("Change of rate by ejection. Dots: simulated cases{shown}, which start at rest, with errors of {vary}. Closed curve: the "
           "region that holds the next case with {share:g} % probability, an ellipse whose size comes from ranks and whose shape "
           "need not be that of the cloud. Symbols: the tests, with bars of 95 % where these are wider than the symbol. Last: "
-          "magnitudes, which need no angle about X.{hollow}")
+          "magnitudes, which need no angle about X.")
 _SIMULATED = Html('<div class="notice">SIMULATED logs, made by a sensor model: they show that the reduction works, and say nothing '
                   "of a launcher.</div>")
 
@@ -32,9 +31,8 @@ def draw(found: dict, figure: Callable[[Chart, str], Html]) -> str:
     said = "".join(paragraph(f"{words[0].upper()}{words[1:]}.") for words in verdict)
     share, most = found["regions"][0]["share"], found["cases"]["settled"]
     shown = "" if len(found["cases"]["shown_deg_s"]) == most else f", the first {len(found['cases']['shown_deg_s']):,} of {most:,}"
-    hollow = outside.WORDS if any(found["cases"]["shown_outside"]) else ""
     return "".join([*notices, figure(rates, _RATES), _changes(found),
-                    figure(cloud, _CLOUD.format(share=100.0 * share, shown=shown, vary=found["request"]["vary"], hollow=hollow)),
+                    figure(cloud, _CLOUD.format(share=100.0 * share, shown=shown, vary=found["request"]["vary"])),
                     said, _standing(found), _cases(found["cases"]), _power(found), _budgets(found), _notes(found)])
 
 
@@ -64,11 +62,11 @@ def _rates(row: dict) -> list[Panel]:
 
 
 def _clouds(found: dict) -> list[Panel]:
-    cases, beyond = np.array(found["cases"]["shown_deg_s"]), found["cases"]["shown_outside"]
+    cases = np.array(found["cases"]["shown_deg_s"])
     panels = []
     for pair, region in zip(PAIRS, found["regions"]):
         first, second = (f"rate about {axis.upper()} (deg/s)" for axis in region["components"])
-        lines = _dots(cases[:, pair], beyond)
+        lines = [_dots(cases[:, pair])]
         if region["squared_radius"] is not None:
             edge = judgement.outline(np.array(region["centre_deg_s"]), np.array(region["covariance"]), region["squared_radius"])
             lines.append(Line(*edge.T, f"{100.0 * region['share']:g} % prediction region", NAVY, 1.8))
@@ -76,12 +74,11 @@ def _clouds(found: dict) -> list[Panel]:
             np.array(row["change_deg_s"])[list(pair)], np.array(row["expanded_uncertainty_deg_s"])[list(pair)]))))
     sizes = judgement.magnitudes(cases)[:, :2]
     marks = _tests(found, lambda row: (np.array([row["magnitudes"][name]["value_deg_s"] for name in MAGNITUDES[:2]]), np.zeros(2)))
-    return [*panels, Panel("", "|rate about X| (deg/s)", "rate across X (deg/s)", [*_dots(sizes, beyond), *marks])]
+    return [*panels, Panel("", "|rate about X| (deg/s)", "rate across X (deg/s)", [_dots(sizes), *marks])]
 
 
-def _dots(points: np.ndarray, beyond: list[bool]) -> list[Line]:
-    cases = Line(*points.T, "simulated cases", GREY, dash="", marker="o", size=3.0, opacity=0.45)
-    return [*outside.points(cases, beyond), *outside.key(beyond)]
+def _dots(points: np.ndarray) -> Line:
+    return Line(*points.T, "simulated cases", GREY, dash="", marker="o", size=3.0, opacity=0.45)
 
 
 def _tests(found: dict, of: Callable) -> list[Line]:

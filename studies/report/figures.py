@@ -16,18 +16,18 @@ _MILLISECONDS = "time after ignition (ms)"
 
 
 class Runs(NamedTuple):
-    """Trajectories by condition: the reference, the surrogate before and after calibration, and on compliant walls (empty where
-    there are none)."""
+    """Trajectories by condition: the reference, compliant contact, and springs after and before calibration (empty where there are
+    none)."""
 
     highfi: dict[str, Trajectory]
-    uncalibrated: dict[str, Trajectory]
+    compliant: dict[str, Trajectory]
     calibrated: dict[str, Trajectory] = {}
-    compliant: dict[str, Trajectory] = {}
+    uncalibrated: dict[str, Trajectory] = {}
 
 
 # In the order of the legend. Width, dash, opacity: the reference is a broad pale line under the thin ones of the surrogate.
-_STYLES = {"highfi": ("finite elements", 5.0, "-", 0.35), "compliant": ("surrogate, compliant walls", 1.5, "-", 1.0),
-           "calibrated": ("surrogate, calibrated", 1.2, "--", 0.9), "uncalibrated": ("surrogate, uncalibrated", 1.1, ":", 0.9)}
+_STYLES = {"highfi": ("finite elements", 5.0, "-", 0.35), "compliant": ("compliant", 1.5, "-", 1.0),
+           "calibrated": ("springs, calibrated", 1.2, "--", 0.9), "uncalibrated": ("springs, uncalibrated", 1.1, ":", 0.9)}
 _COLOURS = {"highfi": NAVY, "compliant": VERMILION, "calibrated": AMBER}
 
 

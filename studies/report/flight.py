@@ -5,7 +5,6 @@ from typing import Callable
 
 from studies.flight.summary import WORDS, doubts
 from studies.populations import answers
-from studies.report import outside
 from studies.report.chart import AMBER, GREY, NAVY, TEAL, VERMILION, Chart, Line, Panel
 from studies.report.markup import Html, caption, number, paragraph, table
 
@@ -33,19 +32,16 @@ def draw(found: dict, figure: Callable[[Chart, str], Html]) -> Html:
     rows = [(row["condition"], *(number(row["flown"][name]) if row["flown"] else None for name in _SHOWN), _cone(row["flown"]))
             for row in found["conditions"]]
     shares = [row["share"] for row in next(iter(judged.values()), [])]
-    kinds = ["doubt" if row["outside_calibration"] else "" for row in found["conditions"]]
     return Html("".join([
         paragraph(_words(found)), *(figure(drawing, words) for drawing, words in charts(found)),
-        table(("condition", *(WORDS[item.name] for item in answers.ALL)), _exits(found), kinds=kinds, dense=True),
+        table(("condition", *(WORDS[item.name] for item in answers.ALL)), _exits(found), dense=True),
         caption(_EXITS),
-        table(("condition", *(WORDS[name] for name in _SHOWN), "x axis from angular momentum (deg)"), rows, kinds=kinds,
-              dense=True),
+        table(("condition", *(WORDS[name] for name in _SHOWN), "x axis from angular momentum (deg)"), rows, dense=True),
         caption(" ".join([_BOXES] * (not found["flight"]["no_clearance"]) + [doubts(found)])),
         table(("quantity", *(f"{100.0 * share:.4g} %" for share in shares)),
               [(WORDS[name], *map(_quantile, quantiles)) for name, quantiles in judged.items()], dense=True),
-        caption(f"{many['counts']['asked']:,} cases, {many['settled']:,} of them flown, {many['outside']:,} outside what the "
-                f"calibration was made for. Share of cases below the value; in brackets its bounds at {many['confidence']:.0%} "
-                f"confidence ({many['bounds']}). {_touching(many)}")]))
+        caption(f"{many['counts']['asked']:,} cases, {many['settled']:,} of them flown. Share of cases below the value; in "
+                f"brackets its bounds at {many['confidence']:.0%} confidence ({many['bounds']}). {_touching(many)}")]))
 
 
 def _exits(found: dict) -> list[tuple]:
@@ -61,7 +57,7 @@ def charts(found: dict) -> list[tuple[Chart, str]]:
     if any(curve.get("clearance_s") for curve in curves):
         drawn.append((_clearance(curves), _CLEARANCE))
     if found["cases"]["points_m"]:
-        drawn.append((_scatter(found), _SCATTER + (outside.WORDS if any(found["cases"]["points_outside"]) else "")))
+        drawn.append((_scatter(found), _SCATTER))
     return drawn
 
 
@@ -108,9 +104,9 @@ def _scatter(found: dict) -> Chart:
     errors = [math.hypot(a - c, b - d) for a, b, c, d in many["points_m"]]
     shares = [*_exceeded(many, "miss_m", list(map(math.hypot, y, z)), "in all", NAVY, "-"),
               *_exceeded(many, "tip_off_miss_m", errors, "by errors alone", AMBER, "--")]
-    marks = [*outside.points(Line(y, z, "case", NAVY, 1.0, "", 0.35, marker="o", size=3.0), many["points_outside"]),
+    marks = [Line(y, z, "case", NAVY, 1.0, "", 0.35, marker="o", size=3.0),
              Line(orbital_y[:1], orbital_z[:1], "without errors", VERMILION, 1.0, "", marker="o"),
-             Line([0.0], [0.0], "target", "#000000", 1.0, "", marker="D"), *outside.key(many["points_outside"])]
+             Line([0.0], [0.0], "target", "#000000", 1.0, "", marker="D")]
     return Chart("flight-miss", [Panel(f"{len(y):,} of {many['settled']:,} cases in the plane of the target",
                                        "y (m)", "z (m)", marks),
                                  Panel("cases that miss by more", "miss (m)", "share (%)", shares)], columns=2, height=360)
@@ -129,9 +125,8 @@ def _exceeded(many: dict, name: str, values: list[float], words: str, colour: st
 def _words(found: dict) -> str:
     flight = found["flight"]
     limit = "" if flight["pointing_limit_deg"] is None else f" The pointing limit is {flight['pointing_limit_deg']:g} deg."
-    model = "on compliant walls" if found["asked"]["walls"] else "calibrated"
     return (f"A target {flight['range_m']:g} m along the launch axis, at rest beside a circular orbit of "
-            f"{flight['period_s'] / 60.0:.4g} min; surrogate {model}. Nothing acts after the exit but gravity.{limit}")
+            f"{flight['period_s'] / 60.0:.4g} min; model {found['model']}. Nothing acts after the exit but gravity.{limit}")
 
 
 def _touching(many: dict) -> str:

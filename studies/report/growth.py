@@ -2,7 +2,7 @@
 
 from html import escape
 
-from studies.agreement.verdicts import FINITE_ELEMENTS
+from scenes.fidelity import FINITE_ELEMENTS
 from studies.report.chart import NAVY, VERMILION, Chart, Line, Panel
 from studies.report.markup import Html, caption, number, table
 

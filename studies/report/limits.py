@@ -53,7 +53,7 @@ def _uncertain(found: dict) -> str:
 def summary(found: dict) -> list[str]:
     """What the study says, one line each."""
     said = [f"limits: {', '.join(found['limits_said'])}; each case within all of them with probability {found['probability']:g}, "
-            f"shown at {found['confidence']:.0%} confidence by {found['cases']:,} cases on {found['surrogate']}"]
+            f"shown at {found['confidence']:.0%} confidence by {found['cases']:,} cases, model {found['model']}"]
     return said + [_line(row, _unit(row)) for row in found["rows"]]
 
 
@@ -120,9 +120,9 @@ def _beside(found: dict) -> Html:
     if not rows:
         return Html("")
     quantities = [f"{item['label']} ({item['unit']})" for item in rows[0]["beside"]]
-    body = [(row["words"], *(bounded(item) for item in row["beside"]), f"{row['outside']:,} cases") for row in rows]
+    body = [(row["words"], *(bounded(item) for item in row["beside"])) for row in rows]
     return fold("every quantity at the certified tolerances",
-                table(("at the certified tolerance of", *quantities, "outside the calibration"), body, dense=True),
+                table(("at the certified tolerance of", *quantities), body, dense=True),
                 caption(f"What each stays below in magnitude in {found['probability']:.4%} of the cases; small: 95 % bounds."))
 
 

@@ -4,20 +4,17 @@ from html import escape
 
 import numpy as np
 
-from studies.report import outside
 from studies.report.chart import AMBER, GREY, NAVY, TEAL, VERMILION, Chart, Line, Panel
-from studies.report.markup import Html, caption, fold, number, paragraph, percent, table
+from studies.report.markup import Html, caption, fold, number, paragraph, table
 
 _RATES = ("rate_x_deg_s", "rate_y_deg_s", "rate_z_deg_s")
 _LOOKS = {0.5: (NAVY, "-", "o"), 0.95: (VERMILION, "--", "s"), 0.99: (TEAL, "-.", "^")}
 _HISTOGRAMS = ("Densities of the settled rates. Broad pale: the first {paper_cases:,} cases, as many as the paper has in its "
-               "Figure 9. Thin: all of them.{share}")
-_SHARE = (" Dashed: those of them that are outside what the calibration was made for; its area is their share, {share} % of "
-          "what settled.")
+               "Figure 9. Thin: all of them.")
 _CONVERGENCE = ("Left: quantiles of each rate from the first cases, with their 95 % bounds from order statistics (dotted). "
                 "Right: half the width of these bounds; the grey lines fall with the root of the number of cases.")
-_MODELS = ("The same {cases:,} draws on calibrated springs and on compliant walls. On the grey line both agree; what lies off "
-           "it is the uncertainty of the model.{hollow}")
+_MODELS = ("The same {cases:,} draws on calibrated springs and on compliant contact. On the grey line both agree; what lies off "
+           "it is the uncertainty of the model.")
 _BOUNDS = ("Small: 95 % bounds from order statistics, which hold whatever the distribution is; a dash where the cases are too few "
            "for one. The second line of each is of the paper's number of cases.")
 _READINGS = ("{cases:,} cases each, deg/s, drawn apart from the study's own. Distance: the largest between the distribution "
@@ -29,14 +26,11 @@ _PAPER = ("The paper prints no number of its Monte Carlo study, only histograms 
 
 def charts(found: dict) -> list[tuple[Chart, str]]:
     """Each figure with its caption."""
-    count = found["settled_outside"]
-    share = _SHARE.format(share=f"{100.0 * count / found['settled']:.3g}") if count else ""
-    made = [(_histograms(found), _HISTOGRAMS.format(paper_cases=found["paper_cases"], share=share)),
+    made = [(_histograms(found), _HISTOGRAMS.format(paper_cases=found["paper_cases"])),
             (_convergence(found), _CONVERGENCE)]
     models = found["models"]
     if models and models["quantities"]:
-        hollow = outside.WORDS if any(models["pairs_outside"]) else ""
-        made.append((_models(models), _MODELS.format(cases=models["cases"], hollow=hollow)))
+        made.append((_models(models), _MODELS.format(cases=models["cases"])))
     return made
 
 
@@ -54,11 +48,9 @@ def _histograms(found: dict) -> Chart:
         if item["name"] not in (*_RATES, "rate_deg_s"):
             continue
         edges, bars = np.repeat(item["histogram"]["edges"], 2), item["histogram"]
-        outline = {name: np.pad(np.repeat(bars[name], 2), 1) for name in ("first", "all", "outside") if bars[name]}
+        outline = {name: np.pad(np.repeat(bars[name], 2), 1) for name in ("first", "all")}
         lines = [Line(edges, outline["first"], f"first {found['paper_cases']:,} cases", AMBER, 4.0, opacity=0.55),
                  Line(edges, outline["all"], f"all {found['counts']['asked']:,} cases", NAVY, 1.4)]
-        if "outside" in outline:
-            lines.append(Line(edges, outline["outside"], "outside the calibration", VERMILION, 1.8, "--"))
         panels.append(Panel(item["label"], f"{item['label']} ({item['unit']})", f"density (1/({item['unit']}))", lines))
     return Chart("montecarlo-histograms", panels, columns=2, height=280)
 
@@ -90,13 +82,13 @@ def _converging(label: str, found: list[dict]) -> list[Panel]:
 
 
 def _models(models: dict) -> Chart:
-    panels, flags = [], models["pairs_outside"]
+    panels = []
     for name in _RATES:
         pair, label = models["pairs"][name], next(row["label"] for row in models["quantities"] if row["name"] == name)
         low, high = min(map(min, pair.values())), max(map(max, pair.values()))
-        cases = Line(pair["springs"], pair["walls"], "a case", NAVY, dash="", marker="o", size=3.5, opacity=0.45)
-        panels.append(Panel(label, "on springs (deg/s)", "on walls (deg/s)", [
-            Line([low, high], [low, high], "both agree", GREY, 1.2), *outside.points(cases, flags), *outside.key(flags)]))
+        cases = Line(pair["springs"], pair["compliant"], "a case", NAVY, dash="", marker="o", size=3.5, opacity=0.45)
+        panels.append(Panel(label, "springs (deg/s)", "compliant (deg/s)", [
+            Line([low, high], [low, high], "both agree", GREY, 1.2), cases]))
     return Chart("montecarlo-models", panels, columns=3, height=300)
 
 
@@ -120,11 +112,9 @@ def _quantities(found: dict) -> Html:
 
 
 def _tails(found: dict) -> Html:
-    rows = [(row["limit"], f"{row['above']:,} of {row['cases']:,}", number(row["share"]), f"{row['low']:.3g} to {row['high']:.3g}",
-             *([percent(row["outside"] / row["above"] if row["above"] else None)] if found["outside"] else []))
+    rows = [(row["limit"], f"{row['above']:,} of {row['cases']:,}", number(row["share"]), f"{row['low']:.3g} to {row['high']:.3g}")
             for row in found["tails"]]
-    heads = ("limit", "cases above", "probability of being above", "95 % bounds (Clopper and Pearson)",
-             *(["of these outside the calibration (%)"] if found["outside"] else []))
+    heads = ("limit", "cases above", "probability of being above", "95 % bounds (Clopper and Pearson)")
     return Html(table(heads, rows) + caption(
         "A rate about an axis counts by its magnitude. A case that did not settle counts as above every limit."))
 
@@ -150,12 +140,12 @@ def _apart(found: dict) -> Html:
     if not found["models"]:
         return Html("")
     if not found["models"]["quantities"]:
-        return paragraph(f"No case of {found['models']['cases']:,} settled on springs and on walls both.")
+        return paragraph(f"No case of {found['models']['cases']:,} settled in both models.")
     heads = ("quantity", "difference, root mean square", "50 % of cases below", "95 %", "99 %", "largest", "95 % below, springs",
-             "walls", "99 % below, springs", "walls")
+             "compliant", "99 % below, springs", "compliant")
     rows = []
     for row in found["models"]["quantities"]:
-        sides = [bounded(row[name][place]) for place in (1, 2) for name in ("springs", "walls")]
+        sides = [bounded(row[name][place]) for place in (1, 2) for name in ("springs", "compliant")]
         rows.append((f"{row['label']} ({row['unit']})", number(row["root_mean_square"]), *map(bounded, row["quantiles"]),
                      number(row["most"]), *sides))
     return fold("both surrogates on the same draws", table(heads, rows, dense=True))

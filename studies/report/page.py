@@ -8,7 +8,7 @@ from pathlib import Path
 from scenes.scene import Scene
 from scenes.trajectory import versions
 from studies import machine
-from studies.report import answers, compliance, convergence, figures, growth, inputs, posterior, rails, scaling, stress, tables
+from studies.report import answers, compliance, convergence, figures, growth, inputs, rails, scaling, stress, tables
 from studies.report.chart import Chart, to_files, to_html
 from studies.report.figures import Runs
 from studies.report.markup import Html, caption, code, number, paragraph, section, table
@@ -17,7 +17,7 @@ from studies.report.style import CSS
 
 _CONTENTS = (("answer", "Answer"), ("scene", "Scene"), ("mesh", "Mesh"), ("compliance", "Compliance"), ("thrust", "Thrust"),
              ("figure6", "Curves"), ("contact-forces", "Contact"), ("energy", "Energy"), ("stress", "Stress"),
-             ("calibration", "Calibration"), ("posterior", "Uncertainty"), ("agreement-section", "Agreement"),
+             ("calibration", "Calibration"), ("agreement-section", "Agreement"),
              ("growth-section", "Growth of 1 µm"), ("speedup", "Speed"), ("rails", "Other rails"), ("cost", "Cost"),
              ("convergence", "Convergence"), ("bench", "Solvers"), ("stability", "Hard cases"), ("ablation", "Ablation"),
              *((item.name, item.link) for item in answers.ANSWERS), ("promises", "Promises"), ("colophon", "Origin"))
@@ -36,7 +36,7 @@ class Page:
 
         body = "".join([self._answer(), self._scene(), self._mesh(), self._compliance(), self._thrust(), self._curves(),
                         self._contact(), self._energy(), self._stress(),
-                        self._of("calibration", "calibration", "Calibration", tables.calibration, "calibrate"), self._posterior(),
+                        self._of("calibration", "calibration", "Calibration", tables.calibration, "calibrate"),
                         self._of("agreement", "agreement-section", "Agreement with the reference", tables.agreement, "compare"),
                         self._growth(), self._of("agreement", "speedup", "Speed", self._speed, "compare"),
                         self._rails(), self._of("cost_study", "cost", "What accuracy costs", self._cost, "cost"),
@@ -125,12 +125,12 @@ class Page:
                        table(("surface", "facets", "area (mm²)"), areas), warned)
 
     def _compliance(self) -> Html:
-        found = self.documents.get("walls") or {}
-        if not found.get("compliance"):
+        found = self.documents.get("compliance") or {}
+        if not found.get("under_a_pad"):
             return Html("")
         words = compliance.WORDS.format(size=1e3 * found["element_size_m"])
-        return section("compliance", "Rail compliance", self._figure(compliance.picture(found["compliance"]), words),
-                       compliance.table(found["compliance"]))
+        return section("compliance", "Rail compliance", self._figure(compliance.picture(found["under_a_pad"]), words),
+                       compliance.table(found["under_a_pad"]))
 
     def _thrust(self) -> Html:
         return section("thrust", "Thrust", self._figure(figures.thrust_curve(self.scene), "Thrust as both models apply it."),
@@ -204,12 +204,6 @@ class Page:
         """Both solvers against the loops one would write today, where a benchmark was run."""
         found = self.documents.get("bench")
         return tables.bench(found["rows"], found["lowfi"]) if found else Html("")
-
-    def _posterior(self) -> Html:
-        """Nothing without its result: only `make posterior` spends the minutes it takes."""
-        found = self.documents.get("posterior")
-        return section("posterior", "What the constants may be", self._figure(posterior.picture(found), posterior.WORDS),
-                       posterior.tables(found)) if found else Html("")
 
     def _convergence(self) -> Html:
         """Nothing without its result, and no reminder either: only `make full-report` spends the minutes it takes."""

@@ -2,15 +2,14 @@
 
 import math
 
-from studies.agreement.verdicts import FINITE_ELEMENTS
-from studies.cost.scaling import SPRINGS, WALLS
+from scenes.fidelity import COMPLIANT, FINITE_ELEMENTS, SPRINGS
 from studies.report.chart import AMBER, NAVY, VERMILION, Chart, Line, Panel
 from studies.report.markup import Html, caption, paragraph, table
 
 WORDS = ("Time of one processor on {condition}: of a whole run of the reference, of the time loop of the surrogate. Left and "
          "middle: fitted power laws, and dotted the exponent 4/3. Right: over the time without any effect; "
          "the last marker has every effect on, those before it the same without friction, and without contact.")
-_LOOKS = {FINITE_ELEMENTS: (NAVY, "s", "-"), SPRINGS: (AMBER, "o", "--"), WALLS: (VERMILION, "D", "-.")}
+_LOOKS = {FINITE_ELEMENTS: (NAVY, "s", "-"), SPRINGS: (AMBER, "o", "--"), COMPLIANT: (VERMILION, "D", "-.")}
 _EXPECTED = ("Expected over elements: 1 for a step, and 4/3 for a run, whose steps get shorter with the edges of the elements; "
              "less where much of a step is the same on any mesh, and where the thickness of the walls sets the step. Another "
              "number of pads is another motion of the same payload: rear bands alone, or more bands between the outer ones.")

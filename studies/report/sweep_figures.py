@@ -3,7 +3,6 @@ maps."""
 
 import numpy as np
 
-from studies.report import outside
 from studies.report.chart import AMBER, AXIS_COLOURS, GREY, NAVY, TEAL, Chart, Line, Panel, Picture
 
 _LOOKS = {"rate_x_deg_s": ("x", "o", "-."), "rate_y_deg_s": ("y", "s", "-"), "rate_z_deg_s": ("z", "^", "--")}
@@ -14,28 +13,22 @@ _ANGLE = {"misalignment": "phi, from +y towards +z", "thrust_eccentricity": "alp
           "mass_eccentricity": "beta, from +z towards +y"}
 _GROWTH = ("Largest rate over all directions against the size of the error; top as given, below with the thrust stretched. Grey "
            "lines: a payload that no rail holds, w = I^-1 J (r x f). Shaded: the 95 % interval of a knee beyond which the rate "
-           "about y or z stays within a tenth. Dotted: where the paper sees its plateau.{hollow}")
+           "about y or z stays within a tenth. Dotted: where the paper sees its plateau.")
 _SCATTER = ("Settled rates of all cases, as in the paper's Figure {figure}: over the size (left) and over the direction {angle} "
-            "(right). Points of the three axes stand a little apart.{hollow}")
+            "(right). Points of the three axes stand a little apart.")
 _MAP = ("The same over size (radius, {unit}) and direction ({angle}); the line is a rate of zero. Below: the wall touched first "
-        "and the wall that bore the largest impulse, of single runs in a coarser grid of directions. {jumps}{ends}")
-_ENDS = " Dashed: where the calibration ends; farther out it is carried beyond what it was made for."
-_BEYOND = " All of it is outside what the calibration was made for."
+        "and the wall that bore the largest impulse, of single runs in a coarser grid of directions. {jumps}")
 
 
 def pictures(found: dict) -> list[tuple[Chart | Picture, str]]:
     """Every figure of the study and its caption."""
     given = found["launches"][0]
-    some = any(launch["outside"] for launch in found["launches"])
-    drawn = [(_growth(found), _GROWTH.format(hollow=" Hollow: sizes at which cases are outside what the calibration was made for."
-                                             if some else ""))]
+    drawn = [(_growth(found), _GROWTH)]
     for factor in given["factors"]:
-        angle, flags = _ANGLE[factor["name"]], np.array(factor["outside"])
-        hollow = outside.WORDS if flags.any() else ""
-        drawn.append((_scatter(factor), _SCATTER.format(figure=_FIGURES[factor["name"]], angle=angle, hollow=hollow)))
+        angle = _ANGLE[factor["name"]]
+        drawn.append((_scatter(factor), _SCATTER.format(figure=_FIGURES[factor["name"]], angle=angle)))
         if factor["sides"] is not None:
-            ends = _BEYOND if flags.all() else _ENDS if flags.any() else ""
-            words = _MAP.format(unit=factor["unit"], angle=angle, jumps=_jumping(factor["sides"]["jumps_deg_s"]), ends=ends)
+            words = _MAP.format(unit=factor["unit"], angle=angle, jumps=_jumping(factor["sides"]["jumps_deg_s"]))
             drawn.append((_map(factor, given["faces"]), words))
     return drawn
 
@@ -51,17 +44,16 @@ def _jumping(jumps: list[float | None]) -> str:
 def _scatter(factor: dict) -> Chart:
     sizes, angles = np.array(factor["sizes"]), np.array(factor["angles_deg"])
     size, angle = np.meshgrid(sizes, angles, indexing="ij")
-    flags, over_size, over_angle = np.array(factor["outside"]).ravel(), [], []
+    over_size, over_angle = [], []
     for place, (name, (axis, marker, _)) in enumerate(_LOOKS.items()):
         rates = np.array(factor["values"][name], dtype=float).ravel()
         told = np.isfinite(rates)
         for lines, x, step in ((over_size, size, sizes[-1]), (over_angle, angle, 180.0 / len(angles))):
             shifted = x.ravel()[told] + (place - 1) * _APART * step
-            lines += outside.points(Line(shifted, rates[told], f"rate about {axis}", AXIS_COLOURS[axis], dash="", marker=marker,
-                                         size=3.5, opacity=0.65), flags[told])
-    key = outside.key(flags)
+            lines.append(Line(shifted, rates[told], f"rate about {axis}", AXIS_COLOURS[axis], dash="", marker=marker, size=3.5,
+                              opacity=0.65))
     direction = f"direction {_ANGLE[factor['name']].split(',')[0]} (deg)"
-    panels = [Panel("", label, "settled rate (deg/s)", lines + key)
+    panels = [Panel("", label, "settled rate (deg/s)", lines)
               for label, lines in ((f"{factor['label']} ({factor['unit']})", over_size), (direction, over_angle))]
     return Chart(f"sweep-{factor['name']}", panels, columns=2, height=330)
 
@@ -72,11 +64,11 @@ def _growth(found: dict) -> Chart:
 
 
 def _grown(launch: dict, factor: dict) -> Panel:
-    sizes, flags, lines, spans, top = factor["sizes"], np.any(factor["outside"], axis=1), [], [], 0.0
+    sizes, lines, spans, top = factor["sizes"], [], [], 0.0
     for name, (axis, marker, dash) in _LOOKS.items():
         values = [np.nan if value is None else value for value in factor["largest"][name]]
         top = max(top, np.nanmax(values, initial=0.0))
-        lines += outside.over(Line(sizes, values, f"about {axis}", AXIS_COLOURS[axis], 1.4, dash, marker=marker, size=6.0), flags)
+        lines.append(Line(sizes, values, f"about {axis}", AXIS_COLOURS[axis], 1.4, dash, marker=marker, size=6.0))
         bent = factor["growth"][name]
         if axis != "x" and bent and bent["verdict"] == "plateau" and bent["low"] is not None:
             spans.append((bent["low"], bent["high"]))
@@ -84,7 +76,7 @@ def _grown(launch: dict, factor: dict) -> Panel:
         free = np.array(factor["free"][name])
         shown = free <= 1.15 * top  # a free payload may turn much faster, and would flatten all others
         lines.append(Line(np.array(sizes)[shown], free[shown], "free payload", GREY, 0.9, dash, legend=axis == "y"))
-    lines += [Line([factor["paper"]] * 2, [0.0, top], "the paper's plateau", GREY, 1.6, ":"), *outside.key(flags)]
+    lines.append(Line([factor["paper"]] * 2, [0.0, top], "the paper's plateau", GREY, 1.6, ":"))
     how = "as given" if launch["stretch"] == 1.0 else f"thrust x {launch['stretch']:g} as long"
     return Panel(f"{factor['label']}, {how}", f"size ({factor['unit']})", "largest rate (deg/s)", lines, spans=tuple(spans))
 
@@ -98,7 +90,7 @@ def _map(factor: dict, faces: list[str]) -> Picture:
     axes = figure.subplots(2, 3, subplot_kw={"projection": "polar"})
     for place, name in zip(axes[0], _LOOKS):
         _rate_map(figure, place, factor, name)
-    sides, ends = factor["sides"], np.unique(factor["outside"]).size > 1
+    sides = factor["sides"]
     for place, kind, title in ((axes[1, 0], "first", "wall touched first"), (axes[1, 1], "most", "wall with the largest impulse")):
         _side_map(place, factor, np.array(sides[kind]), np.array(sides["angles_deg"]), faces)
         place.set_title(title, fontsize=10.5)
@@ -106,14 +98,11 @@ def _map(factor: dict, faces: list[str]) -> Picture:
         place.tick_params(labelsize=7.5)
         place.set_rticks([0.5, 1.0])
         place.grid(linewidth=0.3)
-        if ends:
-            _calibration_ends(place, factor)
     axes[1, 2].set_axis_off()
     handles = [Patch(facecolor=colour, edgecolor=GREY, label=f"wall at {wall}") for wall, colour in _WALLS.items()]
     handles += [Line2D([], [], linestyle="", marker="o", color="black", markerfacecolor="white", markersize=4,
                        label="front pads (others: rear)"),
                 Patch(facecolor="white", edgecolor=GREY, hatch="///", label="no contact")]
-    handles += [Line2D([], [], linestyle="--", color="black", linewidth=1.2, label="the calibration ends")] if ends else []
     axes[1, 2].legend(handles=handles, loc="center", frameon=False, fontsize=9)
     figure.suptitle(f"{factor['label']}: radius 0 to {factor['sizes'][-1]:g} {factor['unit']}, direction {_ANGLE[factor['name']]}",
                     fontsize=10.5)
@@ -136,15 +125,6 @@ def _rate_map(figure, axes, factor: dict, name: str) -> None:
     axes.contour(around, factor["sizes"], np.column_stack([rates, rates[:, 0]]), levels=[0.0], colors="black", linewidths=0.8)
     axes.set_title(f"rate about {_LOOKS[name][0]}", fontsize=10.5)
     figure.colorbar(image, ax=axes, orientation="horizontal", shrink=0.75, pad=0.09, label="deg/s").ax.tick_params(labelsize=7.5)
-
-
-def _calibration_ends(axes, factor: dict) -> None:
-    """The line between the cells that are inside the calibration and those that are not, on white that parts it from any ground."""
-    flags = np.array(factor["outside"], dtype=float)
-    around = np.radians(np.append(factor["angles_deg"], 360.0))
-    for colour, width, dash in (("white", 2.6, "solid"), ("black", 1.2, "dashed")):
-        axes.contour(around, factor["sizes"], np.column_stack([flags, flags[:, 0]]), levels=[0.5], colors=colour, linewidths=width,
-                     linestyles=dash)
 
 
 def _side_map(axes, factor: dict, faces: np.ndarray, angles_deg: np.ndarray, names: list[str]) -> None:

@@ -9,7 +9,7 @@ from studies.report.sweep_figures import pictures
 from studies.sweeps.knee import LEVEL, MISFIT
 
 _SHORT = {"rate_x_deg_s": "x", "rate_y_deg_s": "y", "rate_z_deg_s": "z", "rate_deg_s": "total"}
-_RUN = ("thrust, times as long", "cases", "did not settle", "outside the calibration", "exit (ms)", "impulse after the exit (%)")
+_RUN = ("thrust, times as long", "cases", "did not settle", "exit (ms)", "impulse after the exit (%)")
 _VERDICT = ("error", "leaves the free line at", "about", "verdict", "knee", "95 %", "the paper", "slope before", "after",
             "misfit (%)", "plateau in resamples (%)")
 _METHOD = ("A law is chosen by its corrected information criterion; the interval of a knee is 95 %, a bootstrap over directions. "
@@ -40,7 +40,7 @@ def _title(launch: dict) -> str:
 
 
 def _counts(launches: list[dict]) -> Html:
-    return table(_RUN, [(f"{item['stretch']:g}", f"{item['cases']['asked']:,}", f"{item['not_settled']:,}", f"{item['outside']:,}",
+    return table(_RUN, [(f"{item['stretch']:g}", f"{item['cases']['asked']:,}", f"{item['not_settled']:,}",
                          number(item["exit_s"] and 1e3 * item["exit_s"]), percent(item["share_after_exit"], 2))
                         for item in launches])
 

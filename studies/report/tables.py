@@ -7,7 +7,7 @@ from studies.cost import sureness
 from studies.report.markup import Html, caption, code, fold, number, paragraph, percent, section, table
 
 _INTERVALS = ("Intervals are linear and take what the fit leaves for scatter about a model that is right. Model error is not in "
-              "them: what the surrogate lacks may move its constants by more than they say; make posterior takes that in. "
+              "them: what the surrogate lacks may move its constants by more than they say. "
               "Not told: the curves do not fix the constant, and no interval is made up.")
 _HEADS = ("condition", "role", "rate L2 (%)", "floor L2 (%)", Html("v<sub>x</sub> L2 (%)"), "settled error (deg/s)",
           "error x, y, z (deg/s)", "floor (deg/s)", "reference ± (deg/s)", "ISO 18571", "S-G magnitude (%)", "S-G phase (%)",
@@ -33,7 +33,7 @@ def agreement(document: dict) -> Html:
                    _stiffer(document["stiffer"]),
                    paragraph("One spring and damper per pad face, calibrated on the fitted conditions: "
                              + summary(document["fitted"], "fitted ") + "; " + summary(document["held_out"], "held-out ")),
-                   judged(calibrated, "agreement-calibrated"), _outside(calibrated), _further(calibrated),
+                   judged(calibrated, "agreement-calibrated"), _further(calibrated),
                    fold("the same before calibration", judged(document["uncalibrated"], "agreement-uncalibrated")),
                    _evidence(document))
 
@@ -81,13 +81,6 @@ def summary(rows: list[dict], words: str = "") -> str:
     passed, doubtful = sum(row["passes"] for row in rows), sum(not row["reference_converged"] for row in rows)
     return (f"{passed} of {len(rows)} {words}conditions pass all three gates" + _free(rows)
             + (f" ({doubtful} of {len(rows)} with a reference that is not converged)" if doubtful else ""))
-
-
-def _outside(rows: list[dict]) -> Html:
-    """Conditions the constants were not found for; their agreement is that of an extrapolation."""
-    lines = "".join(f"<li>{escape(row['condition'])}: {escape('; '.join(row['outside_calibration']))}</li>"
-                    for row in rows if row["outside_calibration"])
-    return Html(f"<p>Outside what the constants were fitted for:</p><ul>{lines}</ul>" if lines else "")
 
 
 def _free(rows: list[dict]) -> str:
@@ -150,15 +143,12 @@ def calibration(document: dict) -> Html:
     residuals = [(condition, *(found.get(name) for name in names)) for condition, found in document["residuals"].items()]
     information = [(name, *line) for name, line in zip(document["parameters"], document["information"])]
     applied = [(code(key), number(value, 6)) for key, value in document["constants"].items()]
-    valid = [(code(key), *(number(value, 4) for value in span)) for key, span in document["valid"].items()]
     return section("calibration", "Calibration",
                    paragraph(f"Fitted to {', '.join(document['conditions'])} at once; objective {document['objective']:.4g}."),
                    table(("constant", "value", "95 % interval", "unit", "lower bound", "upper bound", "why free, why these bounds"),
                          rows), caption(_INTERVALS),
                    Html(f"<h3>What the curves cannot tell</h3><ul>{weak}</ul>"),
                    fold("constants the surrogate then uses (SI)", table(("key", "value"), applied)),
-                   fold("range of the conditions used (SI): outside it the constants are extrapolated",
-                        table(("quantity", "from", "to"), valid)),
                    fold("how they were found", table(("", ""), document["provenance"].items())),
                    fold("residuals per condition", table(("condition", *(name.replace("_", " ") for name in names)), residuals)),
                    fold("information matrix of the scaled constants", table(("", *document["parameters"]), information)))

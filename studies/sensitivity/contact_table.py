@@ -9,14 +9,16 @@ from typing import Mapping, NamedTuple, Sequence
 
 import numpy as np
 
+from scenes.fidelity import COMPLIANT
 from scenes.scene import Scene
 from studies import published
 
-# Of Table 2: 66,000 and 74,000 about 70,000; 50 and 70 about 60; 0.25 and 0.35 about 0.30. The penalty is the stiffness of walls.
+# Of Table 2: 66,000 and 74,000 about 70,000; 50 and 70 about 60; 0.25 and 0.35 about 0.30. The penalty is what compliant contact
+# has.
 _STIFFNESS, _DAMPING = 4.0 / 70.0, 10.0 / 60.0
 _MOVED = {"stiffness": ("k", _STIFFNESS), "damping": ("c", _DAMPING), "damping_depth": ("d", _DAMPING),
           "dissipation": ("a", _DAMPING)}
-_ON_WALLS = {"penalty": ("penalty", _STIFFNESS)}
+_COMPLIANT = {"penalty": ("penalty", _STIFFNESS)}
 CLEARANCE = 1e-6  # m
 _NEARLY_ZERO = 0.05
 
@@ -31,11 +33,11 @@ class Change(NamedTuple):
     overrides: dict[str, float]
 
 
-def changes(scene: Scene, walls: bool) -> list[Change]:
-    """What is moved in ``scene``, which has contact: nothing first, then each constant of its law down and up, then the
-    clearance."""
+def changes(scene: Scene, model: str) -> list[Change]:
+    """What is moved in ``scene``, which has contact: nothing first, then each constant of the contact of ``model`` down and up,
+    then the clearance."""
     found = [Change("baseline", None, 0.0, {})]
-    for name, (symbol, share) in (_ON_WALLS if walls else _MOVED).items():
+    for name, (symbol, share) in (_COMPLIANT if model == COMPLIANT else _MOVED).items():
         if (value := getattr(scene.contact, name, None)) is not None:
             found += [Change(symbol, raised, share, {f"contact.{name}": value * (1.0 + sign * share)})
                       for raised, sign in ((False, -1.0), (True, 1.0))]

@@ -22,6 +22,7 @@ from scenes import overrides as keys
 from scenes import reading
 from scenes.distributions import BY_NAME, Distribution
 from scenes.faults import Fault, SceneError, faults_of
+from scenes.fidelity import COMPLIANT, SPRINGS
 from scenes.files import content_hash
 from scenes.scene import Scene
 from studies.populations.derived import friction
@@ -72,8 +73,8 @@ def digest(path: str | Path) -> str:
     return content_hash(reading.toml(Path(path), str(path)))
 
 
-def load(path: str | Path, scene: Scene, walls: bool = False) -> Tolerances:
-    """What a file says of ``scene``, that of a surrogate with its constants or on ``walls``. Raises SceneError listing every
+def load(path: str | Path, scene: Scene, model: str = COMPLIANT) -> Tolerances:
+    """What a file says of ``scene``, for the surrogate of the name ``model``. Raises SceneError listing every
     fault."""
     raw, source, faults, found, left_out = reading.toml(Path(path), str(path)), str(path), [], [], {}
     known = ("description", *_KINDS)
@@ -84,7 +85,7 @@ def load(path: str | Path, scene: Scene, walls: bool = False) -> Tolerances:
             continue
         if key in {other.key for other in found} | left_out.keys():
             faults.append(Fault(source, f"{kind}.{key}", "a second distribution", "one for each key"))
-        elif reason := _idle(item, scene, walls):
+        elif reason := _idle(item, scene, model):
             left_out[key] = reason
         else:
             found.append(item)
@@ -131,15 +132,15 @@ def _input(source: str, kind: str, key: str, table: dict, scene: Scene, faults: 
     return Input(key, kind == "factor", distribution, _number(scene, key), unit)
 
 
-def _idle(item: Input, scene: Scene, walls: bool) -> str | None:
+def _idle(item: Input, scene: Scene, model: str) -> str | None:
     """Why a number does not vary in this scene, if so."""
     table = item.key.partition(".")[0]
     if table in ("contact", "friction") and getattr(scene, table) is None:
         return f"the scene has no {table}"
-    if walls and item.key in _SPRINGS:
-        return "compliant walls have no such constant"
-    if not walls and item.key == "contact.penalty":
-        return "only compliant walls use it"
+    if model == COMPLIANT and item.key in _SPRINGS:
+        return "compliant contact has no such constant"
+    if model == SPRINGS and item.key == "contact.penalty":
+        return "only compliant contact uses it"
     if item.key == "contact.exponent" and scene.contact.law == "linear":
         return "the law is linear"
     if item.nominal is None and (item.is_factor or table in ("contact", "friction", "thrust")):

@@ -44,7 +44,7 @@ def run(scene: Scene, relative_tolerance: float = 1e-9) -> Trajectory:
     """The surrogate's answer."""
     import lowfi
 
-    return lowfi.run(scene, numerics=lowfi.Numerics(relative_tolerance=relative_tolerance))
+    return lowfi.run(scene, "springs", numerics=lowfi.Numerics(relative_tolerance=relative_tolerance))
 
 
 def _thrown(stiffness: float, exponent: float, start: float, speed: float, duration: float, mass: float = _MASS) -> float:

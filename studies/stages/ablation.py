@@ -17,6 +17,7 @@ from scenes.scene import EFFECTS, Scene
 from scenes.trajectory import Trajectory
 from studies import machine
 from studies.cost.timing import timed, warm_up
+from studies.stages import compliance
 from studies.store import SOURCES, Run
 from studies.study import Study
 
@@ -66,7 +67,9 @@ def _reference(study: Study, name: str, lines: dict[str, dict]):
 
 def _surrogate(study: Study, name: str, lines: dict[str, dict]):
     """Runs by turns, and the median time of their loops: set-up and judging, the same for all, would hide what an effect costs."""
-    asked = [study.lowfi(name, None, overrides, tag=_tag(line)) for line, overrides in lines.items()]
+    under = compliance.load(study, study.condition(name))
+    asked = [study.lowfi(name, None, overrides, _tag(line), None if overrides.get("contact", "kept") is None else under)
+             for line, overrides in lines.items()]
     for item in asked:
         warm_up(item)
     rounds = [[timed(item) for item in asked] for _ in range(study.settings.lowfi_repeats)]

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from lowfi.rows import Drawn
 from scenes import uncertainty
+from scenes.fidelity import SPRINGS
 from scenes.files import content_hash, source_hash
 from studies.agreement import verdicts
 from studies.agreement.verdicts import Context
@@ -34,7 +35,7 @@ def run(study: Study, asked: Asked = Asked()) -> dict:
     """Rows of the ``calibrated`` surrogate and of that on ``compliant`` walls, as in the agreement study, and the conditions
     drawn."""
     drawn = draw(study, asked)
-    ladder = [compare.Rung("calibrated", "surrogate, calibrated", calibrate.load(study)),
+    ladder = [compare.Rung("calibrated", f"{SPRINGS}, calibrated", calibrate.load(study)),
               compare.compliant(drawn, drawn.conditions)]
 
     def make() -> tuple[dict, list[Path]]:

@@ -1,4 +1,5 @@
-"""Stage ``calibrate``: the surrogate's contact constants from the reference's curves of the fitted conditions, and nothing else.
+"""Stage ``calibration``: constants of springs from the reference's curves of the fitted conditions, and nothing else. Compliant
+contact has its compliance from statics (``studies.stages.compliance``).
 
 Curves of another code or of a test may take the place of the reference. What is fitted to them goes into a folder of its own, so
 that the other stages, which compare with the reference, do not replace it.
@@ -12,12 +13,13 @@ import numpy as np
 
 from scenes.calibration import Calibration
 from scenes.faults import Fault, SceneError
+from scenes.fidelity import COMPLIANT, SPRINGS
 from scenes.scene import NOMINAL
 from scenes.walls import Walls
 from studies.cost import forecast
 from studies.progress import Board, say
-from studies.stages import walls
-from studies.store import SOURCES
+from studies.stages import compliance
+from studies.store import SOURCES, Run
 from studies.study import Study, StudyError, require_success
 
 FILE = "calibration.toml"
@@ -26,7 +28,7 @@ FILE = "calibration.toml"
 def run(study: Study) -> dict:
     """The calibration as plain values, beside ``calibration.toml``."""
     names = study.fitted()
-    asked = [study.highfi(name) for name in names]
+    asked = _asked(study)
 
     def make() -> tuple[dict, list[Path]]:
         import calibrate
@@ -39,7 +41,29 @@ def run(study: Study) -> dict:
         except calibrate.CalibrationError as fault:
             raise StudyError(f"cannot calibrate: {fault}") from None
 
-    return study.stage("calibration", study.key(SOURCES["calibrated"], [item.key for item in asked]), make)
+    return study.stage("calibration", _key(study), make)
+
+
+def of_models(study: Study, model: str | None = None) -> dict:
+    """What the surrogate's ``model`` takes from the finite elements, or both models, None: ``compliance`` and ``springs`` as
+    their result files hold them."""
+    found = {"scene": study.scene.name}
+    if model != SPRINGS:
+        found["compliance"] = compliance.run(study)
+    return found | ({"springs": run(study)} if model != COMPLIANT else {})
+
+
+def stored(study: Study) -> dict | None:
+    """The result, if it was made from the present scene, code and settings."""
+    return study.stored("calibration", lambda _: _key(study))
+
+
+def _asked(study: Study) -> list[Run]:
+    return [study.highfi(name) for name in study.fitted()]
+
+
+def _key(study: Study) -> str:
+    return study.key(SOURCES["calibrated"], [item.key for item in _asked(study)])
 
 
 def named(references: list[str], condition: str | None, settled_from: float | None) -> list[tuple[str, str]]:
@@ -97,7 +121,7 @@ def _fitted(study: Study, references: dict, path: Path) -> tuple[dict, list[Path
 
 def rigid_walls(study: Study, names: Iterable[str]) -> Walls | None:
     """Rigid walls for the conditions of these ``names``, if any of them is warm: they share a rail."""
-    return next(filter(None, (walls.of_law(study, study.condition(name)) for name in names)), None)
+    return next(filter(None, (compliance.of_law(study, study.condition(name)) for name in names)), None)
 
 
 def load(study: Study) -> Calibration:
@@ -107,12 +131,23 @@ def load(study: Study) -> Calibration:
 
 
 def lines(document: dict, folder: Path) -> list[str]:
-    """The constants in words, what the curves cannot tell, and where the calibration lies."""
+    """The compliance and the constants in words, what the curves cannot tell, and where both lie."""
+    if "parameters" not in document:
+        parts = [_compliance(document["compliance"], folder)] if "compliance" in document else []
+        return sum(parts, []) + (lines(document["springs"], folder) if "springs" in document else [])
     found = zip(document["parameters"], document["values"], document["units"], document["intervals"])
     said = [f"  {name:22}{value:.5g}{'' if unit == '1' else f' {unit}'}, {interval(ends)}" for name, value, unit, ends in found]
     said += [f"  not told      {words}" for words in document["weak_directions"]]
     return [f"fitted to {', '.join(document['conditions'])}: objective {document['objective']:.4g}", *said,
             f"  calibration   {folder / document['calibration']}"]
+
+
+def _compliance(document: dict, folder: Path) -> list[str]:
+    if document["file"] is None:
+        return ["no contact: no compliance"]
+    largest = max(max(values) for values in document["under_a_pad"]["direct_m_per_n"].values())
+    return [f"rail compliance at {document['stations']} stations, {1e3 * document['element_size_m']:g} mm elements: up to "
+            f"{1e9 * largest:.3g} nm/N under a pad", f"  compliance    {folder / document['file']}"]
 
 
 def interval(ends: list[float | None]) -> str:
@@ -127,4 +162,4 @@ def as_dict(found: Calibration) -> dict:
             "units": found.units, "lower": list(found.lower), "upper": list(found.upper),
             "justification": found.justification, "information": np.asarray(found.information).tolist(),
             "weak_directions": found.weak_directions, "residuals": found.residuals, "conditions": found.conditions,
-            "objective": float(found.objective), "valid": found.valid, "provenance": found.provenance}
+            "objective": float(found.objective), "provenance": found.provenance}

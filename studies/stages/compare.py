@@ -7,50 +7,49 @@ from pathlib import Path
 from typing import Callable, Iterable, NamedTuple
 
 from scenes.calibration import Calibration
+from scenes.fidelity import COMPLIANT, FINITE_ELEMENTS, SPRINGS
 from scenes.trajectory import Trajectory
 from scenes.walls import PATTERNS, Walls
 from studies.agreement import growth, metrics, verdicts
 from studies.agreement.verdicts import Context, Spread, spread
 from studies.cost.timing import speedups
 from studies.progress import Board
-from studies.stages import calibrate, walls
+from studies.stages import calibrate, compliance
 from studies.store import SOURCES, Run
 from studies.study import Study, read, require_success
 
 _SIMPLER = {"mean pressure of each face by itself": (1, False), "mean pressure": (1, True), "pressure and its tilt": (3, True),
             "all, each face by itself": (PATTERNS, False)}
-COMPLIANT = "surrogate, compliant walls"
 
 
 class Rung(NamedTuple):
-    """A surrogate to judge: its name in result files, what the report calls it, its constants, the walls of each condition, and how
-    many modes of each rail vibrate on them."""
+    """A surrogate to judge: its name in result files, what the report calls it, its constants, the rail compliance of each
+    condition, and how many modes of each rail vibrate."""
 
     name: str
     title: str
     calibration: Calibration | None = None
     walls: dict[str, Walls | None] = {}
-    modes: int | None = None
+    modes: int = 0
 
     def ask(self, study: Study, condition: str, overrides: dict | None = None, tag: str = "", **numerics) -> Run:
         """The run of a condition."""
-        vibrating = {"flexibility": None} if self.modes is None else {"flexibility.modes": self.modes}
-        tag += "" if self.modes is None else "-modal"
-        return study.lowfi(condition, self.calibration, vibrating | (overrides or {}), tag, self.walls.get(condition), **numerics)
+        vibrating = {"modes": self.modes} if self.modes else {}
+        return study.lowfi(condition, self.calibration, overrides, tag + "-modal" * bool(self.modes), self.walls.get(condition),
+                           **vibrating, **numerics)
 
 
 def rungs(study: Study, conditions: Iterable[str] | None = None) -> list[Rung]:
-    """The surrogates of a scene for ``conditions``, else for all, from the plainest up: with its own constants, with calibrated
-    ones, on compliant walls as statics has them, where nothing is fitted, and on the same with the lowest modes of the
-    rails."""
-    on_walls = compliant(study, study.conditions if conditions is None else conditions)
-    return [Rung("uncalibrated", "surrogate, uncalibrated"), Rung("calibrated", "surrogate, calibrated", calibrate.load(study)),
-            on_walls, on_walls._replace(name="modal", title="surrogate, modal rail", modes=study.settings.rail_modes)]
+    """The surrogates of a scene for ``conditions``, else for all, from the plainest up: springs with the scene's own constants,
+    with calibrated ones, compliant contact, and the same with the lowest modes of the rails."""
+    static, modes = compliant(study, study.conditions if conditions is None else conditions), study.settings.rail_modes
+    return [Rung("uncalibrated", f"{SPRINGS}, uncalibrated"), Rung("calibrated", f"{SPRINGS}, calibrated", calibrate.load(study)),
+            static, static._replace(name="modal", title=f"{COMPLIANT}, {modes} modes", modes=modes)]
 
 
 def compliant(study: Study, conditions: Iterable[str]) -> Rung:
-    """The surrogate on compliant walls, for ``conditions``."""
-    return Rung("compliant", COMPLIANT, walls=walls.under(study, conditions))
+    """The surrogate on compliant contact, for ``conditions``."""
+    return Rung("compliant", COMPLIANT, walls=compliance.under(study, conditions))
 
 
 def run(study: Study) -> dict:
@@ -93,8 +92,7 @@ def rows(study: Study, rung: Rung, highfi: dict[str, Trajectory], context: Conte
     """Agreement of one surrogate on every condition."""
     wanted = {name: rung.ask(study, name) for name in study.conditions}
     found = dict(zip(wanted, study.store.fill(rung.title, list(wanted.values()))))
-    outside = rung.calibration.outside if rung.calibration else lambda scene: []
-    return [verdicts.row(name, role, highfi[name], found[name], context) | {"outside_calibration": outside(study.condition(name))}
+    return [verdicts.row(name, role, highfi[name], found[name], context)
             for role in ("fitted", "held_out") for name in getattr(study.scene.agreement, role)]
 
 
@@ -146,7 +144,7 @@ def _growths(study: Study, compliant: Rung, rows: list[dict]) -> list[growth.Gro
     names = dict.fromkeys([*study.scene.agreement.floor, *(row["condition"] for row in rows if not row["reference_converged"])])
     gate = verdicts.gates(study.scene)["settled_rate_error_deg_s"]
     return [growth.growth(name, model, nominal, changed, study.settings.clearance_change, gate)
-            for model, ask in ((verdicts.FINITE_ELEMENTS, study.coarse), (compliant.title, partial(compliant.ask, study)))
+            for model, ask in ((FINITE_ELEMENTS, study.coarse), (compliant.title, partial(compliant.ask, study)))
             for name, (nominal, *changed) in _twins(study, f"growth, {model}", ask, names).items()]
 
 

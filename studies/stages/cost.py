@@ -14,12 +14,12 @@ from pathlib import Path
 from typing import Iterable
 
 from lowfi.numerics import Numerics
+from scenes.fidelity import COMPLIANT, FINITE_ELEMENTS
 from scenes.files import write_json
 from scenes.trajectory import Trajectory
 from studies import machine
 from studies.agreement import verdicts
 from studies.agreement.metrics import compare
-from studies.agreement.verdicts import FINITE_ELEMENTS
 from studies.cost import choice, scaling
 from studies.cost.timing import timed, warm_up
 from studies.progress import Board
@@ -28,9 +28,9 @@ from studies.stages.compare import Rung, refined, rungs
 from studies.store import SOURCES, Run
 from studies.study import Study, read
 
-BY_MODES = "surrogate, modal rail, modes varied"
+BY_MODES = f"{COMPLIANT}, modes varied"
 MODES = (1, 2, 8)  # of each rail, beside those of the agreement study
-STIFFNESS_ALONG = "surrogate, stiffness along the rail"  # mean pressure, each face by itself
+STIFFNESS_ALONG = f"{COMPLIANT}, mean pressure of each face by itself"
 NAME, POINTS = "cost_study", "cost.json"
 
 

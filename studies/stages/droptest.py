@@ -33,14 +33,14 @@ _SHOWN = 2000  # cases in the figure
 @dataclass(frozen=True)
 class Asked:
     """What ``tipoff droptest`` is given beside the scene and the logs: distributions, how many cases and their seed, None as the
-    file says, the condition that was dropped, None for the scene itself, and whether the surrogate stands on ``walls`` that give
-    way."""
+    file says, the condition that was dropped, None for the scene itself, and the name of a ``model``, None
+    for the default."""
 
     vary: str = uncertainty.DEFAULT
     cases: int = CASES
     seed: int | None = None
     condition: str | None = None
-    walls: bool = False
+    model: str | None = None
 
 
 def run(study: Study, logs: list[Path] | None = None, asked: Asked = Asked()) -> dict:
@@ -55,9 +55,10 @@ def run(study: Study, logs: list[Path] | None = None, asked: Asked = Asked()) ->
         from studies.report import droptest as page
         from studies.report.chart import to_files
 
-        cases = population.run(study, NAME, population.surrogate(study, asked.walls, asked.condition), drawn)
+        model = population.surrogate(study, asked.model, asked.condition)
+        cases = population.run(study, NAME, model, drawn)
         found = result(study, drops, cases, drawn.uncertainty.sampling == "random")
-        found |= {"request": request, "surrogate": _surrogate(study, asked), "varied": drawn.uncertainty.resolved()}
+        found |= {"request": request, "model": model.words, "varied": drawn.uncertainty.resolved()}
         found["summary"] = summary(study.scene.name, found)
         data = study.path(f"{NAME}.nc")
         signals.write(data, drops)
@@ -122,10 +123,6 @@ def _names(places: list[Path]) -> list[str]:
     return names
 
 
-def _surrogate(study: Study, asked: Asked) -> str:
-    return "without contact" if _scene(study, asked).contact is None else "on compliant walls" if asked.walls else "calibrated"
-
-
 def result(study: Study, drops: list[Drop], cases: Population, independent: bool = True) -> dict:
     """The drops among the cases, which are ``independent`` draws or points that depend on each other, as plain values. Raises
     StudyError where too few cases settle."""
@@ -137,10 +134,8 @@ def result(study: Study, drops: list[Drop], cases: Population, independent: bool
     for row, drop in zip(tests, drops):
         row["notes"] += _doubts(study, drop, cases.results.exit_time[settled])
     return {"simulated_logs": all(drop.sheet.simulated for drop in drops), "tests": tests, **joint(tests, rates),
-            "cases": {**cases.counts, "settled": int(settled.sum()), "outside_calibration": int(cases.outside.sum()),
-                      "quantiles": quantiles(cases.results, settled, independent),
-                      "store": cases.store, "shown_deg_s": np.round(rates[:_SHOWN], 4).tolist(),
-                      "shown_outside": cases.outside[settled][:_SHOWN].tolist()}}
+            "cases": {**cases.counts, "settled": int(settled.sum()), "quantiles": quantiles(cases.results, settled, independent),
+                      "store": cases.store, "shown_deg_s": np.round(rates[:_SHOWN], 4).tolist()}}
 
 
 def _doubts(study: Study, drop: Drop, exits: np.ndarray) -> list[str]:

@@ -16,20 +16,21 @@ from lowfi.rows import Drawn
 from lowfi.store import StoreError
 from lowfi.table import TableFile
 from scenes import uncertainty
-from scenes.calibration import Calibration
 from scenes.faults import Fault, SceneError
+from scenes.fidelity import SPRINGS
 from scenes.files import write_json
-from studies import machine
+from studies import machine, models
+from studies.agreement import kept
+from studies.calibrations import constants
 from studies.populations import summary
-from studies.progress import Board, say
-from studies.stages import walls
+from studies.progress import Board
+from studies.stages import compliance
 from studies.study import Study, StudyError
 
 
 @dataclass(frozen=True)
 class Asked:
-    """What ``tipoff ensemble`` is given beside the scene, ``walls`` that give way or not; None: as the file of distributions says,
-    or the default."""
+    """What ``tipoff ensemble`` is given beside the scene; None: as the file of distributions says, or the default."""
 
     vary: str = uncertainty.DEFAULT
     table: Path | None = None
@@ -40,11 +41,13 @@ class Asked:
     tolerance: float = 1e-2
     scheduler: str | None = None
     workers: int | None = None
-    walls: bool = False
+    model: models.Asked = models.Asked()
 
 
-def request(study: Study, asked: Asked, calibration: Calibration | None = None) -> Ensemble:
-    """The ensemble that is ``asked`` for. Raises SceneError for bad input."""
+def request(study: Study, asked: Asked) -> Ensemble:
+    """The ensemble that is ``asked`` for. Raises SceneError for bad input, before any rail compliance is found, and StudyError
+    where no model is named and the agreement table rejects the default."""
+    fitted = constants(asked.model.calibration)
     changed = {name: value for name in ("cases", "seed", "sampling") if (value := getattr(asked, name)) is not None}
     if asked.table is not None:
         if changed:
@@ -53,19 +56,22 @@ def request(study: Study, asked: Asked, calibration: Calibration | None = None) 
         source: Any = TableFile(asked.table)
     else:
         source = Drawn(uncertainty.load(asked.vary, study.scene, **changed))
-    for words in calibration.outside(study.scene) if calibration else []:
-        say(f"the scene the cases vary is outside the calibration: {words}")
     try:
-        numerics = Numerics(relative_tolerance=asked.tolerance)
+        numerics = Numerics(relative_tolerance=asked.tolerance, modes=asked.model.modes or 0)
     except ValueError as fault:
-        raise SceneError([Fault("--tolerance", "numerics", str(asked.tolerance), str(fault))]) from None
-    found = (walls.load if asked.walls else walls.of_law)(study, study.scene)
-    return Ensemble(study.scene, source, calibration, numerics, found)
+        given = f"{asked.tolerance:g}, {asked.model.modes}"
+        raise SceneError([Fault("--tolerance, --modes", "numerics", given, str(fault))]) from None
+    if asked.store is not None and asked.store.exists() and not asked.store.is_dir():
+        raise SceneError([Fault("--store", "path", str(asked.store), "a folder")])
+    models.require_accepted(study, asked.model.name)
+    springs = asked.model.model == SPRINGS
+    found = compliance.of_law(study, study.scene) if springs else compliance.load(study, study.scene, judged=False)
+    return Ensemble(study.scene, source, fitted, numerics, found)
 
 
-def run(study: Study, asked: Asked, calibration: Calibration | None = None) -> dict:
+def run(study: Study, asked: Asked) -> dict:
     """Run what the store lacks; the summary, also written as ``ensemble.json``. Raises StudyError when the run cannot go on."""
-    ensemble = request(study, asked, calibration)
+    ensemble = request(study, asked)
     try:
         store = ensemble.store(path := _path(study, asked, ensemble))
         ensemble.case(0)  # compiles, or loads the kernels from disk, before any clock runs
@@ -83,10 +89,15 @@ def run(study: Study, asked: Asked, calibration: Calibration | None = None) -> d
             "scheduler": asked.scheduler}
     if new and not asked.scheduler:
         cost["cpu_ms_per_case"] = 1e3 * spent / new
-    found = {"stage": "ensemble", "scene": study.scene.name, "store": str(path), **said, "run": cost,
+    found = {"stage": "ensemble", "scene": study.scene.name, "store": str(path), **said,
+             "agreement": _agreement(study, asked), "run": cost,
              "hardware": machine.describe()}
     write_json(study.path("ensemble.json"), found)
     return found
+
+
+def _agreement(study: Study, asked: Asked) -> str:
+    return kept.words(study, asked.model.model, None, asked.model.calibration is not None, asked.model.modes or 0)
 
 
 def _path(study: Study, asked: Asked, ensemble: Ensemble) -> Path:
@@ -94,9 +105,9 @@ def _path(study: Study, asked: Asked, ensemble: Ensemble) -> Path:
     return asked.store or study.path(f"ensemble-{ensemble.key[:8]}")
 
 
-def case(study: Study, asked: Asked, number: int, calibration: Calibration | None = None) -> dict:
+def case(study: Study, asked: Asked, number: int) -> dict:
     """One case run alone, and whether its store, if there is one, holds the same bits."""
-    ensemble = request(study, asked, calibration)
+    ensemble = request(study, asked)
     if not 0 <= number < ensemble.source.asked:
         raise SceneError([Fault("--case", "number", str(number), f"0 to {ensemble.source.asked - 1}")])
     row, found = ensemble.case(number)

@@ -25,12 +25,12 @@ NAME = "flight"
 @dataclass(frozen=True)
 class Asked:
     """What ``tipoff flight`` is given beside the scene: distributions, how many cases and their seed, None as the file says, and
-    whether the surrogate stands on ``walls`` that give way."""
+    the name of a ``model``, None for the default."""
 
     vary: str = uncertainty.DEFAULT
     cases: int | None = None
     seed: int | None = None
-    walls: bool = False
+    model: str | None = None
 
 
 def run(study: Study, asked: Asked = Asked()) -> dict:
@@ -48,10 +48,11 @@ def run(study: Study, asked: Asked = Asked()) -> dict:
         from studies.report import flight as page
 
         rows, shapes, single, exits = _conditions(study, asked)
-        cases, many, left, outside = _cases(study, asked, drawn)
-        found = {"asked": asdict(asked), "flight": summary.orbit(study.scene), "conditions": rows, "curves": shapes, "cases": cases}
+        cases, many, left = _cases(study, asked, drawn)
+        found = {"asked": asdict(asked), "model": population.surrogate(study, asked.model).words,
+                 "flight": summary.orbit(study.scene), "conditions": rows, "curves": shapes, "cases": cases}
         data = study.path(f"{NAME}.nc")
-        labelled = summary.dataset([row["condition"] for row in rows if row["flown"]], single, exits, many, left, outside)
+        labelled = summary.dataset([row["condition"] for row in rows if row["flown"]], single, exits, many, left)
         with replacing(data) as temporary:
             labelled.to_netcdf(temporary, engine="h5netcdf")
         pictures = [path for drawing, _ in page.charts(found) for path in chart.to_files(drawing, study.path("figures"))]
@@ -84,11 +85,10 @@ def _require(scenes: dict[str, Scene]) -> None:
 def _conditions(study: Study, asked: Asked) -> tuple[list[dict], list[dict], flown.Flown | None, Outcome | None]:
     """A row for every condition, curves of the first that settled, what was found for all that did, and their outcomes as
     arrays."""
-    runs, outside = [], {}
-    for name, scene in study.conditions.items():
-        model = population.surrogate(study, asked.walls, name)
+    runs = []
+    for name in study.conditions:
+        model = population.surrogate(study, asked.model, name)
         runs.append(study.lowfi(name, model.calibration, walls=model.walls))
-        outside[name] = model.calibration.outside(scene) if model.calibration else []
     ended = dict(zip(study.conditions, study.store.fill(NAME, runs)))
     settled = [name for name, found in ended.items() if found.outcome.rate is not None]
     exits = {name: bodies.of_outcomes([ended[name].outcome]) for name in settled}
@@ -96,7 +96,7 @@ def _conditions(study: Study, asked: Asked) -> tuple[list[dict], list[dict], flo
                               bodies.start(exits[name])) for name in settled}
     single = [flown.found(both) for both in pairs.values()]
     values = dict(zip(settled, single))
-    rows = [{"condition": name, "status": ended[name].status, "outside_calibration": outside[name],
+    rows = [{"condition": name, "status": ended[name].status,
              "flown": summary.row(values[name], exits[name], 0) if name in values else None} for name in ended]
     first = [name for name in study.scene.agreement.fitted if name in pairs] or settled
     shapes = [{"condition": name, **curves.of(pairs[name], values[name])} for name in first[:curves.SHOWN]]
@@ -104,10 +104,9 @@ def _conditions(study: Study, asked: Asked) -> tuple[list[dict], list[dict], flo
                             else (None, None)))
 
 
-def _cases(study: Study, asked: Asked, drawn: Drawn) -> tuple[dict, flown.Flown, Columns, np.ndarray]:
-    """Distributions over the cases of ``drawn``, what was found for each that settled, what these left their rails with, and
-    whether they are outside the calibration."""
-    model = population.surrogate(study, asked.walls)
+def _cases(study: Study, asked: Asked, drawn: Drawn) -> tuple[dict, flown.Flown, Columns]:
+    """Distributions over the cases of ``drawn``, what was found for each that settled, and what these left their rails with."""
+    model = population.surrogate(study, asked.model)
     cases = population.run(study, NAME, model, drawn)
     which = np.flatnonzero(cases.settled)
     if not len(which):
@@ -119,4 +118,4 @@ def _cases(study: Study, asked: Asked, drawn: Drawn) -> tuple[dict, flown.Flown,
         left = Columns(*(part[which] for part in cases.results))
         many = flown.fly(study.scene.flight.record(), parted, bodies.start(left), board.callback(label))
         board.finished(label, "flown")
-    return summary.cases(many, cases, drawn.uncertainty), many, left, cases.outside[which]
+    return summary.cases(many, cases, drawn.uncertainty), many, left

@@ -13,6 +13,7 @@ from typing import Callable
 
 import numpy as np
 
+from scenes.fidelity import COMPLIANT
 from studies.checked import together
 from studies.limits import constants, within
 from studies.limits import search
@@ -23,7 +24,6 @@ from studies.populations import answers, exceedance, population, spread
 from studies.populations.exceedance import Limit
 from studies.populations.population import Surrogate
 from studies.progress import Board
-from studies.stages import posterior
 from studies.store import SOURCES
 from studies.study import Study
 
@@ -38,8 +38,8 @@ def run(study: Study, asked: Asked = Asked()) -> dict:
     """``rows`` by factor and one of all together, ``map`` of two, ``summary`` in words. Raises SceneError for bad input, every
     fault listed."""
     (limits, cases), _ = together(lambda: checked(asked), lambda: asked.condition and study.condition(asked.condition))
-    model = population.surrogate(study, asked.walls, asked.condition)
-    margin = constants.margin(study, asked.walls)
+    model = population.surrogate(study, asked.model, asked.condition)
+    margin = constants.margin(study, asked.model or COMPLIANT)
 
     def make() -> tuple[dict, list[Path]]:
         from studies.report import limits as pictures
@@ -60,8 +60,7 @@ def stored(study: Study) -> dict | None:
 
 
 def _key(study: Study, asked: dict) -> str:
-    known = posterior.stored(study)
-    return study.key(SOURCES["calibrated"], NAME, _plain(asked), constants.margin(study, asked["walls"]), known and known["key"])
+    return study.key(SOURCES["calibrated"], NAME, _plain(asked), constants.margin(study, asked["model"] or COMPLIANT))
 
 
 def _plain(asked: dict) -> dict:
@@ -78,7 +77,7 @@ class _Answers:
         self.factors = within.factors(self.model.scene)
         self.allowed = exceedance.allowed(cases, asked.probability, asked.confidence)
         overrides, self.drawn = ([], []) if model.calibration is None else constants.draws(
-            study, model.calibration, asked.draws, asked.seed)
+            study.scene, model.calibration, asked.draws, asked.seed)
         self.others = [self.model.at(item) for item in overrides]
         self.report, self.evaluations = report, 0
         # Halvings and refinements of each search, and about five evaluations of each that starts from a known answer.
@@ -91,7 +90,7 @@ class _Answers:
         searched = {name: self._search(tolerances) for name, tolerances in full.items()}
         rows = [self._row(name, tolerances, searched[name]) for name, tolerances in full.items()]
         shown = {"limits_said": [limit.words for limit in self.limits], "probability": self.asked.probability,
-                 "confidence": self.asked.confidence, "cases": self.cases, "allowed": self.allowed, "surrogate": self.model.words,
+                 "confidence": self.asked.confidence, "cases": self.cases, "allowed": self.allowed, "model": self.model.words,
                  "constants": {"draws": len(self.others), "drawn": self.drawn}, "margin": self.margin._asdict()}
         return {"asked": _plain(asdict(self.asked)), "limits": [limit._asdict() for limit in self.limits], **shown, "rows": rows,
                 "map": self._map(searched[PAIR[0]].scale or 0.1), "evaluations": self.evaluations}
@@ -116,11 +115,11 @@ class _Answers:
         factor = self.factors.get(name) or Factor("all of them together, times", "1", 1.0 / _REACH, 1.0, advised)
         size = factor.most / factor.scale
         row = {"name": name, "words": factor.words, "unit": factor.unit, "most": size, "nominal": _told(found, size),
-               "advised": self._advised(tolerances, factor), **dict.fromkeys(("constants", "model", "both", "outside", "beside"))}
+               "advised": self._advised(tolerances, factor), **dict.fromkeys(("constants", "model", "both", "beside"))}
         if found.scale is None:
             return row
         cases = self._of(tolerances)
-        row |= {"outside": cases.outside(found.scale), "beside": self._beside(cases.values(found.scale))}
+        row["beside"] = self._beside(cases.values(found.scale))
         near = [self._near(tolerances, other, self.limits, found.scale) for other in self.others]
         if near:
             row["constants"] = [_told(item, size) for item in near]

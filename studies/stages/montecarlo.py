@@ -9,10 +9,13 @@ from pathlib import Path
 
 import numpy as np
 
+from scenes.fidelity import COMPLIANT, SPRINGS
+from studies.agreement import kept
 from studies.checked import together
 from studies.populations import answers, exceedance, population, random_factors, spread
 from studies.populations.population import Population, Surrogate
 from studies.populations.random_factors import READINGS, Reading
+from studies.stages import calibrate
 from studies.store import SOURCES
 from studies.study import Study, StudyError
 
@@ -27,13 +30,14 @@ _RATES = (*answers.RATES, answers.TOTAL_RATE)
 
 @dataclass(frozen=True)
 class Asked:
-    """What ``tipoff montecarlo`` is given beside the scene; ``limits`` as ``exceedance.limits`` reads them."""
+    """What ``tipoff montecarlo`` is given beside the scene; ``limits`` as ``exceedance.limits`` reads them; the name of
+    a ``model``, None for the default."""
 
     cases: int = CASES
     seed: int = 1
     reading: Reading = Reading()
     limits: tuple[str, ...] = ("x=5 deg/s", "y=5 deg/s", "z=5 deg/s", "5 deg/s")
-    walls: bool = False
+    model: str | None = None
 
 
 def run(study: Study, asked: Asked = Asked()) -> dict:
@@ -48,20 +52,20 @@ def run(study: Study, asked: Asked = Asked()) -> dict:
         from studies.report import montecarlo as pictures
         from studies.report.chart import to_files
 
-        model = population.surrogate(study, asked.walls)
+        model = population.surrogate(study, asked.model)
         found = population.run(study, NAME, model, source)
         if (settled := int(found.settled.sum())) < _FEWEST:
             raise StudyError(f"{settled or 'no'} case settled, {found.counts['refused']:,} of them refused; the reasons are in "
                              f"{found.store}/done")
-        made = {"asked": _plain(asked), "reading": asked.reading.words, "surrogate": model.words, "store": found.store,
-                "counts": found.counts, "settled": settled, "outside": int(found.outside.sum()),
-                "settled_outside": int((found.outside & found.settled).sum()), "confidence": spread.CONFIDENCE,
+        made = {"asked": _plain(asked), "reading": asked.reading.words, "model": model.words,
+                "agreement": kept.words(study, model.name, None, model.calibration is not None), "store": found.store,
+                "counts": found.counts, "settled": settled, "confidence": spread.CONFIDENCE,
                 "paper_cases": min(PAPER, asked.cases),
                 "quantities": [_quantity(item, found) for item in answers.ALL],
-                "tails": [_tail(limit, np.degrees(found.results.rate), found.outside) for limit in limits],
+                "tails": [_tail(limit, np.degrees(found.results.rate)) for limit in limits],
                 "convergence": [{"name": item.name, **row} for item in _RATES
                                 for row in spread.convergence(item.of(found.results), _CONVERGING)],
-                "readings": _readings(study, asked, model, found), "models": _models(study, asked, found)}
+                "readings": _readings(study, asked, model, found), "models": _models(study, asked, model.name, found)}
         made |= {"findings": _findings(made), "summary": _numbers(made)}
         return made, [path for chart, _ in pictures.charts(made) for path in to_files(chart, study.path("figures"))]
 
@@ -74,7 +78,8 @@ def stored(study: Study) -> dict | None:
 
 
 def _key(study: Study, asked: dict) -> str:
-    return study.key(SOURCES["calibrated"], NAME, asked)
+    fitted = calibrate.stored(study)  # both models are compared where there is one
+    return study.key(SOURCES["calibrated"], NAME, asked, fitted and fitted["key"])
 
 
 def _plain(asked: Asked) -> dict:
@@ -90,16 +95,16 @@ def _quantity(quantity: answers.Quantity, found: Population) -> dict:
     values, first = _settled(quantity, found), _settled(quantity, found, PAPER)
     return {"name": quantity.name, "label": quantity.label, "unit": quantity.unit, **spread.moments(values),
             "quantiles": spread.quantiles(values), "first": spread.quantiles(first) if first.size else None,
-            "histogram": spread.histograms(first, values, found.outside[found.settled])}
+            "histogram": spread.histograms(first, values)}
 
 
-def _tail(limit: exceedance.Limit, rates: np.ndarray, outside: np.ndarray) -> dict:
-    """How often ``rates`` (n,3), deg/s, are above ``limit``, and how many of those cases are ``outside`` (n,) the calibration."""
+def _tail(limit: exceedance.Limit, rates: np.ndarray) -> dict:
+    """How often ``rates`` (n,3), deg/s, are above ``limit``."""
     above = exceedance.above(rates, limit)
     count = int(above.sum())
     low, high = exceedance.bounds(count, len(rates), spread.CONFIDENCE)
     return {"limit": limit.words, **limit._asdict(), "above": count, "cases": len(rates), "share": count / len(rates),
-            "low": low, "high": high, "outside": int((above & outside).sum())}
+            "low": low, "high": high}
 
 
 def _readings(study: Study, asked: Asked, model: Surrogate, found: Population) -> list[dict]:
@@ -126,16 +131,16 @@ def _apart(here: list[np.ndarray], values: list[np.ndarray]) -> dict:
                       for item, each in zip(_RATES, values)] if told else None}
 
 
-def _models(study: Study, asked: Asked, found: Population) -> dict | None:
-    """The paper's thousand on springs and on walls; None where no pad can touch, for then both are one model. No quantities where
-    no case settled on both."""
-    if study.scene.contact is None:
+def _models(study: Study, asked: Asked, model: str, found: Population) -> dict | None:
+    """The paper's thousand on springs and on compliant contact; None where no pad can touch, for then both are one model, and
+    where no springs were calibrated for the scene. No quantities where no case settled on both."""
+    if study.scene.contact is None or calibrate.stored(study) is None:
         return None
     cases = min(PAPER, asked.cases)
     drawn = random_factors.source(study.scene, asked.reading, cases, asked.seed)
-    other = population.run(study, f"{NAME}-other", population.surrogate(study, not asked.walls), drawn)
+    other = population.run(study, f"{NAME}-other", population.surrogate(study, SPRINGS if model == COMPLIANT else COMPLIANT), drawn)
     both = found.settled[:cases] & other.settled
-    names = ("springs", "walls") if not asked.walls else ("walls", "springs")
+    names = (SPRINGS, COMPLIANT) if model == SPRINGS else (COMPLIANT, SPRINGS)
     rows = []
     for item in answers.ALL if both.any() else ():
         one, two = item.of(found.results)[:cases][both], item.of(other.results)[both]
@@ -146,18 +151,15 @@ def _models(study: Study, asked: Asked, found: Population) -> dict | None:
                      **{name: spread.quantiles(values, (0.5, 0.95, 0.99)) for name, values in zip(names, (one, two))}})
     pairs = {item.name: {name: np.round(item.of(results)[:cases][both], 4).tolist()
                          for name, results in zip(names, (found.results, other.results))} for item in _RATES}
-    outside = found.outside[:cases] | other.outside  # of the springs: no case is outside of walls
-    return {"cases": cases, "both_settled": int(both.sum()), "outside": int(outside.sum()), "quantities": rows, "pairs": pairs,
-            "pairs_outside": outside[both].tolist()}
+    return {"cases": cases, "both_settled": int(both.sum()), "quantities": rows, "pairs": pairs}
 
 
 def _findings(made: dict) -> list[str]:
     """What was run and what it says beside its numbers, one line each."""
     counts, asked = made["counts"], made["asked"]
-    said = [f"{counts['asked']:,} cases on {made['surrogate']} = {counts['ok']:,} ok + {counts['refused']:,} refused + "
-            f"{counts['failed']:,} failed; {made['settled']:,} settled, {made['outside']:,} outside the calibration; seed "
-            f"{asked['seed']}",
-            f"errors: {made['reading']}"]
+    said = [f"{counts['asked']:,} cases, model {made['model']} = {counts['ok']:,} ok + {counts['refused']:,} refused + "
+            f"{counts['failed']:,} failed; {made['settled']:,} settled; seed {asked['seed']}",
+            f"agreement of the model: {made['agreement']}", f"errors: {made['reading']}"]
     lost = [row["reading"] for row in made["readings"] if row["distance"] is None]
     said += [f"too few cases settled to compare: {'; '.join(lost)}"] if lost else []
     others = [row for row in made["readings"] if row["reading"] not in lost and row["chance"] < 0.01 and not row["same"]]
@@ -166,10 +168,10 @@ def _findings(made: dict) -> list[str]:
     elif not lost:
         said.append("no other reading of the table can be told from this one")
     if made["models"] and not made["models"]["quantities"]:
-        said.append(f"springs against walls on the same {made['models']['cases']:,} draws: none settled on both")
+        said.append(f"springs against compliant contact on the same {made['models']['cases']:,} draws: none settled on both")
     elif made["models"]:
         rates = [row for row in made["models"]["quantities"] if row["unit"] == "deg/s"]
-        said.append(f"springs against walls on the same {made['models']['cases']:,} draws, root mean square: "
+        said.append(f"springs against compliant contact on the same {made['models']['cases']:,} draws, root mean square: "
                     + ", ".join(f"{row['label']} {row['root_mean_square']:.3g}" for row in rates) + " deg/s")
     return said
 
@@ -181,8 +183,7 @@ def _numbers(made: dict) -> list[str]:
         row = next(row for row in item["quantiles"] if row["share"] == 0.99)
         said.append(f"{item['label']}: sd {item['sd']:.4g} ± {item['sd_error']:.2g}, 99 % below {_in_bounds(row)} {item['unit']}")
     return said + [f"{row['limit']}: above it in {row['above']:,} of {row['cases']:,}, probability {row['share']:.3g} "
-                   f"[{row['low']:.3g}, {row['high']:.3g}]"
-                   + (f", {row['outside']:,} of them outside the calibration" if row["outside"] else "") for row in made["tails"]]
+                   f"[{row['low']:.3g}, {row['high']:.3g}]" for row in made["tails"]]
 
 
 def _in_bounds(row: dict) -> str:

@@ -85,7 +85,6 @@ def require(scene: Scene) -> None:
     wrong = [Fault(scene.name, key, given, expected) for holds, key, given, expected in (
         (scene.rail.GIVEN_BY == "section", "rail", f"a {scene.rail.GIVEN_BY}", "the built-in section, whose ends are searched"),
         (scene.thermal is None, "thermal", "a table", "absent, for the searches have rails that stand where they are drawn"),
-        (scene.flexibility is None, "flexibility", "a table", "absent, for the searches have rails that do not bend"),
         (impact, "contact.law", "another law, or no contact", "impact, of which the paper prints the constants"),
         (scene.thrust.kind == "gaussian", "thrust.kind", scene.thrust.kind, "gaussian, as the paper fits its thrust"),
         (scene.friction is not None and hasattr(scene.friction, "static"), "friction", "absent", "a table with static and dynamic"),

@@ -1,5 +1,5 @@
 """Stage ``report``: the stages that compare both models, then one page of their results, and of what is there already: the error of
-the reference, the posterior of the constants, a benchmark, and the studies that answer an engineer's questions."""
+the reference, a benchmark, and the studies that answer an engineer's questions."""
 
 import importlib
 from dataclasses import replace
@@ -9,22 +9,23 @@ from typing import Callable
 import scenes
 from scenes.faults import SceneError
 from scenes.files import content_hash, write_text
+from scenes.walls import digest
 from studies.bench import reference
 from studies.progress import say
 from studies.report.answers import ANSWERS
-from studies.stages import ablation, calibrate, compare, convergence, cost, mesh, posterior, runs, stability, view, walls
+from studies.stages import ablation, calibrate, compare, compliance, convergence, cost, mesh, runs, stability, view
 from studies.settings import defaults
 from studies.store import Run
 from studies.study import INPUT_FAULTS, Study, StudyError, read
 
 STAGES: dict[str, Callable[[Study], dict]] = {
     "mesh": mesh.run, "highfi": lambda study: runs.run(study, "highfi"), "lowfi": lambda study: runs.run(study, "lowfi"),
-    "walls": walls.run,
+    compliance.NAME: compliance.run,
     "calibration": calibrate.run, "agreement": compare.run, cost.NAME: cost.run, "stability": stability.run,
     "ablation": ablation.run}
 
 
-OPTIONAL = (convergence.NAME, posterior.NAME, *(item.name for item in ANSWERS))  # each has a module here by that name
+OPTIONAL = (convergence.NAME, *(item.name for item in ANSWERS))  # each has a module here by that name
 
 
 def run(study: Study, every: bool = False) -> dict:
@@ -37,7 +38,7 @@ def run(study: Study, every: bool = False) -> dict:
         except StudyError as fault:
             documents[name], problems[name] = None, str(fault)
     absent = _made(study) if every else {}
-    there = ({convergence.NAME: convergence.stored(study), posterior.NAME: posterior.stored(study),
+    there = ({convergence.NAME: convergence.stored(study),
               "bench": reference.stored(study.folder.parent), "view": view.stored(study)}
              | {item.name: item.stored(study) for item in ANSWERS} | {"rails": beside(study.folder)})
 
@@ -75,10 +76,10 @@ def _made(study: Study) -> dict[str, str]:
 def beside(folder: Path) -> list[dict]:
     """Agreement and constants of the catalogue's scenes with other rails or pads whose folders lie beside ``folder``, made from the
     present code."""
-    found, own = [], scenes.load(folder.name).geometry_hash if folder.name in scenes.catalog() else None
+    found, own = [], digest(scenes.load(folder.name)) if folder.name in scenes.catalog() else None
     for path in sorted(folder.parent.glob("*/agreement.json")):
         name, size = path.parent.name, (read(path) or {}).get("element_size_m")
-        if name not in scenes.catalog() or scenes.load(name).geometry_hash == own or size is None:
+        if name not in scenes.catalog() or digest(scenes.load(name)) == own or size is None:
             continue
         other = Study(scenes.load(name), path.parent, replace(defaults(name), element_size=size))
         if agreement := compare.stored(other):
@@ -95,10 +96,11 @@ def _failed(documents: dict, problems: dict[str, str]) -> list[str]:
 def _trajectories(study: Study, documents: dict):
     from studies.report.figures import Runs
 
-    asked = [{name: ask(name) for name in study.conditions} for ask in (study.highfi, study.lowfi)]
+    asked = [runs.requests(study, fidelity) for fidelity in ("highfi", "lowfi")]
     if documents["agreement"]:
-        asked += [{name: rung.ask(study, name) for name in study.conditions} for rung in compare.rungs(study)[1:3]]
-    return Runs(*(_stored(study, runs) for runs in asked))
+        plain, calibrated, *_ = compare.rungs(study)
+        asked += [{name: rung.ask(study, name) for name in study.conditions} for rung in (calibrated, plain)]
+    return Runs(*(_stored(study, wanted) for wanted in asked))
 
 
 def _stored(study: Study, asked: dict[str, Run]) -> dict:

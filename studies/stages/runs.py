@@ -1,18 +1,22 @@
-"""Stages ``highfi`` and ``lowfi``: every condition of the scene in one fidelity, the surrogate with the scene's own constants."""
+"""Stages ``highfi`` and ``lowfi``: every condition of the scene in one fidelity, the surrogate on compliant contact."""
 
 import math
 from pathlib import Path
 
+from scenes.fidelity import FINITE_ELEMENTS
 from scenes.trajectory import Trajectory
 from studies.refinement import stresses
+from studies.stages import compliance
 from studies.store import SOURCES, Run
 from studies.study import FAILED, Study
 
 
 def requests(study: Study, fidelity: str) -> dict[str, Run]:
     """The run of each condition, by name."""
-    ask = study.highfi if fidelity == "highfi" else study.lowfi
-    return {name: ask(name) for name in study.conditions}
+    if fidelity == "highfi":
+        return {name: study.highfi(name) for name in study.conditions}
+    under = compliance.under(study, study.conditions)
+    return {name: study.lowfi(name, walls=under[name]) for name in study.conditions}
 
 
 def run(study: Study, fidelity: str) -> dict:
@@ -25,7 +29,8 @@ def run(study: Study, fidelity: str) -> dict:
         failed = [f"{name}: {found.status}: {found.message}" for name, found in runs.items() if found.status in FAILED]
         return {"conditions": rows, "failed": failed}, [study.store.path(item) for item in asked.values()]
 
-    return study.stage(fidelity, study.key(SOURCES[fidelity], [item.key for item in asked.values()]), make)
+    sources = SOURCES["highfi" if fidelity == "highfi" else "calibrated"]
+    return study.stage(fidelity, study.key(sources, [item.key for item in asked.values()]), make)
 
 
 def row(name: str, run: Trajectory, path: str) -> dict:
@@ -34,12 +39,12 @@ def row(name: str, run: Trajectory, path: str) -> dict:
     settled = None if result.rate is None else {
         "velocity_m_s": result.velocity, "rate_deg_s": [math.degrees(rate) for rate in result.rate],
         "lateral_velocity_m_s": result.lateral_velocity, "direction_error_deg": math.degrees(result.direction_error)}
-    found = {"condition": name, "status": run.status, "message": run.message, "exit_time_s": result.exit_time,
+    found = {"condition": name, "model": run.model, "status": run.status, "message": run.message, "exit_time_s": result.exit_time,
              "wall_s": cost["wall_s"], "compile_s": cost["compile_s"], "steps": cost["steps"], "dt_s": cost["dt_s"],
              "energy_error": checks.get("energy_error"), "transverse_energy_error": checks.get("transverse_energy_error"),
              "linear_momentum_error": checks.get("linear_momentum_error"),
              "angular_momentum_error": checks.get("angular_momentum_error"), "settled": settled, "trajectory": path,
              "checks": checks, "cost": cost, "numerics": run.numerics}
-    if run.fidelity == "highfi":
+    if run.model == FINITE_ELEMENTS:
         found |= {"elements": cost["elements"], "ns_per_element_step": cost["ns_per_element_step"]} | stresses.facts(run)
     return found

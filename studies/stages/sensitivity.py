@@ -9,6 +9,7 @@ import numpy as np
 from lowfi.numerics import Numerics
 from lowfi.rows import Listed
 from scenes.faults import Fault, SceneError
+from scenes.fidelity import COMPLIANT, SPRINGS
 from studies import published
 from studies.populations import answers, population
 from studies.populations.population import Population, Surrogate
@@ -25,12 +26,12 @@ _FINE = Numerics().relative_tolerance  # deviations of a thousandth are asked of
 
 class Asked(NamedTuple):
     """What ``tipoff sensitivity`` is given beside the scene: a file of tolerances or None for ``tolerances.DEFAULT``, base points
-    (a power of two), a seed, walls or springs."""
+    (a power of two), a seed, the name of a model, None for the default."""
 
     vary: str | None = None
     points: int = 1024
     seed: int = 1
-    walls: bool = False
+    model: str | None = None
 
 
 def run(study: Study, asked: Asked = Asked()) -> dict:
@@ -41,8 +42,8 @@ def run(study: Study, asked: Asked = Asked()) -> dict:
     _require(study, asked)
 
     def make() -> tuple[dict, list[Path]]:
-        model = population.surrogate(study, asked.walls)
-        found = {"asked": asked._asdict(), "walls": asked.walls, "citation": published.CITATION,
+        model = population.surrogate(study, asked.model)
+        found = {"asked": asked._asdict(), "model": model.words, "citation": published.CITATION,
                  "tables": _tables(study, model, asked), "paper": _paper(), "sobol": _sobol(study, model, asked)}
         found["summary"] = summary(found)
         files = [path for picture, _ in drawing.pictures(found) for path in to_files(picture, study.path("figures"))]
@@ -67,7 +68,7 @@ def _require(study: Study, asked: Asked) -> None:
     if asked.seed < 1:
         faults.append(Fault("--seed", NAME, str(asked.seed), "1 or more"))
     try:
-        tolerances.load(asked.vary or tolerances.DEFAULT, study.scene, asked.walls)
+        tolerances.load(asked.vary or tolerances.DEFAULT, study.scene, asked.model or COMPLIANT)
     except SceneError as error:
         faults += error.faults
     if faults:
@@ -78,16 +79,16 @@ def _tables(study: Study, model: Surrogate, asked: Asked) -> list[dict]:
     """One table about the constants of the surrogate, and one about the scene's own where a calibration changed them."""
     if model.scene.contact is None:
         return []
-    titled = [("compliant walls" if asked.walls else "calibrated constants", model)]
-    if not asked.walls and model.scene.contact != study.scene.contact:
+    titled = [(model.words, model)]
+    if model.name == SPRINGS and model.scene.contact != study.scene.contact:
         # A law stands on the same rigid walls whatever its constants are: where warm rails have moved them to.
-        own = Surrogate(population.on_springs(study.scene), None, model.walls)
-        titled.append(("constants of the scene, not calibrated", own))
-    return [{"title": title, **_table(study, surrogate, asked.walls)} for title, surrogate in titled]
+        own = Surrogate(study.scene, None, model.walls)
+        titled.append((own.words, own))
+    return [{"title": title, **_table(study, surrogate)} for title, surrogate in titled]
 
 
-def _table(study: Study, model: Surrogate, walls: bool) -> dict:
-    changed = contact_table.changes(model.scene, walls)
+def _table(study: Study, model: Surrogate) -> dict:
+    changed = contact_table.changes(model.scene, model.name)
     names = contact_table.conditions(study.scene) or [None]
     rows = [(study.scene.conditions[name] if name else {}) | change.overrides for name in names for change in changed]
     found = population.run(study, f"{NAME}-table", model, Listed(rows), _FINE)
@@ -110,7 +111,7 @@ def _paper() -> dict:
 
 
 def _sobol(study: Study, model: Surrogate, asked: Asked) -> dict:
-    spread = tolerances.load(asked.vary or tolerances.DEFAULT, model.scene, asked.walls)
+    spread = tolerances.load(asked.vary or tolerances.DEFAULT, model.scene, model.name)
     inputs = len(spread.inputs)
     found = population.run(study, NAME, model, Listed(spread.rows(indices.points(asked.points, inputs, asked.seed))))
     whole = indices.whole_blocks(found.settled, inputs)
@@ -119,7 +120,7 @@ def _sobol(study: Study, model: Surrogate, asked: Asked) -> dict:
                          "to say anything of all; see the statuses in the store")
     return {"inputs": [_described(item) for item in spread.inputs], "left_out": spread.left_out, "base_points": asked.points,
             "used": int(whole.sum()), "cases": found.counts, "not_settled": int((~found.settled).sum()),
-            "outside": int(found.outside.sum()), "store": found.store,
+            "store": found.store,
             "quantities": [_quantity(item, found, inputs, asked) for item in answers.ALL]}
 
 
@@ -154,8 +155,8 @@ def summary(found: dict) -> list[str]:
               for table in found["tables"] if table["most_moved"]]
     lines += [f"the paper's Table 2: {_most(paper)}"] if lines else []
     sobol = found["sobol"]
-    lines.append(f"{sobol['cases']['asked']:,} cases of {len(sobol['inputs'])} inputs, {sobol['not_settled']:,} did not settle, "
-                 f"{sobol['outside']:,} outside the calibration; {sobol['used']:,} of {sobol['base_points']:,} base points used")
+    lines.append(f"{sobol['cases']['asked']:,} cases of {len(sobol['inputs'])} inputs, {sobol['not_settled']:,} did not settle; "
+                 f"{sobol['used']:,} of {sobol['base_points']:,} base points used")
     for item in sobol["quantities"]:
         if item["indices"]:
             order = np.argsort(item["indices"]["total"])[::-1][:3]

@@ -28,10 +28,10 @@ _DEPARTS = 0.05  # of the rate of a free payload: by more the rail has its say
 
 
 class Asked(NamedTuple):
-    """What ``tipoff sweeps`` is given beside the scene: directions of each size, walls or springs."""
+    """What ``tipoff sweeps`` is given beside the scene: directions of each size, the name of a model, None for the default."""
 
     angles: int = 120
-    walls: bool = False
+    model: str | None = None
 
 
 def run(study: Study, asked: Asked = Asked()) -> dict:
@@ -43,7 +43,7 @@ def run(study: Study, asked: Asked = Asked()) -> dict:
         raise SceneError([Fault("--angles", NAME, str(asked.angles), f"{_FEWEST} or more")])
 
     def make() -> tuple[dict, list[Path]]:
-        model = population.surrogate(study, asked.walls)
+        model = population.surrogate(study, asked.model)
         alone = model._replace(scene=factors.alone(model.scene))
         launches = [_launch(study, alone, asked, 1.0, burnout.exit_of(alone))]
         launches[0]["faces"], looked_at = _sides(study, alone, asked)
@@ -51,7 +51,7 @@ def run(study: Study, asked: Asked = Asked()) -> dict:
             factor["sides"] = seen
         if other := burnout.other_way(alone):
             launches.append(_launch(study, other[1], asked, other[0], other[2]))
-        found = {"asked": asked._asdict(), "walls": asked.walls, "citation": published.CITATION, "launches": launches}
+        found = {"asked": asked._asdict(), "model": model.words, "citation": published.CITATION, "launches": launches}
         found["summary"] = summary(found)
         files = [path for picture, _ in drawing.pictures(found) for path in to_files(picture, study.path("figures"))]
         return found, files
@@ -74,8 +74,7 @@ def _launch(study: Study, model: Surrogate, asked: Asked, stretch: float, leaves
     found = population.run(study, NAME, model, factors.cases(directions), _TOLERANCE)
     count = len(SIZES) * asked.angles
     return {"stretch": stretch, "exit_s": leaves and leaves.time, "share_after_exit": leaves and leaves.share_after,
-            "cases": found.counts, "not_settled": int((~found.settled).sum()), "outside": int(found.outside.sum()),
-            "store": found.store,
+            "cases": found.counts, "not_settled": int((~found.settled).sum()), "store": found.store,
             "factors": [_factor(model, factor, directions, found, slice(place * count, (place + 1) * count))
                         for place, factor in enumerate(FACTORS)]}
 
@@ -90,7 +89,6 @@ def _factor(model: Surrogate, factor: Factor, directions: np.ndarray, found: Pop
     free_largest = {item.name: abs(column).max(axis=1) for item, column in zip(JUDGED, [*np.moveaxis(free, 2, 0), free_total])}
     return {"name": factor.name, "label": factor.label, "unit": factor.unit, "paper": published.PLATEAUS[factor.name],
             "sizes": SIZES.tolist(), "angles_deg": np.degrees(directions).tolist(),
-            "outside": found.outside[part].reshape(shape).tolist(),
             "values": {name: _plain(table) for name, table in values.items()},
             "largest": {name: _plain(knee.largest(abs(table))) for name, table in values.items()},
             "free": {name: _plain(curve) for name, curve in free_largest.items()},
@@ -128,8 +126,7 @@ def summary(found: dict) -> list[str]:
         how = "as given" if launch["stretch"] == 1.0 else f"thrust stretched by {launch['stretch']:g}"
         leaves = "never leaves without errors" if launch["exit_s"] is None else (
             f"exit after {1e3 * launch['exit_s']:.1f} ms, {100.0 * launch['share_after_exit']:.2g} % of the impulse after it")
-        lines.append(f"{how}: {launch['cases']['asked']:,} cases, {launch['not_settled']:,} did not settle, {launch['outside']:,} "
-                     f"outside the calibration; {leaves}")
+        lines.append(f"{how}: {launch['cases']['asked']:,} cases, {launch['not_settled']:,} did not settle; {leaves}")
         for factor in launch["factors"]:
             told = "; ".join(f"{labels[name]}: {said(bent, factor['unit'])}" for name, bent in factor["growth"].items() if bent)
             lines.append(f"{how}, {factor['label']} (the paper: plateau from {factor['paper']:g} {factor['unit']}): {told}")

@@ -28,7 +28,7 @@ class Exit(NamedTuple):
 
 def exit_of(model: Surrogate) -> Exit | None:
     """How the payload leaves, or None where it does not."""
-    time = lowfi.run(model.scene, numerics=Numerics(relative_tolerance=TOLERANCE), walls=model.walls).outcome.exit_time
+    time = lowfi.run(model.scene, model.name, numerics=Numerics(relative_tolerance=TOLERANCE), walls=model.walls).outcome.exit_time
     if time is None:
         return None
     record, duration = model.scene.thrust.record(), model.scene.duration

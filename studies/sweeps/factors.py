@@ -1,6 +1,6 @@
 """The errors that section 3 of the paper sweeps, one at a time, over size and direction, and what each would do to a free payload.
 
-A free payload of inertia I leaves with w = I^-1 L, where L = J (r x f) is the moment impulse of ``scenes.moments``.
+A free payload of inertia I leaves with w = I^-1 L, where L = J (r x f) is the moment impulse of ``studies.sweeps.moments``.
 On the reference scene that is 26 deg/s per millimetre of arm: the line that the rail bends. Gyroscopic moments are left out: they
 are quadratic in the rates.
 """
@@ -11,8 +11,9 @@ import numpy as np
 
 from lowfi.rows import Listed, numbers
 from scenes import model as models
-from scenes import moments
+from scenes.effects import thrust
 from scenes.scene import Scene
+from studies.sweeps import moments
 
 
 class Factor(NamedTuple):
@@ -56,4 +57,5 @@ def free_rates(scene: Scene, rows: list[dict[str, float]]) -> np.ndarray:
     """Rates (n,3) in rad/s that ``rows`` of overrides, those of a factor, would give a free payload of ``scene``."""
     table = Listed(rows)
     inputs = dict(zip(table.keys, numbers(table.keys, rows).T))
-    return moments.moment_impulses(scene, inputs, scene.loads["thrust_impulse_ns"]) @ models.build(scene).payload.inverse_inertia.T
+    impulse = float(thrust.impulse(scene.thrust.record(), scene.duration))
+    return moments.moment_impulses(scene, inputs, impulse) @ models.build(scene).payload.inverse_inertia.T

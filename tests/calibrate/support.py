@@ -26,7 +26,7 @@ def scene() -> scenes.Scene:
 @functools.cache
 def own_curves() -> dict[str, scenes.Trajectory]:
     """The surrogate's own runs with the true constants."""
-    return {name: lowfi.run(scene().replace(TRUTH).condition(name)) for name in CONDITIONS}
+    return {name: lowfi.run(scene().replace(TRUTH).condition(name), "springs") for name in CONDITIONS}
 
 
 def write_curves(path: Path, run: scenes.Trajectory, keep: slice | np.ndarray = slice(None)) -> Path:

@@ -66,7 +66,7 @@ def test_another_law_without_friction_fits_its_own_curves():
     wrong = {item.name: item.read(truth) for item in free}
     wrong["contact.force"] *= 1.4
     start = truth.replace(parameters.overrides(truth, wrong))
-    found = calibrate.run(start, {"phi60": lowfi.run(truth.condition("phi60"))}, plan=SMALL)
+    found = calibrate.run(start, {"phi60": lowfi.run(truth.condition("phi60"), "springs")}, plan=SMALL)
     assert found.parameters == ["contact.force", "contact.exponent", "contact.dissipation"]
     assert found.objective < 1e-7
     assert found.values[0] == pytest.approx(free[0].read(truth), rel=0.02)

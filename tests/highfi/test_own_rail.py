@@ -52,7 +52,7 @@ def test_promises_hold_on_a_rail_that_is_no_extrusion():
 
 @pytest.mark.slow
 def test_both_fidelities_leave_the_channels():
-    reference, surrogate = highfi.run(channels(duration="30 ms")), lowfi.run(channels(duration="30 ms"))
+    reference, surrogate = highfi.run(channels(duration="30 ms")), lowfi.run(channels(duration="30 ms"), "springs")
     assert reference.status == surrogate.status == "exited"
     assert_promises(reference)
     # Thrust sets both; only friction of impacts, which a rigid wall makes harder, tells them apart.
@@ -61,7 +61,7 @@ def test_both_fidelities_leave_the_channels():
 
 
 def test_the_surrogate_runs_it_too():
-    found = lowfi.run(channels(duration="30 ms"))
+    found = lowfi.run(channels(duration="30 ms"), "springs")
     assert found.status == "exited"
     assert found.checks["energy_error"] <= 1e-5 and found.checks["linear_momentum_error"] <= 1e-12
 

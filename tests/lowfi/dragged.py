@@ -40,6 +40,7 @@ def drag(friction: dict, tolerance: float, idle: str) -> dict:
     """Slips begin (s), their lengths (m), counts and promises of 6.2 s of dragging."""
     run = lowfi.run(scene(6.2, 1e-3, mass=1.0, pads=FEET, contact=GROUND, friction=friction, gravity={"z": -G},
                           initial={"position": {"z": -0.25 * G / GROUND["stiffness"]}}, thrust={"kind": "measured", "file": idle}),
+                     "springs",
                     numerics=numerics(tolerance))
     place, slipping = run.position[:, 0], run.velocity[:, 0] > 5.0 * SPEED
     begins, ends = np.flatnonzero(slipping[1:] & ~slipping[:-1]), np.flatnonzero(~slipping[1:] & slipping[:-1]) + 1

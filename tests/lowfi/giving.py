@@ -97,10 +97,10 @@ def add_walls(walls, friction, faces, platform, payload, active, state, out):
     equations.add_walls(walls, friction, faces, platform, True, active, body, slot.frame(platform, state), state, out)
 
 
-def pressed(scene: Scene, walls: Walls):
+def pressed(scene: Scene, walls: Walls, modes: int = 0):
     """Model and records of ``scene`` on ``walls``."""
     model = models.build(scene)
-    return model, systems.build(model, walls=record.build(walls, model))
+    return model, systems.build(model, walls=record.build(walls, model, modes=modes, damping=scene.rail.damping and scene.rail.damping.record()))
 
 
 def forces_of(walls: Walls, model, cells: int, face: int, pose: Pose, displacement: np.ndarray) -> np.ndarray:

@@ -70,7 +70,7 @@ def drop(contact: dict, tolerance: float, duration: float, v: float = 0.05, mass
     gap = contact["clearance"]
     length = gap / v + 1.3 * duration
     run = lowfi.run(scene(length, length / 6000, mass=mass, pads=pads, contact=contact,
-                          initial={"velocity": {"x": along, "z": -v}}, **tables), numerics=numerics(tolerance))
+                          initial={"velocity": {"x": along, "z": -v}}, **tables), "springs", numerics=numerics(tolerance))
     assert run.status == "time_limit", run.message
     height, speed = run.position[:, 2] + gap, run.velocity[:, 2]
     # Before and after the contact the body flies straight, so both ends of the contact are known exactly.

@@ -41,7 +41,7 @@ def bounce(vt: float, tolerance: float, mu: float = 0.2, e: float = 0.9) -> tupl
                           contact={"law": "linear", "clearance": gap, "stiffness": stiffness,
                                    "damping": 2.0 * zeta * math.sqrt(stiffness * MASS)},
                           friction={"static": mu, "dynamic": mu, "static_speed": 1e-4, "dynamic_speed": 2e-4},
-                          initial={"velocity": {"x": vt, "z": -1.0}}), numerics=numerics(tolerance))
+                          initial={"velocity": {"x": vt, "z": -1.0}}), "springs", numerics=numerics(tolerance))
     assert run.status == "time_limit" and run.checks["friction_power_max"] <= 0.0
     assert run.velocity[-1, 2] == pytest.approx(e, rel=5e-3)
     return run.velocity[-1, 0], run.rate[-1, 1]

@@ -74,8 +74,8 @@ def test_walls_that_stand_away_evenly_are_a_wider_clearance(flexible):
     """20 um more on every side, by temperature or by the clearance: the same motion, which without them is another."""
     scene, more = REFERENCE.condition("phi35"), 2e-5
     walls = standing_away(scene, np.full(4, more), flexible)
-    warm = lowfi.run(scene.replace({"thermal.mean": MEAN}), numerics=TIGHT, walls=walls)
-    wide, plain = (lowfi.run(each, numerics=TIGHT, walls=walls) for each in (
+    warm = lowfi.run(scene.replace({"thermal.mean": MEAN}), "springs", numerics=TIGHT, walls=walls)
+    wide, plain = (lowfi.run(each, "springs", numerics=TIGHT, walls=walls) for each in (
         scene.replace({"contact.clearance": scene.contact.clearance + more}), scene))
     assert np.degrees(warm.outcome.rate) == pytest.approx(np.degrees(wide.outcome.rate), abs=1e-6)
     assert np.abs(np.degrees(warm.outcome.rate) - np.degrees(plain.outcome.rate)).max() > 0.01
@@ -87,7 +87,7 @@ def test_ledgers_on_a_wavy_wall(flexible):
     """Waves of 0.1 mm along the rail: what they push along it is in the ledger, and momentum is kept."""
     scene = REFERENCE.condition("phi35").replace({"thermal.mean": MEAN})
     walls = standing_away(scene, 1e-4 * np.sin(np.linspace(0.0, 12.0, 40)), flexible)
-    run = lowfi.run(scene, walls=walls)
+    run = lowfi.run(scene, "springs", walls=walls)
     assert run.status == "exited" and np.abs(run.pad_force).max() > 100.0
     checks = run.checks
     assert checks["linear_momentum_error"] <= 1e-12 and checks["angular_momentum_error"] <= 1e-11
@@ -98,9 +98,9 @@ def test_ledgers_on_a_wavy_wall(flexible):
 def test_the_plain_equations_agree():
     """Fixed steps of 5 us, over all impacts. Control: cold rails are touched otherwise."""
     scene, walls = REFERENCE.condition("phi35").replace(WARM), reference_walls().rigid()
-    run = lowfi.run(scene, numerics=TIGHT, walls=walls)
+    run = lowfi.run(scene, "springs", numerics=TIGHT, walls=walls)
     plain = oracle.solve(scene, 10, walls=walls)
-    cold = lowfi.run(REFERENCE.condition("phi35"), numerics=TIGHT)
+    cold = lowfi.run(REFERENCE.condition("phi35"), "springs", numerics=TIGHT)
     same = min(run.time.size, cold.time.size)
     error, change = (np.abs(other.rate[:same] - run.rate[:same]).max() for other in (plain, cold))
     assert error < 5e-6 * np.abs(run.rate).max() and change > 1e-2 * np.abs(run.rate).max()
@@ -111,16 +111,16 @@ def test_ensembles_vary_the_temperature():
     """Every case as ``lowfi.run`` has it, to the bit; without walls every warm one is refused."""
     scene, walls = REFERENCE.condition("phi35"), reference_walls().rigid()
     rows = [{"thermal.mean": mean} for mean in (0.0, 20.0, 60.0)] + [{"payload.mass": 10.0}]
-    found = lowfi.run_many(scene, rows, walls=walls)
+    found = lowfi.run_many(scene, rows, "springs", walls=walls)
     for row, rate in zip(rows, found.rate.values):
-        assert rate.tolist() == lowfi.run(scene.replace(row), walls=walls).outcome.rate
+        assert rate.tolist() == lowfi.run(scene.replace(row), "springs", walls=walls).outcome.rate
     assert len({*map(tuple, found.rate.values.tolist())}) == 4
-    assert lowfi.run_many(scene, rows).status.values.tolist() == ["refused"] * 3 + ["exited"]
+    assert lowfi.run_many(scene, rows, "springs").status.values.tolist() == ["refused"] * 3 + ["exited"]
 
 
 @pytest.mark.slow
 def test_a_bow_that_closes_the_clearance_is_warned_about():
     scene = REFERENCE.condition("phi35").replace({"thermal.mean": MEAN})
     tight = np.where(np.arange(12) < 2, -3e-4, 0.0)  # where pads stand at ignition, and nowhere else
-    run = lowfi.run(scene, walls=standing_away(scene, tight))
+    run = lowfi.run(scene, "springs", walls=standing_away(scene, tight))
     assert "initial interference: pads 1, 2, 3, 4, 5, 6, 7, 8 press" in run.message or "initial interference: pads 0" in run.message

@@ -141,7 +141,7 @@ def test_penalty_converges(tolerance, k, duration):
     found, _ = drop(pad, tolerance, duration, gravity={"z": 0.0})
     assert found["duration"] == pytest.approx(duration, rel=1e-4)
     damped = pad | {"clearance": 0.0, "damping": 2.0 * math.sqrt(20.0 * k)}
-    resting = lowfi.run(scene(0.05, 1e-3, contact=damped, gravity={"z": -G}, initial={"velocity": {"x": 1.0}}),
+    resting = lowfi.run(scene(0.05, 1e-3, contact=damped, gravity={"z": -G}, initial={"velocity": {"x": 1.0}}), "springs",
                         numerics=numerics(tolerance))
     assert resting.status == "time_limit"
     assert -resting.position[-1, 2] == pytest.approx(20.0 * G / k, rel=1e-4)

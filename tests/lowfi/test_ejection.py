@@ -19,20 +19,20 @@ def test_zero_clearance_and_centred_thrust(tolerance):
     push = {"kind": "constant", "force": 2000.0, "duration": 0.05}
     centred = scene(0.2, 1e-3, pads=corners(), rail=SHORT, contact=PAPER_PAD | {"clearance": 0.0}, thrust=push)
     numerics = lowfi.Numerics(relative_tolerance=tolerance)
-    run = lowfi.run(centred, numerics=numerics)
+    run = lowfi.run(centred, "springs", numerics=numerics)
     assert run.status == "exited" and run.cost["events"] == 0
     assert run.outcome.velocity == pytest.approx([5.0, 0.0, 0.0], rel=1e-9, abs=1e-9)
     assert np.abs(run.rate).max() <= 1e-9 and np.abs(run.velocity[:, 1:]).max() <= 1e-9
     assert (run.pad_force[0] == 0.0).all()
     # Control: the same test sees a sideways speed of a micrometre per second.
-    nudged = lowfi.run(centred.replace({"initial.velocity.y": 1e-6}), numerics=numerics)
+    nudged = lowfi.run(centred.replace({"initial.velocity.y": 1e-6}), "springs", numerics=numerics)
     assert nudged.status == "exited" and np.abs(nudged.velocity[:, 1:]).max() > 1e-7 and nudged.cost["events"] > 0
 
 
 @pytest.mark.parametrize("name, condition", CONDITIONS)
 def test_promises(name, condition):
     """What every result file prints, on both catalogue scenes."""
-    run = lowfi.run(load(name).condition(condition))
+    run = lowfi.run(load(name).condition(condition), "springs")
     assert run.status == "exited"
     checks = run.checks
     assert checks["energy_error"] <= 1e-6 and checks["transverse_energy_error"] <= 1e-4
@@ -44,7 +44,7 @@ def test_promises(name, condition):
 
 
 def test_a_hundredth_of_spurious_contact_energy_is_seen():
-    run = lowfi.run(load("sensitive").condition("phi60"))
+    run = lowfi.run(load("sensitive").condition("phi60"), "springs")
     false = run.transverse_energy.copy()
     false[:, ledger.ENTRIES.index("contact_stored")] *= 1.01
     assert ledger.transverse_error(false) > 1e-4 > 10.0 * run.checks["transverse_energy_error"]
@@ -63,7 +63,7 @@ def test_agrees_with_the_plain_rewrite(name, condition):
     asked = load(name).condition(condition)
     plain = oracle.solve(asked, 10)
     for tolerance, error in ((2e-7, 1e-4), (1e-9, 5e-6)):
-        run = lowfi.run(asked, numerics=lowfi.Numerics(relative_tolerance=tolerance))
+        run = lowfi.run(asked, "springs", numerics=lowfi.Numerics(relative_tolerance=tolerance))
         same = slice(0, run.time.size)
         assert np.abs(run.rate - plain.rate[same]).max() <= error * np.abs(run.rate).max()
         assert np.abs(run.velocity - plain.velocity[same]).max() <= error * np.abs(run.velocity[:, 1:]).max()
@@ -75,9 +75,9 @@ def test_agrees_with_the_plain_rewrite(name, condition):
 def test_settled_rate_is_converged():
     """At most 0.1 % from a tolerance a thousand times finer, and better by orders in between."""
     asked, errors = load("sensitive").condition("phi35"), []
-    fine = np.array(lowfi.run(asked, numerics=lowfi.Numerics(relative_tolerance=2e-10)).outcome.rate)
+    fine = np.array(lowfi.run(asked, "springs", numerics=lowfi.Numerics(relative_tolerance=2e-10)).outcome.rate)
     for tolerance in (2e-5, 2e-7, 2e-9):
-        found = lowfi.run(asked, numerics=lowfi.Numerics(relative_tolerance=tolerance)).outcome.rate
+        found = lowfi.run(asked, "springs", numerics=lowfi.Numerics(relative_tolerance=tolerance)).outcome.rate
         errors.append(np.abs(found - fine).max() / np.abs(fine).max())
     assert errors[1] <= 1e-3 and errors[2] < 0.1 * errors[1] and errors[1] < 0.1 * errors[0]
 
@@ -86,7 +86,7 @@ def test_mirror_image():
     """y to -y turns roll and yaw round and leaves pitch, whatever order the pads come in."""
     asked = load("sensitive").condition("phi35")
     mirror = asked.replace({"thrust_offset.misalignment.radial": "145 deg", "payload.inertia.xy": -asked.payload.inertia.xy})
-    one, other = lowfi.run(asked), lowfi.run(mirror)
+    one, other = lowfi.run(asked, "springs"), lowfi.run(mirror, "springs")
     scale = np.abs(one.outcome.rate).max()
     assert np.array(other.outcome.rate) * (-1.0, 1.0, -1.0) == pytest.approx(np.array(one.outcome.rate), abs=1e-6 * scale)
     assert np.array(other.outcome.velocity) * (1.0, -1.0, 1.0) == pytest.approx(np.array(one.outcome.velocity), abs=1e-8)

@@ -5,7 +5,7 @@ import pytest
 
 import lowfi
 from lowfi import columns
-from scenes import Calibration, load, validity
+from scenes import load
 from scenes.faults import SceneError
 from studies.bench.surrogate import varied
 
@@ -16,7 +16,7 @@ ROWS = [{"thrust_offset.misalignment.radial": f"{angle} deg"} for angle in (5, 2
 def test_bad_rows_are_refused_alone():
     rows = [ROWS[0], {"payload.mass": -1.0}, {"contact.clearence": 1e-4},
             {"thrust.peak": 1e200, "thrust_offset.misalignment.axial": 0.0}, ROWS[1]]
-    found = lowfi.run_many(load("reference"), rows, workers=2)
+    found = lowfi.run_many(load("reference"), rows, "springs", workers=2)
     assert found.status.values.tolist() == ["exited", "refused", "refused", "diverged", "exited"]
     assert found.attrs == {"asked": 5, "ok": 2, "refused": 2, "failed": 1}
     assert "payload.mass" in found.message.values[1] and "clearence" in found.message.values[2]
@@ -25,7 +25,7 @@ def test_bad_rows_are_refused_alone():
 
 @pytest.mark.case("X20")
 def test_same_bits_for_any_worker_count():
-    one, three = (lowfi.run_many(load("sensitive"), ROWS, workers=count) for count in (1, 3))
+    one, three = (lowfi.run_many(load("sensitive"), ROWS, "springs", workers=count) for count in (1, 3))
     for name in ("rate", "velocity", "exit_time", "steps"):
         assert np.array_equal(one[name].values, three[name].values)
 
@@ -42,9 +42,9 @@ def test_same_bits_as_single_runs(rows):
     """Varied numbers, text with units, other thrust, time that ends early, pads pressed at ignition, a payload that hardly moves,
     tables that come and go: whichever way the ensemble takes, nothing differs from ``run``."""
     base = load("reference")
-    found = lowfi.run_many(base, rows, workers=2)
+    found = lowfi.run_many(base, rows, "springs", workers=2)
     for index, row in enumerate(rows):
-        alone = lowfi.run(base.replace(row))
+        alone = lowfi.run(base.replace(row), "springs")
         case = found.isel(case=index)
         assert (str(case.status.values), str(case.message.values), int(case.steps)) == (
             alone.status, alone.message, alone.cost["steps"])
@@ -58,32 +58,15 @@ def test_refused_rows_have_the_reason_of_replace():
     base = load("reference")
     rows = [{"thrust_offset.misalignment.axial": value, "mass_offset.eccentricity.axial": radius}
             for value, radius in ((1e-3, 1e-4), (2e-3, 1e-4), (float("nan"), 1e-4), ("1 mm", -1.0), (1e-3, 2e-4))]
-    found = lowfi.run_many(base, rows)
+    found = lowfi.run_many(base, rows, "springs")
     assert found.status.values.tolist() == ["exited", "exited", "refused", "refused", "exited"]
     for index in (2, 3):
         with pytest.raises(SceneError) as refused:
             base.replace(rows[index])
         assert found.message.values[index] == str(refused.value)
-    assert np.array_equal(found.rate.values[4], lowfi.run(base.replace(rows[4])).outcome.rate)
-
-
-def test_curves_keep_their_order():
-    base = load("reference")
-    found = lowfi.curves([base.replace(row) for row in ROWS], workers=2)
-    for row, curve in zip(ROWS, found):
-        assert curve.outcome.rate == lowfi.run(base.replace(row)).outcome.rate
+    assert np.array_equal(found.rate.values[4], lowfi.run(base.replace(rows[4]), "springs").outcome.rate)
 
 
 def test_an_empty_table_is_an_empty_result():
-    found = lowfi.run_many(load("reference"), [])
+    found = lowfi.run_many(load("reference"), [], "springs")
     assert found.sizes["case"] == 0 and found.attrs["asked"] == 0
-
-
-def test_a_scene_outside_a_calibration_is_warned_of(recwarn):
-    """Control: the scene that the constants were found for, where nothing is said."""
-    base = load("reference")
-    known = Calibration({}, [], [], [], [], [], [], np.zeros((0, 0)), [], {}, [], 0.0, validity.ranges([base.loads]))
-    lowfi.run_many(base, ROWS[:1], known)
-    assert not [item for item in recwarn if item.category is UserWarning]
-    with pytest.warns(UserWarning, match="outside the calibration: thrust peak"):
-        lowfi.run_many(base.replace({"thrust.peak": "9 kN"}), ROWS[:1], known)

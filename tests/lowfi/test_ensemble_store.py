@@ -138,7 +138,7 @@ def test_one_case_alone_has_the_stored_bits(tmp_path):
         results, inputs = store.read(number, number + 1)
         assert inputs[0].tolist() == list(row.values())
         assert results.rate[0].tolist() == case.outcome.rate and results.steps[0] == case.steps
-        assert case.outcome.rate == lowfi.run(asked.scene.replace(row), numerics=asked.numerics).outcome.rate
+        assert case.outcome.rate == lowfi.run(asked.scene.replace(row), "springs", numerics=asked.numerics).outcome.rate
 
 
 def test_run_many_with_a_store_is_run_many(tmp_path):
@@ -146,7 +146,8 @@ def test_run_many_with_a_store_is_run_many(tmp_path):
     key = "thrust_offset.misalignment.radial"
     rows = [{key: "5 deg"}, {key: 0.7}, {"payload.mass": -1.0}, {"contact.clearence": 1e-4}, {"payload.mass": float("nan")},
             {"thrust.peak": 1e200, "thrust_offset.misalignment.axial": 0.0}, {key: "65 deg"}]
-    plain, kept, again = (lowfi.run_many(load("reference"), rows, **where) for where in ({}, *2 * [{"store": tmp_path / "store"}]))
+    places = ({}, *2 * [{"store": tmp_path / "store"}])
+    plain, kept, again = (lowfi.run_many(load("reference"), rows, "springs", **where) for where in places)
     for found in (kept, again):
         assert found.equals(plain.drop_vars("wall_s")) and found.attrs == plain.attrs == {
             "asked": 7, "ok": 3, "refused": 3, "failed": 1}
@@ -161,9 +162,9 @@ def test_run_many_with_a_store_is_run_many(tmp_path):
 def test_draws_and_nothing_at_all_can_be_stored(tmp_path):
     scene = load("reference")
     drawn = uncertainty.load("paper", scene, cases=20)
-    plain, kept = lowfi.run_many(scene, drawn), lowfi.run_many(scene, drawn, store=tmp_path / "store")
+    plain, kept = lowfi.run_many(scene, drawn, "springs"), lowfi.run_many(scene, drawn, "springs", store=tmp_path / "store")
     assert kept.equals(plain.drop_vars("wall_s")) and plain.attrs["ok"] == 20
-    assert lowfi.run_many(scene, [], store=tmp_path / "empty").attrs["asked"] == 0
+    assert lowfi.run_many(scene, [], "springs", store=tmp_path / "empty").attrs["asked"] == 0
 
 
 def test_the_store_is_open_to_others(tmp_path):

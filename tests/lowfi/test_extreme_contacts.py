@@ -30,7 +30,7 @@ def test_initial_interference(contact, stored, leaves, tolerance):
     """Pressed in by 20 um: E = k p^(e+1)/(e+1) per pad stands in the ledger from the start and becomes m v^2 / 2."""
     # The body starts 20 um deeper than centred with no clearance.
     run = lowfi.run(scene(0.02, 1e-5, contact=contact | {"clearance": 0.0},
-                          initial={"position": {"z": -20e-6}, "velocity": {"x": 1.0}}), numerics=numerics(tolerance))
+                          initial={"position": {"z": -20e-6}, "velocity": {"x": 1.0}}), "springs", numerics=numerics(tolerance))
     assert run.energy[0, STORED] == pytest.approx(stored, rel=1e-5)
     assert run.velocity[-1, 2] == pytest.approx(leaves, rel=1e-4)
     assert "pads 0" in run.message and run.checks["energy_error"] <= 1e-6
@@ -67,7 +67,7 @@ def test_grazing_contact_is_felt(tolerance):
     """A rough wall approached at 1 um/s while passing at 5 m/s."""
     run = lowfi.run(scene(0.02, 1e-4, contact={"law": "linear", "clearance": 1e-9, "stiffness": 7e7, "damping": 0.0},
                           friction={"static": 0.3, "dynamic": 0.3, "static_speed": 1e-3, "dynamic_speed": 2e-3}, gravity={"z": 0.0},
-                          initial={"velocity": {"x": 5.0, "z": -1e-6}}), numerics=numerics(tolerance))
+                          initial={"velocity": {"x": 5.0, "z": -1e-6}}), "springs", numerics=numerics(tolerance))
     assert (run.pad_force[:, 0, 2] > 0.0).any() and run.cost["events"] >= 1
     assert run.checks["linear_momentum_error"] <= 1e-12 and run.checks["friction_power_max"] <= 0.0
     assert run.velocity[-1, 0] < 5.0 and run.energy[-1, ledger.ENTRIES.index("friction")] > 0.0
@@ -78,7 +78,7 @@ def test_grazing_contact_is_felt(tolerance):
 def test_contact_shorter_than_a_step_is_felt(tolerance):
     """A wall so stiff that the contact lasts 2 us, while the first step of free flight that meets it is a thousand times longer."""
     run = lowfi.run(scene(0.05, 1e-3, contact=LINEAR | {"stiffness": 7e13, "clearance": 1e-3},
-                          initial={"velocity": {"x": 5.0, "z": -0.05}}), numerics=numerics(tolerance))
+                          initial={"velocity": {"x": 5.0, "z": -0.05}}), "springs", numerics=numerics(tolerance))
     assert run.velocity[-1, 2] == pytest.approx(0.05, rel=1e-5)
     # Control: fixed steps of 0.1 ms find the pad deep in the wall and shoot it out.
     _, thrown = weaker.runge_kutta(lambda _, p, __: -7e13 * max(p, 0.0) / 20.0, -1e-6, 0.05, DEFAULT_STEP, 10)
@@ -92,7 +92,7 @@ def test_pad_leaves_the_rail_end_under_load(contact, stored, tolerance):
     """A pad pressed with 500 N passes the end: its energy is released or has become motion, and no force follows."""
     depth = (500.0 / contact["stiffness"]) ** (1.0 / contact["exponent"])
     run = lowfi.run(scene(0.03, 1e-5, pads=ONE_PAD, contact=contact | {"clearance": 0.0}, rail=RAIL | {"end": 1e-9},
-                          initial={"position": {"z": -depth}, "velocity": {"x": 5.0}}), numerics=numerics(tolerance))
+                          initial={"position": {"z": -depth}, "velocity": {"x": 5.0}}), "springs", numerics=numerics(tolerance))
     entry = {name: run.energy[:, index] for index, name in enumerate(ledger.ENTRIES)}
     assert entry["contact_stored"][0] == pytest.approx(stored, rel=1e-5)
     assert entry["released"][-1] == pytest.approx(stored, rel=1e-4) and entry["contact_stored"][-1] == 0.0
@@ -135,7 +135,7 @@ def test_light_payload_on_a_heavy_platform(tolerance):
         # Friction, thrust and offset of nothing, so that this scene runs on the kernel of the catalogue's.
         friction={"static": 0.0, "dynamic": 0.0, "static_speed": 0.01, "dynamic_speed": 0.02},
         thrust={"kind": "gaussian", "peak": 0.0, "width": 1e-3, "centre": 1e-3}, thrust_offset={"eccentricity": {"axial": 0.0}},
-        initial={"velocity": {"y": v}}), numerics=lowfi.Numerics(relative_tolerance=tolerance))
+        initial={"velocity": {"y": v}}), "springs", numerics=lowfi.Numerics(relative_tolerance=tolerance))
     critical = 2.0 * math.sqrt(light * heavy / (light + heavy) / k)
     assert critical == pytest.approx(7.5593e-6, rel=1e-5)
     assert run.cost["dt_limit_s"] < critical and run.cost["limit_used"] <= 1.0

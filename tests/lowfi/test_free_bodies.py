@@ -16,7 +16,8 @@ CENTRED = {"eccentricity": {"axial": 0.0}}  # a table without effect, so that al
 def spin(inertia: tuple, rate: tuple, duration: float, tolerance: float, interval: float = 0.01):
     """A free body with principal ``inertia`` (kg m2) started at ``rate`` (rad/s, body axes)."""
     return lowfi.run(scene(duration, interval, inertia=dict(zip(("xx", "yy", "zz"), inertia)), thrust_offset=CENTRED,
-                           initial={"velocity": {"x": 1.0}, "rate": dict(zip("xyz", rate))}), numerics=numerics(tolerance))
+                           initial={"velocity": {"x": 1.0}, "rate": dict(zip("xyz", rate))}), "springs",
+                     numerics=numerics(tolerance))
 
 
 def euler_rates(inertia: tuple, start: tuple, step: float, count: int) -> np.ndarray:
@@ -95,6 +96,7 @@ def test_body_fixed_thrust(tolerance, error):
     """Fresnel integrals: the thrust turns with the body."""
     offset = {"eccentricity": {"axial": 0.004, "radial": -math.pi / 2}}
     run = lowfi.run(scene(1.0, 0.01, thrust_offset=offset, thrust={"kind": "constant", "force": 2000.0, "duration": 2.0}),
+                    "springs",
                     numerics=numerics(tolerance))
     rate, along, across = exact.planar_thrust(2000.0, 0.004, 20.0, 0.6, 1.0)
     assert run.rate[-1] == pytest.approx([0.0, 0.0, rate], abs=error)
@@ -112,7 +114,7 @@ def test_short_impulse(tolerance, pulse, error, clock, expected):
     inertia = {"xx": 0.30, "yy": 0.55, "zz": 0.60, "xy": 0.010, "xz": -0.008, "yz": 0.004}
     tilt, phi = math.radians(0.1), math.radians(clock)
     run = lowfi.run(scene(4.0 * pulse, pulse, inertia=inertia, thrust_offset={"misalignment": {"axial": tilt, "radial": phi}},
-                          thrust={"kind": "constant", "force": 100.0 / pulse, "duration": pulse, "arm": 0.15}),
+                          thrust={"kind": "constant", "force": 100.0 / pulse, "duration": pulse, "arm": 0.15}), "springs",
                     numerics=lowfi.Numerics(relative_tolerance=tolerance))
     tensor = np.array([[0.30, 0.010, -0.008], [0.010, 0.55, 0.004], [-0.008, 0.004, 0.60]])
     push = 100.0 * np.array([math.cos(tilt), math.sin(tilt) * math.cos(phi), math.sin(tilt) * math.sin(phi)])
@@ -129,7 +131,7 @@ def test_short_impulse(tolerance, pulse, error, clock, expected):
 def test_recoil_of_a_free_platform(tolerance):
     """J/m, -J/M, -J b/I; closing speed on the line; momentum and energy close."""
     platform = {"mass": 150.0, "inertia": {"xx": 10.0, "yy": 10.0, "zz": 10.0}, "mass_centre": {"y": 0.3}}
-    run = lowfi.run(scene(4e-6, 1e-6, platform=platform, thrust={"kind": "constant", "force": 1e8, "duration": 1e-6}),
+    run = lowfi.run(scene(4e-6, 1e-6, platform=platform, thrust={"kind": "constant", "force": 1e8, "duration": 1e-6}), "springs",
                     numerics=numerics(tolerance))
     expected = exact.recoil(100.0, 20.0, 150.0, 10.0, 0.3)
     assert (expected["closing"], expected["energy"]) == pytest.approx((6.566667, 328.3333), abs=1e-4)
@@ -153,7 +155,8 @@ def test_recoil_of_a_free_platform(tolerance):
 def test_no_pulse_is_jumped_over(width, tolerance):
     """J/m = 5 m/s, whether the Gaussian lasts 20 us or half a second."""
     thrust = {"kind": "gaussian", "impulse": 100.0, "width": width, "centre": 0.8}
-    run = lowfi.run(scene(1.6, 0.01, thrust=thrust, thrust_offset=CENTRED), numerics=lowfi.Numerics(relative_tolerance=tolerance))
+    run = lowfi.run(scene(1.6, 0.01, thrust=thrust, thrust_offset=CENTRED), "springs",
+                    numerics=lowfi.Numerics(relative_tolerance=tolerance))
     assert run.velocity[-1, 0] == pytest.approx(5.0, rel=1e-5)
     assert run.cost["steps"] < 400
     if width < 0.01:  # control: steps of one sample that do not know the pulse find no impulse like it
@@ -167,7 +170,7 @@ def test_no_pulse_is_jumped_over(width, tolerance):
 def test_steps_stop_at_the_corners_of_the_thrust(tolerance):
     """12.5 kN for 8.3 ms, seen every 1 ms: 103.75 N s, 5.1875 m/s."""
     push = {"kind": "constant", "force": 12500.0, "start": 0.00123, "duration": 0.0083}
-    run = lowfi.run(scene(0.02, 0.001, thrust=push, thrust_offset=CENTRED), numerics=numerics(tolerance))
+    run = lowfi.run(scene(0.02, 0.001, thrust=push, thrust_offset=CENTRED), "springs", numerics=numerics(tolerance))
     assert run.velocity[-1, 0] == pytest.approx(5.1875, rel=1e-6)
     # Control: the midpoint rule on steps of 1 ms misses the corners.
     assert abs(sum(12500.0 * 1e-3 for i in range(20) if 0.00123 <= (i + 0.5) * 1e-3 < 0.00953) / 20.0 - 5.1875) > 0.1
@@ -179,7 +182,8 @@ def test_steps_stop_at_the_corners_of_the_thrust(tolerance):
 def test_cut_gaussian(rescale, speed, tolerance):
     """100 N s with sigma 4 ms cut at 3 sigma: 4.986501 m/s, or 5 when rescaled; the result says which."""
     thrust = {"kind": "gaussian", "impulse": 100.0, "width": 4e-3, "centre": 0.02, "cutoff": 3.0, "rescale": rescale}
-    run = lowfi.run(scene(0.05, 1e-3, thrust=thrust, thrust_offset=CENTRED), numerics=lowfi.Numerics(relative_tolerance=tolerance))
+    run = lowfi.run(scene(0.05, 1e-3, thrust=thrust, thrust_offset=CENTRED), "springs",
+                    numerics=lowfi.Numerics(relative_tolerance=tolerance))
     assert 5.0 * (1.0 if rescale else kept_by_cut(3.0)) == pytest.approx(speed, rel=1e-7)
     assert run.velocity[-1, 0] == pytest.approx(speed, rel=1e-6)
     assert (run.scene["thrust"]["cutoff"], run.scene["thrust"]["rescale"]) == (3.0, rescale)

@@ -20,7 +20,7 @@ def on_slope(angle: float, speed: float, duration: float, transition: float, tol
     """A block of 20 kg with coefficient 0.3 on a plane at ``angle`` (rad), started downhill at ``speed`` (m/s)."""
     rough = {"static": 0.3, "dynamic": 0.3, "static_speed": transition, "dynamic_speed": 2.0 * transition}
     return lowfi.run(scene(duration, 1e-3, pads=FEET, contact=GROUND, friction=rough, initial={"velocity": {"x": speed}},
-                           gravity={"x": G * math.sin(angle), "z": -G * math.cos(angle)}), numerics=numerics(tolerance))
+                           gravity={"x": G * math.sin(angle), "z": -G * math.cos(angle)}), "springs", numerics=numerics(tolerance))
 
 
 @pytest.mark.case("O24")
@@ -87,7 +87,7 @@ def test_bounces_come_to_an_end(tolerance):
         low, high = (zeta, high) if collisions.linear_restitution(zeta) > e else (low, zeta)
     stiffness = 2e10
     ground = {"law": "linear", "clearance": height, "stiffness": stiffness, "damping": 2.0 * zeta * math.sqrt(stiffness)}
-    run = lowfi.run(scene(1.4, 5e-5, mass=1.0, contact=ground, gravity={"z": -G}, initial={"velocity": {"x": 1.0}}),
+    run = lowfi.run(scene(1.4, 5e-5, mass=1.0, contact=ground, gravity={"z": -G}, initial={"velocity": {"x": 1.0}}), "springs",
                     numerics=numerics(tolerance))
     expected = collisions.bouncing_ball(height, e, G, 11)
     assert tuple(expected.values()) == pytest.approx((1.285278, 0.455556, 1.162607), abs=1e-6)

@@ -39,7 +39,7 @@ def mean_acceleration(run, start: float = 0.02, end: float = 0.04) -> float:
 def test_what_friction_leaves_of_the_push(tolerance, offset, share):
     """F (1 - 2 mu r / s) within 0.5 % of F."""
     assert exact.net_share(0.3, offset, SPAN) == pytest.approx(share, rel=1e-12)
-    run = lowfi.run(slider(0.3, offset, 0.04), numerics=Numerics(relative_tolerance=tolerance))
+    run = lowfi.run(slider(0.3, offset, 0.04), "springs", numerics=Numerics(relative_tolerance=tolerance))
     assert run.status == "time_limit" and run.checks["friction_power_max"] <= 0.0
     assert mean_acceleration(run) * MASS / PUSH == pytest.approx(share, abs=5e-3)
 
@@ -52,7 +52,7 @@ def test_the_offset_at_which_it_locks(tolerance, mu, locks_at):
     limit = exact.jam_offset(mu, SPAN)
     assert limit == pytest.approx(locks_at, rel=2e-5)
     numerics = Numerics(relative_tolerance=tolerance)
-    inside, outside = (lowfi.run(slider(mu, factor * limit, 0.04), numerics=numerics) for factor in (0.98, 1.02))
+    inside, outside = (lowfi.run(slider(mu, factor * limit, 0.04), "springs", numerics=numerics) for factor in (0.98, 1.02))
     assert inside.status == "time_limit" and outside.status == "jammed"
     assert mean_acceleration(inside) * MASS / PUSH == pytest.approx(0.02, abs=5e-3)
     assert outside.velocity[-1, 0] < 1e-3
@@ -65,7 +65,7 @@ def test_exit_speed_with_friction(tolerance, mu, offset, speed):
     """(J / m) (1 - 2 mu r / s) for 100 N s, at the end of a rail that the pads leave after the push."""
     assert exact.net_share(mu, offset, SPAN) * 5.0 == pytest.approx(speed, rel=1e-12)
     rail = {"start": -1.0, "end": 0.3, "material": {"density": 2810.0, "youngs_modulus": 72e9, "poisson_ratio": 0.33}}
-    run = lowfi.run(slider(mu, offset, 0.2, pushed=0.05, rail=rail), numerics=Numerics(relative_tolerance=tolerance))
+    run = lowfi.run(slider(mu, offset, 0.2, pushed=0.05, rail=rail), "springs", numerics=Numerics(relative_tolerance=tolerance))
     assert run.status == "exited"
     assert run.outcome.velocity[0] == pytest.approx(speed, rel=5e-3)
 
@@ -76,7 +76,7 @@ def test_wedged_slider_stays_where_it_is(tolerance):
     """mu 0.8 at 130 mm: it moves by less than 0.5 mm in 0.2 s, creeps below the smoothing speed, and no run calls that an exit."""
     transition = 5e-4
     asked = slider(0.8, 0.130, 0.2, transition)
-    run = lowfi.run(asked, numerics=Numerics(relative_tolerance=tolerance))
+    run = lowfi.run(asked, "springs", numerics=Numerics(relative_tolerance=tolerance))
     assert run.status == "jammed" and run.outcome.exit_time is None and run.outcome.velocity is None
     whole = unwatched(asked, Numerics(relative_tolerance=tolerance)).trajectory()
     assert whole.time[-1] == pytest.approx(0.2)
@@ -91,7 +91,7 @@ def test_wedged_slider_stays_where_it_is(tolerance):
 @TWO_TOLERANCES
 def test_slider_just_inside_the_lock_moves(tolerance):
     """mu 0.8 at 120 mm: 4 % of the push is left, 4.00 m/s2 within 2 % from 20 to 40 ms."""
-    run = lowfi.run(slider(0.8, 0.120, 0.04), numerics=Numerics(relative_tolerance=tolerance))
+    run = lowfi.run(slider(0.8, 0.120, 0.04), "springs", numerics=Numerics(relative_tolerance=tolerance))
     expected = exact.net_share(0.8, 0.120, SPAN) * PUSH / MASS
     assert expected == pytest.approx(4.00, rel=1e-12)
     assert run.status == "time_limit"

@@ -6,22 +6,21 @@ import numpy as np
 import pytest
 
 import lowfi
+from lowfi import Numerics
 from lowfi import state as slot
 from lowfi.walls import limit
-from scenes import model as models
 from scenes.faults import SceneError
-from scenes.walls import require_modes
 from tests.lowfi.giving import REFERENCE, SMOOTH, pressed, reference_walls, state_of
 from tests.lowfi.test_walls import BASES, POSES, derivative, energy, generalised, pose_of, solved
 
-COUNT = 5
+COUNT, FOUR = 5, Numerics(modes=4)
 DAMPED = {"rail.damping.ratios": [0.02, 0.01], "rail.damping.frequencies": [1e3, 5e3]}
 
 
 @pytest.fixture(scope="module")
 def vibrating():
     """Model, records, and any motion of the modes: walls out by micrometres, at centimetres a second."""
-    model, system = pressed(REFERENCE.replace(SMOOTH | DAMPED | {"flexibility.modes": COUNT}), reference_walls())
+    model, system = pressed(REFERENCE.replace(SMOOTH | DAMPED), reference_walls(), COUNT)
     size = system.walls.modes.square.size
     random = np.random.default_rng(5)
     return model, system, np.append(3e-7 * random.standard_normal(size), 3e-3 * random.standard_normal(size))
@@ -94,39 +93,27 @@ def test_limit_holds_the_spectrum(vibrating, name):
     assert dampers == system.walls.modes.drag.max() > 0.0
 
 
-def test_modes_need_walls_that_have_them():
-    asked = REFERENCE.replace({"flexibility.modes": 4})
-    with pytest.raises(SceneError, match="flexibility: given modes of rails without their walls, expected walls too"):
-        lowfi.run(asked)
+def test_modes_need_a_compliance_that_has_them():
+    with pytest.raises(SceneError, match="numerics.modes: given 4, expected 0: springs stand on rigid rails"):
+        lowfi.run(REFERENCE, "springs", numerics=FOUR)
     walls = reference_walls()
     few = replace(walls, frequency=walls.frequency[:, :3], shape=walls.shape[..., :3])
-    with pytest.raises(SceneError, match="flexibility.modes: given 4, expected at most 3"):
-        lowfi.run(asked, walls=few)
-    found = lowfi.run_many(REFERENCE, [{"flexibility.modes": 4}], workers=1)
-    assert list(found.status.values) == ["refused"] and "without their walls" in str(found.message.values[0])
-    nothing = asked.replace({"contact": None, "friction": None})  # presses the rails
-    require_modes(nothing, None)
-    assert models.build(nothing).flexibility is None
+    with pytest.raises(SceneError, match="numerics.modes: given 4, expected at most 3"):
+        lowfi.run(REFERENCE, numerics=FOUR, walls=few)
+    nothing = REFERENCE.replace({"contact": None, "friction": None})  # presses the rails
+    assert lowfi.run(nothing, numerics=FOUR).outcome.rate == lowfi.run(nothing).outcome.rate
 
 
 @pytest.mark.parametrize("given", [-1, 21, 2.5, "many", True])
 def test_a_number_of_modes_is_a_whole_one(given):
-    with pytest.raises(SceneError, match="flexibility.modes.*expected a whole number from 0 to 20"):
-        REFERENCE.replace({"flexibility.modes": given})
-    assert REFERENCE.replace({"flexibility.modes": "4"}).flexibility.modes == 4
-
-
-def test_no_modes_are_the_walls_of_statics():
-    asked, walls = REFERENCE.condition("h4"), reference_walls()
-    plain, none = (lowfi.run(scene, walls=walls) for scene in (asked, asked.replace({"flexibility.modes": 0})))
-    assert all(np.array_equal(getattr(plain, name), getattr(none, name)) for name in ("velocity", "rate", "pad_force", "energy"))
-    assert plain.cost["steps"] == none.cost["steps"]
+    with pytest.raises(ValueError, match="modes.*expected a whole number from 0 to 20"):
+        Numerics(modes=given)
 
 
 def test_rails_that_nothing_touches_take_no_time():
     """No pad touches in h5: not a step more, and the bits of a run without modes."""
     asked, walls = REFERENCE.condition("h5"), reference_walls()
-    plain, modes = (lowfi.run(scene, walls=walls) for scene in (asked, asked.replace({"flexibility.modes": 4})))
+    plain, modes = (lowfi.run(asked, numerics=each, walls=walls) for each in (Numerics(), FOUR))
     assert modes.cost["steps"] == plain.cost["steps"] and np.array_equal(modes.rate, plain.rate)
 
 

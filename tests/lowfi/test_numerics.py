@@ -48,13 +48,13 @@ def test_bad_numerics_are_refused(bad):
 def test_a_loose_tolerance_stays_below_the_proven_limit():
     """Where the error control would allow more, the limit of the contact holds the step."""
     resting = scene(0.05, 1e-3, contact=PAPER_PAD | {"clearance": 0.0}, gravity={"z": -9.80665}, initial={"velocity": {"x": 1.0}})
-    run = lowfi.run(resting, numerics=lowfi.Numerics(relative_tolerance=1e-2, speed_floor=10.0))
+    run = lowfi.run(resting, "springs", numerics=lowfi.Numerics(relative_tolerance=1e-2, speed_floor=10.0))
     assert run.status == "time_limit" and 0.5 < run.cost["limit_used"] <= 1.0 + 1e-9
     assert run.checks["energy_error"] < 1.0 and np.abs(run.velocity[:, 2]).max() < 0.1
 
 
 def test_a_spent_budget_is_a_status_with_a_reason():
-    run = lowfi.run(load("reference").condition("phi15"), numerics=lowfi.Numerics(maximum_steps=20))
+    run = lowfi.run(load("reference").condition("phi15"), "springs", numerics=lowfi.Numerics(maximum_steps=20))
     assert run.status == "diverged" and "maximum_steps" in run.message
     assert run.outcome.rate is None and run.time.size >= 1
     assert run.cost["steps"] == 20
@@ -62,6 +62,6 @@ def test_a_spent_budget_is_a_status_with_a_reason():
 
 def test_overflow_diverges_and_leaves_finite_samples():
     """An energy beyond all numbers ends as a status, with the finite part of the samples."""
-    run = lowfi.run(load("reference").replace({"thrust.peak": 1e200, "thrust_offset.misalignment.axial": 0.0}))
+    run = lowfi.run(load("reference").replace({"thrust.peak": 1e200, "thrust_offset.misalignment.axial": 0.0}), "springs")
     assert run.status == "diverged" and "infinite" in run.message and run.outcome.velocity is None
     assert np.isfinite(run.energy).all() and run.time.size < 1160

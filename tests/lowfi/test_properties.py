@@ -67,7 +67,7 @@ def assert_equal_motion(found: np.ndarray, expected: np.ndarray, yardstick: np.n
 
 def check_promises(raw: dict) -> None:
     """A run as the user gets it: an honest status, finite numbers, closed balances, losses that lose, steps below the limit."""
-    run = lowfi.run(scene_of(raw), numerics=Numerics(relative_tolerance=TOLERANCE))
+    run = lowfi.run(scene_of(raw), "springs", numerics=Numerics(relative_tolerance=TOLERANCE))
     assert run.status in ("exited", "time_limit", "jammed"), run.message
     assert all((value is not None) == (run.status == "exited") for value in run.outcome[1:])  # the exit time may stand alone
     for name in ("position", "velocity", "rate", "quaternion", "platform_velocity", "pad_force", "energy", "transverse_energy"):

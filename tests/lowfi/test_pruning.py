@@ -14,7 +14,7 @@ from tests.lowfi.giving import reference_walls
 # How the effects that the reference scene lacks are added; a law that sticks stands in the place of the other.
 ADDED = {"gravity": {"gravity.z": -9.80665},
          "sticking": {"friction": {"law": "sticking", "static": 0.2, "dynamic": 0.2, "stiffness": 1e7, "damping": 1e4}}}
-ON_WALLS = ("walls", "flexibility", "thermal")  # effects that need walls found for the scene
+ON_WALLS = ("walls", "modes", "thermal")  # effects that need walls found for the scene
 COUNT = """
 import numba
 import numpy as np
@@ -82,7 +82,5 @@ def test_walls_that_give_way_stand_in_the_place_of_the_contact_law():
 
 def test_modes_of_the_rails_are_compiled_where_there_are_any():
     scene, walls = load("reference"), reference_walls()
-    without, none, with_modes = (lowfi.compiled_effects(each, walls=walls)
-                                 for each in (scene, scene.replace({"flexibility.modes": 0}),
-                                              scene.replace({"flexibility.modes": 4})))
-    assert without == none and with_modes == without | {"flexibility": True}
+    without, with_modes = (lowfi.compiled_effects(scene, lowfi.Numerics(modes=count), walls) for count in (0, 4))
+    assert with_modes == without | {"modes": True}

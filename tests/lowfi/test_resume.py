@@ -31,7 +31,7 @@ def put_away(tolerance: float, last: int, path) -> Run:
 @pytest.mark.case("X20")
 @pytest.mark.parametrize("tolerance", [2e-7, 1e-9])
 def test_resumed_run_ends_in_the_same_bits(tolerance, tmp_path):
-    whole = lowfi.run(ASKED, numerics=Numerics(relative_tolerance=tolerance))
+    whole = lowfi.run(ASKED, "springs", numerics=Numerics(relative_tolerance=tolerance))
     last = round(0.37 * (whole.time.size - 1))
     run = put_away(tolerance, last, tmp_path / "run.npz")
     run.march(None)

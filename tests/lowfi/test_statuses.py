@@ -17,7 +17,7 @@ STATUS = {"spent": "diverged", "overflow": "diverged"}
 
 def ended(name: str):
     overrides, numerics = ENDS[name]
-    return lowfi.run(BASE.replace(overrides), numerics=lowfi.Numerics(**numerics))
+    return lowfi.run(BASE.replace(overrides), "springs", numerics=lowfi.Numerics(**numerics))
 
 
 @pytest.mark.parametrize("name", ENDS)
@@ -36,7 +36,7 @@ def test_status_and_what_stands_behind_it(name):
 def test_exit_without_a_settled_window_has_no_settled_values():
     """The scene ends after the exit and before the window does: time_limit, an exit time, nothing else."""
     exit_time = ended("exited").outcome.exit_time
-    run = lowfi.run(BASE.replace({"duration": exit_time + 1e-3}))
+    run = lowfi.run(BASE.replace({"duration": exit_time + 1e-3}), "springs")
     assert run.status == "time_limit"
     assert run.outcome.exit_time == pytest.approx(exit_time, rel=1e-9)
     assert [value for value in run.outcome._asdict().values() if value is not None] == [run.outcome.exit_time]
@@ -54,7 +54,7 @@ def test_saved_results_hold_no_number_either(tmp_path):
 def test_tables_of_runs_hold_none_either():
     """In an ensemble the settled values of all but the exited are NaN, which no mean can swallow unseen."""
     rows = [overrides for name, (overrides, numerics) in ENDS.items() if not numerics]
-    found = lowfi.run_many(BASE, rows)
+    found = lowfi.run_many(BASE, rows, "springs")
     assert found.status.values.tolist() == ["exited", "time_limit", "jammed", "diverged"]
     for name in columns.UNITS:
         values = found[name].values

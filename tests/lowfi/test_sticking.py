@@ -40,7 +40,8 @@ def on_slope(angle, speed, duration, tolerance=1e-6, downhill="x", stiffness=SPR
     sunk = 20.0 * G * math.cos(angle) / 4.0 / GROUND["stiffness"]
     return lowfi.run(scene(duration, 1e-3, pads=FEET, contact=GROUND, friction=grip, thrust=thrust, thrust_offset=CENTRED,
                            initial={"velocity": {downhill: speed}, "position": {"z": -sunk}},
-                           gravity={downhill: G * math.sin(angle), "z": -G * math.cos(angle)}), numerics=numerics(tolerance))
+                           gravity={downhill: G * math.sin(angle), "z": -G * math.cos(angle)}), "springs",
+                     numerics=numerics(tolerance))
 
 
 def passive(run) -> bool:
@@ -114,7 +115,8 @@ def slider(offset: float, thrust: dict, duration: float, friction: dict):
     """20 kg guided over 0.2 m without clearance and pushed by 2 kN ``offset`` (m) off its centre."""
     pads = {"law": "linear", "clearance": 0.0, "stiffness": 7e7, "damping": 3.704e4}
     return lowfi.run(scene(duration, 1e-4, pads=corners(normals=("z",)), inertia={"xx": 0.8, "yy": 0.8, "zz": 0.8}, contact=pads,
-                           friction=friction, thrust=thrust, thrust_offset={"eccentricity": {"axial": offset}}, gravity={"z": 0.0}))
+                           friction=friction, thrust=thrust, thrust_offset={"eccentricity": {"axial": offset}}, gravity={"z": 0.0}),
+                     "springs")
 
 
 @pytest.mark.case("X7")
@@ -139,7 +141,7 @@ def test_promises_of_a_jam_on_a_free_platform():
     """Slips, stops, touches and recoil: both ledgers, both momenta, no energy back, and the mirror image."""
     asked = load("sensitive").condition("phi35").replace(WEDGED)
     mirror = asked.replace({"thrust_offset.misalignment.radial": "145 deg", "payload.inertia.xy": -asked.payload.inertia.xy})
-    run, other = lowfi.run(asked), lowfi.run(mirror)
+    run, other = lowfi.run(asked, "springs"), lowfi.run(mirror, "springs")
     assert run.status == other.status == "jammed" and passive(run)
     assert run.checks["energy_error"] <= 1e-6 and run.checks["transverse_energy_error"] <= 1e-4
     assert run.checks["linear_momentum_error"] <= 1e-12 and run.checks["angular_momentum_error"] <= 1e-11
@@ -155,8 +157,8 @@ def test_promises_of_a_jam_on_a_free_platform():
 def test_fast_faces_only_slide():
     """At metres per second the law is Coulomb's, and so is the two-step law: the same ejection."""
     asked = load("sensitive").condition("phi60")
-    one = lowfi.run(asked).outcome.rate
-    other = lowfi.run(asked.replace({"friction": WEDGED["friction"] | {"static": 0.2, "dynamic": 0.2}})).outcome.rate
+    one = lowfi.run(asked, "springs").outcome.rate
+    other = lowfi.run(asked.replace({"friction": WEDGED["friction"] | {"static": 0.2, "dynamic": 0.2}}), "springs").outcome.rate
     assert other == pytest.approx(one, rel=1e-6)
 
 
@@ -165,10 +167,10 @@ def test_same_bits_in_an_ensemble():
     base = load("sensitive").condition("phi35").replace(slippery)
     rows = [{"thrust_offset.eccentricity.axial": 1e-3 * index} for index in range(3)]
     rows += [WEDGED, {"friction.dynamic": 0.1}, {"initial.position.y": 0.06e-3}, {"friction.dynamic": 0.4}]
-    found = lowfi.run_many(base, rows)
+    found = lowfi.run_many(base, rows, "springs")
     assert found.status.values.tolist() == ["exited"] * 3 + ["jammed"] + ["exited"] * 2 + ["refused"]
     for index, row in enumerate(rows[:-1]):
-        alone, case = lowfi.run(base.replace(row)), found.isel(case=index)
+        alone, case = lowfi.run(base.replace(row), "springs"), found.isel(case=index)
         assert (str(case.status.values), int(case.steps)) == (alone.status, alone.cost["steps"])
         for name in ("rate", "velocity", "exit_time") if alone.status == "exited" else ():
             assert np.array_equal(case[name].values, getattr(alone.outcome, name)), (row, name)

@@ -26,7 +26,7 @@ def rocking_block(mu: float, tolerance: float, drift: float = 0.0):
         contact={"law": "linear", "clearance": 0.0, "stiffness": 1e9, "damping": 1e5},
         friction={"static": mu, "dynamic": mu, "static_speed": 2e-4, "dynamic_speed": 4e-4}, gravity={"z": -G},
         initial={"velocity": {"x": drift}, "attitude": {"y": start},
-                 "position": {"x": b - b * cosine + h * sine, "z": b * sine + h * cosine - h}}),
+                 "position": {"x": b - b * cosine + h * sine, "z": b * sine + h * cosine - h}}), "springs",
         numerics=numerics(tolerance))
 
 
@@ -64,7 +64,7 @@ def test_couple_across_the_clearance(tolerance):
                           contact={"law": "linear", "clearance": clearance, "stiffness": 7e7, "damping": 3.704e4},
                           friction={"static": 0.0, "dynamic": 0.0, "static_speed": 1e-3, "dynamic_speed": 2e-3}, gravity={"z": 0.0},
                           thrust={"kind": "constant", "force": 4.0, "duration": 1.0},
-                          thrust_offset={"eccentricity": {"axial": couple / 4.0}}, initial={"velocity": {"x": 1.0}}),
+                          thrust_offset={"eccentricity": {"axial": couple / 4.0}}, initial={"velocity": {"x": 1.0}}), "springs",
                     numerics=numerics(tolerance))
     touching = np.flatnonzero((run.pad_force[:, :, 2] != 0.0).any(axis=1))[0]
     rate = abs(run.rate[touching - 1, 1])
@@ -83,7 +83,7 @@ def tipped_off(stiffness: float, tolerance: float):
     return lowfi.run(scene(
         0.1, 1e-4, inertia=dict.fromkeys(("xx", "yy", "zz"), 0.8), pads=pads, rail=RAIL | {"end": 0.2}, gravity={"z": -G},
         contact={"law": "linear", "clearance": 0.0, "stiffness": stiffness, "damping": damping},
-        initial={"velocity": {"x": 5.0}, "position": {"z": -10.0 * G / stiffness}}), numerics=numerics(tolerance))
+        initial={"velocity": {"x": 5.0}, "position": {"z": -10.0 * G / stiffness}}), "springs", numerics=numerics(tolerance))
 
 
 @pytest.mark.case("O30")

@@ -56,7 +56,7 @@ def test_one_cell_is_a_spring(monkeypatch, friction, given):
     assert (np.abs(law.pad_force).max(axis=(0, 2)) > 100.0).sum() >= 4  # faces in touch
     assert speeds(cells) == pytest.approx(speeds(law), abs=1e-7)
     # Control: a spring a thousandth stiffer moves otherwise.
-    other = lowfi.run(on_springs(rub, 1.001 * together), numerics=TIGHT)
+    other = lowfi.run(on_springs(rub, 1.001 * together), "springs", numerics=TIGHT)
     assert np.abs(speeds(other) - speeds(law)).max() > 1e-5
 
 

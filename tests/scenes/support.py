@@ -42,7 +42,7 @@ def motion(position, velocity=None, quaternion=None, rate=None, time=None, platf
     n = len(position)
     zeros, aligned = np.zeros((n, 3)), np.tile([1.0, 0.0, 0.0, 0.0], (n, 1))
     entries = dict(
-        fidelity="lowfi", status=status, time=time, position=position, velocity=zeros if velocity is None else velocity,
+        model="springs", status=status, time=time, position=position, velocity=zeros if velocity is None else velocity,
         quaternion=aligned if quaternion is None else quaternion, rate=zeros if rate is None else rate,
         platform_position=zeros, platform_velocity=zeros,
         platform_rate=np.zeros((n, 3)) if platform_rate is None else platform_rate,

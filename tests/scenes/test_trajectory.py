@@ -39,7 +39,7 @@ def test_round_trip_is_bit_for_bit(tmp_path):
     for name in ARRAYS:
         assert getattr(found, name).tobytes() == getattr(saved, name).tobytes()
         assert getattr(found, name).dtype == getattr(saved, name).dtype
-    for name in ("outcome", "checks", "cost", "scene", "status", "fidelity", "message", "numerics", "versions"):
+    for name in ("outcome", "checks", "cost", "scene", "status", "model", "message", "numerics", "versions"):
         assert getattr(found, name) == getattr(saved, name)
     assert isinstance(found.cost["steps"], int)
 

@@ -105,7 +105,7 @@ def test_nothing_is_chosen_without_measured_cost(tmp_path):
         single.chosen(study, "phi15", 0.1, None)
 
 
-@pytest.mark.parametrize("option", [["--walls"], ["--fidelity", "highfi"], ["--calibration", "a.toml"]])
+@pytest.mark.parametrize("option", [["--model", "compliant"], ["--modes", "2"], ["--calibration", "a.toml"]])
 def test_a_model_is_not_both_given_and_chosen(tmp_path, option):
     result = CliRunner().invoke(app, ["run", "--scene", "tiny", "--out", str(tmp_path), "--budget", "2 s", *option])
     assert result.exit_code == 2 and option[0] in result.stderr and "choose the model" in result.stderr

@@ -52,7 +52,7 @@ def test_every_stage_refuses_an_unknown_scene(tmp_path, stage):
 
 def test_unknown_condition_and_bad_options(tmp_path):
     assert call("highfi", "--scene", "tiny", "--condition", "phi99", "--out", tmp_path).exit_code == 2
-    assert call("run", "--scene", "tiny", "--fidelity", "both").exit_code == 2
+    assert call("run", "--scene", "tiny", "--model", "both").exit_code == 2
     assert call("mesh", "--element-size", "-4").exit_code == 2
     assert call("run", "--scene", "tiny", "--calibration", tmp_path / "missing.toml", "--out", tmp_path).exit_code == 2
     assert not list(tmp_path.iterdir())
@@ -68,7 +68,7 @@ def test_scene_without_fitted_conditions_cannot_be_calibrated(tmp_path):
 def _stub(monkeypatch, **parts):
     monkeypatch.setattr(store_module, "prepare", lambda run: None)
     monkeypatch.setattr(store_module, "execute", lambda run, progress=None, threads=None, **kept: flight(
-        fidelity=run.fidelity, cost={"wall_s": 1.0, "compile_s": 0.0, "steps": 10, "dt_s": 1e-4, "elements": 1,
+        model=run.model, cost={"wall_s": 1.0, "compile_s": 0.0, "steps": 10, "dt_s": 1e-4, "elements": 1,
                                      "ns_per_element_step": 1.0}, **parts))
 
 
@@ -96,7 +96,7 @@ def test_json_is_the_stage_file_on_standard_output(tmp_path, monkeypatch):
 
 def test_run_prints_the_outcome_with_units(tmp_path, monkeypatch):
     _stub(monkeypatch)
-    result = call("run", "--scene", "tiny", "--condition", "phi15", "--fidelity", "highfi", "--out", tmp_path)
+    result = call("run", "--scene", "tiny", "--condition", "phi15", "--model", "finite-elements", "--out", tmp_path)
     assert result.exit_code == 0
     assert "tiny / phi15, finite elements of 8 mm: exited" in result.stdout
     assert "m/s (x, y, z)" in result.stdout and "deg/s (x, y, z)" in result.stdout
@@ -104,7 +104,7 @@ def test_run_prints_the_outcome_with_units(tmp_path, monkeypatch):
 
 def test_implausible_value_is_warned_about_and_still_runs(tmp_path, monkeypatch):
     _stub(monkeypatch)
-    result = call("run", "--scene", "tiny", "--condition", "phi15", "--fidelity", "highfi",
+    result = call("run", "--scene", "tiny", "--condition", "phi15", "--model", "finite-elements",
                   "--set", "rail.material.density=2.8 kg/m**3", "--out", tmp_path)
     assert result.exit_code == 0
     assert "rail.material.density" in result.stderr

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from scenes import load
+from scenes.fidelity import COMPLIANT, SPRINGS
 from studies import published
 from studies.sensitivity import contact_table
 
@@ -33,17 +34,17 @@ def test_a_rate_that_is_nearly_zero_has_no_relative_deviation():
     ({"contact": {"law": "hunt-crossley", "stiffness": 1e9, "dissipation": 0.3, "clearance": 2e-4}}, ["k", "a"])])
 def test_the_constants_of_a_law_are_moved_down_and_up(law, symbols):
     scene = load("reference").replace(law)
-    found = contact_table.changes(scene, walls=False)
+    found = contact_table.changes(scene, SPRINGS)
     assert [item.symbol for item in found] == ["baseline", *(symbol for symbol in symbols for _ in "du"), "clearance"]
     down, up = (item.overrides["contact.stiffness"] / scene.contact.stiffness for item in found[1:3])
     assert (down, up) == pytest.approx((66.0 / 70.0, 74.0 / 70.0))
     assert found[-1].overrides["contact.clearance"] - scene.contact.clearance == pytest.approx(1e-6)
-    assert [item.symbol for item in contact_table.changes(scene, walls=True)] == ["baseline", "penalty", "penalty", "clearance"]
+    assert [item.symbol for item in contact_table.changes(scene, COMPLIANT)] == ["baseline", "penalty", "penalty", "clearance"]
 
 
 def test_a_case_that_did_not_settle_is_not_counted():
     scene = load("reference")
-    changed = contact_table.changes(scene, walls=True)
+    changed = contact_table.changes(scene, COMPLIANT)
     rates = np.array([[1.0, 1.0, 1.0], [1.1, 1.0, 1.0], [np.nan] * 3, [1.0, 1.0, 0.9]])
     table = contact_table.rows("phi15", changed, rates)
     assert table[2]["rate_deg_s"] is None and contact_table.largest(table)["absolute_deg_s"] == pytest.approx([0.1, 0.0, 0.0])

@@ -17,7 +17,7 @@ from studies.refinement.ripple import Ripple
 from studies.report.figures import Runs
 from studies.report.page import Page
 from studies.settings import Settings, defaults
-from studies.stages import convergence, report, walls
+from studies.stages import compliance, convergence, report
 from studies.study import Study, StudyError
 from tests.studies.synthetic import flight
 
@@ -69,7 +69,7 @@ def asked(monkeypatch):
     for module in (store_module, timing):
         monkeypatch.setattr(module, "prepare", lambda run: None)
     monkeypatch.setattr(timing, "execute", lambda run, progress=None: motion(run))
-    monkeypatch.setattr(walls, "under", lambda study, names: {name: None for name in names})
+    monkeypatch.setattr(compliance, "under", lambda study, names: {name: None for name in names})
     monkeypatch.setattr(convergence.ripple, "measure", rippling)
     return made
 

@@ -3,22 +3,28 @@
 import errno
 import json
 
-import numpy as np
 import pytest
 from typer.testing import CliRunner
 
 from lowfi import store as stores
-from scenes import Calibration, load, validity
 from studies.cli import app
-from studies.settings import Settings
-from studies.stages import ensemble
-from studies.study import Study
 
 pytest.importorskip("zarr")
 
 
-def call(*arguments):
-    return CliRunner().invoke(app, ["ensemble", *(str(argument) for argument in arguments)])
+def call(*arguments, model="springs"):
+    return CliRunner().invoke(app, ["ensemble", "--model", model, *(str(argument) for argument in arguments)])
+
+
+def test_compliant_contact_answers_unless_another_model_is_named(tmp_path):
+    asked = ("--scene", "tiny", "--cases", 40, "--out", tmp_path)
+    default = CliRunner().invoke(app, ["ensemble", *map(str, asked)])
+    assert default.exit_code == 0, default.output
+    assert "tiny, model compliant: 40 cases" in default.stdout and "agreement     not measured for this scene" in default.stdout
+    assert default.stderr.count("rail compliance, once per rail and pads") == 1
+    named = call(*asked, model="compliant")
+    assert "rail compliance" not in named.stderr and "all of them stored before" in named.stderr
+    assert "tiny, model springs, with the scene's constants: 40 cases" in call(*asked).stdout
 
 
 def test_default_errors_run_and_are_kept(tmp_path):
@@ -39,20 +45,6 @@ def test_default_errors_run_and_are_kept(tmp_path):
     alone = call("--cases", 300, "--out", tmp_path, "--case", 123)
     assert alone.exit_code == 0 and "the stored result has the same bits" in alone.stdout
     assert call("--cases", 300, "--out", tmp_path, "--case", 300).exit_code == 2
-
-
-def test_a_scene_outside_its_calibration_is_said_once(tmp_path):
-    """Control: the scene the constants were found for says nothing."""
-    scene = load("reference")
-    found = Calibration({}, [], [], [], [], [], [], np.empty((0, 0)), [], {}, [], 0.0,
-                        validity.ranges([scene.loads]), {"geometry_hash": scene.geometry_hash})
-    for changed, count in ({}, 0), ({"thrust.peak": "9 kN"}, 4):
-        study = Study(scene.replace(changed), tmp_path, Settings())
-        with pytest.MonkeyPatch.context() as patch:
-            said = []
-            patch.setattr(ensemble, "say", said.append)
-            ensemble.request(study, ensemble.Asked(cases=8), found)
-        assert len(said) == count and all("outside the calibration" in words for words in said)
 
 
 def test_bad_rows_are_refused_alone(tmp_path):

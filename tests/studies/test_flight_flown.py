@@ -34,7 +34,7 @@ def test_a_flight_goes_on_where_a_run_ends(condition):
     """Both bodies 3 ms after the exit as a full run has them; the settled rate is that of the window's middle, off by w^2 times 2
     ms from the one at exit. Control: neither stays where it was."""
     scene = SCENE.condition(condition)
-    run = lowfi.run(scene, numerics=lowfi.Numerics(relative_tolerance=1e-8))
+    run = lowfi.run(scene, "springs", numerics=lowfi.Numerics(relative_tolerance=1e-8))
     both = flown.pair(scene.flight.record(), bodies.bodies([scene]), bodies.start(bodies.of_outcomes([run.outcome])))
     first = int(np.searchsorted(run.time, run.outcome.exit_time))
     time, n, axes = np.array([[run.time[-1] - run.time[first]]]), both.flight.mean_motion, both.flight.axes

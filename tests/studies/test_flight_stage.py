@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from scenes import load, validity
-from scenes.calibration import Calibration
+from scenes import load
 from studies.cli import app
 from studies.flight import summary
 from studies.populations import answers, population
@@ -15,7 +14,7 @@ from studies.populations.population import Surrogate
 from studies.report import chart
 from studies.report import flight as section
 from studies.settings import Settings
-from studies.stages import calibrate, flight
+from studies.stages import flight
 from studies.study import Study
 
 pytest.importorskip("zarr")
@@ -25,7 +24,7 @@ xarray = pytest.importorskip("xarray")
 @pytest.fixture
 def uncalibrated(monkeypatch):
     """The surrogate with the constants of the scene, which no reference has to be run for."""
-    def surrogate(study, walls=False, condition=None):
+    def surrogate(study, model=None, condition=None):
         return Surrogate(study.condition(condition) if condition else study.scene, None, None)
 
     monkeypatch.setattr(population, "surrogate", surrogate)
@@ -86,49 +85,6 @@ def test_conditions_and_cases_are_flown_and_kept(tmp_path, uncalibrated, monkeyp
     assert 'id="chart-flight-miss"' in drawn and "misses by" not in drawn and "touch the platform again" in drawn
     assert all(drawn.count(f"{item.label} ({item.unit})") == 2 for item in answers.ALL)  # conditions, and quantiles of cases
     assert all(f"{item.label} ({item.unit})" in first.stdout for item in answers.ALL)
-
-
-def test_a_condition_outside_the_calibration_is_marked(tmp_path, monkeypatch):
-    """By the loads of the scene, which its constants are found for here: a tenth of its thrust is not. Control: phi60 only turns
-    its error."""
-    scene = load("reference")
-    fitted = Calibration({}, [], [], [], [], [], [], np.empty((0, 0)), [], {}, [], 0.0,
-                         validity.ranges([scene.loads]), {"geometry_hash": scene.geometry_hash})
-    monkeypatch.setattr(calibrate, "load", lambda study: fitted)
-    monkeypatch.setattr(chart, "to_files", lambda *_: [])
-    source = tmp_path / "mine.toml"
-    source.write_text('extends = "reference"\n[conditions]\nweak = {"thrust.peak" = "600 N"}\n')
-    asked = ("--scene", source, "--condition", "phi60", "--condition", "weak", "--cases", 20, "--out", tmp_path)
-    result = call(*asked)
-    assert result.exit_code == 0, result.output
-    found = json.loads((tmp_path / "mine" / "flight.json").read_text())
-    inside, outside = found["conditions"]
-    assert inside["outside_calibration"] == [] and "thrust peak" in outside["outside_calibration"][0]
-    assert result.stdout.count("; outside the calibration") == 1 and "weak is outside what the calibration" in result.stdout
-    drawn = section.draw(found, lambda drawing, words: words)
-    assert drawn.count('class="doubt"') == 2 and "weak is outside" in drawn
-
-
-def test_cases_outside_the_calibration_are_marked_one_by_one(tmp_path, monkeypatch):
-    """In the data, in the list of what is drawn, and hollow in the scatter. Control: where nothing was fitted all are as before."""
-    scene = load("reference")
-    fitted = Calibration({}, [], [], [], [], [], [], np.empty((0, 0)), [], {}, [], 0.0,
-                         validity.ranges([scene.loads]), {"geometry_hash": scene.geometry_hash})
-    monkeypatch.setattr(chart, "to_files", lambda *_: [])
-    for calibration in (fitted, None):
-        monkeypatch.setattr(population, "surrogate", lambda study, *_: Surrogate(study.scene, calibration, None))
-        study = Study(scene, tmp_path / str(calibration is None), Settings(workers=1), ("phi60",))
-        found = flight.run(study, flight.Asked(cases=40))
-        with xarray.open_dataset(study.path(found["data"]), engine="h5netcdf") as data:
-            kept = data["outside_calibration"].values.astype(bool)
-            reached = np.isfinite(data["passes_s"].values)
-        assert kept.sum() == found["cases"]["outside"] and found["cases"]["points_outside"] == kept[reached].tolist()
-        assert (0 < kept.sum() < 40) == (calibration is not None)
-        drawing, words = section.charts(found)[-1]
-        lines = drawing.panels[0].lines
-        assert [len(line.x) for line in lines if line.name == "case"] == [40 - kept.sum()]
-        assert sum(len(line.x) for line in lines if line.hollow and not line.legend) == kept.sum()
-        assert ("Hollow" in words) == any(line.hollow for line in lines) == (calibration is not None)
 
 
 def test_without_an_exit_there_is_no_flight(tmp_path, uncalibrated):

@@ -9,7 +9,6 @@ import pytest
 
 import scenes
 from calibrate import parameters, search
-from calibrate.posterior import Effort
 from studies.cost import forecast
 from studies.settings import defaults
 from studies.stages import calibrate as stage
@@ -51,7 +50,7 @@ def test_time_follows_elements_steps_and_speed(tmp_path):
     """170,000 steps at 10 ns on the 19,360 elements of 2 mm take 32.9 s; 1 mm is eight times the elements, twice the steps."""
     of = study(tmp_path)
     stored(of.folder / "highfi" / "phi0-coarse.nc", ns_per_element_step=10.0, elements=19360, steps=170_000)
-    for name, seconds in (("first", 2.0), ("second", 0.01), ("second-walls-1", 0.001)):
+    for name, seconds in (("first", 2.0), ("second", 0.01), ("second-compliant-1", 0.001)):
         stored(of.folder / "lowfi" / f"{name}.nc", wall_s=seconds)
     known = forecast.pace(of)
     assert known.ns == 10.0 and known.source == ""
@@ -66,20 +65,12 @@ def test_time_follows_elements_steps_and_speed(tmp_path):
     assert "4 reference runs to make, 2 at a time: about 1 min 10 s" in forecast.calibration(of, asked(of))
 
 
-def test_a_calibration_on_curves_and_a_posterior_say_theirs(tmp_path):
-    """10 ms a run: a search takes its evaluations of two conditions; a posterior its evaluations of five, and 500 draws of fifteen,
-    at four tenths."""
+def test_a_calibration_on_curves_says_its_own(tmp_path):
+    """10 ms a run: a search takes its evaluations of two conditions."""
     of = study(tmp_path)
     stored(of.folder / "lowfi" / "one.nc", wall_s=0.01)
-    free, held = parameters.free(of.scene), parameters.held(of.scene)
+    free = parameters.free(of.scene)
     assert forecast.search(of, 2) == f"the search, about {forecast.span(0.02 * search.evaluations(len(free)))}"
-    seconds = 0.004 * (5 * Effort().evaluations(len(free) + len(held)) + 500 * 15)
-    assert forecast.posterior(of, asked(of), 5).startswith("5 reference runs to make, 2 at a time: about")
-    runs = [of.highfi(name) for name in of.conditions]
-    for run in runs:
-        stored(of.store.path(run), ns_per_element_step=10.0, elements=19360, steps=170_000)
-    assert len(runs) == 15
-    assert forecast.posterior(of, runs, 5) == f"no reference run to make; the draws, at most about {forecast.span(seconds)}"
 
 
 def test_curves_are_fitted_after_the_time_was_said(tmp_path, capsys, monkeypatch):

@@ -21,7 +21,7 @@ from tests.studies.synthetic import flight
 
 pytestmark = pytest.mark.case("X20")
 ROOT = Path(__file__).resolve().parent.parent.parent
-RUN = ("run", "--fidelity", "highfi", "--scene", "tiny", "--condition", "phi15", "--element-size", "8")
+RUN = ("run", "--model", "finite-elements", "--scene", "tiny", "--condition", "phi15", "--element-size", "8")
 
 
 @pytest.fixture
@@ -89,7 +89,7 @@ def test_bad_time_is_bad_input(tmp_path, text, words):
 
 def test_command_line_hands_its_choice_on(tmp_path, asked):
     for command in ("run", "highfi"):
-        fidelity = ["--fidelity", "highfi"] if command == "run" else []
+        fidelity = ["--model", "finite-elements"] if command == "run" else []
         options = ["--scene", "tiny", "--condition", "phi15", "--checkpoint-every", "2 min", "--out", str(tmp_path / command)]
         CliRunner().invoke(app, [command, *fidelity, *options])
     assert [call["checkpoint_every"] for call in asked] == [120.0, 120.0]

@@ -9,7 +9,7 @@ from scipy import stats
 from typer.testing import CliRunner
 
 from lowfi.rows import numbers
-from scenes import load, validity
+from scenes import load
 from scenes.calibration import Calibration
 from studies.cli import app
 from studies.limits import constants, within
@@ -26,8 +26,7 @@ from tests.studies import free_flight
 pytest.importorskip("zarr")
 LIMIT, PROBABILITY = 6.0, 0.9
 QUICK = Asked(limits=("6 deg/s",), probability=PROBABILITY, cases=120)
-FITTED = Calibration({}, [], [], [], [], [], [], np.zeros((0, 0)), [], {}, [], 0.0,
-                     valid={"thrust_peak_n": [free_flight.scene().thrust.peak] * 2})
+FITTED = Calibration({}, [], [], [], [], [], [], np.zeros((0, 0)), [], {}, [], 0.0)
 PER_UNIT = {"misalignment": np.radians(free_flight.RATE_PER_RADIAN), "thrust_eccentricity": 1e-3 * free_flight.RATE_PER_METRE,
             "mass_eccentricity": 1e-3 * free_flight.RATE_PER_METRE}  # deg/s per deg, mm, mm
 
@@ -78,7 +77,7 @@ def test_one_factor_alone_is_the_closed_form(study, found, name):
     # The search stops within 1.1 %; the rates themselves carry the step error of 1e-2 settings, a thousandth.
     assert 1.0 / 1.013 < row["tolerance"] / exact < 1.002 and not row["falls"] and not row["again"]
     beside = {item["name"]: item for item in row_of(found, name)["beside"]}
-    assert beside["rate_deg_s"]["value"] < LIMIT and row_of(found, name)["outside"] == 0
+    assert beside["rate_deg_s"]["value"] < LIMIT
     # The law itself: the share that is truly above at the certified size is no more than allowed, and no less than the rank of the
     # draw that lies on the limit lets it be, beta distributed (one chance in a thousand).
     above = stats.truncnorm(0.0, 3.0).sf(3.0 * LIMIT / (PER_UNIT[name] * row["tolerance"]))
@@ -153,22 +152,6 @@ def test_values_are_kept_with_names_units_and_scale(study, found, monkeypatch):
     assert np.array_equal(third.values(0.5), values, equal_nan=True)
     for row in found["rows"]:
         assert [item["name"] for item in row["beside"]] == [item.name for item in answers.ALL]
-
-
-def test_cases_outside_the_calibration_are_marked_in_the_file(tmp_path):
-    """By the ranges the file was made with; control: a wider range has a file of its own, where none is marked."""
-    study = Study(load("reference"), tmp_path, Settings(workers=1))
-    ranges = validity.ranges([study.scene.loads])
-    for most, marked in ((ranges["moment_impulse_nms"][1], True), (1e3, False)):
-        fitted = Calibration({}, [], [], [], [], [], [], np.zeros((0, 0)), [], {}, [], 0.0,
-                             ranges | {"moment_impulse_nms": [0.0, most]})
-        cases = within.Cases(study, "limits", Surrogate(study.scene, fitted, None), {"misalignment": 0.01}, 20, 3)
-        before = set(tmp_path.rglob("*.nc"))
-        cases.values(1.0)
-        made, = set(tmp_path.rglob("*.nc")) - before
-        outside = xarray.load_dataset(made, engine="h5netcdf")["outside_calibration"]
-        assert int(outside.sum()) == cases.outside(1.0) and outside.dtype == bool
-        assert bool(outside.any()) == marked and not outside.all()
 
 
 @pytest.mark.parametrize("tolerances, advised", [("advised", 1.0), ("table3", None)])

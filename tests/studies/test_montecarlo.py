@@ -1,7 +1,6 @@
 """The study of random errors as a whole, on a launch without contact, where the distribution of the rates is known."""
 
 import json
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,7 +12,6 @@ from lowfi import columns
 from scenes import load
 from studies.cli import app
 from studies.populations import answers, population, spread
-from studies.populations.exceedance import Limit
 from studies.populations.population import Population
 from studies.report import montecarlo as pictures
 from studies.settings import Settings
@@ -36,11 +34,11 @@ def found(study):
 
 
 def test_what_is_written_is_whole_and_not_made_again(study, found, monkeypatch):
-    assert found["counts"] == {"asked": 1500, "ok": 1500, "refused": 0, "failed": 0} and found["surrogate"] == "no contact"
+    assert found["counts"] == {"asked": 1500, "ok": 1500, "refused": 0, "failed": 0} and found["model"] == "compliant, without contact"
     assert [item["name"] for item in found["quantities"]] == [item.name for item in answers.ALL]
     assert {f"figures/montecarlo-{name}.{kind}" for name in ("histograms", "convergence")
             for kind in ("png", "svg")} == set(found["files"])
-    assert found["models"] is None and len(found["readings"]) == 7  # no walls and no clearance without contact
+    assert found["models"] is None and len(found["readings"]) == 7  # no springs and no clearance without contact
     monkeypatch.setattr("studies.populations.population.run", lambda *_: pytest.fail("made again"))
     assert montecarlo.run(study, Asked(cases=1500, limits=("y=6 deg/s", "8 deg/s"))) == found == montecarlo.stored(study)
     assert json.loads(study.path("montecarlo.json").read_text()) == found
@@ -105,45 +103,6 @@ def test_what_does_not_settle_elsewhere_is_said_and_stops_nothing(study, monkeyp
     both = found | {"models": models}
     assert "No case of 120 settled" in pictures.draw(both, lambda *_: "") and len(pictures.charts(both)) == 2
     assert "none settled on both" in montecarlo._findings(both)[-1]
-
-
-def test_cases_outside_the_calibration_have_an_outline_and_a_share_of_each_tail(found):
-    """Of cases 0 to 1,199 the first 50 and the last 400 are outside, 100 of which did not settle: so are 400 of the 700 above
-    500 deg/s. Controls: with none outside there is neither, in the result, the figure or the table."""
-    cases = counted(1200, slice(1100, 1200))
-    some = cases._replace(outside=(np.arange(1200) >= 800) | (np.arange(1200) < 50))
-    drawn = {}
-    for name, population_ in (("some", some), ("none", cases)):
-        tail = montecarlo._tail(Limit("y", 499.5), np.degrees(population_.results.rate), population_.outside)
-        quantities = [montecarlo._quantity(item, population_) for item in answers.ALL]
-        made = found | {"quantities": quantities, "tails": [tail, tail | {"above": 0, "outside": 0}], "settled": 1100,
-                        "outside": int(population_.outside.sum()),
-                        "settled_outside": int((population_.outside & population_.settled).sum())}
-        drawn[name] = made, dict.fromkeys(line.name for panel in pictures.charts(made)[0][0].panels for line in panel.lines)
-    made, names = drawn["some"]
-    bars, width = made["quantities"][0]["histogram"], np.diff(made["quantities"][0]["histogram"]["edges"])
-    assert (bars["outside"] * width).sum() == pytest.approx(350.0 / 1100.0, abs=2.0 / 1100.0)  # but for what the edges leave out
-    assert (np.array(bars["outside"]) <= np.array(bars["all"]) * (1.0 + 1e-12)).all() and not any(bars["outside"][5:55])
-    assert (made["tails"][0]["above"], made["tails"][0]["outside"]) == (700, 400) and "outside the calibration" in names
-    assert "their share, 31.8 % of" in pictures.charts(made)[0][1] and "57.1" in pictures._tails(made)
-    assert "of these outside" in pictures._tails(made) and "700 of 1,200" in pictures._tails(made)
-    assert "400 of them outside" in montecarlo._numbers(made)[-2] and "outside" not in montecarlo._numbers(made)[-1]
-    made, names = drawn["none"]
-    assert made["quantities"][0]["histogram"]["outside"] is None and list(names) == ["first 1,000 cases", "all 1,500 cases"]
-    assert "Dashed" not in pictures.charts(made)[0][1] and "of these outside" not in pictures._tails(made)
-
-
-def test_springs_that_are_carried_too_far_are_told_from_walls_by_hollow_points(monkeypatch):
-    """Control: the same without marks."""
-    touching, few = Study(load("reference"), Path("none"), Settings()), counted(50, slice(0, 9))
-    monkeypatch.setattr(population, "surrogate", lambda *_: None)
-    monkeypatch.setattr(population, "run", lambda *_: few)
-    for flags, hollow in ((np.arange(50) >= 20, 30), (few.outside, 0)):
-        models = montecarlo._models(touching, Asked(cases=50), few._replace(outside=flags))
-        assert sum(models["pairs_outside"]) == hollow and len(models["pairs_outside"]) == models["both_settled"] == 41
-        shown = [sum(len(line.x) for line in panel.lines if line.hollow and not line.legend)
-                 for panel in pictures._models(models).panels]
-        assert shown == [hollow] * 3
 
 
 def test_tails_hold_the_probability_by_independent_quadrature(found):

@@ -152,13 +152,6 @@ def test_a_study_the_scene_gives_no_occasion_for_stops_nothing(tmp_path, monkeyp
     assert found["failed"] == [] and "make flight SCENE=tiny" not in page.read_text() and "[flight]" in page.read_text()
 
 
-def test_agreement_names_conditions_outside_the_calibration():
-    rows = [{"condition": "h1", "outside_calibration": []},
-            {"condition": "h2", "outside_calibration": ["clearance 1 m", "speed <2"]}]
-    assert "<li>h2: clearance 1 m; speed &lt;2</li>" in tables._outside(rows) and "h1" not in tables._outside(rows)
-    assert tables._outside(rows[:1]) == ""
-
-
 def test_calibration_shows_intervals_and_what_is_not_told():
     document = {"parameters": ["contact.force", "contact.damping"], "values": [400.0, 0.0],
                 "intervals": [[350.0, 450.0], [None, None]], "units": ["N", "N*s/m"], "lower": [20.0, 0.0],

@@ -1,6 +1,7 @@
 """The ``tipoff sensitivity`` command: tables, indices, figures, what bad input it refuses, and its section of the page."""
 
 import json
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -90,8 +91,7 @@ def test_the_command(tiny, tmp_path, monkeypatch):
 
 
 def test_tables_of_warm_rails_stand_on_the_walls_of_the_model(tmp_path, monkeypatch):
-    """Both the calibrated constants and the scene's own, without rails that swing; constants of the law are moved, not the
-    penalty of compliant walls."""
+    """Both the calibrated constants and the scene's own; constants of the law are moved, not the penalty of compliant contact."""
     asked = []
 
     def run(_study, _name, model, source, _tolerance):
@@ -101,16 +101,16 @@ def test_tables_of_warm_rails_stand_on_the_walls_of_the_model(tmp_path, monkeypa
         return Population({}, found, rates[:, 0] > 0.0, "store", {})
 
     monkeypatch.setattr(population, "run", run)
-    study = Study(load("reference").replace({"thermal.mean": "15 K", "flexibility": {"modes": 2}}), tmp_path, defaults("reference"))
-    own = population.on_springs(study.scene)
-    model = Surrogate(own.replace({"contact.stiffness": 1e9}), None, "rigid walls")
+    study = Study(load("reference").replace({"thermal.mean": "15 K"}), tmp_path, defaults("reference"))
+    rigid = SimpleNamespace(flexibility=None)
+    model = Surrogate(study.scene.replace({"contact.stiffness": 1e9}), None, rigid)
     tables = sensitivity._tables(study, model, sensitivity.Asked())
-    assert [found.walls for found in asked] == ["rigid walls"] * 2 and len(tables) == 2
-    assert asked[1].scene.contact == study.scene.contact and asked[1].scene.flexibility is None
+    assert [found.walls for found in asked] == [rigid] * 2 and len(tables) == 2
+    assert asked[1].scene.contact == study.scene.contact
     for table in tables:
         assert {row["symbol"] for row in table["rows"]} == {"baseline", "k", "c", "d", "clearance"}
-    on_walls, = sensitivity._tables(study, model, sensitivity.Asked(walls=True))
-    assert {row["symbol"] for row in on_walls["rows"]} == {"baseline", "penalty", "clearance"}
+    compliant, = sensitivity._tables(study, model._replace(walls=SimpleNamespace(flexibility=1.0)), sensitivity.Asked())
+    assert {row["symbol"] for row in compliant["rows"]} == {"baseline", "penalty", "clearance"}
 
 
 def test_cases_that_do_not_settle(tiny, tmp_path, monkeypatch):

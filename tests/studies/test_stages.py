@@ -34,19 +34,17 @@ def test_ablation_takes_every_effect_away_once():
     scene = scenes.load("tiny").condition("phi15")
     lines = ablation.variants(scene)
     everything = scene.replace(lines["all effects"])
-    needs_walls = "flexibility"  # a rung of the ladder
-    assert everything.absent_effects() == [needs_walls]
-    others = [effect for effect in EFFECTS if effect != needs_walls]
-    for effect in others:
-        assert scene.replace(lines[f"without {effect}"]).absent_effects() == [effect, needs_walls]
+    assert everything.absent_effects() == []
+    for effect in EFFECTS:
+        assert scene.replace(lines[f"without {effect}"]).absent_effects() == [effect]
     assert scene.replace(lines["as the scene asks"]).hash == scene.hash
-    assert len(scene.replace(lines["no effect"]).absent_effects()) == len(EFFECTS) == 10
+    assert len(scene.replace(lines["no effect"]).absent_effects()) == len(EFFECTS) == 9
     assert "without friction" not in ablation.variants(scene.replace({"friction": None}))
     assert "without thermal" not in ablation.variants(scene.replace({"rail.material.expansion": None}))
     # Every effect with code of its own is looked for in the compiled kernels of both models; sticking is a second law of friction,
     # and the reference feels temperature before its kernels run.
-    assert (set(lowfi_laws) - {"sticking", "walls"}) | {"mass_offset", "initial", "rail.damping"} == set(EFFECTS)
-    assert set(highfi_laws) | {"mass_offset", "initial", "thermal", needs_walls} == set(EFFECTS)
+    assert (set(lowfi_laws) - {"sticking", "walls", "modes"}) | {"mass_offset", "initial", "rail.damping"} == set(EFFECTS)
+    assert set(highfi_laws) | {"mass_offset", "initial", "thermal"} == set(EFFECTS)
 
 
 def test_surrogate_is_timed_by_turns(monkeypatch, tmp_path):

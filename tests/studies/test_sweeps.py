@@ -3,25 +3,22 @@ scene."""
 
 import json
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from scenes import load, validity
-from scenes.calibration import Calibration
+from scenes import load
+from scenes.effects import thrust, thrust_offset
 from studies.cli import app
 from studies.populations import answers, population
 from studies.populations.population import Surrogate
-from studies.report import outside
-from studies.report import sweep_figures as drawing
 from studies.report import sweeps as sections
 from studies.report.markup import Html
 from studies.settings import Settings
 from studies.stages import sweeps
 from studies.study import Study, read
-from studies.sweeps import burnout, factors, sides
+from studies.sweeps import burnout, factors, moments, sides
 
 pytest.importorskip("zarr")
 # Of the reference scene, whose pulse begins three widths before its peak.
@@ -50,7 +47,7 @@ def test_without_contact_rates_are_the_moment_impulse_over_the_inertia(tmp_path,
     found = sweeps.run(study, sweeps.Asked(angles=8))
     for launch in found["launches"]:
         assert launch["cases"] == {"asked": 240, "ok": 240, "refused": 0, "failed": 0}
-        assert launch["not_settled"] == launch["outside"] == 0
+        assert launch["not_settled"] == 0
         for factor in launch["factors"]:
             assert factor["departs_from_free_at"] is None and factor.get("sides") is None
             exact = np.array([[by_hand(factor["name"], size, angle) for angle in factors.angles(8)] for size in factors.SIZES])
@@ -96,47 +93,19 @@ def test_sides_of_forces():
     assert sides.jumps(walls, rate) == (3.0, 0.0) and sides.jumps(np.full((2, 4), "a"), rate)[0] is None
 
 
-def test_where_the_calibration_ends_is_seen_in_every_figure(tmp_path, monkeypatch):
-    """Errors beyond that of the fit: in the result case by case, in the scatter and the growth hollow, on the maps a line between
-    inside and outside. Controls: nothing fitted, as on walls, and all outside, which no line parts."""
-    for module in (sweeps, factors):
-        monkeypatch.setattr(module, "FACTORS", factors.FACTORS[1:2])
-    monkeypatch.setattr(sweeps, "to_files", lambda *_: [])
-    monkeypatch.setattr(burnout, "other_way", lambda _: None)
-    scene, ends = load("tiny"), 0.45  # mm: the limit of the fit is between two sizes
-    valid = validity.ranges([scene.loads]) | {
-        "moment_impulse_nms": [0.0, ends * 1e-3 * scene.loads["thrust_impulse_ns"] / (1.0 + validity.MARGIN)]}
-    near = Calibration({}, [], [], [], [], [], [], np.zeros((0, 0)), [], {}, [], 0.0, valid=valid)
-    far = replace(near, valid=valid | {"thrust_peak_n": [1e-3, 1e-3]})
-    for fitted, share in ((near, 0.6), (far, 1.0), (None, 0.0)):
-        monkeypatch.setattr(population, "surrogate", lambda study, *_: Surrogate(study.scene, fitted, None))
-        found = sweeps.run(Study(scene, tmp_path / str(share), Settings(workers=1)), sweeps.Asked(angles=8))
-        factor, = found["launches"][0]["factors"]
-        flags = np.array(factor["outside"])
-        assert flags.tolist() == [[share == 1.0 or bool(fitted) and size > ends] * 8 for size in factors.SIZES]
-        assert found["launches"][0]["outside"] == flags.sum() == share * 80
-        (growth, grown), (scatter, scattered), (polar, mapped) = drawing.pictures(found)
-        for panel in scatter.panels:
-            counts = {hollow: sum(np.isfinite(line.x).sum() for line in panel.lines if line.hollow == hollow)
-                      for hollow in (False, True)}
-            assert counts == {False: 3 * (80 - flags.sum()), True: 3 * flags.sum()}
-            assert [line.name for line in panel.lines if line.legend and line.hollow] == [outside.NAME] * (share > 0.0)
-        if share == 0.6:
-            assert all((line.x > ends).all() == line.hollow for line in scatter.panels[0].lines if len(line.x) > 1)
-        sizes = [line.x.tolist() for line in growth.panels[0].lines if line.hollow and not line.legend]
-        assert sizes == [factors.SIZES[flags.any(axis=1)].tolist()] * (3 if share else 0)
-        assert [("Hollow" in words) for words in (grown, scattered)] == [share > 0.0] * 2
-        assert ("Dashed" in mapped, "All of it" in mapped) == (0.0 < share < 1.0, share == 1.0)
-        radii = [_dashed(axes) for axes in polar.figure.axes[:5]]
-        assert radii == ([[pytest.approx(ends)]] if share == 0.6 else [[]]) * 5
-        legends = [text.get_text() for axes in polar.figure.axes if axes.get_legend() for text in axes.get_legend().get_texts()]
-        assert ("the calibration ends" in legends) == (share == 0.6) and "no contact" in legends
-
-
-def _dashed(axes) -> list[float]:
-    """Radii of the dashed lines on a map."""
-    lines = [item for item in axes.collections if item.get_linestyle()[0][1] is not None]
-    return sorted({round(float(radius), 9) for item in lines for path in item.get_paths() for radius in path.vertices[:, 1]})
+def test_moment_impulses_of_many_cases_are_those_of_their_scenes():
+    scene, random = load("reference"), np.random.default_rng(1)
+    inputs = {f"{table}.{name}": random.uniform(0.0, most, 20)
+              for table, size in (("thrust_offset.misalignment", 0.1), ("thrust_offset.eccentricity", 1e-3),
+                                  ("mass_offset.eccentricity", 1e-3)) for name, most in (("axial", size), ("radial", 6.0))}
+    inputs |= {"thrust.arm": random.uniform(0.05, 0.2, 20), "thrust.peak": random.uniform(1e3, 9e3, 20)}
+    expected = []
+    for values in zip(*inputs.values()):
+        each = scene.replace(dict(zip(inputs, map(float, values))))
+        record = thrust_offset.record(each.thrust_offset, each.mass_offset, each.thrust.arm)
+        expected.append(thrust.impulse(each.thrust.record(), each.duration) * np.cross(record.arm, record.direction))
+    impulse = thrust.impulse(scene.thrust.record(), scene.duration) * inputs["thrust.peak"] / scene.thrust.peak
+    assert moments.moment_impulses(scene, inputs, impulse) == pytest.approx(np.array(expected), rel=1e-12, abs=1e-14)
 
 
 def test_the_command_with_contact(tmp_path, monkeypatch):

@@ -44,7 +44,7 @@ def call(*arguments):
 def test_shipped_logs_from_command_to_page(tmp_path, fitted):
     result = call("--cases", 200, "--out", tmp_path)
     assert result.exit_code == 0, result.output
-    for words in ("3 drop tests against 200 settled of 200 cases of the surrogate, calibrated", "SIMULATED",
+    for words in ("3 drop tests against 200 settled of 200 cases of the surrogate, model springs, calibrated", "SIMULATED",
                   "(SIMULATED log), CFC 60", "settling rule kept", "it is no validation",
                   "100.0 % with one three times too wide", "7 samples clipped"):
         assert words in result.stdout
@@ -186,7 +186,7 @@ def population(rates, exits=0.0444):
     results = SimpleNamespace(rate=np.radians(rates), exit_time=np.where(np.isfinite(rates[:, 0]), exits, np.nan),
                               lateral_velocity=1e-3 * values, direction_error=np.radians(values),
                               exit_attitude=np.radians(values)[:, None] * np.ones((many, 3)))
-    return SimpleNamespace(results=results, settled=np.isfinite(rates[:, 0]), outside=np.zeros(len(rates), dtype=bool),
+    return SimpleNamespace(results=results, settled=np.isfinite(rates[:, 0]),
                            store="none", counts={"asked": len(rates), "ok": len(rates), "refused": 0, "failed": 0})
 
 
@@ -205,32 +205,13 @@ def test_cases_that_do_not_settle_are_left_out_and_counted_and_too_few_are_refus
         stage.result(study, drops, population(rates[:40]))
 
 
-def test_cases_outside_the_calibration_are_hollow_dots(tmp_path):
-    """Those that settled, in every panel of the cloud. Control: with none outside the figure and its caption are as before."""
-    study, drops = Study(load("reference"), tmp_path, Settings()), [stage.analyse(path) for path in shipped.sheets()[:1]]
-    rates = np.random.default_rng(1).normal(0.0, 8.0, (100, 3))
-    rates[:30] = np.nan
-    for first, hollow in ((20, 70), (60, 40), (100, 0)):
-        cases = population(rates)
-        cases.outside[first:] = True
-        found = stage.result(study, drops, cases)
-        assert found["cases"]["outside_calibration"] == 100 - first and sum(found["cases"]["shown_outside"]) == hollow
-        for panel in page._clouds(found):
-            drawn = {line.hollow: np.isfinite(line.x).sum() for line in panel.lines if len(line.x) > 1 and not line.dash}
-            assert drawn.get(True, 0) == hollow and drawn.get(False, 0) == 70 - hollow
-            assert sum(line.hollow and line.legend for line in panel.lines) == (hollow > 0)
-        found |= {"surrogate": "calibrated", "request": asdict(stage.Asked()), "varied": {"seed": 1}}
-        found["summary"] = stage.summary("reference", found)
-        assert ("Hollow" in page.draw(found, lambda drawing, words: Html(words))) == (hollow > 0)
-
-
 @pytest.mark.parametrize("width, p", [(8.0, "do not contradict"), (0.05, "contradict"), (2000.0, "contradict")])
 def test_verdict_for_models_that_fit_that_are_too_narrow_and_too_wide(tmp_path, width, p):
     """Three tests of one size, in a cloud of about that size, one far too small and one far too large; in its range they are."""
     study, drops = Study(load("reference"), tmp_path, Settings()), [stage.analyse(path) for path in shipped.sheets()]
     rates = np.random.default_rng(2).normal(0.0, width, (400, 3))
     found = stage.result(study, drops, population(rates))
-    found |= {"surrogate": "calibrated", "request": asdict(stage.Asked()), "varied": {"seed": 1}}
+    found |= {"model": "springs, calibrated", "request": asdict(stage.Asked()), "varied": {"seed": 1}}
     line = next(line for line in stage.summary("reference", found) if "together" in line)
     assert f"the tests {p} the" in line
     assert found["together"]["inside_range"] is (width > 1.0)
