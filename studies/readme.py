@@ -69,10 +69,10 @@ def _agreement(found: dict) -> str:
     fitted = {row["condition"]: row for row in found["fitted"] + found["held_out"]}
     lines = ["Rates of the surrogates against the reference (rate L2 in % / largest error of a settled rate in deg/s), and what "
              "bounds any",
-             "such claim. Nothing is fitted on compliant walls; the role is that of the condition in the calibration of the "
+             "such claim. Nothing is fitted on compliant contact; the role is that of the condition in the calibration of the "
              "springs.",
-             "The verdict is on compliant walls.", "",
-             "| condition | role | springs, uncalibrated | springs, calibrated | compliant walls | floor, deg/s | "
+             "The verdict is on compliant contact.", "",
+             "| condition | role | springs, uncalibrated | springs, calibrated | compliant contact | floor, deg/s | "
              "reference uncertainty, deg/s | verdict |",
              "|---|---|---|---|---|---|---|---|"]
     for row in found["compliant"]:
@@ -89,7 +89,7 @@ def _stiffer(found: list[dict]) -> list[str]:
              f"{_number(row['surrogate_change_deg_s'])}; {_number(row['apart_deg_s'])} apart before, "
              f"{_number(row['apart_with_more_deg_s'])} after" for row in moved]
     return ["Where four times the penalty alone takes the reference's convergence, on the coarse mesh, and the surrogate on "
-            "compliant walls with\nthe same penalty:\n\n" + "\n".join(lines)] if lines else []
+            "compliant contact with\nthe same penalty:\n\n" + "\n".join(lines)] if lines else []
 
 
 def _blind(found: dict) -> str:
@@ -97,7 +97,7 @@ def _blind(found: dict) -> str:
     springs = {row["condition"]: row for row in found["calibrated"]}
     lines = [f"{len(springs)} conditions drawn afterwards, with errors as in the paper's Table 3 (`make blind`; another line of "
              "code draws others):", "",
-             "| condition | springs, calibrated | compliant walls | floor, deg/s | reference uncertainty, deg/s | verdict |",
+             "| condition | springs, calibrated | compliant contact | floor, deg/s | reference uncertainty, deg/s | verdict |",
              "|---|---|---|---|---|---|"]
     lines += [f"| {row['condition']} | {_pair(springs[row['condition']])} | {_pair(row)} | {_number(row['floor_deg_s'])} | "
               f"{_number(row['reference_uncertainty_deg_s'])} | {row['verdict']} |" for row in found["compliant"]]
@@ -118,7 +118,7 @@ def _speed(agreement: dict) -> str:
     machine = found["hardware"]
     return (f"Speed: {found['ratio']:,.0f} times ({found['low']:,.0f} to {found['high']:,.0f} over repeats): "
             f"{found['highfi_wall_s']:.3g} s for the reference with {found['elements']:,} elements against "
-            f"{1e3 * found['lowfi_wall_s']:.3g} ms on compliant walls; {plain['ratio']:,.0f} times "
+            f"{1e3 * found['lowfi_wall_s']:.3g} ms on compliant contact; {plain['ratio']:,.0f} times "
             f"({1e3 * plain['lowfi_wall_s']:.3g} ms) for the calibrated surrogate. The same case, everything but compilation "
             f"included, on {machine['cores']} cores of {machine['processor']}.")
 

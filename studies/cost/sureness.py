@@ -43,6 +43,6 @@ def sentence(found: dict) -> str:
             else f"no mesh down to {size} has a smaller discretisation error {known}")
     least = "" if found["surer"] else "at least "
     ratio = f"{least}{found['ratio']:,.0f} times ({found['low']:,.0f} to {found['high']:,.0f})"
-    return (f"speed at equal accuracy on {found['condition']}: on compliant walls the surrogate is within "
+    return (f"speed at equal accuracy on {found['condition']}: on compliant contact the surrogate is within "
             f"{found['error_deg_s']:.2g} deg/s of the finest mesh, and {mesh}; {ratio}, {wall} against "
             f"{1e3 * found['lowfi_wall_s']:.3g} ms, timed in one go")

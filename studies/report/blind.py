@@ -18,7 +18,8 @@ def draw(found: dict, figure: Callable[[Chart, str], Html]) -> Html:
     words = _WORDS.format(vary=found["asked"]["vary"], seed=found["seed"], origin=origin)
     compliant, calibrated = found["compliant"], found["calibrated"]
     return Html("".join([
-        paragraph("On compliant walls, nothing fitted: " + tables.summary(compliant)), tables.judged(compliant, "blind-compliant"),
+        paragraph("On compliant contact, nothing fitted: " + tables.summary(compliant)),
+        tables.judged(compliant, "blind-compliant"),
         caption(words), paragraph("Calibrated springs: " + tables.summary(calibrated)),
         tables.judged(calibrated, "blind-calibrated"), fold("What was drawn", _drawn(found["conditions"]))]))
 

@@ -102,7 +102,7 @@ class Page:
              "y rate (deg/s)", "z rate (deg/s)", "reference ± (deg/s)", "surrogate error (deg/s)"), rows), caption(
             "Settled values of the finite-element reference: means over 2 ms after exit and burnout, "
             "velocity in initial scene axes, rates inertial in payload body axes. Reference ± is what refining mesh, step or "
-            "penalty still changes; surrogate error the largest axis error of the surrogate on compliant walls, to which nothing "
+            "penalty still changes; surrogate error the largest axis error of the surrogate on compliant contact, to which nothing "
             "was fitted, on the same condition."))
 
     def _scene(self) -> Html:

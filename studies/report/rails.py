@@ -8,10 +8,10 @@ HEADS = ("scene", "elements", "surrogate", "judged", "agree", "largest rate L2 (
 
 
 def rows(found: list[dict]) -> list[tuple]:
-    """Two rows a scene, calibrated springs and compliant walls, over its conditions with a touch: how many are judged, because
+    """Two rows a scene, calibrated springs and compliant contact, over its conditions with a touch: how many are judged, because
     their reference is converged, how many of those agree, the largest errors of these, and how many are not judged."""
     return [(scene["name"], f"{1e3 * scene['element_size_m']:g} mm", title, *_judged(scene["agreement"], kinds))
-            for scene in found for title, kinds in (("calibrated", ("fitted", "held_out")), ("compliant walls", ("compliant",)))]
+            for scene in found for title, kinds in (("calibrated", ("fitted", "held_out")), ("compliant contact", ("compliant",)))]
 
 
 def _judged(agreement: dict, kinds: tuple[str, ...]) -> tuple:

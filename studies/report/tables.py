@@ -16,7 +16,7 @@ _FLOOR = "Floor: what ±{change:g} µm of clearance changes in either model. "
 
 
 def agreement(document: dict) -> Html:
-    """The agreement tables, the surrogate on compliant walls first, with floor and reference uncertainty beside every claim."""
+    """The agreement tables, the surrogate on compliant contact first, with floor and reference uncertainty beside every claim."""
     gates = document["gates"]
     legend = (f"Gates: rate L2 {percent(gates['rate_relative_l2'])} %, v_x L2 {percent(gates['velocity_relative_l2'])} %, "
               f"settled error {gates['settled_rate_error_deg_s']:g} deg/s, or twice the floor where that is more. "
@@ -27,7 +27,7 @@ def agreement(document: dict) -> Html:
               "rating of the three rates (1 is perfect); Sprague and Geers over the three rates together.")
     calibrated = [*document["fitted"], *document["held_out"]]
     return section("agreement-section", "Agreement with the reference",
-                   paragraph("On compliant walls as the statics of the rail has them, nothing fitted (the role is that of the "
+                   paragraph("On compliant contact as the statics of the rail has them, nothing fitted (the role is that of the "
                              "condition in the calibration of the other surrogates): " + summary(document["compliant"])),
                    judged(document["compliant"], "agreement"), caption(legend), _further(document["compliant"]), _simpler(document),
                    _stiffer(document["stiffer"]),
@@ -163,7 +163,7 @@ def speedups(document: dict, equal: dict | None = None) -> Html:
     accuracy, where the error of the reference was studied."""
     found = document["speedup_compliant"]
     machine = found["hardware"]
-    return section("speedup", "Speed", paragraph("The surrogate on compliant walls:"), _speedup(found),
+    return section("speedup", "Speed", paragraph("The surrogate on compliant contact:"), _speedup(found),
                    paragraph("The calibrated surrogate:"),
                    _speedup(document["speedup"]), caption(
         f"Condition {found['condition']}, all models by turns in one go, all included but compilation, on {machine['processor']}, "

@@ -48,6 +48,8 @@ def of_models(study: Study, model: str | None = None) -> dict:
     """What the surrogate's ``model`` takes from the finite elements, or both models, None: ``compliance`` and ``springs`` as
     their result files hold them."""
     found = {"scene": study.scene.name}
+    if model != COMPLIANT:
+        study.fitted()  # a scene without any is refused before the compliance is found
     if model != SPRINGS:
         found["compliance"] = compliance.run(study)
     return found | ({"springs": run(study)} if model != COMPLIANT else {})

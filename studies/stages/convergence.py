@@ -133,8 +133,8 @@ def _ripples(study: Study, scene: Scene) -> list[dict]:
 
 
 def _at_equal_accuracy(study: Study, name: str, judged: list[dict], meshes: list[Trajectory]) -> dict | None:
-    """The speed-up of the surrogate on compliant walls over the coarsest mesh that is surer than it is exact; None where it has no
-    walls, or where it or a mesh did not settle."""
+    """The speed-up of compliant contact over the coarsest mesh whose uncertainty is below its error; None where nothing touches,
+    or where it or a mesh did not settle."""
     rates = [row for row in judged if row["parameter"] == "element size" and row["quantity"].startswith(RATE)]
     uncertain = sureness.uncertainties(rates)
     if study.scene.contact is None or uncertain is None:

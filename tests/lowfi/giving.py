@@ -100,7 +100,8 @@ def add_walls(walls, friction, faces, platform, payload, active, state, out):
 def pressed(scene: Scene, walls: Walls, modes: int = 0):
     """Model and records of ``scene`` on ``walls``."""
     model = models.build(scene)
-    return model, systems.build(model, walls=record.build(walls, model, modes=modes, damping=scene.rail.damping and scene.rail.damping.record()))
+    damping = scene.rail.damping and scene.rail.damping.record()
+    return model, systems.build(model, walls=record.build(walls, model, modes=modes, damping=damping))
 
 
 def forces_of(walls: Walls, model, cells: int, face: int, pose: Pose, displacement: np.ndarray) -> np.ndarray:

@@ -78,7 +78,7 @@ def test_reference_is_the_design(key):
 
 
 def test_reference_has_no_other_effects():
-    assert load("reference").absent_effects() == ["mass_offset", "initial", "gravity", "thermal", "rail.damping", "flexibility"]
+    assert load("reference").absent_effects() == ["mass_offset", "initial", "gravity", "thermal", "rail.damping"]
 
 
 def test_reference_pads():

@@ -98,7 +98,7 @@ def test_run_prints_the_outcome_with_units(tmp_path, monkeypatch):
     _stub(monkeypatch)
     result = call("run", "--scene", "tiny", "--condition", "phi15", "--model", "finite-elements", "--out", tmp_path)
     assert result.exit_code == 0
-    assert "tiny / phi15, finite elements of 8 mm: exited" in result.stdout
+    assert "tiny / phi15, model finite-elements, 8 mm: exited" in result.stdout
     assert "m/s (x, y, z)" in result.stdout and "deg/s (x, y, z)" in result.stdout
 
 

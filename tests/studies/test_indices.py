@@ -7,6 +7,7 @@ import pytest
 from lowfi.rows import numbers
 from scenes import load
 from scenes.effects import thrust_offset
+from scenes.fidelity import SPRINGS
 from studies.sensitivity import indices, tolerances
 
 SCENE = load("reference")
@@ -87,7 +88,7 @@ def test_base_points_that_did_not_settle_are_left_out_whole(tmp_path):
 def test_components_are_those_of_the_effects(tmp_path):
     """A scene with the size and angle of a case has its components; and the force at the reference penetration does not feel the
     exponent."""
-    found = tolerances.load(tolerances.DEFAULT, SCENE)
+    found = tolerances.load(tolerances.DEFAULT, SCENE, SPRINGS)
     points = indices.points(8, len(found.inputs), seed=2)
     drawn = {item.key: item.values(column) for item, column in zip(found.inputs, points.T)}
     assert "contact.penalty" in found.left_out and len(found.inputs) == 21

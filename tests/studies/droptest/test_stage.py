@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from scenes import load, validity
+from scenes import load
 from scenes.calibration import Calibration
 from scenes.faults import SceneError
 from studies.cli import app
@@ -31,14 +31,12 @@ xarray = pytest.importorskip("xarray")
 @pytest.fixture
 def fitted(monkeypatch):
     """A calibration without constants in place of one that takes the reference minutes to make."""
-    scene = load("reference")
-    found = Calibration({}, [], [], [], [], [], [], np.empty((0, 0)), [], {}, [], 0.0,
-                        validity.ranges([scene.loads]), {"geometry_hash": scene.geometry_hash})
+    found = Calibration({}, [], [], [], [], [], [], np.empty((0, 0)), [], {}, [], 0.0)
     monkeypatch.setattr(calibrate, "load", lambda study: found)
 
 
 def call(*arguments):
-    return CliRunner().invoke(app, ["droptest", *(str(argument) for argument in arguments)])
+    return CliRunner().invoke(app, ["droptest", "--model", "springs", *(str(argument) for argument in arguments)])
 
 
 def test_shipped_logs_from_command_to_page(tmp_path, fitted):
@@ -107,7 +105,7 @@ def test_a_result_is_current_as_long_as_its_logs_are(tmp_path, fitted, monkeypat
     monkeypatch.setattr(chart, "to_files", lambda *_: [])
     monday, tuesday = _tests_in(tmp_path, "monday", "tuesday")
     study = Study(load("reference"), tmp_path / "reference", Settings())
-    found = stage.run(study, [monday, tuesday], stage.Asked(cases=60))
+    found = stage.run(study, [monday, tuesday], stage.Asked(cases=60, model="springs"))
     assert [row["test"] for row in found["tests"]] == ["monday/log", "tuesday/log"]
     for row, path in zip(found["tests"], (monday, tuesday)):  # groups of groups
         _require_signals(study.path(found["data"]), row, stage.analyse(path))
@@ -121,7 +119,7 @@ def test_a_result_is_current_as_long_as_its_logs_are(tmp_path, fitted, monkeypat
     assert stage.stored(study) == found
     tuesday.rename(moved)
     assert stage.stored(study) is None
-    renamed = stage.run(study, [monday, moved], stage.Asked(cases=60))
+    renamed = stage.run(study, [monday, moved], stage.Asked(cases=60, model="springs"))
     assert [row["test"] for row in renamed["tests"]] == ["log", "other"] and renamed["key"] != found["key"]
     assert stage.stored(study) == renamed
 
