@@ -122,7 +122,7 @@ class Store:
         for name, content in new.items():
             path = self.path / "cases.zarr" / name
             if not path.is_file() or not _alike(path.read_bytes(), content.to_bytes()):
-                tell(f"{path} is damaged or was edited, so it is written again")
+                tell(f"{path} is damaged or was edited: it is written again")
                 with replacing(path) as temporary:
                     temporary.write_bytes(content.to_bytes())
 
@@ -187,14 +187,14 @@ class Store:
         except FileNotFoundError:
             return False
         except (DamageError, OSError, KeyError):
-            tell(f"{self._mark(number)} is damaged or was edited, so the cases {begin:,} to {end - 1:,} are run again")
+            tell(f"{self._mark(number)} is damaged or was edited: the cases {begin:,} to {end - 1:,} are run again")
             return False
         try:
             whole = mark["digest"] == _digest(*self.read(begin, end))
         except Exception:  # whatever zarr raises on damaged bytes, the remedy is the same
             whole = False
         if not whole:
-            tell(f"{self.path / 'cases.zarr'} is damaged or was edited, so the cases {begin:,} to {end - 1:,} are run again")
+            tell(f"{self.path / 'cases.zarr'} is damaged or was edited: the cases {begin:,} to {end - 1:,} are run again")
         return whole
 
     def _mark(self, number: int) -> Path:

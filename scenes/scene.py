@@ -12,7 +12,7 @@ from typing import Annotated, Any, Mapping
 from pydantic import AfterValidator, Field, PrivateAttr, ValidationError, ValidationInfo, field_validator
 
 from scenes import overrides as keys
-from scenes import plausibility, reading, roles, validity
+from scenes import names, plausibility, reading, roles, validity
 from scenes.effects.contact import ContactTable
 from scenes.effects.flexibility import FlexibilityTable
 from scenes.effects.flight import FlightTable
@@ -42,7 +42,7 @@ _NOT_PHYSICS = {"name", "description", "flight", *_BESIDE}  # what comes after t
 class Scene(Table):
     """Everything a run needs. Fields are SI; an absent effect is None. Use ``replace`` for variations."""
 
-    name: str
+    name: Annotated[str, AfterValidator(names.of_scene)]
     description: str = ""
     duration: PositiveTime
     payload: PayloadTable

@@ -4,9 +4,10 @@
 
 A run whose file is there and fits the digest it carries is loaded, any other is made and written atomically; so what was
 interrupted goes on where it stopped, and neither a changed input or source nor a damaged file is answered with an old result. A run
-of the reference in progress is kept beside it as ``<label>-<key>.checkpoint``, which is removed once the result is written. Runs go side by
-side in threads: the kernels release the interpreter, and the mesh generator, which insists on the main thread, has been called
-before.
+of the reference in progress is kept beside it as ``<label>-<key>.checkpoint``, which is removed once the result is written.
+
+Runs go side by side in threads: the kernels release the interpreter, and the mesh generator, which insists on the main thread, has
+been called before.
 """
 
 import functools

@@ -106,8 +106,8 @@ class Study:
         ``make`` returns the result and the files it wrote.
         """
         path = self.path(f"{name}.json")
-        known = read(path, f"so {name} is made again")
-        if known is not None and known.get("key") == key and self.whole(known, f"so {name} is made again"):
+        known = read(path, f"{name} is made again")
+        if known is not None and known.get("key") == key and self.whole(known, f"{name} is made again"):
             self._tell(name, "nothing changed")
             return known
         self._tell(name, self.scene.name)
@@ -136,7 +136,7 @@ class Study:
             if not path.is_file():
                 return False
             if _digest(path) != digest:
-                say(f"  {path} is not as it was left (damaged, edited, or made again), {remedy}")
+                say(f"  {path} is not as it was left (damaged, edited, or made again): {remedy}")
                 return False
         return True
 
@@ -146,7 +146,7 @@ def read(path: Path, remedy: str = "the command that wrote it writes it again") 
     try:
         return read_json(path)
     except DamageError as fault:
-        say(f"  {path} {fault.reason}, {remedy}")
+        say(f"  {path} {fault.reason}: {remedy}")
     except OSError:
         pass
     return None

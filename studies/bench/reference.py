@@ -47,7 +47,7 @@ def stored(out: Path) -> dict | None:
     found = {name: kept for name in ("highfi", "lowfi") if (kept := read(Path(out) / "bench" / f"{name}.json")) is not None}
     if not found:
         return None
-    return {"rows": found.get("highfi", {"rows": []})["rows"], "lowfi": found.get("lowfi"), "key": content_hash(found)}
+    return {"rows": found.get("highfi", {}).get("rows", []), "lowfi": found.get("lowfi"), "key": content_hash(found)}
 
 
 def line(row: dict) -> str:

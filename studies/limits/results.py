@@ -39,7 +39,7 @@ def load(path: Path) -> np.ndarray | None:
             same = found["quantity"].values.tolist() == [item.name for item in answers.ALL]
             return found["value"].transpose("case", "quantity").values if same else None
     except DamageError as fault:
-        say(f"  {path} {fault.reason}, so its cases are run again")
+        say(f"  {path} {fault.reason}: its cases are run again")
         return None
     except (OSError, KeyError, TypeError, ValueError, RuntimeError):  # what HDF5 says of a foreign file depends on what it lacks
         return None
