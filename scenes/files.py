@@ -1,10 +1,10 @@
 """Files that are never half written, and that carry the digest of what they hold.
 
-Every file is written beside its final name, flushed to disk, then renamed. A file that is read back ends with the line::
+Every file is written beside its final name, flushed to disk, then renamed. A file that is read back ends with the bytes::
 
     # sha-256 <hexadecimal digest of every byte before this line>
 
-which TOML reads as a comment, and which readers of HDF5, netCDF and zip pass over. A JSON file holds the digest under the key
+a line that TOML reads as a comment, and which readers of HDF5, netCDF and zip pass over. A JSON file holds the digest under the key
 ``sha256`` instead: that of the canonical JSON of all its other keys, so that another layout of the same content is no damage.
 """
 
