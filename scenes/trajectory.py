@@ -154,7 +154,7 @@ class Trajectory:
                 return cls(fidelity=data.attrs["fidelity"], status=data.attrs["status"], message=data.attrs["message"],
                            time=data["time"].values, outcome=result, **arrays, **plain)
         except DamageError as fault:
-            raise OSError(f"{path}: not a whole trajectory file: it {fault.reason}") from fault
+            raise OSError(f"{path}: not a whole trajectory file: it {fault.reason}; make it again") from fault
         except (OSError, KeyError, TypeError, ValueError, RuntimeError) as error:
             # What HDF5 says of a foreign file depends on what it lacks.
             raise OSError(f"{path}: not a whole trajectory file ({error})") from error

@@ -1,4 +1,5 @@
-"""Damage to the store of an ensemble, in results, lists of failures or descriptions of arrays, is said, and mended to the same bits."""
+"""Damage to the store of an ensemble, in results, lists of failures or descriptions of arrays, is said and mended to the same
+bits."""
 
 import json
 import shutil

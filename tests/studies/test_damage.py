@@ -1,4 +1,5 @@
-"""Damage to a stored result never reaches a result made of it: it is said, and what was damaged is made again, to the same numbers."""
+"""Damage to a stored result never reaches a result made of it: it is said, and what was damaged is made again, with the same
+numbers."""
 
 import json
 import math
@@ -6,6 +7,7 @@ import math
 import h5py
 import numpy as np
 import pytest
+from typer.testing import CliRunner
 
 import scenes
 from highfi import compliance
@@ -14,11 +16,13 @@ from scenes.trajectory import Trajectory
 from scenes.walls import PATTERNS, Walls, digest
 from studies import store as store_module
 from studies.bench import reference
+from studies.cli import app
 from studies.limits import results
 from studies.populations import answers
 from studies.settings import Settings
 from studies.stages import runs, view, walls
 from studies.study import Study, read
+from tests.scenes.test_calibration import CALIBRATION
 from tests.studies.synthetic import flight
 
 RATE = 0.125  # rad/s, of which means are exact
@@ -168,6 +172,16 @@ def test_edited_times_of_a_benchmark_are_not_shown(tmp_path, capsys):
     assert reference.stored(tmp_path)["rows"][0]["ns_one_thread"] == 9.0
     path.write_text(path.read_text().replace("9.0", "1.0"))
     assert reference.stored(tmp_path) is None and f"{path} does not fit" in capsys.readouterr().err
+
+
+def test_an_edited_calibration_is_bad_input_until_its_digest_is_removed(tmp_path):
+    path = tmp_path / "calibration.toml"
+    CALIBRATION.save(path)
+    edited = path.read_text(encoding="utf-8").replace('"friction.static" = 0.25', '"friction.static" = 0.26')
+    path.write_text(edited, encoding="utf-8")
+    told = CliRunner().invoke(app, ["run", "--scene", "tiny", "--calibration", str(path), "--out", str(tmp_path / "out")])
+    assert told.exit_code == 2 and f"{path} does not fit the digest it carries" in told.stderr
+    assert "remove the line '# sha-256 ...' if you edited the file on purpose" in told.stderr and not (tmp_path / "out").exists()
 
 
 def test_every_netcdf_result_carries_a_digest(tmp_path):
