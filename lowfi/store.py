@@ -2,11 +2,12 @@
 
     cases.zarr/     a zarr group: status, exit_time, velocity ... and inputs/<dotted key>, SI, one chunk per 4096 cases,
                     with checksums
-    done/000012.json   written last, in one piece: chunk 12 is whole; the digest of its numbers, its counts,
-                       and each case that failed
+    done/000012.json   written last, in one piece: chunk 12 is whole; the ensemble it belongs to, the digest of its numbers, its
+                       counts, and each case that failed; with a digest of its own
 
-A chunk counts as done once its file in done/ is there and the digest of what is read back agrees; any other is run again. No time
-or place is stored, so two runs of one ensemble leave the same numbers, whoever ran them.
+A chunk counts as done once its file in done/ is there, fits its own digest, and has the digest of what is read back; any other is
+run again. The descriptions of the arrays (``zarr.json``) are those that a new store would have, and are written again where they
+are not. No time or place is stored, so two runs of one ensemble leave the same numbers, whoever ran them.
 """
 
 import hashlib
@@ -24,7 +25,8 @@ from lowfi import columns
 from lowfi.columns import Columns
 from lowfi.rows import numbers
 from scenes import overrides as keys
-from scenes.files import content_hash, write_json
+from scenes.files import (DamageError, content_hash, fits_digest, read_json, replacing, tell, with_digest,
+                          write_json)
 from scenes.scene import Scene
 
 CHUNK = 4096
@@ -54,29 +56,38 @@ class Store:
 
     def __init__(self, path: str | Path, asked: int, names: Sequence[str], identity: dict, attributes: dict):
         self.path, self.asked, self.names = Path(path), asked, list(names)
+        self.ensemble = content_hash(json.loads(json.dumps(identity)))
+        attributes = with_digest({"identity": identity, **attributes})
         if not self.path.exists() or self.path.is_dir() and not any(self.path.iterdir()):
             with self._explained():
-                self._make({"identity": identity, **attributes})
-        self._arrays, self._inputs = self._opened(identity)
+                self._make(attributes)
+        else:
+            self._require(identity)
+            with self._explained():
+                self._describe(attributes)
+        self._arrays, self._inputs = self._opened()
 
     def _make(self, attributes: dict) -> None:
         """Made under another name and then renamed, so that a store is never half made."""
-        zarr = _zarr()
         self.path.parent.mkdir(parents=True, exist_ok=True)
         folder = Path(tempfile.mkdtemp(prefix=f".{self.path.name}.", dir=self.path.parent))
         try:
-            root = zarr.create_group(folder / "cases.zarr", attributes=attributes)
-            for name in Columns._fields:
-                self._array(root, name, _type(name), {"units": columns.UNITS[name]} if name in columns.UNITS else {})
-            root["status"].attrs.update(flag_values=list(range(len(columns.STATUSES))), flag_meanings=" ".join(columns.STATUSES))
-            inputs = root.create_group("inputs")
-            for name in self.names:
-                self._array(inputs, name, "f8", {"units": keys.unit(Scene, name) or "SI"})
+            self._create(folder / "cases.zarr", attributes)
             (folder / "done").mkdir()
             folder.chmod(0o755)
             os.replace(folder, self.path)
         finally:
             shutil.rmtree(folder, ignore_errors=True)
+
+    def _create(self, place, attributes: dict) -> None:
+        """The group and its arrays, without cases, in a folder or in memory."""
+        root = _zarr().create_group(place, attributes=attributes)
+        for name in Columns._fields:
+            self._array(root, name, _type(name), {"units": columns.UNITS[name]} if name in columns.UNITS else {})
+        root["status"].attrs.update(flag_values=list(range(len(columns.STATUSES))), flag_meanings=" ".join(columns.STATUSES))
+        inputs = root.create_group("inputs")
+        for name in self.names:
+            self._array(inputs, name, "f8", {"units": keys.unit(Scene, name) or "SI"})
 
     def _array(self, group, name: str, kind: str, attributes: dict) -> None:
         from zarr.codecs import Crc32cCodec
@@ -86,14 +97,39 @@ class Store:
                            fill_value=np.nan if kind == "f8" else _NOT_RUN, attributes=attributes,
                            dimension_names=("case", "axis")[:1 + len(inner)])
 
-    def _opened(self, identity: dict) -> tuple[dict, list]:
+    def _require(self, identity: dict) -> None:
+        """Raises StoreError unless this is a store of the ensemble of this ``identity``. Where its description is damaged, its
+        chunks say whose it is."""
+        described, expected = _attributes(self.path), json.loads(json.dumps(identity))
+        if described is None:
+            if not any(self._belongs(mark) for mark in (self.path / "done").glob("*.json")):
+                raise StoreError(f"{self.path} is no store of an ensemble, or its cases.zarr/zarr.json is damaged; "
+                                 "give another --store, or remove it")
+        elif other := [name for name in expected if described["identity"].get(name) != expected[name]]:
+            raise StoreError(f"{self.path} holds another ensemble: {', '.join(other)} differ; "
+                             "give another --store, or remove it")
+
+    def _belongs(self, mark: Path) -> bool:
+        try:
+            return read_json(mark)["ensemble"] == self.ensemble
+        except (DamageError, OSError, KeyError):
+            return False
+
+    def _describe(self, attributes: dict) -> None:
+        """Write every description again that is not as in a new store. What is said of the scene in words may differ."""
+        new: dict = {}
+        self._create(_zarr().storage.MemoryStore(new), attributes)
+        for name, content in new.items():
+            path = self.path / "cases.zarr" / name
+            if not path.is_file() or not _alike(path.read_bytes(), content.to_bytes()):
+                tell(f"{path} is damaged or was edited: it is written again")
+                with replacing(path) as temporary:
+                    temporary.write_bytes(content.to_bytes())
+
+    def _opened(self) -> tuple[dict, list]:
         """Arrays of the results by name, and of the inputs."""
         try:
             group = _zarr().open_group(self.path / "cases.zarr", mode="r+")
-            found, expected = group.attrs["identity"], json.loads(json.dumps(identity))
-            if other := [name for name in expected if found.get(name) != expected[name]]:
-                raise StoreError(f"{self.path} holds another ensemble: {', '.join(other)} differ; "
-                                 "give another --store, or remove it")
             return {name: group[name] for name in Columns._fields}, [group[f"inputs/{name}"] for name in self.names]
         except (OSError, ValueError, KeyError) as error:
             raise StoreError(f"{self.path} is no store of an ensemble ({type(error).__name__}: {error}); "
@@ -107,8 +143,12 @@ class Store:
         return number * CHUNK, min((number + 1) * CHUNK, self.asked)
 
     def pending(self) -> list[int]:
-        """Numbers of the chunks that are missing or damaged."""
+        """Numbers of the chunks that are missing or damaged; what is damaged is said."""
         return [number for number in range(len(self)) if not self._whole(number)]
+
+    def holds(self, case: int) -> bool:
+        """Whether the chunk of a case is done and whole; what is damaged is said."""
+        return self._whole(case // CHUNK)
 
     def write(self, chunk: Chunk) -> None:
         """Keep the results of a chunk. Raises StoreError when that fails, as on a full disk."""
@@ -124,8 +164,9 @@ class Store:
                         if (status := columns.STATUSES[code]) in _FAILED]
             failed = {failure["case"] for failure in failures}
             warnings = {str(begin + n): text for n, text in enumerate(chunk.messages) if text and begin + n not in failed}
-            write_json(self._mark(chunk.number), {"digest": _digest(chunk.results, inputs), **columns.counts(chunk.results.status),
-                                                  "failures": failures, "warnings": warnings})
+            write_json(self._mark(chunk.number), {"ensemble": self.ensemble, "digest": _digest(chunk.results, inputs),
+                                                  **columns.counts(chunk.results.status), "failures": failures,
+                                                  "warnings": warnings})
 
     @contextmanager
     def _explained(self) -> Iterator[None]:
@@ -139,21 +180,34 @@ class Store:
         return f"{self.done():,} of {self.asked:,} cases are stored, and the same command goes on from there"
 
     def _whole(self, number: int) -> bool:
-        if (mark := self._read_mark(number)) is None:
+        begin, end = self.bounds(number)
+        try:
+            if (mark := read_json(self._mark(number)))["ensemble"] != self.ensemble:
+                return False
+        except FileNotFoundError:
+            return False
+        except (DamageError, OSError, KeyError):
+            tell(f"{self._mark(number)} is damaged or was edited: the cases {begin:,} to {end - 1:,} are run again")
             return False
         try:
-            return mark["digest"] == _digest(*self.read(*self.bounds(number)))
+            whole = mark["digest"] == _digest(*self.read(begin, end))
         except Exception:  # whatever zarr raises on damaged bytes, the remedy is the same
-            return False
+            whole = False
+        if not whole:
+            tell(f"{self.path / 'cases.zarr'} is damaged or was edited: the cases {begin:,} to {end - 1:,} are run again")
+        return whole
 
     def _mark(self, number: int) -> Path:
         return self.path / "done" / f"{number:06}.json"
 
     def _read_mark(self, number: int) -> dict | None:
+        """What is told of a chunk, None before it is done. Raises StoreError where that is damaged."""
         try:
-            return json.loads(self._mark(number).read_text())
-        except (OSError, ValueError):
+            return read_json(self._mark(number))
+        except FileNotFoundError:
             return None
+        except (DamageError, OSError) as fault:
+            raise StoreError(f"{self._mark(number)} is damaged or was edited; the same command runs its cases again") from fault
 
     def read(self, begin: int, end: int) -> tuple[Columns, np.ndarray]:
         """Results, and inputs (n, k), of the cases ``begin`` to ``end`` - 1; status -1 in those that did not run yet."""
@@ -170,7 +224,8 @@ class Store:
                    for begin, end in (self.bounds(number) for number in range(len(self)) if self._mark(number).is_file()))
 
     def failures(self) -> list[dict]:
-        """Case number, status, reason and inputs of each case that was refused or diverged."""
+        """Case number, status, reason and inputs of each case that was refused or diverged. Raises StoreError where the list is
+        damaged."""
         return [failure for number in range(len(self)) for failure in (self._read_mark(number) or {"failures": []})["failures"]]
 
     def digest(self) -> str:
@@ -187,6 +242,26 @@ class Store:
             for case, text in mark["warnings"].items():
                 messages[int(case)] = text
         return Columns(*map(self.column, Columns._fields)), messages
+
+
+def _attributes(path: Path) -> dict | None:
+    """What the store at ``path`` says of itself; None where there is nothing, or it does not fit its digest."""
+    try:
+        found = json.loads((path / "cases.zarr" / "zarr.json").read_bytes())["attributes"]
+        return found if fits_digest(found) else None
+    except (OSError, ValueError, KeyError, TypeError, AttributeError):
+        return None
+
+
+def _alike(there: bytes, new: bytes) -> bool:
+    """Whether two descriptions (JSON) are the same, apart from attributes that fit a digest of their own."""
+    try:
+        found, expected = json.loads(there), json.loads(new)
+        if fits_digest(found["attributes"]):
+            found["attributes"] = expected["attributes"]
+        return found == expected
+    except (ValueError, KeyError, TypeError, AttributeError):
+        return False
 
 
 def _digest(results: Columns, inputs: np.ndarray) -> str:

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from scenes.files import write_text
+from scenes.files import DamageError, is_sealed, require_whole, sealed
 from scenes.scene import Scene
 
 
@@ -44,21 +44,28 @@ class Calibration:
                               if getattr(scene, key.split(".")[0], "unknown") is not None})
 
     def save(self, path: str | Path) -> None:
-        """Write TOML atomically. Raises ValueError for a NaN (an interval without an end is inf)."""
+        """Write TOML with its digest, atomically. Raises ValueError for a NaN (an interval without an end is inf)."""
         tables = asdict(self) | {"information": np.asarray(self.information).tolist()}
         plain = {key: value for key, value in tables.items() if not isinstance(value, dict)}
         nested = {key: value for key, value in tables.items() if isinstance(value, dict)}
         lines = [f"{key} = {_toml(value)}" for key, value in plain.items()]
         for name, table in nested.items():
             lines += ["", f"[{name}]"] + [f"{_toml(key)} = {_toml(value)}" for key, value in table.items()]
-        write_text(path, "\n".join(lines) + "\n")
+        with sealed(path) as temporary:
+            temporary.write_text("\n".join(lines) + "\n", encoding="utf-8", newline="\n")
 
     @classmethod
     def load(cls, path: str | Path) -> "Calibration":
-        """Read what ``save`` wrote. Raises FileNotFoundError, or ValueError for a damaged or foreign file."""
+        """Read what ``save`` wrote, or what a user did, whose file need not have a digest. Raises FileNotFoundError, or ValueError
+        for a foreign file or one that does not fit the digest it has."""
         try:
+            if is_sealed(path):
+                require_whole(path)
             data = tomllib.loads(Path(path).read_text(encoding="utf-8"))
             return cls(**data | {"information": np.array(data["information"])})
+        except DamageError as fault:
+            raise ValueError(f"{path} {fault.reason}: make it again, or remove the line '# sha-256 ...' if you edited the file on "
+                             "purpose") from fault
         except (ValueError, TypeError, KeyError) as error:
             raise ValueError(f"{path}: not a calibration file ({error})") from error
 

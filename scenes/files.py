@@ -1,13 +1,38 @@
-"""Files that are never half written: written beside their final name, flushed to disk, then renamed."""
+"""Files that are never half written, and that carry the digest of what they hold.
+
+Every file is written beside its final name, flushed to disk, then renamed. A file that is read back ends with the bytes::
+
+    # sha-256 <hexadecimal digest of every byte before this line>
+
+a line that TOML reads as a comment, and which readers of HDF5, netCDF and zip pass over. A JSON file holds the digest under the key
+``sha256`` instead: that of the canonical JSON of all its other keys, so that another layout of the same content is no damage.
+"""
 
 import glob
 import hashlib
 import json
 import os
+import re
+import sys
 import tempfile
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, Iterator
+from typing import Any, Iterator, Mapping
+
+KEY = "sha256"  # of the digest in a JSON object
+_MARK = b"# sha-256 "
+_LINE = re.compile(_MARK + rb"([0-9a-f]{64})\n")
+_LENGTH = len(_MARK) + 64 + 1
+_CARRIES_NONE = "carries no digest of what it holds, or a damaged one"
+_DIFFERS = "does not fit the digest it carries (damaged, or edited)"
+
+
+class DamageError(ValueError):
+    """A file that does not fit the digest it carries, or carries none; ``reason`` goes on with a sentence that its path begins."""
+
+    def __init__(self, path: str | Path, reason: str):
+        self.reason = reason
+        super().__init__(f"{path} {reason}; remove it, and the command that wrote it writes it again")
 
 
 @contextmanager
@@ -42,9 +67,65 @@ def write_text(path: str | Path, text: str) -> None:
         temporary.write_text(text, encoding="utf-8")
 
 
-def write_json(path: str | Path, value: Any) -> None:
-    """Write ``value`` as strict JSON (no NaN) atomically."""
-    write_text(path, json.dumps(value, indent=1, allow_nan=False) + "\n")
+@contextmanager
+def sealed(path: str | Path) -> Iterator[Path]:
+    """As ``replacing``, for a file that is read back: its digest is appended as its last line."""
+    with replacing(path) as temporary:
+        yield temporary
+        with open(temporary, "rb") as stream:
+            digest = hashlib.file_digest(stream, "sha256").hexdigest()
+        with open(temporary, "ab") as stream:
+            stream.write(_MARK + digest.encode() + b"\n")
+
+
+def require_whole(path: str | Path) -> None:
+    """Raises DamageError unless the file is as ``sealed`` left it, FileNotFoundError or another OSError where it cannot be read."""
+    content = memoryview(Path(path).read_bytes())
+    told = _LINE.fullmatch(content[-_LENGTH:])
+    if told is None:
+        raise DamageError(path, _CARRIES_NONE)
+    if hashlib.sha256(content[:-_LENGTH]).hexdigest().encode() != told[1]:
+        raise DamageError(path, _DIFFERS)
+
+
+def is_sealed(path: str | Path) -> bool:
+    """Whether any line of the file begins as the line of a digest does. Raises OSError where the file cannot be read."""
+    return any(line.startswith(_MARK) for line in Path(path).read_bytes().splitlines())
+
+
+def write_json(path: str | Path, value: Mapping[str, Any]) -> dict[str, Any]:
+    """Write ``value`` as strict JSON (no NaN) with its digest, atomically; returns the object as the file holds it."""
+    found = with_digest(value)
+    write_text(path, json.dumps(found, indent=1, allow_nan=False) + "\n")
+    return found
+
+
+def read_json(path: str | Path) -> dict[str, Any]:
+    """The object that ``write_json`` wrote. Raises DamageError, or OSError where the file cannot be read."""
+    try:
+        found = json.loads(Path(path).read_bytes())
+        whole = isinstance(found, dict) and fits_digest(found)
+    except ValueError as fault:
+        raise DamageError(path, "is no JSON (damaged, or edited)") from fault
+    if not whole:
+        raise DamageError(path, _DIFFERS if isinstance(found, dict) and KEY in found else _CARRIES_NONE)
+    return found
+
+
+def with_digest(value: Mapping[str, Any]) -> dict[str, Any]:
+    """``value`` with the digest of its content, in place of one that it has."""
+    rest = {key: item for key, item in value.items() if key != KEY}
+    return rest | {KEY: content_hash(json.loads(json.dumps(rest, allow_nan=False)))}  # keys are text only once they were JSON
+
+
+def fits_digest(value: Mapping[str, Any]) -> bool:
+    """Whether ``value``, as read from JSON, has the content of which it carries the digest."""
+    return value.get(KEY) == content_hash({key: item for key, item in value.items() if key != KEY})
+
+
+def tell(text: str) -> None:
+    """One line on standard error, from packages that know nothing of the progress of studies."""
+    print(text, file=sys.stderr, flush=True)
 
 
 def content_hash(*parts: Any) -> str:

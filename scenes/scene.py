@@ -12,7 +12,7 @@ from typing import Annotated, Any, Mapping
 from pydantic import AfterValidator, Field, PrivateAttr, ValidationError, ValidationInfo, field_validator
 
 from scenes import overrides as keys
-from scenes import plausibility, reading, roles
+from scenes import names, plausibility, reading, roles
 from scenes.effects.contact import ContactTable
 from scenes.effects.flight import FlightTable
 from scenes.effects.friction import FrictionTable
@@ -40,7 +40,7 @@ _NOT_PHYSICS = {"name", "description", "flight", *_BESIDE}  # what comes after t
 class Scene(Table):
     """Everything a run needs. Fields are SI; an absent effect is None. Use ``replace`` for variations."""
 
-    name: str
+    name: Annotated[str, AfterValidator(names.of_scene)]
     description: str = ""
     duration: PositiveTime
     payload: PayloadTable

@@ -16,7 +16,7 @@ import numpy as np
 
 from scenes import ledger, outcome
 from scenes.fidelity import MODELS
-from scenes.files import replacing
+from scenes.files import DamageError, require_whole, sealed
 
 if TYPE_CHECKING:
     import xarray
@@ -138,26 +138,29 @@ class Trajectory:
             "outcome": json.dumps(self.outcome._asdict()), **plain})
 
     def save(self, path: str | Path) -> None:
-        """Write netCDF atomically: an interrupted call leaves the file that was there, or none."""
-        with replacing(path) as temporary:
+        """Write netCDF with its digest, atomically: an interrupted call leaves the file that was there, or none."""
+        with sealed(path) as temporary:
             self.to_xarray().to_netcdf(temporary, engine="h5netcdf")
 
     @classmethod
     def load(cls, path: str | Path) -> "Trajectory":
-        """Read what ``save`` wrote. Raises FileNotFoundError, or OSError for a damaged or foreign file."""
+        """Read what ``save`` wrote. Raises FileNotFoundError, or OSError for a foreign file or one that does not fit its digest."""
         import xarray
 
         if not Path(path).is_file():
             raise FileNotFoundError(f"{path}: no such trajectory file")
         try:
+            require_whole(path)
             with xarray.open_dataset(path, engine="h5netcdf", decode_timedelta=False) as data:
                 arrays = {name: data[name].values for name in _DIMENSIONS if name in data or name != "wall_stress"}
                 plain = {name: json.loads(data.attrs[name]) for name in _PLAIN}
                 result = outcome.Outcome(**json.loads(data.attrs["outcome"]))
                 return cls(model=data.attrs["model"], status=data.attrs["status"], message=data.attrs["message"],
                            time=data["time"].values, outcome=result, **arrays, **plain)
+        except DamageError as fault:
+            raise OSError(f"{path}: not a whole trajectory file: it {fault.reason}; make it again") from fault
         except (OSError, KeyError, TypeError, ValueError, RuntimeError) as error:
-            # What HDF5 says of a damaged file depends on where the damage is.
+            # What HDF5 says of a foreign file depends on what it lacks.
             raise OSError(f"{path}: not a whole trajectory file ({error})") from error
 
 

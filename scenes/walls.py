@@ -29,7 +29,7 @@ import numpy as np
 from scenes.effects.thermal import FIELDS
 from scenes.faults import Fault, SceneError
 from scenes.fidelity import COMPLIANT, SPRINGS
-from scenes.files import content_hash, replacing
+from scenes.files import DamageError, content_hash, require_whole, sealed
 from scenes.scene import Scene
 
 MODES = 20  # of each rail, kept beside its compliance
@@ -139,18 +139,22 @@ class Walls:
                                     "walls found for warm rails: find them anew")])
 
     def save(self, path: str | Path) -> None:
-        """Write atomically, as arrays."""
-        with replacing(path) as temporary, open(temporary, "wb") as stream:
+        """Write atomically, as arrays with their digest."""
+        with sealed(path) as temporary, open(temporary, "wb") as stream:
             np.savez_compressed(stream, **{name: value for name, value in self.__getstate__().items() if value is not None})
 
     @classmethod
     def load(cls, path: str | Path) -> "Walls":
-        """Read what ``save`` wrote. Raises FileNotFoundError, or ValueError for a damaged or foreign file."""
+        """Read what ``save`` wrote. Raises FileNotFoundError, or ValueError for a foreign file or one that its digest does not
+        fit."""
         try:
+            require_whole(path)
             with np.load(path, allow_pickle=False) as found:
                 arrays = {field.name: found[field.name] for field in fields(cls) if field.default is MISSING or field.name in found}
             walls = cls(**arrays | {"made_for": str(arrays["made_for"])})
             walls._require_whole()
+        except DamageError as fault:
+            raise ValueError(f"{path}: not a file of walls: it {fault.reason}") from fault
         except (zipfile.BadZipFile, zlib.error, KeyError, EOFError, TypeError, ValueError) as error:  # TypeError: a lone array
             raise ValueError(f"{path}: not a file of walls ({error})") from error
         return walls

@@ -2,7 +2,6 @@
 
 import json
 import os
-import re
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -31,7 +30,7 @@ def study_of(scene: str, out: Path, overrides, conditions=None, element_size=Non
         settings = replace(settings, workers=workers)
     if checkpoint_every is not None:
         settings = replace(settings, checkpoint_every=quantity("--checkpoint-every", checkpoint_every, "s"))
-    study = Study(found, Path(out) / re.sub(r"[^\w.-]+", "-", found.name).strip("."), settings, tuple(conditions or ()))
+    study = Study(found, Path(out) / found.name, settings, tuple(conditions or ()))
     study.conditions  # a bad override or an unknown condition is a fault of the input, found before anything runs
     for warning in found.warnings:
         say(f"implausible: {warning}")

@@ -4,13 +4,12 @@ typed by hand.
     python -m studies.readme [FOLDER]        default out/reference
 """
 
-import json
 import shutil
 import sys
 from pathlib import Path
 
 from scenes.fidelity import COMPLIANT, FINITE_ELEMENTS
-from scenes.files import write_text
+from scenes.files import read_json, write_text
 from studies.agreement.verdicts import CONVERGED_DEG_S
 from studies.bench import reference
 from studies.cost import sureness
@@ -41,7 +40,7 @@ def main(folder: Path) -> None:
 
 def section(folder: Path) -> str:
     """Markdown of what was found: agreement, speed-up, other rails, and what accuracy costs."""
-    agreement = json.loads((folder / "agreement.json").read_text())
+    agreement = read_json(folder / "agreement.json")
     refined, cost = (read(folder / f"{name}.json") for name in ("convergence", "cost_study"))
     parts = [_agreement(agreement), *_stiffer(agreement["stiffer"]), *_growth(agreement["growth"]), _speed(agreement),
              *_equal(refined, cost)]
@@ -53,7 +52,7 @@ def section(folder: Path) -> str:
 
 def details(folder: Path) -> str:
     """Markdown of the rest: kept promises, what a mesh costs, the error of the reference itself, and speeds."""
-    highfi, lowfi = (json.loads((folder / f"{name}.json").read_text()) for name in ("highfi", "lowfi"))
+    highfi, lowfi = (read_json(folder / f"{name}.json") for name in ("highfi", "lowfi"))
     refined, cost = (read(folder / f"{name}.json") for name in ("convergence", "cost_study"))
     parts = [_promises(highfi, lowfi)]
     parts += [_cost(cost), _scaling(cost["scaling"])] if cost is not None else []

@@ -32,7 +32,7 @@ def run(study: Study, condition: str, asked: models.Asked = models.Asked(), quie
 def chosen(study: Study, condition: str, accuracy: float | None, budget: float | None, quiet: bool = False) -> dict:
     """The same in the model that measured cost calls for; ``chosen`` says which and why. Raises StudyError when none fits, or
     when no cost was measured for this scene and this code."""
-    whole = study.whole()  # results are those of all conditions, whichever one is asked for
+    whole = study.unrestricted()  # results are those of all conditions, whichever one is asked for
     measured = cost.stored(whole)
     if measured is None:
         raise StudyError(f"no cost was measured for this scene with this code: run tipoff cost --scene {study.scene.name} first")

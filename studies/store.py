@@ -2,10 +2,12 @@
 
     key = SHA-256(physical inputs of the scene, numerics, calibrated constants, walls, sources of every package below the fidelity)
 
-A run whose file is there is loaded, any other is made and written atomically; so what was interrupted goes on where it
-stopped, and a changed input or source is never answered with an old result. A run of the reference in progress is kept beside it as
-``<label>-<key>.checkpoint``, which is removed once the result is written. Runs go side by side in threads: the kernels
-release the interpreter, and the mesh generator, which insists on the main thread, has been called before.
+A run whose file is there and fits the digest it carries is loaded, any other is made and written atomically; so what was
+interrupted goes on where it stopped, and neither a changed input or source nor a damaged file is answered with an old result. A run
+of the reference in progress is kept beside it as ``<label>-<key>.checkpoint``, which is removed once the result is written.
+
+Runs go side by side in threads: the kernels release the interpreter, and the mesh generator, which insists on the main thread, has
+been called before.
 """
 
 import functools
@@ -94,7 +96,7 @@ class Store:
         try:
             return Trajectory.load(path)
         except Exception as fault:  # whatever the netCDF stack raises on damaged bytes, the remedy is the same
-            say(f"  {path} is damaged ({type(fault).__name__}), so {run.label} is run again")
+            say(f"  {path} is damaged or was edited ({type(fault).__name__}), so {run.label} is run again")
             return None
 
     def get(self, run: Run) -> Trajectory:

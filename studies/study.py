@@ -1,11 +1,11 @@
 """One scene under study: its conditions, its folder, its stored runs, and stages that are skipped when nothing changed.
 
 A stage leaves ``out/<scene>/<stage>.json`` with the ``key`` of everything it depends on and the digests of the ``files`` it
-wrote. It is made again when the key differs, or when one of its files is gone or was altered.
+wrote. It is made again when the key differs, when one of its files is gone or was altered, or when it does not fit the digest
+that it carries itself. Whatever a stage reads is verified by the reader, so nothing is made again from a damaged file.
 """
 
 import hashlib
-import json
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
@@ -13,7 +13,7 @@ from typing import Any, Callable, Iterable
 
 from scenes.calibration import Calibration
 from scenes.faults import Fault, SceneError
-from scenes.files import content_hash, write_json
+from scenes.files import DamageError, content_hash, read_json, write_json
 from scenes.scene import NOMINAL, Scene
 from scenes.trajectory import Trajectory
 from scenes.walls import Walls
@@ -39,7 +39,7 @@ class Study:
     only: tuple[str, ...] = ()
     _told: set = field(default_factory=set, repr=False, compare=False)  # stages already announced
 
-    def whole(self) -> "Study":
+    def unrestricted(self) -> "Study":
         """The same study of all its conditions: its results do not depend on those that are asked for."""
         return replace(self, only=()) if self.only else self
 
@@ -109,16 +109,14 @@ class Study:
         ``make`` returns the result and the files it wrote.
         """
         path = self.path(f"{name}.json")
-        known = read(path)
-        if known is not None and known.get("key") == key and self._whole(known.get("files", {})):
+        known = read(path, f"{name} is made again")
+        if known is not None and known.get("key") == key and self.whole(known, f"{name} is made again"):
             self._tell(name, "nothing changed")
             return known
         self._tell(name, self.scene.name)
         result, files = make()
-        document = {"stage": name, "scene": self.scene.name, "key": key, **result,
-                    "files": {self.relative(file): _digest(file) for file in files}}
-        write_json(path, document)
-        return document
+        return write_json(path, {"stage": name, "scene": self.scene.name, "key": key, **result,
+                                 "files": {self.relative(file): _digest(file) for file in files}})
 
     def stored(self, name: str, key: Callable[[dict], str]) -> dict | None:
         """The stage's result, if it has the ``key`` that a result of its settings would be given now; None too where those are of
@@ -134,16 +132,27 @@ class Study:
             say(f"{name}: {words}")
         self._told.add(name)
 
-    def _whole(self, files: dict[str, str]) -> bool:
-        return all(self.path(name).is_file() and _digest(self.path(name)) == digest for name, digest in files.items())
+    def whole(self, document: dict, remedy: str) -> bool:
+        """Whether every file of a result is there as its stage left it; the first that was altered is said, with the ``remedy``."""
+        for name, digest in document.get("files", {}).items():
+            path = self.path(name)
+            if not path.is_file():
+                return False
+            if _digest(path) != digest:
+                say(f"  {path} is not as it was left (damaged, edited, or made again): {remedy}")
+                return False
+        return True
 
 
-def read(path: Path) -> dict | None:
-    """A stage's result file, or None when it is missing or damaged."""
+def read(path: Path, remedy: str = "the command that wrote it writes it again") -> dict | None:
+    """A stage's result file, or None when it is missing, or does not fit its digest, which is said with the ``remedy``."""
     try:
-        return json.loads(Path(path).read_text())
-    except (OSError, ValueError):
-        return None
+        return read_json(path)
+    except DamageError as fault:
+        say(f"  {path} {fault.reason}: {remedy}")
+    except OSError:
+        pass
+    return None
 
 
 def require_success(runs: dict[str, Trajectory], purpose: str) -> None:

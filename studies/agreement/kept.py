@@ -9,7 +9,7 @@ def rows(study: Study, model: str, calibrated: bool = False, modes: int = 0) -> 
     """Rows of ``model`` in the agreement table; none where no table is kept, or none of this model with its options."""
     from studies.stages import compare
 
-    found = compare.stored(study.whole())
+    found = compare.stored(study.unrestricted())
     if found is None or model == FINITE_ELEMENTS:
         return []
     if model == COMPLIANT:

@@ -4,7 +4,6 @@ Times are wall times of whole steps with contact on: each timed piece starts wit
 eight pad faces meet, and ends before it has bounced off. Compilation and set-up are apart; the median of the repeats counts.
 """
 
-import json
 import resource
 import statistics
 import time
@@ -18,6 +17,7 @@ from scenes.files import content_hash, write_json
 from scenes.scene import Scene, load
 from studies import machine
 from studies.progress import say
+from studies.study import read
 
 SIZES = (0.002, 0.001, 0.0005)  # m: 19,360, 154,880 and 1,239,040 elements of the reference rails
 _BASELINE_MOST = 160_000  # elements whose assembly fits into memory with room to spare; a larger matrix is no faster per element
@@ -38,17 +38,16 @@ def run(out: Path, sizes: tuple[float, ...] = SIZES, repeats: int = 5, steps: in
     for size in sizes:
         rows.append(_measured(scene, size, repeats, steps))
         say(line(rows[-1]))
-        write_json(Path(out) / "bench" / "highfi.json", rows)
+        write_json(Path(out) / "bench" / "highfi.json", {"rows": rows})
     return {"rows": rows}
 
 
 def stored(out: Path) -> dict | None:
     """The ``rows`` of an earlier run, what there is of the surrogate (``lowfi``), and their digest, ``key``; None without any."""
-    found = {name: json.loads(path.read_text()) for name in ("highfi", "lowfi")
-             if (path := Path(out) / "bench" / f"{name}.json").is_file()}
+    found = {name: kept for name in ("highfi", "lowfi") if (kept := read(Path(out) / "bench" / f"{name}.json")) is not None}
     if not found:
         return None
-    return {"rows": found.get("highfi", []), "lowfi": found.get("lowfi"), "key": content_hash(found)}
+    return {"rows": found.get("highfi", {}).get("rows", []), "lowfi": found.get("lowfi"), "key": content_hash(found)}
 
 
 def line(row: dict) -> str:

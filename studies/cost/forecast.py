@@ -18,6 +18,7 @@ from typing import Callable, NamedTuple, Sequence
 
 import numba
 
+from scenes.files import read_json, require_whole
 from scenes.rail import SectionTable
 from scenes.scene import Scene
 from studies.store import Run
@@ -98,7 +99,7 @@ def pace(study: Study) -> Pace:
             same = path.parent.parent == study.folder
             return found if same else Pace(found.ns, source=f" (speed as measured in {path.parent.parent.name})")
     try:
-        rows = json.loads((study.folder.parent / "bench" / "highfi.json").read_text())
+        rows = read_json(study.folder.parent / "bench" / "highfi.json")["rows"]
         nearest = min(rows, key=lambda row: abs(math.log(row["element_size_m"] / study.settings.element_size)))
         return Pace(float(nearest["ns_one_thread"]), source=" (speed as benchmarked)")
     except (OSError, ValueError, KeyError, TypeError):
@@ -157,6 +158,7 @@ def _stored(path: Path) -> Pace | None:
     import h5py
 
     try:
+        require_whole(path)
         with h5py.File(path) as file:
             cost, numerics = json.loads(file.attrs["cost"]), json.loads(file.attrs["numerics"])
         return Pace(cost["ns_per_element_step"], numerics["element_size"], cost["elements"], cost["steps"])
@@ -184,6 +186,7 @@ def _surrogate(folder: Path) -> float:
     springs = [path for path in (folder / "lowfi").glob("*.nc") if "-compliant-" not in path.name]
     for path in sorted(springs, key=_age)[:_LOOKED_AT]:
         try:
+            require_whole(path)
             with h5py.File(path) as file:
                 found.append(json.loads(file.attrs["cost"])["wall_s"])
         except (OSError, KeyError, ValueError):

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from scenes.files import replacing
+from scenes.files import sealed
 from studies.droptest.analysis import Drop
 from studies.droptest.channel_class import filtered
 from studies.droptest.events import WINDOWS
@@ -47,6 +47,6 @@ def dataset(drop: Drop) -> "xarray.Dataset":
 
 def write(path: Path, drops: list[Drop]) -> None:
     """All tests in one file, each as the group of its name, atomically."""
-    with replacing(path) as temporary:
+    with sealed(path) as temporary:
         for number, drop in enumerate(drops):
             dataset(drop).to_netcdf(temporary, mode="a" if number else "w", group=drop.name, engine="h5netcdf")

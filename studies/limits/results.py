@@ -6,8 +6,9 @@ from typing import Mapping
 
 import numpy as np
 
-from scenes.files import replacing
+from scenes.files import DamageError, require_whole, sealed
 from studies.populations import answers
+from studies.progress import say
 
 
 def save(path: Path, values: np.ndarray, scale: float, tolerances: Mapping[str, float]) -> None:
@@ -19,19 +20,24 @@ def save(path: Path, values: np.ndarray, scale: float, tolerances: Mapping[str, 
         {"case": np.arange(len(values)), "quantity": [item.name for item in answers.ALL],
          "units": ("quantity", [item.unit for item in answers.ALL])},
         {"scale": scale, "tolerances_si": json.dumps(dict(tolerances))})
-    with replacing(path) as temporary:
+    with sealed(path) as temporary:
         found.to_netcdf(temporary, engine="h5netcdf")
 
 
 def load(path: Path) -> np.ndarray | None:
-    """The values (n,k) that ``save`` wrote; None where they are not there, not whole, or those of other quantities."""
+    """The values (n,k) that ``save`` wrote; None where they are not there, those of other quantities, or not whole, which is
+    said."""
     if not path.is_file():
         return None
     import xarray
 
     try:
+        require_whole(path)
         with xarray.open_dataset(path, engine="h5netcdf") as found:
             same = found["quantity"].values.tolist() == [item.name for item in answers.ALL]
             return found["value"].transpose("case", "quantity").values if same else None
-    except (OSError, KeyError, TypeError, ValueError, RuntimeError):  # what HDF5 says of damage depends on where it is
+    except DamageError as fault:
+        say(f"  {path} {fault.reason}: its cases are run again")
+        return None
+    except (OSError, KeyError, TypeError, ValueError, RuntimeError):  # what HDF5 says of a foreign file depends on what it lacks
         return None

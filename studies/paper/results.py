@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lowfi.columns import Columns
-from scenes.files import replacing
+from scenes.files import sealed
 from studies import published
 from studies.inference import inputs, misfit, solutions
 from studies.paper import exits, told
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 def save(path: Path, found: list[solutions.Search], best: int, left: Columns) -> None:
     """Write ``dataset`` atomically."""
     labelled = dataset(found, best, left)
-    with replacing(path) as temporary:
+    with sealed(path) as temporary:
         labelled.to_netcdf(temporary, engine="h5netcdf")
 
 

@@ -27,7 +27,7 @@ def single_pad(mass: float, contact: dict | None, pads: list | None = None, end:
     """A payload with one pad above its mass centre, so that contact turns nothing, or with ``pads``; rails to ``end`` (m). SI."""
     inertia = 0.4 * mass * 0.05**2
     return parse({
-        "name": "single pad", "duration": 1e-3, "payload": {"mass": mass, "inertia": dict.fromkeys(("xx", "yy", "zz"), inertia)},
+        "name": "single-pad", "duration": 1e-3, "payload": {"mass": mass, "inertia": dict.fromkeys(("xx", "yy", "zz"), inertia)},
         "pads": pads or [{"position": [0.0, 0.05, 0.0], "normals": ["+y"]}],
         "rail": {"start": -0.5, "end": end, "material": {"density": 2810.0, "youngs_modulus": 72e9, "poisson_ratio": 0.33}},
         "thrust": {"kind": "gaussian", "peak": 0.0, "width": 1e-3, "centre": 1e-3, "reaction": "exhaust"},

@@ -116,11 +116,12 @@ def case(study: Study, asked: Asked, number: int) -> dict:
     path = _path(study, asked, ensemble)
     if path.exists():
         try:
-            stored = ensemble.store(path).read(number, number + 1)[0]
+            store = ensemble.store(path)
+            stored = store.read(number, number + 1)[0] if store.holds(number) else None
         except StoreError as fault:
             raise StudyError(str(fault)) from fault
         alone = columns.of([found])
-        if stored.status[0] >= 0:
+        if stored is not None:
             result["stored"] = all(np.array_equal(a, b, equal_nan=a.dtype.kind == "f") for a, b in zip(stored, alone))
     return result
 

@@ -9,7 +9,7 @@ from lowfi.columns import Columns
 from lowfi.rows import Drawn
 from scenes import uncertainty
 from scenes.faults import Fault, SceneError
-from scenes.files import replacing
+from scenes.files import sealed
 from scenes.outcome import Outcome
 from scenes.scene import Scene
 from scenes.variation import Variations
@@ -53,7 +53,7 @@ def run(study: Study, asked: Asked = Asked()) -> dict:
                  "flight": summary.orbit(study.scene), "conditions": rows, "curves": shapes, "cases": cases}
         data = study.path(f"{NAME}.nc")
         labelled = summary.dataset([row["condition"] for row in rows if row["flown"]], single, exits, many, left)
-        with replacing(data) as temporary:
+        with sealed(data) as temporary:
             labelled.to_netcdf(temporary, engine="h5netcdf")
         pictures = [path for drawing, _ in page.charts(found) for path in chart.to_files(drawing, study.path("figures"))]
         return found | {"data": study.relative(data)}, [data, *pictures]

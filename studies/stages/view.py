@@ -7,7 +7,6 @@ ends with the bits of the stored run, which is checked.
 import importlib.metadata
 import json
 import math
-import re
 import subprocess
 import sys
 import tempfile
@@ -50,15 +49,16 @@ def run(study: Study, condition: str | None = None, frames: int = FRAMES, factor
             say(f"view: {why}")
         return document, [*files, *(folder / picture for picture in drawn)]
 
-    return study.stage(f"view/{_safe(name)}", _key(study, asked, frames, factor), make)
+    return study.stage(f"view/{name}", _key(study, asked, frames, factor), make)
 
 
 def stored(study: Study) -> list[dict]:
     """Results made from the present scene, code and settings, for the report, which makes none."""
-    found = [read(path) for path in sorted((study.folder / "view").glob("*.json"))]
+    found = [item for path in sorted((study.folder / "view").glob("*.json")) if (item := read(path)) is not None]
     known = {**{name: study.condition(name) for name in study.scene.conditions}, "nominal": study.scene}
-    return [item for item in found if item and item["condition"] in known
-            and item["key"] == _key(study, study.highfi(item["condition"]), item["asked_frames"], item["asked_factor"])]
+    return [item for item in found if item["condition"] in known
+            and item["key"] == _key(study, study.highfi(item["condition"]), item["asked_frames"], item["asked_factor"])
+            and study.whole(item, "the report does without it until tipoff view makes it again")]
 
 
 def _key(study: Study, asked: Run, frames: int, factor: float | None) -> str:
@@ -73,12 +73,8 @@ def pyvista_version() -> str | None:
         return None
 
 
-def _safe(name: str) -> str:
-    return re.sub(r"[^\w.-]+", "-", name).strip(".") or "condition"
-
-
 def _folder(study: Study, name: str) -> Path:
-    return study.folder / "view" / _safe(name)
+    return study.folder / "view" / name
 
 
 def chosen(frames: int, known: Trajectory) -> list[int]:

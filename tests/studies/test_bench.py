@@ -34,7 +34,7 @@ def test_bench_writes_one_row_per_size(tmp_path):
     arguments = ["bench", "--element-size", "8", "--repeats", "1", "--steps", "50", "--cases", "40", "--out", str(tmp_path)]
     said = CliRunner().invoke(app, arguments, catch_exceptions=False)
     assert said.exit_code == 0
-    row, = json.loads((tmp_path / "bench" / "highfi.json").read_text())
+    row, = json.loads((tmp_path / "bench" / "highfi.json").read_text())["rows"]
     assert row["elements"] > 500 and row["faces_in_contact"] >= 4
     assert row["ratio"] == pytest.approx(row["baseline_ns_per_element_step"] / row["ns_per_element_step"])
     assert row["bytes_per_element"] > 24 * 8 and row["dt_s"] > row["dt_element_s"] * 0.9

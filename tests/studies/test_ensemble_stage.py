@@ -90,6 +90,10 @@ def test_a_full_disk_is_exit_code_1_and_a_message(tmp_path, monkeypatch):
     assert call("--cases", 20, "--out", tmp_path).exit_code == 0
     store, = (tmp_path / "reference").glob("ensemble-*")
     (store / "cases.zarr" / "zarr.json").write_text("{")
+    told = call("--cases", 20, "--out", tmp_path)
+    assert told.exit_code == 0 and "zarr.json is damaged or was edited: it is written again" in told.stderr
+    (store / "cases.zarr" / "zarr.json").write_text("{")
+    (store / "done" / "000000.json").unlink()  # now nothing says whose store this is
     assert call("--cases", 20, "--out", tmp_path).exit_code == 1
 
 

@@ -7,6 +7,7 @@ import pytest
 from typer.testing import CliRunner
 
 from scenes import load
+from scenes.files import write_json
 from studies.cli import app
 from studies.flight import summary
 from studies.populations import answers, population
@@ -79,7 +80,7 @@ def test_conditions_and_cases_are_flown_and_kept(tmp_path, uncalibrated, monkeyp
     assert flight.stored(study)["key"] == further["key"]
     assert flight.stored(Study(load("reference"), folder, Settings(), ("phi35", "phi60"))) is None
     assert flight.stored(Study(load("reference").replace({"flight": None}), folder, Settings())) is None
-    (folder / "flight.json").write_text(json.dumps(further | {"asked": further["asked"] | {"vary": "gone.toml"}}))
+    write_json(folder / "flight.json", further | {"asked": further["asked"] | {"vary": "gone.toml"}})
     assert flight.stored(study) is None
     drawn = section.draw(found, lambda drawing, words: chart.to_html(drawing) + words)
     assert 'id="chart-flight-miss"' in drawn and "misses by" not in drawn and "touch the platform again" in drawn

@@ -9,6 +9,7 @@ import pytest
 
 import scenes
 from calibrate import parameters, search
+from scenes.files import sealed, write_json
 from studies.cost import forecast
 from studies.settings import defaults
 from studies.stages import calibrate as stage
@@ -25,8 +26,7 @@ def asked(of: Study) -> list:
 
 def stored(path, **cost):
     """A run's file as the forecast sees it."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with h5py.File(path, "w") as file:
+    with sealed(path) as temporary, h5py.File(temporary, "w") as file:
         file.attrs["cost"], file.attrs["numerics"] = json.dumps(cost), json.dumps({"element_size": 0.002})
 
 
@@ -88,9 +88,8 @@ def test_curves_are_fitted_after_the_time_was_said(tmp_path, capsys, monkeypatch
 def test_speed_comes_from_the_nearest_measurement(tmp_path):
     of = study(tmp_path)
     assert "typical" in forecast.pace(of).source
-    (tmp_path / "bench").mkdir()
-    (tmp_path / "bench" / "highfi.json").write_text(json.dumps([{"element_size_m": 0.002, "ns_one_thread": 9.0},
-                                                                {"element_size_m": 0.0005, "ns_one_thread": 30.0}]))
+    write_json(tmp_path / "bench" / "highfi.json", {"rows": [{"element_size_m": 0.002, "ns_one_thread": 9.0},
+                                                             {"element_size_m": 0.0005, "ns_one_thread": 30.0}]})
     assert forecast.pace(of).ns == 9.0 and "benchmark" in forecast.pace(of).source
     stored(tmp_path / "other" / "highfi" / "a.nc", ns_per_element_step=20.0, elements=5, steps=7)
     assert forecast.pace(of).ns == 20.0 and forecast.pace(of).steps is None and "other" in forecast.pace(of).source

@@ -1,6 +1,5 @@
 """The inference of unpublished inputs: printed tables, bodies that can exist, searches that find what they were made from."""
 
-import json
 import math
 import signal
 import threading
@@ -14,6 +13,7 @@ import lowfi
 import scenes
 from lowfi.numerics import Numerics
 from scenes.faults import SceneError
+from scenes.files import write_json
 from studies import published
 from studies.inference import inputs, misfit, solutions, toml
 from studies.paper import known
@@ -219,7 +219,7 @@ def test_headline_has_our_cost_of_the_present_code_only(quick, monkeypatch):
     """An agreement.json of other code is passed over, and the stage is found again when one is made."""
     study, _ = quick
     speed = {"highfi_wall_s": 60.0, "lowfi_wall_s": 2e-3, "ratio": 30000.0}
-    study.path("agreement.json").write_text(json.dumps({"key": "of other code", "speedup": speed}))
+    write_json(study.path("agreement.json"), {"key": "of other code", "speedup": speed})
     stale = paper.stored(study)
     for text in (page(stale), "\n".join(paper.lines(stale))):
         assert "make compare SCENE=reference" in text and "30,000" not in text

@@ -98,7 +98,7 @@ def test_tables_of_warm_rails_stand_on_the_walls_of_the_model(tmp_path, monkeypa
         asked.append(model)
         rates = np.zeros((source.asked, 3))
         found = columns.Columns(*[rates if name in columns.VECTORS else rates[:, 0] for name in columns.Columns._fields])
-        return Population({}, found, rates[:, 0] > 0.0, "store", {})
+        return Population({}, found, "store", {})
 
     monkeypatch.setattr(population, "run", run)
     study = Study(load("reference").replace({"thermal.mean": "15 K"}), tmp_path, defaults("reference"))

@@ -1,6 +1,5 @@
 """Small parts of the stages that need no run."""
 
-import json
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -10,6 +9,7 @@ import pytest
 import scenes
 from highfi.compiled import LAWS as highfi_laws
 from lowfi.compiled import LAWS as lowfi_laws
+from scenes.files import write_json
 from scenes.scene import EFFECTS
 from studies import machine
 from studies.settings import Settings, defaults
@@ -127,6 +127,6 @@ def test_a_stored_result_is_one_of_the_present_settings_and_code(tmp_path):
     asked = sweeps.Asked()._asdict()
     for found, known in (({"asked": asked, "key": "of another scene"}, False), ({"asked": asked | {"turns": 3}, "key": "x"}, False),
                          ({"key": "x"}, False), ({"asked": [], "key": "x"}, False), ({"asked": asked, "key": "right"}, True)):
-        (tmp_path / "sweeps.json").write_text(json.dumps(found))
+        write_json(tmp_path / "sweeps.json", found)
         assert (study.stored("sweeps", lambda result: sweeps.Asked(**result["asked"]) and "right") is not None) == known
     assert study.stored("limits", lambda result: "right") is None
