@@ -27,7 +27,8 @@ def geometry(scene: Scene) -> l_rail.LRailGeometry | str:
 
 
 def make_mesh(scene: Scene, element_size: float) -> RailMesh:
-    """Rails of ``scene`` in scene axes, their elements about ``element_size`` (m). Raises SceneError or MeshError."""
+    """Rails of ``scene`` in scene axes, their elements about ``element_size`` (m). Raises SceneError, MeshError or, for a solid,
+    GmshUnavailable."""
     if isinstance(scene.rail, SectionTable):
         return read(l_rail.build(_l_section(scene), element_size))
     if not scene.rail.is_as_found():

@@ -56,6 +56,7 @@ def quantity(option: str, text: str | None, unit: str) -> float | None:
 
 def guarded(work: Callable[[], dict], as_json: bool = False) -> dict:
     """Run ``work``; turn bad input and failed runs into messages and exit codes."""
+    from meshes.generator import GmshUnavailable
     from scenes.faults import SceneError
     from studies.study import INPUT_FAULTS, StudyError
 
@@ -63,7 +64,7 @@ def guarded(work: Callable[[], dict], as_json: bool = False) -> dict:
         result = work()
     except SceneError as fault:
         stop(str(fault), 2)
-    except StudyError as fault:
+    except (StudyError, GmshUnavailable) as fault:
         stop(str(fault), 1)
     except KeyboardInterrupt:
         print("tipoff: stopped; what was finished is kept, and the same command goes on from there", file=sys.stderr, flush=True)
