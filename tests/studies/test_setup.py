@@ -61,3 +61,9 @@ def test_a_solid_says_what_is_missing_and_a_built_in_rail_is_meshed(bare, tmp_pa
     assert "libGL.so.1" in line and line.endswith(generator.SYSTEM_INSTALL)
     built = bare("-m", "studies.cli", "mesh", "--scene", CATALOG / "tiny.toml", "--out", tmp_path / "out")
     assert built.returncode == 0 and (tmp_path / "out" / "tiny" / "mesh.json").is_file()
+
+
+def test_readme_asks_for_system_libraries_where_a_solid_is_given_and_nowhere_else():
+    sections = {part.splitlines()[0]: part for part in (ROOT / "README.md").read_text(encoding="utf-8").split("\n## ")}
+    assert [name for name, text in sections.items() if generator.SYSTEM_INSTALL in text] == ["A rail of your own"]
+    assert "apt-get" not in sections["Two commands"]
