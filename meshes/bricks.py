@@ -8,9 +8,9 @@ CUBE = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1
 def filled(lines: list[np.ndarray], metal: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Points (n,3) m and hexahedra (e,8), VTK order, of the cells of a grid where ``metal`` is true.
 
-    ``lines``: ascending places (m) of the planes across each of three right-handed axes, p, q and r of them; ``metal`` (p-1,q-1,r-1).
-    Points and elements are numbered along the first axis last, so plane by plane; the elements stand in the order of
-    ``np.argwhere(metal)``.
+    ``lines``: ascending places (m) of the planes across each of three right-handed axes, p, q and r of them; ``metal``
+    (p-1,q-1,r-1). Points and elements are numbered along the third axis first and along the first one last; the elements stand in
+    the order of ``np.argwhere(metal)``.
     """
     nodes = np.ravel_multi_index(np.moveaxis(np.argwhere(metal)[:, None] + CUBE, -1, 0), [len(line) for line in lines])
     points = np.stack(np.meshgrid(*lines, indexing="ij"), axis=-1).reshape(-1, 3)

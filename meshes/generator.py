@@ -23,8 +23,8 @@ def load():
         raise GmshUnavailable("a solid is meshed by gmsh, which is not installed: pip install gmsh") from error
     except OSError as error:
         library = str(error).split(":")[0]
-        raise GmshUnavailable(f"a solid is meshed by gmsh, which lacks the system library {library}; on Debian and Ubuntu, as root: "
-                              f"{SYSTEM_INSTALL}") from error
+        raise GmshUnavailable(f"a solid is meshed by gmsh, which lacks the system library {library}; on Debian and Ubuntu, as "
+                              f"root: {SYSTEM_INSTALL}") from error
     return gmsh
 
 

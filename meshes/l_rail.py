@@ -112,8 +112,8 @@ def _divisions(length: float, element_size: float) -> int:
 
 
 def _corner_rail(geometry: LRailGeometry, element_size: float) -> tuple[np.ndarray, np.ndarray, dict[str, np.ndarray]]:
-    """Points (n,3), hexes (e,8) and facets per surface of the (+,+) rail: a grid along X and inwards from the outer corner, which is
-    as right-handed as x, y and z are."""
+    """Points (n,3), hexes (e,8) and facets per surface of the (+,+) rail: a grid along X and inwards from the outer corner, axes
+    that are right-handed like x, y and z."""
     depths, stations = np.array(_depths(geometry)), np.array(_stations(geometry))
     fine = bricks.divided(depths, _all_divisions(depths, element_size))
     along = bricks.divided(stations, _all_divisions(stations, _layer_length(list(stations), element_size)))

@@ -122,7 +122,8 @@ def by_place(points, *groups):
 @pytest.mark.gmsh
 @pytest.mark.parametrize("change, size", [({}, 0.008), ({}, 0.004), ({}, 0.003), ({}, 0.002), ({}, 0.0034),
                                           ({"thickness": 0.003, "mount_width": 0.003}, 0.002), ({"mount_width": 0.002}, 0.002),
-                                          ({"mount_width": 0.010}, 0.004), ({"x_start": -0.151903522, "x_end": 0.200577871}, 0.002)])
+                                          ({"mount_width": 0.010}, 0.004),
+                                          ({"x_start": -0.151903522, "x_end": 0.200577871}, 0.002)])
 def test_gmsh_makes_the_same_mesh(change, size):
     """Points, elements and surfaces are equal up to their numbers. gmsh places nodes of a transfinite side by integrating along it,
     to 5e-14 m."""
@@ -142,8 +143,8 @@ def test_gmsh_makes_the_same_mesh(change, size):
 
 def test_built_in_rails_load_no_gmsh():
     """A fresh interpreter in which `import gmsh` fails as it does where a graphics library is missing."""
-    said = subprocess.run([sys.executable, "-c", WITHOUT_GMSH], cwd=ROOT, capture_output=True, text=True, timeout=300, check=True).stdout
-    made, reason = said.splitlines()  # the reason is one line
+    run = subprocess.run([sys.executable, "-c", WITHOUT_GMSH], cwd=ROOT, capture_output=True, text=True, timeout=300, check=True)
+    made, reason = run.stdout.splitlines()  # the reason is one line
     assert made == f"{len(make_mesh(scenes.load('tiny'), 0.008).cells)} False"
     assert "libGL.so.1" in reason and generator.SYSTEM_INSTALL in reason
 
