@@ -97,6 +97,13 @@ class Scene(Table):
             raise SceneError([Fault(self._source, "conditions", repr(name), f"one of {known}")])
         return self.replace(self.conditions[name])
 
+    def given(self, key: str) -> Any:
+        """What was written under a dotted ``key``, before it was read as a quantity; None where nothing was."""
+        found: Any = self._raw
+        for part in key.split("."):
+            found = found.get(part) if isinstance(found, dict) else None
+        return found
+
     def physics(self) -> dict:
         """The resolved physical inputs in SI, without names and roles: what a result depends on."""
         found = self.model_dump(mode="json", exclude=_NOT_PHYSICS)

@@ -15,6 +15,7 @@ def study_of(scene: str, out: Path, overrides, conditions=None, element_size=Non
              resume=True):
     """The study that the options of a command ask for. Raises SceneError, every fault listed."""
     import scenes
+    from scenes import plausibility
     from scenes.faults import Fault, SceneError
     from studies.progress import say
     from studies.settings import defaults
@@ -33,7 +34,7 @@ def study_of(scene: str, out: Path, overrides, conditions=None, element_size=Non
         settings = replace(settings, checkpoint_every=quantity("--checkpoint-every", checkpoint_every, "s"))
     study = Study(found, Path(out) / re.sub(r"[^\w.-]+", "-", found.name).strip("."), settings, tuple(conditions or ()))
     study.conditions  # a bad override or an unknown condition is a fault of the input, found before anything runs
-    for warning in found.warnings:
+    for warning in plausibility.of_all_conditions(found):
         say(f"implausible: {warning}")
     return study
 
