@@ -130,7 +130,8 @@ def test_no_condition_of_the_catalogue_is_implausible(name):
 def test_what_is_implausible_in_a_condition_alone_is_said_once():
     """Load comes with the conditions here: without them nothing presses a pad."""
     slip = small(contact=CONTACT | {"stiffness": "70000 N/m**1.5"}, payload__inertia={"xx": 0.1, "yy": 0.1, "zz": 0.1},
-                 conditions={name: {"thrust_offset.misalignment.axial": f"{angle} rad"} for name, angle in (("a", 0.002), ("b", 0.01))})
+                 conditions={"a": {"thrust_offset.misalignment.axial": "0.002 rad"},
+                             "b": {"thrust_offset.misalignment.axial": "0.010 rad"}})
     scene = parse(slip, bare_numbers_are_si=True)
     assert scene.warnings == []
     (text,) = plausibility.of_all_conditions(scene)
