@@ -238,3 +238,8 @@ def test_a_file_of_abaqus_is_read(built, tmp_path):
     meshio.Mesh(built.points, built.cells, cell_sets=sets).write(tmp_path / "rails.inp")
     assert {name: len(facets) for name, facets in read(tmp_path / "rails.inp").surfaces.items()} == {
         "contact_y": 1100, "contact_z": 1100, "mount": 120}
+
+
+def test_a_built_in_rail_that_nothing_holds_is_bad_input():
+    with pytest.raises(scenes.SceneError, match="rail.mounts: given none, expected at least one"):
+        make_mesh(scenes.load("tiny").replace({"rail.mounts": []}), 0.008)
