@@ -19,7 +19,7 @@ _SAME = 1e-6  # m, how far a node of a facet may lie outside the box that names 
 def geometry(scene: Scene) -> l_rail.LRailGeometry | str:
     """What the mesh of a scene depends on: dimensions of the L section, or the digest of the table and of its file.
 
-    Raises SceneError where pads do not fit the built-in section.
+    Raises SceneError where pads do not fit the built-in section or nothing holds it.
     """
     if isinstance(scene.rail, SectionTable):
         return _l_section(scene)
@@ -27,7 +27,8 @@ def geometry(scene: Scene) -> l_rail.LRailGeometry | str:
 
 
 def make_mesh(scene: Scene, element_size: float) -> RailMesh:
-    """Rails of ``scene`` in scene axes, their elements about ``element_size`` (m). Raises SceneError or MeshError."""
+    """Rails of ``scene`` in scene axes, their elements about ``element_size`` (m). Raises SceneError, MeshError or, for a solid,
+    GmshUnavailable."""
     if isinstance(scene.rail, SectionTable):
         return read(l_rail.build(_l_section(scene), element_size))
     if not scene.rail.is_as_found():
@@ -73,11 +74,16 @@ def with_steps(mesh: RailMesh, material) -> RailMesh:
 
 
 def _l_section(scene: Scene) -> l_rail.LRailGeometry:
-    """Inner corners one clearance off the pads. Raises SceneError where pads do not fit it."""
+    """Inner corners one clearance off the pads. Raises SceneError where pads do not fit it or nothing holds it."""
     places = {(abs(pad.position[1]), abs(pad.position[2])) for pad in scene.pads}
+    faults = []
     if len(places) != 1:
-        raise SceneError([Fault(scene.name, "pads", f"{len(places)} different distances from the axis",
-                                "pads at four corners (+-y, +-z) of one size, as the built-in L rails need")])
+        faults.append(Fault(scene.name, "pads", f"{len(places)} different distances from the axis",
+                            "pads at four corners (+-y, +-z) of one size, as the built-in L rails need"))
+    if not scene.rail.mounts:
+        faults.append(Fault(scene.name, "rail.mounts", "none", "at least one, since nothing else holds a rail that gives way"))
+    if faults:
+        raise SceneError(faults)
     (y, z), rail = places.pop(), scene.rail
     clearance = scene.contact.clearance if scene.contact else 0.0
     return l_rail.LRailGeometry(rail.leg, rail.thickness, rail.start, rail.end, y + clearance, z + clearance,

@@ -38,9 +38,10 @@ _MESH_LOCK = threading.Lock()
 
 
 def prepare(scene: Scene, numerics: Numerics | None = None) -> RailMesh:
-    """Mesh of a scene, made once per process. gmsh must run in the main thread: call this there before runs in other threads.
+    """Mesh of a scene, made once per process. gmsh, which meshes solids, must run in the main thread: call this there before runs
+    in other threads.
 
-    Raises SceneError, also where memory does not suffice, or MeshError.
+    Raises SceneError, also where memory does not suffice, MeshError, or GmshUnavailable where a solid cannot be meshed here.
     """
     require_two_step(scene)
     numerics = numerics or Numerics()

@@ -1,12 +1,12 @@
-"""Four L-section launch rails as structured hexahedra, made with gmsh.
+"""Four L-section launch rails as structured hexahedra.
 
 Scene frame: SI, origin at the payload mass centre at t = 0, +X to the open end. One rail stands at each corner
 (sign_y, sign_z) = (+-1, +-1). Its outer corner edge is at |y| = inner_corner_y + thickness, |z| = inner_corner_z + thickness,
 and its inner walls |y| = inner_corner_y and |z| = inner_corner_z face the payload.
 
-gmsh meshes the rail of the (+,+) corner only. The other three are that mesh with signs changed, so that the four are mirror
-images bit for bit and a symmetric scene has a symmetric answer; their elements are then numbered along the axes again,
-which restores the orientation that a reflection reverses.
+A grid gives the rail of the (+,+) corner. The other three are that mesh with signs changed, so that the four are mirror images bit
+for bit and a symmetric scene has a symmetric answer; their elements are then numbered along the axes again, which restores the
+orientation that a reflection reverses. A section of rectangles needs no mesh generator; one makes the same mesh in the tests.
 """
 
 import itertools
@@ -16,13 +16,15 @@ from typing import NamedTuple
 import meshio
 import numpy as np
 
-from meshes import generator, msh
+from meshes import bricks, msh
 
 SURFACES = ("contact_y", "contact_z", "mount")
 
 _CORNERS = [(1, 1), (-1, 1), (-1, -1), (1, -1)]
 # Position in the VTK corner order of the corner with axis bits x + 2 y + 4 z (bit set: on the larger side).
 _VTK_POSITION = np.array([0, 1, 3, 2, 4, 5, 7, 6])
+# Corners of a brick of the grid inwards from the outer corner: its faces towards the payload and towards the platform.
+_INWARD_Y, _INWARD_Z, _OUTWARD_Y, _OUTWARD_Z = [3, 7, 6, 2], [4, 5, 6, 7], [0, 1, 5, 4], [0, 3, 2, 1]
 _TOUCH = 1e-9  # m: two coordinates closer than this are the same plane
 _EVEN = 0.1  # of the element size: layers all along the rail have one length where that length is no further from it
 
@@ -49,13 +51,10 @@ def build(geometry: LRailGeometry, element_size: float) -> meshio.Mesh:
 
     Returns a mesh with one `hexahedron` block (volume `rail`) and one `quad` block per surface in `SURFACES`, numbered from 0
     and tagged with the field `gmsh:physical`.
-    Raises ValueError for dimensions that do not make a rail, RuntimeError where a system library of gmsh is missing.
+    Raises ValueError for dimensions that do not make a rail.
     """
     _check(geometry, element_size)
-    with generator.session("l_rail") as gmsh:
-        _draw(gmsh, geometry, element_size)
-        points, hexes, surfaces = _extract(gmsh)
-    return msh.tagged(*_mirrored(points, hexes, surfaces))
+    return msh.tagged(*_mirrored(*_corner_rail(geometry, element_size)))
 
 
 def elements(geometry: LRailGeometry, element_size: float) -> int:
@@ -112,76 +111,30 @@ def _divisions(length: float, element_size: float) -> int:
     return max(1, round(length / element_size))
 
 
-def _draw(gmsh, geometry: LRailGeometry, element_size: float) -> None:
-    """Mesh one rail: a section of rectangles, extruded interval by interval so that the mounts are surfaces of their own."""
-    depths, stations = _depths(geometry), _stations(geometry)
-    section = _draw_section(gmsh, geometry, depths, element_size)
-    layer = _layer_length(stations, element_size)
-    for start, end in itertools.pairwise(stations):
-        made = gmsh.model.geo.extrude([(2, surface) for surface in section], end - start, 0.0, 0.0,
-                                      numElements=[_divisions(end - start, layer)], recombine=True)
-        # gmsh lists, for each surface extruded, its far copy, then the volume, then the sides.
-        section = [tag for (_, tag), (dimension, _) in itertools.pairwise(made) if dimension == 3]
-    gmsh.model.geo.synchronize()
-    _name_surfaces(gmsh, geometry)
-    gmsh.model.mesh.generate(3)
+def _corner_rail(geometry: LRailGeometry, element_size: float) -> tuple[np.ndarray, np.ndarray, dict[str, np.ndarray]]:
+    """Points (n,3), hexes (e,8) and facets per surface of the (+,+) rail: a grid along X and inwards from the outer corner, axes
+    that are right-handed like x, y and z."""
+    depths, stations = np.array(_depths(geometry)), np.array(_stations(geometry))
+    fine = bricks.divided(depths, _all_divisions(depths, element_size))
+    along = bricks.divided(stations, _all_divisions(stations, _layer_length(list(stations), element_size)))
+    middle, station = 0.5 * (fine[1:] + fine[:-1]), 0.5 * (along[1:] + along[:-1]) - geometry.x_start
+    in_wall = middle < geometry.thickness
+    metal = np.broadcast_to(in_wall[:, None] | in_wall, (len(station), len(middle), len(middle)))
+    points, hexes = bricks.filled([along, fine, fine], metal)
+
+    layer, in_y, in_z = np.argwhere(metal).T  # of each hexahedron
+    held = np.array([any(start < place < end for start, end in geometry.mount_spans) for place in station])[layer]
+    strip, wall = middle < geometry.mount_width, np.count_nonzero(in_wall)
+    contact_y, contact_z = (in_y == wall - 1) & (in_z >= wall), (in_z == wall - 1) & (in_y >= wall)
+    back_y, back_z = held & (in_y == 0) & strip[in_z], held & (in_z == 0) & strip[in_y]
+    surfaces = {"contact_y": hexes[contact_y][:, _INWARD_Y], "contact_z": hexes[contact_z][:, _INWARD_Z],
+                "mount": np.concatenate([hexes[back_y][:, _OUTWARD_Y], hexes[back_z][:, _OUTWARD_Z]])}
+    outer = np.array([0.0, geometry.inner_corner_y + geometry.thickness, geometry.inner_corner_z + geometry.thickness])
+    return outer + points * (1, -1, -1), hexes, surfaces
 
 
-def _draw_section(gmsh, geometry: LRailGeometry, depths: list[float], element_size: float) -> list[int]:
-    """Rectangles between `depths`, measured inwards from the outer corner along y and z, that lie inside the L."""
-    geo = gmsh.model.geo
-    outer_y, outer_z = geometry.inner_corner_y + geometry.thickness, geometry.inner_corner_z + geometry.thickness
-    cells = _section(geometry, depths)
-    corners = sorted({(i + di, j + dj) for i, j in cells for di, dj in itertools.product((0, 1), repeat=2)})
-    point = {(i, j): geo.addPoint(geometry.x_start, outer_y - depths[i], outer_z - depths[j]) for i, j in corners}
-    line = {}
-    for i, j in corners:
-        for following, interval in (((i + 1, j), i), ((i, j + 1), j)):
-            if following in point:
-                line[(i, j), following] = tag = geo.addLine(point[i, j], point[following])
-                count = _divisions(depths[interval + 1] - depths[interval], element_size)
-                geo.mesh.setTransfiniteCurve(tag, count + 1)
-    section = []
-    for i, j in cells:
-        loop = geo.addCurveLoop([line[(i, j), (i + 1, j)], line[(i + 1, j), (i + 1, j + 1)],
-                                 -line[(i, j + 1), (i + 1, j + 1)], -line[(i, j), (i, j + 1)]])
-        section.append(geo.addPlaneSurface([loop]))
-        geo.mesh.setTransfiniteSurface(section[-1])
-        geo.mesh.setRecombine(2, section[-1])
-    return section
-
-
-def _name_surfaces(gmsh, geometry: LRailGeometry) -> None:
-    """Physical groups of the (+,+) rail, found as the surfaces that fill a flat box."""
-    g = geometry
-    outer_y, outer_z = g.inner_corner_y + g.thickness, g.inner_corner_z + g.thickness
-    boxes = {
-        "contact_y": [((g.x_start, g.inner_corner_y, outer_z - g.leg), (g.x_end, g.inner_corner_y, g.inner_corner_z))],
-        "contact_z": [((g.x_start, outer_y - g.leg, g.inner_corner_z), (g.x_end, g.inner_corner_y, g.inner_corner_z))],
-        "mount": [box for start, end in g.mount_spans for box in (
-            ((g.x_start + start, outer_y, outer_z - g.mount_width), (g.x_start + end, outer_y, outer_z)),
-            ((g.x_start + start, outer_y - g.mount_width, outer_z), (g.x_start + end, outer_y, outer_z)))],
-    }
-    for tag, name in enumerate(SURFACES, start=1):
-        entities = [surface for low, high in boxes[name] for _, surface in gmsh.model.getEntitiesInBoundingBox(
-            *(value - _TOUCH for value in low), *(value + _TOUCH for value in high), dim=2)]
-        gmsh.model.addPhysicalGroup(2, entities, tag, name)
-
-
-def _extract(gmsh):
-    """Points (n,3), hexes (e,8) and facets per surface of the meshed model, numbered from 0."""
-    tags, coordinates, _ = gmsh.model.mesh.getNodes()
-    number = np.zeros(int(tags.max()) + 1, dtype=np.int64)
-    number[tags.astype(np.int64)] = np.arange(len(tags))
-
-    def elements(dimension, entities, corners):
-        nodes = [gmsh.model.mesh.getElements(dimension, entity)[2][0] for entity in entities]
-        return number[np.concatenate(nodes).astype(np.int64)].reshape(-1, corners)
-
-    hexes = elements(3, [tag for _, tag in gmsh.model.getEntities(3)], 8)
-    surfaces = {name: elements(2, gmsh.model.getEntitiesForPhysicalGroup(2, tag), 4)
-                for tag, name in enumerate(SURFACES, start=1)}
-    return coordinates.reshape(-1, 3), hexes, surfaces
+def _all_divisions(borders: np.ndarray, element_size: float) -> list[int]:
+    return [_divisions(length, element_size) for length in np.diff(borders)]
 
 
 def _mirrored(points, hexes, surfaces):

@@ -11,12 +11,11 @@ from pathlib import Path
 
 import numpy as np
 
-from meshes import generator
+from meshes import bricks, generator
 
 _SAME = 1e-9  # m: two planes closer than this are one
 _TIE = 1e-6  # divisions
 _PROBES = 9  # points of an edge looked at to see whether it bends
-_CUBE = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]])  # VTK order
 _TETRAHEDRON = [0, 1, 2, 3, 4, 5, 6, 7, 9, 8]  # nodes of gmsh's quadratic tetrahedron in VTK order
 
 
@@ -25,7 +24,7 @@ def build(path: Path, element_size: float, planes: np.ndarray, tetrahedra: bool 
 
     ``planes`` (p,3) m: places along x, y and z at which elements should have borders. Bricks have them at all of these, a section
     drawn out at those along x, tetrahedra at none.
-    Raises ValueError for a file without a solid that gmsh can read, RuntimeError where a system library of gmsh is missing.
+    Raises ValueError for a file without a solid that gmsh can read, GmshUnavailable where gmsh does not load.
     """
     with generator.session("solid") as gmsh:
         gmsh.option.setString("Geometry.OCCTargetUnit", "M")
@@ -71,11 +70,7 @@ def _bricks(gmsh, volumes: list[int], element_size: float, planes: np.ndarray) -
         metal[cell] = any(gmsh.model.isInside(3, volume, place) for volume in volumes)
     for axis, line in enumerate(lines):
         metal = np.repeat(metal, _divisions(line, element_size), axis=axis)
-    fine = [_divided(line, element_size) for line in lines]
-    nodes = np.ravel_multi_index(np.moveaxis(np.argwhere(metal)[:, None] + _CUBE, -1, 0), [len(line) for line in fine])
-    points = np.stack(np.meshgrid(*fine, indexing="ij"), axis=-1).reshape(-1, 3)
-    used, number = np.unique(nodes, return_inverse=True)
-    return points[used], number.reshape(-1, 8)
+    return bricks.filled([_divided(line, element_size) for line in lines], metal)
 
 
 def _different(solid: np.ndarray, asked: np.ndarray) -> np.ndarray:
@@ -91,8 +86,7 @@ def _divisions(line: np.ndarray, element_size: float) -> np.ndarray:
 
 def _divided(line: np.ndarray, element_size: float) -> np.ndarray:
     """All borders of elements along a line of places."""
-    pieces = [np.linspace(*ends, count + 1)[:-1] for *ends, count in zip(line, line[1:], _divisions(line, element_size))]
-    return np.append(np.concatenate(pieces), line[-1])
+    return bricks.divided(line, _divisions(line, element_size))
 
 
 def _is_drawn_out(gmsh) -> bool:

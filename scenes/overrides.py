@@ -24,6 +24,13 @@ def dotted(table: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, An
             yield f"{prefix}{key}", value
 
 
+def texts(table: Any) -> dict[str, Any] | None:
+    """A ``[provenance]`` under dotted keys, none where it is absent; None where it is no table."""
+    if table is None or is_drop(table):
+        return {}
+    return dict(dotted(table)) if isinstance(table, Mapping) else None
+
+
 def is_key(annotation: Any, key: str) -> bool:
     """Whether a table of type ``annotation`` can hold the dotted ``key``, present or not."""
     part, _, rest = key.partition(".")

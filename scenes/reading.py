@@ -1,13 +1,15 @@
 """Scene files: TOML on disk to one nested mapping, a file that ``extends`` another merged over it.
 
 In a file that extends another, a table set to ``"absent"`` drops the inherited one, and a ``[thrust]`` of another kind, a
-``[contact]`` of another law or a ``[rail]`` given by a file replaces the inherited table instead of mixing with it.
+``[contact]`` of another law or a ``[rail]`` given by a file replaces the inherited table instead of mixing with it. What it sets is
+the user's (``scenes.provenance``), unless it says otherwise in a ``[provenance]`` of its own.
 """
 
 import tomllib
 from pathlib import Path
+from typing import Any, Iterator
 
-from scenes import rail
+from scenes import overrides, provenance, rail
 from scenes.faults import Fault, SceneError
 
 CATALOG = Path(__file__).resolve().parent / "catalog"
@@ -57,7 +59,11 @@ def _inherit(path: Path, user_file: str, chain: tuple[Path, ...]) -> dict:
         raise SceneError([Fault(user_file, "extends", repr(base), _known())])
     inherited = _inherit(base_path, user_file, (*chain, path.resolve()))
     inherited.pop("name", None)  # results are filed by name: a variation may not pass for what it varies
-    return _merged(inherited, raw)
+    merged = _merged(inherited, raw)
+    known, given = (overrides.texts(table.get("provenance")) for table in (inherited, raw))
+    if known is not None and given is not None:
+        merged["provenance"] = provenance.overridden(known, merged, dict(_changes(inherited, raw)), given)
+    return merged
 
 
 def toml(path: Path, user_file: str, key: str = "file") -> dict:
@@ -84,6 +90,19 @@ def _merged(base: dict, extra: dict) -> dict:
         else:
             merged[key] = value
     return merged
+
+
+def _changes(base: dict, extra: dict, prefix: str = "") -> Iterator[tuple[str, bool]]:
+    """Dotted keys that ``_merged`` sets or, marked True, drops."""
+    for key, value in extra.items():
+        if isinstance(value, dict) and value:
+            inherited = base.get(key) if isinstance(base.get(key), dict) else {}
+            if inherited and _other_choice(key, inherited, value):
+                yield f"{prefix}{key}", True
+                inherited = {}
+            yield from _changes(inherited, value, f"{prefix}{key}.")
+        else:
+            yield f"{prefix}{key}", overrides.is_drop(value)
 
 
 def _other_choice(key: str, base: dict, extra: dict) -> bool:

@@ -12,7 +12,7 @@ from typing import Annotated, Any, Mapping
 from pydantic import AfterValidator, Field, PrivateAttr, ValidationError, ValidationInfo, field_validator
 
 from scenes import overrides as keys
-from scenes import names, plausibility, reading, roles
+from scenes import names, plausibility, provenance, reading, roles
 from scenes.effects.contact import ContactTable
 from scenes.effects.flight import FlightTable
 from scenes.effects.friction import FrictionTable
@@ -71,12 +71,14 @@ class Scene(Table):
         return thermal
 
     def replace(self, overrides: Mapping[str, Any]) -> "Scene":
-        """A new scene with dotted keys set. Text carries units, a bare number is SI, None or "absent" drops a table.
+        """A new scene with dotted keys set. Text carries units, a bare number is SI, None or "absent" drops a table. What is set
+        has the provenance "user", unless ``overrides`` give another under ``provenance.<key>``.
 
         Raises SceneError listing every fault.
         """
         raw = keys.plain(self._raw)
         lost = keys.apply_all(raw, overrides, Scene)
+        _mark(raw, overrides)
         scene, faults = _validated(raw, True)
         if any(key.split(".")[0] in _BESIDE for key in overrides):  # else they stay as they were found sound
             faults = faults + _beside_faults(raw, True, faults)
@@ -93,6 +95,13 @@ class Scene(Table):
             known = ", ".join(self.conditions) or "none are defined"
             raise SceneError([Fault(self._source, "conditions", repr(name), f"one of {known}")])
         return self.replace(self.conditions[name])
+
+    def given(self, key: str) -> Any:
+        """What was written under a dotted ``key``, before it was read as a quantity; None where nothing was."""
+        found: Any = self._raw
+        for part in key.split("."):
+            found = found.get(part) if isinstance(found, dict) else None
+        return found
 
     def physics(self) -> dict:
         """The resolved physical inputs in SI, without names and roles: what a result depends on."""
@@ -170,6 +179,18 @@ def _validated(raw: Any, bare_numbers_are_si: bool) -> tuple[Scene | None, _Faul
         return None, [fault[1:] for fault in faults_of(error, "")]
 
 
+def _mark(raw: dict, overrides: Mapping[str, Any]) -> None:
+    """Bring the provenance in ``raw``, to which ``overrides`` were applied, up to date with them."""
+    stated = keys.texts(raw.get("provenance"))
+    if stated is None:
+        return
+    given = keys.texts(overrides.get("provenance")) or {}
+    given |= {key.removeprefix("provenance."): text for key, text in overrides.items() if key.startswith("provenance.")}
+    before = {key: text for key, text in stated.items() if key not in given}
+    changes = {key: keys.is_drop(value) for key, value in overrides.items()}
+    raw["provenance"] = provenance.overridden(before, raw, changes, {key: text for key, text in given.items() if key in stated})
+
+
 def _tables(raw: Any) -> list[tuple[str, dict]]:
     return [(name, table) for name, table in raw.items() if isinstance(table, dict)] if isinstance(raw, dict) else []
 
@@ -181,4 +202,5 @@ def _beside_faults(raw: dict, bare_numbers_are_si: bool, known: _Faults) -> _Fau
         varied = keys.plain({key: item for key, item in raw.items() if key not in _BESIDE})
         faults = keys.apply_all(varied, table, Scene) + _validated(varied, bare_numbers_are_si)[1]
         found += [(f"conditions.{name}.{key}", *rest) for key, *rest in faults if (key, *rest) not in known]
-    return found + roles.faults(raw, Scene)
+    # A misspelt key that was set is known by its own name, and need not be told by that of its provenance too.
+    return found + [fault for fault in roles.faults(raw, Scene) if not (known and fault[1] == repr(provenance.USER))]

@@ -14,6 +14,7 @@ def study_of(scene: str, out: Path, overrides, conditions=None, element_size=Non
              resume=True):
     """The study that the options of a command ask for. Raises SceneError, every fault listed."""
     import scenes
+    from scenes import plausibility
     from scenes.faults import Fault, SceneError
     from studies.progress import say
     from studies.settings import defaults
@@ -32,7 +33,7 @@ def study_of(scene: str, out: Path, overrides, conditions=None, element_size=Non
         settings = replace(settings, checkpoint_every=quantity("--checkpoint-every", checkpoint_every, "s"))
     study = Study(found, Path(out) / found.name, settings, tuple(conditions or ()))
     study.conditions  # a bad override or an unknown condition is a fault of the input, found before anything runs
-    for warning in found.warnings:
+    for warning in plausibility.of_all_conditions(found):
         say(f"implausible: {warning}")
     return study
 
@@ -55,6 +56,7 @@ def quantity(option: str, text: str | None, unit: str) -> float | None:
 
 def guarded(work: Callable[[], dict], as_json: bool = False) -> dict:
     """Run ``work``; turn bad input and failed runs into messages and exit codes."""
+    from meshes.generator import GmshUnavailable
     from scenes.faults import SceneError
     from studies.study import INPUT_FAULTS, StudyError
 
@@ -62,7 +64,7 @@ def guarded(work: Callable[[], dict], as_json: bool = False) -> dict:
         result = work()
     except SceneError as fault:
         stop(str(fault), 2)
-    except StudyError as fault:
+    except (StudyError, GmshUnavailable) as fault:
         stop(str(fault), 1)
     except KeyboardInterrupt:
         print("tipoff: stopped; what was finished is kept, and the same command goes on from there", file=sys.stderr, flush=True)

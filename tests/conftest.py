@@ -1,14 +1,34 @@
 """Settings every test shares: pictures are drawn without a display, and property tests draw the same examples each time.
 
 The directory of compiled kernels is chosen by `scenes.jit`, for tests and runs alike. To look for new examples, run pytest with
-`--hypothesis-profile=explore`.
+`--hypothesis-profile=explore`. Tests marked `gmsh` are skipped where gmsh does not load, which a rail drawn in CAD alone needs.
 """
 
+import functools
 import os
 
+import pytest
 from hypothesis import settings
+
+from meshes import generator
 
 os.environ.setdefault("MPLBACKEND", "Agg")
 settings.register_profile("repeatable", derandomize=True, deadline=None)
 settings.register_profile("explore", deadline=None)
 settings.load_profile("repeatable")
+
+
+@functools.cache
+def _without_gmsh() -> str:
+    """Why gmsh does not load here; empty where it does."""
+    try:
+        generator.load()
+    except generator.GmshUnavailable as reason:
+        return str(reason)
+    return ""
+
+
+@pytest.hookimpl(tryfirst=True)  # before fixtures are made, which may call gmsh
+def pytest_runtest_setup(item):
+    if item.get_closest_marker("gmsh") and _without_gmsh():
+        pytest.skip(_without_gmsh())

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from scenes import provenance
 from scenes.scene import Scene
 from studies import published
 from studies.inference import inputs
@@ -40,6 +41,7 @@ def scene(base: Scene, found: dict[str, float], rates: np.ndarray) -> str:
               'refined = ["phi35"]', "", "[provenance]"]
     inferred = sorted({_home(key) for key in changed if key not in _PRINTED and not key.startswith("pads")} | {"pads"})
     lines += [f'"{key}" = "inferred"' for key in inferred]
+    lines += [f'"{key}" = {_text(said)}' for key in _PRINTED if (said := provenance.of(base.provenance, key)) is not None]
     for number, pad in enumerate(base.pads):
         place = ", ".join(f'"{1e3 * changed[f"pads.{number}.position.{axis}"]:.{_DIGITS}g} mm"' for axis in range(3))
         lines += ["", "[[pads]]", f"position = [{place}]", f"normals = [{', '.join(map(_text, pad.normals))}]",

@@ -6,6 +6,7 @@ from typing import Any, Iterator
 
 from pydantic import BaseModel
 
+from scenes import provenance as origin
 from scenes.effects import thrust_law
 from scenes.scene import Scene
 from scenes.units import registry
@@ -64,11 +65,8 @@ def readable(value: Any, unit: str) -> str:
 
 def provenance(scene: Scene, key: str, stated: bool) -> str:
     """What the scene says of a key or of the table around it; "default" where the file leaves it out."""
-    parts = key.split(".")
-    for length in range(len(parts), 0, -1):
-        if (found := scene.provenance.get(".".join(parts[:length]))) is not None:
-            return found
-    return "not stated" if stated else "default"
+    found = origin.of(scene.provenance, key)
+    return found if found is not None else "not stated" if stated else "default"
 
 
 def scene_tables(scene: Scene) -> Html:

@@ -5,6 +5,7 @@ import datetime
 from html import escape
 from pathlib import Path
 
+from scenes import plausibility
 from scenes.scene import Scene
 from scenes.trajectory import versions
 from studies import machine
@@ -95,7 +96,8 @@ class Page:
                                                        f"{1e3 * equal['element_size_m']:g} mm)"),)
             boxes = '<div class="figures">' + "".join(f"<div><b>{value}</b><span>{words}</span></div>"
                                                       for value, words in facts) + "</div>"
-        notices = "".join(f'<div class="notice">Implausible: {escape(words)}</div>' for words in self.scene.warnings)
+        notices = "".join(f'<div class="notice">Implausible: {escape(words)}</div>'
+                          for words in plausibility.of_all_conditions(self.scene))
         notices += "".join(f'<div class="notice">{escape(stage)}: {escape(words)}</div>' for stage, words in self.problems.items())
         return section("answer", "What the payload leaves with", notices, boxes, table(
             ("condition", "status", Html("v<sub>x</sub> (m/s)"), "lateral v (mm/s)", "off axis (deg)", "roll rate (deg/s)",

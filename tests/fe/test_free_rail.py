@@ -32,7 +32,8 @@ def test_free_rail_has_six_rigid_motions(rail):
 @pytest.mark.case("X16")
 @pytest.mark.parametrize("fraction", [0.9, 0.45])
 def test_loaded_free_rail_keeps_its_momenta(rail, fraction):
-    """Under constant forces p = F t and, about the undeformed places, L = M t."""
+    """Under constant forces p = F t and, about the undeformed places, L = M t, but for rounding: each product of a stiffness and
+    a displacement is wrong by an ulp at most, in no common direction, and the displacement is largest at the end."""
     operator = assembly.build(rail, **ALUMINIUM, fixed=())
     load = np.random.default_rng(7).standard_normal(rail.points.shape)
     force, moment = load.sum(axis=0), np.cross(rail.points, load).sum(axis=0)
@@ -42,9 +43,12 @@ def test_loaded_free_rail_keeps_its_momenta(rail, fraction):
     for _ in range(5000):
         time = next(times) - 0.5 * step
     momentum = operator.mass[:, None] * velocity
-    assert np.abs(momentum.sum(axis=0) / time - force).max() < 1e-12 * np.abs(load).sum()
+    products = operator.stiffness[operator.shape_class] * displacement[operator.cells].reshape(-1, 1, 24)
+    rounding = np.finfo(float).eps * np.linalg.norm(products)
+    assert rounding < 1e-11 * np.abs(load).sum()  # so that a force out of nothing would show
+    assert np.abs(momentum.sum(axis=0) / time - force).max() < rounding
     turning = np.cross(rail.points, momentum).sum(axis=0)
-    assert np.abs(turning / time - moment).max() < 1e-12 * np.abs(np.cross(rail.points, load)).sum()
+    assert np.abs(turning / time - moment).max() < rounding * np.linalg.norm(rail.points, axis=1).max()
 
 
 @pytest.mark.case("X16")

@@ -1,17 +1,43 @@
-"""Rail meshes: what gmsh builds, what reading accepts, and that every fault of a file is named at once."""
+"""Rail meshes: what is built, what reading accepts, and that every fault of a file is named at once."""
 
 import copy
+import subprocess
+import sys
+from pathlib import Path
 
 import meshio
 import numpy as np
 import pytest
 
+import scenes
 from highfi.cells import corner_jacobians, edge_lengths
 from highfi.mesh import MeshError, along_x, read
+from highfi.rail import make_mesh
 from meshes import generator, l_rail, msh
+from tests.fe import gmsh_rails
 
 GEOMETRY = l_rail.LRailGeometry()
 AREAS = {"contact_y": 4 * 0.220 * 0.020, "contact_z": 4 * 0.220 * 0.020, "mount": 4 * 2 * 3 * 0.020 * 0.004}
+ROOT = Path(__file__).resolve().parents[2]
+WITHOUT_GMSH = """
+import sys
+
+class Missing:
+    def find_spec(self, name, path=None, target=None):
+        if name == "gmsh":
+            raise OSError("libGL.so.1: cannot open shared object file: No such file or directory")
+
+sys.meta_path.insert(0, Missing())
+import scenes
+from highfi.rail import make_mesh
+from meshes import generator
+
+print(len(make_mesh(scenes.load("tiny"), 0.008).cells), "gmsh" in sys.modules)
+try:
+    generator.load()
+except generator.GmshUnavailable as reason:
+    print(reason)
+"""
 
 
 @pytest.fixture(scope="module")
@@ -86,6 +112,43 @@ def test_build_is_repeatable_and_survives_a_file(built, tmp_path):
     assert all(np.array_equal(here.surfaces[name], there.surfaces[name]) for name in AREAS)
 
 
+def by_place(points, *groups):
+    """Points in the order of their places, and each group of node tuples (m,k) numbered so, in an order of its own."""
+    order = np.lexsort(np.round(points, 9).T)
+    number = np.argsort(order)
+    return points[order], *(np.unique(np.sort(number[group], axis=1), axis=0) for group in groups)
+
+
+@pytest.mark.gmsh
+@pytest.mark.parametrize("change, size", [({}, 0.008), ({}, 0.004), ({}, 0.003), ({}, 0.002), ({}, 0.0034),
+                                          ({"thickness": 0.003, "mount_width": 0.003}, 0.002), ({"mount_width": 0.002}, 0.002),
+                                          ({"mount_width": 0.010}, 0.004),
+                                          ({"x_start": -0.151903522, "x_end": 0.200577871}, 0.002)])
+def test_gmsh_makes_the_same_mesh(change, size):
+    """Points, elements and surfaces are equal up to their numbers. gmsh places nodes of a transfinite side by integrating along it,
+    to 5e-14 m."""
+    geometry = GEOMETRY._replace(**change)
+    theirs, hexes, surfaces = gmsh_rails.corner_rail(geometry, size)
+    built = l_rail.build(geometry, size)
+    rail = len(built.points) // 4
+    blocks = [block.data for block in built.cells]
+    ours = by_place(built.points[:rail], *(block[:len(block) // 4] for block in blocks))
+    theirs = by_place(theirs, hexes, *(surfaces[name] for name in l_rail.SURFACES))
+    assert ours[0].shape == theirs[0].shape and np.abs(ours[0] - theirs[0]).max() < 1e-12
+    for mine, other in zip(ours[1:], theirs[1:]):
+        assert np.array_equal(mine, other)
+    # Control: the L with legs two elements longer is another mesh.
+    assert len(gmsh_rails.corner_rail(geometry._replace(leg=geometry.leg + 2.0 * size), size)[1]) > len(hexes)
+
+
+def test_built_in_rails_load_no_gmsh():
+    """A fresh interpreter in which `import gmsh` fails as it does where a graphics library is missing."""
+    run = subprocess.run([sys.executable, "-c", WITHOUT_GMSH], cwd=ROOT, capture_output=True, text=True, timeout=300, check=True)
+    made, reason = run.stdout.splitlines()  # the reason is one line
+    assert made == f"{len(make_mesh(scenes.load('tiny'), 0.008).cells)} False"
+    assert "libGL.so.1" in reason and generator.SYSTEM_INSTALL in reason
+
+
 @pytest.mark.parametrize("change", [{"thickness": 0.024}, {"mount_spans": ((0.02, 0.01),)}, {"mount_spans": ((0.2, 0.3),)}])
 def test_impossible_geometry_is_refused(change):
     with pytest.raises(ValueError):
@@ -146,6 +209,7 @@ def test_slivers_and_skewed_elements_are_warned_about(built):
     assert "skewed" in skewed and "0.707" in skewed
 
 
+@pytest.mark.gmsh
 @pytest.mark.parametrize("version, binary", [(2.2, 0), (4.1, 0), (4.1, 1)])
 def test_files_of_gmsh_are_read_in_its_own_formats(tmp_path, version, binary):
     """A brick of 20 x 10 x 5 mm meshed and named in gmsh itself, as a user would."""
@@ -174,3 +238,8 @@ def test_a_file_of_abaqus_is_read(built, tmp_path):
     meshio.Mesh(built.points, built.cells, cell_sets=sets).write(tmp_path / "rails.inp")
     assert {name: len(facets) for name, facets in read(tmp_path / "rails.inp").surfaces.items()} == {
         "contact_y": 1100, "contact_z": 1100, "mount": 120}
+
+
+def test_a_built_in_rail_that_nothing_holds_is_bad_input():
+    with pytest.raises(scenes.SceneError, match="rail.mounts: given none, expected at least one"):
+        make_mesh(scenes.load("tiny").replace({"rail.mounts": []}), 0.008)

@@ -17,6 +17,7 @@ from tests.fe.test_mesh import facet_vectors
 from tests.fe.test_split import ordered
 from tests.scenes.support import SMALL, small
 
+pytestmark = pytest.mark.gmsh
 NONE = np.empty((0, 3))
 INNER, OUTER, LEG, START, END = 0.10025, 0.10425, 0.024, -0.088, 0.132
 

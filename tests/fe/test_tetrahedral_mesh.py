@@ -33,6 +33,7 @@ def write_drilled(path, version=2.2, order=2):
     return path
 
 
+@pytest.mark.gmsh
 @pytest.mark.parametrize("version", [2.2, 4.1])
 def test_second_order_files_of_gmsh_are_read(tmp_path, version):
     mesh = read(write_drilled(tmp_path / "drilled.msh", version))
@@ -48,6 +49,7 @@ def test_second_order_files_of_gmsh_are_read(tmp_path, version):
     assert outward == pytest.approx(np.tile([0.0, 0.0, 1.0], (len(outward), 1)), abs=1e-9)
 
 
+@pytest.mark.gmsh
 def test_numbering_from_end_to_end_changes_nothing_else(tmp_path):
     mesh = read(write_drilled(tmp_path / "drilled.msh"))
     ordered = along_x(mesh)

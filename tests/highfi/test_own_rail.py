@@ -159,6 +159,7 @@ def test_slivers_are_warned_about_with_the_step_they_force(tmp_path):
     assert "force a step of at most 8.1" in step and "e-10 s" in step
 
 
+@pytest.mark.gmsh
 def test_the_built_in_rails_from_cad_give_the_same_run(tmp_path):
     built = tiny(duration="8 ms", thrust_offset__misalignment__axial="1 deg", rail=load("reference").rail.model_dump())
     drawing = scene_of(drawn(tmp_path / "rails.step", l_sections), l_surfaces()).rail

@@ -28,6 +28,7 @@ def cut(scene, size, path):
     return from_file(scene, saved(msh.tagged(mesh.points, mesh.cells, mesh.surfaces), path))
 
 
+@pytest.mark.gmsh
 def test_promises_hold_on_rails_that_gmsh_fills(tmp_path):
     scene = tiny(**PRESSED)
     file = from_file(scene, saved(tet_rails.build(geometry(scene), 0.020), tmp_path / "rails.msh"))
@@ -83,6 +84,7 @@ def compliance(mesh) -> float:
     return float((static(operator, load, held) * load).sum())
 
 
+@pytest.mark.gmsh
 def test_the_wall_is_the_same_spring():
     """Against hexahedra of 2 mm: one layer of tetrahedra of 20 mm is 30 % too stiff, halved 6 %; hexahedra of 4 mm 5 %."""
     rails = geometry(tiny())

@@ -67,7 +67,7 @@ def gauges(scene, numerics=COARSE):
     return system, watch.build(system, scene.rail.material, 100, 1).patch
 
 
-@pytest.mark.parametrize("filled", [False, True])
+@pytest.mark.parametrize("filled", [False, pytest.param(True, marks=pytest.mark.gmsh)])
 def test_patches_are_where_hexahedra_have_them_and_see_a_uniform_stress(rails, filled, tmp_path):
     """Cut from hexahedra, and filled by gmsh in no order at all."""
     if filled:

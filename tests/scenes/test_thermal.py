@@ -100,7 +100,7 @@ def test_what_was_written_is_read_back():
 
 
 def test_slips_of_units_are_warned_about():
-    assert not parse(warm(mean="60 K")).warnings
+    assert not any("expan" in words for words in parse(warm(mean="60 K")).warnings)
     assert any("rail.material.expansion" in words for words in parse(warm(expansion="23.6e-3 1/K", mean="1 mK")).warnings)
     assert any(words.startswith("thermal") for words in parse(warm(gradient={"x": "20 K/mm"})).warnings)
 

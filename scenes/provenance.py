@@ -1,0 +1,60 @@
+"""Where values come from: free text under dotted keys. Of a key speaks its own text, else that of the innermost table around it.
+
+What is overridden is no longer what the text spoke of. The key is then the user's, unless its provenance is given anew. A table
+around it passes its text on to what else it holds, and says itself that a part is the user's.
+"""
+
+from typing import Any, Iterable, Mapping
+
+USER = "user"
+_PARTLY = ", in part user"
+_NO_QUANTITIES = ("name", "description", "conditions", "agreement", "provenance")
+
+
+def overridden(stated: Mapping[str, str], raw: Mapping[str, Any], changes: Mapping[str, bool],
+               given: Mapping[str, str]) -> dict[str, str]:
+    """Provenance by dotted key of a scene written as ``raw`` after ``changes``: which dotted keys were set, and True for those
+    that were dropped. ``stated`` is what was known before, ``given`` what comes with the changes."""
+    found = {**stated, **given}
+    for key, dropped in changes.items():
+        if key.partition(".")[0] in _NO_QUANTITIES:
+            continue
+        for other in [other for other in found if other not in given and f"{other}.".startswith(f"{key}.")]:
+            del found[other]
+        if (text := of(given, key)) is None:
+            _pass_on(found, raw, key)
+            if not dropped:
+                found[key] = USER
+        elif of(found, key) != text:  # a table inside the one that is spoken of had a text of its own
+            found[key] = text
+    return found
+
+
+def of(texts: Mapping[str, str], key: str) -> str | None:
+    """What ``texts`` say of a dotted key or of the innermost table around it; None without."""
+    parts = key.split(".")
+    return next((texts[name] for length in range(len(parts), 0, -1) if (name := ".".join(parts[:length])) in texts), None)
+
+
+def _pass_on(found: dict[str, str], raw: Any, key: str) -> None:
+    """Give the text of each table around ``key`` to all beside the way to it."""
+    text, table, path = None, raw, ""
+    for part, following in zip(parts := key.split("."), parts[1:]):
+        path, table = f"{path}.{part}" if path else part, _inside(table, part)
+        if isinstance(own := found.get(path), str):
+            text = own.removesuffix(_PARTLY)
+            found[path] = text + _PARTLY
+        if text is not None:
+            for beside in _names(table):
+                if beside != following:
+                    found.setdefault(f"{path}.{beside}", text)
+
+
+def _names(table: Any) -> Iterable[str]:
+    return list(table) if isinstance(table, dict) else map(str, range(len(table))) if isinstance(table, list) else ()
+
+
+def _inside(table: Any, part: str) -> Any:
+    if isinstance(table, dict):
+        return table.get(part)
+    return table[int(part)] if isinstance(table, list) and part.isdigit() and int(part) < len(table) else None

@@ -1,0 +1,69 @@
+"""A machine without the graphics libraries that gmsh is linked against: only a solid calls for them, and says so in one line."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from meshes import generator
+from scenes.scene import CATALOG
+
+ROOT = Path(__file__).resolve().parents[2]
+SOLID = """
+[rail]
+geometry = "rails.step"
+start = "-88 mm"
+end = "132 mm"
+[rail.material]
+density = "2810 kg/m**3"
+youngs_modulus = "72 GPa"
+poisson_ratio = 0.33
+[[rail.surfaces.contact_y]]
+low = ["-88 mm", "80 mm", "80 mm"]
+high = ["132 mm", "105 mm", "105 mm"]
+[[rail.surfaces.mount]]
+low = ["-88 mm", "104 mm", "80 mm"]
+high = ["132 mm", "105 mm", "105 mm"]
+"""
+
+
+@pytest.fixture
+def bare(tmp_path):
+    """Runs a module where the loader finds a library of gmsh's that is no library."""
+    if not sys.platform.startswith("linux"):
+        pytest.skip("the loader of Linux is asked to fail")
+    hidden = tmp_path / "hidden"
+    hidden.mkdir()
+    (hidden / "libGL.so.1").touch()
+
+    def call(*arguments):
+        return subprocess.run([sys.executable, *map(str, arguments)], cwd=ROOT, capture_output=True, text=True, timeout=300,
+                              env=os.environ | {"LD_LIBRARY_PATH": str(hidden)})
+
+    assert "libGL.so.1" in call("-c", "import gmsh").stderr  # control: it does not load there
+    return call
+
+
+def test_set_up_misses_nothing(bare):
+    said = bare("-m", "studies.doctor")
+    assert said.returncode == 0 and said.stderr == "" and "everything" in said.stdout
+
+
+def test_a_solid_says_what_is_missing_and_a_built_in_rail_is_meshed(bare, tmp_path):
+    (tmp_path / "rails.step").write_text("ISO-10303-21;")
+    scene = tmp_path / "drawn.toml"
+    scene.write_text('extends = "tiny"\nname = "drawn"\n' + SOLID)
+    said = bare("-m", "studies.cli", "mesh", "--scene", scene, "--out", tmp_path / "out")
+    assert said.returncode == 1 and "Traceback" not in said.stderr
+    (line,) = [line for line in said.stderr.splitlines() if line.startswith("tipoff: ")]
+    assert "libGL.so.1" in line and line.endswith(generator.SYSTEM_INSTALL)
+    built = bare("-m", "studies.cli", "mesh", "--scene", CATALOG / "tiny.toml", "--out", tmp_path / "out")
+    assert built.returncode == 0 and (tmp_path / "out" / "tiny" / "mesh.json").is_file()
+
+
+def test_readme_asks_for_system_libraries_where_a_solid_is_given_and_nowhere_else():
+    sections = {part.splitlines()[0]: part for part in (ROOT / "README.md").read_text(encoding="utf-8").split("\n## ")}
+    assert [name for name, text in sections.items() if generator.SYSTEM_INSTALL in text] == ["A rail of your own"]
+    assert "apt-get" not in sections["Two commands"]
