@@ -24,10 +24,10 @@ mesh: $(READY) ## mesh the rails of the scene
 highfi: $(READY) ## run the finite-element reference
 	$(TIPOFF) highfi $(ASKED)
 
-lowfi: $(READY) ## run the rigid surrogate
+lowfi: $(READY) ## run the surrogate, model compliant
 	$(TIPOFF) lowfi $(ASKED)
 
-calibrate: $(READY) ## fit the surrogate's contact constants to the reference
+calibrate: $(READY) ## take the surrogate's contact from the finite elements: rail compliance, constants of springs
 	$(TIPOFF) calibrate $(ASKED)
 
 compare: $(READY) ## agreement of both, fitted and held-out conditions, beside the floor

@@ -7,7 +7,7 @@ the user's (``scenes.provenance``), unless it says otherwise in a ``[provenance]
 
 import tomllib
 from pathlib import Path
-from typing import Any, Iterator
+from typing import Iterator
 
 from scenes import overrides, provenance, rail
 from scenes.faults import Fault, SceneError

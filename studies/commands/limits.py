@@ -23,7 +23,8 @@ Cases = Annotated[Optional[int], typer.Option("--cases", metavar="N", min=1, hel
 Scaled = Annotated[Tolerances, typer.Option("--tolerances", help="What is scaled together: what the paper advises, or the ranges "
                                                                  "of its Table 3.")]
 Fixed = Annotated[Others, typer.Option("--others", help="Errors that do not vary: as the scene has them, or zero.")]
-Draws = Annotated[int, typer.Option("--draws", metavar="N", help="Draws of the calibrated constants from their intervals.")]
+Draws = Annotated[Optional[int], typer.Option("--draws", metavar="N", help="Draws of the calibrated constants from their "
+                                              "intervals, with --model springs; default: 8.")]
 Condition = Annotated[Optional[str], typer.Option("--condition", metavar="NAME", help="Named condition; default: the scene.")]
 Seed = Annotated[int, typer.Option("--seed", metavar="N", min=0, help="Seed of all draws.")]
 
@@ -34,7 +35,8 @@ def add(app: typer.Typer) -> None:
     @app.command()
     def limits(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = None, limit: Limit = None,
                probability: Probability = 0.99, confidence: Confidence = 0.95, cases: Cases = None,
-               tolerances: Scaled = Tolerances.advised, others: Fixed = Others.scene, draws: Draws = 8, condition: Condition = None,
+               tolerances: Scaled = Tolerances.advised, others: Fixed = Others.scene, draws: Draws = None,
+               condition: Condition = None,
                seed: Seed = 1, model: Surrogate = None, workers: Workers = None, json_: Json = False) -> None:
         """Tolerances of thrust, mass, clearance and friction that keep the rates below limits at a probability; writes limits.json.
 

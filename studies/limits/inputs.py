@@ -3,20 +3,21 @@
 from dataclasses import dataclass
 
 from scenes.faults import Fault, SceneError
+from scenes.fidelity import SPRINGS
 from studies.checked import together
 from studies.populations import exceedance, order_statistics
 from studies.populations.exceedance import Limit
 
 TIMES_NEEDED = 10  # of the fewest cases: some may then be above, and tolerances are not cut for want of cases
-_MOST_DRAWS = 1000
+DRAWS, _MOST_DRAWS = 8, 1000
 
 
 @dataclass(frozen=True)
 class Asked:
     """``limits`` as ``exceedance.limits`` reads them, all of which a case must keep with ``probability``, to be shown with
     ``confidence`` from ``cases`` (None: ten times the fewest); the ``tolerances`` that are scaled together, advised or table3;
-    errors that do not vary as in the ``scene`` or ``zero``; ``draws`` of calibrated constants of springs; the name of a
-    ``model``, None for the default."""
+    errors that do not vary as in the ``scene`` or ``zero``; ``draws`` of calibrated constants, which springs have alone,
+    None for eight; the name of a ``model``, None for the default."""
 
     limits: tuple[str, ...] = ("5 deg/s",)
     probability: float = 0.99
@@ -25,7 +26,7 @@ class Asked:
     seed: int = 1
     tolerances: str = "advised"
     others: str = "scene"
-    draws: int = 8
+    draws: int | None = None
     model: str | None = None
     condition: str | None = None
 
@@ -49,7 +50,10 @@ def _cases(asked: Asked) -> int:
         faults.append(Fault("--probability", "value", f"{asked.probability:g}", "0.5 or more and less than 1"))
     if not 0.5 <= asked.confidence < 1.0:
         faults.append(Fault("--confidence", "value", f"{asked.confidence:g}", "0.5 or more and less than 1"))
-    if not 0 <= asked.draws <= _MOST_DRAWS:
+    if asked.draws is not None and asked.model != SPRINGS:
+        expected = f"none but with --model {SPRINGS}: compliant contact has no fitted constants"
+        faults.append(Fault("--draws", "option", str(asked.draws), expected))
+    elif asked.draws is not None and not 0 <= asked.draws <= _MOST_DRAWS:
         faults.append(Fault("--draws", "value", str(asked.draws), f"0 to {_MOST_DRAWS}"))
     if not faults:
         needed = order_statistics.runs_needed(asked.probability, asked.confidence)

@@ -17,7 +17,7 @@ from scenes.fidelity import COMPLIANT
 from studies.checked import together
 from studies.limits import constants, within
 from studies.limits import search
-from studies.limits.inputs import Asked, checked
+from studies.limits.inputs import DRAWS, Asked, checked
 from studies.limits.search import Found
 from studies.limits.within import SETS, Cases, Factor
 from studies.populations import answers, exceedance, population, spread
@@ -77,7 +77,7 @@ class _Answers:
         self.factors = within.factors(self.model.scene)
         self.allowed = exceedance.allowed(cases, asked.probability, asked.confidence)
         overrides, self.drawn = ([], []) if model.calibration is None else constants.draws(
-            study.scene, model.calibration, asked.draws, asked.seed)
+            study.scene, model.calibration, DRAWS if asked.draws is None else asked.draws, asked.seed)
         self.others = [self.model.at(item) for item in overrides]
         self.report, self.evaluations = report, 0
         # Halvings and refinements of each search, and about five evaluations of each that starts from a known answer.

@@ -210,7 +210,7 @@ def test_constants_are_drawn_inside_their_intervals_and_untold_ones_stay():
                          ["N", "1", "N*s/m", "1"], [20.0, 1.0, 0.0, 0.05], [6720.0, 2.2, 7000.0, 0.5], [], np.zeros((0, 0)), [], {},
                          [], 0.0,
                          intervals=[[500.0, 700.0], [-endless, endless], [-endless, endless], [0.19, 0.21]])
-    found, names = constants.by_intervals(scene, fitted, 400, 1)
+    found, names = constants.draws(scene, fitted, 400, 1)
     assert names == ["contact.force", "friction.dynamic"] and len(found) == 400
     friction = np.array([item["friction.dynamic"] for item in found])
     assert 0.19 <= friction.min() < friction.max() <= 0.21 and friction.std() == pytest.approx(0.01 / 1.96, rel=0.15)
@@ -218,16 +218,16 @@ def test_constants_are_drawn_inside_their_intervals_and_untold_ones_stay():
     assert 500.0 <= force.min() < force.max() <= 700.0 and abs(np.corrcoef(force, friction)[0, 1]) < 0.2
     assert {item["contact.exponent"] for item in found} == {1.0} and all(item["friction.static"] == item["friction.dynamic"]
                                                                          for item in found)
-    assert constants.by_intervals(scene, fitted, 0, 1) == ([], [])
+    assert constants.draws(scene, fitted, 0, 1) == ([], [])
 
 
 def test_the_model_s_error_is_the_largest_measured_on_held_out_conditions(tmp_path, monkeypatch):
     study = Study(load("reference"), tmp_path, Settings())
-    assert constants.margin(study, False).deg_s is None and "make compare" in constants.margin(study, False).said
+    assert constants.margin(study, "springs").deg_s is None and "make compare" in constants.margin(study, "springs").said
     rows = [{"role": "held_out", "reference_converged": converged, "settled_rate_error_xyz_deg_s": errors} for converged, errors in
             ((True, [0.3, -0.4, 0.0]), (True, None), (True, [-0.1, 0.1, 0.2]), (False, [8.0, 8.0, 8.0]))]
     fitted = {"role": "fitted", "reference_converged": True, "settled_rate_error_xyz_deg_s": [9.0, 9.0, 9.0]}
     monkeypatch.setattr(constants.compare, "stored", lambda _: {"held_out": rows, "compliant": [fitted, *rows[2:]]})
-    assert constants.margin(study, False).deg_s == pytest.approx({"x": 0.3, "y": 0.4, "z": 0.2, "total": 0.5})
-    assert constants.margin(study, True).deg_s == pytest.approx({"x": 0.1, "y": 0.1, "z": 0.2, "total": 0.06**0.5})
-    assert set(constants.margin(Study(free_flight.scene(), tmp_path, Settings()), False).deg_s.values()) == {0.0}
+    assert constants.margin(study, "springs").deg_s == pytest.approx({"x": 0.3, "y": 0.4, "z": 0.2, "total": 0.5})
+    assert constants.margin(study, "compliant").deg_s == pytest.approx({"x": 0.1, "y": 0.1, "z": 0.2, "total": 0.06**0.5})
+    assert set(constants.margin(Study(free_flight.scene(), tmp_path, Settings()), "springs").deg_s.values()) == {0.0}

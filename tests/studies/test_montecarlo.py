@@ -64,7 +64,7 @@ def counted(cases, lost):
     number[lost] = np.nan
     each = columns.Columns(*[np.radians(np.column_stack([number] * 3)) if name in columns.VECTORS else number
                              for name in columns.Columns._fields])
-    return Population({}, each, np.zeros(cases, dtype=bool), "store", {"refused": 0})
+    return Population({}, each, "store", {"refused": 0})
 
 
 def test_a_part_of_the_cases_is_their_first_whether_they_settled_or_not():
@@ -99,10 +99,12 @@ def test_what_does_not_settle_elsewhere_is_said_and_stops_nothing(study, monkeyp
         montecarlo.run(study, Asked(cases=120, seed=2, limits=("8 deg/s",)))
     monkeypatch.setattr(population, "surrogate", lambda *_: None)
     touching = Study(load("reference"), study.folder, study.settings)
-    models = montecarlo._models(touching, Asked(cases=120), counted(120, slice(0, 9)))
+    assert montecarlo._models(touching, Asked(cases=120), "compliant", counted(120, slice(0, 9))) is None  # no springs calibrated
+    monkeypatch.setattr(montecarlo.calibrate, "stored", lambda _: {"key": "k"})
+    models = montecarlo._models(touching, Asked(cases=120), "compliant", counted(120, slice(0, 9)))
     assert models["both_settled"] == 0 and models["quantities"] == []
     both = found | {"models": models}
-    assert "No case of 120 settled" in pictures.draw(both, lambda *_: "") and len(pictures.charts(both)) == 2
+    assert "No case of 120 settled in both models" in pictures.draw(both, lambda *_: "") and len(pictures.charts(both)) == 2
     assert "none settled on both" in montecarlo._findings(both)[-1]
 
 

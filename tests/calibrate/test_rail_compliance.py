@@ -1,0 +1,40 @@
+"""Which mesh the rail's compliance is condensed from."""
+
+import numpy as np
+import pytest
+
+import calibrate
+from calibrate import rail_compliance
+from scenes import load
+
+REFERENCE = 2e-3
+
+
+@pytest.mark.parametrize("slope, expected", [(1.0, 4e-3), (30.0, REFERENCE)])
+def test_the_coarsest_mesh_within_one_per_cent(monkeypatch, slope, expected):
+    """C(h) = C - slope h: at 4 mm a slope of 1/m leaves 0.2 % to 2 mm, one of 30/m leaves 6 %."""
+    seen = []
+
+    def direct(scene, size):
+        seen.append(size)
+        return np.full((4, 16), 1.0 - slope * size)
+
+    monkeypatch.setattr(rail_compliance, "_direct", direct)
+    assert rail_compliance.fine_enough(load("reference"), REFERENCE) == expected
+    assert seen == [8e-3, 4e-3]  # the reference's own mesh is not needed to choose
+
+
+@pytest.mark.slow
+def test_the_estimate_is_what_the_reference_s_own_mesh_shows():
+    """The rail of the reference scene at 8 and 4 mm: the change to 2 mm is foreseen to a quarter, and is above 1 %."""
+    scene = load("reference")
+    coarsest, coarse, own = (rail_compliance._direct(scene, size) for size in (8e-3, 4e-3, 2e-3))
+    foreseen = 0.5 * np.abs(coarse - coarsest) / coarse
+    assert np.median(foreseen) == pytest.approx(np.median(np.abs(own - coarse) / own), rel=0.25)
+    assert rail_compliance.fine_enough(scene) == REFERENCE
+
+
+def test_a_size_that_is_asked_for_is_taken(monkeypatch):
+    monkeypatch.setattr(rail_compliance, "fine_enough", lambda *_: pytest.fail("chose a mesh"))
+    monkeypatch.setattr(rail_compliance.statics, "walls", lambda scene, size: size)
+    assert calibrate.compliance(load("tiny"), 8e-3) == 8e-3
