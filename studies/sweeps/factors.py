@@ -1,6 +1,6 @@
 """The errors that section 3 of the paper sweeps, one at a time, over size and direction, and what each would do to a free payload.
 
-A free payload of inertia I leaves with w = I^-1 L, where L = J (r x f) is the moment impulse of ``studies.sweeps.moments``.
+A free payload of inertia I leaves with w = I^-1 L, where L = J (r x f) is the moment impulse of ``scenes.moments``.
 On the reference scene that is 26 deg/s per millimetre of arm: the line that the rail bends. Gyroscopic moments are left out: they
 are quadratic in the rates.
 """
@@ -11,9 +11,9 @@ import numpy as np
 
 from lowfi.rows import Listed, numbers
 from scenes import model as models
+from scenes import moments
 from scenes.effects import thrust
 from scenes.scene import Scene
-from studies.sweeps import moments
 
 
 class Factor(NamedTuple):

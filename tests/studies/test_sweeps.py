@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from scenes import load
+from scenes import load, moments
 from scenes.effects import thrust, thrust_offset
 from studies.cli import app
 from studies.populations import answers, population
@@ -18,7 +18,7 @@ from studies.report.markup import Html
 from studies.settings import Settings
 from studies.stages import sweeps
 from studies.study import Study, read
-from studies.sweeps import burnout, factors, moments, sides
+from studies.sweeps import burnout, factors, sides
 
 pytest.importorskip("zarr")
 # Of the reference scene, whose pulse begins three widths before its peak.

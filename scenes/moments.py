@@ -38,3 +38,9 @@ def moment_impulses(scene, inputs: Inputs, impulse: np.ndarray | float) -> np.nd
     place = np.broadcast_arrays(-arm, thrust_y - centre_y, thrust_z - centre_z)
     direction = np.broadcast_arrays(np.cos(tilt), sine * np.cos(turn), sine * np.sin(turn))
     return np.asarray(impulse)[..., None] * np.cross(np.stack(place, axis=-1), np.stack(direction, axis=-1))
+
+
+def transverse(scene, inputs: Inputs, impulse: np.ndarray | float) -> np.ndarray:
+    """Size (n,) or () of the part of the moment impulse across the axis, |L_yz| in N m s: what turns a payload against its
+    rails."""
+    return np.hypot(*np.moveaxis(moment_impulses(scene, inputs, impulse)[..., 1:], -1, 0))
