@@ -118,7 +118,7 @@ def _speed(agreement: dict) -> str:
     return (f"Speed: {found['ratio']:,.0f} times ({found['low']:,.0f} to {found['high']:,.0f} over repeats): "
             f"{found['highfi_wall_s']:.3g} s for the reference with {found['elements']:,} elements against "
             f"{1e3 * found['lowfi_wall_s']:.3g} ms on compliant contact; {plain['ratio']:,.0f} times "
-            f"({1e3 * plain['lowfi_wall_s']:.3g} ms) for the calibrated surrogate. The same case, everything but compilation "
+            f"({1e3 * plain['lowfi_wall_s']:.3g} ms) for springs, calibrated. The same case, everything but compilation "
             f"included, on {machine['cores']} cores of {machine['processor']}.")
 
 

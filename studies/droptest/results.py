@@ -7,7 +7,7 @@ from studies.droptest import judgement, power
 from studies.droptest.analysis import Drop
 from studies.droptest.events import WINDOWS
 from studies.droptest.reduction import COVERAGE
-from studies.populations import answers, spread
+from studies.populations import answers, population, spread
 
 MAGNITUDES = ("roll", "transverse", "total")
 PAIRS = ((0, 1), (0, 2), (1, 2))
@@ -77,7 +77,7 @@ def summary(scene: str, found: dict) -> list[str]:
     """The whole result in words, one line each."""
     cases, tests = found["cases"], found["tests"]
     said = [f"{scene}: {len(tests)} drop tests against {cases['settled']:,} settled of {cases['asked']:,} cases of the surrogate, "
-            f"model {found['model']}; {_drawn(found)}"]
+            f"{_drawn(found)}", f"  {population.said(found)}"]
     if any(row["simulated"] for row in tests):
         said.append("  SIMULATED     logs marked so come from a sensor model: they show that the reduction works and say "
                     "nothing of a launcher")

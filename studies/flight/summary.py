@@ -14,7 +14,7 @@ from scenes.scene import Scene
 from scenes.uncertainty import Uncertainty
 from studies.flight import bodies
 from studies.flight.flown import Flown
-from studies.populations import answers, order_statistics
+from studies.populations import answers, order_statistics, population
 from studies.populations.population import Population
 
 if TYPE_CHECKING:
@@ -124,7 +124,8 @@ def dataset(names: list[str], single: Flown | None, exits: Outcome | None, many:
 def lines(found: dict) -> list[str]:
     """The result in words and units."""
     flight, many = found["flight"], found["cases"]
-    said = [f"{found['scene']}: target {flight['range_m']:g} m along the launch axis, orbit of {flight['period_s'] / 60.0:.4g} min"]
+    said = [f"{found['scene']}: target {flight['range_m']:g} m along the launch axis, orbit of {flight['period_s'] / 60.0:.4g} min",
+            f"  {population.said(found)}"]
     for item in found["conditions"]:
         said.append(f"  {item['condition']:10} " + (_one(item["flown"]) if item["flown"] else item["status"]))
     counts = many["counts"]

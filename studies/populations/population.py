@@ -21,6 +21,7 @@ from scenes.fidelity import SPRINGS
 from scenes.scene import Scene
 from scenes.walls import Walls, model_of
 from studies import words
+from studies.agreement import kept
 from studies.models import require_accepted
 from studies.progress import Board
 from studies.stages import calibrate
@@ -82,6 +83,16 @@ def surrogate(study: Study, model: str | None = None, condition: str | None = No
         return Surrogate(fitted.apply(scene), fitted, compliance.of_law(study, scene))
     require_accepted(study, model, condition)
     return Surrogate(scene, None, compliance.load(study, scene, judged=False))
+
+
+def answering(study: Study, model: Surrogate, condition: str | None = None) -> dict[str, str]:
+    """Which ``model`` answers, and its ``agreement`` with the reference, in words, as result files hold both."""
+    return {"model": model.words, "agreement": kept.words(study, model.name, condition, model.calibration is not None)}
+
+
+def said(found: dict) -> str:
+    """A line on the model behind a result that holds what ``answering`` tells."""
+    return f"model {found['model']}; agreement: {found['agreement']}"
 
 
 def run(study: Study, name: str, model: Surrogate, source, tolerance: float = TOLERANCE) -> Population:

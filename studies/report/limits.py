@@ -3,7 +3,7 @@
 from html import escape
 
 from studies.limits.search import ALL, FOUND, NONE, SMALL
-from studies.populations import exceedance
+from studies.populations import exceedance, population
 from studies.report.chart import AMBER, GREY, NAVY, TEAL, VERMILION, Chart, Line, Panel
 from studies.report.markup import Html, caption, fold, number, paragraph, table
 from studies.report.montecarlo import bounded
@@ -31,7 +31,7 @@ def draw(found: dict, figure) -> Html:
     words = _TABLE.format(others=others, most=1.0 - found["probability"], uncertain=_uncertain(found),
                           **{name: found[name] for name in ("confidence", "cases", "allowed")})
     odd = [f"{row['words']}: {line}" for row in found["rows"] for line in _odd(row, _unit(row))]
-    return Html("".join([_said([found["summary"][0], *odd]), _table(found), caption(words),
+    return Html("".join([_said([*found["summary"][:2], *odd]), _table(found), caption(words),
                          *(figure(*each) for each in charts(found)),
                          _beside(found), paragraph(_ADVICE)]))
 
@@ -53,8 +53,8 @@ def _uncertain(found: dict) -> str:
 def summary(found: dict) -> list[str]:
     """What the study says, one line each."""
     said = [f"limits: {', '.join(found['limits_said'])}; each case within all of them with probability {found['probability']:g}, "
-            f"shown at {found['confidence']:.0%} confidence by {found['cases']:,} cases, model {found['model']}"]
-    return said + [_line(row, _unit(row)) for row in found["rows"]]
+            f"shown at {found['confidence']:.0%} confidence by {found['cases']:,} cases"]
+    return [*said, population.said(found)] + [_line(row, _unit(row)) for row in found["rows"]]
 
 
 def _unit(row: dict) -> str:

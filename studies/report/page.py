@@ -104,8 +104,8 @@ class Page:
              "y rate (deg/s)", "z rate (deg/s)", "reference ± (deg/s)", "surrogate error (deg/s)"), rows), caption(
             "Settled values of the finite-element reference: means over 2 ms after exit and burnout, "
             "velocity in initial scene axes, rates inertial in payload body axes. Reference ± is what refining mesh, step or "
-            "penalty still changes; surrogate error the largest axis error of the surrogate on compliant contact, to which nothing "
-            "was fitted, on the same condition."))
+            "penalty still changes; surrogate error the largest axis error of compliant contact on the same "
+            "condition."))
 
     def _scene(self) -> Html:
         return section("scene", "Scene", inputs.scene_tables(self.scene))
@@ -142,10 +142,9 @@ class Page:
         names = [name for name in self.scene.agreement.fitted if name in self.runs.highfi] or list(self.runs.highfi)[:5]
         if not names:
             return section("figure6", "Velocity and rates", self._missing("highfi", "highfi"))
-        words = ("The paper's Figure 6 for this scene. Broad pale lines: finite elements. Thin lines: the surrogate on walls that "
-                 "give way as statics has them, nothing fitted. Dashed: the calibrated surrogate. Dotted: before calibration. "
-                 "Rates are inertial, in payload body axes. "
-                 + ("" if self.runs.calibrated else "The other surrogates are missing."))
+        words = ("The paper's Figure 6 for this scene. Broad pale lines: finite elements. Thin lines: compliant contact. Dashed: "
+                 "springs, calibrated. Dotted: springs before calibration. Rates are inertial, in payload body axes. "
+                 + ("" if self.runs.calibrated else "Springs are missing."))
         return section("figure6", "Velocity and rates, all models", self._figure(figures.figure6(self.runs, names), words))
 
     def _condition(self) -> str | None:

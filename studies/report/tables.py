@@ -28,7 +28,7 @@ def agreement(document: dict) -> Html:
     calibrated = [*document["fitted"], *document["held_out"]]
     return section("agreement-section", "Agreement with the reference",
                    paragraph("On compliant contact as the statics of the rail has them, nothing fitted (the role is that of the "
-                             "condition in the calibration of the other surrogates): " + summary(document["compliant"])),
+                             "condition in the calibration of springs): " + summary(document["compliant"])),
                    judged(document["compliant"], "agreement"), caption(legend), _further(document["compliant"]), _simpler(document),
                    _stiffer(document["stiffer"]),
                    paragraph("One spring and damper per pad face, calibrated on the fitted conditions: "
@@ -163,8 +163,8 @@ def speedups(document: dict, equal: dict | None = None) -> Html:
     accuracy, where the error of the reference was studied."""
     found = document["speedup_compliant"]
     machine = found["hardware"]
-    return section("speedup", "Speed", paragraph("The surrogate on compliant contact:"), _speedup(found),
-                   paragraph("The calibrated surrogate:"),
+    return section("speedup", "Speed", paragraph("Model compliant:"), _speedup(found),
+                   paragraph("Model springs, calibrated:"),
                    _speedup(document["speedup"]), caption(
         f"Condition {found['condition']}, all models by turns in one go, all included but compilation, on {machine['processor']}, "
         f"{machine['cores']} cores, {machine['memory_gib']} GiB, Python {machine['python']}."),
@@ -297,7 +297,7 @@ def ablation(document: dict) -> Html:
              ", ".join(row["compiled"]) or "none") for row in document["rows"]]
     return section("ablation", "Only what the scene calls for", table(heads, rows), caption(
         f"Condition {document['condition']}; reference on {1e3 * document['element_size_m']:g} mm elements, surrogate "
-        "uncalibrated. Times, without compilation: of a whole run of the reference, of the time loop of the surrogate. The first "
+        "on compliant contact. Times, without compilation: of a whole run of the reference, of the time loop of the surrogate. The first "
         "line of each model has every effect on, those the scene lacks with small values; each further line takes one away."))
 
 

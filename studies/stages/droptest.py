@@ -58,7 +58,7 @@ def run(study: Study, logs: list[Path] | None = None, asked: Asked = Asked()) ->
         model = population.surrogate(study, asked.model, asked.condition)
         cases = population.run(study, NAME, model, drawn)
         found = result(study, drops, cases, drawn.uncertainty.sampling == "random")
-        found |= {"request": request, "model": model.words, "varied": drawn.uncertainty.resolved()}
+        found |= {"request": request, **population.answering(study, model, asked.condition), "varied": drawn.uncertainty.resolved()}
         found["summary"] = summary(study.scene.name, found)
         data = study.path(f"{NAME}.nc")
         signals.write(data, drops)

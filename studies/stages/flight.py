@@ -49,7 +49,7 @@ def run(study: Study, asked: Asked = Asked()) -> dict:
 
         rows, shapes, single, exits = _conditions(study, asked)
         cases, many, left = _cases(study, asked, drawn)
-        found = {"asked": asdict(asked), "model": population.surrogate(study, asked.model).words,
+        found = {"asked": asdict(asked), **population.answering(study, population.surrogate(study, asked.model)),
                  "flight": summary.orbit(study.scene), "conditions": rows, "curves": shapes, "cases": cases}
         data = study.path(f"{NAME}.nc")
         labelled = summary.dataset([row["condition"] for row in rows if row["flown"]], single, exits, many, left)

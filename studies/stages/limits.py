@@ -90,7 +90,8 @@ class _Answers:
         searched = {name: self._search(tolerances) for name, tolerances in full.items()}
         rows = [self._row(name, tolerances, searched[name]) for name, tolerances in full.items()]
         shown = {"limits_said": [limit.words for limit in self.limits], "probability": self.asked.probability,
-                 "confidence": self.asked.confidence, "cases": self.cases, "allowed": self.allowed, "model": self.model.words,
+                 "confidence": self.asked.confidence, "cases": self.cases, "allowed": self.allowed,
+                  **population.answering(self.study, self.model, self.asked.condition),
                  "constants": {"draws": len(self.others), "drawn": self.drawn}, "margin": self.margin._asdict()}
         return {"asked": _plain(asdict(self.asked)), "limits": [limit._asdict() for limit in self.limits], **shown, "rows": rows,
                 "map": self._map(searched[PAIR[0]].scale or 0.1), "evaluations": self.evaluations}

@@ -10,7 +10,6 @@ from pathlib import Path
 import numpy as np
 
 from scenes.fidelity import COMPLIANT, SPRINGS
-from studies.agreement import kept
 from studies.checked import together
 from studies.populations import answers, exceedance, population, random_factors, spread
 from studies.populations.population import Population, Surrogate
@@ -57,8 +56,8 @@ def run(study: Study, asked: Asked = Asked()) -> dict:
         if (settled := int(found.settled.sum())) < _FEWEST:
             raise StudyError(f"{settled or 'no'} case settled, {found.counts['refused']:,} of them refused; the reasons are in "
                              f"{found.store}/done")
-        made = {"asked": _plain(asked), "reading": asked.reading.words, "model": model.words,
-                "agreement": kept.words(study, model.name, None, model.calibration is not None), "store": found.store,
+        made = {"asked": _plain(asked), "reading": asked.reading.words, "store": found.store,
+                **population.answering(study, model),
                 "counts": found.counts, "settled": settled, "confidence": spread.CONFIDENCE,
                 "paper_cases": min(PAPER, asked.cases),
                 "quantities": [_quantity(item, found) for item in answers.ALL],
@@ -157,9 +156,9 @@ def _models(study: Study, asked: Asked, model: str, found: Population) -> dict |
 def _findings(made: dict) -> list[str]:
     """What was run and what it says beside its numbers, one line each."""
     counts, asked = made["counts"], made["asked"]
-    said = [f"{counts['asked']:,} cases, model {made['model']} = {counts['ok']:,} ok + {counts['refused']:,} refused + "
+    said = [f"{counts['asked']:,} cases = {counts['ok']:,} ok + {counts['refused']:,} refused + "
             f"{counts['failed']:,} failed; {made['settled']:,} settled; seed {asked['seed']}",
-            f"agreement of the model: {made['agreement']}", f"errors: {made['reading']}"]
+            population.said(made), f"errors: {made['reading']}"]
     lost = [row["reading"] for row in made["readings"] if row["distance"] is None]
     said += [f"too few cases settled to compare: {'; '.join(lost)}"] if lost else []
     others = [row for row in made["readings"] if row["reading"] not in lost and row["chance"] < 0.01 and not row["same"]]

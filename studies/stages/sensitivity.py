@@ -43,7 +43,7 @@ def run(study: Study, asked: Asked = Asked()) -> dict:
 
     def make() -> tuple[dict, list[Path]]:
         model = population.surrogate(study, asked.model)
-        found = {"asked": asked._asdict(), "model": model.words, "citation": published.CITATION,
+        found = {"asked": asked._asdict(), **population.answering(study, model), "citation": published.CITATION,
                  "tables": _tables(study, model, asked), "paper": _paper(), "sobol": _sobol(study, model, asked)}
         found["summary"] = summary(found)
         files = [path for picture, _ in drawing.pictures(found) for path in to_files(picture, study.path("figures"))]
@@ -148,12 +148,13 @@ def _plain(found: indices.Indices | None) -> dict | None:
 def summary(found: dict) -> list[str]:
     """What the study says, one line each."""
     paper = found["paper"]["largest"]
-    lines = [f"{table['title']}: moved one at a time, {_most(table['largest'])}; 1 um of clearance: "
+    lines = [population.said(found)]
+    lines += [f"{table['title']}: moved one at a time, {_most(table['largest'])}; 1 um of clearance: "
              f"{_most(table['largest_clearance'])}" for table in found["tables"]]
     lines += [f"{table['title']}, every quantity moves by up to: "
               + ", ".join(f"{item.label} {table['most_moved'][item.name]:.3g} {item.unit}" for item in answers.ALL)
               for table in found["tables"] if table["most_moved"]]
-    lines += [f"the paper's Table 2: {_most(paper)}"] if lines else []
+    lines += [f"the paper's Table 2: {_most(paper)}"] if found["tables"] else []
     sobol = found["sobol"]
     lines.append(f"{sobol['cases']['asked']:,} cases of {len(sobol['inputs'])} inputs, {sobol['not_settled']:,} did not settle; "
                  f"{sobol['used']:,} of {sobol['base_points']:,} base points used")

@@ -51,7 +51,8 @@ def run(study: Study, asked: Asked = Asked()) -> dict:
             factor["sides"] = seen
         if other := burnout.other_way(alone):
             launches.append(_launch(study, other[1], asked, other[0], other[2]))
-        found = {"asked": asked._asdict(), "model": model.words, "citation": published.CITATION, "launches": launches}
+        found = {"asked": asked._asdict(), **population.answering(study, model), "citation": published.CITATION,
+                 "launches": launches}
         found["summary"] = summary(found)
         files = [path for picture, _ in drawing.pictures(found) for path in to_files(picture, study.path("figures"))]
         return found, files
@@ -121,7 +122,7 @@ def _plain(values: np.ndarray) -> list:
 
 def summary(found: dict) -> list[str]:
     """What the study says, one line each."""
-    lines, labels = [], {item.name: item.label for item in JUDGED}
+    lines, labels = [population.said(found)], {item.name: item.label for item in JUDGED}
     for launch in found["launches"]:
         how = "as given" if launch["stretch"] == 1.0 else f"thrust stretched by {launch['stretch']:g}"
         leaves = "never leaves without errors" if launch["exit_s"] is None else (

@@ -42,7 +42,8 @@ def call(*arguments):
 def test_shipped_logs_from_command_to_page(tmp_path, fitted):
     result = call("--cases", 200, "--out", tmp_path)
     assert result.exit_code == 0, result.output
-    for words in ("3 drop tests against 200 settled of 200 cases of the surrogate, model springs, calibrated", "SIMULATED",
+    for words in ("3 drop tests against 200 settled of 200 cases of the surrogate",
+                  "model springs, calibrated; agreement: ", "SIMULATED",
                   "(SIMULATED log), CFC 60", "settling rule kept", "it is no validation",
                   "100.0 % with one three times too wide", "7 samples clipped"):
         assert words in result.stdout
@@ -209,7 +210,7 @@ def test_verdict_for_models_that_fit_that_are_too_narrow_and_too_wide(tmp_path, 
     study, drops = Study(load("reference"), tmp_path, Settings()), [stage.analyse(path) for path in shipped.sheets()]
     rates = np.random.default_rng(2).normal(0.0, width, (400, 3))
     found = stage.result(study, drops, population(rates))
-    found |= {"model": "springs, calibrated", "request": asdict(stage.Asked()), "varied": {"seed": 1}}
+    found |= {"model": "springs, calibrated", "agreement": "unknown", "request": asdict(stage.Asked()), "varied": {"seed": 1}}
     line = next(line for line in stage.summary("reference", found) if "together" in line)
     assert f"the tests {p} the" in line
     assert found["together"]["inside_range"] is (width > 1.0)
