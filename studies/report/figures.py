@@ -6,6 +6,7 @@ import numpy as np
 
 from scenes import ledger
 from scenes.effects import thrust_law
+from scenes.fidelity import COMPLIANT, FINITE_ELEMENTS
 from scenes.scene import Scene
 from scenes.trajectory import Trajectory
 from studies.cost import choice
@@ -131,7 +132,7 @@ def _cost_line(points: list[dict], error: str, model: str, colour: str, marker: 
     numbers of modes wherever they are varied."""
     varied = any(point["modes"] for point in points)
     labels = [str(point["modes"]) if varied else point["numerics"].split(",")[0].removeprefix("tolerance ") for point in points]
-    if "surrogate" in model and not varied and (error != "integration_error_deg_s" or "compliant" not in model):
+    if model != FINITE_ELEMENTS and not varied and (error != "integration_error_deg_s" or model != COMPLIANT):
         labels = [""] * len(labels)
     return Line([p["wall_s"] for p in points], [p[error] for p in points], model, colour, 1.6, dash, marker=marker,
                 labels=tuple(labels))

@@ -11,7 +11,7 @@ WORDS = ("Largest separation of the body rates from those of twins whose clearan
          "come a little earlier or later. A curve begins where the twins first touch.")
 _LEGEND = ("Reference on the coarse mesh, as for the floor. Sensitive: 1 µm moves a settled rate by more than the gate "
            "({gate:g} deg/s). Chaotic: so it does, and by growth from contact to contact: the factor is above their number, which "
-           "is what walls that stand 1 µm elsewhere at every contact would bring without any. Conditions are those of the floor "
+           "is what a wall 1 µm elsewhere brings at every contact without growth. Conditions are those of the floor "
            "and all whose reference is not converged.")
 _SHOWN = 1e-4  # of the gate; nothing below matters to a comparison
 _LOOKS = ((NAVY, 5.0, "-", 0.35), (VERMILION, 1.5, "-", 1.0))

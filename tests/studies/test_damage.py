@@ -156,7 +156,7 @@ def test_damaged_walls_are_found_again(study, monkeypatch, capsys):
 def test_damaged_cases_of_a_search_are_run_again(tmp_path, capsys):
     """The values of every set of tolerances that was tried: None asks for them anew."""
     path, values = tmp_path / "limits" / "a.nc", np.random.default_rng(2).random((50, len(answers.ALL)))
-    results.save(path, values, np.zeros(50, bool), 0.5, {"misalignment": 0.1})
+    results.save(path, values, 0.5, {"misalignment": 0.1})
     content = path.read_bytes()
     assert np.array_equal(results.load(path), values)
     for place in [content.find(values[7].tobytes()) + 6, *np.linspace(0, len(content) - 1, 60).astype(int)]:

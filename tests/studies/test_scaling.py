@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 import scenes
+from scenes.fidelity import COMPLIANT, FINITE_ELEMENTS, SPRINGS
 from scenes.model import build
 from studies.cost import scaling
-from studies.cost.scaling import SPRINGS, effects, fitted, power_law, shares, with_pads
+from studies.cost.scaling import effects, fitted, power_law, shares, with_pads
 from studies.report import scaling as page
 from studies.settings import defaults
 from studies.study import Study
@@ -23,7 +24,7 @@ def test_exponent_of_an_exact_law():
 def test_single_size_has_no_exponent():
     """A mesh from a file is the same whatever element size is asked for; nor does the page or its picture stumble over it."""
     points = [{"n": 500, "steps": 10, "time_s": time, "element_size_m": 1e-3, "repeats": 1} for time in (1.0, 1.1, 0.9)]
-    law, finest = fitted("finite elements", points), fitted("finite elements", points[-2:])
+    law, finest = fitted(FINITE_ELEMENTS, points), fitted(FINITE_ELEMENTS, points[-2:])
     assert (law["run"] == law["step"] == {"exponent": None, "standard_error": None}
             and shares([500] * 3, [1.0, 1.1, 0.9]) == (None, None))
     found = {"elements": law | {"finest": {"run": finest["run"], "step": finest["step"]}, "fixed_s": None, "element_s": None},
@@ -88,7 +89,7 @@ def test_mesh_from_a_file_is_not_run_ten_times(monkeypatch, tmp_path):
     monkeypatch.setattr(scaling, "_walls", lambda study, name, change: None)
     models = {name: [law["model"] for law in scaling.pads(Study(scenes.load(name), tmp_path, defaults(name)), "phi15")]
               for name in ("channel", "tiny")}
-    assert models == {"channel": [SPRINGS, scaling.WALLS], "tiny": ["finite elements", SPRINGS, scaling.WALLS]}
+    assert models == {"channel": [SPRINGS, COMPLIANT], "tiny": [FINITE_ELEMENTS, SPRINGS, COMPLIANT]}
 
 
 ABLATION = {"rows": [{"fidelity": fidelity, "variant": variant, "time_s": factor * seconds}
@@ -98,7 +99,7 @@ ABLATION = {"rows": [{"fidelity": fidelity, "variant": variant, "time_s": factor
 def test_prices_of_effects():
     scene = scenes.load("tiny")
     reference, surrogate = effects(scene, ABLATION)
-    assert reference["ratio"] == surrogate["ratio"] == 2.0 and surrogate["model"] == SPRINGS
+    assert reference["ratio"] == surrogate["ratio"] == 2.0 and surrogate["model"] == COMPLIANT
     assert {item["effect"]: item["time_s"] for item in surrogate["effects"]} == {"contact": 4.0, "friction": 1.0, "gravity": -0.5}
     assert [(rung["on"], rung["time_s"]) for rung in surrogate["ladder"]] == [(0, 5.0), (1, 6.0), (2, 9.0), (3, 10.0)]
     assert surrogate["asked"] == [2, 9.5]  # the scene has no gravity
@@ -108,7 +109,7 @@ def test_prices_of_effects():
 
 def test_page_shows_exponents_with_their_errors():
     law = fitted(SPRINGS, [{"n": n, "steps": 10, "time_s": 1e-3 * n**0.5, "repeats": 1} for n in (1, 2, 4)])
-    meshes = fitted("finite elements", [{"n": n, "steps": 10, "time_s": 1e-3 * n, "element_size_m": 1e-3, "repeats": 3}
+    meshes = fitted(FINITE_ELEMENTS, [{"n": n, "steps": 10, "time_s": 1e-3 * n, "element_size_m": 1e-3, "repeats": 3}
                                         for n in SIZES])
     finest = {"run": {"exponent": 1.3, "standard_error": None}, "step": {"exponent": 0.9, "standard_error": None}}
     found = {"elements": meshes | {"finest": finest, "fixed_s": 4e-5, "element_s": 9e-9}, "pads": [law],
