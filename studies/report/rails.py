@@ -3,7 +3,7 @@
 from studies.report.markup import Html, caption, number, paragraph
 from studies.report.markup import table as drawn
 
-HEADS = ("scene", "elements", "surrogate", "judged", "agree", "largest rate L2 (%)", "largest settled error (deg/s)",
+HEADS = ("scene", "elements", "model", "judged", "agree", "largest rate L2 (%)", "largest settled error (deg/s)",
          "reference not converged")
 
 
@@ -11,7 +11,7 @@ def rows(found: list[dict]) -> list[tuple]:
     """Two rows a scene, calibrated springs and compliant contact, over its conditions with a touch: how many are judged, because
     their reference is converged, how many of those agree, the largest errors of these, and how many are not judged."""
     return [(scene["name"], f"{1e3 * scene['element_size_m']:g} mm", title, *_judged(scene["agreement"], kinds))
-            for scene in found for title, kinds in (("calibrated", ("fitted", "held_out")), ("compliant contact", ("compliant",)))]
+            for scene in found for title, kinds in (("springs, calibrated", ("fitted", "held_out")), ("compliant", ("compliant",)))]
 
 
 def _judged(agreement: dict, kinds: tuple[str, ...]) -> tuple:

@@ -119,8 +119,8 @@ def test_other_rails_are_judged_where_a_pad_touches_and_the_reference_is_converg
                  "compliant": [judged("phi15", 0.003, 0.01), judged("h1", 0.005, 0.02), judged("h5", 0.9, 9.0, touches=False),
                                judged("h8", 0.8, 8.0, converged=False, passes=False), judged("h9", None, None, passes=False)]}
     springs, walls = rails.rows([{"name": "thin", "element_size_m": 4e-3, "agreement": agreement, "constants": {}}])
-    assert springs == ("thin", "4 mm", "calibrated", "2 of 2", "1", "12", "0.3", "")
-    assert walls == ("thin", "4 mm", "compliant contact", "3 of 4", "2", "0.5", "0.02", "h8")
+    assert springs == ("thin", "4 mm", "springs, calibrated", "2 of 2", "1", "12", "0.3", "")
+    assert walls == ("thin", "4 mm", "compliant", "3 of 4", "2", "0.5", "0.02", "h8")
     shown = rails.table([{"name": "thin", "element_size_m": 4e-3, "agreement": agreement, "constants": {"contact.stiffness": 2e7}}])
     assert "stiffness 2e+07" in shown
 
