@@ -32,7 +32,7 @@ def constants(found: list[dict]) -> list[tuple]:
 def table(found: list[dict]) -> Html:
     """Both tables, and what makes more of them."""
     return Html("".join([
-        paragraph("Scenes whose results lie beside these. Springs were calibrated anew for each; the compliance comes from its statics."),
+        paragraph("Scenes whose results lie beside these. Springs were calibrated anew for each; the compliance is from statics."),
         drawn(HEADS, rows(found)), drawn(("scene", "calibrated constants (SI)"), constants(found)), caption(
             "Of the conditions in which a pad touches a rail, those are judged whose reference is converged. "
             "make rails calibrates and judges the catalogue's thin and titanium rails at 4 mm.")]))

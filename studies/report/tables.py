@@ -296,8 +296,8 @@ def ablation(document: dict) -> Html:
              f"{row['ns_per_step']:,.0f}", _three(row["settled_rate_deg_s"], ""), _three(row["settled_rate_change_deg_s"], "+"),
              ", ".join(row["compiled"]) or "none") for row in document["rows"]]
     return section("ablation", "Only what the scene calls for", table(heads, rows), caption(
-        f"Condition {document['condition']}; reference on {1e3 * document['element_size_m']:g} mm elements, surrogate "
-        "on compliant contact. Times, without compilation: of a whole run of the reference, of the time loop of the surrogate. The first "
+        f"Condition {document['condition']}; reference on {1e3 * document['element_size_m']:g} mm elements, surrogate on compliant "
+        "contact. Times, without compilation: of a whole run of the reference, of the time loop of the surrogate. The first "
         "line of each model has every effect on, those the scene lacks with small values; each further line takes one away."))
 
 
