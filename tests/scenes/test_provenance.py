@@ -67,8 +67,8 @@ def test_a_file_that_extends_another(read):
     assert changed(found, "payload.mass", "rail.end", "rail.start", "gravity.z", "thrust.arm") == [
         "user", "user", "assumed", "user", load("reference").provenance["thrust.arm"]]
     given = read('extends = "reference"\n[payload]\nmass = "12 kg"\n'
-                 '[rail.material]\ndensity = "2700 kg/m**3"\nyoungs_modulus = "70 GPa"\n[provenance]\n'
-                  'payload.mass = "weighed"\n"rail.material" = "datasheet"\n')
+                 '[rail.material]\ndensity = "2700 kg/m**3"\nyoungs_modulus = "70 GPa"\n'
+                 '[provenance]\npayload.mass = "weighed"\n"rail.material" = "datasheet"\n')
     assert changed(given, "payload.mass", "rail.material.density", "rail.material.youngs_modulus", "rail.material.yield_strength",
                    "rail.end") == ["weighed", "datasheet", "datasheet", "handbook, 7075-T6", "assumed"]
 

@@ -1,6 +1,7 @@
 """A machine without the graphics libraries that gmsh is linked against: only a solid calls for them, and says so in one line."""
 
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -42,7 +43,8 @@ def bare(tmp_path):
         return subprocess.run([sys.executable, *map(str, arguments)], cwd=ROOT, capture_output=True, text=True, timeout=300,
                               env=os.environ | {"LD_LIBRARY_PATH": str(hidden)})
 
-    assert "libGL.so.1" in call("-c", "import gmsh").stderr  # control: it does not load there
+    # Control: it does not load there. Which library the loader misses first is another one where none is installed.
+    assert re.search(r"OSError: \S*lib\w+\.so", call("-c", "import gmsh").stderr)
     return call
 
 
@@ -58,7 +60,7 @@ def test_a_solid_says_what_is_missing_and_a_built_in_rail_is_meshed(bare, tmp_pa
     said = bare("-m", "studies.cli", "mesh", "--scene", scene, "--out", tmp_path / "out")
     assert said.returncode == 1 and "Traceback" not in said.stderr
     (line,) = [line for line in said.stderr.splitlines() if line.startswith("tipoff: ")]
-    assert "libGL.so.1" in line and line.endswith(generator.SYSTEM_INSTALL)
+    assert re.search(r"lacks the system library \S*lib\w+\.so", line) and line.endswith(generator.SYSTEM_INSTALL)
     built = bare("-m", "studies.cli", "mesh", "--scene", CATALOG / "tiny.toml", "--out", tmp_path / "out")
     assert built.returncode == 0 and (tmp_path / "out" / "tiny" / "mesh.json").is_file()
 
