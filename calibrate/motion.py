@@ -4,7 +4,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from lowfi import balance
 from lowfi.numerics import Numerics
 from lowfi.run import Run
 from scenes import outcome
@@ -27,6 +26,5 @@ def run(scene: Scene, numerics: Numerics | None = None, walls: Walls | None = No
     going = Run(scene, numerics or Numerics(), walls)
     going.begin()
     going.march(None)
-    moved = balance.motion(going.rows[:going.taken], 0, going.interval)
-    status, result = ("diverged", outcome.Outcome()) if going.message else outcome.judge(moved, going.marks)
+    moved, (status, result) = going.motion(), going.judged()
     return Motion(status, moved.time, moved.velocity, moved.rate, result)

@@ -9,6 +9,8 @@ from scenes.body import InertiaTensor
 from scenes.table import Table, at_least_one
 from scenes.units import Length, Mass, NonNegativeLength, PositiveLength, PositiveNumber, PositiveRate, PositiveTime
 
+_ROUNDING = 1e-12  # relative: a last sample at the end of the scene is one
+
 Normal = Literal["+y", "-y", "+z", "-z"]
 
 
@@ -43,9 +45,13 @@ class PadTable(Table):
 
 
 class OutputTable(Table):
-    """``[output]``: sampling interval of every result (s)."""
+    """``[output]``: sampling interval of every result (s). What becomes of a payload does not hang on it."""
 
     interval: PositiveTime = 5e-5
+
+    def last(self, duration: float) -> int:
+        """Number of the last sample of a scene that lasts ``duration`` (s), the one at ignition being number 0."""
+        return int(duration / self.interval * (1.0 + _ROUNDING))
 
 
 class AgreementTable(Table):
