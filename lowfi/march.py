@@ -213,17 +213,20 @@ def advance(system, plan, tolerance, marks, loop):
         return OUT_OF_STEPS
     if not step(system, plan, tolerance, loop):
         return UNDERFLOW
-    if not _finite(loop.end):
+    if not _has_finite_energy(loop.end, slot.modal_size(system.walls)):
         return NOT_FINITE
     ending.follow(system, marks, loop, ending.Step(clock[BEGAN], clock[NOW], clock[SIZE]))
     return SAMPLED
 
 
 @inlined
-def _finite(state):
+def _has_finite_energy(state, modal):
+    """Whether speeds have squares that are still numbers, and all else is one."""
     total = 0.0
-    for j in range(state.size):
-        total += abs(state[j])
+    for j in range(slot.DYNAMIC_SIZE):
+        total += state[j] * state[j]
+    for j in range(slot.STATE_SIZE, slot.STATE_SIZE + modal):
+        total += state[j] * state[j]
     return np.isfinite(total)
 
 

@@ -80,7 +80,7 @@ class Run:
         while self.taken <= self.end and not self.message:
             self._advance(min(self.taken - 1 + stride, self.end))
             if progress:
-                progress(min(1.0, (self.taken - 1) / self.end))
+                progress(self.taken / (self.end + 1))
 
     def _advance(self, number: int) -> None:
         """Take samples up to ``number``, fewer where nothing is left to learn."""

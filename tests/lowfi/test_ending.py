@@ -199,6 +199,8 @@ def test_jam_on_both_sides_of_its_duration(fall, jams, interval):
 def test_a_jam_is_found_with_few_samples(interval):
     """A push of 5 N leaves the reference's payload where it is; in an ensemble too."""
     asked = REFERENCE.condition("phi15").replace({"thrust.peak": 5.0})
-    run, case = lowfi.run(asked.replace({"output.interval": interval})), lowfi.run_many(asked, [{"output.interval": interval}])
+    seen, case = [], lowfi.run_many(asked, [{"output.interval": interval}])
+    run = lowfi.run(asked.replace({"output.interval": interval}), progress=seen.append)
+    assert seen == sorted(seen) and seen[-1] == 1.0
     assert run.status == "jammed" == str(case.status.values[0]) and int(case.steps.values[0]) == run.cost["steps"]
     assert run.time[-1] < 0.045  # 5 ms after the thrust fell below 1 % of its peak, at 24 ms, and not at the scene's end
