@@ -6,8 +6,8 @@ of text and a NumPy archive of plain arrays, no code::
     tipoff checkpoint <FORMAT> <SHA-256 of all that follows>
     <.npz: ``header``, JSON that says which run this is, and one array per evolving value, by its dotted name>
 
-It is taken at a sample, replaced atomically, and read only by a run of the same scene, numerics, program and constant arrays. The
-processor is not asked for: on another kind the run goes on, but its last bits are those of both.
+It is taken between two steps, replaced atomically, and read only by a run of the same scene, numerics, program and constant
+arrays. The processor is not asked for: on another kind the run goes on, but its last bits are those of both.
 """
 
 import hashlib
@@ -23,8 +23,9 @@ import numpy as np
 from scenes.files import content_hash, replacing, source_hash
 from scenes.trajectory import versions
 
-FORMAT = 2
-CONSTANT = ("scene", "system", "stepping", "team", "pool", "marks", "last", "walls", "watch")  # what a Loop is built from
+FORMAT = 3
+# What a Loop is built from.
+CONSTANT = ("scene", "system", "stepping", "team", "pool", "marks", "exit", "last", "most", "walls", "watch")
 _SOURCES = ("scenes", "meshes", "highfi")
 _LINE = re.compile(rb"tipoff checkpoint (\d+) ([0-9a-f]{64})")
 _OTHER = {"scene": "belongs to another scene", "numerics": "belongs to a run with other numerics",

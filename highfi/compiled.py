@@ -20,5 +20,5 @@ def compiled_effects(scene: Scene, numerics: Numerics | None = None) -> dict[str
     numerics = numerics or Numerics()
     system = build(scene, numerics, prepare(scene, numerics))
     loop = Loop(scene, system, choose(system, scene, numerics))
-    code = machine_code(advance, (*loop.arguments(), loop.team, 0, 0, 0, 1e-9))
+    code = machine_code(advance, (*loop.arguments(), *loop.followed(), loop.team, 0, 0, 0, 1e-9))
     return {effect: contains(code, law) for effect, law in LAWS.items()}

@@ -8,7 +8,7 @@ from typing import Callable
 
 import numpy as np
 
-from highfi import observe, records, samples, watch, worst
+from highfi import ending, observe, records, samples, watch, worst
 from highfi.checkpoint import Checkpoint, restore
 from highfi.contact import FASTEST_APPROACH
 from highfi.fit import check_fit
@@ -26,13 +26,17 @@ from highfi.system import System, build, initial_state
 from highfi.team import gather, processors
 from scenes import ledger, outcome, rotation
 from scenes.effects.friction import require_two_step
+from scenes.ending import DONE, WINDOW
 from scenes.fidelity import FINITE_ELEMENTS
 from scenes.scene import Scene
 from scenes.trajectory import Trajectory
 
 _STOP_RATIO = 0.1  # of the transverse scale: a run that loses so much energy is not a result
 _ELEMENTS_PER_THREAD = 4000
-_LOOK_EVERY = 20  # samples between two looks for exit or jam
+_STEPS_PER_LOOK = 250  # steps at most from one look at the balances to the next, at samples or between
+_REPORT_EVERY = 20  # looks from one report of progress to the next
+_BEYOND = 1e-4  # s after the settled window in which samples are still taken, for whoever averages over it from samples
+_ROUNDING = 1e-9
 _MESHES: dict[tuple, RailMesh] = {}
 _MESH_LOCK = threading.Lock()
 
@@ -105,8 +109,9 @@ class Loop:
         self.state, self.active = initial_state(system)
         self.walls = np.unique(system.surface.facets)
         self.marks = outcome.milestones(scene, system.model)
-        self.last = round(scene.duration / scene.output.interval)
-        self.end, self.wall, self.cpu = self.last, 0.0, 0.0
+        self.last, self.most = scene.output.last(scene.duration), int(scene.duration / stepping.dt_s * (1.0 + _ROUNDING))
+        self.exit, self.ending = ending.build(system)
+        self.wall, self.cpu, self.looks = 0.0, 0.0, 0
         self.steps, self.damping, self.scale, self.other_cpu, self.message = 0, 0.0, 0.0, 0.0, ""
         self.rows, self.work, self.forces, self.gauges = [], [], [], []
         self.watch, self.worst = watch.build(system, scene.rail.material, stepping.steps_per_sample, threads), worst.nothing()
@@ -117,6 +122,10 @@ class Loop:
         return (s.rail, s.surface, s.faces, m.payload, s.frame, s.drive, m.thrust.pulses, m.thrust.curve, m.thrust_offset,
                 m.penalty, m.friction, m.gravity, self.state, self.active)
 
+    def followed(self) -> tuple:
+        """Records by which the kernels follow the payload off the rail, in their order."""
+        return self.exit, self.marks, self.ending
+
     def begin(self) -> None:
         """First forces, velocities set back to -1/2 so that they pass through the given ones at t = 0, and the first sample.
 
@@ -126,36 +135,53 @@ class Loop:
         evaluate(s.rail, s.surface, s.faces, m.payload, s.frame, m.penalty, m.friction, self.state, self.active,
                  self.team, self.stepping.dt_s)
         self._kick(-0.5 * self.stepping.dt_s)
+        ending.begin(self.exit, m.payload, s.frame, self.state, self.marks, self.ending.book)
         self.advance_steps(0)
-        self._sample()
+        self._look(keep=True)
 
     def march(self, progress, kept: Checkpoint | None = None, observer=None) -> None:
-        """Advance sample by sample until something ends the run."""
+        """Advance look by look until something ends the run."""
         began, cpu = clock.perf_counter() - self.wall, clock.thread_time() - self.cpu
         if observer:
             observer(self)
-        while len(self.rows) <= self.end and not self.message:
-            self.advance_one_sample()
-            if observer:
+        while self._goes_on():
+            taken = len(self.rows)
+            self._advance_one_look()
+            if observer and len(self.rows) > taken:
                 observer(self)
-            if len(self.rows) % _LOOK_EVERY == 0:
-                self.end = min(self.end, self._end())
-                if progress:
-                    progress(min(1.0, (len(self.rows) - 1) / self.end))
+            if progress and self.looks % _REPORT_EVERY == 0:
+                end = min(self.most * self.stepping.dt_s, self.ending.book[WINDOW] + outcome.SETTLE_WINDOW)
+                progress(min(1.0, self.steps * self.stepping.dt_s / end))
             self.wall, self.cpu = clock.perf_counter() - began, clock.thread_time() - cpu
             if kept:
                 kept.keep(self)
 
+    def _goes_on(self) -> bool:
+        """Whether a step is left to take, be it only for a sample that comes soon."""
+        book, next_sample = self.ending.book, len(self.rows) * self.stepping.steps_per_sample
+        if self.message or self.steps >= self.most:
+            return False
+        return book[DONE] == np.inf or next_sample * self.stepping.dt_s <= book[DONE] + _BEYOND
+
     def advance_one_sample(self) -> None:
-        """Step to the next sample and take it."""
-        self.advance_steps(self.stepping.steps_per_sample)
-        self._sample()
+        """Step to the next sample and take it; less where something goes wrong before."""
+        taken = len(self.rows)
+        while len(self.rows) == taken and not self.message:
+            self._advance_one_look()
+
+    def _advance_one_look(self) -> None:
+        """Step to the next sample, or not so far where that is long, and look at the balances there."""
+        there, left = self.stepping.steps_per_sample - self.steps % self.stepping.steps_per_sample, self.most - self.steps
+        count = min(there, _STEPS_PER_LOOK, left if left > 0 else there)
+        self.advance_steps(count)
+        self.looks += 1
+        self._look(keep=count == there)
 
     def advance_steps(self, count: int) -> None:
         """``count`` steps, by all threads of the team."""
         def part(thread):
             began = clock.thread_time()
-            damping = advance(*self.arguments(), self.team, thread, self.steps, count, self.stepping.dt_s)
+            damping = advance(*self.arguments(), *self.followed(), self.team, thread, self.steps, count, self.stepping.dt_s)
             return damping, clock.thread_time() - began
 
         others = [self.pool.submit(part, thread) for thread in range(1, self.team.size)]
@@ -163,14 +189,15 @@ class Loop:
         self.other_cpu += sum(other.result()[1] for other in others)
         self.steps += count
 
-    def _sample(self) -> None:
+    def _look(self, keep: bool) -> None:
+        """See whether the run may go on, and ``keep`` what is seen as a sample."""
         state, step = self.state, self.stepping.dt_s
         before = observe.moving(state)
         self._kick(step)
         row = observe.sample(self.system, self.team, state, before, observe.moving(state))
         observe.restore(state, before)
         self.message = self._fault(row)
-        if np.isfinite(row).all():
+        if keep and np.isfinite(row).all():
             self.rows.append(row)
             self.work.append(state.work.copy())
             self.forces.append(state.face_force @ rotation.matrices(state.platform.quaternion[None])[0].T)
@@ -227,15 +254,6 @@ class Loop:
     def _motion(self) -> outcome.Motion:
         return samples.motion(np.array(self.rows), self.scene.output.interval, self.system.body_offset)
 
-    def _end(self) -> int:
-        """Number of the last sample needed, as far as known now."""
-        moved = self._motion()
-        exit_at = outcome.exit_time(moved, self.marks)
-        if exit_at is None:
-            return len(self.rows) - 1 if outcome.is_jammed(moved, self.marks) else self.last
-        end = outcome.window_start(exit_at, self.marks) + outcome.SETTLE_WINDOW
-        return int(np.ceil(end / self.scene.output.interval)) + 2
-
     def _stress(self) -> dict:
         return watch.record(self.watch, self.system, self.worst, self.scene.rail.material.yield_strength)
 
@@ -243,7 +261,7 @@ class Loop:
         """The result of the samples taken so far."""
         rows, moved = np.array(self.rows), self._motion()
         total, transverse = samples.ledgers(rows, np.array(self.work))
-        status, result = outcome.judge(moved, self.marks)
+        status, result = ending.found(self.system, self.ending.book)
         if self.message:
             status, result = "diverged", outcome.Outcome()
         linear, angular = samples.momentum_errors(rows, moved, self.system.model.payload.mass)

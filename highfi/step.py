@@ -18,6 +18,7 @@ Nodes are moved and loaded, and contact is searched, by all threads of the team;
 from highfi.contact import collect_contact, contact_forces
 from highfi.damping import begin_damping, collect_damping
 from highfi.elastic import elastic_force, finish_load, hold_blocks, move_and_load
+from highfi.ending import follow
 from highfi.loads import add_external_impulse, add_work, pull_on_nodes, thrust_load
 from highfi.pose import drift_body, seen_from_frame, small_turn, triple
 from highfi.records import (DAMPING_RATIO, FRAME_VELOCITY, FRICTION_FORCE, MOMENT, MOMENT_ON_RAIL, NORMAL_FORCE, PULL, RATE,
@@ -143,11 +144,11 @@ def _drift_frame(drive, frame, state, pose, dt):
 
 @kernel
 def advance(rail, surface, faces, payload, frame, drive, pulses, curve, offset, penalty, friction, gravity, state, active,
-            team, thread, first_step, steps, dt):
+            exit_, marks, ending, team, thread, first_step, steps, dt):
     """Take ``steps`` steps from step number ``first_step``, as one ``thread`` of ``team``; all its threads must be called.
 
-    Returns the largest step * friction damping / mass met. On entry and on return forces are those of the present places and work
-    is counted up to the present time.
+    Returns the largest step * friction damping / mass met; the book of ``ending`` is told of each step. On entry and on return
+    forces are those of the present places and work is counted up to the present time.
     """
     damping = 0.0
     for n in range(first_step, first_step + steps):
@@ -158,6 +159,7 @@ def advance(rail, surface, faces, payload, frame, drive, pulses, curve, offset, 
             pose = seen_from_frame(state, payload, frame)
             add_work(rail, surface, payload, frame, drive, friction, gravity, state, active, pose, thrust, 0.5 * dt, dt)
             drift_bodies(payload, frame, drive, gravity, state, pose, dt)
+            follow(exit_, payload, frame, state, marks, ending.book, n * dt, dt)
             deal(team)
         meet(team)
         move_and_load(rail, frame, state, team, thread, dt)

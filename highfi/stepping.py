@@ -1,4 +1,5 @@
-"""The step of a run: the largest one below the limit that lands on every sample.
+"""The step of a run: the largest one below the limit that lands on every sample, and is the same for every sampling interval of
+whole times ``RASTER``.
 
 The limit comes from the assembled rail, whose highest frequency lies well below that of its worst element.
 """
@@ -10,6 +11,10 @@ from highfi.limits import contact_frequency_squared, damping_ratio, step_limit, 
 from highfi.numerics import Numerics
 from highfi.system import System
 from scenes.scene import Scene
+
+
+RASTER = 5e-5  # s, the interval of a scene that names none
+_ROUNDING = 1e-9
 
 
 @dataclass(frozen=True)
@@ -40,6 +45,14 @@ def choose(system: System, scene: Scene, numerics: Numerics) -> Stepping:
     assembled = timestep.operator_bound(system.operator).upper if system.operator.free.any() else by_elements
     damping = system.rail.damping
     limit, by_elements = (step_limit(damping, rail, contact) for rail in (assembled, by_elements))
-    step = timestep.choose_step(limit, numerics.safety, scene.output.interval, numerics.step)
-    return Stepping(step, limit, by_elements, numerics.safety, round(scene.output.interval / step),
-                    damping_ratio(damping, assembled, contact))
+    interval = scene.output.interval
+    divided = interval if numerics.step else _divided(interval, numerics.safety * limit)
+    step = timestep.choose_step(limit, numerics.safety, divided, numerics.step)
+    return Stepping(step, limit, by_elements, numerics.safety, round(interval / step), damping_ratio(damping, assembled, contact))
+
+
+def _divided(interval: float, largest: float) -> float:
+    """The time (s) that a step of at most ``largest`` (s) divides: ``RASTER`` where that divides the interval, so that how coarsely
+    a run is sampled changes no bit of it."""
+    count = round(interval / RASTER)
+    return RASTER if largest <= RASTER and count > 0 and abs(interval / RASTER - count) <= _ROUNDING * count else interval

@@ -11,11 +11,11 @@ from scenes.outcome import Motion
 _ENTRY = {name: index for index, name in enumerate(ledger.ENTRIES)}
 
 
-def motion(rows: np.ndarray, first: int, interval: float) -> Motion:
-    """Motion of ``rows`` (n, SAMPLE_SIZE), the first of which is sample number ``first``."""
+def motion(rows: np.ndarray, interval: float) -> Motion:
+    """Motion of ``rows`` (n, SAMPLE_SIZE), ``interval`` (s) apart from ignition on."""
     parts = [rows[:, body + begin:body + begin + size] for body in (state.PAYLOAD, state.PLATFORM)
              for begin, size in ((state.PLACE, 3), (state.VELOCITY, 3), (state.QUATERNION, 4), (RATE, 3))]
-    return Motion(np.arange(first, first + len(rows)) * interval, *parts)
+    return Motion(np.arange(len(rows)) * interval, *parts)
 
 
 def ledgers(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -8,18 +8,16 @@ import numpy as np
 
 from lowfi import bow, march, plan, settle, state, system
 from lowfi.numerics import Numerics
-from lowfi.run import end_of, solved
+from lowfi.run import solved
 from lowfi.walls import record as wall_record
+from scenes import ending, outcome
 from scenes import model as models
-from scenes import outcome
 from scenes.calibration import Calibration
 from scenes.faults import SceneError
 from scenes.model import Built
 from scenes.scene import Scene
 from scenes.variation import Variations
 from scenes.walls import Walls
-
-_STATUS = {settle.EXITED: "exited", settle.TIME_LIMIT: "time_limit"}
 
 
 class Case(NamedTuple):
@@ -84,19 +82,18 @@ class Family:
 
     def _group(self, groups: dict, built: Built) -> _Group:
         scene, model = built.scene, built.model
-        key = (id(scene.thrust), scene.duration, id(scene.output), id(model.contact), id(model.friction), id(model.gravity),
-               id(model.platform), id(model.thermal), id(built.nominal), model.thrust_offset is None)
+        # All that a model has but what ``_stacked`` takes from each case, and the damping of rails that vibrate.
+        shared = model._replace(payload=None, faces=None, initial=None, thrust_offset=model.thrust_offset is None)
+        key = (_content(shared), _content(built.nominal), scene.thrust.kind, scene.duration,
+               scene.rail.damping and scene.rail.damping.record())
         if key not in groups:
             same = scene.thrust is self.base.scene.thrust and scene.duration == self.base.scene.duration
             marks = self.marks if same else outcome.milestones(scene, model)
-            # The records keep alive what the key names by address.
-            kept = Built(scene.model_copy(), model, built.nominal)
-            groups[key] = _Group(kept, marks._replace(jam_speed=outcome.jam_speed(model)), self._plan(scene, model), [], [])
+            # The next row may be written over the tables of this one.
+            kept = Built(scene.model_copy(deep=True), model, built.nominal)
+            groups[key] = _Group(kept, marks._replace(jam_speed=outcome.jam_speed(model)),
+                                 plan.make(model, scene.duration, self.numerics), [], [])
         return groups[key]
-
-    def _plan(self, scene: Scene, model) -> march.Plan:
-        interval = scene.output.interval
-        return plan.make(model, interval, end_of(scene) * interval, self.numerics)
 
     def kernels(self, table: Sequence[Mapping[str, Any]]) -> list[Callable[[], np.ndarray]]:
         """Calls of the bare kernel for the groups of ``table``, set up beforehand: each returns ``settle``'s results.
@@ -114,15 +111,12 @@ class Family:
         under_pads = wall_record.under_pads(group.built.scene, model, self.walls, self.numerics.modes)
         under_law = bow.under_pads(group.built.scene, model, self.walls)
         common, first = system.build(model, ledger=False, walls=under_pads, bow=under_law), plan.first_step(planned)
-        ends = settle.Ends(end_of(group.built.scene), marks.settled_thrust, marks.spent_thrust, marks.constant_thrust,
-                           marks.jam_speed, max(1, round(outcome.JAM_DURATION / planned.interval)))
-        loop, room, cases = (march.ready(common, state.initial(model), first), settle.scratch(planned.interval),
-                             _stacked(common, group))
+        control = settle.Control(self.numerics.relative_tolerance, self.numerics.speed_floor, first)
+        loop, cases = march.ready(common, state.initial(model), first), _stacked(common, group)
         results = np.zeros((len(group.cases), settle.RESULT_SIZE))
 
         def call() -> np.ndarray:
-            settle.settle(common, planned, self.numerics.relative_tolerance, self.numerics.speed_floor, ends, cases, first, loop,
-                          room, results)
+            settle.settle(common, planned, control, marks, cases, loop, results)
             return results
 
         return call
@@ -134,15 +128,10 @@ class Family:
         return [(number, self._case(row, result, share)) for (number, row), result in zip(group.rows, results)]
 
     def _case(self, row: Mapping[str, Any], result: np.ndarray, share: float) -> Case:
-        status = int(result[settle.STATUS])
-        if status == settle.LEFT_OPEN:
+        if result[settle.LEFT_OPEN]:
             return self._whole(row)
-        found = outcome.Outcome()
-        if status == settle.EXITED:
-            found = outcome.settled(float(result[settle.EXIT]), float(result[settle.WINDOW]),
-                                    result[settle.VELOCITY:settle.VELOCITY + 3], result[settle.RATE:settle.RATE + 3],
-                                    *settle.bodies(result))
-        return Case(_STATUS[status], "", found, int(result[settle.TAKEN_STEPS]), share)
+        status, found = ending.found(result[settle.BOOK:])
+        return Case(status, "", found, int(result[settle.TAKEN_STEPS]), share)
 
     def _whole(self, row: Mapping[str, Any]) -> Case:
         try:
@@ -152,16 +141,24 @@ class Family:
         return Case(found.status, found.message, found.outcome, found.cost["steps"], found.cost["wall_s"])
 
 
+def _content(record: Any) -> Any:
+    """What a record of records, arrays and numbers holds, to the last bit, as something to compare and to hash."""
+    if record is None:
+        return None
+    if isinstance(record, tuple):
+        return type(record), *(_content(part) for part in record)
+    values = np.asarray(record)
+    return values.dtype.str, values.shape, values.tobytes()
+
+
 def _stacked(common: system.System, group: _Group) -> settle.Cases:
-    models_, nominal = group.cases, group.built.nominal
+    models_ = group.cases
     centre = np.stack([model.faces.centre for model in models_])
     faces = np.repeat(common.faces[None], len(models_), axis=0)
     faces[:, :, system.CENTRE:system.CENTRE + 3] = centre
-    edges = centre.copy()
-    edges[:, :, 0] -= nominal.half_length
     offset = common.thrust_offset is not None
     return settle.Cases(
         np.array([model.payload.mass for model in models_]), np.stack([model.payload.inverse_inertia for model in models_]),
-        faces, edges, np.array([model.thrust_offset.direction for model in models_]) if offset else None,
+        faces, np.array([model.thrust_offset.direction for model in models_]) if offset else None,
         np.array([model.thrust_offset.arm for model in models_]) if offset else None,
         np.stack([state.initial(model) for model in models_]), np.sqrt((centre**2).sum(axis=2).max(axis=1)))

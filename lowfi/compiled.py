@@ -1,7 +1,7 @@
 """Which effects the compiled time loop of a scene really contains, read from its machine code."""
 
 from lowfi import bow, equations, grip, touch
-from lowfi.march import march
+from lowfi.march import Sampling, march
 from lowfi.numerics import Numerics
 from lowfi.run import Run
 from lowfi.walls import modes, solution
@@ -27,4 +27,6 @@ def compiled_effects(scene: Scene, numerics: Numerics | None = None, walls: Wall
 def compiled_code(scene: Scene, numerics: Numerics | None = None, walls: Walls | None = None) -> bytes:
     """Object code of the time loop."""
     begun = Run(scene, numerics or Numerics(), walls)
-    return machine_code(march, (begun.system, begun.plan, begun.tolerance, begun.loop, 0, True, begun.rows, begun.forces))
+    sampling = Sampling(begun.interval, begun.last, 0, begun.whole)
+    return machine_code(march, (begun.system, begun.plan, begun.tolerance, begun.marks, begun.loop, sampling, begun.rows,
+                                begun.forces))

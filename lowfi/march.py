@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from lowfi import ending
 from lowfi import state as slot
 from lowfi.accuracy import error_ratio
 from lowfi.dormand_prince import STABLE_RADIUS, STAGES, attempt, interpolate
@@ -11,16 +12,17 @@ from lowfi.events import ALONG, SOONEST, SURVEY_SIZE, felt, first_event, on_rail
 from lowfi.grip import GRIP_SIZE, let_go
 from lowfi.limits import fastest_rate
 from lowfi.regrip import grasp, regrip
-from lowfi.sample import observe, rearmost_edge
+from lowfi.sample import observe
 from lowfi.walls.limit import stiffness_and_damping
 from lowfi.walls.record import states
 from lowfi.walls.survey import energy as energy_on_walls
 from lowfi.walls.survey import on_walls, while_hanging
+from scenes import ending as books
 from scenes.jit import inlined, kernel
 from scenes.memory import zeros
 
-# What ``march`` returns: all samples taken, or why it stopped before.
-SAMPLED, PASSED, UNDERFLOW, OUT_OF_STEPS, NOT_FINITE = range(5)
+# What ``march`` returns: all samples taken, nothing left to learn, or why it stopped before.
+SAMPLED, ENDED, UNDERFLOW, OUT_OF_STEPS, NOT_FINITE = range(5)
 # Slots of Loop.clock: ends of the last step and its size before an event cut it (s), the fraction kept, step the controller
 # wants (s), bound of the contact's rates at the end (1/s), smallest proven limit met (s), largest step over its limit (1), largest
 # friction and damping power (W, not above zero).
@@ -33,20 +35,31 @@ _SPARE = 0.1  # largest error ratio at which a step may be cut by interpolation,
 # back freely in one step the ledger misses the square of it.
 _NEAR_END = 1e-4
 _LANDINGS = 40  # cuts of one step
+_BEYOND = 2  # samples after the end of the settled window, for whoever averages over it from samples
 
 
 class Plan(NamedTuple):
-    """Times (s) a step must end at, the longest step (s) before each, the time between samples (s), the step budget."""
+    """Times (s) a step must end at, the last one the end of the scene, the longest step (s) before each, the step budget."""
 
     stops: np.ndarray
     caps: np.ndarray
-    interval: float
     maximum_steps: int
+
+
+class Sampling(NamedTuple):
+    """Time between samples (s), number of the last one in the scene, number of the one to stop at, and whether the run goes on
+    although nothing is left to learn."""
+
+    interval: float
+    last: int
+    number: int
+    whole: bool
 
 
 class Loop(NamedTuple):
     """What evolves: states at the ends of the last step, its stages, surveys of its ends, faces on the rail, those felt in the last
-    step and their grips in it (None where friction does not stick), clock and counts."""
+    step and their grips in it (None where friction does not stick), clock and counts, and the book of exit, settled window and jam
+    (``scenes.ending``)."""
 
     start: np.ndarray
     end: np.ndarray
@@ -59,6 +72,7 @@ class Loop(NamedTuple):
     clock: np.ndarray
     count: np.ndarray
     work: np.ndarray
+    book: np.ndarray
 
 
 def ready(system, state: np.ndarray, first_step: float) -> Loop:
@@ -69,7 +83,7 @@ def ready(system, state: np.ndarray, first_step: float) -> Loop:
     grip = zeros((faces, GRIP_SIZE)) if system.sticking is not None else None
     loop = Loop(zeros(state_), zeros(state_), zeros((STAGES, size)), zeros(survey_), zeros(survey_),
                 np.zeros(faces, dtype=np.bool_), np.zeros(faces, dtype=np.bool_), grip, zeros((CLOCK_SIZE,)),
-                np.zeros(COUNT_SIZE, dtype=np.int64), zeros(state_))
+                np.zeros(COUNT_SIZE, dtype=np.int64), zeros(state_), zeros((books.BOOK_SIZE,)))
     reset(system, state, first_step, loop)
     return loop
 
@@ -92,6 +106,7 @@ def reset(system, state, first_step, loop):
     loop.stages[:] = 0.0
     loop.before[:] = 0.0
     loop.after[:] = 0.0
+    books.reset(loop.book)
     _let_go(loop.grip)
     _survey(system, loop)
     on_rail(system.contact, system.rail_start, system.rail_end, loop.after, loop.engaged)
@@ -152,17 +167,17 @@ def _rate_on_walls(walls, system, loop, state):
 
 
 @kernel
-def march(system, plan, tolerance, loop, last, until_passed, rows, forces):
-    """Take samples up to number ``last`` into ``rows`` (n, SAMPLE_SIZE) and ``forces`` (n, f, 3), or, if ``until_passed``, up to
-    the first one with every trailing edge past the rail end."""
-    clock, count = loop.clock, loop.count
-    for number in range(count[TAKEN], last + 1):
-        time = number * plan.interval
-        while clock[NOW] < time:
-            if count[STEPS] >= plan.maximum_steps:
-                return OUT_OF_STEPS
-            if not step(system, plan, tolerance, loop):
-                return UNDERFLOW
+def march(system, plan, tolerance, marks, loop, sampling, rows, forces):
+    """Take samples up to ``sampling.number`` into ``rows`` (n, SAMPLE_SIZE) and ``forces`` (n, f, 3), and after the last one go on
+    to the scene's end; or less, when nothing is left to learn of the settled window or of a jam."""
+    clock, count, end = loop.clock, loop.count, plan.stops[-1]
+    for taken in range(count[TAKEN], sampling.number + 1):
+        time = min(taken * sampling.interval, end)
+        status = _reach(system, plan, tolerance, marks, loop, sampling.whole, time)
+        if status == SAMPLED and not sampling.whole and time > loop.book[books.DONE] + _BEYOND * sampling.interval:
+            status = ENDED
+        if status != SAMPLED:
+            return status
         if time == clock[NOW]:
             slot.copy_all(loop.end, loop.work, slot.modal_size(system.walls))
         else:
@@ -170,12 +185,49 @@ def march(system, plan, tolerance, loop, last, until_passed, rows, forces):
                         slot.modal_size(system.walls), loop.work)
         # Before the first step nothing is felt yet, and every face may press.
         felt_ = loop.active if count[STEPS] > 0 else loop.engaged
-        if not observe(system, loop.engaged, felt_, loop.grip, loop.work, rows[number], forces[number]):
+        if not observe(system, loop.engaged, felt_, loop.grip, loop.work, rows[taken], forces[taken]):
             return NOT_FINITE
         count[TAKEN] += 1
-        if until_passed and rearmost_edge(system.faces, system.platform, rows[number]) > system.rail_end:
-            return PASSED
+    if sampling.number < sampling.last:
+        return SAMPLED
+    return _reach(system, plan, tolerance, marks, loop, sampling.whole, end)
+
+
+@inlined
+def _reach(system, plan, tolerance, marks, loop, whole, time):
+    """Step until ``time`` (s) is reached: SAMPLED, or why it is not."""
+    while loop.clock[NOW] < time:
+        if loop.book[books.DONE] < np.inf and not whole:
+            return ENDED
+        status = advance(system, plan, tolerance, marks, loop)
+        if status != SAMPLED:
+            return status
     return SAMPLED
+
+
+@kernel
+def advance(system, plan, tolerance, marks, loop):
+    """Take one step and enter into the book what it tells: SAMPLED, or why there is none."""
+    clock = loop.clock
+    if loop.count[STEPS] >= plan.maximum_steps:
+        return OUT_OF_STEPS
+    if not step(system, plan, tolerance, loop):
+        return UNDERFLOW
+    if not _has_finite_energy(loop.end, slot.modal_size(system.walls)):
+        return NOT_FINITE
+    ending.follow(system, marks, loop, ending.Step(clock[BEGAN], clock[NOW], clock[SIZE]))
+    return SAMPLED
+
+
+@inlined
+def _has_finite_energy(state, modal):
+    """Whether speeds have squares that are still numbers, and all else is one."""
+    total = 0.0
+    for j in range(slot.DYNAMIC_SIZE):
+        total += state[j] * state[j]
+    for j in range(slot.STATE_SIZE, slot.STATE_SIZE + modal):
+        total += state[j] * state[j]
+    return np.isfinite(total)
 
 
 @kernel

@@ -7,23 +7,23 @@ import numpy as np
 
 from lowfi import balance, bow, march, plan, state, system
 from lowfi.accuracy import Tolerance
-from lowfi.march import EVALUATIONS, EVENTS, LIMIT, LIMIT_USED, NOW, REJECTED, STEPS, TAKEN
+from lowfi.march import EVALUATIONS, EVENTS, LIMIT, LIMIT_USED, NOW, REJECTED, STEPS, TAKEN, Sampling
 from lowfi.models import require
 from lowfi.numerics import Numerics
 from lowfi.walls import record as wall_record
-from lowfi.sample import SAMPLE_SIZE, relative_axial_speed
+from lowfi.sample import SAMPLE_SIZE
+from scenes import ending, outcome
 from scenes import model as models
-from scenes import outcome
 from scenes.calibration import Calibration
 from scenes.fidelity import COMPLIANT
 from scenes.scene import Scene
 from scenes.trajectory import Trajectory
 from scenes.walls import Walls, model_of
 
+_STRIDE = 5e-3  # s, from one report of progress to the next
 _REASONS = {march.UNDERFLOW: "no step is short enough: the state is no longer finite or its equations too stiff",
             march.NOT_FINITE: "a value became infinite",
             march.OUT_OF_STEPS: "the step budget is spent (numerics.maximum_steps)"}
-_BEYOND_WINDOW = 2  # samples past the settled window, for the spline that averages over it
 
 
 def run(scene: Scene, model: str = COMPLIANT, *, walls: Walls | None = None, calibration: Calibration | None = None,
@@ -59,80 +59,60 @@ def solved(scene: Scene, calibration: Calibration | None = None, numerics: Numer
     return result
 
 
-def end_of(scene: Scene) -> int:
-    """Number of the last sample before the scene's duration is over."""
-    return max(1, round(scene.duration / scene.output.interval))
-
-
 class Run:
-    """State of a run in progress and its samples."""
+    """State of a run in progress and its samples, up to number ``end`` as far as is known; one that is ``whole`` goes on to the end
+    of the scene although nothing is left to learn of exit and jam."""
 
     def __init__(self, scene: Scene, numerics: Numerics, walls: Walls | None = None):
         self.scene, self.numerics, self.walls = scene, numerics, walls
         self.model = model = models.build(scene)
         self.marks = outcome.milestones(scene, model)
         self.interval = scene.output.interval
-        self.end = end_of(scene)
-        self.plan = plan.make(model, self.interval, self.end * self.interval, numerics)
+        self.end = scene.output.last(scene.duration)
+        self.plan = plan.make(model, scene.duration, numerics)
         reach = float(np.sqrt((model.faces.centre**2).sum(axis=1).max()))
         self.tolerance = Tolerance(numerics.relative_tolerance, numerics.speed_floor, reach)
         self.system = system.build(model, walls=wall_record.under_pads(scene, model, walls, numerics.modes),
                                    bow=bow.under_pads(scene, model, walls))
         self.loop = march.ready(self.system, state.initial(model), plan.first_step(self.plan))
         self.rows, self.forces = np.zeros((self.end + 1, SAMPLE_SIZE)), np.zeros((self.end + 1, model.faces.axis.size, 3))
-        self.taken, self.left, self.message = 0, False, ""
+        self.last, self.taken, self.whole, self.message = self.end, 0, False, ""
 
     def begin(self) -> None:
         """Take the first sample; compiles the kernels, or loads them from disk."""
         self._advance(0)
 
     def march(self, progress) -> None:
-        """Advance look by look until something ends the run."""
-        stride = max(1, round(outcome.JAM_DURATION / self.interval))
+        """Advance, some samples at a time, until something ends the run."""
+        stride = max(1, round(_STRIDE / self.interval))
         while self.taken <= self.end and not self.message:
             self._advance(min(self.taken - 1 + stride, self.end))
             if progress:
-                progress(min(1.0, (self.taken - 1) / self.end))
+                progress(self.taken / (self.end + 1))
 
     def _advance(self, number: int) -> None:
-        """Take samples up to ``number``, fewer where the payload leaves the rail; then look what is known of the end."""
-        watched = not self.left
-        status = march.march(self.system, self.plan, self.tolerance, self.loop, number, watched, self.rows, self.forces)
+        """Take samples up to ``number``, fewer where nothing is left to learn."""
+        sampling = Sampling(self.interval, self.last, number, self.whole)
+        status = march.march(self.system, self.plan, self.tolerance, self.marks, self.loop, sampling, self.rows, self.forces)
         self.taken = int(self.loop.count[TAKEN])
         if status in _REASONS:
             self.message = f"{_REASONS[status]}, at {self.loop.clock[NOW]:.6g} s"
-        elif watched:
-            self._look(status == march.PASSED)
-
-    def _look(self, passed: bool) -> None:
-        if not passed and self._is_moving():
-            return
-        recent = self._motion(max(0, self.taken - 2 - round(2.0 * outcome.JAM_DURATION / self.interval)))
-        if passed:
-            exit_at = outcome.exit_time(recent, self.marks)
-            self.left = exit_at is not None
-            if self.left:
-                settled = outcome.window_start(exit_at, self.marks) + outcome.SETTLE_WINDOW
-                self.end = min(self.end, int(np.ceil(settled / self.interval)) + _BEYOND_WINDOW)
-        elif outcome.is_jammed(recent, self.marks):
+        elif status == march.ENDED:
             self.end = self.taken - 1
 
-    def _is_moving(self) -> bool:
-        """Whether the payload cannot be jammed by now, judged cheaply."""
-        last = self.taken - 1
-        return not (outcome.may_be_jammed(last * self.interval, self.marks)
-                    and abs(relative_axial_speed(self.system.platform, self.rows[last])) < 2.0 * self.marks.jam_speed)
+    def judged(self) -> tuple[str, outcome.Outcome]:
+        """Status and outcome of the run so far."""
+        return ("diverged", outcome.Outcome()) if self.message else ending.found(self.loop.book)
 
-    def _motion(self, first: int = 0) -> outcome.Motion:
-        return balance.motion(self.rows[first:self.taken], first, self.interval)
+    def motion(self) -> outcome.Motion:
+        """Motion of the samples taken so far."""
+        return balance.motion(self.rows[:self.taken], self.interval)
 
     def trajectory(self) -> Trajectory:
         """The result of the samples taken so far."""
-        moved, rows = self._motion(), self.rows[:self.taken]
+        moved, rows = self.motion(), self.rows[:self.taken]
         total, across = balance.ledgers(rows)
-        status, result = outcome.judge(moved, self.marks)
-        if self.message:
-            status, result = "diverged", outcome.Outcome()
+        status, result = self.judged()
         pressed = outcome.pressed_at_ignition(self.model.faces, self.forces[0])
         message = "; ".join(filter(None, [self.message, pressed]))
         return Trajectory(

@@ -66,17 +66,6 @@ def _place(state, body, base, row):
     _copy(state[PLATFORM:], base, row[PLATFORM:])
 
 
-@kernel
-def relative_axial_speed(platform, row):
-    """X velocity (m/s) of the payload's mass centre as seen from the platform, in its axes."""
-    turn = rotation.matrix(slot.quaternion(row, PLATFORM))
-    place, origin = slot.triple(row, PAYLOAD + PLACE), slot.triple(row, PLATFORM + PLACE)
-    v, V = slot.triple(row, PAYLOAD + VELOCITY), slot.triple(row, PLATFORM + VELOCITY)
-    spin = rotation.rotate(turn, slot.triple(row, PLATFORM + RATE))
-    swing = rotation.cross(spin, (place[0] - origin[0], place[1] - origin[1], place[2] - origin[2]))
-    return turn[0] * (v[0] - V[0] - swing[0]) + turn[3] * (v[1] - V[1] - swing[1]) + turn[6] * (v[2] - V[2] - swing[2])
-
-
 @inlined
 def rearmost_edge(faces, platform, row):
     """X (m) in platform axes of the rearmost trailing edge of the pads."""

@@ -3,6 +3,7 @@
 from typing import Any, NamedTuple
 
 from pydantic import ValidationError
+from pydantic_core import PydanticCustomError
 
 
 class Fault(NamedTuple):
@@ -26,6 +27,11 @@ class SceneError(ValueError):
         super().__init__("\n".join([f"{count} in the scene"] + [f"  {fault}" for fault in faults]))
 
 
+def within(key: str, given: str, expected: str) -> PydanticCustomError:
+    """A fault of ``key`` of a table, for a validator that sees the table as a whole."""
+    return PydanticCustomError("within", "{expected}", {"key": key, "given": given, "expected": expected})
+
+
 # Pydantic puts the chosen variant into the location: ("thrust", "gaussian", "width") is the key thrust.width.
 _VARIANTS = ("thrust", "contact", "friction", "rail")
 _FILED = (("rail", "mesh"), ("rail", "geometry"))  # variants chosen by the presence of a key, which the user may not have meant
@@ -40,6 +46,8 @@ def _key(error: dict) -> str:
         del location[1]
     if error["type"].startswith("union_tag"):
         location.append(error["ctx"]["discriminator"].strip("'"))
+    if error["type"] == "within":
+        location.append(error["ctx"]["key"])
     return ".".join(map(str, location)) or "scene"
 
 
@@ -54,6 +62,8 @@ def _given(error: dict) -> str:
         return "nothing"
     if error["type"] == "union_tag_invalid":
         return repr(error["ctx"]["tag"])
+    if error["type"] == "within":
+        return error["ctx"]["given"]
     return _shown(error["input"])
 
 

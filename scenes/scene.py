@@ -23,16 +23,17 @@ from scenes.effects.platform import PlatformTable
 from scenes.effects.thermal import ThermalTable
 from scenes.effects.thrust import ThrustTable
 from scenes.effects.thrust_offset import ThrustOffsetTable
-from scenes.faults import Fault, SceneError, faults_of
+from scenes.faults import Fault, SceneError, faults_of, within
 from scenes.files import content_hash
 from scenes.rail import RailTable
 from scenes.table import Table, at_least_one, is_absent
-from scenes.tables import AgreementTable, OutputTable, PadTable, PayloadTable
-from scenes.units import PositiveTime
+from scenes.tables import MOST_SAMPLES, AgreementTable, OutputTable, PadTable, PayloadTable
+from scenes.units import quantity
 
 CATALOG = reading.CATALOG
 EFFECTS = ("thrust_offset", "mass_offset", "initial", "contact", "friction", "platform", "gravity", "thermal", "rail.damping")
 NOMINAL = "nominal"  # the scene itself, named like a condition
+LONGEST = 3600.0  # s: an ejection takes milliseconds, a slow one minutes
 _BESIDE = ("conditions", "agreement", "provenance")
 _NOT_PHYSICS = {"name", "description", "flight", *_BESIDE}  # what comes after the exit changes nothing before it
 
@@ -42,7 +43,7 @@ class Scene(Table):
 
     name: Annotated[str, AfterValidator(names.of_scene)]
     description: str = ""
-    duration: PositiveTime
+    duration: quantity("s", gt=0.0, le=LONGEST)
     payload: PayloadTable
     pads: Annotated[tuple[PadTable, ...], AfterValidator(at_least_one)]
     rail: RailTable
@@ -56,7 +57,7 @@ class Scene(Table):
     gravity: GravityTable | None = None
     flight: FlightTable | None = None
     thermal: ThermalTable | None = Field(None, exclude_if=is_absent)
-    output: OutputTable = OutputTable()
+    output: OutputTable = Field(OutputTable(), validate_default=True)
     agreement: AgreementTable = AgreementTable()
     conditions: dict[str, dict[str, Any]] = Field(default_factory=dict)
     provenance: dict[str, str] = Field(default_factory=dict)
@@ -69,6 +70,15 @@ class Scene(Table):
         if thermal is not None and "rail" in info.data and info.data["rail"].material.expansion is None:
             raise ValueError('rails that expand: rail.material.expansion, for example "23.6e-6 1/K"')
         return thermal
+
+    @field_validator("output")
+    @classmethod
+    def _of_fitting_interval(cls, output: OutputTable, info: ValidationInfo):
+        if "duration" in info.data and not output.fits(duration := info.data["duration"]):
+            raise within("interval", f"{output.interval:g} s",
+                         f"{duration / MOST_SAMPLES:g} s to {duration:g} s: at least one and at most {MOST_SAMPLES:,} samples in "
+                         f"the duration of {duration:g} s")
+        return output
 
     def replace(self, overrides: Mapping[str, Any]) -> "Scene":
         """A new scene with dotted keys set. Text carries units, a bare number is SI, None or "absent" drops a table. What is set
@@ -129,9 +139,10 @@ class Scene(Table):
         """Values that are allowed but implausible, by field name."""
         return plausibility.warnings(self)
 
-    def expands(self) -> bool:
-        """Whether the rails can follow a temperature, where there is one."""
-        return self.thermal is None or self.rail.material.expansion is not None
+    def agrees(self) -> bool:
+        """Whether tables that were each found sound are so together: rails can follow a temperature, where there is one, and the
+        sampling interval fits the duration."""
+        return (self.thermal is None or self.rail.material.expansion is not None) and self.output.fits(self.duration)
 
     def absent_effects(self) -> list[str]:
         """Dotted keys of the effect tables this scene does not have."""

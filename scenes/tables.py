@@ -9,6 +9,9 @@ from scenes.body import InertiaTensor
 from scenes.table import Table, at_least_one
 from scenes.units import Length, Mass, NonNegativeLength, PositiveLength, PositiveNumber, PositiveRate, PositiveTime
 
+MOST_SAMPLES = 1_000_000  # after ignition: a gigabyte of curves
+_ROUNDING = 1e-12  # relative: a last sample at the end of the scene is one
+
 Normal = Literal["+y", "-y", "+z", "-z"]
 
 
@@ -43,9 +46,17 @@ class PadTable(Table):
 
 
 class OutputTable(Table):
-    """``[output]``: sampling interval of every result (s)."""
+    """``[output]``: sampling interval of every result (s). What becomes of a payload does not hang on it."""
 
     interval: PositiveTime = 5e-5
+
+    def fits(self, duration: float) -> bool:
+        """Whether a scene that lasts ``duration`` (s) has at least one sample after ignition, and no more than MOST_SAMPLES."""
+        return 1 <= duration / self.interval * (1.0 + _ROUNDING) < MOST_SAMPLES + 1
+
+    def last(self, duration: float) -> int:
+        """Number of the last sample of a scene that lasts ``duration`` (s), the one at ignition being number 0."""
+        return int(duration / self.interval * (1.0 + _ROUNDING))
 
 
 class AgreementTable(Table):

@@ -48,7 +48,7 @@ class Variations:
             return self.scene.replace(row)
         for leaf, value in zip(leaves, values):
             leaf.values[leaf.name] = value
-        return scene
+        return scene if scene.agrees() else self.scene.replace(row)
 
     def _by_tables(self, row: Mapping[str, Any]) -> Scene:
         changed = dict.fromkeys(key.partition(".")[0] for key in row)
@@ -62,7 +62,7 @@ class Variations:
         except (ValidationError, KeyError):
             return self.scene.replace(row)
         found = self.scene.model_copy(update=tables)
-        return found if found.expands() else self.scene.replace(row)
+        return found if found.agrees() else self.scene.replace(row)
 
     def _table(self, name: str, raw: dict) -> Any:
         field = Scene.model_fields[name]

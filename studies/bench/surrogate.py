@@ -13,6 +13,7 @@ import time
 from pathlib import Path
 
 import numpy as np
+from scipy.interpolate import CubicSpline
 
 from scenes import model, outcome
 from scenes.files import write_json
@@ -24,6 +25,7 @@ ASKED = (1.0, 0.1)  # per cent of the settled rate
 TOLERANCES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7)
 STEPS_S = tuple(4e-4 / 2.0 ** (0.5 * k) for k in range(14))
 _TIGHT = 1e-11
+_AROUND = 3  # samples on either side of the window that the baseline's spline sees beyond it
 _SPREAD = {"thrust_offset.misalignment": np.deg2rad(0.4), "thrust_offset.eccentricity": 0.6e-3, "mass_offset.eccentricity": 0.4e-3}
 
 
@@ -143,7 +145,7 @@ def _plain_job(scene, dt: float, start: float):
 
     count = max(1, round(scene.output.interval / dt))
     interval = dt * count
-    samples = int(np.ceil((start + outcome.SETTLE_WINDOW) / interval)) + outcome.AROUND
+    samples = int(np.ceil((start + outcome.SETTLE_WINDOW) / interval)) + _AROUND
     return *oracle.prepared(scene, count, samples, interval), interval
 
 
@@ -154,9 +156,17 @@ def _plain(yardstick: _Yardstick, dt: float) -> np.ndarray:
     for scene, start in zip(yardstick.scenes, yardstick.starts):
         arguments, rows, interval = _plain_job(scene, dt, start)
         oracle.integrate(*arguments, rows)
-        found.append(outcome.mean(np.arange(len(rows)) * interval, rows[:, 10:13], start, start + outcome.SETTLE_WINDOW)
-                     if np.isfinite(rows).all() else np.full(3, np.nan))
+        found.append(_mean(np.arange(len(rows)) * interval, rows[:, 10:13], start) if np.isfinite(rows).all()
+                     else np.full(3, np.nan))
     return np.array(found)
+
+
+def _mean(time: np.ndarray, rates: np.ndarray, start: float) -> np.ndarray:
+    """Means (3,) of samples ``rates`` (n,3) over the settled window from ``start`` (s), by a cubic spline."""
+    end = start + outcome.SETTLE_WINDOW
+    first, last = np.searchsorted(time, [start, end])
+    near = slice(max(first - _AROUND, 0), last + _AROUND)
+    return CubicSpline(time[near], rates[near]).integrate(start, end) / outcome.SETTLE_WINDOW
 
 
 def _ensemble(base, cases: int, tolerance: float) -> dict:

@@ -61,7 +61,7 @@ def _whole(scene: Scene) -> Trajectory:
     from lowfi.run import Run
 
     made = Run(scene, Numerics(relative_tolerance=1e-7))
-    made.left = True
+    made.whole = True
     made.begin()
     made.march(None)
     return made.trajectory()

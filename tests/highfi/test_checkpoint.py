@@ -106,12 +106,12 @@ def test_every_evolving_array_is_in_the_file(tmp_path):
 def test_what_is_left_out_does_not_change():
     loop = begun()
     system = {"system": loop.system._replace(mesh=None, operator=None)}  # not records, and no kernel is given them
-    before, others = digest(arrays(system)), (loop.marks, loop.stepping, loop.last)
+    before, others = digest(arrays(system | {"exit": loop.exit})), (loop.marks, loop.stepping, loop.last, loop.most)
     loop.march(None)
-    assert digest(arrays(system)) == before
-    assert (loop.marks, loop.stepping, loop.last) == others
+    assert digest(arrays(system | {"exit": loop.exit})) == before
+    assert (loop.marks, loop.stepping, loop.last, loop.most) == others
     # A scene is frozen; a team and a pool of threads are not of the run.
-    assert set(CONSTANT) == {"scene", "system", "stepping", "team", "pool", "marks", "last", "walls", "watch"}
+    assert set(CONSTANT) == {"scene", "system", "stepping", "team", "pool", "marks", "exit", "last", "most", "walls", "watch"}
 
 
 CHILD = """

@@ -37,12 +37,12 @@ def numerics(tolerance: float) -> lowfi.Numerics:
 
 
 def unwatched(asked: scenes.Scene, numerics: lowfi.Numerics, change=None) -> Run:
-    """A run over the scene's whole duration, from its state at ignition or what ``change`` makes of it: nobody looks for an exit or
-    a jam on the way."""
+    """A run over the scene's whole duration, from its state at ignition or what ``change`` makes of it: no exit and no jam ends
+    it."""
     run = Run(asked, numerics)
     if change is not None:
         run.loop = march.ready(run.system, change(state.initial(run.model)), plan.first_step(run.plan))
-    run.left = True
+    run.whole = True
     run.begin()
     run.march(None)
     return run

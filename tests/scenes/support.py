@@ -5,7 +5,7 @@ import copy
 import numpy as np
 
 from scenes import ledger
-from scenes.outcome import Milestones, Outcome
+from scenes.outcome import Outcome
 from scenes.trajectory import Trajectory
 
 SMALL = {
@@ -50,8 +50,3 @@ def motion(position, velocity=None, quaternion=None, rate=None, time=None, platf
         energy=np.zeros((n, len(ledger.ENTRIES))), transverse_energy=np.zeros((n, len(ledger.ENTRIES))), outcome=Outcome(),
         checks={}, cost={}, scene={})
     return Trajectory(**entries | parts)
-
-
-def marks(settled=0.0, spent=0.0, jam_speed=0.01, constant=False, edges=((-0.05, 0.0, 0.0), (-0.1, 0.1, 0.1)), rail_end=0.1):
-    """Milestones of a payload whose rearmost edge is 0.1 m behind its mass centre."""
-    return Milestones(settled, spent, jam_speed, constant, np.array(edges), rail_end)

@@ -3,6 +3,7 @@
 import pytest
 
 from scenes import SceneError, load, parse
+from scenes.variation import Variations
 from tests.scenes.support import CONTACT, FRICTION, STICKING, small
 
 pytestmark = pytest.mark.case("X19")
@@ -36,6 +37,16 @@ BAD = {
     "thrust_offset.misalignment.axial": ("thrust_offset__misalignment__axial", "0.1", "quantity in rad"),
     "duration": ("duration", True, "quantity in s"),
 }
+# Duration and sampling interval together: what is given, and what the fault says.
+BAD_SAMPLING = [
+    ({"output__interval": "31 ms"}, "output.interval", "0.031 s", "3e-08 s to 0.03 s"),
+    ({"output__interval": "29 ns"}, "output.interval", "2.9e-08 s", "at most 1,000,000 samples in the duration of 0.03 s"),
+    ({"output__interval": "5e-324 s"}, "output.interval", "4.94066e-324 s", "at most 1,000,000 samples"),
+    ({"output__interval": "0 s"}, "output.interval", "'0 s'", "greater than 0"),
+    ({"output__interval": "-1 ms"}, "output.interval", "'-1 ms'", "greater than 0"),
+    ({"duration": "40 us"}, "output.interval", "5e-05 s", "1"),  # the interval of a scene that names none
+    ({"duration": "3601 s", "output__interval": "1 s"}, "duration", "'3601 s'", "3600"),
+]
 
 
 def refused(raw) -> list:
@@ -74,6 +85,36 @@ def test_each_bad_field_alone(key):
     (fault,) = refused(whole(**{place: value}))
     assert fault.key == key
     assert expected in fault.expected
+
+
+@pytest.mark.parametrize("tables, key, given, expected", BAD_SAMPLING)
+def test_bad_sampling(tables, key, given, expected):
+    """In a file, by an override and in a row of an ensemble, beside another fault of the same file."""
+    (fault,) = refused(whole(**tables))
+    assert (fault.key, fault.given) == (key, given) and expected in fault.expected
+    assert {fault.key for fault in refused(whole(payload__mass="0 kg", **tables))} == {key, "payload.mass"}
+    row, scene = {place.replace("__", "."): value for place, value in tables.items()}, parse(whole())
+    for change in (scene.replace, Variations(scene).of):
+        with pytest.raises(SceneError) as caught:
+            change(row)
+        assert [fault.key for fault in caught.value.faults] == [key]
+
+
+@pytest.mark.parametrize("interval, samples", [("30 ms", 1), ("29 ms", 1), ("0.1 ms", 300), ("30 ns", 1_000_000)])
+def test_sound_sampling(interval, samples):
+    """Both ends of what is allowed, and an interval that does not divide the duration."""
+    scene = parse(whole(output__interval=interval))
+    assert scene.output.last(scene.duration) == samples
+
+
+def test_a_row_is_refused_after_rows_of_the_same_keys():
+    """Later rows are checked number by number; the row after a bad one is sound again."""
+    variations = Variations(parse(whole()))
+    assert [variations.of({"output.interval": value}).output.interval for value in (1e-4, 2e-4)] == [1e-4, 2e-4]
+    for bad in (1.0, 1e-9):
+        with pytest.raises(SceneError, match="output.interval"):
+            variations.of({"output.interval": bad})
+    assert variations.of({"output.interval": 3e-4}).output.interval == 3e-4
 
 
 POSITIVE = ["payload__mass kg", "payload__inertia__xx kg*m**2", "rail__material__density kg/m**3",
