@@ -5,9 +5,9 @@ from typing import Callable, Sequence
 
 import numpy as np
 
-from lowfi import balance, bow, march, plan, state, system
+from lowfi import balance, bow, edges, march, plan, state, system
 from lowfi.accuracy import Tolerance
-from lowfi.march import EVALUATIONS, EVENTS, LIMIT, LIMIT_USED, NOW, REJECTED, STEPS, TAKEN
+from lowfi.march import EVALUATIONS, EVENTS, LIMIT, LIMIT_USED, NOW, REJECTED, STEPS, STRIKING, TAKEN
 from lowfi.numerics import Numerics
 from lowfi.walls import record as wall_record
 from lowfi.sample import SAMPLE_SIZE, relative_axial_speed
@@ -91,10 +91,17 @@ class Run:
         watched = not self.left
         status = march.march(self.system, self.plan, self.tolerance, self.loop, number, watched, self.rows, self.forces)
         self.taken = int(self.loop.count[TAKEN])
-        if status in _REASONS:
+        if status == march.STRUCK:
+            self.message = self._strike()
+        elif status in _REASONS:
             self.message = f"{_REASONS[status]}, at {self.loop.clock[NOW]:.6g} s"
         elif watched:
             self._look(status == march.PASSED)
+
+    def _strike(self) -> str:
+        """What met the edge of a wall, where and when."""
+        face = int(self.loop.count[STRIKING])
+        return edges.strike(self.model, face, self.system.faces[face], self.loop.after[face], self.loop.clock[NOW])
 
     def _look(self, passed: bool) -> None:
         if not passed and self._is_moving():
