@@ -11,21 +11,28 @@ corners, or those of a curved triangle) lie outside the uncrowned face plane is 
 have crossed it, and a face whose nearest control point is a gap away is not looked at until something approaching at
 ``FASTEST_APPROACH`` could have closed it. That speed is checked at every sample.
 
+A wall is a plate: what is behind its surface by its thickness or more is behind the wall and feels nothing. A face that was over no
+wall, or behind it, may come over it with a penetration of ``ROUNDED`` at most; what comes deeper strikes an edge or the back of the
+wall (``lowfi.edges`` has the same rule for rigid walls), where no contact is modelled: it feels nothing, and the run ends.
+
 Faces that can share a node make a group, as those along one rail do. Groups have nothing in common and are shared out among
 threads; their loads are added up in one order, whoever computed them.
 """
 
 import numpy as np
 
-from highfi.facet_contact import Touch, is_off, lowest, press, rate_damping
+from highfi.facet_contact import Touch, is_off, lowest, press, probe, rate_damping
 from highfi.nodes import follow_frame
 from highfi.pose import triple
-from highfi.records import BORDER, DAMPING_RATIO, FRICTION_FORCE, FRICTION_MOMENT, GAINED, LOAD_SIZE, NODES, RELEASED
+from highfi.records import (AWAY, BORDER, DAMPING_RATIO, FRICTION_FORCE, FRICTION_MOMENT, GAINED, LOAD_SIZE, NODES, OVER, RELEASED,
+                            UNKNOWN)
 from highfi.team import take
 from scenes import rotation
 from scenes.jit import inlined, kernel
 
 FASTEST_APPROACH = 10.0  # m/s across the rail: a face this far from every facet is not looked at before it could arrive
+ROUNDED = 1e-6  # m: no edge of a pad or a wall is sharper
+_ENTRY = 1e-4  # m: over so much way on either side a face comes over the first points of its wall, which deforms by less
 _MARGIN = 1e-3  # m along the rail by which the searched window is wider than the face
 
 
@@ -70,7 +77,9 @@ def _forget(surface, group, active):
 def _look(touch, surface, faces, face, group, penalty, friction, active, pose, dt):
     """Forces of one face, if it can touch by now."""
     touch.face_force[face, 0], touch.face_force[face, 1], touch.face_force[face, 2] = 0.0, 0.0, 0.0
-    if active.wait[face] > 0:
+    if active.struck[face, 0] > 0.0:
+        active.struck[face, 2] += 1.0
+    elif active.wait[face] > 0:
         active.wait[face] -= 1
     else:
         place = rotation.rotate(pose.turn, (faces.centre[face, 0], faces.centre[face, 1], faces.centre[face, 2]))
@@ -81,13 +90,42 @@ def _look(touch, surface, faces, face, group, penalty, friction, active, pose, d
         low = first + np.searchsorted(window, x - half - surface.longest)
         high = first + np.searchsorted(window, x + half)
         gap = _MARGIN
+        _mind_the_wall(touch, surface, faces, face, low, high, x, _overlap(surface, faces, face, place, pose), active, pose)
         for k in range(low, high):
             facet = surface.reach[k]
             height = lowest(touch, surface, surface.control, faces, face, facet, pose)
             gap = min(gap, height)
-            if height < 0.0:
+            if height < 0.0 and active.struck[face, 0] == 0.0:
                 press(touch, surface, faces, face, facet, group, penalty, friction, active, pose, dt)
         active.wait[face] = max(0, int(gap / (FASTEST_APPROACH * dt)) - 1)
+
+
+@inlined
+def _overlap(surface, faces, face, place, pose):
+    """By how much (m) a face reaches over the border of its wall's points, along or across the rail, whichever is less."""
+    axis, border = 3 - faces.axis[face], surface.border[face]
+    x, y = place[0] + pose.centre[0], place[1] + pose.centre[1] if axis == 1 else place[2] + pose.centre[2]
+    along = min(x + faces.half_length[face] - border[0], border[1] - x + faces.half_length[face])
+    return min(along, y + faces.half_width[face] - border[2], border[3] - y + faces.half_width[face])
+
+
+@inlined
+def _mind_the_wall(touch, surface, faces, face, low, high, x, overlap, active, pose):
+    """Bring ``active.side`` up to date, and ``active.struck`` where a face with its middle at ``x`` (m) comes from nowhere into its
+    wall, of which it may meet facets ``low`` to ``high``."""
+    if overlap < -_ENTRY:
+        active.side[face] = AWAY
+    elif active.side[face] != OVER:
+        inside, behind = 0.0, 0.0
+        for k in range(low, high):
+            found = probe(touch, surface, faces, face, surface.reach[k], pose)
+            inside, behind = max(inside, found[0]), max(behind, found[1])
+        if active.side[face] == AWAY and inside > ROUNDED:
+            active.struck[face, 0], active.struck[face, 1] = inside, x
+        elif behind >= surface.thickness:
+            active.side[face] = AWAY
+        elif overlap > _ENTRY or active.side[face] == UNKNOWN:
+            active.side[face] = OVER
 
 
 @kernel

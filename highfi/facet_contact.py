@@ -159,7 +159,7 @@ def press(touch, surface, faces, face, facet, group, penalty, friction, active, 
         xi, eta, height = _local(faces, face, y)
         if height < 0.0 and abs(xi) <= 1.0 and abs(eta) <= 1.0:
             penetration = -height - faces.relief[face] * (xi * xi * xi * xi + eta * eta * eta * eta)
-            if penetration > 0.0:
+            if 0.0 < penetration < surface.thickness:
                 pressed = True
                 arm = rotation.rotate(pose.turn, y)
                 slide = _sliding_velocity(pose, arm, _blend(surface, q, velocities))
@@ -174,6 +174,20 @@ def press(touch, surface, faces, face, facet, group, penalty, friction, active, 
                 _apply_pair(touch, surface, nodes, q, face, pose, arm, (push * g[0], push * g[1], push * g[2]), drag)
     if pressed:
         _note_nodes(surface, nodes, group, active)
+
+
+@kernel
+def probe(touch, surface, faces, face, facet, pose):
+    """Of the Gauss points of a facet that are under a face: largest penetration (m) inside the wall, and largest of all."""
+    places, inside, behind = _places(touch, surface.control, _nodes(surface, surface.control, facet), pose), 0.0, 0.0
+    for q in range(surface.shape.shape[0]):
+        xi, eta, height = _local(faces, face, _blend(surface, q, places))
+        if abs(xi) <= 1.0 and abs(eta) <= 1.0:
+            penetration = -height - faces.relief[face] * (xi * xi * xi * xi + eta * eta * eta * eta)
+            behind = max(behind, penetration)
+            if penetration < surface.thickness:
+                inside = max(inside, penetration)
+    return inside, behind
 
 
 @inlined

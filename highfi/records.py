@@ -58,7 +58,8 @@ class Surface(NamedTuple):
     numbers, four corners or the six nodes of a triangle; shape (q,k) functions at the Gauss points,
     and what bounds their products, ``spread`` (q,k), see ``limits``; area (m,q) m2 per point; for face f the facets it can meet are
     ``reach[first[f]:first[f+1]]``, sorted by their smallest X ``start`` (m); ``longest`` facet extent along X (m); control (6,6):
-    control points of a triangle from its nodes, None for facets of four corners, which need none."""
+    control points of a triangle from its nodes, None for facets of four corners, which need none; border (f,4) m: smallest and
+    largest X of the Gauss points that a face can meet, and the same across the rail; thickness (m) of the walls."""
 
     places: np.ndarray
     facets: np.ndarray
@@ -71,6 +72,8 @@ class Surface(NamedTuple):
     longest: float
     control: np.ndarray | None
     groups: Groups
+    border: np.ndarray
+    thickness: float
 
 
 class Frame(NamedTuple):
@@ -146,7 +149,9 @@ class Active(NamedTuple):
     """Evolving: where contact is now. count (g,2): border points and nodes of each group in use; point (k,2) facet and Gauss point,
     face (k,) and energy (k,) J stored of loaded points near the border of their face; node (m,) numbers of the nodes that carry
     load; seen (n,) whether a node is among them; drag (n,3) N: their shares of the friction on the payload in frame axes;
-    node_damping (n,) N s/m that friction brings to them; wait (f,) steps for which a face cannot touch."""
+    node_damping (n,) N s/m that friction brings to them; wait (f,) steps for which a face cannot touch; side (f,): whether a face
+    was over its wall when last looked at, see OVER; struck (f,3): penetration (m) and X (m) of a face that struck an edge of its
+    wall, and steps since then."""
 
     count: np.ndarray
     point: np.ndarray
@@ -157,8 +162,12 @@ class Active(NamedTuple):
     drag: np.ndarray
     node_damping: np.ndarray
     wait: np.ndarray
+    side: np.ndarray
+    struck: np.ndarray
 
 
+# Values of Active.side: in front of its wall, away from it or behind it, not looked at yet.
+OVER, AWAY, UNKNOWN = 0, 1, 2
 # Slots of Active.count.
 BORDER, NODES = 0, 1
 

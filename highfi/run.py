@@ -231,6 +231,8 @@ class Loop:
             return f"a value became infinite {now}"
         _, transverse = samples.ledgers(np.array([*self.rows[:1], row]), np.array([*self.work[:1], self.state.work]))
         self.scale = max(self.scale, transverse[-1, 2:5].sum())
+        if self.active.struck.any():
+            return self._strike()
         loss, work = abs(ledger.residual(transverse)[-1]), abs(self.state.work[records.THRUST])
         # Rounding of the large axial work is no fault while nothing has moved sideways yet.
         if loss > _STOP_RATIO * self.scale + 1e-11 * work:
@@ -240,6 +242,13 @@ class Loop:
         if self.stepping.used() + 0.5 * self.damping > 1.0:
             return f"friction damps nodes faster than the step of {self.stepping.dt_s:.4g} s can follow, {now}; lower safety"
         return ""
+
+    def _strike(self) -> str:
+        """What met an edge of a wall first, where and when."""
+        face = max(np.flatnonzero(self.active.struck[:, 0]), key=lambda struck: self.active.struck[struck, 2])
+        depth, x, since = self.active.struck[face]
+        time = (self.steps - since) * self.stepping.dt_s
+        return outcome.strike(self.system.model.faces, face, "strikes an edge or the back", depth, x + self.system.origin[0], time)
 
     def _approach_speed(self) -> float:
         """Bound (m/s) of the speed across the rail at which any pad and any point of a wall can approach each other now."""

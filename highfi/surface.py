@@ -12,10 +12,12 @@ _FACING = -0.9  # cosine between pad normal and facet normal below which the two
 _MARGIN = 2e-3  # m, how far sideways and in depth a facet may lie from the face's own place
 
 
-def build(surfaces: dict[str, np.ndarray], points: np.ndarray, faces, quadrature: int, clamped: np.ndarray) -> Surface:
+def build(surfaces: dict[str, np.ndarray], points: np.ndarray, faces, quadrature: int, clamped: np.ndarray,
+          thickness: float) -> Surface:
     """Surface record of all facets (m,k) in ``surfaces`` whose name starts with ``contact``.
 
-    ``points`` (n,3) m are in frame axes, ``faces`` the model's pad faces, ``clamped`` (k,) numbers of nodes.
+    ``points`` (n,3) m are in frame axes, ``faces`` the model's pad faces, ``clamped`` (k,) numbers of nodes,
+    ``thickness`` (m) that of the walls.
     """
     facets = np.concatenate([group for name, group in sorted(surfaces.items()) if name.startswith("contact")])
     nodes = points[facets]
@@ -29,7 +31,19 @@ def build(surfaces: dict[str, np.ndarray], points: np.ndarray, faces, quadrature
     first = np.cumsum([0] + [group.size for group in found])
     groups = group_faces([np.unique(facets[group]) for group in found], [group.size * len(shape) for group in found], clamped)
     return Surface(points, facets, shape, _spread(shape), area, first, reach, smallest[reach], longest,
-                   geometry.control(facets.shape[1]), groups)
+                   geometry.control(facets.shape[1]), groups, _border(np.einsum("qk,mki->mqi", shape, nodes), found, faces),
+                   thickness)
+
+
+def _border(points: np.ndarray, found: list[np.ndarray], faces) -> np.ndarray:
+    """Smallest and largest X and place across the rail (f,4) of the Gauss ``points`` (m,q,3) m of the facets ``found`` for each
+    face; nothing is between them where there is no facet."""
+    border = np.tile([np.inf, -np.inf], (len(found), 2))
+    for row, group, axis in zip(border, found, faces.axis):
+        if group.size:
+            along, across = points[group][..., 0], points[group][..., 3 - axis]
+            row[:] = along.min(), along.max(), across.min(), across.max()
+    return border
 
 
 def group_faces(nodes: list[np.ndarray], points: list[int], clamped: np.ndarray) -> Groups:

@@ -61,7 +61,7 @@ def build(scene: Scene, numerics: Numerics, mesh: RailMesh) -> System:
     surfaces = {name: number[facets] for name, facets in mesh.surfaces.items()}
     warm = _warmed(scene, model, mesh, rail, number)
     places = rail.points if warm is None else rail.points + warm
-    gauss = surface.build(surfaces, places, faces, numerics.points_per_edge(), rail.clamped)
+    gauss = surface.build(surfaces, places, faces, numerics.points_per_edge(), rail.clamped, model.plate.thickness)
     drive = records.Drive(model.thrust_arm, model.reacts_on_platform, float(moving.sum()))
     return System(model, mesh, operator, number, rail, masses, gauss, faces, frame, drive, origin, offset, warm)
 
@@ -162,7 +162,8 @@ def initial_state(system: System) -> tuple[records.State, records.Active]:
     active = records.Active(np.zeros((groups, 2), dtype=np.int64), np.zeros((room, 2), dtype=np.int64),
                             np.zeros(room, dtype=np.int64), np.zeros(room),
                             np.zeros(np.unique(system.surface.facets).size, dtype=np.int64), np.zeros(size, dtype=np.bool_),
-                            np.zeros(nodes), np.zeros(size), np.zeros(count, dtype=np.int64))
+                            np.zeros(nodes), np.zeros(size), np.zeros(count, dtype=np.int64), np.full(count, records.UNKNOWN),
+                            np.zeros((count, 3)))
     return state, active
 
 

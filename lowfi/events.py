@@ -3,8 +3,9 @@
 A face that is open when a step begins is not felt within it: the step passes through the wall, the instant of touching is found on
 its interpolant (regula falsi of the Illinois kind), and the step ends there: on its interpolant where the law was one and the same
 all along and the error leaves room, else by taking it again up to there. So no step crosses a jump, none is rejected for one, and
-no contact is too short to be seen. A gap that closes and opens again by itself is found from the cubic through its ends. Where
-friction sticks, a face that slips or stops ends the step likewise.
+no contact is too short to be seen. A gap that closes and opens again by itself is found from the cubic through its ends. A
+face off its wall that comes over it within the step ends the step where it does (``lowfi.edges``), so a wall may be shorter than a
+step is long. Where friction sticks, a face that slips or stops ends the step likewise.
 """
 
 import numpy as np
@@ -12,27 +13,27 @@ import numpy as np
 from lowfi import grip as grips
 from lowfi import state as slot
 from lowfi.dormand_prince import interpolate
-from lowfi.touch import along, approach, load, penetration, relative_motion, relative_pose
+from lowfi.edges import (ALONG, BEYOND, CLOSING, DEPTH, FORWARD, MARGIN, MODE, NOWHERE, PULL, SIDE, SIDEWAYS, SOONEST,
+                         comes_over, depth_it_left_with, goes_and_returns, stands_over, strikes)
+from lowfi.system import BACK, SIDE_MIDDLE, SIDE_REACH
+from lowfi.touch import across, along, approach, load, penetration, relative_motion, relative_pose, sideways
 from lowfi.walls.survey import depth as depth_in_wall
 from lowfi.walls.survey import survey as survey_walls
 from scenes.effects.contact import stored_energy
 from scenes.jit import inlined
 
-# A crossing is aimed this far beyond itself (m), which is above rounding and below anything a force could feel.
-BEYOND = 1e-12
-SOONEST = 1e-9  # an event in this first part of a step is the one the step began at
 _NEAR = 1e-7  # pull that counts as zero
-# Modes of a face, and columns of what ``survey`` fills.
+# Modes of a face.
 OPEN, PRESSING, CUT_OFF = 0.0, 1.0, 2.0
-MODE, DEPTH, CLOSING, PULL, ALONG, MARGIN, SURVEY_SIZE = 0, 1, 2, 3, 4, 5, 6
 
 
 @inlined
 def survey(laws, walls, sticking, faces, platform, payload, active, grip, state, out):
-    """Fill ``out`` (f, SURVEY_SIZE) with mode, penetration (m), its rate (m/s), pull, X (m) and margin of grip of every face. The
-    mode of a face off the rail is the one it would have there. Walls that give way ask which faces are ``active`` (f,)."""
+    """Fill ``out`` (f, SURVEY_SIZE) with mode, penetration (m), its rate (m/s), pull, X (m) and margin of grip of every face, the
+    rate of X (m/s), the place across from where the wall has its middle (m) and its rate (m/s). The mode of a face off the rail is
+    the one it would have there. Walls that give way ask which faces are ``active`` (f,)."""
     if walls is not None:
-        survey_walls(walls, faces, platform, payload, active, state, (OPEN, PRESSING, MODE, DEPTH, CLOSING, ALONG), out)
+        survey_walls(walls, faces, platform, payload, active, state, OPEN, PRESSING, out)
     if laws is not None:
         body, base = slot.motion(payload.mass, payload.inverse_inertia, state, slot.PAYLOAD), slot.frame(platform, state)
         place, turn = relative_pose(platform, body, base)
@@ -42,6 +43,9 @@ def survey(laws, walls, sticking, faces, platform, payload, active, grip, state,
             out[i, MODE], out[i, DEPTH], out[i, PULL] = OPEN, p, 1.0
             out[i, ALONG] = along(faces[i], place, turn)
             out[i, CLOSING] = approach(laws.bow, faces[i], place, turn, drift, swing)
+            out[i, FORWARD] = drift[0] + swing[0] * faces[i, 0] + swing[1] * faces[i, 1] + swing[2] * faces[i, 2]
+            out[i, SIDE] = across(faces[i], place, turn) - faces[i, SIDE_MIDDLE]
+            out[i, SIDEWAYS] = sideways(faces[i], drift, swing)
             if p > 0.0:
                 face = load(laws, None, platform, faces[i], p, body, base)
                 out[i, MODE] = PRESSING if face.raw >= 0.0 else CUT_OFF
@@ -87,8 +91,12 @@ def first_event(laws, walls, sticking, payload, platform, faces, rail, engaged, 
                 if theta < first:
                     first, blamed = theta, i
                 continue
-            for kind in (DEPTH, PULL, ALONG):
-                level = _level(rail, engaged[i], kind, before[i], after[i])
+            if engaged[i]:
+                theta = goes_and_returns(rail, faces[i], before[i], after[i], span * dt)
+                if SOONEST < theta < first:
+                    first, blamed = theta, i
+            for kind in (DEPTH, PULL, ALONG, SIDE):
+                level = _level(rail, faces[i], engaged[i], kind, before[i], after[i])
                 if not np.isnan(level):
                     theta = _locate(laws, walls, sticking, grips.row_of(sticking, grip, i), payload, platform, faces, i, active,
                                     kind, before[i], after[i], level, dt, span, start, stages, work)
@@ -107,7 +115,27 @@ def first_event(laws, walls, sticking, payload, platform, faces, rail, engaged, 
                                  span * dt * after[i, CLOSING])
             if theta < first:
                 first, blamed = theta, i
+    if laws is not None or walls is not None:
+        for i in range(engaged.size):
+            if not engaged[i]:
+                theta = _entry(laws, walls, payload, platform, faces, rail, i, active, before[i], after[i], dt, span, start, stages,
+                               work)
+                if theta < first:
+                    first, blamed = theta, i
     return first, blamed
+
+
+@inlined
+def _entry(laws, walls, payload, platform, faces, rail, number, active, before, after, dt, span, start, stages, work):
+    """Fraction of the first ``span`` of a step at which a face comes over its wall and may touch, else 1. It is never so small that
+    the step would end where it began: a little later the face is over its wall still."""
+    kind, level, theta = comes_over(rail, faces[number], before, after, span * dt)
+    if kind == NOWHERE:
+        return 1.0
+    if not np.isnan(level):
+        theta = _locate(laws, walls, None, None, payload, platform, faces, number, active, kind, before, after, level, dt, span,
+                        start, stages, work)
+    return max(theta, 2.0 * SOONEST / span)
 
 
 @inlined
@@ -126,8 +154,9 @@ def _change_of_grip(laws, walls, sticking, payload, platform, faces, engaged, ac
 
 
 @inlined
-def _level(rail, engaged, kind, before, after):
-    """Value that a face's quantity ``kind`` must reach for its mode to change in this step; NaN when it does not change."""
+def _level(rail, face, engaged, kind, before, after):
+    """Value that a face's quantity ``kind`` must reach for its mode to change in this step; NaN when it does not change. How it
+    comes over its wall is not asked here."""
     a, b = before[kind], after[kind]
     level = np.nan
     if kind == DEPTH:
@@ -137,20 +166,20 @@ def _level(rail, engaged, kind, before, after):
         if before[MODE] * after[MODE] == PRESSING * CUT_OFF:
             # The force is continuous there, so what is nearer than rounding is no event.
             level = 0.0 if min(abs(a), abs(b)) > _NEAR else np.nan
-    elif max(before[DEPTH], after[DEPTH]) > BEYOND:
-        level = _edge(rail[0], rail[1], engaged, a, b)
+    elif engaged and max(before[DEPTH], after[DEPTH]) > BEYOND:
+        if kind == ALONG:
+            level = _edge(rail[0], rail[1], b)
+        else:
+            level = _edge(-face[SIDE_REACH], face[SIDE_REACH], b)
     return level if (a - level) * (b - level) < 0.0 else np.nan
 
 
 @inlined
-def _edge(rail_start, rail_end, engaged, before, after):
-    """X (m) just beyond the end of the rail a face passes; NaN when it passes none."""
-    inside = rail_start <= after <= rail_end
-    if engaged == inside:
+def _edge(low, high, after):
+    """Place (m) just beyond the edge of its wall that a face passes as it leaves; NaN when it passes none."""
+    if low <= after <= high:
         return np.nan
-    if engaged:
-        return rail_end + BEYOND if after > rail_end else rail_start - BEYOND
-    return rail_end - BEYOND if before > rail_end else rail_start + BEYOND
+    return high + BEYOND if after > high else low - BEYOND
 
 
 @inlined
@@ -158,7 +187,11 @@ def _gauge(laws, walls, sticking, row, payload, platform, faces, number, active,
     """Quantity ``kind`` of face ``number`` at ``state``."""
     body, base = slot.motion(payload.mass, payload.inverse_inertia, state, slot.PAYLOAD), slot.frame(platform, state)
     place, turn = relative_pose(platform, body, base)
+    if kind == SIDE:
+        return across(faces[number], place, turn) - faces[number, SIDE_MIDDLE]
     if walls is not None:
+        if kind == ALONG:
+            return place[0] + faces[number, 0]
         return depth_in_wall(walls, faces, number, active, place, turn, state)
     return _gauge_at_law(laws, sticking, row, platform, faces[number], kind, place, turn, body, base)
 
@@ -242,17 +275,24 @@ def _grazing(before, after, rise, fall):
 
 
 @inlined
-def on_rail(laws, rail_start, rail_end, surveyed, engaged):
-    """Bring ``engaged`` (f,) up to date; (changed, energy (J) that leaving faces took with them, less what entering ones bring)."""
-    changed, energy = False, 0.0
-    if laws is not None:
+def on_rail(laws, walls, rail, faces, surveyed, left, engaged):
+    """Bring ``engaged`` (f,), the faces that stand over their walls, and ``left`` (f,) up to date (``lowfi.edges``): whether any
+    changed, energy (J) that leaving faces took with them, less what entering ones bring, and a face that strikes an edge or is
+    pressed through its wall, or -1. Walls that give way know their energy themselves."""
+    changed, energy, struck = False, 0.0, -1
+    if laws is not None or walls is not None:
         for i in range(engaged.size):
-            inside = rail_start <= surveyed[i, ALONG] <= rail_end
+            inside = stands_over(rail, faces[i], surveyed[i])
+            if not engaged[i]:
+                left[i] = depth_it_left_with(rail, faces[i], surveyed[i], left[i])
             if inside != engaged[i]:
                 changed = True
+                if strikes(faces[i], surveyed[i], left[i]) if inside else surveyed[i, DEPTH] >= faces[i, BACK]:
+                    struck = i
                 energy += (1.0 if engaged[i] else -1.0) * stored(laws, surveyed[i, DEPTH])
+                left[i] = 0.0 if inside else max(surveyed[i, DEPTH], 0.0)
                 engaged[i] = inside
-    return changed, energy
+    return changed, energy, struck
 
 
 @inlined

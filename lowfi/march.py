@@ -8,7 +8,8 @@ from lowfi import ending
 from lowfi import state as slot
 from lowfi.accuracy import error_ratio
 from lowfi.dormand_prince import STABLE_RADIUS, STAGES, attempt, interpolate
-from lowfi.events import ALONG, SOONEST, SURVEY_SIZE, felt, first_event, on_rail, same_law, survey
+from lowfi.edges import SOONEST, SURVEY_SIZE
+from lowfi.events import felt, first_event, on_rail, same_law, survey
 from lowfi.grip import GRIP_SIZE, let_go
 from lowfi.limits import fastest_rate
 from lowfi.regrip import grasp, regrip
@@ -16,19 +17,19 @@ from lowfi.sample import observe
 from lowfi.walls.limit import stiffness_and_damping
 from lowfi.walls.record import states
 from lowfi.walls.survey import energy as energy_on_walls
-from lowfi.walls.survey import on_walls, while_hanging
+from lowfi.walls.survey import while_hanging
 from scenes import ending as books
 from scenes.jit import inlined, kernel
 from scenes.memory import zeros
 
 # What ``march`` returns: all samples taken, nothing left to learn, or why it stopped before.
-SAMPLED, ENDED, UNDERFLOW, OUT_OF_STEPS, NOT_FINITE = range(5)
+SAMPLED, ENDED, UNDERFLOW, OUT_OF_STEPS, NOT_FINITE, STRUCK = range(6)
 # Slots of Loop.clock: ends of the last step and its size before an event cut it (s), the fraction kept, step the controller
 # wants (s), bound of the contact's rates at the end (1/s), smallest proven limit met (s), largest step over its limit (1), largest
 # friction and damping power (W, not above zero).
 BEGAN, NOW, SIZE, SPAN, WANTED, RATE, LIMIT, LIMIT_USED, FRICTION_POWER, DAMPING_POWER, CLOCK_SIZE = range(11)
-# Slots of Loop.count.
-SEGMENT, STEPS, REJECTED, EVENTS, EVALUATIONS, TAKEN, COUNT_SIZE = range(7)
+# Slots of Loop.count; STRIKING is the face that struck an edge of its wall, or -1.
+SEGMENT, STEPS, REJECTED, EVENTS, EVALUATIONS, TAKEN, STRIKING, COUNT_SIZE = range(8)
 _SAFETY, _SHRINK, _GROW = 0.9, 0.2, 5.0
 _SPARE = 0.1  # largest error ratio at which a step may be cut by interpolation, whose error is some times larger
 # Last share of a step in which a change of law cannot be felt: its effect goes with the square. Of the energy of a pad that springs
@@ -57,9 +58,9 @@ class Sampling(NamedTuple):
 
 
 class Loop(NamedTuple):
-    """What evolves: states at the ends of the last step, its stages, surveys of its ends, faces on the rail, those felt in the last
-    step and their grips in it (None where friction does not stick), clock and counts, and the book of exit, settled window and jam
-    (``scenes.ending``)."""
+    """What evolves: states at the ends of the last step, its stages, surveys of its ends, faces that stand over their walls,
+    penetrations (m) with which those left that are partly over them still, faces felt in the last step and their grips in it (None
+    where friction does not stick), clock and counts, and the book of exit, settled window and jam (``scenes.ending``)."""
 
     start: np.ndarray
     end: np.ndarray
@@ -67,6 +68,7 @@ class Loop(NamedTuple):
     before: np.ndarray
     after: np.ndarray
     engaged: np.ndarray
+    left: np.ndarray
     active: np.ndarray
     grip: np.ndarray | None
     clock: np.ndarray
@@ -82,7 +84,7 @@ def ready(system, state: np.ndarray, first_step: float) -> Loop:
     state_, survey_ = (size,), (faces, SURVEY_SIZE)
     grip = zeros((faces, GRIP_SIZE)) if system.sticking is not None else None
     loop = Loop(zeros(state_), zeros(state_), zeros((STAGES, size)), zeros(survey_), zeros(survey_),
-                np.zeros(faces, dtype=np.bool_), np.zeros(faces, dtype=np.bool_), grip, zeros((CLOCK_SIZE,)),
+                np.zeros(faces, dtype=np.bool_), zeros((faces,)), np.zeros(faces, dtype=np.bool_), grip, zeros((CLOCK_SIZE,)),
                 np.zeros(COUNT_SIZE, dtype=np.int64), zeros(state_), zeros((books.BOOK_SIZE,)))
     reset(system, state, first_step, loop)
     return loop
@@ -102,6 +104,7 @@ def reset(system, state, first_step, loop):
     slot.copy(state, loop.end, state.size)
     _flatten(system.walls)
     loop.engaged[:] = False
+    loop.left[:] = 0.0
     loop.active[:] = False
     loop.stages[:] = 0.0
     loop.before[:] = 0.0
@@ -109,8 +112,8 @@ def reset(system, state, first_step, loop):
     books.reset(loop.book)
     _let_go(loop.grip)
     _survey(system, loop)
-    on_rail(system.contact, system.rail_start, system.rail_end, loop.after, loop.engaged)
-    _on_walls(system.walls, loop)
+    _on_rail(system, loop)
+    count[STRIKING] = -1  # pads may press from the start
     _regrip(system, loop)
 
 
@@ -122,11 +125,11 @@ def _flatten(walls):
 
 
 @inlined
-def _on_walls(walls, loop):
-    changed = False
-    if walls is not None:
-        changed = on_walls(walls, ALONG, loop.after, loop.engaged)
-    return changed
+def _on_rail(system, loop):
+    """Whether faces came over their walls or left them, and the energy (J) that went with them."""
+    left, energy, loop.count[STRIKING] = on_rail(system.contact, system.walls, (system.rail_start, system.rail_end), system.faces,
+                                                 loop.after, loop.left, loop.engaged)
+    return left, energy
 
 
 @inlined
@@ -212,7 +215,7 @@ def advance(system, plan, tolerance, marks, loop):
     if loop.count[STEPS] >= plan.maximum_steps:
         return OUT_OF_STEPS
     if not step(system, plan, tolerance, loop):
-        return UNDERFLOW
+        return UNDERFLOW if loop.count[STRIKING] < 0 else STRUCK
     if not _has_finite_energy(loop.end, slot.modal_size(system.walls)):
         return NOT_FINITE
     ending.follow(system, marks, loop, ending.Step(clock[BEGAN], clock[NOW], clock[SIZE]))
@@ -232,9 +235,11 @@ def _has_finite_energy(state, modal):
 
 @kernel
 def step(system, plan, tolerance, loop):
-    """Take one step; False when none is short enough."""
+    """Take one step; False when none is short enough, or a face strikes an edge of its wall where the step would begin."""
     clock, count = loop.clock, loop.count
     fresh = _begin(system, plan, loop)
+    if count[STRIKING] >= 0:
+        return False
     start, segment = clock[BEGAN], count[SEGMENT]
     stop, rate, landings = plan.stops[segment], clock[RATE], 0
     # At a corner the thrust is the one of the stretch it is seen from.
@@ -322,7 +327,7 @@ def _land(system, loop, dt):
         if theta >= 1.0 - 1e-9:
             return span, -1
         if theta * span <= SOONEST or loop.clock[BEGAN] + 0.01 * theta * span * dt == loop.clock[BEGAN]:
-            return span, -1 if loop.active[face] else face
+            return span, -1 if loop.active[face] or not loop.engaged[face] else face
         span *= theta
         loop.count[EVENTS] += 1
         interpolate(dt, span, loop.start, loop.stages, slot.STATE_SIZE, slot.modal_size(system.walls), loop.end)
@@ -339,8 +344,7 @@ def _begin(system, plan, loop):
     fresh = count[SEGMENT] < 0 or clock[NOW] >= plan.stops[count[SEGMENT]]
     if fresh:
         count[SEGMENT] += 1
-    changed, energy = on_rail(system.contact, system.rail_start, system.rail_end, loop.after, loop.engaged)
-    left = _on_walls(system.walls, loop)
+    left, energy = _on_rail(system, loop)
     loop.start[slot.RELEASED] += energy
     regripped, lost = _regrip(system, loop)
     loop.start[slot.FRICTION] += lost
@@ -348,8 +352,8 @@ def _begin(system, plan, loop):
         slot.copy(loop.after[i], loop.before[i], SURVEY_SIZE)
     slot.copy_all(loop.stages[STAGES - 1], loop.stages[0], slot.modal_size(system.walls))
     _release(system.walls, system, loop, left, 1.0)
-    if felt(loop.after, loop.engaged, loop.active) or regripped:
-        changed = True
+    changed = felt(loop.after, loop.engaged, loop.active) or regripped
+    if changed:
         clock[RATE] = _fastest_rate(system, loop, loop.start, 0.0)
     _release(system.walls, system, loop, left, -1.0)
     return changed or left or fresh or clock[SPAN] < 1.0

@@ -3,8 +3,8 @@
     m v' = F,    I w' = M - w x I w    (w and M in body axes, M about the body's own mass centre),    q' = q w / 2
 
 It shares only the laws in ``scenes.effects``, the table of warm walls (``lowfi.bow``) and the rotations with the fast path: other
-state variables, another integrator, no events, no error control. Tests hold the fast path against it; benchmarks take it as the
-baseline.
+state variables, another integrator, no events, no error control, and it goes on where a pad strikes an edge of a wall. Tests hold
+the fast path against it; benchmarks take it as the baseline.
 """
 
 from typing import NamedTuple
@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from lowfi import bow
-from lowfi.system import NUMBER, build
+from lowfi.system import BACK, NUMBER, SIDE_MIDDLE, SIDE_REACH, build
 from scenes import model as models
 from scenes import rotation
 from scenes.effects import contact as law
@@ -172,7 +172,8 @@ def touch(laws, friction, face, rail_start, rail_end, place, axes, payload, plat
         x = (place[0] + c[0], place[1] + c[1], place[2] + c[2])
         away, slope = _bowed(laws.bow, face, x[0])
         p = face[3] * x[1] + face[4] * x[2] - face[5] - away
-        if p > 0.0 and rail_start <= x[0] <= rail_end:
+        side = (x[1] if face[3] == 0.0 else x[2]) - face[SIDE_MIDDLE]
+        if 0.0 < p < face[BACK] and rail_start <= x[0] <= rail_end and abs(side) <= face[SIDE_REACH]:
             r, v, turn, spin = payload
             R, V, frame, frame_spin = platform
             arm = rotation.rotate(turn, (face[0], face[1], face[2]))

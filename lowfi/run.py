@@ -5,9 +5,9 @@ from typing import Callable
 
 import numpy as np
 
-from lowfi import balance, bow, march, plan, state, system
+from lowfi import balance, bow, edges, march, plan, state, system
 from lowfi.accuracy import Tolerance
-from lowfi.march import EVALUATIONS, EVENTS, LIMIT, LIMIT_USED, NOW, REJECTED, STEPS, TAKEN, Sampling
+from lowfi.march import EVALUATIONS, EVENTS, LIMIT, LIMIT_USED, NOW, REJECTED, STEPS, STRIKING, TAKEN, Sampling
 from lowfi.models import require
 from lowfi.numerics import Numerics
 from lowfi.walls import record as wall_record
@@ -95,10 +95,17 @@ class Run:
         sampling = Sampling(self.interval, self.last, number, self.whole)
         status = march.march(self.system, self.plan, self.tolerance, self.marks, self.loop, sampling, self.rows, self.forces)
         self.taken = int(self.loop.count[TAKEN])
-        if status in _REASONS:
+        if status == march.STRUCK:
+            self.message = self._strike()
+        elif status in _REASONS:
             self.message = f"{_REASONS[status]}, at {self.loop.clock[NOW]:.6g} s"
         elif status == march.ENDED:
             self.end = self.taken - 1
+
+    def _strike(self) -> str:
+        """What met the edge of a wall, where and when."""
+        face = int(self.loop.count[STRIKING])
+        return edges.strike(self.model, face, self.system.faces[face], self.loop.after[face], self.loop.clock[NOW])
 
     def judged(self) -> tuple[str, outcome.Outcome]:
         """Status and outcome of the run so far."""

@@ -13,15 +13,20 @@ from scenes.effects.gravity import Gravity
 from scenes.effects.sticking import Sticking
 from scenes.effects.thrust_law import Thrust
 from scenes.effects.thrust_offset import ThrustOffset
-from scenes.model import Faces, Model
+from scenes.model import Model
 
 if TYPE_CHECKING:
     from lowfi.bow import Bow
     from lowfi.walls.record import Walls
 
 # Columns of the table of faces: centre in payload body axes (m); outward normal's y and z and the wall's distance along it (m), in
-# platform axes; half the length (m); its own number.
-CENTRE, NORMAL_Y, NORMAL_Z, WALL, HALF_LENGTH, NUMBER, FACE_SIZE = 0, 3, 4, 5, 6, 7, 8
+# platform axes; half the length (m); its own number; and where the wall ends (``lowfi.edges``): how far (m) the middle of the face
+# may be beyond an end of the rail, where it stands across the rail when centred (m, platform axes), how far from there it may be
+# (m), the thickness of the wall (m), and how deep (m) its edge may come over that of the wall.
+CENTRE, NORMAL_Y, NORMAL_Z, WALL, HALF_LENGTH, NUMBER, OVERHANG, SIDE_MIDDLE, SIDE_REACH, BACK, ROUND, FACE_SIZE = (
+    0, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13)
+ROUNDED = 1e-6  # m: the edges of pads and walls are no sharper, and no gap of theirs is known better
+LAST_STRIP = 0.01  # of half a face: what is left over a wall that gives way when the face leaves it
 
 
 class Body(NamedTuple):
@@ -64,7 +69,7 @@ def build(model: Model, ledger: bool = True, walls: "Walls | None" = None, bow: 
     """Records of ``model`` as the kernels take them, with a contact law at rigid walls, straight or with a ``bow``, or with
     ``walls`` that give way. Without a ``ledger`` no work, loss or impulse is integrated."""
     contact = Contact(*model.contact, bow) if model.contact is not None and walls is None else None
-    return System(_body(model.payload), _body(model.platform) if model.platform is not None else None, _table(model.faces),
+    return System(_body(model.payload), _body(model.platform) if model.platform is not None else None, _table(model, walls),
                   float(model.rail_start), float(model.rail_end), model.thrust, model.reacts_on_platform, model.thrust_offset,
                   contact, walls, _if(model.friction, Friction), _if(model.friction, Sticking), model.gravity,
                   True if ledger else None)
@@ -79,11 +84,16 @@ def _body(record) -> Body:
     return Body(record.mass, np.ascontiguousarray(record.inverse_inertia))
 
 
-def _table(faces: Faces) -> np.ndarray:
+def _table(model: Model, walls) -> np.ndarray:
+    faces = model.faces
     table = np.zeros((faces.axis.size, FACE_SIZE))
     table[:, CENTRE:CENTRE + 3] = faces.centre
     table[:, NORMAL_Y] = np.where(faces.axis == 1, faces.sign, 0.0)
     table[:, NORMAL_Z] = np.where(faces.axis == 2, faces.sign, 0.0)
     table[:, WALL], table[:, HALF_LENGTH] = faces.sign * faces.wall, faces.half_length
     table[:, NUMBER] = np.arange(faces.axis.size)
+    if walls is not None:
+        table[:, OVERHANG] = walls.half[:, 0] * (1.0 - LAST_STRIP)
+    table[:, SIDE_MIDDLE], table[:, SIDE_REACH] = model.plate.across, model.plate.leg + faces.half_width
+    table[:, BACK], table[:, ROUND] = model.plate.thickness, faces.relief + ROUNDED
     return table

@@ -102,6 +102,22 @@ def penetration(bow, face, place, turn):
 
 
 @inlined
+def across(face, place, turn):
+    """Place (m) of the centre of ``face`` on the axis across rail and normal, in platform axes."""
+    if face[NORMAL_Y] == 0.0:
+        return place[1] + turn[3] * face[0] + turn[4] * face[1] + turn[5] * face[2]
+    return place[2] + turn[6] * face[0] + turn[7] * face[1] + turn[8] * face[2]
+
+
+@inlined
+def sideways(face, drift, swing):
+    """Rate (m/s) of ``across``, from the rates of the pose."""
+    if face[NORMAL_Y] == 0.0:
+        return drift[1] + swing[3] * face[0] + swing[4] * face[1] + swing[5] * face[2]
+    return drift[2] + swing[6] * face[0] + swing[7] * face[1] + swing[8] * face[2]
+
+
+@inlined
 def outward(face, base):
     """Outward normal of ``face`` in scene axes, the wall being straight."""
     return rotation.rotate(base.turn, (0.0, face[NORMAL_Y], face[NORMAL_Z]))

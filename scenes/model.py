@@ -16,6 +16,7 @@ from scenes.effects.initial import Initial
 from scenes.effects.platform import Platform
 from scenes.effects.sticking import Sticking
 from scenes.effects.thermal import Thermal
+from scenes.rail import SectionTable
 from scenes.scene import Scene
 
 # Tables of a scene whose records may be kept.
@@ -48,11 +49,22 @@ class Faces(NamedTuple):
     pad: np.ndarray
 
 
+class Plate(NamedTuple):
+    """What bounds every wall besides the ends of the rail: its thickness (m); the leg (m), which no wall is wider than; and where
+    each face stands across the rail when it is centred, across (f,) m in platform axes. A rail given as a file that does not say
+    its thickness or leg is taken to have those of the built-in section."""
+
+    thickness: float
+    leg: float
+    across: np.ndarray
+
+
 class Model(NamedTuple):
     """All records of one scene. ``rail_start`` and ``rail_end`` (m) are X in platform axes."""
 
     payload: Payload
     faces: Faces
+    plate: Plate
     rail_start: float
     rail_end: float
     thrust: thrust.Thrust
@@ -96,6 +108,7 @@ def built(scene: Scene, known: Built | None = None) -> Built:
     return Built(scene, Model(
         payload=_payload(scene, offset, known.model.payload if kept("payload") else None),
         faces=nominal._replace(centre=nominal.centre - np.array(offset)),
+        plate=known.model.plate if kept("pads", "rail", "contact", "platform") else _plate(scene, nominal, platform),
         rail_start=scene.rail.start - origin,
         rail_end=scene.rail.end - origin,
         thrust=known.model.thrust if kept("thrust") else scene.thrust.record(),
@@ -119,6 +132,12 @@ def _payload(scene: Scene, offset: tuple, known: Payload | None) -> Payload:
         return known._replace(mass_centre=offset)
     inertia = tensor(scene.payload.inertia)
     return Payload(scene.payload.mass, inertia, np.linalg.inv(inertia), offset)
+
+
+def _plate(scene: Scene, nominal: Faces, platform: Platform | None) -> Plate:
+    origin = np.array(platform.mass_centre if platform else (0.0, 0.0, 0.0))
+    thickness, leg = (getattr(scene.rail, name) or SectionTable.model_fields[name].default for name in ("thickness", "leg"))
+    return Plate(thickness, leg, (nominal.centre - origin)[np.arange(nominal.axis.size), 3 - nominal.axis])
 
 
 def _faces(scene: Scene, platform: Platform | None) -> Faces:

@@ -99,3 +99,11 @@ def pressed_at_ignition(faces, forces: np.ndarray) -> str:
     """A warning that names the pads on which there are ``forces`` (f,3) N before anything moves, or nothing."""
     pads = sorted(set(faces.pad[(forces != 0.0).any(axis=1)].tolist()))
     return f"initial interference: pads {', '.join(map(str, pads))} press on the rail at ignition" if pads else ""
+
+
+def strike(faces, face: int, how: str, depth: float, place: float, time: float) -> str:
+    """Why a run ends at a pad that meets a wall where no contact is modelled: what it does (``how``), with the penetration
+    ``depth`` (m), the middle of the face standing at X = ``place`` (m, as the scene counts it at ignition), at ``time`` (s)."""
+    name = f"{'+' if faces.sign[face] > 0.0 else '-'}{'xyz'[faces.axis[face]]}"
+    return (f"pad {faces.pad[face]} {how} of its rail with its face {name}, {depth * 1e3:.4g} mm behind the surface of the wall, "
+            f"X = {place:.6g} m, at {time:.6g} s: no contact is modelled there")

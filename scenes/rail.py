@@ -100,8 +100,8 @@ class _FileTable(_RailTable):
     """A rail given by a file.
 
     ``clearance`` (m) is the one the file was drawn for; a scene of another one has shims of the difference under its pads.
-    ``thickness`` (m) of its walls and ``leg`` (m), how far they reach unsupported, are what the bounds of a calibration scale with;
-    nothing else asks for them.
+    ``thickness`` (m) of its walls and ``leg`` (m), how far they reach unsupported, are what the bounds of a calibration scale with,
+    and where a wall ends for a pad that comes from behind or from beside (``scenes.model.Plate``).
     """
 
     clearance: NonNegativeLength | None = None

@@ -17,16 +17,7 @@ from lowfi.touch import penetration
 from lowfi.walls.record import ASIDE, BY_ETA, BY_XI, DEPTH, DRIFT, MIDDLE, SHIFT
 from scenes.jit import inlined, kernel
 
-LAST_STRIP = 0.01  # of half a face
 _EASED = 0.1  # in xi: where a pad comes to hang over an end, its place on the wall stops over so much way on either side
-
-
-@inlined
-def reaches(walls, face, middle):
-    """Whether the face with its middle at X = ``middle`` (m) is over a wall, by more than a last strip: what is left of a loaded
-    face there is so stiff that no step could follow it."""
-    half = walls.half[face, 0] * (1.0 - LAST_STRIP)
-    return middle + half > walls.start and middle - half < walls.end
 
 
 @inlined

@@ -61,7 +61,7 @@ def drive(walls, count):
         u, force = room.displacement[face], room.force[face]
         pull += room.lever[face, DRIFT] * (u[1] * force[0] + 2.0 * u[3] * force[1] + u[4] * force[2])
         pull += warm.pull(walls.warm, face, force)
-        if room.lever[face, SHIFT] != 0.0:  # else all of it is over the wall
+        if room.lever[face, DRIFT] != 0.0:  # else all of it is over the wall
             fading += stored(walls, face)[1]
         for a in range(PATTERNS):
             total = 0.0

@@ -3,13 +3,14 @@
 import numpy as np
 
 from lowfi import state as slot
-from lowfi.system import NORMAL_Y, NORMAL_Z
-from lowfi.touch import approach, relative_motion, relative_pose
-from lowfi.walls.cells import LAST_STRIP, deepest, reaches, take_lever
+from lowfi.edges import ALONG, CLOSING, DEPTH, FORWARD, MODE, SIDE, SIDEWAYS
+from lowfi.system import LAST_STRIP, NORMAL_Y, NORMAL_Z, SIDE_MIDDLE
+from lowfi.touch import across, approach, relative_motion, relative_pose, sideways
+from lowfi.walls.cells import deepest, take_lever
 from lowfi.walls import warm
 from lowfi.walls.loads import energy as energy_of_rail
 from lowfi.walls.modes import speed_at
-from lowfi.walls.record import ASIDE, MIDDLE, SHIFT
+from lowfi.walls.record import ASIDE, DRIFT, MIDDLE, SHIFT
 from lowfi.walls.solution import follow, solve
 from scenes.jit import inlined, kernel
 
@@ -47,28 +48,30 @@ def _approach(walls, faces, face, xi, eta, drift, swing):
 
 
 @kernel
-def survey(walls, faces, platform, payload, active, state, columns, out):
-    """Fill ``columns`` (mode of an open face, of a pressing one; column of mode, depth, closing, X) of ``out``."""
+def survey(walls, faces, platform, payload, active, state, open_, pressing, out):
+    """Fill ``out`` as ``lowfi.events.survey`` does; ``open_`` and ``pressing`` are the modes of a face."""
     body, base = slot.motion(payload.mass, payload.inverse_inertia, state, slot.PAYLOAD), slot.frame(platform, state)
     place, turn = relative_pose(platform, body, base)
     drift, swing = relative_motion(platform, body, base, place, turn)
-    open_, pressing, mode, penetration, closing, along = columns
     for rail in range(walls.members.shape[0]):
         count = solve(walls, faces, rail, active, place, turn, state)
         for k in range(walls.members.shape[1]):
             face = walls.members[rail, k]
             if face >= 0:
                 p, xi, eta = _deepest(walls, faces, face, count, active, place, turn, state)
-                out[face, mode], out[face, penetration] = pressing if p > 0.0 else open_, p
-                out[face, closing] = _approach(walls, faces, face, xi, eta, drift, swing)
-                out[face, along] = walls.room.lever[face, MIDDLE]
+                out[face, MODE], out[face, DEPTH] = pressing if p > 0.0 else open_, p
+                out[face, CLOSING] = _approach(walls, faces, face, xi, eta, drift, swing)
+                out[face, ALONG], out[face, FORWARD] = place[0] + faces[face, 0], drift[0]
+                out[face, SIDE] = across(faces[face], place, turn) - faces[face, SIDE_MIDDLE]
+                out[face, SIDEWAYS] = sideways(faces[face], drift, swing)
 
 
 @kernel
 def while_hanging(walls, faces, platform, payload, active, state):
     """Longest step (s) where an ``active`` face (f,) comes to an end of the rail. The rate at which it leaves energy behind jumps
     as it begins to hang over and bends with every row of cells that leaves, which no error estimate sees; and its last strip leaves
-    at once. So a step goes no farther than up to either, and a quarter of a cell at most."""
+    at once. So a step goes no farther than up to either, nor than to where a face that comes over an end is wholly over it, and a
+    quarter of a cell at most."""
     body, base = slot.motion(payload.mass, payload.inverse_inertia, state, slot.PAYLOAD), slot.frame(platform, state)
     place, turn = relative_pose(platform, body, base)
     drift, _ = relative_motion(platform, body, base, place, turn)
@@ -78,9 +81,12 @@ def while_hanging(walls, faces, platform, payload, active, state):
             take_lever(walls, faces, face, place, turn)
             half, middle = walls.half[face, 0], walls.room.lever[face, MIDDLE]
             ahead = walls.end - middle if drift[0] > 0.0 else middle - walls.start
-            way = np.inf if walls.room.lever[face, SHIFT] == 0.0 else 0.5 * half / walls.node.size
+            behind = middle - walls.start if drift[0] > 0.0 else walls.end - middle
+            way = np.inf if walls.room.lever[face, DRIFT] == 0.0 else 0.5 * half / walls.node.size
             for to in (ahead - half, ahead + half * (1.0 - LAST_STRIP)):
                 way = min(way, to + _THERE) if to > 0.0 else way
+            if half - behind > _THERE:
+                way = min(way, half - behind + _THERE)
             longest = min(longest, way / abs(drift[0]))
     return longest
 
@@ -94,14 +100,3 @@ def energy(walls, faces, platform, payload, active, state):
     for rail in range(walls.members.shape[0]):
         total += energy_of_rail(walls, solve(walls, faces, rail, active, place, turn, state))
     return total
-
-
-@inlined
-def on_walls(walls, along, surveyed, engaged):
-    """Bring ``engaged`` (f,) up to date: the faces of which any part is over a wall. True when any changed."""
-    changed = False
-    for i in range(engaged.size):
-        inside = reaches(walls, i, surveyed[i, along])
-        changed = changed or inside != engaged[i]
-        engaged[i] = inside
-    return changed

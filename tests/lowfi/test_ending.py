@@ -36,8 +36,8 @@ def assert_same(found, expected) -> None:
 @pytest.mark.parametrize("condition, walls", [("phi35", False), ("phi35", True)], ids=["springs", "compliant"])
 def test_sampling_changes_no_bit(condition, walls):
     """From a thousand samples to two, to an interval that divides nothing, and to none but the first in all of the flight."""
-    asked, stand = REFERENCE.condition(condition), reference_walls() if walls else None
-    fine, *others = (lowfi.run(asked.replace({"output.interval": interval}), walls=stand)
+    asked, model, stand = REFERENCE.condition(condition), *(("compliant", reference_walls()) if walls else ("springs", None))
+    fine, *others = (lowfi.run(asked.replace({"output.interval": interval}), model, walls=stand)
                      for interval in ("0.05 ms", "5 ms", "29 ms", "0.73 ms", "58 ms"))
     assert fine.status == "exited"
     for other in others:
@@ -64,9 +64,9 @@ def test_rows_with_records_of_their_own_are_not_mixed(key, values):
 
 
 def assert_rows_are_runs(base, rows):
-    found = lowfi.run_many(base, rows, workers=2)
+    found = lowfi.run_many(base, rows, "springs", workers=2)
     for index, row in enumerate(rows):
-        alone, case = lowfi.run(base.replace(row)), found.isel(case=index)
+        alone, case = lowfi.run(base.replace(row), "springs"), found.isel(case=index)
         assert (str(case.status.values), int(case.steps)) == (alone.status, alone.cost["steps"]) and alone.status == "exited"
         for name in columns.UNITS:
             assert np.array_equal(case[name].values, getattr(alone.outcome, name)), (row, name)
@@ -78,7 +78,7 @@ def test_exit_under_a_constant_push(force):
     """x = F t^2 / 2 m, which the method integrates without error: 0.2 m to the last digits, at any tolerance."""
     exact = np.sqrt(2.0 * 0.2 * 10.0 / force)
     for interval in (1e-3, 0.0999, 0.1):
-        run = lowfi.run(free(0.1, interval, thrust={"kind": "constant", "force": force, "duration": 0.2}))
+        run = lowfi.run(free(0.1, interval, thrust={"kind": "constant", "force": force, "duration": 0.2}), "springs")
         assert run.outcome.exit_time == pytest.approx(exact, rel=1e-14)
 
 
@@ -87,7 +87,8 @@ def pushed(tolerance: float, interval: float):
     time and mean velocity."""
     width, centre, duration = 5e-3, 0.03, 0.06
     thrust = {"kind": "gaussian", "peak": 30e3, "width": width, "centre": centre}
-    run = lowfi.run(free(duration, interval, thrust=thrust), numerics=Numerics(relative_tolerance=tolerance, speed_floor=1e-6))
+    run = lowfi.run(free(duration, interval, thrust=thrust), "springs",
+                    numerics=Numerics(relative_tolerance=tolerance, speed_floor=1e-6))
     assert run.status == "exited"
     root, rise = np.sqrt(2.0) * width, 3000.0 * width * np.sqrt(np.pi / 2.0)
     begin = scipy.special.erf(-centre / root)
@@ -124,7 +125,8 @@ def test_means_of_a_tumbling_body():
     for tolerance in (1e-7, 1e-9, 1e-11):
         for interval in (1e-4, 0.06):
             tumbling = free(0.06, interval, initial={"velocity": {"x": 6.0}, "rate": dict(zip("xyz", start))})
-            run = lowfi.run(tumbling, numerics=Numerics(relative_tolerance=tolerance, speed_floor=1e-6))
+            run = lowfi.run(tumbling, "springs",
+                    numerics=Numerics(relative_tolerance=tolerance, speed_floor=1e-6))
             begin = run.outcome.window_start
             time = begin + 1e-3 * (1.0 + np.polynomial.legendre.leggauss(20)[0])
             mean = 0.5 * np.polynomial.legendre.leggauss(20)[1] @ rigid.free_rates(inertia, start, time)
@@ -137,7 +139,7 @@ def test_means_of_a_tumbling_body():
 def test_exit_waits_for_a_pitched_trailing_edge():
     """Nose down by a: the edge at (-0.1, 0, 0.1) trails by 0.1 cos a + 0.1 sin |a|, so exit is later than when level."""
     for angle in (-0.05, 0.05):
-        run = lowfi.run(free(0.1, 0.05, initial={"velocity": {"x": 5.0}, "attitude": {"y": angle}}))
+        run = lowfi.run(free(0.1, 0.05, initial={"velocity": {"x": 5.0}, "attitude": {"y": angle}}), "springs")
         trailing = 0.1 * np.cos(angle) - 0.1 * np.sin(angle)
         assert run.outcome.exit_time == pytest.approx((0.1 + trailing) / 5.0, rel=1e-14)
         assert run.outcome.exit_attitude == pytest.approx([0.0, angle, 0.0], abs=1e-14)
@@ -156,7 +158,7 @@ def test_exit_from_a_turning_platform():
 
     exact = scipy.optimize.brentq(past, 0.0, 0.1, xtol=1e-16, rtol=1e-15)
     assert abs(exact - 0.04) > 1e-4  # a rail that stays is left at another time
-    run = lowfi.run(asked, numerics=FINE)
+    run = lowfi.run(asked, "springs", numerics=FINE)
     assert run.outcome.exit_time == pytest.approx(exact, rel=1e-10)
     assert run.outcome.exit_platform_attitude == pytest.approx([0.0, 0.0, rate * exact], rel=1e-9, abs=1e-12)
     assert run.outcome.exit_platform_rate == pytest.approx([0.0, 0.0, rate], abs=1e-12)
@@ -164,7 +166,7 @@ def test_exit_from_a_turning_platform():
 
 
 def test_beyond_the_rail_from_the_start():
-    run = lowfi.run(free(0.01, 0.01, initial={"position": {"x": 0.3}, "velocity": {"x": 1.0, "y": 0.1}}))
+    run = lowfi.run(free(0.01, 0.01, initial={"position": {"x": 0.3}, "velocity": {"x": 1.0, "y": 0.1}}), "springs")
     assert (run.status, run.outcome.exit_time, run.outcome.window_start) == ("exited", 0.0, 1e-3)
     assert run.outcome.exit_position == [0.3, 0.0, 0.0]
 
@@ -175,7 +177,7 @@ def test_a_payload_that_comes_back_has_left(height, leaves):
     above 1 um it is beyond for 1.8 ms, longer than a piece of a step."""
     speed = 2.0
     fall = {"x": -speed**2 / (2.0 * (0.2 + height)), "y": 0.0, "z": 0.0}
-    run = lowfi.run(free(0.3, 0.3, initial={"velocity": {"x": speed}}, gravity=fall))
+    run = lowfi.run(free(0.3, 0.3, initial={"velocity": {"x": speed}}, gravity=fall), "springs")
     assert (run.outcome.exit_time is not None) == leaves and run.cost["steps"] < 30
     if leaves:
         exact = (speed - np.sqrt(speed**2 + 2.0 * fall["x"] * 0.2)) / -fall["x"]
@@ -199,8 +201,8 @@ def test_jam_on_both_sides_of_its_duration(fall, jams, interval):
 def test_a_jam_is_found_with_few_samples(interval):
     """A push of 5 N leaves the reference's payload where it is; in an ensemble too."""
     asked = REFERENCE.condition("phi15").replace({"thrust.peak": 5.0})
-    seen, case = [], lowfi.run_many(asked, [{"output.interval": interval}])
-    run = lowfi.run(asked.replace({"output.interval": interval}), progress=seen.append)
+    seen, case = [], lowfi.run_many(asked, [{"output.interval": interval}], "springs")
+    run = lowfi.run(asked.replace({"output.interval": interval}), "springs", progress=seen.append)
     assert seen == sorted(seen) and seen[-1] == 1.0
     assert run.status == "jammed" == str(case.status.values[0]) and int(case.steps.values[0]) == run.cost["steps"]
     assert run.time[-1] < 0.045  # 5 ms after the thrust fell below 1 % of its peak, at 24 ms, and not at the scene's end
