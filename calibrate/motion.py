@@ -6,8 +6,8 @@ import numpy as np
 
 from lowfi import balance
 from lowfi.numerics import Numerics
-from lowfi.run import Run
-from scenes import outcome
+from lowfi.run import Run, improved
+from scenes import comoving, outcome
 from scenes.scene import Scene
 from scenes.walls import Walls
 
@@ -27,6 +27,9 @@ def run(scene: Scene, numerics: Numerics | None = None, walls: Walls | None = No
     going = Run(scene, numerics or Numerics(), walls)
     going.begin()
     going.march(None)
-    moved = balance.motion(going.rows[:going.taken], 0, going.interval)
-    status, result = ("diverged", outcome.Outcome()) if going.message else outcome.judge(moved, going.marks)
+    going = improved(going)
+    moved, seen_from = balance.motion(going.rows[:going.taken], 0, going.interval), comoving.frame(going.model)
+    diverged = going.message or not going.keeps_ledgers()
+    status, result = ("diverged", outcome.Outcome()) if diverged else outcome.judge(moved, going.marks)
+    result, moved = comoving.outcome(seen_from, result, going.interval), comoving.motion(seen_from, moved)
     return Motion(status, moved.time, moved.velocity, moved.rate, result)

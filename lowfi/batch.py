@@ -6,12 +6,12 @@ from typing import Any, Callable, Mapping, NamedTuple, Sequence
 
 import numpy as np
 
-from lowfi import bow, march, plan, settle, state, system
-from lowfi.numerics import Numerics
+from lowfi import accuracy, bow, march, plan, settle, state, system
+from lowfi.numerics import Numerics, promises_of
 from lowfi.run import end_of, run
 from lowfi.walls import record as wall_record
+from scenes import comoving, outcome
 from scenes import model as models
-from scenes import outcome
 from scenes.calibration import Calibration
 from scenes.faults import SceneError
 from scenes.model import Built
@@ -115,16 +115,16 @@ class Family:
         model, planned, marks = group.built.model, group.plan, group.marks
         under_pads = wall_record.under_pads(group.built.scene, model, self.walls)
         under_law = bow.under_pads(group.built.scene, model, self.walls)
-        common, first = system.build(model, ledger=False, walls=under_pads, bow=under_law), plan.first_step(planned)
+        common, first = system.build(model, walls=under_pads, bow=under_law), plan.first_step(planned)
         ends = settle.Ends(end_of(group.built.scene), marks.settled_thrust, marks.spent_thrust, marks.constant_thrust,
                            marks.jam_speed, max(1, round(outcome.JAM_DURATION / planned.interval)))
         loop, room, cases = (march.ready(common, state.initial(model), first), settle.scratch(planned.interval),
                              _stacked(common, group))
         results = np.zeros((len(group.cases), settle.RESULT_SIZE))
+        allowed = accuracy.tolerance(self.numerics, promises_of(self.numerics), 0.0)
 
         def call() -> np.ndarray:
-            settle.settle(common, planned, self.numerics.relative_tolerance, self.numerics.speed_floor, ends, cases, first, loop,
-                          room, results)
+            settle.settle(common, planned, allowed, ends, cases, first, loop, room, results)
             return results
 
         return call
@@ -133,9 +133,10 @@ class Family:
         began = clock.perf_counter()
         results = self._kernel(group)()
         share = (clock.perf_counter() - began) / len(results)
-        return [(number, self._case(row, result, share)) for (number, row), result in zip(group.rows, results)]
+        return [(number, self._case(group, case, row, result, share))
+                for (number, row), case, result in zip(group.rows, group.cases, results)]
 
-    def _case(self, row: Mapping[str, Any], result: np.ndarray, share: float) -> Case:
+    def _case(self, group: _Group, model, row: Mapping[str, Any], result: np.ndarray, share: float) -> Case:
         status = int(result[settle.STATUS])
         if status == settle.LEFT_OPEN:
             return self._whole(row)
@@ -144,6 +145,7 @@ class Family:
             found = outcome.settled(float(result[settle.EXIT]), float(result[settle.WINDOW]),
                                     result[settle.VELOCITY:settle.VELOCITY + 3], result[settle.RATE:settle.RATE + 3],
                                     *settle.bodies(result))
+            found = comoving.outcome(comoving.frame(model), found, group.plan.interval)
         return Case(_STATUS[status], "", found, int(result[settle.TAKEN_STEPS]), share)
 
     def _whole(self, row: Mapping[str, Any]) -> Case:

@@ -30,9 +30,11 @@ MODE, DEPTH, CLOSING, PULL, ALONG, MARGIN, SURVEY_SIZE = 0, 1, 2, 3, 4, 5, 6
 @inlined
 def survey(laws, walls, sticking, faces, platform, payload, active, grip, state, out):
     """Fill ``out`` (f, SURVEY_SIZE) with mode, penetration (m), its rate (m/s), pull, X (m) and margin of grip of every face. The
-    mode of a face off the rail is the one it would have there. Walls that give way ask which faces are ``active`` (f,)."""
+    mode of a face off the rail is the one it would have there. Walls that give way ask which faces are ``active`` (f,); the energy
+    (J) they hold under those is returned."""
+    on_walls = 0.0
     if walls is not None:
-        survey_walls(walls, faces, platform, payload, active, state, (OPEN, PRESSING, MODE, DEPTH, CLOSING, ALONG), out)
+        on_walls = survey_walls(walls, faces, platform, payload, active, state, (OPEN, PRESSING, MODE, DEPTH, CLOSING, ALONG), out)
     if laws is not None:
         body, base = slot.motion(payload.mass, payload.inverse_inertia, state, slot.PAYLOAD), slot.frame(platform, state)
         place, turn = relative_pose(platform, body, base)
@@ -47,6 +49,7 @@ def survey(laws, walls, sticking, faces, platform, payload, active, grip, state,
                 out[i, MODE] = PRESSING if face.raw >= 0.0 else CUT_OFF
                 out[i, PULL] = _pull(face)
             out[i, MARGIN] = _margin(laws, sticking, grips.row_of(sticking, grip, i), platform, faces[i], p, body, base)
+    return on_walls
 
 
 @inlined

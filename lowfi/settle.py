@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from lowfi import audit
 from lowfi import state as slot
 from lowfi.accuracy import Tolerance
 from lowfi.dormand_prince import interpolate
@@ -83,13 +84,16 @@ def scratch(interval: float) -> Scratch:
 
 
 @kernel
-def settle(common, plan, relative, floor, ends, cases, first_step, loop, room, results):
-    """Fill ``results`` (n, RESULT_SIZE), one row per case."""
+def settle(common, plan, tolerance, ends, cases, first_step, loop, room, results):
+    """Fill ``results`` (n, RESULT_SIZE), one row per case. Whose ledgers call for smaller steps is left open. The reach of the
+    ``tolerance`` is that of each case."""
     for n in range(results.shape[0]):
         system = _system(common, cases, n)
         reset(system, cases.start[n], first_step, loop)
-        results[n, STATUS] = _one(system, plan, Tolerance(relative, floor, cases.reach[n]), ends, cases.edges[n],
-                                  loop, room, results[n])
+        allowed = Tolerance(tolerance.relative, tolerance.floor, cases.reach[n], tolerance.total, tolerance.across)
+        results[n, STATUS] = _one(system, plan, allowed, ends, cases.edges[n], loop, room, results[n])
+        if not audit.usage(loop.audit, tolerance.total, tolerance.across) <= 1.0:
+            results[n, STATUS] = LEFT_OPEN
         results[n, TAKEN_STEPS], results[n, RIGHT_HAND_SIDES] = loop.count[STEPS], loop.count[EVALUATIONS]
 
 

@@ -48,13 +48,16 @@ def _approach(walls, faces, face, xi, eta, drift, swing):
 
 @kernel
 def survey(walls, faces, platform, payload, active, state, columns, out):
-    """Fill ``columns`` (mode of an open face, of a pressing one; column of mode, depth, closing, X) of ``out``."""
+    """Fill ``columns`` (mode of an open face, of a pressing one; column of mode, depth, closing, X) of ``out``; the energy (J) in
+    all walls under the ``active`` faces (f,)."""
     body, base = slot.motion(payload.mass, payload.inverse_inertia, state, slot.PAYLOAD), slot.frame(platform, state)
     place, turn = relative_pose(platform, body, base)
     drift, swing = relative_motion(platform, body, base, place, turn)
     open_, pressing, mode, penetration, closing, along = columns
+    total = 0.0
     for rail in range(walls.members.shape[0]):
         count = solve(walls, faces, rail, active, place, turn, state)
+        total += energy_of_rail(walls, count)
         for k in range(walls.members.shape[1]):
             face = walls.members[rail, k]
             if face >= 0:
@@ -62,6 +65,7 @@ def survey(walls, faces, platform, payload, active, state, columns, out):
                 out[face, mode], out[face, penetration] = pressing if p > 0.0 else open_, p
                 out[face, closing] = _approach(walls, faces, face, xi, eta, drift, swing)
                 out[face, along] = walls.room.lever[face, MIDDLE]
+    return total
 
 
 @kernel
