@@ -24,10 +24,10 @@ from highfi.stepping import Stepping, choose
 from highfi.surface import magnification
 from highfi.system import System, build, initial_state
 from highfi.team import gather, processors
-from scenes import ledger, outcome, rotation
+from scenes import comoving, fidelity, ledger, outcome, rotation
 from scenes.effects.friction import require_two_step
 from scenes.ending import DONE, WINDOW
-from scenes.fidelity import FINITE_ELEMENTS
+from scenes.promises import FINITE_ELEMENTS, broken
 from scenes.scene import Scene
 from scenes.trajectory import Trajectory
 
@@ -266,23 +266,34 @@ class Loop:
     def _stress(self) -> dict:
         return watch.record(self.watch, self.system, self.worst, self.scene.rail.material.yield_strength)
 
+    def _broken(self, checks: dict[str, float]) -> str:
+        """The promises that the run broke, and what helps, or nothing. It is not run again with smaller steps: that is for who pays
+        for it to decide."""
+        words = broken(checks, FINITE_ELEMENTS)
+        return f"{words}; lower safety or element_size" if words else ""
+
     def trajectory(self, cost: dict, numerics: Numerics) -> Trajectory:
         """The result of the samples taken so far."""
         rows, moved = np.array(self.rows), self._motion()
         total, transverse = samples.ledgers(rows, np.array(self.work))
         status, result = ending.found(self.system, self.ending.book)
-        if self.message:
-            status, result = "diverged", outcome.Outcome()
-        linear, angular = samples.momentum_errors(rows, moved, self.system.model.payload.mass)
+        forces = np.array(self.forces)
+        linear, angular = samples.momentum_errors(rows, moved, self.system.model.payload.mass, forces)
         friction = np.diff(total[:, ledger.ENTRIES.index("friction")], prepend=0.0) / self.scene.output.interval
-        checks = {"energy_error": ledger.total_error(total), "transverse_energy_error": ledger.transverse_error(transverse),
+        checks = {"energy_error": ledger.total_error(total, FINITE_ELEMENTS),
+                  "transverse_energy_error": ledger.transverse_error(transverse, total, FINITE_ELEMENTS),
                   "linear_momentum_error": linear, "angular_momentum_error": angular,
                   "quaternion_error": float(np.abs(np.linalg.norm(moved.quaternion, axis=1) - 1.0).max()),
                   "friction_power_max": float(-friction.min()), "friction_step_ratio": float(self.damping)}
+        broken = self._broken(checks)
+        if self.message or broken:
+            status, result = "diverged", outcome.Outcome()
         pressed = outcome.pressed_at_ignition(self.system.faces, self.forces[0]) if self.forces else ""
-        message = "; ".join(filter(None, [self.message, pressed]))
-        return Trajectory(model=FINITE_ELEMENTS, status=status, message=message, **moved._asdict(),
-                          pad_force=np.array(self.forces), energy=total, transverse_energy=transverse, outcome=result,
+        message = "; ".join(filter(None, [self.message, broken, pressed]))
+        seen_from = comoving.frame(self.system.model)
+        return Trajectory(model=fidelity.FINITE_ELEMENTS, status=status, message=message,
+                          **comoving.motion(seen_from, moved)._asdict(), pad_force=forces, energy=total,
+                          transverse_energy=transverse, outcome=comoving.outcome(seen_from, result),
                           checks=checks, cost=cost, scene=self.scene.resolved(), numerics=numerics.as_dict(),
-                          stress=None if self.message else self._stress(),
+                          stress=None if status == "diverged" else self._stress(),
                           wall_stress=np.array(self.gauges).reshape(len(rows), -1, 6) if self.gauges else None)

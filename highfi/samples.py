@@ -3,8 +3,9 @@
 import numpy as np
 
 from highfi import observe, records
-from scenes import ledger, rotation
+from scenes import ledger, momenta, rotation
 from scenes.outcome import Motion
+from scenes.promises import FINITE_ELEMENTS
 
 
 def motion(samples: np.ndarray, interval: float, body_offset: np.ndarray) -> Motion:
@@ -37,21 +38,7 @@ def ledgers(samples: np.ndarray, work: np.ndarray) -> tuple[np.ndarray, np.ndarr
     return tuple(np.stack([entries.get(name, zero) for name in ledger.ENTRIES], axis=1) for entries in (total, across))
 
 
-def momentum_errors(samples: np.ndarray, moved: Motion, mass: float) -> tuple[float, float]:
-    """Largest change of linear and angular momentum that no external impulse explains, over the payload's own largest.
-
-    The angular scale is the largest moment of momentum of the payload about the scene origin or of the whole, whichever is more.
-    """
-    linear, angular = samples[:, observe.LINEAR:observe.LINEAR + 3], samples[:, observe.ANGULAR:observe.ANGULAR + 3]
-    given = samples[:, observe.IMPULSE:observe.IMPULSE + 6]
-    lost = linear - linear[0] - (given[:, :3] - given[0, :3])
-    turned = angular - angular[0] - (given[:, 3:] - given[0, 3:])
-    own = mass * moved.velocity
-    orbit = np.cross(moved.position, own)
-    return (_relative(lost, own, linear), _relative(turned, orbit, angular))
-
-
-def _relative(error: np.ndarray, *scales: np.ndarray) -> float:
-    size = np.linalg.norm(error, axis=1).max()
-    scale = max(np.linalg.norm(values, axis=1).max() for values in scales)
-    return float(size / scale) if scale > 0.0 else float(size)
+def momentum_errors(samples: np.ndarray, moved: Motion, mass: float, forces: np.ndarray) -> tuple[float, float]:
+    """Errors of linear and angular momentum (``scenes.momenta``) of samples with pad ``forces`` (n,f,3) N."""
+    return momenta.errors(moved, mass, samples[:, observe.LINEAR:observe.LINEAR + 6],
+                          samples[:, observe.IMPULSE:observe.IMPULSE + 6], forces, FINITE_ELEMENTS)

@@ -9,7 +9,7 @@ from scenes.memory import zeros
 from highfi.mesh import RailMesh
 from highfi.numerics import Numerics
 from scenes import model as scene_model
-from scenes import rotation
+from scenes import comoving, rotation
 from scenes.body import tensor
 from scenes.effects.structural_damping import Damping
 from scenes.faults import Fault, SceneError
@@ -137,18 +137,18 @@ def _parallel_axis(arm: np.ndarray) -> np.ndarray:
 
 
 def initial_state(system: System) -> tuple[records.State, records.Active]:
-    """State at ignition; velocities are still at t = 0."""
-    model, start = system.model, system.model.initial
-    payload = records.Body(np.add(model.payload.mass_centre, start.position), np.array(start.velocity),
-                           np.array(rotation.exponential(start.attitude)), np.zeros(3))
+    """State at ignition, in the frame of ``scenes.comoving``; velocities are still at t = 0."""
+    model, first, start = system.model, system.model.initial, comoving.start(system.model)
+    payload = records.Body(start.place, start.velocity, np.array(rotation.exponential(first.attitude)), np.zeros(3))
     turn = rotation.matrices(payload.quaternion[None])[0]
-    payload.spin[:] = turn @ (model.payload.inertia @ np.array(start.rate))
-    platform = records.Body(system.origin.copy(), np.zeros(3), np.array([1.0, 0.0, 0.0, 0.0]), np.zeros(3))
+    payload.spin[:] = turn @ (model.payload.inertia @ np.array(first.rate))
+    platform = records.Body(np.subtract(system.origin, comoving.frame(model).origin), np.zeros(3), np.array([1.0, 0.0, 0.0, 0.0]),
+                            np.zeros(3))
     nodes = system.rail.points.shape
     velocity = zeros(nodes, order="F")
     if system.frame is not None:
-        rate = np.array(start.platform_rate)
-        platform.velocity[:] = np.array(start.platform_velocity) - np.cross(rate, system.body_offset)
+        rate = np.array(first.platform_rate)
+        platform.velocity[:] = start.platform_velocity - np.cross(rate, system.body_offset)
         platform.spin[:] = np.linalg.inv(system.frame.inverse_inertia) @ rate
         velocity[system.number] = platform.velocity + np.cross(rate, system.rail.points[system.number])
     count = system.faces.axis.size

@@ -6,9 +6,10 @@ pad from the mass centre and the step h, each body's ratio is the largest of::
     |e_v| across, reach |e_w|, |e_r| / h across, 2 reach |e_q| / h      over   rtol (floor + |v| across + reach |w|)
     |e_v| along X, |e_r| / h along X                                     over   rtol (floor + |v| along X)
 
-so that 6 m/s along the rail do not loosen what is asked of the millimetres per second across it. Modes of the rails are held by the
-energy they may be wrong by, as a speed of the payload's mass m. A step too long for the highest mode fails here, or at the proven
-limit before::
+so that 6 m/s along the rail do not loosen what is asked of the millimetres per second across it. All speeds are those of the frame
+that ``scenes.comoving`` moves with the platform, so a speed that all bodies share loosens nothing either. Modes of the rails are
+held by the energy they may be wrong by, as a speed of the payload's mass m. A step too long for the highest mode fails here, or
+at the proven limit before::
 
     sqrt(sum over modes of (e_q'^2 + omega^2 e_q^2) / m)                 over   the first of these, of the payload
 """
@@ -18,18 +19,28 @@ from typing import NamedTuple
 import numpy as np
 
 from lowfi.dormand_prince import local_error
+from lowfi.numerics import Numerics
 from lowfi.state import BODY_SIZE, MOMENT, PAYLOAD, PLACE, PLATFORM, VELOCITY, modal_size, motion, quaternion, triple
 from lowfi.walls.modes import energies
 from scenes import rotation
 from scenes.jit import inlined
+from scenes.promises import Promises
 
 
 class Tolerance(NamedTuple):
-    """relative (1), floor (m/s), reach (m)."""
+    """relative (1), floor (m/s), reach (m); what is promised of the total and the transverse ledger (1)."""
 
     relative: float
     floor: float
     reach: float
+    total: float
+    across: float
+
+
+def tolerance(numerics: Numerics, promised: Promises, reach: float) -> Tolerance:
+    """Of a payload whose farthest pad is ``reach`` (m) from its mass centre."""
+    return Tolerance(numerics.relative_tolerance, numerics.speed_floor, reach, promised.energy_error,
+                     promised.transverse_energy_error)
 
 
 @inlined

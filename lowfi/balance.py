@@ -2,11 +2,12 @@
 
 import numpy as np
 
-from lowfi import state
-from lowfi.march import DAMPING_POWER, FRICTION_POWER
-from lowfi.sample import ANGULAR, AXIAL_KINETIC, GIVEN, KINETIC, LINEAR, RATE, STORED, STRAIN, WORKS
-from scenes import ledger, rotation
+from lowfi import audit, state
+from lowfi.march import DAMPING_POWER, FRICTION_POWER, Loop
+from lowfi.sample import AXIAL_KINETIC, GIVEN, KINETIC, LINEAR, RATE, STORED, STRAIN, WORKS
+from scenes import ledger, momenta
 from scenes.outcome import Motion
+from scenes.promises import Promises
 
 _ENTRY = {name: index for index, name in enumerate(ledger.ENTRIES)}
 
@@ -37,14 +38,15 @@ def ledgers(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return total, across
 
 
-def checks(rows: np.ndarray, moved: Motion, total: np.ndarray, across: np.ndarray, mass: float,
-           clock: np.ndarray) -> dict[str, float]:
-    """The kept promises. Momentum errors are relative to the largest momentum, of the payload or of the whole, in the run."""
-    own = mass * moved.velocity
+def checks(rows: np.ndarray, moved: Motion, forces: np.ndarray, mass: float, loop: Loop, promised: Promises) -> dict[str, float]:
+    """What is ``promised``, as it was kept: by the ledgers at the ends of all steps, by the momenta at all samples with pad
+    ``forces`` (n,f,3) N."""
+    energy, transverse = audit.errors(loop.audit, promised.energy_error, promised.transverse_energy_error)
+    linear, angular = momenta.errors(moved, mass, rows[:, LINEAR:LINEAR + 6], rows[:, GIVEN:GIVEN + 6], forces, promised)
+    clock = loop.clock
     norms = [np.sqrt(np.einsum("ni,ni->n", q, q)) for q in (moved.quaternion, moved.platform_quaternion)]
-    return {"energy_error": ledger.total_error(total), "transverse_energy_error": ledger.transverse_error(across),
-            "linear_momentum_error": _unexplained(rows, LINEAR, GIVEN, own),
-            "angular_momentum_error": _unexplained(rows, ANGULAR, GIVEN + 3, rotation.crosses(moved.position, own)),
+    return {"energy_error": float(energy), "transverse_energy_error": float(transverse),
+            "linear_momentum_error": linear, "angular_momentum_error": angular,
             "quaternion_error": float(max(np.abs(norm - 1.0).max() for norm in norms)),
             "friction_power_max": _power(clock[FRICTION_POWER]), "damping_power_max": _power(clock[DAMPING_POWER])}
 
@@ -52,15 +54,3 @@ def checks(rows: np.ndarray, moved: Motion, total: np.ndarray, across: np.ndarra
 def _power(value: float) -> float:
     # A run without a single step has felt no power at all. Adding zero turns -0.0 into 0.0.
     return float(value) + 0.0 if np.isfinite(value) else 0.0
-
-
-def _unexplained(rows: np.ndarray, momentum: int, impulse: int, own: np.ndarray) -> float:
-    """Largest change of a momentum that no impulse from outside explains, over the largest momentum."""
-    values = rows[:, momentum:momentum + 3]
-    lost = values - values[0] - (rows[:, impulse:impulse + 3] - rows[0, impulse:impulse + 3])
-    size, scale = _largest(lost), max(_largest(own), _largest(values))
-    return size / scale if scale > 0.0 else size
-
-
-def _largest(values: np.ndarray) -> float:
-    return float(np.sqrt(np.einsum("ni,ni->n", values, values).max()))

@@ -6,11 +6,11 @@ from typing import Any, Callable, Mapping, NamedTuple, Sequence
 
 import numpy as np
 
-from lowfi import bow, march, plan, settle, state, system
-from lowfi.numerics import Numerics
+from lowfi import accuracy, bow, march, plan, settle, state, system
+from lowfi.numerics import Numerics, promises_of
 from lowfi.run import solved
 from lowfi.walls import record as wall_record
-from scenes import ending, outcome
+from scenes import comoving, ending, outcome
 from scenes import model as models
 from scenes.calibration import Calibration
 from scenes.faults import SceneError
@@ -110,13 +110,13 @@ class Family:
         model, planned, marks = group.built.model, group.plan, group.marks
         under_pads = wall_record.under_pads(group.built.scene, model, self.walls, self.numerics.modes)
         under_law = bow.under_pads(group.built.scene, model, self.walls)
-        common, first = system.build(model, ledger=False, walls=under_pads, bow=under_law), plan.first_step(planned)
-        control = settle.Control(self.numerics.relative_tolerance, self.numerics.speed_floor, first)
+        common, first = system.build(model, walls=under_pads, bow=under_law), plan.first_step(planned)
         loop, cases = march.ready(common, state.initial(model), first), _stacked(common, group)
         results = np.zeros((len(group.cases), settle.RESULT_SIZE))
+        allowed = accuracy.tolerance(self.numerics, promises_of(self.numerics), 0.0)
 
         def call() -> np.ndarray:
-            settle.settle(common, planned, control, marks, cases, loop, results)
+            settle.settle(common, planned, (allowed, first), marks, cases, loop, results)
             return results
 
         return call
@@ -125,13 +125,14 @@ class Family:
         began = clock.perf_counter()
         results = self._kernel(group)()
         share = (clock.perf_counter() - began) / len(results)
-        return [(number, self._case(row, result, share)) for (number, row), result in zip(group.rows, results)]
+        return [(number, self._case(group, case, row, result, share))
+                for (number, row), case, result in zip(group.rows, group.cases, results)]
 
-    def _case(self, row: Mapping[str, Any], result: np.ndarray, share: float) -> Case:
+    def _case(self, group: _Group, model, row: Mapping[str, Any], result: np.ndarray, share: float) -> Case:
         if result[settle.LEFT_OPEN]:
             return self._whole(row)
         status, found = ending.found(result[settle.BOOK:])
-        return Case(status, "", found, int(result[settle.TAKEN_STEPS]), share)
+        return Case(status, "", comoving.outcome(comoving.frame(model), found), int(result[settle.TAKEN_STEPS]), share)
 
     def _whole(self, row: Mapping[str, Any]) -> Case:
         try:

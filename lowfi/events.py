@@ -31,9 +31,11 @@ OPEN, PRESSING, CUT_OFF = 0.0, 1.0, 2.0
 def survey(laws, walls, sticking, faces, platform, payload, active, grip, state, out):
     """Fill ``out`` (f, SURVEY_SIZE) with mode, penetration (m), its rate (m/s), pull, X (m) and margin of grip of every face, the
     rate of X (m/s), the place across from where the wall has its middle (m) and its rate (m/s). The mode of a face off the rail is
-    the one it would have there. Walls that give way ask which faces are ``active`` (f,)."""
+    the one it would have there. Walls that give way ask which faces are ``active`` (f,); the energy (J) they hold under those is
+    returned."""
+    on_walls = 0.0
     if walls is not None:
-        survey_walls(walls, faces, platform, payload, active, state, OPEN, PRESSING, out)
+        on_walls = survey_walls(walls, faces, platform, payload, active, state, OPEN, PRESSING, out)
     if laws is not None:
         body, base = slot.motion(payload.mass, payload.inverse_inertia, state, slot.PAYLOAD), slot.frame(platform, state)
         place, turn = relative_pose(platform, body, base)
@@ -51,6 +53,7 @@ def survey(laws, walls, sticking, faces, platform, payload, active, grip, state,
                 out[i, MODE] = PRESSING if face.raw >= 0.0 else CUT_OFF
                 out[i, PULL] = _pull(face)
             out[i, MARGIN] = _margin(laws, sticking, grips.row_of(sticking, grip, i), platform, faces[i], p, body, base)
+    return on_walls
 
 
 @inlined

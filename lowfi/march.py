@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from lowfi import ending
+from lowfi import audit, ending
 from lowfi import state as slot
 from lowfi.accuracy import error_ratio
 from lowfi.dormand_prince import STABLE_RADIUS, STAGES, attempt, interpolate
@@ -23,7 +23,7 @@ from scenes.jit import inlined, kernel
 from scenes.memory import zeros
 
 # What ``march`` returns: all samples taken, nothing left to learn, or why it stopped before.
-SAMPLED, ENDED, UNDERFLOW, OUT_OF_STEPS, NOT_FINITE, STRUCK = range(6)
+SAMPLED, ENDED, UNDERFLOW, OUT_OF_STEPS, NOT_FINITE, STRUCK, LOST_ENERGY = range(7)
 # Slots of Loop.clock: ends of the last step and its size before an event cut it (s), the fraction kept, step the controller
 # wants (s), bound of the contact's rates at the end (1/s), smallest proven limit met (s), largest step over its limit (1), largest
 # friction and damping power (W, not above zero).
@@ -37,6 +37,7 @@ _SPARE = 0.1  # largest error ratio at which a step may be cut by interpolation,
 _NEAR_END = 1e-4
 _LANDINGS = 40  # cuts of one step
 _BEYOND = 2  # samples after the end of the settled window, for whoever averages over it from samples
+_HALVINGS = 6  # of one step for the sake of the ledgers: what is off still is not a matter of its length
 
 
 class Plan(NamedTuple):
@@ -60,7 +61,8 @@ class Sampling(NamedTuple):
 class Loop(NamedTuple):
     """What evolves: states at the ends of the last step, its stages, surveys of its ends, faces that stand over their walls,
     penetrations (m) with which those left that are partly over them still, faces felt in the last step and their grips in it (None
-    where friction does not stick), clock and counts, and the book of exit, settled window and jam (``scenes.ending``)."""
+    where friction does not stick), clock and counts, the book of exit, settled window and jam (``scenes.ending``), and the ledgers
+    (``lowfi.audit``)."""
 
     start: np.ndarray
     end: np.ndarray
@@ -75,6 +77,7 @@ class Loop(NamedTuple):
     count: np.ndarray
     work: np.ndarray
     book: np.ndarray
+    audit: np.ndarray
 
 
 def ready(system, state: np.ndarray, first_step: float) -> Loop:
@@ -85,7 +88,7 @@ def ready(system, state: np.ndarray, first_step: float) -> Loop:
     grip = zeros((faces, GRIP_SIZE)) if system.sticking is not None else None
     loop = Loop(zeros(state_), zeros(state_), zeros((STAGES, size)), zeros(survey_), zeros(survey_),
                 np.zeros(faces, dtype=np.bool_), zeros((faces,)), np.zeros(faces, dtype=np.bool_), grip, zeros((CLOCK_SIZE,)),
-                np.zeros(COUNT_SIZE, dtype=np.int64), zeros(state_), zeros((books.BOOK_SIZE,)))
+                np.zeros(COUNT_SIZE, dtype=np.int64), zeros(state_), zeros((books.BOOK_SIZE,)), zeros((audit.AUDIT_SIZE,)))
     reset(system, state, first_step, loop)
     return loop
 
@@ -98,6 +101,7 @@ def reset(system, state, first_step, loop):
     count[:] = 0
     clock[WANTED], clock[LIMIT], clock[SPAN], count[SEGMENT] = first_step, np.inf, 1.0, -1
     clock[FRICTION_POWER] = clock[DAMPING_POWER] = -np.inf
+    loop.audit[:] = 0.0
     loop.start[:] = 0.0
     loop.end[:] = 0.0
     slot.copy(state, loop.start, state.size)
@@ -141,8 +145,8 @@ def _let_go(grip):
 
 @inlined
 def _survey(system, loop):
-    survey(system.contact, system.walls, system.sticking, system.faces, system.platform, system.payload, loop.active, loop.grip,
-           loop.end, loop.after)
+    loop.audit[audit.ON_WALLS] = survey(system.contact, system.walls, system.sticking, system.faces, system.platform,
+                                        system.payload, loop.active, loop.grip, loop.end, loop.after)
 
 
 @inlined
@@ -215,7 +219,7 @@ def advance(system, plan, tolerance, marks, loop):
     if loop.count[STEPS] >= plan.maximum_steps:
         return OUT_OF_STEPS
     if not step(system, plan, tolerance, loop):
-        return UNDERFLOW if loop.count[STRIKING] < 0 else STRUCK
+        return STRUCK if loop.count[STRIKING] >= 0 else UNDERFLOW if loop.audit[audit.LOST] == 0.0 else LOST_ENERGY
     if not _has_finite_energy(loop.end, slot.modal_size(system.walls)):
         return NOT_FINITE
     ending.follow(system, marks, loop, ending.Step(clock[BEGAN], clock[NOW], clock[SIZE]))
@@ -235,13 +239,14 @@ def _has_finite_energy(state, modal):
 
 @kernel
 def step(system, plan, tolerance, loop):
-    """Take one step; False when none is short enough, or a face strikes an edge of its wall where the step would begin."""
+    """Take one step; False when none is short enough, when it lost a tenth of the energy, or when a face strikes an edge of its
+    wall where the step would begin."""
     clock, count = loop.clock, loop.count
     fresh = _begin(system, plan, loop)
     if count[STRIKING] >= 0:
         return False
     start, segment = clock[BEGAN], count[SEGMENT]
-    stop, rate, landings = plan.stops[segment], clock[RATE], 0
+    stop, rate, landings, halvings = plan.stops[segment], clock[RATE], 0, 0
     # At a corner the thrust is the one of the stretch it is seen from.
     stretch = (np.nextafter(0.0 if segment == 0 else plan.stops[segment - 1], np.inf), np.nextafter(stop, -np.inf))
     ceiling = _foreseen(system, loop, min(clock[WANTED], plan.caps[segment], STABLE_RADIUS / rate, stop - start,
@@ -276,12 +281,54 @@ def step(system, plan, tolerance, loop):
         if span < 1.0 and not smooth and not (landings > 0 and span > 1.0 - _NEAR_END) and landings < _LANDINGS:
             landings, ceiling = landings + 1, span * dt * (1.0 + 0.2 * _NEAR_END)
             continue
+        if halvings < _HALVINGS and not _affordable(system.ledger, system, tolerance, loop):
+            halvings += 1
+            count[REJECTED] += 1
+            clock[WANTED] = 0.5 * span * dt
+            continue
         clock[SPAN] = span
         if span < 1.0:
             _accept_part(clock, count, dt, start + span * dt, limit)
         else:
             _accept(loop.stages[STAGES - 1], clock, count, dt, stop if reaches else start + dt, ratio, limit)
-        return True
+        return _record(system.ledger, system, tolerance, loop)
+
+
+@inlined
+def _affordable(ledger, system, tolerance, loop):
+    """Whether the step just tried may be kept. Between contacts the forces are smooth, and its error says enough."""
+    affordable = True
+    if ledger is not None:
+        pressing = False
+        for felt_now in loop.active:
+            pressing = pressing or felt_now
+        if pressing:
+            affordable = audit.affordable(tolerance, system.payload.mass, loop.audit, _balances(system, loop, loop.end, loop.after))
+    return affordable
+
+
+@inlined
+def _record(ledger, system, tolerance, loop):
+    kept = True
+    if ledger is not None:
+        kept = audit.record(tolerance, system.payload.mass, loop.start, loop.end, loop.audit,
+                            _balances(system, loop, loop.end, loop.after))
+    return kept
+
+
+@inlined
+def _balances(system, loop, state, surveyed):
+    return audit.balances(system, loop.engaged, loop.grip, surveyed, loop.audit[audit.ON_WALLS], state)
+
+
+@inlined
+def _open_books(ledger, walls, system, loop):
+    """Begin the ledgers where the first step does, with what its faces hold from the start."""
+    if ledger is not None:
+        held = 0.0
+        if walls is not None:
+            held = energy_on_walls(walls, system.faces, system.platform, system.payload, loop.active, loop.start)
+        audit.begin(system, loop.engaged, loop.grip, loop.before, held, loop.start, loop.audit)
 
 
 @inlined
@@ -356,6 +403,8 @@ def _begin(system, plan, loop):
     if changed:
         clock[RATE] = _fastest_rate(system, loop, loop.start, 0.0)
     _release(system.walls, system, loop, left, -1.0)
+    if count[STEPS] == 0:
+        _open_books(system.ledger, system.walls, system, loop)
     return changed or left or fresh or clock[SPAN] < 1.0
 
 

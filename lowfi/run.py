@@ -5,15 +5,15 @@ from typing import Callable
 
 import numpy as np
 
-from lowfi import balance, bow, edges, march, plan, state, system
-from lowfi.accuracy import Tolerance
+from lowfi import accuracy, audit, balance, bow, edges, march, plan, state, system
 from lowfi.march import EVALUATIONS, EVENTS, LIMIT, LIMIT_USED, NOW, REJECTED, STEPS, STRIKING, TAKEN, Sampling
 from lowfi.models import require
-from lowfi.numerics import Numerics
+from lowfi.numerics import Numerics, promises_of
 from lowfi.walls import record as wall_record
 from lowfi.sample import SAMPLE_SIZE
-from scenes import ending, outcome
+from scenes import comoving, ending, outcome
 from scenes import model as models
+from scenes import promises
 from scenes.calibration import Calibration
 from scenes.fidelity import COMPLIANT
 from scenes.scene import Scene
@@ -23,7 +23,9 @@ from scenes.walls import Walls, model_of
 _STRIDE = 5e-3  # s, from one report of progress to the next
 _REASONS = {march.UNDERFLOW: "no step is short enough: the state is no longer finite or its equations too stiff",
             march.NOT_FINITE: "a value became infinite",
-            march.OUT_OF_STEPS: "the step budget is spent (numerics.maximum_steps)"}
+            march.OUT_OF_STEPS: "the step budget is spent (numerics.maximum_steps)",
+            march.LOST_ENERGY: "a tenth of the energy is lost or came from nothing"}
+_RERUNS = 4  # at a tenth of the tolerance each, while that makes the ledgers' errors smaller by half at least
 
 
 def run(scene: Scene, model: str = COMPLIANT, *, walls: Walls | None = None, calibration: Calibration | None = None,
@@ -32,8 +34,9 @@ def run(scene: Scene, model: str = COMPLIANT, *, walls: Walls | None = None, cal
 
     The ``model`` is ``compliant``: pads press on the rail compliance ``walls`` (``calibrate.compliance``) through the penalty of
     the reference; or ``springs``: the scene's contact law at each pad face, with the constants of a ``calibration`` if one is
-    given, on rigid ``walls`` where the rails are warm. ``progress`` is called with the fraction of the duration done. Raises
-    SceneError, every fault listed, before any stepping; what goes wrong later is the status of the result.
+    given, on rigid ``walls`` where the rails are warm. ``progress`` is called with the fraction of the duration done. A run whose
+    ledgers do not close as promised is run again at tighter tolerances, as message and cost say; one that keeps breaking a promise
+    is diverged. Raises SceneError, every fault listed, before any stepping; what goes wrong later is the status of the result.
     """
     require(scene, model, walls, calibration, numerics)
     return solved(scene, calibration, numerics, progress, walls)
@@ -52,6 +55,7 @@ def solved(scene: Scene, calibration: Calibration | None = None, numerics: Numer
     compile_cpu = clock.thread_time()
     marching = clock.perf_counter()
     run_.march(progress)
+    run_ = improved(run_, progress)
     kernel_s = clock.perf_counter() - marching
     result = run_.trajectory()
     result.cost.update(wall_s=clock.perf_counter() - began - compile_s, compile_s=compile_s, kernel_s=kernel_s)
@@ -59,19 +63,40 @@ def solved(scene: Scene, calibration: Calibration | None = None, numerics: Numer
     return result
 
 
+def improved(first: "Run", progress: Callable[[float], None] | None = None) -> "Run":
+    """``first``, which has marched, or the same scene run again with smaller steps, because its ledgers call for them."""
+    best, numerics = first, first.numerics
+    for reruns in range(1, _RERUNS + 1):
+        if best.usage() <= 1.0 or (best.message and not best.lost_energy()) or numerics == numerics.tightened():
+            break
+        numerics = numerics.tightened()
+        finer = Run(first.scene, first.numerics, first.walls, numerics)
+        finer.reruns, finer.discarded = reruns, best.discarded + int(best.loop.count[STEPS])
+        finer.begin()
+        finer.march(progress)
+        usage, best = best.usage(), finer
+        if finer.usage() > 0.5 * usage and not usage == np.inf:
+            break
+    return best
+
+
 class Run:
     """State of a run in progress and its samples, up to number ``end`` as far as is known; one that is ``whole`` goes on to the end
-    of the scene although nothing is left to learn of exit and jam."""
+    of the scene although nothing is left to learn of exit and jam. It keeps the promises of ``numerics``, with the steps of
+    ``finer`` ones if given."""
 
-    def __init__(self, scene: Scene, numerics: Numerics, walls: Walls | None = None):
-        self.scene, self.numerics, self.walls = scene, numerics, walls
+    reruns, discarded = 0, 0  # runs of the scene before this one, and their steps
+
+    def __init__(self, scene: Scene, numerics: Numerics, walls: Walls | None = None, finer: Numerics | None = None):
+        self.scene, self.numerics, self.walls, self.promised = scene, numerics, walls, promises_of(numerics)
+        self.used = used = finer or numerics
         self.model = model = models.build(scene)
         self.marks = outcome.milestones(scene, model)
         self.interval = scene.output.interval
         self.end = scene.output.last(scene.duration)
-        self.plan = plan.make(model, scene.duration, numerics)
+        self.plan = plan.make(model, scene.duration, used)
         reach = float(np.sqrt((model.faces.centre**2).sum(axis=1).max()))
-        self.tolerance = Tolerance(numerics.relative_tolerance, numerics.speed_floor, reach)
+        self.tolerance = accuracy.tolerance(used, self.promised, reach)
         self.system = system.build(model, walls=wall_record.under_pads(scene, model, walls, numerics.modes),
                                    bow=bow.under_pads(scene, model, walls))
         self.loop = march.ready(self.system, state.initial(model), plan.first_step(self.plan))
@@ -107,32 +132,50 @@ class Run:
         face = int(self.loop.count[STRIKING])
         return edges.strike(self.model, face, self.system.faces[face], self.loop.after[face], self.loop.clock[NOW])
 
+    def usage(self) -> float:
+        """Largest share that a ledger uses of half of what is promised of it at the ends of steps."""
+        return float(audit.usage(self.loop.audit, self.tolerance.total, self.tolerance.across))
+
+    def lost_energy(self) -> bool:
+        """Whether the run stopped because a tenth of its energy was lost."""
+        return bool(self.loop.audit[audit.LOST] != 0.0)
+
     def judged(self) -> tuple[str, outcome.Outcome]:
-        """Status and outcome of the run so far."""
+        """Status and outcome of the run so far, in the frame it is solved in."""
         return ("diverged", outcome.Outcome()) if self.message else ending.found(self.loop.book)
 
     def motion(self) -> outcome.Motion:
-        """Motion of the samples taken so far."""
+        """Motion of the samples taken so far, in the frame it is solved in (``scenes.comoving``)."""
         return balance.motion(self.rows[:self.taken], self.interval)
 
     def trajectory(self) -> Trajectory:
         """The result of the samples taken so far."""
-        moved, rows = self.motion(), self.rows[:self.taken]
+        moved, rows, forces = self.motion(), self.rows[:self.taken], self.forces[:self.taken]
         total, across = balance.ledgers(rows)
-        status, result = self.judged()
+        checks = balance.checks(rows, moved, forces, self.model.payload.mass, self.loop, self.promised)
+        broken, seen_from = promises.broken(checks, self.promised), comoving.frame(self.model)
+        status, result = ("diverged", outcome.Outcome()) if broken else self.judged()
         pressed = outcome.pressed_at_ignition(self.model.faces, self.forces[0])
-        message = "; ".join(filter(None, [self.message, pressed]))
+        message = "; ".join(filter(None, [self.message, broken, self._again(), pressed]))
         return Trajectory(
             model=model_of(self.scene, self.walls), status=status, message=message,
-            **moved._asdict(), pad_force=self.forces[:self.taken], energy=total, transverse_energy=across, outcome=result,
-            checks=balance.checks(rows, moved, total, across, self.model.payload.mass, self.loop.clock), cost=self._cost(),
-            scene=self.scene.resolved(), numerics=self.numerics.as_dict())
+            **comoving.motion(seen_from, moved)._asdict(), pad_force=forces, energy=total, transverse_energy=across,
+            outcome=comoving.outcome(seen_from, result), checks=checks, cost=self._cost(), scene=self.scene.resolved(),
+            numerics=self.numerics.as_dict())
+
+    def _again(self) -> str:
+        """That smaller steps than asked for were taken, or nothing."""
+        if not self.reruns:
+            return ""
+        times = "once" if self.reruns == 1 else f"{self.reruns} times"
+        return f"run again {times}, with relative_tolerance {self.used.relative_tolerance:.3g}, for the energy ledgers to close"
 
     def _cost(self) -> dict[str, float]:
-        """Counts; dt_limit_s is the smallest proven limit met while anything touched,
-        limit_used the largest step over its limit."""
+        """Counts; dt_limit_s is the smallest proven limit met while anything touched, limit_used the largest step over its limit.
+        Where the scene was run again, how often, and the steps of the runs before."""
         clock_, count = self.loop.clock, self.loop.count
         steps, limit = int(count[STEPS]), float(clock_[LIMIT])
         cost = {"steps": steps, "rhs_evaluations": int(count[EVALUATIONS]), "rejected": int(count[REJECTED]),
                 "events": int(count[EVENTS]), "dt_s": float(clock_[NOW]) / max(steps, 1), "limit_used": float(clock_[LIMIT_USED])}
-        return cost | ({"dt_limit_s": limit} if np.isfinite(limit) else {})
+        again = {"reruns": self.reruns, "discarded_steps": self.discarded} if self.reruns else {}
+        return cost | again | ({"dt_limit_s": limit} if np.isfinite(limit) else {})

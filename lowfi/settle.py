@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from lowfi import audit
 from lowfi import state as slot
 from lowfi.accuracy import Tolerance
 from lowfi.events import DEPTH
@@ -45,12 +46,16 @@ class Control(NamedTuple):
 
 @kernel
 def settle(common, plan, control, marks, cases, loop, results):
-    """Fill ``results`` (n, RESULT_SIZE), one row per case."""
+    """Fill ``results`` (n, RESULT_SIZE), one row per case, under the tolerance and the first step (s) of ``control``. Whose ledgers
+    call for smaller steps is left open. The reach of the tolerance is that of each case."""
+    tolerance, first_step = control
     for n in range(results.shape[0]):
         system = _system(common, cases, n)
-        reset(system, cases.start[n], control.first_step, loop)
-        tolerance = Tolerance(control.relative, control.floor, cases.reach[n])
-        results[n, LEFT_OPEN] = 0.0 if _is_settled(system, plan, tolerance, marks, loop) else 1.0
+        reset(system, cases.start[n], first_step, loop)
+        allowed = Tolerance(tolerance.relative, tolerance.floor, cases.reach[n], tolerance.total, tolerance.across)
+        settled = _is_settled(system, plan, allowed, marks, loop)
+        affordable = audit.usage(loop.audit, tolerance.total, tolerance.across) <= 1.0
+        results[n, LEFT_OPEN] = 0.0 if settled and affordable else 1.0
         results[n, TAKEN_STEPS], results[n, RIGHT_HAND_SIDES] = loop.count[STEPS], loop.count[EVALUATIONS]
         slot.copy(loop.book, results[n, BOOK:], BOOK_SIZE)
 

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from scenes import rotation
+from scenes import comoving, rotation
 from scenes.jit import inlined, kernel
 from scenes.model import Model
 
@@ -121,14 +121,15 @@ def normalise(state):
 
 
 def initial(model: Model) -> np.ndarray:
-    """State (STATE_SIZE,) at ignition."""
-    state, start, payload, platform = np.zeros(STATE_SIZE), model.initial, model.payload, model.platform
-    place = tuple(a + b for a, b in zip(payload.mass_centre, start.position))
-    _fill(state, PAYLOAD, payload.mass, payload.inertia, place, start.velocity, rotation.exponential(start.attitude), start.rate)
+    """State (STATE_SIZE,) at ignition, in the frame of ``scenes.comoving``."""
+    state, first, payload, platform = np.zeros(STATE_SIZE), model.initial, model.payload, model.platform
+    start = comoving.start(model)
+    _fill(state, PAYLOAD, payload.mass, payload.inertia, tuple(start.place), tuple(start.velocity),
+          rotation.exponential(first.attitude), first.rate)
     state[PLATFORM + QUATERNION] = 1.0
     if platform is not None:
-        _fill(state, PLATFORM, platform.mass, platform.inertia, platform.mass_centre, start.platform_velocity,
-              (1.0, 0.0, 0.0, 0.0), start.platform_rate)
+        _fill(state, PLATFORM, platform.mass, platform.inertia, tuple(start.platform_place), tuple(start.platform_velocity),
+              (1.0, 0.0, 0.0, 0.0), first.platform_rate)
     return state
 
 

@@ -7,10 +7,13 @@ E(0) is kinetic + strain + contact_stored at ignition. The **total** ledger has 
 the axial part is taken out of every entry: each force's X component times the X velocity of the mass centre of the body it
 acts on (payload, or platform with rails); the kinetic entry loses M V_x^2 / 2 of each body. What the normal contact forces
 do along X then has no other entry and stands in ``contact_axial``. So 500 J of axial motion cannot hide the 1 mJ that
-decides the rates.
+decides the rates. Both are kept in the frame a run is solved in (``scenes.comoving``): where the platform flies by at 7.5 km/s,
+the energy of that flight is no scale for anything.
 """
 
 import numpy as np
+
+from scenes import promises
 
 ENTRIES = ("thrust", "gravity", "kinetic", "strain", "contact_stored", "contact_damping", "friction",
            "structural_damping", "released", "contact_axial")
@@ -25,17 +28,23 @@ def residual(entries: np.ndarray) -> np.ndarray:
     return initial + entries[:, _WORK].sum(axis=1) - entries[:, _SPENT].sum(axis=1)
 
 
-def total_error(entries: np.ndarray) -> float:
-    """Largest residual over max(|work|, largest kinetic energy)."""
+def terms(entries: np.ndarray) -> float:
+    """Size (J) of what is summed, and so of what rounds: the largest sum of absolute entries."""
+    return float(np.abs(entries).sum(axis=1).max())
+
+
+def total_error(entries: np.ndarray, promised: promises.Promises = promises.RIGID) -> float:
+    """Largest residual over max(|work|, largest kinetic energy), at least what rounding of the ``terms`` leaves to be told of what
+    is ``promised``."""
     work = np.abs(entries[:, _WORK].sum(axis=1)).max()
-    return _ratio(np.abs(residual(entries)).max(), max(work, entries[:, ENTRIES.index("kinetic")].max()))
+    largest = max(work, entries[:, ENTRIES.index("kinetic")].max())
+    scale = promises.scale(largest, terms(entries), promised.energy_error, promised.rounding)
+    return promises.relative(np.abs(residual(entries)).max(), scale)
 
 
-def transverse_error(entries: np.ndarray) -> float:
-    """Largest residual over the largest sum of non-axial kinetic, strain and stored contact energy."""
-    return _ratio(np.abs(residual(entries)).max(), np.abs(entries[:, _STATE].sum(axis=1)).max())
-
-
-def _ratio(residual_j: float, scale_j: float) -> float:
-    # A scene in which nothing ever moves has no scale; its residual is then exactly zero too.
-    return float(residual_j / scale_j) if scale_j > 0.0 else float(residual_j)
+def transverse_error(entries: np.ndarray, total: np.ndarray | None = None, promised: promises.Promises = promises.RIGID) -> float:
+    """Largest residual over the largest sum of non-axial kinetic, strain and stored contact energy. Its entries are differences of
+    those of the ``total`` ledger, if given, and round as these do."""
+    size = terms(entries if total is None else total)
+    scale = promises.scale(np.abs(entries[:, _STATE].sum(axis=1)).max(), size, promised.transverse_energy_error, promised.rounding)
+    return promises.relative(np.abs(residual(entries)).max(), scale)

@@ -1,7 +1,8 @@
 """The result of one run, the same in both fidelities: names, units and coordinates, and a netCDF file of it.
 
 Positions and velocities are of the payload's mass centre, inertial, in initial scene axes; rates are in body axes;
-quaternions are scalar first, body to inertial.
+quaternions are scalar first, body to inertial. Ledgers and momenta are those of the frame a run is solved in, which moves with the
+platform's mass centre as that moves at ignition (``scenes.comoving``).
 """
 
 import functools

@@ -49,12 +49,15 @@ def _approach(walls, faces, face, xi, eta, drift, swing):
 
 @kernel
 def survey(walls, faces, platform, payload, active, state, open_, pressing, out):
-    """Fill ``out`` as ``lowfi.events.survey`` does; ``open_`` and ``pressing`` are the modes of a face."""
+    """Fill ``out`` as ``lowfi.events.survey`` does; ``open_`` and ``pressing`` are the modes of a face. The energy (J) in all walls
+    under the ``active`` faces (f,)."""
     body, base = slot.motion(payload.mass, payload.inverse_inertia, state, slot.PAYLOAD), slot.frame(platform, state)
     place, turn = relative_pose(platform, body, base)
     drift, swing = relative_motion(platform, body, base, place, turn)
+    total = 0.0
     for rail in range(walls.members.shape[0]):
         count = solve(walls, faces, rail, active, place, turn, state)
+        total += energy_of_rail(walls, count)
         for k in range(walls.members.shape[1]):
             face = walls.members[rail, k]
             if face >= 0:
@@ -64,6 +67,7 @@ def survey(walls, faces, platform, payload, active, state, open_, pressing, out)
                 out[face, ALONG], out[face, FORWARD] = place[0] + faces[face, 0], drift[0]
                 out[face, SIDE] = across(faces[face], place, turn) - faces[face, SIDE_MIDDLE]
                 out[face, SIDEWAYS] = sideways(faces[face], drift, swing)
+    return total
 
 
 @kernel

@@ -7,6 +7,7 @@ orthogonal matrix S polar vectors (places, velocities, forces) become S v, axial
 import math
 
 import numpy as np
+from hypothesis import HealthCheck, Phase, given, seed, settings
 from hypothesis import strategies as st
 
 from scenes import parse, rotation
@@ -160,3 +161,20 @@ def _turned_body(body: dict, matrix: np.ndarray) -> dict:
 def _turned_eccentricity(eccentricity: dict, matrix: np.ndarray) -> dict:
     across = matrix @ [0.0, math.sin(eccentricity["radial"]), math.cos(eccentricity["radial"])]
     return eccentricity | {"radial": math.atan2(across[1], across[2])}
+
+
+def independent(kind: str, seeds) -> list[dict]:
+    """One scene for each of ``seeds``, drawn by itself: examples that Hypothesis draws in a row resemble each other."""
+    found = []
+    for number in seeds:
+        drawn = []
+
+        @seed(number)
+        @settings(max_examples=2, database=None, phases=[Phase.generate], suppress_health_check=list(HealthCheck))
+        @given(raw=raw_scenes(kind))
+        def draw(raw):
+            drawn.append(raw)
+
+        draw()
+        found.append(drawn[-1])  # the first one is always the simplest there is
+    return found
