@@ -142,7 +142,8 @@ def initial_state(system: System) -> tuple[records.State, records.Active]:
     payload = records.Body(start.place, start.velocity, np.array(rotation.exponential(first.attitude)), np.zeros(3))
     turn = rotation.matrices(payload.quaternion[None])[0]
     payload.spin[:] = turn @ (model.payload.inertia @ np.array(first.rate))
-    platform = records.Body(np.subtract(system.origin, comoving.frame(model).origin), np.zeros(3), np.array([1.0, 0.0, 0.0, 0.0]), np.zeros(3))
+    origin = np.subtract(system.origin, comoving.frame(model).origin)
+    platform = records.Body(origin, np.zeros(3), np.array([1.0, 0.0, 0.0, 0.0]), np.zeros(3))
     nodes = system.rail.points.shape
     velocity = zeros(nodes, order="F")
     if system.frame is not None:

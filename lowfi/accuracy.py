@@ -7,9 +7,9 @@ pad from the mass centre and the step h, each body's ratio is the largest of::
     |e_v| along X, |e_r| / h along X                                     over   rtol (floor + |v| along X)
 
 so that 6 m/s along the rail do not loosen what is asked of the millimetres per second across it. All speeds are those of the frame
-that ``scenes.comoving`` moves with the platform, so a speed that all bodies share loosens nothing either. Modes of the rails are held by the
-energy they may be wrong by, as a speed of the payload's mass m. A step too long for the highest mode fails here, or at the proven
-limit before::
+that ``scenes.comoving`` moves with the platform, so a speed that all bodies share loosens nothing either. Modes of the rails are
+held by the energy they may be wrong by, as a speed of the payload's mass m. A step too long for the highest mode fails here, or at
+the proven limit before::
 
     sqrt(sum over modes of (e_q'^2 + omega^2 e_q^2) / m)                 over   the first of these, of the payload
 """

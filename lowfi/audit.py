@@ -24,7 +24,8 @@ from scenes import promises, rotation
 from scenes.jit import inlined, kernel
 
 # Slots: balances at ignition, what they are off by now and at most, scales so far and the size of the terms (J); the most that
-# ever left the contacts and the most given back of it (J); whether a tenth of the scale is lost; what walls hold where last surveyed (J).
+# ever left the contacts and the most given back of it (J); whether a tenth of the scale is lost; what walls hold where last
+# surveyed (J).
 (FIRST, FIRST_ACROSS, OFF, OFF_ACROSS, WORST, WORST_ACROSS, SCALE, SCALE_ACROSS, TERMS, LEFT, CREATED, LOST, ON_WALLS,
  AUDIT_SIZE) = range(14)
 _HALF = 0.5  # of a promise, for the ends of steps
