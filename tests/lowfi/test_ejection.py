@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 import lowfi
-from lowfi import balance, oracle
-from scenes import ledger, load
+from lowfi import oracle
+from scenes import ledger, load, momenta, promises
+from scenes.outcome import Motion
 from tests.lowfi.support import PAPER_PAD, corners, scene
 
 SHORT = {"start": -0.2, "end": 0.3, "material": {"density": 2810.0, "youngs_modulus": 72e9, "poisson_ratio": 0.33}}
@@ -52,9 +53,13 @@ def test_a_hundredth_of_spurious_contact_energy_is_seen():
 
 def test_a_lost_reaction_is_seen():
     """A force of 1 N for 1 us that has no opposite breaks the momentum balance."""
-    rows = np.zeros((3, 50))
-    rows[:, balance.LINEAR] = (60.0, 60.0, 60.0 + 1e-6)
-    assert balance._unexplained(rows, balance.LINEAR, balance.GIVEN, rows[:, :3]) > 1e-9
+    samples, upright = np.zeros((3, 3)), np.tile([1.0, 0.0, 0.0, 0.0], (3, 1))
+    moving = samples + [6.0, 0.0, 0.0]
+    moved = Motion(np.arange(3) * 1e-3, samples, moving, upright, samples, samples, samples, upright, samples)
+    values = np.zeros((3, 6))
+    values[:, 0] = (60.0, 60.0, 60.0 + 1e-6)
+    error, _ = momenta.errors(moved, 10.0, values, np.zeros((3, 6)), np.full((3, 4, 3), 500.0), promises.RIGID)
+    assert error == pytest.approx(1e-6 / 60.0, rel=1e-3)
 
 
 @pytest.mark.parametrize("name, condition", [("reference", "phi15"), ("reference", "phi35"), ("sensitive", "phi60")])
