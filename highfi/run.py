@@ -34,7 +34,6 @@ _STOP_RATIO = 0.1  # of the transverse scale: a run that loses so much energy is
 _ELEMENTS_PER_THREAD = 4000
 _STEPS_PER_LOOK = 250  # steps at most from one look at the balances to the next, at samples or between
 _REPORT_EVERY = 20  # looks from one report of progress to the next
-_BEYOND = 1e-4  # s after the settled window in which samples are still taken, for whoever averages over it from samples
 _ROUNDING = 1e-9
 _MESHES: dict[tuple, RailMesh] = {}
 _MESH_LOCK = threading.Lock()
@@ -142,7 +141,7 @@ class Loop:
         began, cpu = clock.perf_counter() - self.wall, clock.thread_time() - self.cpu
         if observer:
             observer(self)
-        while self._goes_on():
+        while self.ending.book[DONE] == np.inf and self.steps < self.most and not self.message:
             taken = len(self.rows)
             self._advance_one_look()
             if observer and len(self.rows) > taken:
@@ -153,13 +152,6 @@ class Loop:
             self.wall, self.cpu = clock.perf_counter() - began, clock.thread_time() - cpu
             if kept:
                 kept.keep(self)
-
-    def _goes_on(self) -> bool:
-        """Whether a step is left to take, be it only for a sample that comes soon."""
-        book, next_sample = self.ending.book, len(self.rows) * self.stepping.steps_per_sample
-        if self.message or self.steps >= self.most:
-            return False
-        return book[DONE] == np.inf or next_sample * self.stepping.dt_s <= book[DONE] + _BEYOND
 
     def advance_one_sample(self) -> None:
         """Step to the next sample and take it; less where something goes wrong before."""

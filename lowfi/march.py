@@ -35,7 +35,6 @@ _SPARE = 0.1  # largest error ratio at which a step may be cut by interpolation,
 # back freely in one step the ledger misses the square of it.
 _NEAR_END = 1e-4
 _LANDINGS = 40  # cuts of one step
-_BEYOND = 2  # samples after the end of the settled window, for whoever averages over it from samples
 
 
 class Plan(NamedTuple):
@@ -174,7 +173,8 @@ def march(system, plan, tolerance, marks, loop, sampling, rows, forces):
     for taken in range(count[TAKEN], sampling.number + 1):
         time = min(taken * sampling.interval, end)
         status = _reach(system, plan, tolerance, marks, loop, sampling.whole, time)
-        if status == SAMPLED and not sampling.whole and time > loop.book[books.DONE] + _BEYOND * sampling.interval:
+        # The last step mostly goes beyond the settled window: how far is no matter of the result.
+        if status == SAMPLED and not sampling.whole and time > loop.book[books.DONE]:
             status = ENDED
         if status != SAMPLED:
             return status
