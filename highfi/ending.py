@@ -16,7 +16,7 @@ from scenes import ending as books
 from scenes import rotation
 from scenes.ending import AT_EXIT, ATTITUDE, BEFORE, BODY, DONE, EXCESS, EXIT, NOW, PAST, PLACE, ROW_SIZE, SPEED, SPIN
 from scenes.jit import kernel
-from scenes.outcome import Milestones, Outcome
+from scenes.outcome import Outcome
 
 
 class Ending(NamedTuple):

@@ -26,7 +26,7 @@ from highfi.system import System, build, initial_state
 from highfi.team import gather, processors
 from scenes import ledger, outcome, rotation
 from scenes.effects.friction import require_two_step
-from scenes.ending import DONE, WINDOW
+from scenes.ending import DONE, WINDOW, is_left_out
 from scenes.scene import Scene
 from scenes.trajectory import Trajectory
 
@@ -141,7 +141,7 @@ class Loop:
         began, cpu = clock.perf_counter() - self.wall, clock.thread_time() - self.cpu
         if observer:
             observer(self)
-        while self.ending.book[DONE] == np.inf and self.steps < self.most and not self.message:
+        while self._goes_on():
             taken = len(self.rows)
             self._advance_one_look()
             if observer and len(self.rows) > taken:
@@ -152,6 +152,13 @@ class Loop:
             self.wall, self.cpu = clock.perf_counter() - began, clock.thread_time() - cpu
             if kept:
                 kept.keep(self)
+
+    def _goes_on(self) -> bool:
+        """Whether a step is left to take, be it only for the last sample."""
+        if self.message or self.steps >= self.most:
+            return False
+        interval = self.scene.output.interval
+        return self.ending.book[DONE] == np.inf or not is_left_out(self.ending.book, len(self.rows) * interval, interval)
 
     def advance_one_sample(self) -> None:
         """Step to the next sample and take it; less where something goes wrong before."""

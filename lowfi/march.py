@@ -168,14 +168,15 @@ def _rate_on_walls(walls, system, loop, state):
 @kernel
 def march(system, plan, tolerance, marks, loop, sampling, rows, forces):
     """Take samples up to ``sampling.number`` into ``rows`` (n, SAMPLE_SIZE) and ``forces`` (n, f, 3), and after the last one go on
-    to the scene's end; or less, when nothing is left to learn of the settled window or of a jam."""
-    clock, count, end = loop.clock, loop.count, plan.stops[-1]
+    to the scene's end; or less, when nothing is left to learn of the settled window or of a jam: the steps end then at the same
+    instant, whatever is sampled."""
+    clock, count, end, ended = loop.clock, loop.count, plan.stops[-1], sampling.number == sampling.last
     for taken in range(count[TAKEN], sampling.number + 1):
         time = min(taken * sampling.interval, end)
         status = _reach(system, plan, tolerance, marks, loop, sampling.whole, time)
-        # The last step mostly goes beyond the settled window: how far is no matter of the result.
-        if status == SAMPLED and not sampling.whole and time > loop.book[books.DONE]:
-            status = ENDED
+        if status == ENDED or not sampling.whole and books.is_left_out(loop.book, time, sampling.interval):
+            ended = True
+            break
         if status != SAMPLED:
             return status
         if time == clock[NOW]:
@@ -188,16 +189,17 @@ def march(system, plan, tolerance, marks, loop, sampling, rows, forces):
         if not observe(system, loop.engaged, felt_, loop.grip, loop.work, rows[taken], forces[taken]):
             return NOT_FINITE
         count[TAKEN] += 1
-    if sampling.number < sampling.last:
+    if not ended:
         return SAMPLED
-    return _reach(system, plan, tolerance, marks, loop, sampling.whole, end)
+    status = _reach(system, plan, tolerance, marks, loop, sampling.whole, end)
+    return ENDED if status == SAMPLED else status
 
 
 @inlined
 def _reach(system, plan, tolerance, marks, loop, whole, time):
     """Step until ``time`` (s) is reached: SAMPLED, or why it is not."""
     while loop.clock[NOW] < time:
-        if loop.book[books.DONE] < np.inf and not whole:
+        if not whole and books.is_over(loop.book, loop.clock[NOW]):
             return ENDED
         status = advance(system, plan, tolerance, marks, loop)
         if status != SAMPLED:

@@ -1,4 +1,5 @@
-"""Relative motion, milestones, and the book of exit, settled window and jam by itself; runs that fill it are in the solvers' tests."""
+"""Relative motion, milestones, and the book of exit, settled window and jam by itself; runs that fill it are in the tests of the
+solvers."""
 
 import math
 
