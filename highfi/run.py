@@ -26,7 +26,7 @@ from highfi.system import System, build, initial_state
 from highfi.team import gather, processors
 from scenes import comoving, fidelity, ledger, outcome, rotation
 from scenes.effects.friction import require_two_step
-from scenes.ending import DONE, WINDOW
+from scenes.ending import DONE, WINDOW, is_left_out
 from scenes.promises import FINITE_ELEMENTS, broken
 from scenes.scene import Scene
 from scenes.trajectory import Trajectory
@@ -35,7 +35,6 @@ _STOP_RATIO = 0.1  # of the transverse scale: a run that loses so much energy is
 _ELEMENTS_PER_THREAD = 4000
 _STEPS_PER_LOOK = 250  # steps at most from one look at the balances to the next, at samples or between
 _REPORT_EVERY = 20  # looks from one report of progress to the next
-_BEYOND = 1e-4  # s after the settled window in which samples are still taken, for whoever averages over it from samples
 _ROUNDING = 1e-9
 _MESHES: dict[tuple, RailMesh] = {}
 _MESH_LOCK = threading.Lock()
@@ -157,11 +156,11 @@ class Loop:
                 kept.keep(self)
 
     def _goes_on(self) -> bool:
-        """Whether a step is left to take, be it only for a sample that comes soon."""
-        book, next_sample = self.ending.book, len(self.rows) * self.stepping.steps_per_sample
+        """Whether a step is left to take, be it only for the last sample."""
         if self.message or self.steps >= self.most:
             return False
-        return book[DONE] == np.inf or next_sample * self.stepping.dt_s <= book[DONE] + _BEYOND
+        interval = self.scene.output.interval
+        return self.ending.book[DONE] == np.inf or not is_left_out(self.ending.book, len(self.rows) * interval, interval)
 
     def advance_one_sample(self) -> None:
         """Step to the next sample and take it; less where something goes wrong before."""

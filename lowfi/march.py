@@ -36,7 +36,6 @@ _SPARE = 0.1  # largest error ratio at which a step may be cut by interpolation,
 # back freely in one step the ledger misses the square of it.
 _NEAR_END = 1e-4
 _LANDINGS = 40  # cuts of one step
-_BEYOND = 2  # samples after the end of the settled window, for whoever averages over it from samples
 _HALVINGS = 6  # of one step for the sake of the ledgers: what is off still is not a matter of its length
 
 
@@ -176,13 +175,15 @@ def _rate_on_walls(walls, system, loop, state):
 @kernel
 def march(system, plan, tolerance, marks, loop, sampling, rows, forces):
     """Take samples up to ``sampling.number`` into ``rows`` (n, SAMPLE_SIZE) and ``forces`` (n, f, 3), and after the last one go on
-    to the scene's end; or less, when nothing is left to learn of the settled window or of a jam."""
-    clock, count, end = loop.clock, loop.count, plan.stops[-1]
+    to the scene's end; or less, when nothing is left to learn of the settled window or of a jam: the steps end then at the same
+    instant, whatever is sampled."""
+    clock, count, end, ended = loop.clock, loop.count, plan.stops[-1], sampling.number == sampling.last
     for taken in range(count[TAKEN], sampling.number + 1):
         time = min(taken * sampling.interval, end)
         status = _reach(system, plan, tolerance, marks, loop, sampling.whole, time)
-        if status == SAMPLED and not sampling.whole and time > loop.book[books.DONE] + _BEYOND * sampling.interval:
-            status = ENDED
+        if status == ENDED or not sampling.whole and books.is_left_out(loop.book, time, sampling.interval):
+            ended = True
+            break
         if status != SAMPLED:
             return status
         if time == clock[NOW]:
@@ -195,16 +196,17 @@ def march(system, plan, tolerance, marks, loop, sampling, rows, forces):
         if not observe(system, loop.engaged, felt_, loop.grip, loop.work, rows[taken], forces[taken]):
             return NOT_FINITE
         count[TAKEN] += 1
-    if sampling.number < sampling.last:
+    if not ended:
         return SAMPLED
-    return _reach(system, plan, tolerance, marks, loop, sampling.whole, end)
+    status = _reach(system, plan, tolerance, marks, loop, sampling.whole, end)
+    return ENDED if status == SAMPLED else status
 
 
 @inlined
 def _reach(system, plan, tolerance, marks, loop, whole, time):
     """Step until ``time`` (s) is reached: SAMPLED, or why it is not."""
     while loop.clock[NOW] < time:
-        if loop.book[books.DONE] < np.inf and not whole:
+        if not whole and books.is_over(loop.book, loop.clock[NOW]):
             return ENDED
         status = advance(system, plan, tolerance, marks, loop)
         if status != SAMPLED:

@@ -14,7 +14,7 @@ from lowfi.accuracy import Tolerance
 from lowfi.events import DEPTH
 from lowfi.march import EVALUATIONS, NOW, SAMPLED, STEPS, advance, reset
 from lowfi.system import Body, System
-from scenes.ending import BOOK_SIZE, DONE
+from scenes.ending import BOOK_SIZE, is_over
 from scenes.effects.thrust_offset import ThrustOffset
 from scenes.jit import kernel
 
@@ -79,7 +79,7 @@ def _is_settled(system, plan, tolerance, marks, loop):
     """Run one case until nothing is left to learn or the scene ends; False where it is left open."""
     if _pressed(loop):
         return False
-    while loop.clock[NOW] < plan.stops[-1] and not loop.book[DONE] < np.inf:
+    while loop.clock[NOW] < plan.stops[-1] and not is_over(loop.book, loop.clock[NOW]):
         if advance(system, plan, tolerance, marks, loop) != SAMPLED:
             return False
     return True

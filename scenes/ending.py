@@ -20,6 +20,9 @@ ROW_SIZE = 2 * BODY
 EXIT, WINDOW, DONE, SLOW_SINCE, PAST, EXCESS, WAY, ANGLE, AT_EXIT = 0, 1, 2, 3, 4, 5, 6, 9, 12
 NOW, BEFORE = AT_EXIT + ROW_SIZE, AT_EXIT + 2 * ROW_SIZE
 BOOK_SIZE = AT_EXIT + 3 * ROW_SIZE
+# s after which a run ends when nothing is left to learn: time for one more sample, if samples are so close that a record of them
+# tells of the settled window.
+AFTER = 1e-3
 _ROUNDING = 1e-12  # relative: a scene that ends with the window holds all of it
 
 
@@ -87,6 +90,18 @@ def close(book, now):
     end = book[WINDOW] + SETTLE_WINDOW
     if now >= end * (1.0 - _ROUNDING):
         book[DONE] = end
+
+
+@inlined
+def is_over(book, now):
+    """Whether a run may end ``now`` (s)."""
+    return now >= book[DONE] + AFTER
+
+
+@inlined
+def is_left_out(book, time, interval):
+    """Whether a sample at ``time`` (s) is not taken any more: it comes late, or one ``interval`` (s) before it was the last."""
+    return time > book[DONE] + AFTER or time - interval >= book[DONE]
 
 
 def found(book: np.ndarray) -> tuple[str, Outcome]:

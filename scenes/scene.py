@@ -28,12 +28,11 @@ from scenes.files import content_hash
 from scenes.rail import RailTable
 from scenes.table import Table, at_least_one, is_absent
 from scenes.tables import MOST_SAMPLES, AgreementTable, OutputTable, PadTable, PayloadTable
-from scenes.units import quantity
+from scenes.units import Duration
 
 CATALOG = reading.CATALOG
 EFFECTS = ("thrust_offset", "mass_offset", "initial", "contact", "friction", "platform", "gravity", "thermal", "rail.damping")
 NOMINAL = "nominal"  # the scene itself, named like a condition
-LONGEST = 3600.0  # s: an ejection takes milliseconds, a slow one minutes
 _BESIDE = ("conditions", "agreement", "provenance")
 _NOT_PHYSICS = {"name", "description", "flight", *_BESIDE}  # what comes after the exit changes nothing before it
 
@@ -43,7 +42,7 @@ class Scene(Table):
 
     name: Annotated[str, AfterValidator(names.of_scene)]
     description: str = ""
-    duration: quantity("s", gt=0.0, le=LONGEST)
+    duration: Duration
     payload: PayloadTable
     pads: Annotated[tuple[PadTable, ...], AfterValidator(at_least_one)]
     rail: RailTable
