@@ -6,16 +6,17 @@ error below it counts as the band where the front of the best is drawn. Every mo
 The surrogate's time-integration error, against its own tightest tolerance, stands beside its error against the yardstick: what
 remains when it is small is the model, and no tolerance can buy it.
 
-``cost.json`` is the bare list of points, ``cost_study.json`` the whole result.
+``cost.json`` is the bare list of points for other tools, ``cost_study.json`` the whole result.
 """
 
+import json
 import statistics
 from pathlib import Path
 from typing import Iterable
 
 from lowfi.numerics import Numerics
 from scenes.fidelity import COMPLIANT, FINITE_ELEMENTS
-from scenes.files import write_json
+from scenes.files import write_text
 from scenes.trajectory import Trajectory
 from studies import machine
 from studies.agreement import verdicts
@@ -49,7 +50,7 @@ def run(study: Study) -> dict:
         growing = {"elements": scaling.elements(study, name), "pads": scaling.pads(study, name),
                    "effects": scaling.effects(study.condition(name), ablation.run(study))}
         path, points = study.path(POINTS), marked(points, band)
-        write_json(path, points)
+        write_text(path, json.dumps(points, indent=1, allow_nan=False) + "\n")
         return {"condition": name, "scene_hash": study.scene.hash, "band_deg_s": band, "points": points, "matched": matched(points),
                 "scaling": growing, "hardware": machine.describe()}, [path]
 

@@ -57,6 +57,7 @@ def test_surrogate_is_timed_by_turns(monkeypatch, tmp_path):
 
     monkeypatch.setattr(ablation, "warm_up", lambda run: None)
     monkeypatch.setattr(ablation, "timed", timed)
+    monkeypatch.setattr(ablation.compliance, "load", lambda *_: None)
     study = Study(scenes.load("tiny"), tmp_path, replace(defaults("tiny"), lowfi_repeats=3))
     lines = {"a": {}, "b": {"friction": None}}
     _, runs, times = ablation._surrogate(study, "phi15", lines)
