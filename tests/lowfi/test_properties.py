@@ -46,7 +46,7 @@ def nudged(start: np.ndarray) -> np.ndarray:
 
 def speeds(run: Run) -> np.ndarray:
     """Velocity, and pad speed from turning, of the payload: (n,6) m/s."""
-    motion = run._motion()
+    motion = run.motion()
     return np.hstack([motion.velocity, REACH * motion.rate])
 
 
