@@ -110,7 +110,8 @@ def test_same_bits_with_any_number_of_workers(monkeypatch):
     """On a surrogate that takes no time, its conditions in turn or side by side."""
     pools = []
 
-    def run(asked, numerics, walls):
+    def run(asked, model, numerics, walls):
+        assert model == "springs"
         known = own_curves()["phi15" if asked.thrust_offset == scene().condition("phi15").thrust_offset else "phi60"]
         share = math.log(asked.contact.stiffness / TRUTH["contact.stiffness"]) + asked.friction.dynamic
         return dataclasses.replace(known, rate=known.rate * (1.0 + 0.01 * share))
@@ -119,7 +120,7 @@ def test_same_bits_with_any_number_of_workers(monkeypatch):
         pools.append(workers)
         return ThreadPoolExecutor(workers)
 
-    monkeypatch.setattr(sys.modules["calibrate.run"], "Objective", functools.partial(Objective, run=run))
+    monkeypatch.setattr(lowfi, "run", run)
     monkeypatch.setattr(sys.modules["calibrate.run"], "ThreadPoolExecutor", pool)
     plan = SMALL._replace(points=4, evaluations=8, polish=1)
     one, two = (calibrate.run(scene(), own_curves(), plan=plan, workers=count) for count in (1, 2))

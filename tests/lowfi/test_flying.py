@@ -30,9 +30,10 @@ def assert_same(flown, rest, velocity: tuple) -> None:
         assert np.abs(getattr(flown, name) - moved - getattr(rest, name)).max() <= 1e-9, name
     assert np.abs(flown.rate - rest.rate).max() <= 1e-9 * np.abs(rest.rate).max()
     assert flown.checks["energy_error"] == pytest.approx(rest.checks["energy_error"], rel=1e-3)
-    sample = np.searchsorted(rest.time, rest.outcome.exit_time)
-    assert flown.outcome.exit_position == flown.position[sample].tolist()
-    assert flown.outcome.exit_platform_velocity == flown.platform_velocity[sample].tolist()
+    here = np.add(rest.outcome.exit_position, np.multiply(velocity, rest.outcome.exit_time))
+    assert np.abs(np.subtract(flown.outcome.exit_position, here)).max() <= 1e-9
+    moving = np.add(rest.outcome.exit_platform_velocity, velocity)
+    assert np.abs(np.subtract(flown.outcome.exit_platform_velocity, moving)).max() <= 1e-9
 
 
 @pytest.mark.parametrize("velocity", FLIGHTS)

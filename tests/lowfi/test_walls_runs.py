@@ -52,7 +52,7 @@ def test_one_cell_is_a_spring(monkeypatch, friction, given):
     asked = on_springs(rub, together)
     walls = handmade(asked, {} if given is None else {(face, 0, face, 0): 1.0 / given for face in range(16)})
     in_one_cell(monkeypatch)
-    law, cells = (lowfi.run(asked, numerics=TIGHT, walls=each) for each in (None, walls))
+    law, cells = (lowfi.run(asked, model, numerics=TIGHT, walls=each) for model, each in (("springs", None), ("compliant", walls)))
     assert (np.abs(law.pad_force).max(axis=(0, 2)) > 100.0).sum() >= 4  # faces in touch
     assert speeds(cells) == pytest.approx(speeds(law), abs=1e-7)
     # Control: a spring a thousandth stiffer moves otherwise.

@@ -45,11 +45,12 @@ def test_warm_walls_are_saved_too_and_older_files_know_of_none(walls, tmp_path):
         Walls.load(path)
 
 
-@pytest.mark.parametrize("wrong, words", [(lambda walls: None, "given no walls"), (lambda walls: walls, "know of no temperature"),
-                                          (lambda walls: walls.rigid(), "know of no temperature")])
-def test_a_warm_scene_asks_for_walls_that_know_of_it(walls, wrong, words):
+@pytest.mark.parametrize("model, wrong, words", [("springs", lambda walls: None, "given no walls"),
+                                                 ("compliant", lambda walls: walls, "know of no temperature"),
+                                                 ("springs", lambda walls: walls.rigid(), "know of no temperature")])
+def test_a_warm_scene_asks_for_walls_that_know_of_it(walls, model, wrong, words):
     with pytest.raises(SceneError, match=words):
-        lowfi.run(SCENE.replace({"thermal.mean": 20.0}), walls=wrong(walls))
+        lowfi.run(SCENE.replace({"thermal.mean": 20.0}), model, walls=wrong(walls))
 
 
 def damage_end(path):

@@ -20,7 +20,7 @@ from studies.cli import app
 from studies.limits import results
 from studies.populations import answers
 from studies.settings import Settings
-from studies.stages import runs, view, walls
+from studies.stages import compliance, runs, view
 from studies.study import Study, read
 from tests.scenes.test_calibration import CALIBRATION
 from tests.studies.synthetic import flight
@@ -144,12 +144,12 @@ def test_damaged_walls_are_found_again(study, monkeypatch, capsys):
         calls.append(size)
         return known
 
-    monkeypatch.setattr(compliance, "walls", found)
-    assert walls.load(study, scene).hash == walls.load(study, scene).hash == known.hash and len(calls) == 1
-    path, = study.folder.glob("walls-*.npz")
+    monkeypatch.setattr(calibrate, "compliance", found)
+    assert compliance.load(study, scene).hash == compliance.load(study, scene).hash == known.hash and len(calls) == 1
+    path, = study.folder.glob("compliance-*.npz")
     for number, place in enumerate(np.linspace(0, path.stat().st_size - 1, 40).astype(int)):
         flip(path, int(min(place, path.stat().st_size - 1)))
-        assert walls.load(study, scene).hash == known.hash and len(calls) == number + 2
+        assert compliance.load(study, scene).hash == known.hash and len(calls) == number + 2
         assert f"{path}: not a file of walls" in (told := capsys.readouterr().err) and "found again" in told
 
 
