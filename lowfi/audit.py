@@ -20,6 +20,7 @@ from lowfi.events import DEPTH, stored
 from lowfi.state import PAYLOAD, PLATFORM
 from lowfi.touch import pad_point
 from lowfi.walls.modes import energies
+from lowfi.walls.survey import energy as energy_on_walls
 from scenes import promises, rotation
 from scenes.jit import inlined, kernel
 
@@ -168,3 +169,41 @@ def usage(audit, total, across):
     first, second = errors(audit, total, across)
     share = max(first / total, second / across) / _HALF
     return np.inf if audit[LOST] != 0.0 or not share == share else share
+
+
+@inlined
+def step_is_affordable(ledger, system, tolerance, loop):
+    """Whether the step just tried may be kept. Between contacts the forces are smooth, and its error says enough."""
+    may_be_kept = True
+    if ledger is not None:
+        pressing = False
+        for felt_now in loop.active:
+            pressing = pressing or felt_now
+        if pressing:
+            may_be_kept = affordable(tolerance, system.payload.mass, loop.audit, _balances(system, loop, loop.end, loop.after))
+    return may_be_kept
+
+
+@inlined
+def record_step(ledger, system, tolerance, loop):
+    """Write down the step just taken; False when it lost a tenth of the energy."""
+    kept = True
+    if ledger is not None:
+        kept = record(tolerance, system.payload.mass, loop.start, loop.end, loop.audit,
+                      _balances(system, loop, loop.end, loop.after))
+    return kept
+
+
+@inlined
+def _balances(system, loop, state, surveyed):
+    return balances(system, loop.engaged, loop.grip, surveyed, loop.audit[ON_WALLS], state)
+
+
+@inlined
+def open_books(ledger, walls, system, loop):
+    """Begin the ledgers where the first step does, with what its faces hold from the start."""
+    if ledger is not None:
+        held = 0.0
+        if walls is not None:
+            held = energy_on_walls(walls, system.faces, system.platform, system.payload, loop.active, loop.start)
+        begin(system, loop.engaged, loop.grip, loop.before, held, loop.start, loop.audit)

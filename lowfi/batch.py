@@ -82,10 +82,8 @@ class Family:
 
     def _group(self, groups: dict, built: Built) -> _Group:
         scene, model = built.scene, built.model
-        # All that a model has but what ``_stacked`` takes from each case, and the damping of rails that vibrate.
-        shared = model._replace(payload=None, faces=None, initial=None, thrust_offset=model.thrust_offset is None)
-        key = (_content(shared), _content(built.nominal), scene.thrust.kind, scene.duration,
-               scene.rail.damping and scene.rail.damping.record())
+        # The damping of rails that vibrate is no part of a model.
+        key = (self._shared(built), scene.thrust.kind, scene.duration, scene.rail.damping and scene.rail.damping.record())
         if key not in groups:
             same = scene.thrust is self.base.scene.thrust and scene.duration == self.base.scene.duration
             marks = self.marks if same else outcome.milestones(scene, model)
@@ -94,6 +92,14 @@ class Family:
             groups[key] = _Group(kept, marks._replace(jam_speed=outcome.jam_speed(model)),
                                  plan.make(model, scene.duration, self.numerics), [], [])
         return groups[key]
+
+    def _shared(self, built: Built) -> tuple:
+        """By content, all that a model has but what ``_stacked`` takes from each case; None for what is the scene's own record."""
+        def parts(of: Built) -> tuple:
+            shared = of.model._replace(payload=None, faces=None, initial=None, thrust_offset=of.model.thrust_offset is None)
+            return *shared, of.nominal
+
+        return tuple(None if part is own else (_content(part),) for part, own in zip(parts(built), parts(self.base)))
 
     def kernels(self, table: Sequence[Mapping[str, Any]]) -> list[Callable[[], np.ndarray]]:
         """Calls of the bare kernel for the groups of ``table``, set up beforehand: each returns ``settle``'s results.
@@ -148,6 +154,8 @@ def _content(record: Any) -> Any:
         return None
     if isinstance(record, tuple):
         return type(record), *(_content(part) for part in record)
+    if isinstance(record, float):
+        return record.hex()  # which tells the zeros apart
     values = np.asarray(record)
     return values.dtype.str, values.shape, values.tobytes()
 

@@ -37,7 +37,7 @@ class Step(NamedTuple):
     size: float
 
 
-@kernel
+@inlined
 def follow(system, marks, loop, step):
     """Bring the book of ``loop`` up to date with the ``step`` just taken."""
     book = loop.book
@@ -49,7 +49,7 @@ def follow(system, marks, loop, step):
         _count(system, loop, step)
 
 
-@kernel
+@inlined
 def _watch(system, marks, loop, step):
     """Look for the exit and for a jam."""
     book = loop.book
@@ -79,7 +79,7 @@ def _leave(system, marks, loop, step, at):
     books.leave(loop.book, at, marks)
 
 
-@kernel
+@inlined
 def _look_at_speed(system, marks, loop, step, begin, end):
     """Look at the axial speed at the ``end`` (s) of a piece, and at its first moment if that is the first one to count."""
     book, low = loop.book, max(begin, books.watched_from(marks))
@@ -128,7 +128,7 @@ def _crossing(kind, system, marks, loop, step, between, values):
     return low if abs(f_low) < abs(f_high) else high
 
 
-@kernel
+@inlined
 def _gauge(kind, system, marks, loop, step, time):
     """At ``time`` (s): distance (m) of the rearmost trailing edge past the rail end, or the excess (m/s) of the axial speed."""
     _fill(system, loop, step, time)
@@ -137,7 +137,7 @@ def _gauge(kind, system, marks, loop, step, time):
     return abs(books.axial_speed(loop.book[NOW:])) - marks.jam_speed
 
 
-@kernel
+@inlined
 def _fill(system, loop, step, time):
     """Motion at ``time`` (s) in the step into the book."""
     if time == step.ended:

@@ -283,7 +283,7 @@ def step(system, plan, tolerance, loop):
         if span < 1.0 and not smooth and not (landings > 0 and span > 1.0 - _NEAR_END) and landings < _LANDINGS:
             landings, ceiling = landings + 1, span * dt * (1.0 + 0.2 * _NEAR_END)
             continue
-        if halvings < _HALVINGS and not _affordable(system.ledger, system, tolerance, loop):
+        if halvings < _HALVINGS and not audit.step_is_affordable(system.ledger, system, tolerance, loop):
             halvings += 1
             count[REJECTED] += 1
             clock[WANTED] = 0.5 * span * dt
@@ -293,44 +293,7 @@ def step(system, plan, tolerance, loop):
             _accept_part(clock, count, dt, start + span * dt, limit)
         else:
             _accept(loop.stages[STAGES - 1], clock, count, dt, stop if reaches else start + dt, ratio, limit)
-        return _record(system.ledger, system, tolerance, loop)
-
-
-@inlined
-def _affordable(ledger, system, tolerance, loop):
-    """Whether the step just tried may be kept. Between contacts the forces are smooth, and its error says enough."""
-    affordable = True
-    if ledger is not None:
-        pressing = False
-        for felt_now in loop.active:
-            pressing = pressing or felt_now
-        if pressing:
-            affordable = audit.affordable(tolerance, system.payload.mass, loop.audit, _balances(system, loop, loop.end, loop.after))
-    return affordable
-
-
-@inlined
-def _record(ledger, system, tolerance, loop):
-    kept = True
-    if ledger is not None:
-        kept = audit.record(tolerance, system.payload.mass, loop.start, loop.end, loop.audit,
-                            _balances(system, loop, loop.end, loop.after))
-    return kept
-
-
-@inlined
-def _balances(system, loop, state, surveyed):
-    return audit.balances(system, loop.engaged, loop.grip, surveyed, loop.audit[audit.ON_WALLS], state)
-
-
-@inlined
-def _open_books(ledger, walls, system, loop):
-    """Begin the ledgers where the first step does, with what its faces hold from the start."""
-    if ledger is not None:
-        held = 0.0
-        if walls is not None:
-            held = energy_on_walls(walls, system.faces, system.platform, system.payload, loop.active, loop.start)
-        audit.begin(system, loop.engaged, loop.grip, loop.before, held, loop.start, loop.audit)
+        return audit.record_step(system.ledger, system, tolerance, loop)
 
 
 @inlined
@@ -394,6 +357,7 @@ def _begin(system, plan, loop):
     if fresh:
         count[SEGMENT] += 1
     left, energy = _on_rail(system, loop)
+    kept_before = loop.start[slot.RELEASED]
     loop.start[slot.RELEASED] += energy
     regripped, lost = _regrip(system, loop)
     loop.start[slot.FRICTION] += lost
@@ -405,8 +369,10 @@ def _begin(system, plan, loop):
     if changed:
         clock[RATE] = _fastest_rate(system, loop, loop.start, 0.0)
     _release(system.walls, system, loop, left, -1.0)
+    # What a face that comes back over its wall brings is bounded by how deep it may come (``lowfi.edges``): nothing made it.
+    loop.audit[audit.LEFT] += min(loop.start[slot.RELEASED] - kept_before, 0.0)
     if count[STEPS] == 0:
-        _open_books(system.ledger, system.walls, system, loop)
+        audit.open_books(system.ledger, system.walls, system, loop)
     return changed or left or fresh or clock[SPAN] < 1.0
 
 

@@ -1,7 +1,6 @@
 """The whole fit on curves whose constants are known, and what it refuses."""
 
 import dataclasses
-import functools
 import math
 import sys
 from concurrent.futures import ThreadPoolExecutor

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
+import calibrate
 import scenes
-from highfi import compliance
 from scenes.files import write_json
 from scenes.trajectory import Trajectory
 from scenes.walls import PATTERNS, Walls, digest
