@@ -97,8 +97,8 @@ def slide(loop: Loop, samples: int) -> np.ndarray:
 
 
 def _advance(loop: Loop) -> None:
-    """One sample on. The energy that was taken to bring the payload to rest is no fault of the run. Raises FloatingPointError where a
-    value became infinite."""
+    """One sample on. The energy that was taken to bring the payload to rest is no fault of the run. Raises FloatingPointError
+    where a value became infinite."""
     taken = len(loop.rows)
     while len(loop.rows) == taken:
         loop.message = ""
