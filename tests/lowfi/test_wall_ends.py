@@ -143,6 +143,10 @@ def test_back_into_the_mouth(given):
     for depth in (-1e-5, 5e-7, 4.5e-3, 0.05):
         asked = thrown_back(depth)
         run = unwatched_on(asked, handmade(asked, {}) if given else None)
+        if given and depth == 5e-7:
+            # Here all the energy across the rail is what the wall gains as the pad slides over it: no ledger calls that closed.
+            assert run.status == "diverged" and "came from nothing" in run.message and run.outcome.rate is None
+            continue
         assert run.status != "diverged" and run.message == ""
         # Rounded edges may ride up by a micrometre: k p^2 / 2 of half that.
         assert run.energy[:, ledger.ENTRIES.index("kinetic")].max() <= 0.5 * 9.9 * 36.0 + 0.5 * STIFFNESS * 5e-7**2 * 1.01

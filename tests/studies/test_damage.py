@@ -179,7 +179,8 @@ def test_an_edited_calibration_is_bad_input_until_its_digest_is_removed(tmp_path
     CALIBRATION.save(path)
     edited = path.read_text(encoding="utf-8").replace('"friction.static" = 0.25', '"friction.static" = 0.26')
     path.write_text(edited, encoding="utf-8")
-    told = CliRunner().invoke(app, ["run", "--scene", "tiny", "--calibration", str(path), "--out", str(tmp_path / "out")])
+    asked = ["run", "--scene", "tiny", "--model", "springs", "--calibration", str(path), "--out", str(tmp_path / "out")]
+    told = CliRunner().invoke(app, asked)
     assert told.exit_code == 2 and f"{path} does not fit the digest it carries" in told.stderr
     assert "remove the line '# sha-256 ...' if you edited the file on purpose" in told.stderr and not (tmp_path / "out").exists()
 
