@@ -12,7 +12,7 @@ from tests.exact import friction as exact
 from tests.lowfi.support import G, numerics, scene
 
 FEET = [{"position": (x, y, -0.02), "normals": ["-z"]} for x in (-0.1, 0.1) for y in (-0.1, 0.1)]
-GROUND = {"law": "linear", "clearance": 0.0, "stiffness": 1e8, "damping": 2e4}
+GROUND = {"law": "linear", "clearance": 0.0, "stiffness": 1e8, "damping": 4e4}
 TWO_TOLERANCES = pytest.mark.parametrize("tolerance", [1e-6, 1e-8])
 
 
@@ -71,6 +71,7 @@ def test_creep_of_the_smoothed_law(tolerance):
     ratio = exact.creep_ratio(math.radians(15.0), 0.3)
     assert ratio == pytest.approx(0.719707, abs=1e-6)
     run = on_slope(math.radians(15.0), 0.0, 0.05, 2e-4, tolerance)
+    assert run.status == "jammed" and run.time[-1] >= 5e-3  # a creep is slower than a jam; it has settled before that is known
     assert run.velocity[-1, 0] == pytest.approx(ratio * 2e-4, rel=1e-4)
     # Control: the straight-line law mu s / v_s would creep at tan(15 deg) / mu of it.
     assert abs(math.tan(math.radians(15.0)) / 0.3 - ratio) > 0.1
