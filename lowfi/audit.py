@@ -7,9 +7,10 @@ derivative, and what the estimate takes for the error of the worse of two method
 all of one sign. So a step in contact that takes more than a tenth of what is left of the promise is taken again at half its
 length. Half of a promise is kept for what samples between the steps are interpolated with.
 
-What contact loses, ``RELEASED`` and ``DAMPING``, never comes back. What does was made from nothing: it counts as an error of both
-ledgers. The two are taken together, because where a force is about to be cut off some stages of a step count for one and some for
-the other, with weights of either sign.
+What contact loses, ``RELEASED`` and ``DAMPING``, never comes back, but for the energy of a face that leaves over an edge of its
+wall and comes back there. Whatever else does was made from nothing: it counts as an error of both ledgers. The two are taken
+together, because where a force is about to be cut off some stages of a step count for one and some for the other, with weights of
+either sign.
 """
 
 import numpy as np

@@ -280,9 +280,10 @@ def _grazing(before, after, rise, fall):
 @inlined
 def on_rail(laws, walls, rail, faces, surveyed, left, engaged):
     """Bring ``engaged`` (f,), the faces that stand over their walls, and ``left`` (f,) up to date (``lowfi.edges``): whether any
-    changed, energy (J) that leaving faces took with them, less what entering ones bring, and a face that strikes an edge or is
-    pressed through its wall, or -1. Walls that give way know their energy themselves."""
-    changed, energy, struck = False, 0.0, -1
+    changed, energy (J) that leaving faces took with them, less what entering ones bring, the part of the latter (J) with which they
+    had left, and a face that strikes an edge or is pressed through its wall, or -1. Walls that give way know their energy
+    themselves."""
+    changed, energy, returned, struck = False, 0.0, 0.0, -1
     if laws is not None or walls is not None:
         for i in range(engaged.size):
             inside = stands_over(rail, faces[i], surveyed[i])
@@ -293,9 +294,10 @@ def on_rail(laws, walls, rail, faces, surveyed, left, engaged):
                 if strikes(faces[i], surveyed[i], left[i]) if inside else surveyed[i, DEPTH] >= faces[i, BACK]:
                     struck = i
                 energy += (1.0 if engaged[i] else -1.0) * stored(laws, surveyed[i, DEPTH])
+                returned += stored(laws, min(surveyed[i, DEPTH], left[i])) if inside else 0.0
                 left[i] = 0.0 if inside else max(surveyed[i, DEPTH], 0.0)
                 engaged[i] = inside
-    return changed, energy, struck
+    return changed, energy, returned, struck
 
 
 @inlined

@@ -129,10 +129,11 @@ def _flatten(walls):
 
 @inlined
 def _on_rail(system, loop):
-    """Whether faces came over their walls or left them, and the energy (J) that went with them."""
-    left, energy, loop.count[STRIKING] = on_rail(system.contact, system.walls, (system.rail_start, system.rail_end), system.faces,
-                                                 loop.after, loop.left, loop.engaged)
-    return left, energy
+    """Whether faces came over their walls or left them, the energy (J) that went with them, and what came back of it."""
+    rail = (system.rail_start, system.rail_end)
+    left, energy, returned, loop.count[STRIKING] = on_rail(system.contact, system.walls, rail, system.faces, loop.after, loop.left,
+                                                           loop.engaged)
+    return left, energy, returned
 
 
 @inlined
@@ -356,9 +357,9 @@ def _begin(system, plan, loop):
     fresh = count[SEGMENT] < 0 or clock[NOW] >= plan.stops[count[SEGMENT]]
     if fresh:
         count[SEGMENT] += 1
-    left, energy = _on_rail(system, loop)
-    kept_before = loop.start[slot.RELEASED]
+    left, energy, returned = _on_rail(system, loop)
     loop.start[slot.RELEASED] += energy
+    loop.audit[audit.LEFT] -= returned
     regripped, lost = _regrip(system, loop)
     loop.start[slot.FRICTION] += lost
     for i in range(loop.engaged.size):
@@ -369,8 +370,6 @@ def _begin(system, plan, loop):
     if changed:
         clock[RATE] = _fastest_rate(system, loop, loop.start, 0.0)
     _release(system.walls, system, loop, left, -1.0)
-    # What a face that comes back over its wall brings is bounded by how deep it may come (``lowfi.edges``): nothing made it.
-    loop.audit[audit.LEFT] += min(loop.start[slot.RELEASED] - kept_before, 0.0)
     if count[STEPS] == 0:
         audit.open_books(system.ledger, system.walls, system, loop)
     return changed or left or fresh or clock[SPAN] < 1.0

@@ -2,6 +2,7 @@
 
 import math
 
+import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
@@ -122,10 +123,11 @@ MOUTH = 0.05  # m, the end of a rail
 CLEARANCE = 1e-4  # m, of ``on_springs``
 
 
-def thrown_back(depth: float):
-    """Wholly past the mouth by 3 mm, shifted aside until the pad is ``depth`` (m) behind its wall's surface, and back at 6 m/s."""
+def thrown_back(depth: float, away: float = 0.0):
+    """Wholly past the mouth by 3 mm, shifted aside until the pad is ``depth`` (m) behind its wall's surface, and back at 6 m/s,
+    moving ``away`` (m/s) from the other wall of its corner."""
     return one_pad(rail=RAIL | {"end": MOUTH}, output={"interval": 2e-5},
-                   initial={"position": {"x": MOUTH + HALF + 3e-3, "y": CLEARANCE + depth}, "velocity": {"x": -6.0}})
+                   initial={"position": {"x": MOUTH + HALF + 3e-3, "y": CLEARANCE + depth}, "velocity": {"x": -6.0, "z": -away}})
 
 
 @pytest.mark.parametrize("given", [False, True], ids=["springs", "compliant"])
@@ -141,16 +143,17 @@ def test_back_into_the_mouth(given):
         assert run.time[-1] == pytest.approx(way / 6.0, abs=2.1e-5)
         assert not run.pad_force.any() and run.velocity[-1] == pytest.approx([-6.0, 0.0, 0.0], abs=1e-12)
     for depth in (-1e-5, 5e-7, 4.5e-3, 0.05):
-        asked = thrown_back(depth)
+        asked = thrown_back(depth, away=0.1)
         run = unwatched_on(asked, handmade(asked, {}) if given else None)
-        if given and depth == 5e-7:
-            # Here all the energy across the rail is what the wall gains as the pad slides over it: no ledger calls that closed.
-            assert run.status == "diverged" and "came from nothing" in run.message and run.outcome.rate is None
-            continue
         assert run.status != "diverged" and run.message == ""
         # Rounded edges may ride up by a micrometre: k p^2 / 2 of half that.
-        assert run.energy[:, ledger.ENTRIES.index("kinetic")].max() <= 0.5 * 9.9 * 36.0 + 0.5 * STIFFNESS * 5e-7**2 * 1.01
+        gained = run.energy[:, ledger.ENTRIES.index("kinetic")].max() - 0.5 * 9.9 * (36.0 + 0.01)
+        assert gained <= 0.5 * STIFFNESS * 5e-7**2 * 1.01
         assert depth == 5e-7 or not run.pad_force.any()
+    # Control: where nothing else moves across the rail, that energy is all there is, and it came from nothing.
+    asked = thrown_back(5e-7)
+    run = unwatched_on(asked, handmade(asked, {}) if given else None)
+    assert run.status == "diverged" and "came from nothing" in run.message and run.outcome.rate is None
 
 
 def unwatched_on(asked, walls):
@@ -189,7 +192,7 @@ def test_the_back_of_a_wall(start, speed, stiffness, words):
 
 def test_a_pad_half_over_the_end_moves_in_and_out():
     """Pressed, its middle 2 um past the end for a tenth of a millisecond and back, its rear half on the rail all the time: it
-    leaves with its energy, and brings that of 1 um at most beyond it."""
+    leaves with its energy and may bring it back, but not that of what it sank meanwhile."""
     weight = MASS * 9.80665
     pull, deep = 1000.0, weight / K
     back = math.sqrt(2.0 * pull * 3e-6)
@@ -198,9 +201,11 @@ def test_a_pad_half_over_the_end_moves_in_and_out():
     run = unwatched(asked, numerics(1e-7)).trajectory()
     pressed = run.pad_force[:, 0, 2] > 0.0
     assert "strikes" not in run.message and pressed[0] and pressed[-1] and not pressed.all()
-    assert run.checks["energy_error"] <= 1e-9
     gained = -run.energy[-1, ledger.ENTRIES.index("released")]
-    assert 0.0 < gained <= 0.5 * K * ((deep + 1e-6)**2 - deep**2)
+    sunk = 0.5 * 9.80665 * (run.time[-1] - np.count_nonzero(pressed) * 1e-5)**2
+    assert gained == pytest.approx(weight * sunk, rel=0.3)  # the time off the rail is known to a sample
+    scale = run.energy[:, ledger.ENTRIES.index("kinetic")].max()
+    assert run.status == "diverged" and run.checks["energy_error"] == pytest.approx(gained / scale, rel=0.1)
 
 
 def test_ensembles_end_as_single_runs_do():
