@@ -173,25 +173,33 @@ def usage(audit, total, across):
 
 
 @inlined
-def step_is_affordable(ledger, system, tolerance, loop):
+def after_step(ledger, system, loop):
+    """The balances at the end of the step just tried, or None where no ledger is kept."""
+    found = None
+    if ledger is not None:
+        found = _balances(system, loop, loop.end, loop.after)
+    return found
+
+
+@inlined
+def step_is_affordable(system, tolerance, loop, found):
     """Whether the step just tried may be kept. Between contacts the forces are smooth, and its error says enough."""
     may_be_kept = True
-    if ledger is not None:
+    if found is not None:
         pressing = False
         for felt_now in loop.active:
             pressing = pressing or felt_now
         if pressing:
-            may_be_kept = affordable(tolerance, system.payload.mass, loop.audit, _balances(system, loop, loop.end, loop.after))
+            may_be_kept = affordable(tolerance, system.payload.mass, loop.audit, found)
     return may_be_kept
 
 
 @inlined
-def record_step(ledger, system, tolerance, loop):
+def record_step(system, tolerance, loop, found):
     """Write down the step just taken; False when it lost a tenth of the energy."""
     kept = True
-    if ledger is not None:
-        kept = record(tolerance, system.payload.mass, loop.start, loop.end, loop.audit,
-                      _balances(system, loop, loop.end, loop.after))
+    if found is not None:
+        kept = record(tolerance, system.payload.mass, loop.start, loop.end, loop.audit, found)
     return kept
 
 

@@ -284,7 +284,8 @@ def step(system, plan, tolerance, loop):
         if span < 1.0 and not smooth and not (landings > 0 and span > 1.0 - _NEAR_END) and landings < _LANDINGS:
             landings, ceiling = landings + 1, span * dt * (1.0 + 0.2 * _NEAR_END)
             continue
-        if halvings < _HALVINGS and not audit.step_is_affordable(system.ledger, system, tolerance, loop):
+        balances = audit.after_step(system.ledger, system, loop)
+        if halvings < _HALVINGS and not audit.step_is_affordable(system, tolerance, loop, balances):
             halvings += 1
             count[REJECTED] += 1
             clock[WANTED] = 0.5 * span * dt
@@ -294,7 +295,7 @@ def step(system, plan, tolerance, loop):
             _accept_part(clock, count, dt, start + span * dt, limit)
         else:
             _accept(loop.stages[STAGES - 1], clock, count, dt, stop if reaches else start + dt, ratio, limit)
-        return audit.record_step(system.ledger, system, tolerance, loop)
+        return audit.record_step(system, tolerance, loop, balances)
 
 
 @inlined
