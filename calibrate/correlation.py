@@ -8,7 +8,7 @@ for noise of the quick one's kind: the curve would seem to tell anew with every 
 a single curve of white noise has a tau of about 1.6, so that intervals come out wider, never narrower, than they had to be.
 """
 
-from typing import Sequence
+from collections.abc import Sequence
 
 import numpy as np
 

@@ -5,7 +5,8 @@ objective grows, to second order, per unit of a direction, and eigenvalues of di
 change of a direction that the objective would notice as a relative ``noise`` is sqrt(noise^2 / eigenvalue).
 """
 
-from typing import Callable, NamedTuple
+from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 

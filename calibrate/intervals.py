@@ -11,7 +11,7 @@ model cannot do is taken for scatter here. It shifts the constants, which no int
 them.
 """
 
-from typing import Sequence
+from collections.abc import Sequence
 
 import numpy as np
 import scipy  # its parts load when they are first used

@@ -11,7 +11,8 @@ integrals. J is rough: where a contact is just missed, everything after it jumps
 all conditions is taken as that hundredth: nothing is gained by fitting the rounding of a condition without rates.
 """
 
-from typing import Callable, NamedTuple
+from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 

@@ -12,8 +12,8 @@ plate.
 """
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Callable
 
 from scenes.faults import Fault, SceneError
 from scenes.scene import Scene
@@ -57,7 +57,7 @@ def free(scene: Scene) -> list[Parameter]:
     found = {"impact": [_force, _exponent, _damping], "hunt-crossley": [_force, _exponent, _dissipation],
              "linear": [_force, _damping]}[scene.contact.law]
     if scene.friction is not None:
-        found = found + [_friction]
+        found = [*found, _friction]
     return [make(scene) for make in found]
 
 

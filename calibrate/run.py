@@ -1,7 +1,7 @@
 """One calibration: what is free, the search, and the record with its evidence."""
 
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from typing import Callable
 
 import numpy as np
 

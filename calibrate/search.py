@@ -6,7 +6,8 @@
    Starts that meet in one point are the evidence that there is one basin.
 """
 
-from typing import Callable, NamedTuple
+from collections.abc import Callable
+from typing import NamedTuple
 
 import cma
 import numpy as np

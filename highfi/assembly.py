@@ -13,9 +13,9 @@ import numpy as np
 from scipy.sparse import coo_array, csr_array
 
 from highfi import element, tetrahedron
-from scenes.memory import aligned
 from highfi.cells import thickness
 from highfi.mesh import RailMesh
+from scenes.memory import aligned
 
 _SAME_SHAPE = 1e-9  # of the thinnest element: node coordinates that differ by less make one class
 _FORMULATION = {8: element, 10: tetrahedron}  # by the nodes of an element

@@ -15,7 +15,8 @@ makes up C::
     V_iam = 1/A_i integral over face i of phi_a n_i . psi_m,   W = G^-1 V,   C = sum_m V_m V_m' / omega_m^2
 """
 
-from typing import NamedTuple, Sequence
+from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 from scipy.sparse import coo_array, csc_array

@@ -24,8 +24,19 @@ import numpy as np
 from highfi.facet_contact import Touch, is_off, lowest, press, probe, rate_damping
 from highfi.nodes import follow_frame
 from highfi.pose import triple
-from highfi.records import (AWAY, BORDER, DAMPING_RATIO, FRICTION_FORCE, FRICTION_MOMENT, GAINED, LOAD_SIZE, NODES, OVER, RELEASED,
-                            UNKNOWN)
+from highfi.records import (
+    AWAY,
+    BORDER,
+    DAMPING_RATIO,
+    FRICTION_FORCE,
+    FRICTION_MOMENT,
+    GAINED,
+    LOAD_SIZE,
+    NODES,
+    OVER,
+    RELEASED,
+    UNKNOWN,
+)
 from highfi.team import take
 from scenes import rotation
 from scenes.jit import inlined, kernel

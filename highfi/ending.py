@@ -14,7 +14,21 @@ from highfi.pose import triple
 from highfi.system import System
 from scenes import ending as books
 from scenes import rotation
-from scenes.ending import AT_EXIT, ATTITUDE, BEFORE, BODY, DONE, EXCESS, EXIT, NOW, PAST, PLACE, ROW_SIZE, SPEED, SPIN
+from scenes.ending import (
+    AT_EXIT,
+    ATTITUDE,
+    BEFORE,
+    BODY,
+    DONE,
+    EXCESS,
+    EXIT,
+    NOW,
+    PAST,
+    PLACE,
+    ROW_SIZE,
+    SPEED,
+    SPIN,
+)
 from scenes.jit import kernel
 from scenes.outcome import Outcome
 

@@ -8,8 +8,18 @@ from typing import NamedTuple
 
 import numpy as np
 
-from highfi.records import (BORDER, DAMPING_RATIO, FRICTION_FORCE, FRICTION_MOMENT, GAINED, MOMENT, MOMENT_ON_RAIL, NODES,
-                            NORMAL_FORCE, STORED)
+from highfi.records import (
+    BORDER,
+    DAMPING_RATIO,
+    FRICTION_FORCE,
+    FRICTION_MOMENT,
+    GAINED,
+    MOMENT,
+    MOMENT_ON_RAIL,
+    NODES,
+    NORMAL_FORCE,
+    STORED,
+)
 from scenes import rotation
 from scenes.effects.friction import coefficient_over_speed
 from scenes.jit import inlined, kernel

@@ -8,7 +8,7 @@ what lies on a mirror plane itself has no odd numbers. A pencil inside a regular
 The numbers of one neighbour are D xx yy yz zy zz, L the same and O xy xz yx zx, as in ``pencils``.
 """
 
-from itertools import product
+from itertools import pairwise, product
 from typing import NamedTuple
 
 import numpy as np
@@ -69,7 +69,7 @@ def fold(first: np.ndarray, neighbour: np.ndarray, offsets: np.ndarray, numbers:
     ``offsets`` (q,2) m: place of the neighbour in the section less that of the pencil; ``numbers`` (q,14) N/m.
     """
     limit, places = _SAME * np.abs(numbers).max(), np.round(offsets / _GRID).astype(np.int64).tolist()
-    found = [_groups({tuple(places[q]): q for q in range(a, b)}, numbers, limit) for a, b in zip(first, first[1:])]
+    found = [_groups({tuple(places[q]): q for q in range(a, b)}, numbers, limit) for a, b in pairwise(first)]
     counts = np.array([[len(groups) for groups in kinds] for kinds in found], dtype=np.int64)
     size = np.array([kind.members for kind in KINDS]), np.array([len(kind.numbers) for kind in KINDS])
     starts = [np.concatenate([[0], np.cumsum(counts @ each)[:-1]]).astype(np.int64) for each in size]

@@ -9,9 +9,9 @@ from typing import NamedTuple
 import numpy as np
 
 from highfi import recovery
-from scenes.memory import aligned
 from highfi.worst import measure, note
 from scenes.jit import inlined, kernel
+from scenes.memory import aligned
 
 CORNERS = 8
 STEPS = 8.0  # that a look at an element costs: 180 against 25 ns, one thread each

@@ -7,8 +7,17 @@ what is not conservative or not smooth.
 
 from highfi.contact import friction_power
 from highfi.pose import body_matrix, body_rate, triple
-from highfi.records import (CONTACT_AXIAL, FRICTION, FRICTION_AXIAL, FRICTION_FORCE, GRAVITY, GRAVITY_AXIAL, NORMAL_FORCE, THRUST,
-                            THRUST_AXIAL)
+from highfi.records import (
+    CONTACT_AXIAL,
+    FRICTION,
+    FRICTION_AXIAL,
+    FRICTION_FORCE,
+    GRAVITY,
+    GRAVITY_AXIAL,
+    NORMAL_FORCE,
+    THRUST,
+    THRUST_AXIAL,
+)
 from scenes import rotation
 from scenes.effects.thrust import magnitude
 from scenes.jit import kernel
@@ -51,7 +60,7 @@ def axial_velocity_of_platform(state, frame, base):
 def add_work(rail, surface, payload, frame, drive, friction, gravity, state, active, pose, thrust, half, ahead):
     """Add half a step of work, total and axial, at the velocities of ``pose``
     and those of the nodes once kicked over ``ahead`` (s)."""
-    force, moment, point = thrust
+    force, moment, _point = thrust
     work, v = state.work, state.payload.velocity
     rate = body_rate(state.payload, payload.inverse_inertia)
     work[THRUST] += half * (rotation.dot(force, v) + rotation.dot(moment, rate))

@@ -12,8 +12,8 @@ import numpy as np
 
 from highfi import records
 from highfi.elastic import elastic_force
-from scenes.memory import zeros
 from scenes import rotation
+from scenes.memory import zeros
 
 # Slots of the sample vector.
 POSITION, VELOCITY, QUATERNION, RATE = 0, 3, 6, 10

@@ -104,7 +104,7 @@ class _Sweep:
         code, add = self.code, self.builder.fadd
         weights = [code.read(self.weights, code.plus(layer, WIDTH * half)) for half in range(_HALVES)]
         own, even, odds = ([self.builder.load(part) for part in self.held[3 * k + component]] for k in range(3))
-        below, above = ([combine(l, o) for l, o in zip(even, odds)] for combine in (self.builder.fsub, add))
+        below, above = ([combine(one, other) for one, other in zip(even, odds)] for combine in (self.builder.fsub, add))
         last, pending = self.below[component], self.pending[component]
         before = add(self.builder.load(pending), code.slide(ZERO, above[0], 1))
         around = add(code.slide(self.builder.load(last), below[0], WIDTH - 1), code.slide(above[0], above[1], 1))

@@ -11,6 +11,7 @@ them, see ``folding``. Nodes are numbered point by point with the layers contigu
 padding has no mass and no force.
 """
 
+import itertools
 from typing import NamedTuple
 
 import numpy as np
@@ -88,7 +89,7 @@ def _chunks(own: np.ndarray, other: np.ndarray, stride: int) -> np.ndarray:
     apart = np.flatnonzero(np.maximum.accumulate(np.maximum.reduceat(other, np.searchsorted(own, np.arange(sections))))[:-1]
                            == np.arange(sections - 1)) + 1
     bounds = [0, *apart, sections]
-    parts = [np.linspace(a, b, max(1, round((b - a) * stride / CHUNK)) + 1).round() for a, b in zip(bounds, bounds[1:])]
+    parts = [np.linspace(a, b, max(1, round((b - a) * stride / CHUNK)) + 1).round() for a, b in itertools.pairwise(bounds)]
     return np.unique(np.concatenate(parts)).astype(np.int64)
 
 
@@ -135,14 +136,14 @@ def _parts(block):
 
 
 def _forbidden(block) -> float:
-    d, l, o, e = _parts(block)
-    mixed = [np.abs(even[0, 1:]).max() + np.abs(even[1:, 0]).max() for even in (d, l)]
-    plain = [abs(odd[0, 0]) + np.abs(odd[1:, 1:]).max() for odd in (o, e)]
+    own, sum_, difference, odd_own = _parts(block)
+    mixed = [np.abs(even[0, 1:]).max() + np.abs(even[1:, 0]).max() for even in (own, sum_)]
+    plain = [abs(odd[0, 0]) + np.abs(odd[1:, 1:]).max() for odd in (difference, odd_own)]
     return max(mixed + plain)
 
 
 def _numbers(block) -> list[float]:
     """D, L and O in the order of ``folding.PLACES``, then E xy xz yx zx."""
-    d, l, o, e = _parts(block)
-    even = [even[i, j] for even in (d, l) for i, j in ((0, 0), (1, 1), (1, 2), (2, 1), (2, 2))]
-    return even + [odd[i, j] for odd in (o, e) for i, j in ((0, 1), (0, 2), (1, 0), (2, 0))]
+    own, sum_, difference, odd_own = _parts(block)
+    even = [even[i, j] for even in (own, sum_) for i, j in ((0, 0), (1, 1), (1, 2), (2, 1), (2, 2))]
+    return even + [odd[i, j] for odd in (difference, odd_own) for i, j in ((0, 1), (0, 2), (1, 0), (2, 0))]

@@ -2,9 +2,9 @@
 
 import threading
 import time as clock
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from typing import Callable
 
 import numpy as np
 

@@ -21,8 +21,17 @@ from highfi.elastic import elastic_force, finish_load, hold_blocks, move_and_loa
 from highfi.ending import follow
 from highfi.loads import add_external_impulse, add_work, pull_on_nodes, thrust_load
 from highfi.pose import drift_body, seen_from_frame, small_turn, triple
-from highfi.records import (DAMPING_RATIO, FRAME_VELOCITY, FRICTION_FORCE, MOMENT, MOMENT_ON_RAIL, NORMAL_FORCE, PULL, RATE,
-                            TURN)
+from highfi.records import (
+    DAMPING_RATIO,
+    FRAME_VELOCITY,
+    FRICTION_FORCE,
+    MOMENT,
+    MOMENT_ON_RAIL,
+    NORMAL_FORCE,
+    PULL,
+    RATE,
+    TURN,
+)
 from highfi.team import deal, meet
 from scenes import rotation
 from scenes.jit import kernel

@@ -12,7 +12,6 @@ from highfi.numerics import Numerics
 from highfi.system import System
 from scenes.scene import Scene
 
-
 RASTER = 5e-5  # s, the interval of a scene that names none
 _ROUNDING = 1e-9
 

@@ -1,11 +1,10 @@
 """Gauss points of the rail walls, and for each pad face the facets it can meet."""
 
 import numpy as np
-
-from highfi import facets as geometry
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
+from highfi import facets as geometry
 from highfi.records import Groups, Surface
 
 _FACING = -0.9  # cosine between pad normal and facet normal below which the two can touch

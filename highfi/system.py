@@ -5,14 +5,14 @@ from typing import NamedTuple
 import numpy as np
 
 from highfi import assembly, pencils, records, surface, thermal
-from scenes.memory import zeros
 from highfi.mesh import RailMesh
 from highfi.numerics import Numerics
-from scenes import model as scene_model
 from scenes import comoving, rotation
+from scenes import model as scene_model
 from scenes.body import tensor
 from scenes.effects.structural_damping import Damping
 from scenes.faults import Fault, SceneError
+from scenes.memory import zeros
 from scenes.scene import Scene
 
 _MOST_SLABS = 64

@@ -12,9 +12,9 @@ from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
-from scenes.memory import zeros
 from highfi.pencils import LANES
 from scenes.jit import kernel
+from scenes.memory import zeros
 
 _ROUND, _ARRIVED, _TICKET = 0, 8, 16  # a cache line apart
 _PATIENCE = 4000  # looks at the barrier before the processor is offered to others

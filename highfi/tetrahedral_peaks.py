@@ -9,9 +9,9 @@ from typing import NamedTuple
 import numpy as np
 
 from highfi import tetrahedral_recovery
-from scenes.memory import aligned
 from highfi.worst import measure, note
 from scenes.jit import inlined, kernel
+from scenes.memory import aligned
 
 NODES = 10
 STEPS = 1.0  # that a look at an element costs at the most: 90 ns against 95 with few classes, 870 with one for each element

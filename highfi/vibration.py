@@ -3,7 +3,7 @@
     K psi_m = omega_m^2 M psi_m,   psi_m' M psi_n = 1 where m is n, else 0
 """
 
-from typing import Callable
+from collections.abc import Callable
 
 import numpy as np
 from scipy.linalg import eigh

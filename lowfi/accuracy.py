@@ -20,7 +20,18 @@ import numpy as np
 
 from lowfi.dormand_prince import local_error
 from lowfi.numerics import Numerics
-from lowfi.state import BODY_SIZE, MOMENT, PAYLOAD, PLACE, PLATFORM, VELOCITY, modal_size, motion, quaternion, triple
+from lowfi.state import (
+    BODY_SIZE,
+    MOMENT,
+    PAYLOAD,
+    PLACE,
+    PLATFORM,
+    VELOCITY,
+    modal_size,
+    motion,
+    quaternion,
+    triple,
+)
 from lowfi.walls.modes import energies
 from scenes import rotation
 from scenes.jit import inlined

@@ -2,7 +2,8 @@
 and groups of cases that one kernel call runs."""
 
 import time as clock
-from typing import Any, Callable, Mapping, NamedTuple, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 

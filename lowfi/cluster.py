@@ -6,8 +6,9 @@ else the bits would not be the same.
 """
 
 import threading
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import islice
-from typing import Any, Iterable, Iterator, Mapping, NamedTuple, Sequence
+from typing import Any, NamedTuple
 
 from lowfi import columns
 from lowfi.batch import Family

@@ -1,6 +1,7 @@
 """Results of many cases as columns of arrays, one row per case: what an ensemble keeps, in memory and on disk."""
 
-from typing import NamedTuple, Sequence
+from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 

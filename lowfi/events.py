@@ -13,10 +13,36 @@ import numpy as np
 from lowfi import grip as grips
 from lowfi import state as slot
 from lowfi.dormand_prince import interpolate
-from lowfi.edges import (ALONG, BEYOND, CLOSING, DEPTH, FORWARD, MARGIN, MODE, NOWHERE, PULL, SIDE, SIDEWAYS, SOONEST,
-                         comes_over, depth_it_left_with, goes_and_returns, stands_over, strikes)
+from lowfi.edges import (
+    ALONG,
+    BEYOND,
+    CLOSING,
+    DEPTH,
+    FORWARD,
+    MARGIN,
+    MODE,
+    NOWHERE,
+    PULL,
+    SIDE,
+    SIDEWAYS,
+    SOONEST,
+    comes_over,
+    depth_it_left_with,
+    goes_and_returns,
+    stands_over,
+    strikes,
+)
 from lowfi.system import BACK, SIDE_MIDDLE, SIDE_REACH
-from lowfi.touch import across, along, approach, load, penetration, relative_motion, relative_pose, sideways
+from lowfi.touch import (
+    across,
+    along,
+    approach,
+    load,
+    penetration,
+    relative_motion,
+    relative_pose,
+    sideways,
+)
 from lowfi.walls.survey import depth as depth_in_wall
 from lowfi.walls.survey import survey as survey_walls
 from scenes.effects.contact import stored_energy

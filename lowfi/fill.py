@@ -1,7 +1,8 @@
 """Runs an ensemble into its store: what is missing there, chunk by chunk, in threads of this machine or on a cluster."""
 
 from collections import deque
-from typing import Any, Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from typing import Any
 
 from lowfi import cluster, columns
 from lowfi.batch import Case

@@ -182,7 +182,7 @@ def march(system, plan, tolerance, marks, loop, sampling, rows, forces):
     for taken in range(count[TAKEN], sampling.number + 1):
         time = min(taken * sampling.interval, end)
         status = _reach(system, plan, tolerance, marks, loop, sampling.whole, time)
-        if status == ENDED or not sampling.whole and books.is_left_out(loop.book, time, sampling.interval):
+        if status == ENDED or (not sampling.whole and books.is_left_out(loop.book, time, sampling.interval)):
             ended = True
             break
         if status != SAMPLED:

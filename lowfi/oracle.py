@@ -70,7 +70,7 @@ def _start(model) -> np.ndarray:
                *first.rate]
     if model.platform is None:
         return np.array(payload + [0.0] * 6 + [1.0] + [0.0] * 6)
-    return np.array(payload + [*model.platform.mass_centre, *first.platform_velocity, 1.0, 0.0, 0.0, 0.0, *first.platform_rate])
+    return np.array([*payload, *model.platform.mass_centre, *first.platform_velocity, 1.0, 0.0, 0.0, 0.0, *first.platform_rate])
 
 
 @njit

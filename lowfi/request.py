@@ -1,9 +1,10 @@
 """What an ensemble is asked for: the scene, where its cases come from, and everything else the numbers depend on."""
 
+from collections.abc import Mapping
 from functools import lru_cache
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any, Mapping, NamedTuple
+from typing import Any, NamedTuple
 
 from lowfi import store as stores
 from lowfi.batch import Case, Family

@@ -7,8 +7,9 @@ never held all at once.
 
 import hashlib
 import json
+from collections.abc import Mapping, Sequence
 from functools import cached_property
-from typing import Any, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 

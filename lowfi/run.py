@@ -1,19 +1,29 @@
 """One run of the surrogate: set-up, the sampled time loop, and the Trajectory it leaves."""
 
 import time as clock
-from typing import Callable
+from collections.abc import Callable
 
 import numpy as np
 
 from lowfi import accuracy, audit, balance, bow, edges, march, plan, state, system
-from lowfi.march import EVALUATIONS, EVENTS, LIMIT, LIMIT_USED, NOW, REJECTED, STEPS, STRIKING, TAKEN, Sampling
+from lowfi.march import (
+    EVALUATIONS,
+    EVENTS,
+    LIMIT,
+    LIMIT_USED,
+    NOW,
+    REJECTED,
+    STEPS,
+    STRIKING,
+    TAKEN,
+    Sampling,
+)
 from lowfi.models import require
 from lowfi.numerics import Numerics, promises_of
-from lowfi.walls import record as wall_record
 from lowfi.sample import SAMPLE_SIZE
-from scenes import comoving, ending, outcome
+from lowfi.walls import record as wall_record
+from scenes import comoving, ending, outcome, promises
 from scenes import model as models
-from scenes import promises
 from scenes.calibration import Calibration
 from scenes.fidelity import COMPLIANT
 from scenes.scene import Scene

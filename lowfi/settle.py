@@ -14,8 +14,8 @@ from lowfi.accuracy import Tolerance
 from lowfi.events import DEPTH
 from lowfi.march import EVALUATIONS, NOW, SAMPLED, STEPS, advance, reset
 from lowfi.system import Body, System
-from scenes.ending import BOOK_SIZE, is_over
 from scenes.effects.thrust_offset import ThrustOffset
+from scenes.ending import BOOK_SIZE, is_over
 from scenes.jit import kernel
 
 # Columns of the results: whether the case is left to ``lowfi.run``, counts, the book.

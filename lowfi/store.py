@@ -15,9 +15,10 @@ import json
 import os
 import shutil
 import tempfile
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, Iterator, Mapping, NamedTuple, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -25,8 +26,16 @@ from lowfi import columns
 from lowfi.columns import Columns
 from lowfi.rows import numbers
 from scenes import overrides as keys
-from scenes.files import (DamageError, content_hash, fits_digest, read_json, replacing, tell, with_digest,
-                          write_json)
+from scenes.files import (
+    DamageError,
+    content_hash,
+    fits_digest,
+    read_json,
+    replacing,
+    tell,
+    with_digest,
+    write_json,
+)
 from scenes.scene import Scene
 
 CHUNK = 4096
@@ -58,7 +67,7 @@ class Store:
         self.path, self.asked, self.names = Path(path), asked, list(names)
         self.ensemble = content_hash(json.loads(json.dumps(identity)))
         attributes = with_digest({"identity": identity, **attributes})
-        if not self.path.exists() or self.path.is_dir() and not any(self.path.iterdir()):
+        if not self.path.exists() or (self.path.is_dir() and not any(self.path.iterdir())):
             with self._explained():
                 self._make(attributes)
         else:
@@ -278,7 +287,7 @@ def _type(name: str) -> str:
 
 def _plain(row: Mapping[str, Any]) -> dict[str, Any]:
     """Inputs as JSON has them: text for what is neither a finite number nor text."""
-    return {key: value if isinstance(value, (str, int)) or isinstance(value, float) and np.isfinite(value) else repr(value)
+    return {key: value if isinstance(value, (str, int)) or (isinstance(value, float) and np.isfinite(value)) else repr(value)
             for key, value in row.items()}
 
 

@@ -4,10 +4,11 @@ import csv
 import hashlib
 import json
 from array import array
+from collections.abc import Callable
 from functools import partial
 from itertools import chain, repeat
 from pathlib import Path
-from typing import Any, Callable
+from typing import Any
 
 import numpy as np
 

@@ -9,7 +9,7 @@ outside onto the limit, so that probability piles up there. Each value depends o
 works element by element, where NumPy's vector code may treat the end of an array in another way than its middle.
 """
 
-from typing import Annotated, Any, Literal, Union
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from pydantic import BeforeValidator, ValidationInfo, field_validator
@@ -125,6 +125,6 @@ def _between(a: float, b: float, u: np.ndarray) -> np.ndarray:
     return ndtri(below + u * (ndtr(b) - below))
 
 
-Distribution = Union[Fixed, Uniform, Normal, TruncatedNormal, Rayleigh]
+Distribution = Fixed | Uniform | Normal | TruncatedNormal | Rayleigh
 BY_NAME: dict[str, type[Distribution]] = {"fixed": Fixed, "uniform": Uniform, "normal": Normal,
                                           "truncated-normal": TruncatedNormal, "rayleigh": Rayleigh}

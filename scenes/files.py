@@ -15,9 +15,10 @@ import os
 import re
 import sys
 import tempfile
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, Iterator, Mapping
+from typing import Any
 
 KEY = "sha256"  # of the digest in a JSON object
 _MARK = b"# sha-256 "

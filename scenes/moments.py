@@ -8,8 +8,8 @@ Thrust along the unit vector f through the point r, from the mass centre, turns 
 with misalignment t at p, thrust eccentricity e at a and mass eccentricity m at b: the angles of ``scenes.effects``, here of arrays.
 """
 
+from collections.abc import Mapping
 from functools import reduce
-from typing import Mapping
 
 import numpy as np
 

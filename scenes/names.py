@@ -1,7 +1,8 @@
 """Names of scenes and conditions: results are filed under them, so they are names of files on every system."""
 
 import re
-from typing import Any, Iterable
+from collections.abc import Iterable
+from typing import Any
 
 EXPECTED = 'at most 64 letters a-z, A-Z, digits, "-", "_" and ".", the first a letter or digit'
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,63}")

@@ -1,7 +1,8 @@
 """Dotted keys such as ``thrust_offset.misalignment.axial`` or ``pads.0.relief``: set, dropped, and checked against the tables."""
 
+from collections.abc import Iterator, Mapping
 from types import UnionType
-from typing import Annotated, Any, Iterator, Mapping, Union, get_args, get_origin
+from typing import Annotated, Any, Union, get_args, get_origin
 
 from scenes.table import Table
 

@@ -9,7 +9,8 @@ the smallest one on which numbers of sixteen digits can tell whether the promise
 and a broken one look alike.
 """
 
-from typing import Mapping, NamedTuple
+from collections.abc import Mapping
+from typing import NamedTuple
 
 import numpy as np
 

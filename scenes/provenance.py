@@ -4,7 +4,8 @@ What is overridden is no longer what the text spoke of. The key is then the user
 around it passes its text on to what else it holds, and says itself that a part is the user's.
 """
 
-from typing import Any, Iterable, Mapping
+from collections.abc import Iterable, Mapping
+from typing import Any
 
 USER = "user"
 _PARTLY = ", in part user"

@@ -8,15 +8,33 @@ by modes of the rails (``scenes.effects.flexibility``).
 """
 
 import hashlib
+import itertools
 import math
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Literal, Union
+from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import AfterValidator, Discriminator, Field, PrivateAttr, Tag, ValidationInfo, field_validator, model_validator
+from pydantic import (
+    AfterValidator,
+    Discriminator,
+    Field,
+    PrivateAttr,
+    Tag,
+    ValidationInfo,
+    field_validator,
+    model_validator,
+)
 
 from scenes.effects.structural_damping import DampingTable
 from scenes.table import Table, at_least_one, is_absent
-from scenes.units import Density, Expansion, Length, NonNegativeLength, PositiveLength, Pressure, quantity
+from scenes.units import (
+    Density,
+    Expansion,
+    Length,
+    NonNegativeLength,
+    PositiveLength,
+    Pressure,
+    quantity,
+)
 
 FILES = ("mesh", "geometry")  # keys that give the rail as a file
 SOLIDS = (".step", ".stp", ".iges", ".igs", ".brep")
@@ -91,7 +109,7 @@ class SectionTable(_RailTable):
         if any(span.end > length + 1e-12 for span in mounts):
             raise ValueError(f"spans that lie on the rail, which is {length:g} m long")
         inward = sorted(mounts, key=lambda span: span.start)
-        if any(after.start < before.end for before, after in zip(inward, inward[1:])):
+        if any(after.start < before.end for before, after in itertools.pairwise(inward)):
             raise ValueError("spans that do not overlap")
         return mounts
 
@@ -201,5 +219,4 @@ def _given_by(rail: Any) -> str:
     return getattr(rail, "GIVEN_BY", "section")
 
 
-RailTable = Annotated[Union[Annotated[SectionTable, Tag("section")], Annotated[MeshTable, Tag("mesh")],
-                            Annotated[GeometryTable, Tag("geometry")]], Discriminator(_given_by)]
+RailTable = Annotated[Annotated[SectionTable, Tag("section")] | Annotated[MeshTable, Tag("mesh")] | Annotated[GeometryTable, Tag("geometry")], Discriminator(_given_by)]

@@ -6,8 +6,8 @@ the user's (``scenes.provenance``), unless it says otherwise in a ``[provenance]
 """
 
 import tomllib
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Iterator
 
 from scenes import overrides, provenance, rail
 from scenes.faults import Fault, SceneError

@@ -4,15 +4,23 @@
 >>> scene.replace({"thrust_offset.misalignment.axial": "0.3 deg"}).condition("phi35")
 """
 
+from collections.abc import Mapping
 from functools import cached_property
 from operator import attrgetter
 from pathlib import Path
-from typing import Annotated, Any, Mapping
+from typing import Annotated, Any
 
-from pydantic import AfterValidator, Field, PrivateAttr, ValidationError, ValidationInfo, field_validator
+from pydantic import (
+    AfterValidator,
+    Field,
+    PrivateAttr,
+    ValidationError,
+    ValidationInfo,
+    field_validator,
+)
 
-from scenes import overrides as keys
 from scenes import names, plausibility, provenance, reading, roles
+from scenes import overrides as keys
 from scenes.effects.contact import ContactTable
 from scenes.effects.flight import FlightTable
 from scenes.effects.friction import FrictionTable

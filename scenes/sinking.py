@@ -13,7 +13,8 @@ place, a strain beyond which any metal yields. The interface is a layer of asper
 of that.
 """
 
-from typing import Iterator, NamedTuple
+from collections.abc import Iterator
+from typing import NamedTuple
 
 import numpy as np
 

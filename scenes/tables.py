@@ -7,7 +7,15 @@ from pydantic import AfterValidator, field_validator
 
 from scenes.body import InertiaTensor
 from scenes.table import Table, at_least_one
-from scenes.units import Length, Mass, NonNegativeLength, PositiveLength, PositiveNumber, PositiveRate, PositiveTime
+from scenes.units import (
+    Length,
+    Mass,
+    NonNegativeLength,
+    PositiveLength,
+    PositiveNumber,
+    PositiveRate,
+    PositiveTime,
+)
 
 MOST_SAMPLES = 1_000_000  # after ignition: a gigabyte of curves
 _ROUNDING = 1e-12  # relative: a last sample at the end of the scene is one

@@ -14,8 +14,9 @@ A scene says what is nominal, this file what is not certain about it.
 Quantities carry the dimension the scene asks for under that key.
 """
 
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, Any, Literal, Mapping, NamedTuple
+from typing import Annotated, Any, Literal, NamedTuple
 
 import numpy as np
 from pydantic import AfterValidator, Field, ValidationError

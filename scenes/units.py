@@ -6,9 +6,10 @@ caller says so (overrides made by a program, resolved scenes read back).
 
 import math
 import re
+from collections.abc import Iterable
 from functools import lru_cache
 from numbers import Real
-from typing import Annotated, Any, Iterable
+from typing import Annotated, Any
 
 import pint
 from pydantic import BeforeValidator, Field, ValidationInfo

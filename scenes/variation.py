@@ -5,7 +5,8 @@ next rows with the same keys by single numbers, where no rule of a table ties on
 with goes through ``replace`` itself, so that the faults are the same too.
 """
 
-from typing import Annotated, Any, Mapping, NamedTuple
+from collections.abc import Mapping
+from typing import Annotated, Any, NamedTuple
 
 from pydantic import TypeAdapter, ValidationError
 

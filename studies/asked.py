@@ -3,9 +3,9 @@
 import json
 import os
 import sys
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from typing import Callable
 
 import typer
 
@@ -32,7 +32,7 @@ def study_of(scene: str, out: Path, overrides, conditions=None, element_size=Non
     if checkpoint_every is not None:
         settings = replace(settings, checkpoint_every=quantity("--checkpoint-every", checkpoint_every, "s"))
     study = Study(found, Path(out) / found.name, settings, tuple(conditions or ()))
-    study.conditions  # a bad override or an unknown condition is a fault of the input, found before anything runs
+    _ = study.conditions  # a bad override or an unknown condition is a fault of the input, found before anything runs
     for warning in plausibility.of_all_conditions(found):
         say(f"implausible: {warning}")
     return study

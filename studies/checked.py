@@ -1,6 +1,7 @@
 """Input from several places checked as one, so that a user who made two mistakes is told of both."""
 
-from typing import Any, Callable
+from collections.abc import Callable
+from typing import Any
 
 from scenes.faults import Fault, SceneError
 

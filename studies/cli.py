@@ -5,15 +5,30 @@ imported by the command that needs them, so that ``--help`` answers at once.
 """
 
 from pathlib import Path
-from typing import Annotated, Optional
+from typing import Annotated
 
 import typer
 
 from studies.asked import guarded, quantity, study_of
 from studies.commands import add_all
 from studies.helptext import flow
-from studies.options import (CalibrationFile, CheckpointEvery, Conditions, ElementSize, Json, Model, Modes, Out, Resume, Sampling,
-                             SceneName, Set, Surrogate, SurrogateName, Workers)
+from studies.options import (
+    CalibrationFile,
+    CheckpointEvery,
+    Conditions,
+    ElementSize,
+    Json,
+    Model,
+    Modes,
+    Out,
+    Resume,
+    Sampling,
+    SceneName,
+    Set,
+    Surrogate,
+    SurrogateName,
+    Workers,
+)
 
 EXAMPLES = """Examples:
 
@@ -85,14 +100,14 @@ def _stage(name: str, summary: str) -> None:
 
 @app.command()
 def calibrate(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = None,
-              reference: Annotated[Optional[list[str]], typer.Option("--reference", metavar="[NAME=]FILE",
+              reference: Annotated[list[str] | None, typer.Option("--reference", metavar="[NAME=]FILE",
                                    help="Curves of condition NAME in a CSV file, in place of finite elements; repeatable.")] = None,
-              condition: Annotated[Optional[str], typer.Option("--condition", metavar="NAME",
+              condition: Annotated[str | None, typer.Option("--condition", metavar="NAME",
                                    help="Condition of a file without NAME; default: the scene itself.")] = None,
-              settled_from: Annotated[Optional[str], typer.Option("--settled-from", metavar="TIME",
+              settled_from: Annotated[str | None, typer.Option("--settled-from", metavar="TIME",
                                       help="Start of the 2 ms whose means are the settled values; default: the last 2 ms of "
                                            "a file.")] = None,
-              model: Annotated[Optional[SurrogateName], typer.Option("--model",
+              model: Annotated[SurrogateName | None, typer.Option("--model",
                                help="Calibrate this model alone; default: both.")] = None,
               element_size: ElementSize = None, workers: Workers = None, json_: Json = False) -> None:
     """Take the surrogate's contact from the finite elements; writes compliance.json, calibration.json and calibration.toml.
@@ -134,7 +149,7 @@ _stage("ablation", "Every effect off, one at a time: time, rates, what is compil
 
 @app.command()
 def convergence(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = None,
-                condition: Annotated[Optional[str], typer.Option("--condition", metavar="NAME",
+                condition: Annotated[str | None, typer.Option("--condition", metavar="NAME",
                                      help="Named condition; default: the first refined one.")] = None,
                 element_size: ElementSize = None, workers: Workers = None, json_: Json = False) -> None:
     """Error of the reference itself: meshes, steps, penalty, quadrature; takes minutes; writes convergence.json."""
@@ -151,10 +166,10 @@ def convergence(scene: SceneName = "reference", out: Out = Path("out"), set_: Se
 
 @app.command()
 def view(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = None,
-         condition: Annotated[Optional[str], typer.Option("--condition", metavar="NAME",
+         condition: Annotated[str | None, typer.Option("--condition", metavar="NAME",
                               help="Named condition; default: the first refined one.")] = None,
          frames: Annotated[int, typer.Option("--frames", metavar="N", min=2, help="Instants to write, evenly over the run.")] = 60,
-         exaggeration: Annotated[Optional[float], typer.Option("--exaggeration", metavar="X", min=1e-6,
+         exaggeration: Annotated[float | None, typer.Option("--exaggeration", metavar="X", min=1e-6,
                                  help="Factor of the rail's deformation in pictures; default: one that shows it.")] = None,
          element_size: ElementSize = None, json_: Json = False) -> None:
     """Stress and motion of one condition to look at; writes view/CONDITION/ with run.pvd, and pictures where pyvista is installed.
@@ -203,9 +218,9 @@ def report(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = N
 def run(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = None,
         condition: Annotated[str, typer.Option("--condition", metavar="NAME", help="Named condition.")] = "nominal",
         model: Model = None, modes: Modes = None, calibration: CalibrationFile = None,
-        accuracy: Annotated[Optional[str], typer.Option("--accuracy", metavar="RATE", help='Error of the settled rates to be kept, '
+        accuracy: Annotated[str | None, typer.Option("--accuracy", metavar="RATE", help='Error of the settled rates to be kept, '
                                            '"0.1 deg/s": takes the cheapest model that make cost found so exact.')] = None,
-        budget: Annotated[Optional[str], typer.Option("--budget", metavar="TIME", help='Wall time to be kept, "2 s": takes the '
+        budget: Annotated[str | None, typer.Option("--budget", metavar="TIME", help='Wall time to be kept, "2 s": takes the '
                                          "most exact model that make cost found so fast.")] = None,
         element_size: ElementSize = None, checkpoint_every: CheckpointEvery = None, resume: Resume = True,
         json_: Json = False) -> None:
@@ -241,22 +256,22 @@ def run(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = None
 def ensemble(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = None,
              vary: Annotated[str, typer.Option("--vary", metavar="NAME_OR_FILE",
                              help="Distributions: a .toml file, or from the catalogue.")] = "paper",
-             table: Annotated[Optional[Path], typer.Option("--table", metavar="FILE",
+             table: Annotated[Path | None, typer.Option("--table", metavar="FILE",
                               help="CSV table of cases, in place of distributions.")] = None,
-             cases: Annotated[Optional[int], typer.Option("--cases", metavar="N", min=1,
+             cases: Annotated[int | None, typer.Option("--cases", metavar="N", min=1,
                               help="Number of cases; default: as the file says.")] = None,
-             seed: Annotated[Optional[int], typer.Option("--seed", metavar="N", min=0,
+             seed: Annotated[int | None, typer.Option("--seed", metavar="N", min=0,
                              help="Seed of all draws; default: as the file says.")] = None,
-             sampling: Annotated[Optional[Sampling], typer.Option("--sampling",
+             sampling: Annotated[Sampling | None, typer.Option("--sampling",
                                  help="How points are drawn; default: as the file says.")] = None,
-             store: Annotated[Optional[Path], typer.Option("--store", metavar="DIR",
+             store: Annotated[Path | None, typer.Option("--store", metavar="DIR",
                               help="Folder of the results; default: one of its own for every ensemble.")] = None,
-             case: Annotated[Optional[int], typer.Option("--case", metavar="N", min=0,
+             case: Annotated[int | None, typer.Option("--case", metavar="N", min=0,
                              help="Run case N alone and print it.")] = None,
              tolerance: Annotated[float, typer.Option("--tolerance", metavar="X", help="Relative error of a step; 1e-2 keeps "
                                   "95 % of 20 reference cases to 0.2 % of their rate, 1e-4 to 0.1 %.")] = 1e-2,
              model: Surrogate = None, modes: Modes = None, calibration: CalibrationFile = None,
-             scheduler: Annotated[Optional[str], typer.Option("--scheduler", metavar="ADDRESS",
+             scheduler: Annotated[str | None, typer.Option("--scheduler", metavar="ADDRESS",
                                   help="Dask scheduler whose workers run the cases, such as tcp://node1:8786.")] = None,
              workers: Workers = None, json_: Json = False) -> None:
     """Run the surrogate on thousands to millions of varied cases; writes ensemble.json and a store in zarr.
@@ -303,10 +318,10 @@ add_all(app)
 
 @app.command()
 def bench(out: Out = Path("out"),
-          element_size: Annotated[Optional[list[float]], typer.Option("--element-size", metavar="MM", min=0.05,
+          element_size: Annotated[list[float] | None, typer.Option("--element-size", metavar="MM", min=0.05,
                                   help="Element size in mm, repeatable; default: 2, 1 and 0.5.")] = None,
           repeats: Annotated[int, typer.Option(metavar="N", min=1, help="Timed repeats; the median counts.")] = 5,
-          steps: Annotated[Optional[int], typer.Option(metavar="N", min=1,
+          steps: Annotated[int | None, typer.Option(metavar="N", min=1,
                            help="Steps of a timed piece; default: by size.")] = None,
           cases: Annotated[int, typer.Option(metavar="N", min=1, help="Cases of the surrogate's ensemble.")] = 2000,
           json_: Json = False) -> None:
@@ -323,7 +338,7 @@ def bench(out: Out = Path("out"),
 
 
 @app.command("scenes")
-def list_scenes(show: Annotated[Optional[str], typer.Option("--show", metavar="NAME",
+def list_scenes(show: Annotated[str | None, typer.Option("--show", metavar="NAME",
                                 help="Print the file of this one, to begin one's own with.")] = None,
                 json_: Json = False) -> None:
     """List the catalogue: name, conditions, description.

@@ -11,10 +11,11 @@ been called before.
 """
 
 import functools
+from collections.abc import Callable, Sequence
 from concurrent.futures import as_completed
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any, Callable, Sequence
+from typing import Any
 
 from scenes.calibration import Calibration
 from scenes.fidelity import FINITE_ELEMENTS

@@ -6,10 +6,11 @@ that it carries itself. Whatever a stage reads is verified by the reader, so not
 """
 
 import hashlib
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any, Callable, Iterable
+from typing import Any
 
 from scenes.calibration import Calibration
 from scenes.faults import Fault, SceneError

@@ -1,7 +1,6 @@
 """A launcher that turns while it ejects, and the same one looked at in inertial axes turned anyhow."""
 
 import numpy as np
-
 from scipy.integrate import cumulative_trapezoid
 
 from scenes import outcome, rotation
@@ -12,7 +11,7 @@ TURN = rotation.exponential((0.7, -1.1, 0.4))  # of the other inertial axes, abo
 def carried(rate, arm, along: float) -> dict:
     """``[initial]`` of a payload that turns with a platform at ``rate`` (3,) rad/s, ``arm`` (3,) m from its mass centre, and
     slides along the rail at ``along`` (m/s)."""
-    velocity, turning = np.cross(rate, arm) + [along, 0.0, 0.0], dict(zip("xyz", rate))
+    velocity, turning = [*np.cross(rate, arm), along, 0.0, 0.0], dict(zip("xyz", rate))
     return {"velocity": dict(zip("xyz", velocity.tolist())), "rate": turning, "platform_rate": turning}
 
 

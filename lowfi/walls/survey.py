@@ -6,8 +6,8 @@ from lowfi import state as slot
 from lowfi.edges import ALONG, CLOSING, DEPTH, FORWARD, MODE, SIDE, SIDEWAYS
 from lowfi.system import LAST_STRIP, NORMAL_Y, NORMAL_Z, SIDE_MIDDLE
 from lowfi.touch import across, approach, relative_motion, relative_pose, sideways
-from lowfi.walls.cells import deepest, take_lever
 from lowfi.walls import warm
+from lowfi.walls.cells import deepest, take_lever
 from lowfi.walls.loads import energy as energy_of_rail
 from lowfi.walls.modes import speed_at
 from lowfi.walls.record import ASIDE, DRIFT, MIDDLE, SHIFT

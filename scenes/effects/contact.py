@@ -10,14 +10,22 @@ The finite-element reference uses the penalty k_p (N/m3): pressure k_p p on the 
 Stored energy is k p^(e+1) / (e+1) in each law.
 """
 
-from typing import Annotated, Any, Literal, NamedTuple, Union
+from typing import Annotated, Any, Literal, NamedTuple
 
 import numpy as np
 from pydantic import Field, ValidationInfo, field_validator
 
 from scenes.jit import njit
 from scenes.table import Table
-from scenes.units import ContactDamping, NonNegativeLength, PenaltyStiffness, PositiveLength, PositiveNumber, parse, quantity
+from scenes.units import (
+    ContactDamping,
+    NonNegativeLength,
+    PenaltyStiffness,
+    PositiveLength,
+    PositiveNumber,
+    parse,
+    quantity,
+)
 
 
 class _ContactTable(Table):
@@ -73,7 +81,7 @@ class LinearTable(_ContactTable):
         return Linear(self.stiffness, self.damping)
 
 
-ContactTable = Annotated[Union[ImpactTable, HuntCrossleyTable, LinearTable], Field(discriminator="law")]
+ContactTable = Annotated[ImpactTable | HuntCrossleyTable | LinearTable, Field(discriminator="law")]
 
 
 class Impact(NamedTuple):

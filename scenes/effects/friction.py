@@ -10,7 +10,7 @@ The first branch is the cubic step from -mu_s at -v_s to mu_s at v_s. The force 
 stands ``law = "sticking"`` (``scenes.effects.sticking``), under which nothing creeps.
 """
 
-from typing import Annotated, Any, Literal, NamedTuple, Union
+from typing import Annotated, Any, Literal, NamedTuple
 
 from pydantic import BeforeValidator, Field, ValidationInfo, field_validator
 
@@ -53,7 +53,7 @@ def _with_law(raw: Any) -> Any:
     return {"law": "two-step"} | raw if isinstance(raw, dict) else raw
 
 
-FrictionTable = Annotated[Union[TwoStepTable, StickingTable], Field(discriminator="law"), BeforeValidator(_with_law)]
+FrictionTable = Annotated[TwoStepTable | StickingTable, Field(discriminator="law"), BeforeValidator(_with_law)]
 
 
 class Friction(NamedTuple):

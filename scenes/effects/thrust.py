@@ -8,16 +8,44 @@ The law itself is in ``thrust_law``, whose names are also found here.
 """
 
 import math
-from typing import Annotated, Literal, Union
+from typing import Annotated, Literal
 
 import numpy as np
-from pydantic import AfterValidator, Field, PrivateAttr, ValidationInfo, field_validator, model_validator
+from pydantic import (
+    AfterValidator,
+    Field,
+    PrivateAttr,
+    ValidationInfo,
+    field_validator,
+    model_validator,
+)
 
 from scenes.effects.measured import GaussianFit, MeasuredCurve, fit_gaussian, read_curve
-from scenes.effects.thrust_law import (ROOT_TWO_PI, Curve, Pulses, Thrust, burnout, burnouts, corners, impulse, kept, magnitude,
-                                       peak, sample, shortest_feature)
+from scenes.effects.thrust_law import (
+    ROOT_TWO_PI,
+    Curve,
+    Pulses,
+    Thrust,
+    burnout,
+    burnouts,
+    corners,
+    impulse,
+    kept,
+    magnitude,
+    peak,
+    sample,
+    shortest_feature,
+)
 from scenes.table import Table, at_least_one
-from scenes.units import Force, Impulse, NonNegativeTime, PositiveLength, PositiveNumber, PositiveTime, Time
+from scenes.units import (
+    Force,
+    Impulse,
+    NonNegativeTime,
+    PositiveLength,
+    PositiveNumber,
+    PositiveTime,
+    Time,
+)
 
 __all__ = ["Curve", "Pulse", "Pulses", "Thrust", "ThrustTable", "burnout", "burnouts", "corners", "impulse", "magnitude", "peak",
            "sample", "shortest_feature"]
@@ -216,4 +244,4 @@ class MeasuredTable(_ThrustTable):
                        "curve_impulse_Ns": fit.curve_impulse}
 
 
-ThrustTable = Annotated[Union[GaussianTable, GaussiansTable, ConstantTable, MeasuredTable], Field(discriminator="kind")]
+ThrustTable = Annotated[GaussianTable | GaussiansTable | ConstantTable | MeasuredTable, Field(discriminator="kind")]

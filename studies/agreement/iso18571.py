@@ -56,7 +56,7 @@ def rate(reference: np.ndarray, curve: np.ndarray) -> Rating:
 
 def best_shift(reference: np.ndarray, curve: np.ndarray) -> int:
     """Samples by which ``curve`` lags the reference (positive: late) where the normalised cross-correlation is largest."""
-    limit = int(math.floor(_LARGEST_SHIFT * reference.size))
+    limit = math.floor(_LARGEST_SHIFT * reference.size)
     shifts = sorted(range(-limit, limit + 1), key=abs)  # of equal correlations the smallest shift wins
     return max(shifts, key=lambda shift: _correlation(*_overlap(reference, curve, shift)))
 

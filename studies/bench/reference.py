@@ -7,8 +7,8 @@ eight pad faces meet, and ends before it has bounced off. Compilation and set-up
 import resource
 import statistics
 import time
+from collections.abc import Callable
 from pathlib import Path
-from typing import Callable
 
 import numpy as np
 

@@ -1,7 +1,7 @@
 """``tipoff blind``."""
 
 from pathlib import Path
-from typing import Annotated, Optional
+from typing import Annotated
 
 import typer
 
@@ -19,7 +19,7 @@ def blind(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = No
                                              help="Conditions to draw; each is two runs of the reference.")] = 8,
           vary: Annotated[str, typer.Option("--vary", metavar="NAME_OR_FILE",
                           help="Distributions: a .toml file, or from the catalogue.")] = "paper",
-          seed: Annotated[Optional[int], typer.Option("--seed", metavar="N", min=0,
+          seed: Annotated[int | None, typer.Option("--seed", metavar="N", min=0,
                           help="Seed of the draws; default: from the sources and the scene, so that nobody chooses it.")] = None,
           element_size: ElementSize = None, workers: Workers = None, json_: Json = False) -> None:
     """Agreement of the surrogates on conditions drawn now, which nobody can have looked at before; writes blind.json."""

@@ -1,7 +1,7 @@
 """``tipoff droptest``: what logs of drop tests say, and where they sit among simulated cases."""
 
 from pathlib import Path
-from typing import Annotated, Optional
+from typing import Annotated
 
 import typer
 
@@ -14,14 +14,14 @@ def add(app: typer.Typer) -> None:
     app.command("droptest")(droptest)
 
 
-def droptest(logs: Annotated[Optional[list[Path]], typer.Argument(metavar="[LOG.toml]...",
+def droptest(logs: Annotated[list[Path] | None, typer.Argument(metavar="[LOG.toml]...",
                              help="Sheets of logs; default: the three simulated ones that come with the package.")] = None,
              scene: SceneName = "reference", out: Out = Path("out"), set_: Set = None,
-             condition: Annotated[Optional[str], typer.Option("--condition", metavar="NAME",
+             condition: Annotated[str | None, typer.Option("--condition", metavar="NAME",
                                   help="Named condition that was dropped; default: the scene.")] = None,
              vary: Annotated[str, typer.Option("--vary", metavar="NAME_OR_FILE", help="Distributions of the cases.")] = "paper",
              cases: Annotated[int, typer.Option("--cases", metavar="N", min=50, help="Simulated cases to compare with.")] = 1000,
-             seed: Annotated[Optional[int], typer.Option("--seed", metavar="N", min=0,
+             seed: Annotated[int | None, typer.Option("--seed", metavar="N", min=0,
                                                          help="Seed of all draws; default: as the file says.")] = None,
              model: Surrogate = None, workers: Workers = None, json_: Json = False) -> None:
     """From logs of drop tests to rates with their uncertainty, and their place in the simulated distribution.

@@ -1,7 +1,7 @@
 """``tipoff flight``: the payload after its exit."""
 
 from pathlib import Path
-from typing import Annotated, Optional
+from typing import Annotated
 
 import typer
 
@@ -15,15 +15,15 @@ def add(app: typer.Typer) -> None:
 
 
 def flight(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = None, condition: Conditions = None,
-           range_: Annotated[Optional[str], typer.Option("--range", metavar="LENGTH", help='How far the target lies along the '
+           range_: Annotated[str | None, typer.Option("--range", metavar="LENGTH", help='How far the target lies along the '
                                                          'launch axis, "500 m"; default: as the scene says.')] = None,
-           altitude: Annotated[Optional[str], typer.Option(metavar="LENGTH", help='Altitude of the orbit, "500 km".')] = None,
-           duration: Annotated[Optional[str], typer.Option(metavar="TIME",
+           altitude: Annotated[str | None, typer.Option(metavar="LENGTH", help='Altitude of the orbit, "500 km".')] = None,
+           duration: Annotated[str | None, typer.Option(metavar="TIME",
                                                            help='How long the flight is followed, "2 hour".')] = None,
            vary: Annotated[str, typer.Option("--vary", metavar="NAME_OR_FILE", help="Distributions of the cases.")] = "paper",
-           cases: Annotated[Optional[int], typer.Option(metavar="N", min=1,
+           cases: Annotated[int | None, typer.Option(metavar="N", min=1,
                                                         help="Number of cases; default: as the file says.")] = None,
-           seed: Annotated[Optional[int], typer.Option(metavar="N", min=0,
+           seed: Annotated[int | None, typer.Option(metavar="N", min=0,
                                                        help="Seed of all draws; default: as the file says.")] = None,
            model: Surrogate = None, element_size: ElementSize = None, workers: Workers = None, json_: Json = False) -> None:
     """What becomes of the payload in orbit: miss of a target, pointing, coning, and whether it touches the platform again.

@@ -2,7 +2,7 @@
 
 from enum import Enum
 from pathlib import Path
-from typing import Annotated, Optional
+from typing import Annotated
 
 import typer
 
@@ -12,20 +12,20 @@ from studies.options import Json, Out, SceneName, Set, Surrogate, Workers
 Tolerances = Enum("Tolerances", {name: name for name in ("advised", "table3")}, type=str)
 Others = Enum("Others", {name: name for name in ("scene", "zero")}, type=str)
 
-Limit = Annotated[Optional[list[str]], typer.Option("--limit", metavar="[AXIS=]RATE", help='Limit of a rate, "x=2 deg/s", or of '
+Limit = Annotated[list[str] | None, typer.Option("--limit", metavar="[AXIS=]RATE", help='Limit of a rate, "x=2 deg/s", or of '
                                                                                            'the total, "5 deg/s"; repeatable, and '
                                                                                            'all are to be kept. Default: 5 deg/s '
                                                                                            'for the total.')]
 Probability = Annotated[float, typer.Option("--probability", metavar="P", help="Share of launches that keep them.")]
 Confidence = Annotated[float, typer.Option("--confidence", metavar="C", help="Confidence with which that is shown.")]
-Cases = Annotated[Optional[int], typer.Option("--cases", metavar="N", min=1, help="Cases of each set of tolerances; default: ten "
+Cases = Annotated[int | None, typer.Option("--cases", metavar="N", min=1, help="Cases of each set of tolerances; default: ten "
                                                                                   "times the fewest that can show it.")]
 Scaled = Annotated[Tolerances, typer.Option("--tolerances", help="What is scaled together: what the paper advises, or the ranges "
                                                                  "of its Table 3.")]
 Fixed = Annotated[Others, typer.Option("--others", help="Errors that do not vary: as the scene has them, or zero.")]
-Draws = Annotated[Optional[int], typer.Option("--draws", metavar="N", help="Draws of the calibrated constants from their "
+Draws = Annotated[int | None, typer.Option("--draws", metavar="N", help="Draws of the calibrated constants from their "
                                               "intervals, with --model springs; default: 8.")]
-Condition = Annotated[Optional[str], typer.Option("--condition", metavar="NAME", help="Named condition; default: the scene.")]
+Condition = Annotated[str | None, typer.Option("--condition", metavar="NAME", help="Named condition; default: the scene.")]
 Seed = Annotated[int, typer.Option("--seed", metavar="N", min=0, help="Seed of all draws.")]
 
 

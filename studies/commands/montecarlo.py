@@ -2,7 +2,7 @@
 
 from enum import Enum
 from pathlib import Path
-from typing import Annotated, Optional
+from typing import Annotated
 
 import typer
 
@@ -19,7 +19,7 @@ Meaning = Annotated[Values, typer.Option("--reading", help="What a normal axial 
 Direction = Annotated[Angles, typer.Option("--angles", help="A radial angle for each error, or one that all share.")]
 Rule = Annotated[Rules, typer.Option("--rule", help="What becomes of a draw beyond three sigma.")]
 Initial = Annotated[bool, typer.Option("--initial", help="Draw the place inside the clearance at ignition too.")]
-Limit = Annotated[Optional[list[str]], typer.Option("--limit", metavar="[AXIS=]RATE", help='How often is a rate above it? "x=2 '
+Limit = Annotated[list[str] | None, typer.Option("--limit", metavar="[AXIS=]RATE", help='How often is a rate above it? "x=2 '
                                                                                            'deg/s", or "5 deg/s" for the total; '
                                                                                            'repeatable. Default: 5 deg/s for each '
                                                                                            'and the total.')]

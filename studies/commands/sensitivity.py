@@ -1,7 +1,7 @@
 """``tipoff sensitivity``."""
 
 from pathlib import Path
-from typing import Annotated, Optional
+from typing import Annotated
 
 import typer
 
@@ -15,7 +15,7 @@ def add(app: typer.Typer) -> None:
 
 
 def sensitivity(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = None,
-                vary: Annotated[Optional[Path], typer.Option("--vary", metavar="FILE",
+                vary: Annotated[Path | None, typer.Option("--vary", metavar="FILE",
                                 help="What is not certain, as a .toml file; default: studies/sensitivity/tolerances.toml.")] = None,
                 points: Annotated[int, typer.Option("--points", metavar="N", help="Base points of the Sobol' indices, a power "
                                   "of two; each takes one case an input, and two.")] = 1024,

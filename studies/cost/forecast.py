@@ -8,13 +8,15 @@ and the line says so. It may be wrong by what other programs take, and by the ti
 cost what it tells: after a second it is given up.
 """
 
+import contextlib
 import importlib
 import json
 import math
 import threading
 from collections import Counter
+from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Callable, NamedTuple, Sequence
+from typing import NamedTuple
 
 import numba
 
@@ -111,10 +113,8 @@ def in_time(work: Callable):
     found = []
 
     def attempt() -> None:
-        try:
+        with contextlib.suppress(Exception):  # whatever it is, the runs themselves will meet it and say it better
             found.append(work())
-        except Exception:  # whatever it is, the runs themselves will meet it and say it better
-            pass
 
     thread = threading.Thread(target=attempt, daemon=True)
     thread.start()

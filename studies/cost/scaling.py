@@ -16,7 +16,7 @@ the surrogate.
 """
 
 import statistics
-from typing import Sequence
+from collections.abc import Sequence
 
 import numpy as np
 from scipy.stats import linregress

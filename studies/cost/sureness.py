@@ -9,7 +9,8 @@ A finer mesh than that would make the reference slow for digits that nobody comp
 surrogate is. Where even the finest is not surer, a mesh that is takes longer still.
 """
 
-from typing import NamedTuple, Sequence
+from collections.abc import Sequence
+from typing import NamedTuple
 
 
 class Mesh(NamedTuple):

@@ -7,8 +7,8 @@
 
 import statistics
 import time
+from collections.abc import Callable
 from dataclasses import replace
-from typing import Callable
 
 import numpy as np
 
@@ -40,7 +40,7 @@ def speedups(highfi: Run, surrogates: dict[str, Run], highfi_repeats: int, lowfi
     slow: list = []
     fast: dict[str, list] = {name: [] for name in surrogates}
     for repeat in range(highfi_repeats):
-        slow.append(timed(highfi, lambda fraction: progress((repeat + fraction) / highfi_repeats)))
+        slow.append(timed(highfi, lambda fraction, repeat=repeat: progress((repeat + fraction) / highfi_repeats)))
         for name, run in surrogates.items():
             fast[name] += [timed(run) for _ in range(lowfi_repeats)]
     return {name: _speedup(highfi.label, slow, found) for name, found in fast.items()}

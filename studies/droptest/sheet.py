@@ -16,13 +16,29 @@ from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import AfterValidator, BeforeValidator, ValidationError, ValidationInfo, model_validator
+from pydantic import (
+    AfterValidator,
+    BeforeValidator,
+    ValidationError,
+    ValidationInfo,
+    model_validator,
+)
 
 from scenes import reading
 from scenes.faults import SceneError, faults_of
 from scenes.table import Table
-from scenes.units import (Acceleration, Angle, NonNegativeNumber, NonNegativeTime, Number, PositiveTime, Rate, parse,
-                          quantity, to_si)
+from scenes.units import (
+    Acceleration,
+    Angle,
+    NonNegativeNumber,
+    NonNegativeTime,
+    Number,
+    PositiveTime,
+    Rate,
+    parse,
+    quantity,
+    to_si,
+)
 
 NonNegativeRate, PositiveRate = quantity("rad/s", ge=0.0), quantity("rad/s", gt=0.0)
 PositiveAcceleration = quantity("m/s**2", gt=0.0)

@@ -5,7 +5,8 @@ The payload is a box of ``flight.body``, or else ``payload.size``, about its nom
 where they lie.
 """
 
-from typing import Iterable, NamedTuple, Sequence
+from collections.abc import Iterable, Sequence
+from typing import NamedTuple
 
 import numpy as np
 from scipy.spatial.transform import Rotation

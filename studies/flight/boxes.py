@@ -5,7 +5,7 @@ Below zero it is the depth of overlap, exactly. Above zero it is exact where a c
 for boxes that are parallel, and else less than the distance: a box that is called clear is clear.
 """
 
-from typing import Callable
+from collections.abc import Callable
 
 import numpy as np
 

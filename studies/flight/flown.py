@@ -5,7 +5,8 @@ the exit counts as delivered; moments by gravity, drag and light are left out. T
 it, and the miss is measured when the payload passes the plane through it across the launch axis, in orbit axes.
 """
 
-from typing import Callable, NamedTuple, Sequence
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
 
 import numpy as np
 

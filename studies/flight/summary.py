@@ -3,7 +3,8 @@
 Beside each stands what the payload left its rail with, under the names that every study of tolerances has for it.
 """
 
-from typing import TYPE_CHECKING, Callable, NamedTuple
+from collections.abc import Callable
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from scipy.stats import binomtest

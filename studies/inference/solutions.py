@@ -17,7 +17,8 @@ Nine rates and fifty-four small deviations cannot tell twenty inputs. What is ke
 rate and no deviation is missed by more than ``ADMISSIBLE``; an input is told as far as the set is narrower than its bounds.
 """
 
-from typing import Callable, NamedTuple
+from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 from scipy.optimize import least_squares

@@ -1,8 +1,8 @@
 """The quantities of all cases within one set of tolerances, as a netCDF file that explains itself."""
 
 import json
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Mapping
 
 import numpy as np
 

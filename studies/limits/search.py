@@ -6,7 +6,8 @@ smallest scale that fails and the one tried before it is bisected. What passes a
 """
 
 import math
-from typing import Callable, NamedTuple
+from collections.abc import Callable
+from typing import NamedTuple
 
 FOUND, ALL, SMALL, NONE, LOST = "found", "all", "small", "none", "lost"
 _HALVINGS, _REFINEMENTS = 7, 6  # down to 1/128, and to 1.1 %

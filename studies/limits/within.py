@@ -60,7 +60,7 @@ def without_errors(model: Surrogate, but=()) -> Surrogate:
 def source(scene: Scene, tolerances: dict[str, float], cases: int, seed: int) -> Derived:
     """Cases of ``scene`` within ``tolerances`` (SI) by name of a factor."""
     turn, unit = law("uniform", low=0.0, high=2.0 * math.pi), around_zero(1.0, "redraw")
-    drawn = {name: unit for name in (*ERRORS, CLEARANCE, FRICTION)} | {f"{name} angle": turn for name in ERRORS}
+    drawn = dict.fromkeys((*ERRORS, CLEARANCE, FRICTION), unit) | {f"{name} angle": turn for name in ERRORS}
     return Derived(Uncertainty(cases, seed, "random", drawn), lambda columns_: _overrides(scene, tolerances, columns_))
 
 

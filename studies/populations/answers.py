@@ -6,7 +6,8 @@
     attitude at exit  rotation vector        deg, about x, y and z
 """
 
-from typing import Callable, NamedTuple
+from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 

@@ -1,7 +1,7 @@
 """Cases of an ensemble whose overrides follow from draws, where one number drawn decides several inputs: a ``lowfi.rows`` of
 studies."""
 
-from typing import Callable
+from collections.abc import Callable
 
 import numpy as np
 

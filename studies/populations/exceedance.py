@@ -5,7 +5,8 @@ Of n independent cases, k above a limit leave for the probability of being above
 case that did not settle counts as above every limit.
 """
 
-from typing import NamedTuple, Sequence
+from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 from scipy.stats import binomtest

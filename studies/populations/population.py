@@ -24,8 +24,7 @@ from studies import words
 from studies.agreement import kept
 from studies.models import require_accepted
 from studies.progress import Board
-from studies.stages import calibrate
-from studies.stages import compliance
+from studies.stages import calibrate, compliance
 from studies.study import Study, StudyError
 
 TOLERANCE = 1e-2  # relative error of a step: 95 % of reference cases within 0.2 % of their rate

@@ -2,7 +2,7 @@
 number."""
 
 import math
-from typing import Sequence
+from collections.abc import Sequence
 
 import numpy as np
 from scipy.stats import ks_2samp

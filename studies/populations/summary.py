@@ -1,6 +1,6 @@
 """What an ensemble says of the state a payload leaves with: counts, quantiles with their bounds, and how it was drawn, in words."""
 
-from typing import Callable
+from collections.abc import Callable
 
 import numpy as np
 

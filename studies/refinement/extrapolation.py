@@ -10,8 +10,8 @@ is three times half their range, and an order above that of the method is not be
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Sequence
 
 from scipy.optimize import brentq
 

@@ -2,7 +2,7 @@
 stress."""
 
 import math
-from typing import Iterator, Sequence
+from collections.abc import Iterator, Sequence
 
 from scenes.scene import Scene
 from scenes.trajectory import Trajectory

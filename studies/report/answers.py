@@ -1,7 +1,8 @@
 """The engineer's answers on the page: a section for each study, from its own result, or the target that makes it."""
 
+from collections.abc import Callable
 from importlib import import_module
-from typing import Callable, NamedTuple
+from typing import NamedTuple
 
 from studies.report.chart import Chart
 from studies.report.markup import Html

@@ -1,7 +1,7 @@
 """Agreement on conditions drawn by a seed that nobody chose, on the page."""
 
 import math
-from typing import Callable
+from collections.abc import Callable
 
 from studies.report import tables
 from studies.report.chart import Chart

@@ -6,9 +6,10 @@ Colours differ in lightness, and models differ in width and dash, so that figure
 import base64
 import io
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Sequence
+from typing import Any
 
 import numpy as np
 

@@ -3,7 +3,8 @@
 import numpy as np
 
 from studies.report.chart import AMBER, GREY, NAVY, TEAL, VERMILION, Chart, Line, Panel
-from studies.report.markup import Html, number, table as markup_table
+from studies.report.markup import Html, number
+from studies.report.markup import table as markup_table
 
 WORDS = ("Static displacement of a wall of the rail, averaged over the face of a rear pad, per force spread evenly over a face, "
          "from the matrices of the reference at {size:g} mm. Grey: mounts. Dashed: one wall under a force on the other; below zero "

@@ -1,13 +1,23 @@
 """Drop tests on the page: filtered rates with what was found in them, the budget, and the tests in the simulated cloud."""
 
-from typing import Callable
+from collections.abc import Callable
 
 import numpy as np
 
 from studies.droptest import judgement
 from studies.droptest.results import MAGNITUDES, PAIRS
 from studies.populations import answers, spread
-from studies.report.chart import AMBER, AXIS_COLOURS, GREY, NAVY, TEAL, VERMILION, Chart, Line, Panel
+from studies.report.chart import (
+    AMBER,
+    AXIS_COLOURS,
+    GREY,
+    NAVY,
+    TEAL,
+    VERMILION,
+    Chart,
+    Line,
+    Panel,
+)
 from studies.report.markup import Html, caption, fold, number, paragraph, table
 
 _DASHES = {"x": "-", "y": "--", "z": "-."}
@@ -70,7 +80,7 @@ def _clouds(found: dict) -> list[Panel]:
         if region["squared_radius"] is not None:
             edge = judgement.outline(np.array(region["centre_deg_s"]), np.array(region["covariance"]), region["squared_radius"])
             lines.append(Line(*edge.T, f"{100.0 * region['share']:g} % prediction region", NAVY, 1.8))
-        panels.append(Panel("", first, second, lines + _tests(found, lambda row: (
+        panels.append(Panel("", first, second, lines + _tests(found, lambda row, pair=pair: (
             np.array(row["change_deg_s"])[list(pair)], np.array(row["expanded_uncertainty_deg_s"])[list(pair)]))))
     sizes = judgement.magnitudes(cases)[:, :2]
     marks = _tests(found, lambda row: (np.array([row["magnitudes"][name]["value_deg_s"] for name in MAGNITUDES[:2]]), np.zeros(2)))

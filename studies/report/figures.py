@@ -1,5 +1,7 @@
 """The figures of the report, from trajectories and result files."""
 
+from collections.abc import Mapping
+from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
@@ -11,7 +13,17 @@ from scenes.scene import Scene
 from scenes.trajectory import Trajectory
 from studies.cost import choice
 from studies.refinement.contact_loads import by_pad
-from studies.report.chart import AMBER, AXIS_COLOURS, GREY, NAVY, TEAL, VERMILION, Chart, Line, Panel
+from studies.report.chart import (
+    AMBER,
+    AXIS_COLOURS,
+    GREY,
+    NAVY,
+    TEAL,
+    VERMILION,
+    Chart,
+    Line,
+    Panel,
+)
 
 _MILLISECONDS = "time after ignition (ms)"
 
@@ -22,8 +34,8 @@ class Runs(NamedTuple):
 
     highfi: dict[str, Trajectory]
     compliant: dict[str, Trajectory]
-    calibrated: dict[str, Trajectory] = {}
-    uncalibrated: dict[str, Trajectory] = {}
+    calibrated: Mapping[str, Trajectory] = MappingProxyType({})
+    uncalibrated: Mapping[str, Trajectory] = MappingProxyType({})
 
 
 # In the order of the legend. Width, dash, opacity: the reference is a broad pale line under the thin ones of the surrogate.
@@ -123,7 +135,7 @@ def _front(cost: dict) -> Line:
     """Steps from each of the best to the next: errors below the band count as the band."""
     best = sorted((p["wall_s"], p["trusted_deg_s"]) for p in choice.trusted(cost["points"], cost["band_deg_s"]) if p["pareto"])
     walls, errors = [wall for wall, _ in best], [error for _, error in best]
-    return Line([wall for pair in zip(walls, walls[1:] + [max(p["wall_s"] for p in cost["points"])]) for wall in pair],
+    return Line([wall for pair in zip(walls, [*walls[1:], max(p["wall_s"] for p in cost["points"])]) for wall in pair],
                 [error for error in errors for _ in range(2)], "front of the best", "#000000", 3.0, "-", opacity=0.25)
 
 

@@ -1,7 +1,7 @@
 """The flight as the page shows it: paths, axes, clearance and the scatter about the target, then tables of conditions and cases."""
 
 import math
-from typing import Callable
+from collections.abc import Callable
 
 from studies.flight.summary import WORDS, doubts
 from studies.populations import answers
@@ -84,7 +84,7 @@ def _axes(curves: list[dict]) -> Chart:
     ends = [curve["axis_at_target_deg"] for curve in curves]
     passed = [Line([end[0]], [end[1]], curve["condition"], colour, 1.0, "", marker=marker, legend=False)
               for curve, end, (colour, _, marker) in zip(curves, ends, _LOOKS)]
-    around = _lines(curves, lambda curve: list(zip(*curve["axis_deg"]))[0], lambda curve: list(zip(*curve["axis_deg"]))[1])
+    around = _lines(curves, lambda curve: [end[0] for end in curve["axis_deg"]], lambda curve: [end[1] for end in curve["axis_deg"]])
     angle = _lines(curves, lambda curve: curve["time_s"], lambda curve: curve["pointing_deg"])
     return Chart("flight-axis", [Panel("cone of the x axis", "towards y (deg)", "towards z (deg)", [*around, *passed]),
                                  Panel("pointing error", "time after exit (s)", "angle (deg)", angle)], columns=2, height=360)

@@ -1,8 +1,8 @@
 """The little HTML the report needs: escaped text, tables with units in their heads, numbers of a sensible length."""
 
 import re
+from collections.abc import Iterable, Sequence
 from html import escape
-from typing import Iterable, Sequence
 
 
 class Html(str):

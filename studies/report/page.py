@@ -9,7 +9,18 @@ from scenes import plausibility
 from scenes.scene import Scene
 from scenes.trajectory import versions
 from studies import machine
-from studies.report import answers, compliance, convergence, figures, growth, inputs, rails, scaling, stress, tables
+from studies.report import (
+    answers,
+    compliance,
+    convergence,
+    figures,
+    growth,
+    inputs,
+    rails,
+    scaling,
+    stress,
+    tables,
+)
 from studies.report.chart import Chart, to_files, to_html
 from studies.report.figures import Runs
 from studies.report.markup import Html, caption, code, number, paragraph, section, table
@@ -217,7 +228,7 @@ class Page:
 
     def _colophon(self) -> Html:
         here = machine.describe()
-        facts = [("made", datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%d %H:%M UTC")),
+        facts = [("made", datetime.datetime.now(datetime.UTC).strftime("%Y-%m-%d %H:%M UTC")),
                  ("machine", f"{here['processor']}, {here['cores']} cores, {here['memory_gib']} GiB, {here['system']}"),
                  ("Python", here["python"]), *versions().items(), ("scene hash", code(self.scene.hash))]
         keys = [(stage, code(found["key"])) for stage, found in self.documents.items() if found and stage not in ("view", "rails")]

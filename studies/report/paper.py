@@ -1,7 +1,7 @@
 """The paper's own numbers on the page: its Table 2 and headline beside ours, the inputs that must have been, and what they
 trade."""
 
-from typing import Callable
+from collections.abc import Callable
 
 import numpy as np
 

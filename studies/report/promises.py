@@ -1,6 +1,7 @@
 """The promises of the project, each with what was measured over every stored run, kept or broken."""
 
-from typing import Iterable, NamedTuple
+from collections.abc import Iterable
+from typing import NamedTuple
 
 from scenes.promises import FINITE_ELEMENTS, RIGID
 from studies.report.markup import Html, section, table

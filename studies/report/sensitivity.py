@@ -1,6 +1,6 @@
 """Which numbers the answer depends on, on the page: the paper's Table 2 beside ours, and Sobol' indices of every quantity."""
 
-from typing import Callable, Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 

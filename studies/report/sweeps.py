@@ -1,6 +1,6 @@
 """How large an error may be, on the page: verdicts beside the paper's, why there is a plateau or none, and the figures."""
 
-from typing import Callable
+from collections.abc import Callable
 
 from studies.populations import answers
 from studies.report.chart import Chart

@@ -4,7 +4,17 @@ from html import escape
 
 from studies import published
 from studies.cost import sureness
-from studies.report.markup import Html, caption, code, fold, number, paragraph, percent, section, table
+from studies.report.markup import (
+    Html,
+    caption,
+    code,
+    fold,
+    number,
+    paragraph,
+    percent,
+    section,
+    table,
+)
 
 _INTERVALS = ("Intervals are linear and take what the fit leaves for scatter about a model that is right. Model error is not in "
               "them: what the surrogate lacks may move its constants by more than they say. "

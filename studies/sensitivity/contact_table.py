@@ -5,7 +5,8 @@ means below a twentieth of the total rate of its condition. One micrometre of cl
 needs to be known better than that.
 """
 
-from typing import Mapping, NamedTuple, Sequence
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
 
 import numpy as np
 

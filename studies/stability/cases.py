@@ -4,7 +4,8 @@ A case is a function without arguments that returns a ``Verdict``. ``CASES`` is 
 """
 
 import math
-from typing import Callable, NamedTuple
+from collections.abc import Callable
+from typing import NamedTuple
 
 from scenes.trajectory import Trajectory
 

@@ -3,7 +3,7 @@
 All solve x'' = a(t, x, v) for one coordinate, or for an array of them, with a step that looks at nothing.
 """
 
-from typing import Callable
+from collections.abc import Callable
 
 import numpy as np
 

@@ -41,7 +41,7 @@ def variants(scene: Scene) -> dict[str, dict]:
     for effect in present:
         kept = {key: value for key, value in everything.items() if not key.startswith(f"{effect}.")}
         lines[f"without {effect}"] = kept | {effect: None}
-    return lines | {"as the scene asks": {}, "no effect": {effect: None for effect in present}}
+    return lines | {"as the scene asks": {}, "no effect": dict.fromkeys(present)}
 
 
 def run(study: Study) -> dict:

@@ -6,8 +6,8 @@ that the other stages, which compare with the reference, do not replace it.
 """
 
 import math
+from collections.abc import Iterable
 from pathlib import Path
-from typing import Iterable
 
 import numpy as np
 
@@ -135,8 +135,8 @@ def load(study: Study) -> Calibration:
 def lines(document: dict, folder: Path) -> list[str]:
     """The compliance and the constants in words, what the curves cannot tell, and where both lie."""
     if "parameters" not in document:
-        parts = [_compliance(document["compliance"], folder)] if "compliance" in document else []
-        return sum(parts, []) + (lines(document["springs"], folder) if "springs" in document else [])
+        compliance = _compliance(document["compliance"], folder) if "compliance" in document else []
+        return compliance + (lines(document["springs"], folder) if "springs" in document else [])
     found = zip(document["parameters"], document["values"], document["units"], document["intervals"])
     said = [f"  {name:22}{value:.5g}{'' if unit == '1' else f' {unit}'}, {interval(ends)}" for name, value, unit, ends in found]
     said += [f"  not told      {words}" for words in document["weak_directions"]]

@@ -1,10 +1,12 @@
 """Stage ``compare``: agreement of the surrogates with the reference, on conditions one was fitted to and on conditions none ever
 saw, beside the floor and the uncertainty of the reference; the growth of 1 um; and the speed-up."""
 
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import asdict
 from functools import partial
 from pathlib import Path
-from typing import Callable, Iterable, NamedTuple
+from types import MappingProxyType
+from typing import NamedTuple
 
 from scenes.calibration import Calibration
 from scenes.fidelity import COMPLIANT, FINITE_ELEMENTS, SPRINGS
@@ -29,7 +31,7 @@ class Rung(NamedTuple):
     name: str
     title: str
     calibration: Calibration | None = None
-    walls: dict[str, Walls | None] = {}
+    walls: Mapping[str, Walls | None] = MappingProxyType({})
     modes: int = 0
 
     def ask(self, study: Study, condition: str, overrides: dict | None = None, tag: str = "", **numerics) -> Run:

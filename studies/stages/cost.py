@@ -11,8 +11,8 @@ remains when it is small is the model, and no tolerance can buy it.
 
 import json
 import statistics
+from collections.abc import Iterable
 from pathlib import Path
-from typing import Iterable
 
 from lowfi.numerics import Numerics
 from scenes.fidelity import COMPLIANT, FINITE_ELEMENTS

@@ -7,16 +7,15 @@ draws from their intervals, and the surrogate itself, by taking its measured err
 """
 
 import math
+from collections.abc import Callable
 from dataclasses import asdict
 from pathlib import Path
-from typing import Callable
 
 import numpy as np
 
 from scenes.fidelity import COMPLIANT
 from studies.checked import together
-from studies.limits import constants, within
-from studies.limits import search
+from studies.limits import constants, search, within
 from studies.limits.inputs import DRAWS, Asked, checked
 from studies.limits.search import Found
 from studies.limits.within import SETS, Cases, Factor

@@ -2,9 +2,9 @@
 the reference, a benchmark, and the studies that answer an engineer's questions."""
 
 import importlib
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from typing import Callable
 
 import scenes
 from scenes.faults import SceneError
@@ -13,8 +13,19 @@ from scenes.walls import digest
 from studies.bench import reference
 from studies.progress import say
 from studies.report.answers import ANSWERS
-from studies.stages import ablation, calibrate, compare, compliance, convergence, cost, mesh, runs, stability, view
 from studies.settings import defaults
+from studies.stages import (
+    ablation,
+    calibrate,
+    compare,
+    compliance,
+    convergence,
+    cost,
+    mesh,
+    runs,
+    stability,
+    view,
+)
 from studies.store import Run
 from studies.study import INPUT_FAULTS, Study, StudyError, read
 

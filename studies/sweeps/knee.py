@@ -76,7 +76,7 @@ def growth(sizes: np.ndarray, values: np.ndarray, seed: int = 1, resamples: int 
     law, fit = chosen[0], fits[chosen[0]]
     bent = law in ("plateau", "knee")
     half = 0.5 * (sizes[-2] - sizes[1]) / (_SCANNED - 1)  # what the scan itself leaves open
-    low, high = np.percentile(fit.scanned[1:], (2.5, 97.5)) + (-half, half) if bent and len(curves) > 1 else (None, None)
+    low, high = (*np.percentile(fit.scanned[1:], (2.5, 97.5)), -half, half) if bent and len(curves) > 1 else (None, None)
     before, after = _slopes(law, fit.constants[0])
     return Growth(str(law), verdicts[0], float(fit.scanned[0]) if bent else None, None if low is None else float(low),
                   None if high is None else float(high), before, after, _misfit(fit, curves[0], 0),

@@ -5,8 +5,9 @@ An ensemble keeps no pad forces, so this takes runs of ``lowfi.run`` on a coarse
 touches: its normal is that of the pad, so a face "-y" presses the wall at -y.
 """
 
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from typing import Callable, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 

@@ -103,7 +103,7 @@ def refits(count: int):
 
     for _ in range(count):
         measured = force(TRUTH) + 0.2 * generator.standard_normal(DEPTH.size)
-        found = least_squares(lambda x: force(x) - measured, TRUTH + 0.1, slope, method="lm")
+        found = least_squares(lambda x, measured=measured: force(x) - measured, TRUTH + 0.1, slope, method="lm")
         yield found.x - TRUTH, information.information(found.jac), 2.0 * found.cost
 
 

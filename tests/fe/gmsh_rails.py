@@ -9,7 +9,15 @@ import itertools
 import numpy as np
 
 from meshes import generator
-from meshes.l_rail import SURFACES, LRailGeometry, _depths, _divisions, _layer_length, _section, _stations
+from meshes.l_rail import (
+    SURFACES,
+    LRailGeometry,
+    _depths,
+    _divisions,
+    _layer_length,
+    _section,
+    _stations,
+)
 
 _TOUCH = 1e-9  # m
 

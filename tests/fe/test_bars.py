@@ -104,7 +104,7 @@ def test_free_bar_pushed_at_one_end(elements, fraction):
 def two_rods(elements):
     """Two equal rods in a row that share no node."""
     rod = block((elements, 1, 1), (LENGTH, WIDTH, WIDTH))
-    return RailMesh(np.concatenate([rod.points, rod.points + [LENGTH, 0.0, 0.0]]),
+    return RailMesh(np.concatenate([rod.points, [*rod.points, LENGTH, 0.0, 0.0]]),
                     np.concatenate([rod.cells, rod.cells + len(rod.points)]), {})
 
 

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from highfi import assembly, folding, pencils
-from scenes.memory import zeros
 from highfi.mesh import read
 from highfi.operator import internal_force
 from highfi.pencil_kernel import pencil_force
 from meshes import l_rail
+from scenes.memory import zeros
 from tests.fe.blocks import ALUMINIUM, block
 
 

@@ -8,8 +8,8 @@ import numpy as np
 
 import highfi
 from highfi.mesh import RailMesh, read
-from highfi.run import Loop
 from highfi.numerics import Numerics
+from highfi.run import Loop
 from highfi.stepping import choose
 from highfi.system import build
 from scenes import load

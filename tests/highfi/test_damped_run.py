@@ -98,7 +98,7 @@ def test_a_resume_that_forgets_the_step_before_is_seen(tmp_path):
     kept = Checkpoint(tmp_path / "run", 0.0, half, test_kernels.NUMERICS)
     kept.write(half)
     saved = kept.read()
-    blank = {name: value for name, value in arrays({"state.history": second.state.history})}
+    blank = dict(arrays({"state.history": second.state.history}))
     restore(second, saved | {name: np.zeros_like(value) for name, value in blank.items()})
     assert (finished(second).rate[-1] != expected.rate[-1]).any()
 

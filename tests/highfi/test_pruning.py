@@ -9,7 +9,6 @@ import highfi
 from highfi.compiled import LAWS
 from tests.highfi.support import COARSE, tiny
 
-
 DAMPED = {"rail__damping__ratios": [0.01, 0.01], "rail__damping__frequencies": ["500 Hz", "5 kHz"]}
 FOUND = ("friction", "platform")  # kernels that other tests compile too
 

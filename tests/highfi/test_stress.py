@@ -37,7 +37,7 @@ def test_peak_is_that_of_the_plain_formulas(seen):
     run, stresses = seen
     mesh = highfi.prepare(tiny(), COARSE)
     every = run.stress["samples_between_looks"]
-    sample, number, corner = np.unravel_index(stresses[::every].argmax(), stresses[::every].shape)
+    sample, _number, _corner = np.unravel_index(stresses[::every].argmax(), stresses[::every].shape)
     assert run.stress["peak_stress_pa"] == pytest.approx(stresses[::every].max(), rel=1e-12)
     assert run.stress["peak_stress_time_s"] == pytest.approx(run.time[every * sample], rel=1e-12)
     place = np.array(run.stress["peak_stress_place_m"])

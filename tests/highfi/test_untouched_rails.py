@@ -1,7 +1,7 @@
 """What a rail matters that no pad touches: whether a run may leave it out, not yet touched or never."""
 
+from collections.abc import Iterator
 from dataclasses import replace
-from typing import Iterator
 
 import numpy as np
 import pytest

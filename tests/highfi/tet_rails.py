@@ -44,7 +44,7 @@ def _draw(gmsh, g):
         blocks.append((3, occ.addBox(g.x_start + start, y, z - g.mount_width, end - start, 0.01, g.mount_width)))
         blocks.append((3, occ.addBox(g.x_start + start, y - g.mount_width, z, end - start, g.mount_width, 0.01)))
     _, made = occ.fragment(rail, blocks)
-    kept = {entity for entity in made[0]}
+    kept = set(made[0])
     occ.remove([entity for part in made[1:] for entity in part if entity not in kept], recursive=True)
     occ.synchronize()
 

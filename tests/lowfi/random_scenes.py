@@ -173,7 +173,7 @@ def independent(kind: str, seeds) -> list[dict]:
         @settings(max_examples=2, database=None, phases=[Phase.generate], suppress_health_check=list(HealthCheck))
         @given(raw=raw_scenes(kind))
         def draw(raw):
-            drawn.append(raw)
+            drawn.append(raw)  # noqa: B023  called at once
 
         draw()
         found.append(drawn[-1])  # the first one is always the simplest there is

@@ -59,7 +59,7 @@ def test_force_is_along_the_gradient_of_the_penetration():
     upright, h = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0), 1e-6
     place = np.array([0.137, 2e-4, 1e-4])
     for face in system.faces[[0, 3, 12]]:
-        def depth(at):
+        def depth(at, face=face):
             return touch.penetration(system.contact.bow, face, tuple(at), upright)
 
         difference = [(depth(place + h * axis) - depth(place - h * axis)) / (2.0 * h) for axis in np.eye(3)]

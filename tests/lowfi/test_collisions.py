@@ -9,7 +9,7 @@ from lowfi import state, touch
 from lowfi.system import Contact
 from scenes.effects import contact as law
 from tests.exact import contact as exact
-from tests.lowfi.support import G, PAPER_PAD, close, drop, numerics, scene
+from tests.lowfi.support import PAPER_PAD, G, close, drop, numerics, scene
 
 K = PAPER_PAD["stiffness"]
 TWO_TOLERANCES = pytest.mark.parametrize("tolerance", [1e-7, 1e-9])

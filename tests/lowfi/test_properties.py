@@ -17,7 +17,16 @@ from lowfi import Numerics, march, state
 from lowfi.run import Run
 from scenes import ledger
 from tests import turning
-from tests.lowfi.random_scenes import DURATION, EFFECTS, INTERVAL, MIRROR, QUARTER_TURN, raw_scenes, scene_of, transformed
+from tests.lowfi.random_scenes import (
+    DURATION,
+    EFFECTS,
+    INTERVAL,
+    MIRROR,
+    QUARTER_TURN,
+    raw_scenes,
+    scene_of,
+    transformed,
+)
 from tests.lowfi.support import RAIL, turned_state, unwatched
 
 QUICK = ("ejection", "guided", "frictionless", "free")  # kernels that other tests compile too

@@ -59,7 +59,7 @@ def test_one_absent_effect_is_not_compiled(effect):
 
 def test_without_any_effect_nothing_of_them_is_compiled():
     found = lowfi.compiled_effects(load("reference").replace(
-        {name: None for name in ("friction", "platform", "contact", "thrust_offset")}))
+        dict.fromkeys(("friction", "platform", "contact", "thrust_offset"))))
     assert not any(found.values())
 
 

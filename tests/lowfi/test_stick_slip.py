@@ -9,7 +9,7 @@ import sys
 import numpy as np
 import pytest
 
-from tests.lowfi.dragged import DYNAMIC, G, SPEED, STATIC, STIFFNESS
+from tests.lowfi.dragged import DYNAMIC, SPEED, STATIC, STIFFNESS, G
 
 JUMP = 2.0 * (STATIC - DYNAMIC) * G / STIFFNESS
 PERIOD = JUMP / SPEED + math.pi * math.sqrt(1.0 / STIFFNESS)

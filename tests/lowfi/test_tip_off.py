@@ -7,7 +7,7 @@ import pytest
 
 import lowfi
 from tests.exact import guided as exact
-from tests.lowfi.support import G, RAIL, numerics, scene
+from tests.lowfi.support import RAIL, G, numerics, scene
 
 TWO_TOLERANCES = pytest.mark.parametrize("tolerance", [1e-6, 1e-8])
 

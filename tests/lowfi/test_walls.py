@@ -12,8 +12,18 @@ from lowfi.walls import cells, limit, loads, record, solution
 from scenes import model as models
 from scenes import rotation
 from scenes.walls import PATTERNS
-from tests.lowfi.giving import (REFERENCE, SMOOTH, add_walls, flexibility_at, forces_of, pressed, reference_walls, relative,
-                                seen_from_platform, state_of)
+from tests.lowfi.giving import (
+    REFERENCE,
+    SMOOTH,
+    add_walls,
+    flexibility_at,
+    forces_of,
+    pressed,
+    reference_walls,
+    relative,
+    seen_from_platform,
+    state_of,
+)
 
 CLEARANCE = REFERENCE.contact.clearance
 # What the pads meet: way (m), way across beyond the clearance (m), attitude (rad).
@@ -141,7 +151,7 @@ def test_one_solution_whatever_the_first_guess(reference, name):
 
 def test_any_pose_is_solved(reference):
     """From a graze to millimetres deep, over the ends too, from guesses as wild: the forces are those of the displacements."""
-    walls, model, system = reference
+    _walls, model, system = reference
     random, room, worst = np.random.default_rng(1), system.walls.room, 0.0
     for size in 10.0 ** random.uniform(-7.0, -2.7, 500):
         offset = random.choice((-1.0, 1.0), 2) * CLEARANCE + size * random.standard_normal(2)

@@ -8,7 +8,8 @@ import lowfi
 from highfi import compliance
 from lowfi import Numerics
 from lowfi.walls import loads
-from scenes import ledger, model as models
+from scenes import ledger
+from scenes import model as models
 from scenes.scene import load, parse
 from tests.lowfi.giving import REFERENCE, Pose, handmade, in_one_cell, pressed, reference_walls
 from tests.lowfi.support import RAIL, corners

@@ -1,6 +1,7 @@
 """Relative motion, milestones, and the book of exit, settled window and jam by itself; runs that fill it are tested with the
 solvers."""
 
+import itertools
 import math
 
 import numpy as np
@@ -36,7 +37,7 @@ def test_means_over_the_window(settled, start, rows):
     the instants, 7e-18 s, of 2 ms."""
     made, time = book(), np.linspace(0.039, 0.047, 8 * rows + 1)
     ending.leave(made, 0.04, marks(settled))
-    for began, ended in zip(time[:-1], time[1:]):
+    for began, ended in itertools.pairwise(time):
         low, high = ending.part_in_window(made, began, ended)
         if high > low:
             middle = 0.5 * (low + high)  # of linear motion the mean is the value there

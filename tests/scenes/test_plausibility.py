@@ -124,7 +124,7 @@ def test_inherited_mounts_off_a_shorter_rail_are_refused():
 def test_no_condition_of_the_catalogue_is_implausible(name):
     scene = load(name)
     found = {condition: scene.condition(condition).warnings for condition in scene.conditions}
-    assert found == dict.fromkeys(scene.conditions, [])
+    assert not any(found.values())
 
 
 def test_what_is_implausible_in_a_condition_alone_is_said_once():

@@ -3,6 +3,7 @@
 import json
 import math
 import sys
+from typing import ClassVar
 
 import numpy as np
 import pytest
@@ -11,8 +12,8 @@ from typer.testing import CliRunner
 import scenes
 from scenes.faults import SceneError
 from studies import store as store_module
-from studies.cost import timing
 from studies.cli import app
+from studies.cost import timing
 from studies.refinement.ripple import Ripple
 from studies.report.figures import Runs
 from studies.report.page import Page
@@ -57,7 +58,7 @@ def rippling(scene, numerics):
 def asked(monkeypatch):
     """Labels of the runs that were made, in order; ``asked.failing`` maps a label to what became of it instead."""
     class Labels(list):
-        failing: dict[str, str] = {}
+        failing: ClassVar[dict[str, str]] = {}
 
     made = Labels()
 
@@ -69,7 +70,7 @@ def asked(monkeypatch):
     for module in (store_module, timing):
         monkeypatch.setattr(module, "prepare", lambda run: None)
     monkeypatch.setattr(timing, "execute", lambda run, progress=None: motion(run))
-    monkeypatch.setattr(compliance, "under", lambda study, names: {name: None for name in names})
+    monkeypatch.setattr(compliance, "under", lambda study, names: dict.fromkeys(names))
     monkeypatch.setattr(convergence.ripple, "measure", rippling)
     return made
 

@@ -108,7 +108,7 @@ def test_cone_of_an_asymmetric_body(rate):
     """Least and largest angle, and the rate round the angular momentum, from the axis itself over many nutations."""
     found, body = fly(start(rate=rate)), bodies.bodies([SCENE])
     time = np.linspace(0.0, 30.0 * found.nutation[0], 200_001)[None]
-    turn, w = free.at(free.free(body.inertia, np.eye(3)[None], np.array([rate])), time)
+    turn, _w = free.at(free.free(body.inertia, np.eye(3)[None], np.array([rate])), time)
     momentum = body.inertia[0] @ rate
     to = Rotation.align_vectors([[0.0, 0.0, 1.0]], [momentum])[0].apply(turn[0, :, :, 0])
     angle, way = np.arctan2(np.hypot(to[:, 0], to[:, 1]), to[:, 2]), np.unwrap(np.arctan2(to[:, 1], to[:, 0]))

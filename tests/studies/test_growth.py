@@ -34,7 +34,7 @@ def test_exponential_growth_is_recovered():
 
 
 def test_separation_of_two_curves_is_the_larger_twin_and_axis():
-    found = growth("c", "m", touching(), [touching(lambda t: np.full(t.size, value)) for value in (1e-4, -3e-4, 2e-4)], 2e-6, GATE)
+    found = growth("c", "m", touching(), [touching(lambda t, value=value: np.full(t.size, value)) for value in (1e-4, -3e-4, 2e-4)], 2e-6, GATE)
     assert set(found.separation_deg_s) == {float(f"{np.degrees(3e-4):.4g}")}
     assert found.settled_growth_deg_s_um == pytest.approx(np.degrees(1.5e-4))
 

@@ -25,7 +25,6 @@ from studies.study import Study, StudyError
 from tests.studies.searched import BASE, COUNT, SMALL, page, stub
 
 
-
 def test_deviations_are_those_of_the_printed_table():
     """From the article: -2.421 to -2.355 is 2.73 %, -1.633 to -1.609 is 1.47 %, and 2.663 to 2.644 is 0.71 %, not 0.26 %."""
     found = published.sensitivity()
@@ -201,7 +200,7 @@ def test_printed_deviations_stand_beside_ours(quick):
 
 
 def test_ranges_say_how_few_searches_they_come_from(quick, tmp_path, monkeypatch):
-    study, found = quick
+    _study, found = quick
     said = "2, kept from 1 of 2 searches, 2 of them from one"
     assert found["admissible"] == {"points": 2, "searches": 1, "most_of_one": 2}
     for text in (page(found), "\n".join(paper.lines(found))):

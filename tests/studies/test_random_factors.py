@@ -35,7 +35,7 @@ def plane(columns, name):
     (Reading(), stats.truncnorm(0.0, 3.0)), (Reading(angles="shared", rule="none"), stats.halfnorm())])
 def test_sizes_follow_the_law_of_their_reading(reading, law):
     """Control: the law of another reading is refused by the same test."""
-    for name, error in ERRORS.items():
+    for error in ERRORS.values():
         sizes = drawn(reading)[f"{error.key}.axial"] / (error.three_sigma / 3.0)
         assert stats.kstest(sizes, law.cdf).pvalue > 1e-3
         other = stats.halfnorm if reading.values == "components" else stats.rayleigh

@@ -7,7 +7,16 @@ from studies.droptest import analysis, events
 from studies.droptest.calibrated import Calibrated
 from studies.droptest.events import GRAVITY
 from studies.droptest.log import Log, runs
-from tests.studies.droptest.synthetic import BURN, END, IGNITION, INTERVAL, RELEASE, caught, motion, sheet
+from tests.studies.droptest.synthetic import (
+    BURN,
+    END,
+    IGNITION,
+    INTERVAL,
+    RELEASE,
+    caught,
+    motion,
+    sheet,
+)
 
 
 def knocked(noise, seed):
