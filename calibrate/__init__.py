@@ -1,4 +1,5 @@
-"""The contact of the surrogate from the finite elements: rail compliance from statics, constants of springs from curves."""
+"""The contact of the surrogate from the finite elements: rail compliance from statics, constants of
+springs from curves."""
 
 from calibrate.curves import Curves
 from calibrate.faults import CalibrationError

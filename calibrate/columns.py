@@ -1,7 +1,9 @@
-"""Named columns of numbers with units from a CSV file, each turned to SI; all that is wrong with the file is found at once.
+"""Named columns of numbers with units from a CSV file, each turned to SI; all that is wrong with
+the file is found at once.
 
-A header cell is a name with its unit in brackets, ``rate_x [deg/s]``, or a name alone where the second line holds the units.
-Columns nobody asked for are passed over: another code's export has more of them.
+A header cell is a name with its unit in brackets, ``rate_x [deg/s]``, or a name alone where the
+second line holds the units. Columns nobody asked for are passed over: another code's export has
+more of them.
 """
 
 import csv
@@ -25,14 +27,21 @@ class _Column(NamedTuple):
     unit: str | None
 
 
-def read(source: str, data: bytes, wanted: dict[str, str]) -> tuple[dict[str, np.ndarray], list[Fault]]:
-    """Columns (n,) in SI by name, and the faults of the file; ``wanted`` gives the SI unit of each column by name.
+def read(
+    source: str, data: bytes, wanted: dict[str, str]
+) -> tuple[dict[str, np.ndarray], list[Fault]]:
+    """Columns (n,) in SI by name, and the faults of the file; ``wanted`` gives the SI unit of each
+    column by name.
 
     A column with a fault is left out.
     """
     try:
         reader = csv.reader(io.StringIO(data.decode("utf-8-sig"), newline=""), strict=True)
-        lines = [(reader.line_num, [cell.strip() for cell in row]) for row in reader if any(map(str.strip, row))]
+        lines = [
+            (reader.line_num, [cell.strip() for cell in row])
+            for row in reader
+            if any(map(str.strip, row))
+        ]
     except (UnicodeDecodeError, csv.Error) as error:
         return {}, [Fault(source, "file", str(error), "a CSV file of text")]
     header = lines[0][1] if lines else []
@@ -40,23 +49,41 @@ def read(source: str, data: bytes, wanted: dict[str, str]) -> tuple[dict[str, np
     found, faults = _places(source, header, wanted)
     arrays = {}
     for name, column in found.items():
-        unit = column.unit if column.unit is not None or second is None else _cell(second, column.place)
-        values, wrong = _values(column.place, lines[2 if second else 1:])
-        problems = _unit_faults(source, name, unit, wanted[name]) + _cell_faults(source, name, wrong)
+        unit = (
+            column.unit
+            if column.unit is not None or second is None
+            else _cell(second, column.place)
+        )
+        values, wrong = _values(column.place, lines[2 if second else 1 :])
+        problems = _unit_faults(source, name, unit, wanted[name]) + _cell_faults(
+            source, name, wrong
+        )
         if not problems:
             arrays[name] = values * units.to_si(f"1 {unit}", wanted[name])
         faults += problems
     return arrays, faults
 
 
-def _places(source: str, header: list[str], wanted: dict[str, str]) -> tuple[dict[str, _Column], list[Fault]]:
+def _places(
+    source: str, header: list[str], wanted: dict[str, str]
+) -> tuple[dict[str, _Column], list[Fault]]:
     heads = [_HEAD.fullmatch(cell).groups() for cell in header]
     names = [name for name, _ in heads]
     shown = ", ".join(filter(None, names)) or "nothing"
-    faults = [Fault(source, name, "no such column" if name not in names else "twice", f"once in the header, which has {shown}")
-              for name in wanted if names.count(name) != 1]
+    faults = [
+        Fault(
+            source,
+            name,
+            "no such column" if name not in names else "twice",
+            f"once in the header, which has {shown}",
+        )
+        for name in wanted
+        if names.count(name) != 1
+    ]
     once = {name for name in wanted if names.count(name) == 1}
-    return {name: _Column(place, unit) for place, (name, unit) in enumerate(heads) if name in once}, faults
+    return {
+        name: _Column(place, unit) for place, (name, unit) in enumerate(heads) if name in once
+    }, faults
 
 
 def _cell(row: list[str], place: int) -> str:
@@ -65,7 +92,14 @@ def _cell(row: list[str], place: int) -> str:
 
 def _unit_faults(source: str, name: str, unit: str | None, wanted: str) -> list[Fault]:
     if not unit:
-        return [Fault(source, name, "no unit", f'"{name} [{wanted}]" in the header or "{wanted}" in the second line, or the like')]
+        return [
+            Fault(
+                source,
+                name,
+                "no unit",
+                f'"{name} [{wanted}]" in the header or "{wanted}" in the second line, or the like',
+            )
+        ]
     try:
         units.to_si(f"1 {unit}", wanted)
     except ValueError as error:
@@ -73,7 +107,9 @@ def _unit_faults(source: str, name: str, unit: str | None, wanted: str) -> list[
     return []
 
 
-def _values(place: int, lines: list[tuple[int, list[str]]]) -> tuple[np.ndarray, dict[str, list[int]]]:
+def _values(
+    place: int, lines: list[tuple[int, list[str]]]
+) -> tuple[np.ndarray, dict[str, list[int]]]:
     """The column as written, and the lines that hold no finite number by what they hold."""
     values, wrong = np.empty(len(lines)), {}
     for index, (number, row) in enumerate(lines):
@@ -88,9 +124,14 @@ def _values(place: int, lines: list[tuple[int, list[str]]]) -> tuple[np.ndarray,
 
 
 def _cell_faults(source: str, name: str, wrong: dict[str, list[int]]) -> list[Fault]:
-    return [Fault(source, name, f"{text} in {_listed(numbers)}", "a finite number in each line") for text, numbers in wrong.items()]
+    return [
+        Fault(source, name, f"{text} in {_listed(numbers)}", "a finite number in each line")
+        for text, numbers in wrong.items()
+    ]
 
 
 def _listed(numbers: list[int]) -> str:
     more = [f"and {len(numbers) - _SHOWN} more"] if len(numbers) > _SHOWN else []
-    return f"line{'s' if len(numbers) > 1 else ''} " + ", ".join([*map(str, numbers[:_SHOWN]), *more])
+    return f"line{'s' if len(numbers) > 1 else ''} " + ", ".join(
+        [*map(str, numbers[:_SHOWN]), *more]
+    )

@@ -1,7 +1,9 @@
-"""What a fit needs to know of a reference: v_x and body rates over time, and the settled values; from a run or from a CSV file.
+"""What a fit needs to know of a reference: v_x and body rates over time, and the settled values;
+from a run or from a CSV file.
 
-A file says nothing of positions, so its exit is not known. The settled window of 2 ms then ends with the record, or begins where
-the user says; settled values are means over it, as ``scenes.outcome`` defines them.
+A file says nothing of positions, so its exit is not known. The settled window of 2 ms then ends
+with the record, or begins where the user says; settled values are means over it, as
+``scenes.outcome`` defines them.
 """
 
 import hashlib
@@ -15,14 +17,22 @@ from scenes.faults import Fault, SceneError
 from scenes.outcome import SETTLE_WINDOW
 from scenes.trajectory import Trajectory
 
-COLUMNS = {"time": "s", "velocity_x": "m/s", "rate_x": "rad/s", "rate_y": "rad/s", "rate_z": "rad/s"}
-LONGEST_STEP = 0.5 * SETTLE_WINDOW  # s; a touch lasts milliseconds, and the settled window must hold samples of its own
+COLUMNS = {
+    "time": "s",
+    "velocity_x": "m/s",
+    "rate_x": "rad/s",
+    "rate_y": "rad/s",
+    "rate_z": "rad/s",
+}
+# s; a touch lasts milliseconds, and the settled window must hold samples of its own
+LONGEST_STEP = 0.5 * SETTLE_WINDOW
 _ROUNDING = 1e-9  # s; a record of exactly the window counts as one
 
 
 class Curves(NamedTuple):
-    """From ignition to the end of the settled window: time (n,) s, inertial v_x in scene axes (n,) m/s, inertial rates in body axes
-    (n,3) rad/s; start of the window (s), means over it of the rates (3,) rad/s; where the curves come from, in words."""
+    """From ignition to the end of the settled window: time (n,) s, inertial v_x in scene axes (n,)
+    m/s, inertial rates in body axes (n,3) rad/s; start of the window (s), means over it of the
+    rates (3,) rad/s; where the curves come from, in words."""
 
     time: np.ndarray
     velocity: np.ndarray
@@ -36,20 +46,30 @@ class Curves(NamedTuple):
         """Curves of a run that exited and settled."""
         start = run.outcome.window_start
         keep = _until(run.time, start)
-        return cls(run.time[keep], run.velocity[keep, 0], run.rate[keep], start, np.array(run.outcome.rate),
-                   f"{run.model} {run.numerics}")
+        return cls(
+            run.time[keep],
+            run.velocity[keep, 0],
+            run.rate[keep],
+            start,
+            np.array(run.outcome.rate),
+            f"{run.model} {run.numerics}",
+        )
 
     @classmethod
     def read_csv(cls, path: str | Path, settled_from: float | None = None) -> "Curves":
-        """Curves of a table with the columns ``COLUMNS``; the window begins at ``settled_from`` (s), or ends with the record.
+        """Curves of a table with the columns ``COLUMNS``; the window begins at ``settled_from``
+        (s), or ends with the record.
 
-        Raises SceneError listing every fault: a file that cannot be read, columns or units that are missing or of another kind,
-        cells without a finite number, times that do not rise from ignition on or leave a gap, a record too short for the window.
+        Raises SceneError listing every fault: a file that cannot be read, columns or units that are
+        missing or of another kind, cells without a finite number, times that do not rise from
+        ignition on or leave a gap, a record too short for the window.
         """
         try:
             data = Path(path).read_bytes()
         except OSError as error:
-            raise SceneError([Fault(str(path), "file", error.strerror or str(error), "a readable CSV file")]) from error
+            raise SceneError(
+                [Fault(str(path), "file", error.strerror or str(error), "a readable CSV file")]
+            ) from error
         found, faults = columns.read(str(path), data, COLUMNS)
         if "time" in found:
             faults += _time_faults(str(path), found["time"], settled_from)
@@ -59,8 +79,15 @@ class Curves(NamedTuple):
         rate = np.column_stack([found[name] for name in ("rate_x", "rate_y", "rate_z")])
         start = max(time[0], time[-1] - SETTLE_WINDOW) if settled_from is None else settled_from
         keep = _until(time, start)
-        return cls(time[keep], velocity[keep], rate[keep], float(start), _mean(time, rate, start),
-                   f"{path}, SHA-256 {hashlib.sha256(data).hexdigest()}, settled from {1e3 * start:.6g} ms")
+        return cls(
+            time[keep],
+            velocity[keep],
+            rate[keep],
+            float(start),
+            _mean(time, rate, start),
+            f"{path}, SHA-256 {hashlib.sha256(data).hexdigest()}, settled from {1e3 * start:.6g} "
+            f"ms",
+        )
 
 
 def _until(time: np.ndarray, start: float) -> np.ndarray:
@@ -68,7 +95,8 @@ def _until(time: np.ndarray, start: float) -> np.ndarray:
 
 
 def _mean(time: np.ndarray, values: np.ndarray, start: float) -> np.ndarray:
-    """Means (k,) of ``values`` (n,k) over the window, by straight lines: the samples may be noisy and unevenly spaced."""
+    """Means (k,) of ``values`` (n,k) over the window, by straight lines: the samples may be noisy
+    and unevenly spaced."""
     end = min(start + SETTLE_WINDOW, time[-1])
     inside = np.concatenate([[start], time[(time > start) & (time < end)], [end]])
     lines = np.column_stack([np.interp(inside, time, column) for column in values.T])
@@ -82,15 +110,34 @@ def _time_faults(source: str, time: np.ndarray, settled_from: float | None) -> l
     back, gap = int(np.argmin(steps)), int(np.argmax(steps))
     found = []
     if steps[back] <= 0.0:
-        found.append((f"{_ms(time[back + 1])} after {_ms(time[back])}", "times that rise from line to line"))
+        found.append(
+            (f"{_ms(time[back + 1])} after {_ms(time[back])}", "times that rise from line to line")
+        )
     if not 0.0 <= time[0] <= LONGEST_STEP:
-        found.append((f"{_ms(time[0])} first", f"time since ignition, from 0 to {_ms(LONGEST_STEP)} on"))
+        found.append(
+            (f"{_ms(time[0])} first", f"time since ignition, from 0 to {_ms(LONGEST_STEP)} on")
+        )
     if steps[gap] > LONGEST_STEP:
-        found.append((f"a gap from {_ms(time[gap])} to {_ms(time[gap + 1])}", f"steps of {_ms(LONGEST_STEP)} at most"))
+        found.append(
+            (
+                f"a gap from {_ms(time[gap])} to {_ms(time[gap + 1])}",
+                f"steps of {_ms(LONGEST_STEP)} at most",
+            )
+        )
     if latest < time[0] - _ROUNDING:
-        found.append((f"a record of {_ms(time[-1] - time[0])}", f"at least the settled window of {_ms(SETTLE_WINDOW)}"))
+        found.append(
+            (
+                f"a record of {_ms(time[-1] - time[0])}",
+                f"at least the settled window of {_ms(SETTLE_WINDOW)}",
+            )
+        )
     elif settled_from is not None and not time[0] <= settled_from <= latest + _ROUNDING:
-        found.append((f"settled from {_ms(settled_from)}", f"{_ms(time[0])} to {_ms(latest)}, to leave {_ms(SETTLE_WINDOW)}"))
+        found.append(
+            (
+                f"settled from {_ms(settled_from)}",
+                f"{_ms(time[0])} to {_ms(latest)}, to leave {_ms(SETTLE_WINDOW)}",
+            )
+        )
     return [Fault(source, "time", *fault) for fault in found]
 
 

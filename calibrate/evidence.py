@@ -1,4 +1,5 @@
-"""What stands beside calibrated constants: residuals per condition, open directions, and what they were found from."""
+"""What stands beside calibrated constants: residuals per condition, open directions, and what they
+were found from."""
 
 import math
 
@@ -18,14 +19,24 @@ _NOTHING = 1e-12  # rounding of the information matrix, of its largest eigenvalu
 
 def residuals(part: Parts, wanted: Target) -> dict[str, float]:
     """Relative L2 of rates and of v_x, and the largest settled error of an axis (deg/s)."""
-    return {"rate_relative_l2": float(np.sqrt((part.rate**2).sum())),
-            "velocity_relative_l2": float(np.sqrt((part.velocity**2).sum())),
-            "settled_rate_error_deg_s": math.degrees(float(np.abs(part.settled).max()) * wanted.amplitudes[2])}
+    return {
+        "rate_relative_l2": float(np.sqrt((part.rate**2).sum())),
+        "velocity_relative_l2": float(np.sqrt((part.velocity**2).sum())),
+        "settled_rate_error_deg_s": math.degrees(
+            float(np.abs(part.settled).max()) * wanted.amplitudes[2]
+        ),
+    }
 
 
-def weak_directions(scene: Scene, free: list[Parameter], held: list[Parameter], shares: np.ndarray,
-                    matrix: np.ndarray) -> list[str]:
-    """Sentences: what the curves cannot tell, what was held for that reason, and what they pushed to a bound.
+def weak_directions(
+    scene: Scene,
+    free: list[Parameter],
+    held: list[Parameter],
+    shares: np.ndarray,
+    matrix: np.ndarray,
+) -> list[str]:
+    """Sentences: what the curves cannot tell, what was held for that reason, and what they pushed
+    to a bound.
 
     ``matrix`` is the information on free and held parameters together, in this order.
     """
@@ -36,48 +47,77 @@ def weak_directions(scene: Scene, free: list[Parameter], held: list[Parameter], 
     for index, item in enumerate(held, start=count):
         left, alone = information.left_alone(matrix, index), matrix[index, index]
         ratio = left / largest if largest > 0.0 else 0.0
-        told = "at these constants it has no effect" if ratio < _NOTHING else (
-            f"of its information {alone:.2g} only {left:.2g} is left when the others are fitted again, "
-            f"{ratio:.1e} of the largest eigenvalue")
+        told = (
+            "at these constants it has no effect"
+            if ratio < _NOTHING
+            else (
+                f"of its information {alone:.2g} only {left:.2g} is left when the others are "
+                f"fitted again, "
+                f"{ratio:.1e} of the largest eigenvalue"
+            )
+        )
         sentences.append(f"{item.name} held at {item.read(scene):.4g} {item.unit}: {told}")
     for item, share, bound in zip(free, shares, _on_bound(shares)):
         if bound:
             side = "lower" if share < 0.5 else "upper"
-            sentences.append(f"{item.name} lies on its {side} bound {item.value(round(float(share))):.4g} {item.unit}: physics, "
-                             "not the curves, sets its value")
+            sentences.append(
+                f"{item.name} lies on its {side} bound {item.value(round(float(share))):.4g} "
+                f"{item.unit}: physics, "
+                "not the curves, sets its value"
+            )
     return sentences
 
 
-def intervals(free: list[Parameter], shares: np.ndarray, matrix: np.ndarray, parts: list[Parts]) -> tuple[list[list[float]], float]:
+def intervals(
+    free: list[Parameter], shares: np.ndarray, matrix: np.ndarray, parts: list[Parts]
+) -> tuple[list[list[float]], float]:
     """Interval of every free parameter (SI), and the number of independent residuals these rest on.
 
-    Without ends where the curves do not tell: in a weak direction, on a bound, or with an interval wider than the bounds, over
-    which no linear theory holds.
+    Without ends where the curves do not tell: in a weak direction, on a bound, or with an interval
+    wider than the bounds, over which no linear theory holds.
     """
     curves = [curve for part in parts for curve in (part.velocity, *part.rate.T)]
     count = sum(map(independent, curves))
-    squares = sum(float(part.vector() @ part.vector()) for part in parts) / len(parts)  # the objective, to which the matrix belongs
+    # the objective, to which the matrix belongs
+    squares = sum(float(part.vector() @ part.vector()) for part in parts) / len(parts)
     half = half_widths(matrix, squares, count, [item.vector for item in information.weak(matrix)])
     told = (half < 0.5) & ~_on_bound(shares)
-    return [[item.value(share - width), item.value(share + width)] if known else [-math.inf, math.inf]
-            for item, share, width, known in zip(free, shares.tolist(), half.tolist(), told)], count
+    return [
+        [item.value(share - width), item.value(share + width)] if known else [-math.inf, math.inf]
+        for item, share, width, known in zip(free, shares.tolist(), half.tolist(), told)
+    ], count
 
 
 def _on_bound(shares: np.ndarray) -> np.ndarray:
     return (shares <= _ON_BOUND) | (shares >= 1.0 - _ON_BOUND)
 
 
-def provenance(scene: Scene, references: dict[str, Curves], constants: dict[str, float], found: Found, plan: Plan, seed: int,
-               evaluations: int, count: float) -> dict[str, str]:
+def provenance(
+    scene: Scene,
+    references: dict[str, Curves],
+    constants: dict[str, float],
+    found: Found,
+    plan: Plan,
+    seed: int,
+    evaluations: int,
+    count: float,
+) -> dict[str, str]:
     """Where the constants come from, in words and hashes."""
     exponent = constants.get("contact.exponent", 1.0)
-    ends = "; ".join(f"{value:.6g} at " + ", ".join(f"{share:.4f}" for share in shares) for value, shares in found.basins)
+    ends = "; ".join(
+        f"{value:.6g} at " + ", ".join(f"{share:.4f}" for share in shares)
+        for value, shares in found.basins
+    )
     return {
-        "scene": scene.name, "scene_hash": scene.hash,
-        "contact_law": f"{scene.contact.law}, k = {constants['contact.stiffness']:.6g} N/m^{exponent:.6g}",
+        "scene": scene.name,
+        "scene_hash": scene.hash,
+        "contact_law": f"{scene.contact.law}, k = {constants['contact.stiffness']:.6g} "
+        f"N/m^{exponent:.6g}",
         "references": ", ".join(f"{name}: {item.source}" for name, item in references.items()),
-        "search": f"{plan.points} Sobol' points, {plan.starts} starts of CMA-ES, least squares; {evaluations} evaluations; "
-                  f"seed {seed}",
-        "intervals": f"95 %, linear, from what the fit leaves, {count:.0f} independent residuals; model error is not in them",
+        "search": f"{plan.points} Sobol' points, {plan.starts} starts of CMA-ES, least squares; "
+        f"{evaluations} evaluations; "
+        f"seed {seed}",
+        "intervals": f"95 %, linear, from what the fit leaves, {count:.0f} independent residuals; "
+        f"model error is not in them",
         "basins": f"each start ended at objective and shares of the bounds: {ends}",
     }

@@ -11,36 +11,59 @@ class CalibrationError(ValueError):
 
 
 def check(scene: Scene, references: dict[str, Trajectory | Curves]) -> None:
-    """Raise CalibrationError listing every fault of the input; SceneError for a condition the scene does not have.
+    """Raise CalibrationError listing every fault of the input; SceneError for a condition the scene
+    does not have.
 
     Runs must cover ``agreement.fitted``; curves from elsewhere are fitted as they come.
     """
     faults = []
     if scene.contact is None:
-        faults.append("contact: given no table, expected one: without contact there is nothing to fit")
+        faults.append(
+            "contact: given no table, expected one: without contact there is nothing to fit"
+        )
     asked = list(scene.agreement.fitted)
     if not references:
-        faults.append(f"references: given none, expected one for each of {', '.join(asked) or 'the fitted conditions'}")
+        faults.append(
+            f"references: given none, expected one for each of "
+            f"{', '.join(asked) or 'the fitted conditions'}"
+        )
     if all(isinstance(reference, Trajectory) for reference in references.values()):
-        faults += [f"references: {name} is missing, expected every condition of agreement.fitted"
-                   for name in asked if references and name not in references]
+        faults += [
+            f"references: {name} is missing, expected every condition of agreement.fitted"
+            for name in asked
+            if references and name not in references
+        ]
     for name, reference in references.items():
-        faults += [f"references: {name} {words}" for words in _unfit(scene.condition(name), reference)]
+        faults += [
+            f"references: {name} {words}" for words in _unfit(scene.condition(name), reference)
+        ]
     if faults:
-        raise CalibrationError("\n".join([f"cannot calibrate {scene.name}"] + [f"  {fault}" for fault in faults]))
+        raise CalibrationError(
+            "\n".join([f"cannot calibrate {scene.name}"] + [f"  {fault}" for fault in faults])
+        )
 
 
 def _unfit(scene: Scene, reference: Trajectory | Curves) -> list[str]:
     """Why a reference has no settled rate that a run of ``scene`` could be compared with."""
     if isinstance(reference, Trajectory):
-        return [] if reference.status == "exited" else [f"is {reference.status}, expected exited: no settled rate can be fitted"]
-    burnt, = thrust.burnouts(scene.thrust.record(), (1e-3,), scene.duration)
-    last_step = float(reference.time[-1] - reference.time[-2])  # a record ends with a sample, seldom with the window
+        return (
+            []
+            if reference.status == "exited"
+            else [f"is {reference.status}, expected exited: no settled rate can be fitted"]
+        )
+    (burnt,) = thrust.burnouts(scene.thrust.record(), (1e-3,), scene.duration)
+    # a record ends with a sample, seldom with the window
+    last_step = float(reference.time[-1] - reference.time[-2])
     found = []
     if reference.window_start < burnt - last_step:
-        found.append(f"settles from {1e3 * reference.window_start:.6g} ms, expected no earlier than {1e3 * burnt:.6g} ms, when "
-                     "thrust falls below 0.1 % of its peak: the record is too short")
+        found.append(
+            f"settles from {1e3 * reference.window_start:.6g} ms, expected no earlier than "
+            f"{1e3 * burnt:.6g} ms, when "
+            "thrust falls below 0.1 % of its peak: the record is too short"
+        )
     if reference.time[-1] > scene.duration * (1.0 + 1e-12):
-        found.append(f"lasts {1e3 * reference.time[-1]:.6g} ms, expected at most the scene's duration of "
-                     f"{1e3 * scene.duration:.6g} ms: settle earlier, or raise the duration")
+        found.append(
+            f"lasts {1e3 * reference.time[-1]:.6g} ms, expected at most the scene's duration of "
+            f"{1e3 * scene.duration:.6g} ms: settle earlier, or raise the duration"
+        )
     return found

@@ -1,8 +1,10 @@
-"""What the data know about the parameters: the information matrix J'J, and the directions it leaves open.
+"""What the data know about the parameters: the information matrix J'J, and the directions it leaves
+open.
 
-J is the Jacobian of the weighted residuals after the parameters' shares (0..1 of their bounds), so an eigenvalue is how much the
-objective grows, to second order, per unit of a direction, and eigenvalues of different parameters can be compared. The smallest
-change of a direction that the objective would notice as a relative ``noise`` is sqrt(noise^2 / eigenvalue).
+J is the Jacobian of the weighted residuals after the parameters' shares (0..1 of their bounds), so
+an eigenvalue is how much the objective grows, to second order, per unit of a direction, and
+eigenvalues of different parameters can be compared. The smallest change of a direction that the
+objective would notice as a relative ``noise`` is sqrt(noise^2 / eigenvalue).
 """
 
 from collections.abc import Callable
@@ -12,14 +14,17 @@ import numpy as np
 
 # Large against the surrogate's tolerance (1e-6), small against the width of a basin (about 0.1).
 DIFFERENCE_STEP = 1e-3
-# A direction that can move by a tenth of its bounds for 0.5 % of the curves' amplitude is not told by curves fitted to some
-# percent.
+# A direction that can move by a tenth of its bounds for 0.5 % of the curves' amplitude is not told
+# by curves fitted to some percent.
 WEAK_EIGENVALUE = (0.005 / 0.1) ** 2
 WEAK_RATIO = 1e-3
 
 
-def jacobian(residuals: Callable[[np.ndarray], np.ndarray], shares: np.ndarray, step: float = DIFFERENCE_STEP) -> np.ndarray:
-    """Central differences (n,p) of ``residuals`` at ``shares`` (p,), one-sided at the bounds of the unit cube."""
+def jacobian(
+    residuals: Callable[[np.ndarray], np.ndarray], shares: np.ndarray, step: float = DIFFERENCE_STEP
+) -> np.ndarray:
+    """Central differences (n,p) of ``residuals`` at ``shares`` (p,), one-sided at the bounds of the
+    unit cube."""
     columns = []
     for i in range(shares.size):
         ahead, behind = shares.copy(), shares.copy()
@@ -35,7 +40,8 @@ def information(matrix: np.ndarray) -> np.ndarray:
 
 
 class Weak(NamedTuple):
-    """A direction the data hardly see: its eigenvalue, that over the largest, and the unit vector (p,)."""
+    """A direction the data hardly see: its eigenvalue, that over the largest, and the unit vector
+    (p,)."""
 
     eigenvalue: float
     ratio: float
@@ -47,25 +53,39 @@ def weak(matrix: np.ndarray) -> list[Weak]:
     values, vectors = np.linalg.eigh(matrix)
     values = np.maximum(values, 0.0)
     ratios = values / values[-1] if values[-1] > 0.0 else values
-    found = [Weak(float(value), float(ratio), vector) for value, ratio, vector in zip(values, ratios, vectors.T)]
+    found = [
+        Weak(float(value), float(ratio), vector)
+        for value, ratio, vector in zip(values, ratios, vectors.T)
+    ]
     return [item for item in found if item.ratio < WEAK_RATIO or item.eigenvalue < WEAK_EIGENVALUE]
 
 
 def weak_directions(matrix: np.ndarray, names: list[str]) -> list[str]:
     """One sentence for every weak direction."""
-    return [f"{combination(item.vector, names)}: eigenvalue {item.eigenvalue:.2g}, {item.ratio:.1e} of the largest"
-            for item in weak(matrix)]
+    return [
+        f"{combination(item.vector, names)}: eigenvalue {item.eigenvalue:.2g}, {item.ratio:.1e} of "
+        f"the largest"
+        for item in weak(matrix)
+    ]
 
 
 def left_alone(matrix: np.ndarray, index: int) -> float:
-    """Information on parameter ``index`` that is left when all others are fitted again: the Schur complement of the others."""
+    """Information on parameter ``index`` that is left when all others are fitted again: the Schur
+    complement of the others."""
     others = np.delete(np.arange(len(matrix)), index)
     cross = matrix[others, index]
-    return max(0.0, float(matrix[index, index] - cross @ np.linalg.pinv(matrix[np.ix_(others, others)], hermitian=True) @ cross))
+    return max(
+        0.0,
+        float(
+            matrix[index, index]
+            - cross @ np.linalg.pinv(matrix[np.ix_(others, others)], hermitian=True) @ cross
+        ),
+    )
 
 
 def combination(vector: np.ndarray, names: list[str]) -> str:
-    """A unit vector in words: shares of the bounds, largest first, without what is below a tenth of it."""
+    """A unit vector in words: shares of the bounds, largest first, without what is below a tenth of
+    it."""
     vector = vector if vector[np.argmax(np.abs(vector))] > 0.0 else -vector
     order = np.argsort(-np.abs(vector), kind="stable")
     terms = [f"{vector[i]:+.2f} {names[i]}" for i in order if abs(vector[i]) >= 0.1]

@@ -1,14 +1,16 @@
-"""Intervals of fitted parameters, from the information matrix J'J and the scatter r'r of what the fit leaves.
+"""Intervals of fitted parameters, from the information matrix J'J and the scatter r'r of what the
+fit leaves.
 
     s^2 = r'r / (n - p)        V = s^2 (J'J)^-1        half width  t(0.975; n - p) sqrt(V_ii)
 
-This is the linear theory of least squares (Seber and Wild, Nonlinear Regression, 1989, section 5.1). ``n`` counts independent
-residuals: a curve sampled twice as often is no second experiment. A curve of n samples counts as n / tau, tau the correlation time
-of its residuals in samples (``calibrate.correlation``).
+This is the linear theory of least squares (Seber and Wild, Nonlinear Regression, 1989, section
+5.1). ``n`` counts independent residuals: a curve sampled twice as often is no second experiment. A
+curve of n samples counts as n / tau, tau the correlation time of its residuals in samples
+(``calibrate.correlation``).
 
-A direction the data leave open has no interval, and none is made up: parameters with a part in it get an infinite one. What the
-model cannot do is taken for scatter here. It shifts the constants, which no interval of this kind can know: model error is not in
-them.
+A direction the data leave open has no interval, and none is made up: parameters with a part in it
+get an infinite one. What the model cannot do is taken for scatter here. It shifts the constants,
+which no interval of this kind can know: model error is not in them.
 """
 
 from collections.abc import Sequence
@@ -20,33 +22,47 @@ from calibrate.correlation import correlation_time
 
 LEVEL = 0.95
 ROUNDING = 1e-10  # of the largest eigenvalue: what differences leave where there is nothing
-PART = 0.1  # of a unit vector, from which on a parameter belongs to a direction, as in ``information.combination``
+# of a unit vector, from which on a parameter belongs to a direction, as in
+# ``information.combination``
+PART = 0.1
 
 
-def deviations(matrix: np.ndarray, variance: float, untold: Sequence[np.ndarray] = ()) -> np.ndarray:
-    """Standard deviations (p,) of parameters with the information ``matrix`` (p,p) on residuals of that variance.
+def deviations(
+    matrix: np.ndarray, variance: float, untold: Sequence[np.ndarray] = ()
+) -> np.ndarray:
+    """Standard deviations (p,) of parameters with the information ``matrix`` (p,p) on residuals of
+    that variance.
 
-    Infinite for parameters with a part in a direction of no information, or in one of ``untold``, unit vectors (p,).
+    Infinite for parameters with a part in a direction of no information, or in one of ``untold``,
+    unit vectors (p,).
     """
     values, vectors = np.linalg.eigh(matrix)
     least = ROUNDING * values[-1]
-    found = np.sqrt(variance * (vectors**2 / np.maximum(values, max(least, np.finfo(float).tiny))).sum(axis=1))
+    found = np.sqrt(
+        variance * (vectors**2 / np.maximum(values, max(least, np.finfo(float).tiny))).sum(axis=1)
+    )
     for direction in [*vectors.T[values <= least], *untold]:
         found[np.abs(direction) >= PART] = np.inf
     return found
 
 
-def half_widths(matrix: np.ndarray, squares: float, count: float, untold: Sequence[np.ndarray] = ()) -> np.ndarray:
-    """Half widths (p,) of the intervals from the sum of squared residuals and the number of independent ones.
+def half_widths(
+    matrix: np.ndarray, squares: float, count: float, untold: Sequence[np.ndarray] = ()
+) -> np.ndarray:
+    """Half widths (p,) of the intervals from the sum of squared residuals and the number of
+    independent ones.
 
     All infinite where that number is not above the number of parameters.
     """
     freedom = count - len(matrix)
     if freedom <= 0.0:
         return np.full(len(matrix), np.inf)
-    return scipy.stats.t.ppf(0.5 + 0.5 * LEVEL, freedom) * deviations(matrix, squares / freedom, untold)
+    return scipy.stats.t.ppf(0.5 + 0.5 * LEVEL, freedom) * deviations(
+        matrix, squares / freedom, untold
+    )
 
 
 def independent(curve: np.ndarray) -> float:
-    """Number of independent residuals in those of one curve (n,), between 1 and n; 0 for a curve without any residual."""
+    """Number of independent residuals in those of one curve (n,), between 1 and n; 0 for a curve
+    without any residual."""
     return curve.size / correlation_time([curve]) if curve.any() else 0.0

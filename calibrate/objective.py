@@ -4,11 +4,13 @@
 
     L2(rate)^2 = sum_axes int |w - w_ref|^2 dt / sum_axes int |w_ref|^2 dt,      L2(v_x) likewise,      w_s: settled rates
 
-Every term is relative to the condition's own amplitude, so a condition with small rates counts as much as one with large ones, and
-roll counts by its size instead of by its noise. Rates and v_x are wanted to 5 % and 0.1 %: 50 makes those equally wrong, and lets
-the few mm/s friction takes be seen. The settled rates are what the payload leaves with; a late contact has little time left in the
-integrals. J is rough: where a contact is just missed, everything after it jumps. An amplitude below a hundredth of the largest of
-all conditions is taken as that hundredth: nothing is gained by fitting the rounding of a condition without rates.
+Every term is relative to the condition's own amplitude, so a condition with small rates counts as
+much as one with large ones, and roll counts by its size instead of by its noise. Rates and v_x are
+wanted to 5 % and 0.1 %: 50 makes those equally wrong, and lets the few mm/s friction takes be seen.
+The settled rates are what the payload leaves with; a late contact has little time left in the
+integrals. J is rough: where a contact is just missed, everything after it jumps. An amplitude below
+a hundredth of the largest of all conditions is taken as that hundredth: nothing is gained by
+fitting the rounding of a condition without rates.
 """
 
 from collections.abc import Callable
@@ -28,12 +30,13 @@ from scenes.walls import Walls
 
 VELOCITY_WEIGHT = 50.0
 SMALLEST_AMPLITUDE = 0.01
-FAILED = 10.0  # relative error of a run that diverged, jammed or did not settle: worse than any that did
+# relative error of a run that diverged, jammed or did not settle: worse than any that did
+FAILED = 10.0
 
 
 class Target(NamedTuple):
-    """One condition: its scene, times (n,) s, reference v_x (n,) m/s, rates (n,3) and settled rates (3,) rad/s, and the amplitudes
-    sqrt(int v_x^2 dt), sqrt(int |w|^2 dt), |w_s|."""
+    """One condition: its scene, times (n,) s, reference v_x (n,) m/s, rates (n,3) and settled rates
+    (3,) rad/s, and the amplitudes sqrt(int v_x^2 dt), sqrt(int |w|^2 dt), |w_s|."""
 
     scene: Scene
     time: np.ndarray
@@ -46,25 +49,44 @@ class Target(NamedTuple):
 
 def target(scene: Scene, reference: Curves) -> Target:
     """What a condition asks for."""
-    time, velocity, rate, settled = reference.time, reference.velocity, reference.rate, reference.settled
+    time, velocity, rate, settled = (
+        reference.time,
+        reference.velocity,
+        reference.rate,
+        reference.settled,
+    )
     weights = np.gradient(time)
     weights[[0, -1]] *= 0.5  # the trapezoidal rule
-    amplitudes = np.sqrt(weights @ velocity**2), np.sqrt(weights @ (rate**2).sum(axis=1)), np.linalg.norm(settled)
+    amplitudes = (
+        np.sqrt(weights @ velocity**2),
+        np.sqrt(weights @ (rate**2).sum(axis=1)),
+        np.linalg.norm(settled),
+    )
     return Target(scene, time, velocity, rate, settled, weights, amplitudes)
 
 
 def targets(scene: Scene, references: dict[str, Curves]) -> dict[str, Target]:
-    """Targets by condition, with small amplitudes raised. Raises CalibrationError when nothing moves or nothing turns."""
-    found = {name: target(scene.condition(name), reference) for name, reference in references.items()}
+    """Targets by condition, with small amplitudes raised. Raises CalibrationError when nothing
+    moves or nothing turns."""
+    found = {
+        name: target(scene.condition(name), reference) for name, reference in references.items()
+    }
     largest = np.max([item.amplitudes for item in found.values()], axis=0)
     if not (largest > 0.0).all():
-        raise CalibrationError(f"cannot calibrate {scene.name}\n  references: all velocities or all rates are zero")
-    return {name: item._replace(amplitudes=tuple(np.maximum(item.amplitudes, SMALLEST_AMPLITUDE * largest)))
-            for name, item in found.items()}
+        raise CalibrationError(
+            f"cannot calibrate {scene.name}\n  references: all velocities or all rates are zero"
+        )
+    return {
+        name: item._replace(
+            amplitudes=tuple(np.maximum(item.amplitudes, SMALLEST_AMPLITUDE * largest))
+        )
+        for name, item in found.items()
+    }
 
 
 class Parts(NamedTuple):
-    """Weighted residuals of one condition: squared sums are L2(v_x)^2, L2(rate)^2 and the relative settled error squared."""
+    """Weighted residuals of one condition: squared sums are L2(v_x)^2, L2(rate)^2 and the relative
+    settled error squared."""
 
     velocity: np.ndarray
     rate: np.ndarray
@@ -81,23 +103,40 @@ def compare(target: Target, result: Trajectory) -> Parts:
     moving, turning, leaving = target.amplitudes
     if result.status != "exited":
         share = np.full(target.time.size, 1.0 / np.sqrt(target.time.size))
-        return Parts(share * FAILED / VELOCITY_WEIGHT, np.outer(share, np.full(3, FAILED / np.sqrt(3.0))),
-                     np.full(3, FAILED / np.sqrt(3.0)))
+        return Parts(
+            share * FAILED / VELOCITY_WEIGHT,
+            np.outer(share, np.full(3, FAILED / np.sqrt(3.0))),
+            np.full(3, FAILED / np.sqrt(3.0)),
+        )
     velocity = np.interp(target.time, result.time, result.velocity[:, 0])
-    rate = np.column_stack([np.interp(target.time, result.time, column) for column in result.rate.T])
-    return Parts(root * (velocity - target.velocity) / moving, root[:, None] * (rate - target.rate) / turning,
-                 (np.array(result.outcome.rate) - target.settled) / leaving)
+    rate = np.column_stack(
+        [np.interp(target.time, result.time, column) for column in result.rate.T]
+    )
+    return Parts(
+        root * (velocity - target.velocity) / moving,
+        root[:, None] * (rate - target.rate) / turning,
+        (np.array(result.outcome.rate) - target.settled) / leaving,
+    )
 
 
 class Objective:
-    """Residuals as a function of the parameters' shares (0..1 of their bounds); counts its evaluations.
+    """Residuals as a function of the parameters' shares (0..1 of their bounds); counts its
+    evaluations.
 
-    ``over`` applies a function to every condition, in order: ``map``, or that of a pool of threads, since the surrogate's kernels
-    release the interpreter. No bit of the result depends on the choice. ``walls`` are rigid ones, where the rails are warm.
+    ``over`` applies a function to every condition, in order: ``map``, or that of a pool of threads,
+    since the surrogate's kernels release the interpreter. No bit of the result depends on the
+    choice. ``walls`` are rigid ones, where the rails are warm.
     """
 
-    def __init__(self, scene: Scene, targets: dict[str, Target], parameters: list[Parameter], numerics=None, over: Callable = map,
-                 walls: Walls | None = None):
+    def __init__(
+        self,
+        scene: Scene,
+        targets: dict[str, Target],
+        parameters: list[Parameter],
+        numerics=None,
+        over: Callable = map,
+        walls: Walls | None = None,
+    ):
         self.scene, self.targets, self.parameters = scene, targets, parameters
         self.numerics, self.over, self.walls = numerics, over, walls
         self.variations = {name: Variations(wanted.scene) for name, wanted in targets.items()}
@@ -105,7 +144,10 @@ class Objective:
 
     def values(self, shares: np.ndarray) -> dict[str, float]:
         """Values (SI) of the parameters by name."""
-        return {item.name: item.value(float(share)) for item, share in zip(self.parameters, shares, strict=True)}
+        return {
+            item.name: item.value(float(share))
+            for item, share in zip(self.parameters, shares, strict=True)
+        }
 
     def parts(self, shares: np.ndarray) -> dict[str, Parts]:
         """Residuals by condition."""
@@ -113,11 +155,20 @@ class Objective:
         changed = overrides(self.scene, self.values(shares))
 
         def one(name: str) -> Parts:
-            return compare(self.targets[name],
-                           lowfi.run(self.variations[name].of(changed), SPRINGS, numerics=self.numerics, walls=self.walls))
+            return compare(
+                self.targets[name],
+                lowfi.run(
+                    self.variations[name].of(changed),
+                    SPRINGS,
+                    numerics=self.numerics,
+                    walls=self.walls,
+                ),
+            )
 
         return dict(zip(self.targets, self.over(one, self.targets)))
 
     def __call__(self, shares: np.ndarray) -> np.ndarray:
         """Residual vector r with J = r'r."""
-        return np.concatenate([part.vector() for part in self.parts(shares).values()]) / np.sqrt(len(self.targets))
+        return np.concatenate([part.vector() for part in self.parts(shares).values()]) / np.sqrt(
+            len(self.targets)
+        )

@@ -1,14 +1,16 @@
-"""The constants a fit may move: their physical meaning, bounds, and how they become overrides of a scene. One table, one place.
+"""The constants a fit may move: their physical meaning, bounds, and how they become overrides of a
+scene. One table, one place.
 
-A stiffness k in N/m^e cannot be compared between exponents, so the fit moves the elastic force at the reference penetration
-p_r = 0.02 mm (loads of 60 to 180 N press a rail of 3e-8 to 1e-7 m/N by 2 to 18 um) and k follows::
+A stiffness k in N/m^e cannot be compared between exponents, so the fit moves the elastic force at
+the reference penetration p_r = 0.02 mm (loads of 60 to 180 N press a rail of 3e-8 to 1e-7 m/N by 2
+to 18 um) and k follows::
 
     F_r = k p_r^e        B_r = c s(p_r/d),  s(x) = x^2 (3 - 2 x)
 
-B_r is IMPACT's damping coefficient at p_r. While p << d the law holds c and d only through c/d^2, so d stays at the scene's value
-and only B_r moves; ``held`` lists d again, for the information matrix to show that the curves would not have told it.
-Bounds scale with the rail: a pad load P bends a leg (thickness t, length a) by about P a^2/(E t^3), the scale of a cantilever
-plate.
+B_r is IMPACT's damping coefficient at p_r. While p << d the law holds c and d only through c/d^2,
+so d stays at the scene's value and only B_r moves; ``held`` lists d again, for the information
+matrix to show that the curves would not have told it. Bounds scale with the rail: a pad load P
+bends a leg (thickness t, length a) by about P a^2/(E t^3), the scale of a cantilever plate.
 """
 
 import math
@@ -19,14 +21,16 @@ from scenes.faults import Fault, SceneError
 from scenes.scene import Scene
 
 REFERENCE_PENETRATION = 2e-5  # m
-# Softest and stiffest static compliance of the reference rail (1e-7 m/N between mounts, 3e-8 at one) over a^2/(E t^3).
+# Softest and stiffest static compliance of the reference rail (1e-7 m/N between mounts, 3e-8 at
+# one) over a^2/(E t^3).
 _SOFT, _STIFF = 1.25, 4.2
 _MARGIN = 10.0  # between the scale of a static estimate and what a point contact may need in impact
 
 
 @dataclass(frozen=True)
 class Parameter:
-    """One coordinate of a fit: bounds in SI, searched on a logarithmic or linear scale, with the reason for its bounds.
+    """One coordinate of a fit: bounds in SI, searched on a logarithmic or linear scale, with the
+    reason for its bounds.
 
     ``read`` gives its value in a scene (SI).
     """
@@ -53,21 +57,27 @@ class Parameter:
 
 
 def free(scene: Scene) -> list[Parameter]:
-    """What the fit of ``scene`` moves: the constants of its contact law, and friction if it has any."""
-    found = {"impact": [_force, _exponent, _damping], "hunt-crossley": [_force, _exponent, _dissipation],
-             "linear": [_force, _damping]}[scene.contact.law]
+    """What the fit of ``scene`` moves: the constants of its contact law, and friction if it has
+    any."""
+    found = {
+        "impact": [_force, _exponent, _damping],
+        "hunt-crossley": [_force, _exponent, _dissipation],
+        "linear": [_force, _damping],
+    }[scene.contact.law]
     if scene.friction is not None:
         found = [*found, _friction]
     return [make(scene) for make in found]
 
 
 def held(scene: Scene) -> list[Parameter]:
-    """What the fit leaves at the scene's value because it acts almost only together with a free one."""
+    """What the fit leaves at the scene's value because it acts almost only together with a free
+    one."""
     return [_depth(scene)] if scene.contact.law == "impact" else []
 
 
 def overrides(scene: Scene, values: dict[str, float]) -> dict[str, float]:
-    """Dotted overrides (SI) of ``scene`` for values of parameters by name; k is set together with e, whose unit it carries."""
+    """Dotted overrides (SI) of ``scene`` for values of parameters by name; k is set together with
+    e, whose unit it carries."""
     found = {}
     exponent = values.get("contact.exponent", scene.contact.exponent)
     if scene.contact.law != "linear":
@@ -79,10 +89,15 @@ def overrides(scene: Scene, values: dict[str, float]) -> dict[str, float]:
         found["contact.damping"] = values["contact.damping"]
         if scene.contact.law == "impact":
             depth = values.get("contact.damping_depth", scene.contact.damping_depth)
-            found |= {"contact.damping": values["contact.damping"] / share_of_damping(depth), "contact.damping_depth": depth}
+            found |= {
+                "contact.damping": values["contact.damping"] / share_of_damping(depth),
+                "contact.damping_depth": depth,
+            }
     if "friction.dynamic" in values:
-        found |= {"friction.dynamic": values["friction.dynamic"],
-                  "friction.static": values["friction.dynamic"] * _static_over_dynamic(scene)}
+        found |= {
+            "friction.dynamic": values["friction.dynamic"],
+            "friction.static": values["friction.dynamic"] * _static_over_dynamic(scene),
+        }
     return found
 
 
@@ -95,7 +110,12 @@ def share_of_damping(depth: float) -> float:
 def _stiffness_bounds(scene: Scene) -> tuple[float, float]:
     rail = scene.rail
     if missing := [f"rail.{key}" for key in ("leg", "thickness") if getattr(rail, key) is None]:
-        raise SceneError([Fault(scene.name, key, "nothing", "a length, with which the bounds of a fit scale") for key in missing])
+        raise SceneError(
+            [
+                Fault(scene.name, key, "nothing", "a length, with which the bounds of a fit scale")
+                for key in missing
+            ]
+        )
     scale = rail.material.youngs_modulus * rail.thickness**3 / rail.leg**2
     return _SOFT * scale / _MARGIN, _STIFF * scale * _MARGIN
 
@@ -103,49 +123,95 @@ def _stiffness_bounds(scene: Scene) -> tuple[float, float]:
 def _force(scene: Scene) -> Parameter:
     low, high = _stiffness_bounds(scene)
     return Parameter(
-        "contact.force", "N", low * REFERENCE_PENETRATION, high * REFERENCE_PENETRATION, True,
-        f"elastic force at 0.02 mm: secant stiffness between a tenth of the rail's softest static stiffness ({low:.3g} N/m) and "
-        f"ten times its stiffest ({high:.3g} N/m), estimated from E t^3/a^2; the rail is the spring",
-        lambda s: s.contact.stiffness * REFERENCE_PENETRATION**s.contact.exponent)
+        "contact.force",
+        "N",
+        low * REFERENCE_PENETRATION,
+        high * REFERENCE_PENETRATION,
+        True,
+        f"elastic force at 0.02 mm: secant stiffness between a tenth of the rail's softest static "
+        f"stiffness ({low:.3g} N/m) and "
+        f"ten times its stiffest ({high:.3g} N/m), estimated from E t^3/a^2; the rail is the "
+        f"spring",
+        lambda s: s.contact.stiffness * REFERENCE_PENETRATION**s.contact.exponent,
+    )
 
 
 def _exponent(scene: Scene) -> Parameter:
     return Parameter(
-        "contact.exponent", "1", 1.0, 2.2, False,
-        "1 for a linear elastic rail, 1.5 for Hertz, up to 2.2 for crowned pads that gain area; below 1 a contact would be "
-        "infinitely stiff at first touch", lambda s: s.contact.exponent)
+        "contact.exponent",
+        "1",
+        1.0,
+        2.2,
+        False,
+        "1 for a linear elastic rail, 1.5 for Hertz, up to 2.2 for crowned pads that gain area; "
+        "below 1 a contact would be "
+        "infinitely stiff at first touch",
+        lambda s: s.contact.exponent,
+    )
 
 
 def _damping(scene: Scene) -> Parameter:
     critical = 2.0 * math.sqrt(_stiffness_bounds(scene)[1] / _MARGIN * scene.payload.mass)
     impact = scene.contact.law == "impact"
-    where = "damping coefficient at 0.02 mm (c s(0.02 mm/d), d held)" if impact else "damping coefficient"
+    where = (
+        "damping coefficient at 0.02 mm (c s(0.02 mm/d), d held)"
+        if impact
+        else "damping coefficient"
+    )
     return Parameter(
-        "contact.damping", "N*s/m", 0.0, 0.2 * critical, False,
-        f"{where}: from none to a fifth of critical, 2 sqrt(k m) = {critical:.3g} N s/m of the payload on the rail's stiffest "
-        "place, where restitution is 0.5: metal does not lose more in one touch at millimetres per second",
-        lambda s: s.contact.damping * (share_of_damping(s.contact.damping_depth) if impact else 1.0))
+        "contact.damping",
+        "N*s/m",
+        0.0,
+        0.2 * critical,
+        False,
+        f"{where}: from none to a fifth of critical, 2 sqrt(k m) = {critical:.3g} N s/m of the "
+        f"payload on the rail's stiffest "
+        "place, where restitution is 0.5: metal does not lose more in one touch at millimetres per "
+        "second",
+        lambda s: (
+            s.contact.damping * (share_of_damping(s.contact.damping_depth) if impact else 1.0)
+        ),
+    )
 
 
 def _dissipation(scene: Scene) -> Parameter:
     return Parameter(
-        "contact.dissipation", "s/m", 0.1, 100.0, True,
-        "restitution between 0.999 and 0.4 at an approach of 20 mm/s, the speed a clearance lets a pad gain "
+        "contact.dissipation",
+        "s/m",
+        0.1,
+        100.0,
+        True,
+        "restitution between 0.999 and 0.4 at an approach of 20 mm/s, the speed a clearance lets a "
+        "pad gain "
         "(1 - 2 a v/3 at low speed)",
-        lambda s: s.contact.dissipation)
+        lambda s: s.contact.dissipation,
+    )
 
 
 def _friction(scene: Scene) -> Parameter:
     return Parameter(
-        "friction.dynamic", "1", 0.05, 0.5, False,
-        "coated or lubricated (0.05) to clean dry aluminium under light load (0.5); static moves with dynamic in the scene's "
-        "ratio, because a pad at metres per second never sticks", lambda s: s.friction.dynamic)
+        "friction.dynamic",
+        "1",
+        0.05,
+        0.5,
+        False,
+        "coated or lubricated (0.05) to clean dry aluminium under light load (0.5); static moves "
+        "with dynamic in the scene's "
+        "ratio, because a pad at metres per second never sticks",
+        lambda s: s.friction.dynamic,
+    )
 
 
 def _depth(scene: Scene) -> Parameter:
     return Parameter(
-        "contact.damping_depth", "m", 3e-5, 3e-3, True,
-        "from just above the penetrations that occur to ten times the deepest depth in use", lambda s: s.contact.damping_depth)
+        "contact.damping_depth",
+        "m",
+        3e-5,
+        3e-3,
+        True,
+        "from just above the penetrations that occur to ten times the deepest depth in use",
+        lambda s: s.contact.damping_depth,
+    )
 
 
 def _static_over_dynamic(scene: Scene) -> float:

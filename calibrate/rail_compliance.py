@@ -1,12 +1,14 @@
-"""The rail's compliance under the pads, condensed from the finite elements, and the mesh that is fine enough for it.
+"""The rail's compliance under the pads, condensed from the finite elements, and the mesh that is
+fine enough for it.
 
-On a mesh of size h the compliance falls short of the converged one by about c h: the edges of a clamped strip are singular. So from
-the change between 2h and h follows how far h is from the reference's own mesh, of size r::
+On a mesh of size h the compliance falls short of the converged one by about c h: the edges of a
+clamped strip are singular. So from the change between 2h and h follows how far h is from the
+reference's own mesh, of size r::
 
     |C(2h) - C(h)| = c h        |C(h) - C(r)| = c (h - r)
 
-The coarsest of the meshes 2r and r that is within ``ACCURACY`` of the reference's own mesh is taken. Rails from a mesh file have
-one mesh at every size.
+The coarsest of the meshes 2r and r that is within ``ACCURACY`` of the reference's own mesh is
+taken. Rails from a mesh file have one mesh at every size.
 """
 
 import numpy as np
@@ -21,9 +23,12 @@ REFERENCE_SIZE = 2e-3  # m, elements of the reference where agreement is judged
 _PLACES = 4  # stations along the rail at which meshes are compared
 
 
-def compliance(scene: Scene, element_size: float | None = None, reference_size: float = REFERENCE_SIZE) -> Walls:
-    """Compliance of the rails of ``scene`` under its pads, with the modes of the rails, in elements of ``element_size`` (m), else
-    on the coarsest mesh that is within 1 % of the reference's, whose elements are of ``reference_size`` (m).
+def compliance(
+    scene: Scene, element_size: float | None = None, reference_size: float = REFERENCE_SIZE
+) -> Walls:
+    """Compliance of the rails of ``scene`` under its pads, with the modes of the rails, in elements
+    of ``element_size`` (m), else on the coarsest mesh that is within 1 % of the reference's, whose
+    elements are of ``reference_size`` (m).
 
     Takes seconds to a minute, once for a rail and its pads. Raises SceneError or MeshError.
     """
@@ -31,7 +36,8 @@ def compliance(scene: Scene, element_size: float | None = None, reference_size: 
 
 
 def fine_enough(scene: Scene, reference_size: float = REFERENCE_SIZE) -> float:
-    """Element size (m) of the coarsest mesh whose compliance is within ``ACCURACY`` of that of ``reference_size`` (m)."""
+    """Element size (m) of the coarsest mesh whose compliance is within ``ACCURACY`` of that of
+    ``reference_size`` (m)."""
     coarse = 2.0 * reference_size
     coarser, finer = (_direct(scene, size) for size in (2.0 * coarse, coarse))
     change = float((np.abs(coarser - finer) / finer).max())
@@ -39,7 +45,8 @@ def fine_enough(scene: Scene, reference_size: float = REFERENCE_SIZE) -> float:
 
 
 def _direct(scene: Scene, element_size: float) -> np.ndarray:
-    """Mean displacement (s,f) m/N of each face under a unit force on it, at a few places along the rail."""
+    """Mean displacement (s,f) m/N of each face under a unit force on it, at a few places along the
+    rail."""
     faces = scene_model.built(scene).nominal
     way = (scene.rail.end - faces.half_length - faces.centre[:, 0]).max()
     found = statics.along(scene, element_size, np.linspace(0.0, way, _PLACES), patterns=1)

@@ -18,17 +18,30 @@ from scenes.walls import Walls
 WORKERS = 2  # threads
 
 
-def run(scene: Scene, references: dict[str, Trajectory | Curves], numerics=None, progress: Callable[[float], None] | None = None,
-        seed: int = 0, plan: Plan | None = None, walls: Walls | None = None, workers: int = WORKERS) -> Calibration:
-    """Fit the surrogate's contact constants to ``references`` (condition name to reference run or curves) of ``scene``.
+def run(
+    scene: Scene,
+    references: dict[str, Trajectory | Curves],
+    numerics=None,
+    progress: Callable[[float], None] | None = None,
+    seed: int = 0,
+    plan: Plan | None = None,
+    walls: Walls | None = None,
+    workers: int = WORKERS,
+) -> Calibration:
+    """Fit the surrogate's contact constants to ``references`` (condition name to reference run or
+    curves) of ``scene``.
 
-    ``numerics`` are the surrogate's (lowfi.Numerics), ``progress`` is called with the fraction done, ``plan`` sizes the search; the
-    same seed gives the same bits, however many ``workers`` run conditions side by side. A warm scene asks for its rigid ``walls``
-    (``lowfi.run``). Raises CalibrationError for references
-    that are missing, did not exit, are too short or do not turn, SceneError for an unknown condition.
+    ``numerics`` are the surrogate's (lowfi.Numerics), ``progress`` is called with the fraction
+    done, ``plan`` sizes the search; the same seed gives the same bits, however many ``workers`` run
+    conditions side by side. A warm scene asks for its rigid ``walls`` (``lowfi.run``). Raises
+    CalibrationError for references that are missing, did not exit, are too short or do not turn,
+    SceneError for an unknown condition.
     """
     faults.check(scene, references)
-    curves = {name: item if isinstance(item, Curves) else Curves.from_trajectory(item) for name, item in references.items()}
+    curves = {
+        name: item if isinstance(item, Curves) else Curves.from_trajectory(item)
+        for name, item in references.items()
+    }
     free, held, plan = parameters.free(scene), parameters.held(scene), plan or Plan()
     wanted = targets(scene, curves)
     with ThreadPoolExecutor(workers) as pool:
@@ -39,7 +52,7 @@ def run(scene: Scene, references: dict[str, Trajectory | Curves], numerics=None,
         matrix = information(jacobian(wide, np.append(found.shares, _shares(held, scene))))
     values = objective.values(found.shares)
     constants = parameters.overrides(scene, values)
-    inner = matrix[:len(free), :len(free)]
+    inner = matrix[: len(free), : len(free)]
     ends, count = evidence.intervals(free, found.shares, inner, list(residuals.values()))
     return Calibration(
         constants=constants,
@@ -52,11 +65,21 @@ def run(scene: Scene, references: dict[str, Trajectory | Curves], numerics=None,
         intervals=ends,
         information=inner,
         weak_directions=evidence.weak_directions(scene, free, held, found.shares, matrix),
-        residuals={name: evidence.residuals(part, wanted[name]) for name, part in residuals.items()},
+        residuals={
+            name: evidence.residuals(part, wanted[name]) for name, part in residuals.items()
+        },
         conditions=list(curves),
         objective=found.value,
-        provenance=evidence.provenance(scene, curves, constants, found, plan, seed, objective.evaluations + wide.evaluations,
-                                       count),
+        provenance=evidence.provenance(
+            scene,
+            curves,
+            constants,
+            found,
+            plan,
+            seed,
+            objective.evaluations + wide.evaluations,
+            count,
+        ),
     )
 
 

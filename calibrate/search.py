@@ -1,9 +1,12 @@
-"""Search of a rough sum of squares on the unit cube: look everywhere, follow the best basins, polish where each ends.
+"""Search of a rough sum of squares on the unit cube: look everywhere, follow the best basins,
+polish where each ends.
 
 1. Sobol' points (scrambled by the seed) and the scene's own constants: which basins are there.
-2. CMA-ES (Hansen) from the best points that are apart from each other: it steps over jumps at which a gradient would stop.
-3. Trust-region least squares from where each ended: the digits CMA-ES would take long for. A jump ends it early, without harm.
-   Starts that meet in one point are the evidence that there is one basin.
+2. CMA-ES (Hansen) from the best points that are apart from each other: it steps over jumps at which
+   a gradient would stop.
+3. Trust-region least squares from where each ended: the digits CMA-ES would take long for. A jump
+   ends it early, without harm. Starts that meet in one point are the evidence that there is one
+   basin.
 """
 
 from collections.abc import Callable
@@ -20,8 +23,9 @@ from calibrate.information import jacobian
 class Plan(NamedTuple):
     """Size of a search.
 
-    ``points``: Sobol' points, a power of two; ``starts`` of CMA-ES, at least ``apart`` from each other, with first step ``step``
-    and ``evaluations`` each; ``polish``: iterations of least squares from each.
+    ``points``: Sobol' points, a power of two; ``starts`` of CMA-ES, at least ``apart`` from each
+    other, with first step ``step`` and ``evaluations`` each; ``polish``: iterations of least
+    squares from each.
     """
 
     points: int = 128
@@ -40,17 +44,28 @@ class Found(NamedTuple):
     basins: list[tuple[float, np.ndarray]]
 
 
-def search(residuals: Callable[[np.ndarray], np.ndarray], first: np.ndarray, plan: Plan, seed: int,
-           progress: Callable[[float], None] | None = None) -> Found:
-    """Minimise r'r over the unit cube; ``first`` (p,) is tried too. The same seed gives the same bits.
+def search(
+    residuals: Callable[[np.ndarray], np.ndarray],
+    first: np.ndarray,
+    plan: Plan,
+    seed: int,
+    progress: Callable[[float], None] | None = None,
+) -> Found:
+    """Minimise r'r over the unit cube; ``first`` (p,) is tried too. The same seed gives the same
+    bits.
 
     ``progress`` is called with the fraction of the evaluations done.
     """
     counted = _Counted(residuals, evaluations(first.size, plan), progress)
-    points = np.vstack([np.clip(first, 0.0, 1.0), qmc.Sobol(first.size, rng=seed).random(plan.points)])
+    points = np.vstack(
+        [np.clip(first, 0.0, 1.0), qmc.Sobol(first.size, rng=seed).random(plan.points)]
+    )
     values = np.array([counted.square(point) for point in points])
     generator = np.random.default_rng([seed, 1])
-    ends = [_polish(counted, *_evolve(counted.square, start, plan, generator), plan) for start in _apart(points, values, plan)]
+    ends = [
+        _polish(counted, *_evolve(counted.square, start, plan, generator), plan)
+        for start in _apart(points, values, plan)
+    ]
     basins = sorted(ends, key=lambda item: item[0])
     if progress:
         progress(1.0)
@@ -92,11 +107,24 @@ def _apart(points: np.ndarray, values: np.ndarray, plan: Plan) -> list[np.ndarra
     return chosen
 
 
-def _evolve(objective, start: np.ndarray, plan: Plan, generator: np.random.Generator) -> tuple[float, np.ndarray]:
-    """Value and point CMA-ES reaches from ``start``. It draws from ``generator`` only, never from NumPy's global state."""
-    strategy = cma.CMAEvolutionStrategy(start, plan.step, {
-        "bounds": [0.0, 1.0], "maxfevals": plan.evaluations, "tolfun": 1e-9, "tolx": 1e-6, "verbose": -9, "seed": np.nan,
-        "randn": lambda *shape: generator.standard_normal(shape)})
+def _evolve(
+    objective, start: np.ndarray, plan: Plan, generator: np.random.Generator
+) -> tuple[float, np.ndarray]:
+    """Value and point CMA-ES reaches from ``start``. It draws from ``generator`` only, never from
+    NumPy's global state."""
+    strategy = cma.CMAEvolutionStrategy(
+        start,
+        plan.step,
+        {
+            "bounds": [0.0, 1.0],
+            "maxfevals": plan.evaluations,
+            "tolfun": 1e-9,
+            "tolx": 1e-6,
+            "verbose": -9,
+            "seed": np.nan,
+            "randn": lambda *shape: generator.standard_normal(shape),
+        },
+    )
     while not strategy.stop():
         candidates = strategy.ask()
         strategy.tell(candidates, [objective(np.asarray(candidate)) for candidate in candidates])
@@ -105,5 +133,7 @@ def _evolve(objective, start: np.ndarray, plan: Plan, generator: np.random.Gener
 
 def _polish(residuals, value: float, shares: np.ndarray, plan: Plan) -> tuple[float, np.ndarray]:
     """Value and point least squares reaches, or those given where it gains nothing."""
-    found = least_squares(residuals, shares, lambda x: jacobian(residuals, x), bounds=(0.0, 1.0), max_nfev=plan.polish)
+    found = least_squares(
+        residuals, shares, lambda x: jacobian(residuals, x), bounds=(0.0, 1.0), max_nfev=plan.polish
+    )
     return (2.0 * float(found.cost), found.x) if 2.0 * found.cost < value else (value, shares)

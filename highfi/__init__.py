@@ -1,4 +1,5 @@
-"""Finite-element reference: explicit dynamics of the flexible rail with the payload and a free platform."""
+"""Finite-element reference: explicit dynamics of the flexible rail with the payload and a free
+platform."""
 
 from highfi.checkpoint import CheckpointError
 from highfi.compiled import compiled_effects

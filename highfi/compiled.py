@@ -10,13 +10,21 @@ from scenes.effects.friction import coefficient_over_speed
 from scenes.jit import contains, machine_code
 from scenes.scene import Scene
 
-# A function that only this effect calls. Mass offset, initial state and temperature are numbers without code of their own.
-LAWS = {"contact": facet_contact.press, "friction": coefficient_over_speed, "gravity": loads._add_weight,
-        "platform": nodes._move_in_frame, "rail.damping": damping._damp_component, "thrust_offset": loads._offset_line}
+# A function that only this effect calls. Mass offset, initial state and temperature are numbers
+# without code of their own.
+LAWS = {
+    "contact": facet_contact.press,
+    "friction": coefficient_over_speed,
+    "gravity": loads._add_weight,
+    "platform": nodes._move_in_frame,
+    "rail.damping": damping._damp_component,
+    "thrust_offset": loads._offset_line,
+}
 
 
 def compiled_effects(scene: Scene, numerics: Numerics | None = None) -> dict[str, bool]:
-    """For each effect with code of its own, whether the kernel compiled for ``scene`` contains it."""
+    """For each effect with code of its own, whether the kernel compiled for ``scene`` contains
+    it."""
     numerics = numerics or Numerics()
     system = build(scene, numerics, prepare(scene, numerics))
     loop = Loop(scene, system, choose(system, scene, numerics))

@@ -1,16 +1,19 @@
-"""Static compliance of the rail walls along the track of the pads, from the stiffness of the reference.
+"""Static compliance of the rail walls along the track of the pads, from the stiffness of the
+reference.
 
     C_iajb = 1/(A_i A_j) integral over faces i and j of phi_a n_i . K^-1 . n_j phi_b
     F_ij = G_i^-1 C_ij G_j^-1,   G_i = 1/A_i integral phi_a phi_b dA
 
-C is the displacement of the wall under pad face i, averaged with pattern a, caused by the pressure pattern b under face j: with the
-pattern 1 the mean displacement under a unit force. F is the flexibility of ``scenes.walls``: displacement and pressure are both
-taken for the polynomials phi nearest to them. K is that of the whole rail, clamped at its mounts, so faces on one rail press each
-other's walls too. Inertia is left out. Both are symmetric (Maxwell and Betti). Beside them stands where uneven temperature brings
-the same walls (``highfi.thermal``), for one of each field of which [thermal] is a sum.
+C is the displacement of the wall under pad face i, averaged with pattern a, caused by the pressure
+pattern b under face j: with the pattern 1 the mean displacement under a unit force. F is the
+flexibility of ``scenes.walls``: displacement and pressure are both taken for the polynomials phi
+nearest to them. K is that of the whole rail, clamped at its mounts, so faces on one rail press each
+other's walls too. Inertia is left out. Both are symmetric (Maxwell and Betti). Beside them stands
+where uneven temperature brings the same walls (``highfi.thermal``), for one of each field of which
+[thermal] is a sum.
 
-The modes psi_m of the same rail (``highfi.vibration``) are seen under the faces in the same patterns, so that a full set of them
-makes up C::
+The modes psi_m of the same rail (``highfi.vibration``) are seen under the faces in the same
+patterns, so that a full set of them makes up C::
 
     V_iam = 1/A_i integral over face i of phi_a n_i . psi_m,   W = G^-1 V,   C = sum_m V_m V_m' / omega_m^2
 """
@@ -36,16 +39,18 @@ from scenes.walls import MODES, PATTERNS, Walls, digest
 _BATCH = 64  # loads solved for at once; bounds the memory
 _DIGITS = 9  # of a place in m: faces whose places agree in them share one solution
 _SPACING = 4e-3  # m between stations; what mounts and ends change takes a leg or so
-_SINGULAR = 1e-6  # of the largest eigenvalue of G: patterns that hardly differ on what wall there is
+# of the largest eigenvalue of G: patterns that hardly differ on what wall there is
+_SINGULAR = 1e-6
 
 
 class Compliance(NamedTuple):
-    """travel (s,) m of the payload along X since ignition; matrix (s,f,p,f,p) m/N between f pad faces and p patterns, zero between
-    faces on different rails; gram (s,f,p,p), zero where a face has no wall; rail (f,) the number of the rail under each, -1
-    without; half (f,2) m, half the size of each face along xi and eta, negative where eta runs against the axis; frequency (r,n)
-    rad/s of the modes of each rail and their shape V (s,f,p,n) 1/kg^0.5; warm (s,f,p,t) m, the mean displacement away from the
-    payload, by pattern, of one of each of the t fields of temperature. Near an end of the rail a face stays at the last place where
-    all of it is on the rail."""
+    """travel (s,) m of the payload along X since ignition; matrix (s,f,p,f,p) m/N between f pad
+    faces and p patterns, zero between faces on different rails; gram (s,f,p,p), zero where a face
+    has no wall; rail (f,) the number of the rail under each, -1 without; half (f,2) m, half the
+    size of each face along xi and eta, negative where eta runs against the axis; frequency (r,n)
+    rad/s of the modes of each rail and their shape V (s,f,p,n) 1/kg^0.5; warm (s,f,p,t) m, the mean
+    displacement away from the payload, by pattern, of one of each of the t fields of temperature.
+    Near an end of the rail a face stays at the last place where all of it is on the rail."""
 
     travel: np.ndarray
     matrix: np.ndarray
@@ -57,9 +62,12 @@ class Compliance(NamedTuple):
     warm: np.ndarray
 
 
-def walls(scene: Scene, element_size: float, spacing: float = _SPACING, modes: int = MODES) -> Walls:
-    """Flexibility and lowest ``modes`` of the rails of ``scene`` in elements of about ``element_size`` (m), at stations about
-    ``spacing`` (m) apart from ignition until the last pad begins to leave.
+def walls(
+    scene: Scene, element_size: float, spacing: float = _SPACING, modes: int = MODES
+) -> Walls:
+    """Flexibility and lowest ``modes`` of the rails of ``scene`` in elements of about
+    ``element_size`` (m), at stations about ``spacing`` (m) apart from ignition until the last pad
+    begins to leave.
 
     Raises SceneError or MeshError.
     """
@@ -70,36 +78,77 @@ def walls(scene: Scene, element_size: float, spacing: float = _SPACING, modes: i
     inverse = np.linalg.pinv(found.gram, rcond=_SINGULAR, hermitian=True)
     flexibility = np.einsum("siab,sibjc,sjcd->siajd", inverse, found.matrix, inverse, optimize=True)
     warm = np.einsum("siab,sibt->tsia", inverse, found.warm)
-    return Walls(stations, flexibility, found.rail, found.half, found.frequency, inverse @ found.shape, digest(scene), warm)
+    return Walls(
+        stations,
+        flexibility,
+        found.rail,
+        found.half,
+        found.frequency,
+        inverse @ found.shape,
+        digest(scene),
+        warm,
+    )
 
 
-def along(scene: Scene, element_size: float, travel: Sequence[float], patterns: int = PATTERNS, modes: int = 0) -> Compliance:
-    """Compliance of the rails of ``scene`` in elements of about ``element_size`` (m), the payload aligned and moved by each
-    ``travel`` (m) from its place at ignition.
+def along(
+    scene: Scene,
+    element_size: float,
+    travel: Sequence[float],
+    patterns: int = PATTERNS,
+    modes: int = 0,
+) -> Compliance:
+    """Compliance of the rails of ``scene`` in elements of about ``element_size`` (m), the payload
+    aligned and moved by each ``travel`` (m) from its place at ignition.
 
-    Faces are those of ``scenes.model.Faces``. Raises SceneError or MeshError, ValueError for a number of patterns or modes there is
-    not.
+    Faces are those of ``scenes.model.Faces``. Raises SceneError or MeshError, ValueError for a
+    number of patterns or modes there is not.
     """
     nominal = scene_model.built(scene).nominal
     origin = np.array(scene.platform.record().mass_centre if scene.platform else (0.0, 0.0, 0.0))
     in_scene_axes = nominal._replace(wall=nominal.wall + origin[nominal.axis])
     mesh = prepare(scene, Numerics(element_size=element_size))
-    return of_mesh(mesh, scene.rail.material, in_scene_axes, (scene.rail.start, scene.rail.end), travel, patterns, modes)
+    return of_mesh(
+        mesh,
+        scene.rail.material,
+        in_scene_axes,
+        (scene.rail.start, scene.rail.end),
+        travel,
+        patterns,
+        modes,
+    )
 
 
-def of_mesh(mesh: RailMesh, material: MaterialTable, faces: scene_model.Faces, reach: tuple[float, float], travel: Sequence[float],
-            patterns: int = PATTERNS, modes: int = 0) -> Compliance:
-    """The same for a mesh whose points are in the axes of ``faces.centre`` and ``faces.wall``, between the X (m) of ``reach``.
+def of_mesh(
+    mesh: RailMesh,
+    material: MaterialTable,
+    faces: scene_model.Faces,
+    reach: tuple[float, float],
+    travel: Sequence[float],
+    patterns: int = PATTERNS,
+    modes: int = 0,
+) -> Compliance:
+    """The same for a mesh whose points are in the axes of ``faces.centre`` and ``faces.wall``,
+    between the X (m) of ``reach``.
 
-    Raises MeshError where a rail under a face has no mount, ValueError for a number of patterns or modes there is not.
+    Raises MeshError where a rail under a face has no mount, ValueError for a number of patterns or
+    modes there is not.
     """
     if not 1 <= patterns <= PATTERNS:
         raise ValueError(f"patterns: given {patterns!r}, expected 1 to {PATTERNS}")
     travel, count, pattern = np.asarray(travel, dtype=float), faces.axis.size, np.arange(patterns)
     across = faces.centre[np.arange(count), 3 - faces.axis]
-    half = np.column_stack([faces.half_length, np.where(across >= 0.0, 1.0, -1.0) * faces.half_width])
-    matrix, gram = np.zeros((travel.size, count, patterns, count, patterns)), np.zeros((travel.size, count, patterns, patterns))
-    rail_of, frequencies, shape = np.full(count, -1), [], np.zeros((travel.size, count, patterns, modes))
+    half = np.column_stack(
+        [faces.half_length, np.where(across >= 0.0, 1.0, -1.0) * faces.half_width]
+    )
+    matrix, gram = (
+        np.zeros((travel.size, count, patterns, count, patterns)),
+        np.zeros((travel.size, count, patterns, patterns)),
+    )
+    rail_of, frequencies, shape = (
+        np.full(count, -1),
+        [],
+        np.zeros((travel.size, count, patterns, modes)),
+    )
     warm = np.zeros((travel.size, count, patterns, FIELDS))
     for rail, images in pieces.distinct(mesh):
         patches = _Patches(rail, patterns)
@@ -107,37 +156,68 @@ def of_mesh(mesh: RailMesh, material: MaterialTable, faces: scene_model.Faces, r
         if not patches.found:
             continue
         # One more that answers nothing is what a face without a wall, number -1, points at.
-        answer, heated, frequency, swung = patches.solved(material, 0.5 * (reach[0] + reach[1]), modes)
+        answer, heated, frequency, swung = patches.solved(
+            material, 0.5 * (reach[0] + reach[1]), modes
+        )
         between = np.pad(answer, [(0, 1), (0, 0), (0, 1), (0, 0)])
         heated, swung = (np.pad(moved, [(0, 1), (0, 0), (0, 0)]) for moved in (heated, swung))
         grams = np.array([patch.gram for patch in patches.found] + [np.zeros((patterns, patterns))])
         for number, signs in zip(places, images):
             gram += grams[number]
-            warm += heated[number] * np.r_[1.0, signs, 1.0]  # an image is warmer where its y and z say
-            matrix += between[number[:, :, None, None, None], pattern[:, None, None], number[:, None, None, :, None], pattern]
+            # an image is warmer where its y and z say
+            warm += heated[number] * np.r_[1.0, signs, 1.0]
+            matrix += between[
+                number[:, :, None, None, None],
+                pattern[:, None, None],
+                number[:, None, None, :, None],
+                pattern,
+            ]
             shape += swung[number]
             here = (number >= 0).any(axis=0)
             if here.any():
                 rail_of[here] = len(frequencies)
                 frequencies.append(frequency)
-    return Compliance(travel, matrix, gram, rail_of, half, np.array(frequencies).reshape(len(frequencies), modes), shape, warm)
+    return Compliance(
+        travel,
+        matrix,
+        gram,
+        rail_of,
+        half,
+        np.array(frequencies).reshape(len(frequencies), modes),
+        shape,
+        warm,
+    )
 
 
 class _Patches:
-    """All different places of one rail that some face of it, or of a mirror image of it, presses."""
+    """All different places of one rail that some face of it, or of a mirror image of it,
+    presses."""
 
     def __init__(self, rail: RailMesh, patterns: int):
         self._rail, self._patterns = rail, patterns
-        self._facets = np.concatenate([group for name, group in sorted(rail.surfaces.items()) if name.startswith("contact")])
+        self._facets = np.concatenate(
+            [group for name, group in sorted(rail.surfaces.items()) if name.startswith("contact")]
+        )
         self._number: dict[tuple, int] = {}
         self._direction: list[tuple[int, float]] = []  # axis and sign of the pressure
         self.found: list[Pressed] = []
 
-    def under(self, faces: scene_model.Faces, half: np.ndarray, signs: np.ndarray, reach: tuple[float, float],
-              travel: np.ndarray) -> np.ndarray:
-        """Number (s,f) of the place under each face, -1 where it has none; the rail stands where its image by ``signs`` is."""
+    def under(
+        self,
+        faces: scene_model.Faces,
+        half: np.ndarray,
+        signs: np.ndarray,
+        reach: tuple[float, float],
+        travel: np.ndarray,
+    ) -> np.ndarray:
+        """Number (s,f) of the place under each face, -1 where it has none; the rail stands where
+        its image by ``signs`` is."""
         axis, across = faces.axis, 3 - faces.axis
-        seen = faces._replace(centre=faces.centre * signs, sign=faces.sign * signs[axis], wall=faces.wall * signs[axis])
+        seen = faces._replace(
+            centre=faces.centre * signs,
+            sign=faces.sign * signs[axis],
+            wall=faces.wall * signs[axis],
+        )
         number = np.full((travel.size, axis.size), -1)
         for face in range(axis.size):
             wall = self._facets[surface.in_reach(self._rail.points[self._facets], seen, face)]
@@ -145,9 +225,15 @@ class _Patches:
             for station, moved in enumerate(travel if wall.size else ()):
                 x = np.clip(seen.centre[face, 0] + moved, reach[0] + size[0], reach[1] - size[0])
                 middle = np.array([x, seen.centre[face, across[face]]])
-                key = (axis[face], seen.sign[face], *np.round([*middle, *size, seen.wall[face]], _DIGITS))
+                key = (
+                    axis[face],
+                    seen.sign[face],
+                    *np.round([*middle, *size, seen.wall[face]], _DIGITS),
+                )
                 if key not in self._number:
-                    patch = pressed(self._rail.points, wall, across[face], middle, size, self._patterns)
+                    patch = pressed(
+                        self._rail.points, wall, across[face], middle, size, self._patterns
+                    )
                     self._number[key] = -1 if patch is None else len(self.found)
                     if patch is not None:
                         self.found.append(patch)
@@ -155,26 +241,48 @@ class _Patches:
                 number[station, face] = self._number[key]
         return number
 
-    def solved(self, material: MaterialTable, middle: float, modes: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """Displacement (m,p,m,p) in m of all places under the loads of all, normals of the faces positive, and (m,p,t) under one of
-        each field of temperature around X = ``middle`` (m); frequencies (n,) rad/s of the lowest modes and their displacement
-        (m,p,n)."""
-        operator = assembly.build(self._rail, material.density, material.youngs_modulus, material.poisson_ratio)
+    def solved(
+        self, material: MaterialTable, middle: float, modes: int
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """Displacement (m,p,m,p) in m of all places under the loads of all, normals of the faces
+        positive, and (m,p,t) under one of each field of temperature around X = ``middle`` (m);
+        frequencies (n,) rad/s of the lowest modes and their displacement (m,p,n)."""
+        operator = assembly.build(
+            self._rail, material.density, material.youngs_modulus, material.poisson_ratio
+        )
         clamped, loads = Clamped(operator), self._loads()
-        warm = loads.T @ thermal.of_fields(self._rail, operator, material, clamped, middle).reshape(-1, FIELDS)
+        warm = loads.T @ thermal.of_fields(self._rail, operator, material, clamped, middle).reshape(
+            -1, FIELDS
+        )
         loads = loads[clamped.free]
-        answer = [loads.T @ clamped.solve(loads[:, start:start + _BATCH].toarray()) for start in range(0, loads.shape[1], _BATCH)]
-        frequency, shape = vibration.modes(clamped.stiffness, np.repeat(operator.mass, 3)[clamped.free], clamped.solve, modes)
+        answer = [
+            loads.T @ clamped.solve(loads[:, start : start + _BATCH].toarray())
+            for start in range(0, loads.shape[1], _BATCH)
+        ]
+        frequency, shape = vibration.modes(
+            clamped.stiffness, np.repeat(operator.mass, 3)[clamped.free], clamped.solve, modes
+        )
         under = len(self.found), self._patterns
-        return (np.concatenate(answer, axis=1).reshape(2 * under), warm.reshape(*under, FIELDS), frequency,
-                (loads.T @ shape).reshape(*under, modes))
+        return (
+            np.concatenate(answer, axis=1).reshape(2 * under),
+            warm.reshape(*under, FIELDS),
+            frequency,
+            (loads.T @ shape).reshape(*under, modes),
+        )
 
     def _loads(self) -> csc_array:
         """Nodal loads (3n,mp) of all patterns at all places."""
         rows, columns, values = [], [], []
         for number, (patch, (axis, sign)) in enumerate(zip(self.found, self._direction)):
             rows.append(np.broadcast_to(3 * patch.node + axis, patch.load.shape).ravel())
-            columns.append(np.repeat(number * self._patterns + np.arange(self._patterns), patch.node.size))
+            columns.append(
+                np.repeat(number * self._patterns + np.arange(self._patterns), patch.node.size)
+            )
             values.append(sign * patch.load.ravel())
         shape = (3 * len(self._rail.points), len(self.found) * self._patterns)
-        return csc_array(coo_array((np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))), shape=shape))
+        return csc_array(
+            coo_array(
+                (np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))),
+                shape=shape,
+            )
+        )

@@ -1,8 +1,10 @@
-"""Internal force of the rails and the motion of their nodes, by whichever kernel the mesh allows, shared among threads.
+"""Internal force of the rails and the motion of their nodes, by whichever kernel the mesh allows,
+shared among threads.
 
-On an extruded mesh each thread sweeps over its own chunks of pencils: a chunk moves, and the force of a chunk follows as soon as
-all it hangs on has moved, while that is still in the cache. Chunks that hang on another thread's wait for the barrier. A general
-mesh is cut into slabs along X: elements of two even slabs share no node, nor do those of two odd ones.
+On an extruded mesh each thread sweeps over its own chunks of pencils: a chunk moves, and the force
+of a chunk follows as soon as all it hangs on has moved, while that is still in the cache. Chunks
+that hang on another thread's wait for the barrier. A general mesh is cut into slabs along X:
+elements of two even slabs share no node, nor do those of two odd ones.
 """
 
 from highfi.damping import add_damping
@@ -15,7 +17,8 @@ from scenes.jit import kernel
 
 @kernel
 def elastic_force(rail, displacement, force, turn, team):
-    """Set ``force`` (n,3) to K u (N), and ``turn`` (b,3) to each block's part of the sum of u x K u (N m); one thread's work."""
+    """Set ``force`` (n,3) to K u (N), and ``turn`` (b,3) to each block's part of the sum of u x K u
+    (N m); one thread's work."""
     for chunk in range(turn.shape[0]):
         _force_of_chunk(rail.pencils, displacement, force, chunk, turn, team.lanes[0])
     _force_of_elements(rail.elements, rail, displacement, force, turn, team.lanes[0])
@@ -24,15 +27,31 @@ def elastic_force(rail, displacement, force, turn, team):
 @kernel
 def _force_of_chunk(pencils, displacement, force, chunk, turn, lanes):
     if pencils is not None:
-        pencil_force(pencils, displacement.T, force.T, pencils.chunks[chunk], pencils.chunks[chunk + 1], lanes, turn[chunk])
+        pencil_force(
+            pencils,
+            displacement.T,
+            force.T,
+            pencils.chunks[chunk],
+            pencils.chunks[chunk + 1],
+            lanes,
+            turn[chunk],
+        )
 
 
 @kernel
 def _force_of_elements(elements, rail, displacement, force, turn, lanes):
     if elements is not None:
         force[:] = 0.0
-        add_internal_force(displacement, elements.cells, elements.shape_class, elements.stiffness, force, 0,
-                           elements.cells.shape[0], lanes.reshape(lanes.size))
+        add_internal_force(
+            displacement,
+            elements.cells,
+            elements.shape_class,
+            elements.stiffness,
+            force,
+            0,
+            elements.cells.shape[0],
+            lanes.reshape(lanes.size),
+        )
         _turn_blocks(rail, displacement, force, turn, 0, 1, lanes)
 
 
@@ -44,16 +63,19 @@ def _turn_blocks(rail, displacement, force, turn, first, step, lanes):
 
 @kernel
 def hold_blocks(rail, state, first, step):
-    """Move the resistance of clamped nodes into ``state.clamping``, every ``step`` blocks from ``first`` on."""
+    """Move the resistance of clamped nodes into ``state.clamping``, every ``step`` blocks from
+    ``first`` on."""
     for block in range(first, state.clamping.shape[0], step):
         hold(rail, state.resistance, rail.held[block], rail.held[block + 1], state.clamping[block])
 
 
 @kernel
 def move_and_load(rail, frame, state, team, thread, dt):
-    """Kick and drift all nodes, then set the elastic part of the new forces; every thread of ``team`` takes a part of it.
+    """Kick and drift all nodes, then set the elastic part of the new forces; every thread of
+    ``team`` takes a part of it.
 
-    On return all places are up to date; forces are once ``finish_load`` has been called and the team has met again.
+    On return all places are up to date; forces are once ``finish_load`` has been called and the
+    team has met again.
     """
     _sweep_pencils(rail.pencils, rail, frame, state, team, thread, dt)
     _move_blocks(rail.elements, rail, frame, state, team, thread, dt)
@@ -85,7 +107,14 @@ def _load_chunk(pencils, rail, state, chunk, lanes, dt):
 def _damp(damping, rail, state, block, dt, lanes):
     if damping is not None:
         add_damping(damping, state.history, rail, state, block, dt, lanes)
-        turning(state.displacement, state.resistance, rail.blocks[block], rail.blocks[block + 1], lanes, state.turning[block])
+        turning(
+            state.displacement,
+            state.resistance,
+            rail.blocks[block],
+            rail.blocks[block + 1],
+            lanes,
+            state.turning[block],
+        )
 
 
 @kernel
@@ -125,10 +154,20 @@ def _load_slabs(elements, rail, state, team, thread, dt):
         lanes = team.lanes[thread]
         for parity in range(2):
             for slab in range(parity + 2 * thread, elements.slabs.size - 1, 2 * team.size):
-                add_internal_force(state.displacement, elements.cells, elements.shape_class, elements.stiffness, state.resistance,
-                                   elements.slabs[slab], elements.slabs[slab + 1], lanes.reshape(lanes.size))
+                add_internal_force(
+                    state.displacement,
+                    elements.cells,
+                    elements.shape_class,
+                    elements.stiffness,
+                    state.resistance,
+                    elements.slabs[slab],
+                    elements.slabs[slab + 1],
+                    lanes.reshape(lanes.size),
+                )
             meet(team)
-        _turn_blocks(rail, state.displacement, state.resistance, state.turning, thread, team.size, lanes)
+        _turn_blocks(
+            rail, state.displacement, state.resistance, state.turning, thread, team.size, lanes
+        )
         for block in range(thread, state.turning.shape[0], team.size):
             _damp(rail.damping, rail, state, block, dt, lanes)
         hold_blocks(rail, state, thread, team.size)

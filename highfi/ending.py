@@ -1,8 +1,9 @@
 """Exit, settled window and jam of the reference, from every step of the time loop.
 
-A step brings places from n to n + 1 by the velocities at n + 1/2, which hold all through it. So the distance past the rail end is
-taken as linear in a step, speeds and rates as linear from one half step to the next, and the integral of a step is its length times
-the velocity in its middle: the order of the scheme itself, two.
+A step brings places from n to n + 1 by the velocities at n + 1/2, which hold all through it. So the
+distance past the rail end is taken as linear in a step, speeds and rates as linear from one half
+step to the next, and the integral of a step is its length times the velocity in its middle: the
+order of the scheme itself, two.
 """
 
 from typing import NamedTuple
@@ -40,7 +41,8 @@ class Ending(NamedTuple):
 
 
 class Exit(NamedTuple):
-    """Constant: trailing edges (f,3) m of the pads in body axes, and X (m) of the rail end from the frame's origin."""
+    """Constant: trailing edges (f,3) m of the pads in body axes, and X (m) of the rail end from the
+    frame's origin."""
 
     edges: np.ndarray
     rail_end: float
@@ -56,13 +58,16 @@ def build(system: System) -> tuple[Exit, Ending]:
 
 
 def found(system: System, book: np.ndarray) -> tuple[str, Outcome]:
-    """Status and outcome of a run with this book. The book tells of the frame's origin, an outcome of the platform's mass
-    centre."""
-    moved, whole = samples.motion(book[None, AT_EXIT:AT_EXIT + ROW_SIZE], 0.0, system.body_offset), book.copy()
+    """Status and outcome of a run with this book. The book tells of the frame's origin, an outcome
+    of the platform's mass centre."""
+    moved, whole = (
+        samples.motion(book[None, AT_EXIT : AT_EXIT + ROW_SIZE], 0.0, system.body_offset),
+        book.copy(),
+    )
     base = AT_EXIT + BODY
     if book[DONE] < np.inf:
-        whole[base + PLACE:base + SPEED] = moved.platform_position[0]
-        whole[base + SPEED:base + ATTITUDE] = moved.platform_velocity[0]
+        whole[base + PLACE : base + SPEED] = moved.platform_position[0]
+        whole[base + SPEED : base + ATTITUDE] = moved.platform_velocity[0]
     return books.found(whole)
 
 
@@ -78,7 +83,8 @@ def begin(exit_, payload, frame, state, marks, book):
 
 @kernel
 def follow(exit_, payload, frame, state, marks, book, began, dt):
-    """Bring the book up to date with the step of ``dt`` (s) from ``began`` (s) on: places are those of its end."""
+    """Bring the book up to date with the step of ``dt`` (s) from ``began`` (s) on: places are those
+    of its end."""
     if book[DONE] < np.inf:
         return
     _fill(payload, frame, state, book, 0.5)
@@ -106,11 +112,12 @@ def _keep(book):
 
 @kernel
 def _fill(payload, frame, state, book, share):
-    """Places now, and velocities and rates of half a step ago, for which attitudes are taken ``share`` of a step back."""
+    """Places now, and velocities and rates of half a step ago, for which attitudes are taken
+    ``share`` of a step back."""
     _fill_body(state.payload, payload.inverse_inertia, book[NOW:], book[BEFORE:], share)
     base = NOW + BODY
     if frame is not None:
-        _fill_body(state.platform, frame.inverse_inertia, book[base:], book[BEFORE + BODY:], share)
+        _fill_body(state.platform, frame.inverse_inertia, book[base:], book[BEFORE + BODY :], share)
     else:
         for i in range(BODY):
             book[base + i] = 0.0
@@ -121,9 +128,19 @@ def _fill(payload, frame, state, book, share):
 def _fill_body(body, inverse_inertia, row, before, share):
     q = body.quaternion
     p, here = _four(before), 1.0 - share
-    turn = rotation.matrix(rotation.normalised((here * q[0] + share * p[0], here * q[1] + share * p[1], here * q[2] + share * p[2],
-                                                here * q[3] + share * p[3])))
-    rate = rotation.unrotate(turn, rotation.angular_velocity(turn, inverse_inertia, triple(body.spin)))
+    turn = rotation.matrix(
+        rotation.normalised(
+            (
+                here * q[0] + share * p[0],
+                here * q[1] + share * p[1],
+                here * q[2] + share * p[2],
+                here * q[3] + share * p[3],
+            )
+        )
+    )
+    rate = rotation.unrotate(
+        turn, rotation.angular_velocity(turn, inverse_inertia, triple(body.spin))
+    )
     for i in range(3):
         row[PLACE + i], row[SPEED + i], row[SPIN + i] = body.position[i], body.velocity[i], rate[i]
     for i in range(4):
@@ -138,26 +155,33 @@ def _four(row):
 @kernel
 def _past(exit_, book):
     """Distance (m) of the rearmost trailing edge past the rail end."""
-    row, base = book[NOW:], book[NOW + BODY:]
+    row, base = book[NOW:], book[NOW + BODY :]
     turn, axis = rotation.matrix(_four(row)), rotation.matrix(_four(base))
     along = rotation.unrotate(turn, (axis[0], axis[3], axis[6]))
     rearmost = np.inf
     for edge in exit_.edges:
         rearmost = min(rearmost, along[0] * edge[0] + along[1] * edge[1] + along[2] * edge[2])
-    return rearmost - exit_.rail_end + (axis[0] * (row[PLACE] - base[PLACE]) + axis[3] * (row[PLACE + 1] - base[PLACE + 1])
-                                        + axis[6] * (row[PLACE + 2] - base[PLACE + 2]))
+    return (
+        rearmost
+        - exit_.rail_end
+        + (
+            axis[0] * (row[PLACE] - base[PLACE])
+            + axis[3] * (row[PLACE + 1] - base[PLACE + 1])
+            + axis[6] * (row[PLACE + 2] - base[PLACE + 2])
+        )
+    )
 
 
 @kernel
 def _leave(book, share, at, marks):
-    """The exit, when this share of the step is done: places lie between both ends, velocities on the line through this half step
-    and the one before."""
+    """The exit, when this share of the step is done: places lie between both ends, velocities on
+    the line through this half step and the one before."""
     for body in (0, BODY):
         for i in range(body, body + BODY):
             before, now = book[BEFORE + i], book[NOW + i]
             is_place = i < body + SPEED or body + ATTITUDE <= i < body + SPIN
             book[AT_EXIT + i] = before + (share if is_place else share + 0.5) * (now - before)
-        row = book[AT_EXIT + body:]
+        row = book[AT_EXIT + body :]
         q = rotation.normalised(_four(row))
         for i in range(4):
             row[ATTITUDE + i] = q[i]

@@ -1,16 +1,18 @@
-"""Facets of the rail's surfaces, bilinear ones of four corners and quadratic ones of six nodes: places, normals, Gauss points.
+"""Facets of the rail's surfaces, bilinear ones of four corners and quadratic ones of six nodes:
+places, normals, Gauss points.
 
-A quadratic triangle may bulge beyond its nodes. It lies in the convex hull of its six Bernstein control points: the corners and,
-for each edge, 2 m - (a + b) / 2 with m the node between a and b (Farin, Curves and Surfaces for CAGD, 5th ed. 2002, chapter 17). A
-bilinear facet lies in the hull of its corners, which are its own control points.
+A quadratic triangle may bulge beyond its nodes. It lies in the convex hull of its six Bernstein
+control points: the corners and, for each edge, 2 m - (a + b) / 2 with m the node between a and b
+(Farin, Curves and Surfaces for CAGD, 5th ed. 2002, chapter 17). A bilinear facet lies in the hull
+of its corners, which are its own control points.
 """
 
 import numpy as np
 from skfem import ElementTriP2
 from skfem.quadrature import get_quadrature
 
-# Polynomial degree of the symmetric rules on a triangle with positive weights and points inside (Dunavant, Int. J. Numer. Methods
-# Eng. 21 (1985) 1129-1148), by their number of points.
+# Polynomial degree of the symmetric rules on a triangle with positive weights and points inside
+# (Dunavant, Int. J. Numer. Methods Eng. 21 (1985) 1129-1148), by their number of points.
 _DEGREE = {3: 2, 6: 4, 12: 6, 16: 8, 19: 9, 25: 10, 33: 12, 42: 14, 61: 17, 73: 19}
 INSIDE = 1e-6  # how far outside its facet, in local coordinates, a point may seem to lie
 _NEWTON = 20
@@ -19,7 +21,8 @@ _FAR = 3.0  # local coordinates beyond which the way back to the facet is not lo
 
 
 def control(nodes_per_facet: int) -> np.ndarray | None:
-    """Matrix (6,6) that makes control points of the nodes of a triangle; None for four nodes, which are control points."""
+    """Matrix (6,6) that makes control points of the nodes of a triangle; None for four nodes, which
+    are control points."""
     if nodes_per_facet == 4:
         return None
     matrix = np.eye(6)
@@ -29,7 +32,8 @@ def control(nodes_per_facet: int) -> np.ndarray | None:
 
 
 def hull(nodes: np.ndarray) -> np.ndarray:
-    """Control points (m,k,i) of facets with nodes (m,k,i), in space or in a plane they are seen in."""
+    """Control points (m,k,i) of facets with nodes (m,k,i), in space or in a plane they are seen
+    in."""
     matrix = control(nodes.shape[1])
     return nodes if matrix is None else np.einsum("ab,mbi->mai", matrix, nodes)
 
@@ -44,30 +48,40 @@ def normals(nodes: np.ndarray) -> np.ndarray:
 
 
 def weights(nodes: np.ndarray, target: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Values (p,k) of the nodal functions at each ``target`` (p,2) in the facet that a plane shows with nodes (p,k,2), by Newton's
-    rule, and whether it lies inside (p,)."""
+    """Values (p,k) of the nodal functions at each ``target`` (p,2) in the facet that a plane shows
+    with nodes (p,k,2), by Newton's rule, and whether it lies inside (p,)."""
     square = nodes.shape[1] == 4
     functions, middle = (_square_functions, 0.0) if square else (_triangle_functions, 1.0 / 3.0)
     place = np.full(target.shape, middle)
     for _ in range(_NEWTON):
         values, slopes = functions(place.T)
         missing = target - np.einsum("pa,pai->pi", values, nodes)
-        step = np.linalg.solve(np.einsum("dpa,pai->pid", slopes, nodes), missing[:, :, None])[:, :, 0]
+        step = np.linalg.solve(np.einsum("dpa,pai->pid", slopes, nodes), missing[:, :, None])[
+            :, :, 0
+        ]
         place = (place + step).clip(-_FAR, _FAR)
         if np.abs(step).max(initial=0.0) < _ARRIVED:
             break
     values = functions(place.T)[0]
-    outside = np.abs(place).max(axis=1) - 1.0 if square else -np.minimum(place.min(axis=1), 1.0 - place.sum(axis=1))
+    outside = (
+        np.abs(place).max(axis=1) - 1.0
+        if square
+        else -np.minimum(place.min(axis=1), 1.0 - place.sum(axis=1))
+    )
     # Outside a curved facet there may be no way to the target.
-    missed = np.abs(np.einsum("pa,pai->pi", values, nodes) - target).max(axis=1) / np.ptp(nodes, axis=1).max(axis=1)
+    missed = np.abs(np.einsum("pa,pai->pi", values, nodes) - target).max(axis=1) / np.ptp(
+        nodes, axis=1
+    ).max(axis=1)
     return values, np.maximum(outside, missed) < INSIDE
 
 
 def gauss(nodes: np.ndarray, quadrature: int) -> tuple[np.ndarray, np.ndarray]:
-    """Shape functions (q,k) and areas (m,q) in m2 at the Gauss points of facets with nodes (m,k,3) m.
+    """Shape functions (q,k) and areas (m,q) in m2 at the Gauss points of facets with nodes (m,k,3)
+    m.
 
-    A bilinear facet has ``quadrature`` points along each edge, a triangle with edges of the same length at least as many per area,
-    and no fewer than three. All areas are positive; shape functions at the corners of a triangle may be negative.
+    A bilinear facet has ``quadrature`` points along each edge, a triangle with edges of the same
+    length at least as many per area, and no fewer than three. All areas are positive; shape
+    functions at the corners of a triangle may be negative.
     """
     shape, along, weight = _bilinear(quadrature) if nodes.shape[1] == 4 else _quadratic(quadrature)
     r, s = np.einsum("dqa,mai->dmqi", along, nodes)
@@ -94,7 +108,9 @@ def _square_functions(places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     r, s = places
     ra, sa = np.array([-1.0, 1.0, 1.0, -1.0]), np.array([-1.0, -1.0, 1.0, 1.0])
     shape = 0.25 * (1.0 + np.outer(r, ra)) * (1.0 + np.outer(s, sa))
-    return shape, np.stack([0.25 * ra * (1.0 + np.outer(s, sa)), 0.25 * sa * (1.0 + np.outer(r, ra))])
+    return shape, np.stack(
+        [0.25 * ra * (1.0 + np.outer(s, sa)), 0.25 * sa * (1.0 + np.outer(r, ra))]
+    )
 
 
 def _triangle_functions(places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -1,7 +1,8 @@
 """Whether a rail given as a file and its scene speak of the same walls.
 
-A file has the last word in the reference, the scene in the surrogate, which never reads it. So the walls of a file must end where
-the scene says that they do, lie under every pad face, and stand off it by the clearance they were drawn for, to a micrometre.
+A file has the last word in the reference, the scene in the surrogate, which never reads it. So the
+walls of a file must end where the scene says that they do, lie under every pad face, and stand off
+it by the clearance they were drawn for, to a micrometre.
 """
 
 import numpy as np
@@ -17,10 +18,13 @@ _SAME = 1e-6  # m: below what a rail is made to, above the rounding of any mesh 
 
 
 def check_fit(scene: Scene, mesh: RailMesh) -> None:
-    """Raise SceneError with every place where a mesh of the user's own and the scene speak of different walls."""
+    """Raise SceneError with every place where a mesh of the user's own and the scene speak of
+    different walls."""
     if isinstance(scene.rail, SectionTable) or scene.contact is None:
         return
-    facets = np.concatenate([quads for name, quads in mesh.surfaces.items() if name.startswith("contact")])
+    facets = np.concatenate(
+        [quads for name, quads in mesh.surfaces.items() if name.startswith("contact")]
+    )
     corners = mesh.points[facets]
     faults = _end_faults(scene, corners) + _wall_faults(scene, corners)
     if faults:
@@ -28,9 +32,19 @@ def check_fit(scene: Scene, mesh: RailMesh) -> None:
 
 
 def _end_faults(scene: Scene, corners: np.ndarray) -> list[tuple[str, str, str]]:
-    ends = {"rail.start": (scene.rail.start, corners[..., 0].min()), "rail.end": (scene.rail.end, corners[..., 0].max())}
-    return [(key, f"{said:.9g} m", f"{found:.9g} m, where the contact surfaces of {scene.rail.path().name} end")
-            for key, (said, found) in ends.items() if abs(said - found) > _SAME]
+    ends = {
+        "rail.start": (scene.rail.start, corners[..., 0].min()),
+        "rail.end": (scene.rail.end, corners[..., 0].max()),
+    }
+    return [
+        (
+            key,
+            f"{said:.9g} m",
+            f"{found:.9g} m, where the contact surfaces of {scene.rail.path().name} end",
+        )
+        for key, (said, found) in ends.items()
+        if abs(said - found) > _SAME
+    ]
 
 
 def _wall_faults(scene: Scene, corners: np.ndarray) -> list[tuple[str, str, str]]:
@@ -47,10 +61,23 @@ def _wall_faults(scene: Scene, corners: np.ndarray) -> list[tuple[str, str, str]
             gaps.append(drawn + sign * (np.median(near[..., axis]) - faces.wall[face]))
             continue
         wall = scene.pads[pad].position[axis] + sign * drawn
-        faults.append((f"pads.{pad}", f"a face {name} with no wall under its track",
-                       f"a pad whose wall, at {name[1]} = {wall:.9g} m, is among the contact surfaces of {file}"))
+        faults.append(
+            (
+                f"pads.{pad}",
+                f"a face {name} with no wall under its track",
+                f"a pad whose wall, at {name[1]} = {wall:.9g} m, is among the contact surfaces of "
+                f"{file}",
+            )
+        )
     if any(abs(gap - drawn) > _SAME for gap in gaps):
         found = " to ".join(f"{gap:.9g}" for gap in sorted({min(gaps), max(gaps)}))
-        faults.append(("rail.clearance", "nothing, hence that of contact" if scene.rail.clearance is None else f"{drawn:.9g} m",
-                       f"{found} m, at which the walls of {file} stand off the pads"))
+        faults.append(
+            (
+                "rail.clearance",
+                "nothing, hence that of contact"
+                if scene.rail.clearance is None
+                else f"{drawn:.9g} m",
+                f"{found} m, at which the walls of {file} stand off the pads",
+            )
+        )
     return faults

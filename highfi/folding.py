@@ -1,9 +1,12 @@
-"""Mirror pairs among the neighbours of a pencil: what a section has of symmetry need not be multiplied twice.
+"""Mirror pairs among the neighbours of a pencil: what a section has of symmetry need not be
+multiplied twice.
 
-Let neighbours at (+dy, dz) and (-dy, dz) have the same numbers but for the sign of those that couple y with another direction, as
-on any even piece of a section. Then ``a u(+) +- a u(-) = a (u(+) +- u(-))``: one product for the two, and additions cost next to
-nothing beside products on processors that have pipes for both. Four neighbours mirrored in y and z need one product for the four;
-what lies on a mirror plane itself has no odd numbers. A pencil inside a regular section needs 36 products instead of 9 x 14.
+Let neighbours at (+dy, dz) and (-dy, dz) have the same numbers but for the sign of those that
+couple y with another direction, as on any even piece of a section. Then ``a u(+) +- a u(-) = a
+(u(+) +- u(-))``: one product for the two, and additions cost next to nothing beside products on
+processors that have pipes for both. Four neighbours mirrored in y and z need one product for the
+four; what lies on a mirror plane itself has no odd numbers. A pencil inside a regular section needs
+36 products instead of 9 x 14.
 
 The numbers of one neighbour are D xx yy yz zy zz, L the same and O xy xz yx zx, as in ``pencils``.
 """
@@ -16,8 +19,15 @@ import numpy as np
 _SAME = 1e-12  # of the largest number: a difference of rounding
 _GRID = 1e-7  # m, to which offsets are rounded before they are compared
 
-# (row, column) of each number; it changes sign under the mirror of a direction that just one of them is.
-PLACES = (*((i, j) for _ in "DL" for i, j in ((0, 0), (1, 1), (1, 2), (2, 1), (2, 2))), (0, 1), (0, 2), (1, 0), (2, 0))
+# (row, column) of each number; it changes sign under the mirror of a direction that just one of
+# them is.
+PLACES = (
+    *((i, j) for _ in "DL" for i, j in ((0, 0), (1, 1), (1, 2), (2, 1), (2, 2))),
+    (0, 1),
+    (0, 2),
+    (1, 0),
+    (2, 0),
+)
 
 
 def odd(number: int, axis: int) -> bool:
@@ -26,8 +36,8 @@ def odd(number: int, axis: int) -> bool:
 
 
 class Kind(NamedTuple):
-    """A group of neighbours: ``folded`` axes in which they are each other's mirrors (members in the order +, -; for both ++, -+,
-    +-, --), ``numbers`` of them that are not zero."""
+    """A group of neighbours: ``folded`` axes in which they are each other's mirrors (members in the
+    order +, -; for both ++, -+, +-, --), ``numbers`` of them that are not zero."""
 
     folded: tuple[int, ...]
     numbers: tuple[int, ...]
@@ -39,21 +49,34 @@ class Kind(NamedTuple):
 
 def _kind(folded: tuple[int, ...], even: tuple[int, ...]) -> Kind:
     """The kind whose numbers that are odd in ``even`` axes are zero."""
-    return Kind(folded, tuple(n for n in range(len(PLACES)) if not any(odd(n, axis) for axis in even)))
+    return Kind(
+        folded, tuple(n for n in range(len(PLACES)) if not any(odd(n, axis) for axis in even))
+    )
 
 
 # Of groups with the same members the one with fewer numbers comes first.
-KINDS = (_kind((1, 2), ()), _kind((1,), (2,)), _kind((1,), ()), _kind((2,), (1,)), _kind((2,), ()),
-         _kind((), (1, 2)), _kind((), (1,)), _kind((), (2,)), _kind((), ()))
+KINDS = (
+    _kind((1, 2), ()),
+    _kind((1,), (2,)),
+    _kind((1,), ()),
+    _kind((2,), (1,)),
+    _kind((2,), ()),
+    _kind((), (1, 2)),
+    _kind((), (1,)),
+    _kind((), (2,)),
+    _kind((), ()),
+)
 
 
-# How many groups of each kind the commonest pencils have: inside a section, on a side along y, on a side along z.
+# How many groups of each kind the commonest pencils have: inside a section, on a side along y, on a
+# side along z.
 PATTERNS = ((1, 1, 0, 1, 0, 1, 0, 0, 0), (0, 0, 2, 0, 0, 0, 2, 0, 0), (0, 0, 0, 0, 2, 0, 0, 2, 0))
 
 
 class Groups(NamedTuple):
-    """Groups of all pencils one after the other, in the order of KINDS within each: counts (s, kinds); members, their pencils;
-    numbers, N/m; first_member (s,) and first_number (s,) of each pencil; pattern (s,) its place among PATTERNS, or their number."""
+    """Groups of all pencils one after the other, in the order of KINDS within each: counts (s,
+    kinds); members, their pencils; numbers, N/m; first_member (s,) and first_number (s,) of each
+    pencil; pattern (s,) its place among PATTERNS, or their number."""
 
     pattern: np.ndarray
     counts: np.ndarray
@@ -63,24 +86,47 @@ class Groups(NamedTuple):
     first_number: np.ndarray
 
 
-def fold(first: np.ndarray, neighbour: np.ndarray, offsets: np.ndarray, numbers: np.ndarray) -> Groups:
+def fold(
+    first: np.ndarray, neighbour: np.ndarray, offsets: np.ndarray, numbers: np.ndarray
+) -> Groups:
     """Groups of the neighbours (q,) of each pencil, those of pencil i from ``first[i]`` on.
 
-    ``offsets`` (q,2) m: place of the neighbour in the section less that of the pencil; ``numbers`` (q,14) N/m.
+    ``offsets`` (q,2) m: place of the neighbour in the section less that of the pencil; ``numbers``
+    (q,14) N/m.
     """
-    limit, places = _SAME * np.abs(numbers).max(), np.round(offsets / _GRID).astype(np.int64).tolist()
-    found = [_groups({tuple(places[q]): q for q in range(a, b)}, numbers, limit) for a, b in pairwise(first)]
+    limit, places = (
+        _SAME * np.abs(numbers).max(),
+        np.round(offsets / _GRID).astype(np.int64).tolist(),
+    )
+    found = [
+        _groups({tuple(places[q]): q for q in range(a, b)}, numbers, limit)
+        for a, b in pairwise(first)
+    ]
     counts = np.array([[len(groups) for groups in kinds] for kinds in found], dtype=np.int64)
-    size = np.array([kind.members for kind in KINDS]), np.array([len(kind.numbers) for kind in KINDS])
-    starts = [np.concatenate([[0], np.cumsum(counts @ each)[:-1]]).astype(np.int64) for each in size]
+    size = (
+        np.array([kind.members for kind in KINDS]),
+        np.array([len(kind.numbers) for kind in KINDS]),
+    )
+    starts = [
+        np.concatenate([[0], np.cumsum(counts @ each)[:-1]]).astype(np.int64) for each in size
+    ]
     flat = [group for kinds in found for groups in kinds for group in groups]
-    pattern = [PATTERNS.index(own) if (own := tuple(each)) in PATTERNS else len(PATTERNS) for each in counts.tolist()]
-    return Groups(np.array(pattern), counts, neighbour[np.concatenate([members for members, _ in flat])].astype(np.int64),
-                  np.concatenate([values for _, values in flat]), *starts)
+    pattern = [
+        PATTERNS.index(own) if (own := tuple(each)) in PATTERNS else len(PATTERNS)
+        for each in counts.tolist()
+    ]
+    return Groups(
+        np.array(pattern),
+        counts,
+        neighbour[np.concatenate([members for members, _ in flat])].astype(np.int64),
+        np.concatenate([values for _, values in flat]),
+        *starts,
+    )
 
 
 def _groups(at: dict, numbers: np.ndarray, limit: float) -> list[list]:
-    """For each kind the groups (members, numbers) of one pencil, ``at`` being its neighbours by offset."""
+    """For each kind the groups (members, numbers) of one pencil, ``at`` being its neighbours by
+    offset."""
     left, found = dict(at), [[] for _ in KINDS]
     for number, kind in enumerate(KINDS):
         for offset in at:
@@ -88,19 +134,29 @@ def _groups(at: dict, numbers: np.ndarray, limit: float) -> list[list]:
             if len(set(places)) == len(places) and all(place in left for place in places):
                 folded = numbers[[at[place] for place in places]] * _SIGNS[number]
                 mean = folded.mean(axis=0)
-                if np.abs(folded - mean).max() <= limit and np.abs(np.delete(mean, kind.numbers)).max(initial=0.0) <= limit:
-                    found[number].append(([left.pop(place) for place in places], mean[list(kind.numbers)]))
+                if (
+                    np.abs(folded - mean).max() <= limit
+                    and np.abs(np.delete(mean, kind.numbers)).max(initial=0.0) <= limit
+                ):
+                    found[number].append(
+                        ([left.pop(place) for place in places], mean[list(kind.numbers)])
+                    )
     return found
 
 
 def _mirrors(kind: Kind) -> list[tuple[int, int]]:
     """Signs of (dy, dz) of the members."""
-    return [(y, z) for z, y in product(*((1, -1) if axis in kind.folded else (1,) for axis in (2, 1)))]
+    return [
+        (y, z) for z, y in product(*((1, -1) if axis in kind.folded else (1,) for axis in (2, 1)))
+    ]
 
 
 def _signs(signs: tuple[int, int]) -> list[int]:
     """Sign of each number at the member with these signs."""
-    return [int(np.prod([sign for axis, sign in zip((1, 2), signs) if odd(n, axis)])) for n in range(len(PLACES))]
+    return [
+        int(np.prod([sign for axis, sign in zip((1, 2), signs) if odd(n, axis)]))
+        for n in range(len(PLACES))
+    ]
 
 
 _SIGNS = [np.array([_signs(signs) for signs in _mirrors(kind)]) for kind in KINDS]

@@ -2,10 +2,11 @@
 
     bytes = FIXED + PER_ELEMENT elements
 
-Measured as the largest resident set of mesh, set-up and run of the reference rails: 154,880 elements take 0.35 GB beyond the
-0.2 GB of the interpreter with its libraries, 1.24 million 2.7 GB, 4.05 million 8.7 GB. Most of it is the mesh generator's and gone
-before the first step. An element of a mesh in which no two are alike has a matrix of its own besides, three times while matrices
-are put together.
+Measured as the largest resident set of mesh, set-up and run of the reference rails: 154,880
+elements take 0.35 GB beyond the 0.2 GB of the interpreter with its libraries, 1.24 million 2.7 GB,
+4.05 million 8.7 GB. Most of it is the mesh generator's and gone before the first step. An element
+of a mesh in which no two are alike has a matrix of its own besides, three times while matrices are
+put together.
 """
 
 from pathlib import Path
@@ -18,17 +19,20 @@ _UNLIMITED = 2**60  # what a control group without a limit says is beyond this
 
 
 def of_section(elements: int) -> float:
-    """Bytes that rails of so many hexahedra take from before they are meshed until the end of a run."""
+    """Bytes that rails of so many hexahedra take from before they are meshed until the end of a
+    run."""
     return FIXED + PER_ELEMENT * elements
 
 
 def of_mesh(elements: int, nodes: int, shapes: int) -> float:
-    """Bytes that a mesh already read takes until the end of a run: ``elements`` of ``nodes`` nodes each in ``shapes`` classes."""
+    """Bytes that a mesh already read takes until the end of a run: ``elements`` of ``nodes`` nodes
+    each in ``shapes`` classes."""
     return FIXED + _PER_MESHED * elements * nodes / 8 + _COPIES * 8 * (3 * nodes) ** 2 * shapes
 
 
 def available(system: Path = Path("/")) -> int | None:
-    """Bytes this process can still get, the least of what the machine and its control group leave; None where neither says."""
+    """Bytes this process can still get, the least of what the machine and its control group leave;
+    None where neither says."""
     found = [_of_machine(system), *_of_groups(system)]
     return min((value for value in found if value is not None), default=None)
 
@@ -47,7 +51,8 @@ def _of_machine(system: Path) -> int | None:
 
 
 def _of_groups(system: Path) -> list[int | None]:
-    """What is left of the limit of this process's control group and of those around it, in versions 1 and 2."""
+    """What is left of the limit of this process's control group and of those around it, in versions
+    1 and 2."""
     root, left = system / "sys/fs/cgroup", []
     for line in _text(system / "proc/self/cgroup").splitlines():
         _, controllers, group = line.split(":", 2)
@@ -60,11 +65,17 @@ def _of_groups(system: Path) -> list[int | None]:
 
 def _left(group: Path) -> int | None:
     """Limit less use, of which what files have cached can be had back."""
-    for limit, used, cached in (("memory.max", "memory.current", "inactive_file"),
-                                ("memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file")):
+    for limit, used, cached in (
+        ("memory.max", "memory.current", "inactive_file"),
+        ("memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file"),
+    ):
         most, now = _text(group / limit).strip(), _text(group / used).strip()
         if most.isdigit() and now.isdigit() and int(most) < _UNLIMITED:
-            entries = dict(line.split()[:2] for line in _text(group / "memory.stat").splitlines() if " " in line)
+            entries = dict(
+                line.split()[:2]
+                for line in _text(group / "memory.stat").splitlines()
+                if " " in line
+            )
             return max(0, int(most) - int(now) + int(entries.get(cached, 0)))
     return None
 

@@ -1,7 +1,9 @@
-"""Displacement gradients at the corners of hexahedra, and the worst of them (``highfi.worst``), found in one pass.
+"""Displacement gradients at the corners of hexahedra, and the worst of them (``highfi.worst``),
+found in one pass.
 
-A corner's gradient is that of ``highfi.recovery``, bubbles included: differences along the edges, turned by what the element's
-class has at that corner, and the amplitudes of the bubbles, which are products of its class with the displacement.
+A corner's gradient is that of ``highfi.recovery``, bubbles included: differences along the edges,
+turned by what the element's class has at that corner, and the amplitudes of the bubbles, which are
+products of its class with the displacement.
 """
 
 from typing import NamedTuple
@@ -17,13 +19,15 @@ CORNERS = 8
 STEPS = 8.0  # that a look at an element costs: 180 against 25 ns, one thread each
 _BATCH = 2048  # classes at once; bounds the memory of an unstructured mesh
 _LANES = 16  # the nine amplitudes, padded to whole vectors
-# Places in the room for one element; flat arrays, because the compiler must see that they lie apart.
+# Places in the room for one element; flat arrays, because the compiler must see that they lie
+# apart.
 AT, ALONG, BUBBLES, GRADIENT, SQUARES, SIZE = 0, 24, 96, 112, 184, 208
 
 
 class Recovery(NamedTuple):
-    """Constant: cells (e,8) numbers in the nodal arrays; shape_class (e,); for each class amplitude (c,24*16) of the bubbles,
-    nine of 16 in use, slope and bubble (c,3*3*8) 1/m: of local coordinate and of bubble i along j at each corner."""
+    """Constant: cells (e,8) numbers in the nodal arrays; shape_class (e,); for each class amplitude
+    (c,24*16) of the bubbles, nine of 16 in use, slope and bubble (c,3*3*8) 1/m: of local coordinate
+    and of bubble i along j at each corner."""
 
     cells: np.ndarray
     shape_class: np.ndarray
@@ -32,12 +36,21 @@ class Recovery(NamedTuple):
     bubble: np.ndarray
 
 
-def build(points: np.ndarray, hexes: np.ndarray, shape_class: np.ndarray, law: np.ndarray, number: np.ndarray) -> Recovery:
-    """Recovery of a mesh, points (n,3) m and hexes (e,8), with the classes of its operator; ``number`` (n,) of each node in the
-    nodal arrays."""
+def build(
+    points: np.ndarray,
+    hexes: np.ndarray,
+    shape_class: np.ndarray,
+    law: np.ndarray,
+    number: np.ndarray,
+) -> Recovery:
+    """Recovery of a mesh, points (n,3) m and hexes (e,8), with the classes of its operator;
+    ``number`` (n,) of each node in the nodal arrays."""
     _, representatives = np.unique(shape_class, return_index=True)
     corners = points[hexes[representatives]]
-    parts = [_of_classes(corners[start:start + _BATCH], law) for start in range(0, len(corners), _BATCH)]
+    parts = [
+        _of_classes(corners[start : start + _BATCH], law)
+        for start in range(0, len(corners), _BATCH)
+    ]
     amplitude, slope, bubble = (aligned(np.concatenate(part)) for part in zip(*parts))
     return Recovery(number[hexes].astype(np.uint32), shape_class, amplitude, slope, bubble)
 
@@ -52,7 +65,8 @@ def _of_classes(corners: np.ndarray, law: np.ndarray) -> tuple[np.ndarray, np.nd
 
 @kernel
 def find(displacement, recovery, worst, room, first, last):
-    """Raise ``worst`` to what elements ``first`` to ``last`` have under displacement (n,3) m; ``room`` (SIZE,) for one of them."""
+    """Raise ``worst`` to what elements ``first`` to ``last`` have under displacement (n,3) m;
+    ``room`` (SIZE,) for one of them."""
     u = displacement.T
     for e in range(first, last):
         _gradients(u, recovery, room, e)
@@ -62,7 +76,8 @@ def find(displacement, recovery, worst, room, first, last):
 
 @kernel
 def gradients(displacement, recovery, room, first, last, out):
-    """Fill ``out`` (last - first, 72) with displacement gradients of elements ``first`` to ``last``: component, axis, corner."""
+    """Fill ``out`` (last - first, 72) with displacement gradients of elements ``first`` to
+    ``last``: component, axis, corner."""
     u = displacement.T
     for e in range(first, last):
         _gradients(u, recovery, room, e)
@@ -83,8 +98,8 @@ def _gradients(u, recovery, room, e):
 
 @inlined
 def _gather(u, nodes, room, i):
-    """AT + 8 i: displacement along i of the corners, from that of the first one; ALONG + 24 i: its differences along the edges of
-    each local axis, at each corner."""
+    """AT + 8 i: displacement along i of the corners, from that of the first one; ALONG + 24 i: its
+    differences along the edges of each local axis, at each corner."""
     first = u[nodes[0]]
     b, c, d, e = u[nodes[1]] - first, u[nodes[2]] - first, u[nodes[3]] - first, u[nodes[4]] - first
     f, g, h = u[nodes[5]] - first, u[nodes[6]] - first, u[nodes[7]] - first
@@ -109,7 +124,11 @@ def _bubbles(amplitude, room):
         x, y, z = room[AT + k], room[AT + 8 + k], room[AT + 16 + k]
         n = 3 * _LANES * k
         for j in range(_LANES):
-            room[BUBBLES + j] += amplitude[n + j] * x + amplitude[n + _LANES + j] * y + amplitude[n + 2 * _LANES + j] * z
+            room[BUBBLES + j] += (
+                amplitude[n + j] * x
+                + amplitude[n + _LANES + j] * y
+                + amplitude[n + 2 * _LANES + j] * z
+            )
 
 
 @inlined
@@ -118,5 +137,6 @@ def _gradient(slope, bubble, room, i):
     x, y, z = room[BUBBLES + 3 * i], room[BUBBLES + 3 * i + 1], room[BUBBLES + 3 * i + 2]
     for j in range(24):
         k = ALONG + 24 * i + (j & 7)
-        room[GRADIENT + 24 * i + j] = ((room[k] * slope[j] + room[k + 8] * slope[24 + j] + room[k + 16] * slope[48 + j])
-                                       + (x * bubble[j] + y * bubble[24 + j] + z * bubble[48 + j]))
+        room[GRADIENT + 24 * i + j] = (
+            room[k] * slope[j] + room[k + 8] * slope[24 + j] + room[k + 16] * slope[48 + j]
+        ) + (x * bubble[j] + y * bubble[24 + j] + z * bubble[48 + j])

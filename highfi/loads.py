@@ -1,8 +1,8 @@
 """Loads other than contact: thrust, gravity, and the work all of them do.
 
-Work is counted in halves around each kick, ``dt/2 f(n) v(n-1/2)`` before and ``dt/2 f(n) v(n+1/2)`` after: with the kinetic energy
-``v(n-1/2) M v(n+1/2) / 2`` the balance of central differences is then an identity for every force, and the ledgers show only
-what is not conservative or not smooth.
+Work is counted in halves around each kick, ``dt/2 f(n) v(n-1/2)`` before and ``dt/2 f(n) v(n+1/2)``
+after: with the kinetic energy ``v(n-1/2) M v(n+1/2) / 2`` the balance of central differences is
+then an identity for every force, and the ledgers show only what is not conservative or not smooth.
 """
 
 from highfi.contact import friction_power
@@ -25,7 +25,8 @@ from scenes.jit import kernel
 
 @kernel
 def line_of_action(drive, offset):
-    """Thrust direction and arm in body axes; axial through the mass centre when ``offset`` is None."""
+    """Thrust direction and arm in body axes; axial through the mass centre when ``offset`` is
+    None."""
     line = ((1.0, 0.0, 0.0), (-drive.arm, 0.0, 0.0))
     if offset is not None:
         line = _offset_line(offset)
@@ -39,7 +40,8 @@ def _offset_line(offset):
 
 @kernel
 def thrust_load(state, drive, pulses, curve, offset, time):
-    """Thrust force (N), moment about the payload's mass centre (N m) and point of application (m), in inertial axes."""
+    """Thrust force (N), moment about the payload's mass centre (N m) and point of application (m),
+    in inertial axes."""
     direction, arm = line_of_action(drive, offset)
     turn = body_matrix(state.payload)
     push = magnitude(pulses, curve, time)
@@ -57,7 +59,21 @@ def axial_velocity_of_platform(state, frame, base):
 
 
 @kernel
-def add_work(rail, surface, payload, frame, drive, friction, gravity, state, active, pose, thrust, half, ahead):
+def add_work(
+    rail,
+    surface,
+    payload,
+    frame,
+    drive,
+    friction,
+    gravity,
+    state,
+    active,
+    pose,
+    thrust,
+    half,
+    ahead,
+):
     """Add half a step of work, total and axial, at the velocities of ``pose``
     and those of the nodes once kicked over ``ahead`` (s)."""
     force, moment, _point = thrust
@@ -70,7 +86,9 @@ def add_work(rail, surface, payload, frame, drive, friction, gravity, state, act
     work[CONTACT_AXIAL] += half * normal * v[0]
     work[FRICTION_AXIAL] -= half * drag * v[0]
     pull = pull_on_nodes(gravity, pose)
-    work[FRICTION] -= half * friction_power(rail, surface, state, active, pose, friction, pull, ahead)
+    work[FRICTION] -= half * friction_power(
+        rail, surface, state, active, pose, friction, pull, ahead
+    )
     _platform_work(frame, drive, state, pose.frame, thrust, normal, drag, half)
     _gravity_work(payload, frame, gravity, state, pose.frame, half)
 
@@ -99,7 +117,9 @@ def _platform_work(frame, drive, state, base, thrust, normal, drag, half):
             force, _, point = thrust
             lever = _from_origin(state, point)
             rate = body_rate(state.platform, frame.inverse_inertia)
-            work = rotation.dot(force, state.platform.velocity) + rotation.dot(rotation.cross(lever, force), rate)
+            work = rotation.dot(force, state.platform.velocity) + rotation.dot(
+                rotation.cross(lever, force), rate
+            )
             state.work[THRUST] -= half * work
             state.work[THRUST_AXIAL] -= half * force[0] * axial
 
@@ -116,7 +136,9 @@ def _gravity_work(payload, frame, gravity, state, base, half):
         v = state.payload.velocity
         g = (gravity.x, gravity.y, gravity.z)
         momentum = rotation.rotate(base, triple(state.rail_momentum))
-        state.work[GRAVITY] += half * (payload.mass * rotation.dot(g, v) + rotation.dot(g, momentum))
+        state.work[GRAVITY] += half * (
+            payload.mass * rotation.dot(g, v) + rotation.dot(g, momentum)
+        )
         state.work[GRAVITY_AXIAL] += half * payload.mass * g[0] * v[0]
         _platform_gravity_work(frame, g, state, base, half)
 
@@ -125,14 +147,18 @@ def _gravity_work(payload, frame, gravity, state, base, half):
 def _platform_gravity_work(frame, g, state, base, half):
     if frame is not None:
         state.work[GRAVITY] += half * frame.mass * rotation.dot(g, state.platform.velocity)
-        state.work[GRAVITY_AXIAL] += half * frame.total_mass * g[0] * axial_velocity_of_platform(state, frame, base)
+        state.work[GRAVITY_AXIAL] += (
+            half * frame.total_mass * g[0] * axial_velocity_of_platform(state, frame, base)
+        )
 
 
 @kernel
 def add_external_impulse(payload, frame, drive, gravity, state, pose, thrust, reaction, dt):
-    """Impulse and moment of impulse (about the scene origin) of everything outside the counted system.
+    """Impulse and moment of impulse (about the scene origin) of everything outside the counted
+    system.
 
-    Thrust counts unless the free platform takes its reaction; the ground's reaction counts when the platform is fixed.
+    Thrust counts unless the free platform takes its reaction; the ground's reaction counts when the
+    platform is fixed.
     """
     force, _, point = thrust
     if frame is None:

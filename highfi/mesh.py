@@ -1,13 +1,15 @@
-"""The rail mesh as plain arrays, read from any file meshio knows and checked before anything is computed with it.
+"""The rail mesh as plain arrays, read from any file meshio knows and checked before anything is
+computed with it.
 
-A mesh needs 8-node hexahedra or 10-node tetrahedra, at least one named group of their faces that starts with `contact` (the walls
-pads touch) and one named `mount` (fixed to the platform). Nodes follow the VTK order. The Jacobian must be positive at the corners
-of a hexahedron,
+A mesh needs 8-node hexahedra or 10-node tetrahedra, at least one named group of their faces that
+starts with `contact` (the walls pads touch) and one named `mount` (fixed to the platform). Nodes
+follow the VTK order. The Jacobian must be positive at the corners of a hexahedron,
 
     J = e1 . (e2 x e3) > 0    with e the three edges that leave a corner,
 
-which is stricter than checking it where it is integrated, and everywhere in a tetrahedron (`highfi.cells`). Arrays count from 0;
-messages count the elements of the file from 1, as mesh editors do.
+which is stricter than checking it where it is integrated, and everywhere in a tetrahedron
+(`highfi.cells`). Arrays count from 0; messages count the elements of the file from 1, as mesh
+editors do.
 """
 
 import contextlib
@@ -22,7 +24,9 @@ from highfi.cells import HEXAHEDRON, KINDS, Kind, edge_lengths, jacobians, kind,
 
 _LISTED = 20  # element numbers printed in one message
 _THIN = 0.25  # of the median: thinner elements set the time step of the whole mesh
-_SKEW = 0.85  # scaled Jacobian, 1 for a brick and 0.71 for corners of 45 degrees, where bending of thin layers is lost
+# scaled Jacobian, 1 for a brick and 0.71 for corners of 45 degrees, where bending of thin layers is
+# lost
+_SKEW = 0.85
 
 
 class MeshError(ValueError):
@@ -33,9 +37,10 @@ class MeshError(ValueError):
 class RailMesh:
     """Elements of one kind and named boundary surfaces.
 
-    points (n,3) m; cells (e,k) point numbers, k = 8 or 10, VTK order, positive Jacobian; surfaces: name -> (m,f) point numbers of
-    facets, four corners or three and three middles, corners counter-clockwise seen from outside the solid; warnings: what costs
-    time or accuracy without being wrong.
+    points (n,3) m; cells (e,k) point numbers, k = 8 or 10, VTK order, positive Jacobian; surfaces:
+    name -> (m,f) point numbers of facets, four corners or three and three middles, corners
+    counter-clockwise seen from outside the solid; warnings: what costs time or accuracy without
+    being wrong.
     """
 
     points: np.ndarray
@@ -47,9 +52,9 @@ class RailMesh:
 def read(source) -> RailMesh:
     """Check and convert a meshio mesh, or the path of a file meshio can read.
 
-    Points no element uses are dropped. Raises MeshError for a file that meshio does not read, and with one line per fault: no
-    elements of a known kind, two kinds or others beside them, missing surfaces, facets that are not on the boundary of the solid or
-    appear twice, inverted elements.
+    Points no element uses are dropped. Raises MeshError for a file that meshio does not read, and
+    with one line per fault: no elements of a known kind, two kinds or others beside them, missing
+    surfaces, facets that are not on the boundary of the solid or appear twice, inverted elements.
     """
     mesh = source if isinstance(source, meshio.Mesh) else _opened(Path(source))
     found = _kinds(mesh)
@@ -69,27 +74,37 @@ def read(source) -> RailMesh:
     renumber[used] = np.arange(len(used))
     points = np.ascontiguousarray(mesh.points[used], dtype=float)
     cells = numbered.reshape(cells.shape)
-    return RailMesh(points, cells, {name: renumber[facets] for name, facets in surfaces.items()}, _warnings(points, cells))
+    return RailMesh(
+        points,
+        cells,
+        {name: renumber[facets] for name, facets in surfaces.items()},
+        _warnings(points, cells),
+    )
 
 
 def along_x(mesh: RailMesh) -> RailMesh:
     """The same mesh with nodes and elements numbered from one end to the other.
 
-    Neighbours are then near each other in memory, whatever tool numbered the file: an internal force costs 45 ns per element
-    on 155,000 elements, 75 ns where the file numbers at random.
+    Neighbours are then near each other in memory, whatever tool numbered the file: an internal
+    force costs 45 ns per element on 155,000 elements, 75 ns where the file numbers at random.
     """
     order = _from_end_to_end(mesh.points)
     renumber = np.empty_like(order)
     renumber[order] = np.arange(len(order))
     elements = _from_end_to_end(mesh.points[mesh.cells].mean(axis=1))
     surfaces = {name: renumber[facets] for name, facets in mesh.surfaces.items()}
-    return replace(mesh, points=mesh.points[order], cells=renumber[mesh.cells[elements]], surfaces=surfaces)
+    return replace(
+        mesh, points=mesh.points[order], cells=renumber[mesh.cells[elements]], surfaces=surfaces
+    )
 
 
 def boundary_facets(cells: np.ndarray) -> np.ndarray:
-    """Faces (m,f) that belong to one element of (e,k) only, corners counter-clockwise seen from outside."""
+    """Faces (m,f) that belong to one element of (e,k) only, corners counter-clockwise seen from
+    outside."""
     faces = cells[:, kind(cells).faces].reshape(-1, kind(cells).faces.shape[1])
-    _, first, count = np.unique(np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True)
+    _, first, count = np.unique(
+        np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True
+    )
     return faces[np.sort(first[count == 1])]
 
 
@@ -111,13 +126,15 @@ def _opened(path: Path) -> meshio.Mesh:
         # meshio prints what is wrong with a file, and then asks the whole program to exit.
         with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
             return meshio.read(path)
-    except (Exception, SystemExit) as fault:  # each format's reader fails in its own way on damaged bytes
+    # each format's reader fails in its own way on damaged bytes
+    except (Exception, SystemExit) as fault:
         why = " ".join(said.getvalue().split()) or f"{type(fault).__name__}: {fault}"
         raise MeshError(f"{path} cannot be used: meshio does not read it ({why})") from fault
 
 
 def _kinds(mesh: meshio.Mesh) -> list[Kind]:
-    """Kinds of element in a file; where there is none, the one that its faults are told in terms of."""
+    """Kinds of element in a file; where there is none, the one that its faults are told in terms
+    of."""
     types = {block.type for block in mesh.cells}
     return [known for known in KINDS.values() if known.cell in types] or [HEXAHEDRON]
 
@@ -128,8 +145,11 @@ def _elements(mesh: meshio.Mesh, wanted: Kind) -> np.ndarray:
 
 
 def _named_facets(mesh: meshio.Mesh, wanted: Kind) -> dict[str, np.ndarray]:
-    """Facets of each contact or mount group, from gmsh's physical tags or from the cell sets of other formats."""
-    blocks = [(index, block.data) for index, block in enumerate(mesh.cells) if block.type == wanted.facet]
+    """Facets of each contact or mount group, from gmsh's physical tags or from the cell sets of
+    other formats."""
+    blocks = [
+        (index, block.data) for index, block in enumerate(mesh.cells) if block.type == wanted.facet
+    ]
     physical = mesh.cell_data.get("gmsh:physical")
     groups: dict[str, list[np.ndarray]] = {}
     for index, facets in blocks:
@@ -140,21 +160,33 @@ def _named_facets(mesh: meshio.Mesh, wanted: Kind) -> dict[str, np.ndarray]:
         for name, members in mesh.cell_sets.items():
             # A format that gives both (gmsh 4.1) says the same thing twice.
             if name not in mesh.field_data and members[index] is not None:
-                groups.setdefault(name, []).append(facets[np.asarray(members[index], dtype=np.int64)])
-    merged = {name: np.concatenate(parts).astype(np.int64) for name, parts in groups.items()
-              if name.startswith("contact") or name == "mount"}
+                groups.setdefault(name, []).append(
+                    facets[np.asarray(members[index], dtype=np.int64)]
+                )
+    merged = {
+        name: np.concatenate(parts).astype(np.int64)
+        for name, parts in groups.items()
+        if name.startswith("contact") or name == "mount"
+    }
     return {name: facets for name, facets in merged.items() if len(facets)}
 
 
-def _content_faults(mesh: meshio.Mesh, found: list[Kind], elements: int, surfaces: dict[str, np.ndarray]) -> list[str]:
+def _content_faults(
+    mesh: meshio.Mesh, found: list[Kind], elements: int, surfaces: dict[str, np.ndarray]
+) -> list[str]:
     faults = []
     known = {kind.cell for kind in KINDS.values()}
     names = [kind.name for kind in KINDS.values()]
-    other = sorted({block.type for block in mesh.cells if block.dim == 3 and block.type not in known})
+    other = sorted(
+        {block.type for block in mesh.cells if block.dim == 3 and block.type not in known}
+    )
     if other:
         faults.append(f"solid elements other than {' and '.join(names)}: {', '.join(other)}")
     if "tetra" in other:
-        faults.append("4-node tetrahedra, which are far too stiff: let the mesh generator write elements of second order")
+        faults.append(
+            "4-node tetrahedra, which are far too stiff: let the mesh generator write elements of "
+            "second order"
+        )
     if len(found) > 1:
         faults.append(f"both {' and '.join(names)}: one kind can be used")
     if not elements:
@@ -164,7 +196,9 @@ def _content_faults(mesh: meshio.Mesh, found: list[Kind], elements: int, surface
     named = ", ".join(sorted({*mesh.field_data, *mesh.cell_sets})) or "none"
     facets = found[0].facets
     if not any(name.startswith("contact") for name in surfaces):
-        faults.append(f"no {facets} group whose name starts with 'contact' (groups in the mesh: {named})")
+        faults.append(
+            f"no {facets} group whose name starts with 'contact' (groups in the mesh: {named})"
+        )
     if "mount" not in surfaces:
         faults.append(f"no {facets} group named 'mount' (groups in the mesh: {named})")
     return faults
@@ -176,15 +210,21 @@ def _inverted(points: np.ndarray, cells: np.ndarray) -> list[str]:
     return [f"inverted or flat elements: {listed(inverted)}"] if len(inverted) else []
 
 
-def _matched(surfaces: dict[str, np.ndarray], boundary: np.ndarray) -> tuple[dict[str, np.ndarray], list[str]]:
-    """Each facet replaced by the element's face it lies on, which carries the outward orientation."""
+def _matched(
+    surfaces: dict[str, np.ndarray], boundary: np.ndarray
+) -> tuple[dict[str, np.ndarray], list[str]]:
+    """Each facet replaced by the element's face it lies on, which carries the outward
+    orientation."""
     face_of = {tuple(key): face for key, face in zip(np.sort(boundary, axis=1).tolist(), boundary)}
     matched, faults = {}, []
     for name, facets in surfaces.items():
         keys = [tuple(key) for key in np.sort(facets, axis=1).tolist()]
         astray = sum(key not in face_of for key in keys)
         if astray:
-            faults.append(f"surface '{name}': {astray} of {len(keys)} facets are not on the boundary of the solid")
+            faults.append(
+                f"surface '{name}': {astray} of {len(keys)} facets are not on the boundary of the "
+                f"solid"
+            )
         if len(set(keys)) < len(keys):
             faults.append(f"surface '{name}': {len(keys) - len(set(keys))} facets appear twice")
         if not astray:
@@ -198,24 +238,31 @@ def _warnings(points: np.ndarray, cells: np.ndarray) -> tuple[str, ...]:
     warnings = []
     if len(thin):
         worst = thin[np.argmin(across[thin])]
-        longest = edge_lengths(points, cells[worst:worst + 1]).max()
+        longest = edge_lengths(points, cells[worst : worst + 1]).max()
         warnings.append(
-            f"slivers: elements {listed(thin)}; shortest {kind(cells).thickness} {across[worst]:.3g} m in element {worst + 1} "
+            f"slivers: elements {listed(thin)}; shortest {kind(cells).thickness} "
+            f"{across[worst]:.3g} m in element {worst + 1} "
             f"(aspect ratio {longest / across[worst]:.3g}), so a run takes about "
-            f"{np.median(across) / across[worst]:.3g} times the steps that the rest of the mesh needs")
+            f"{np.median(across) / across[worst]:.3g} times the steps that the rest of the mesh "
+            f"needs"
+        )
     return (*warnings, *_skewed(points, cells))
 
 
 def _skewed(points: np.ndarray, cells: np.ndarray) -> tuple[str, ...]:
-    """What bends too stiffly: hexahedra far from bricks. Tetrahedra of any shape bend as their quadratic edges let them."""
+    """What bends too stiffly: hexahedra far from bricks. Tetrahedra of any shape bend as their
+    quadratic edges let them."""
     if kind(cells) is not HEXAHEDRON:
         return ()
     _, scaled = jacobians(points, cells)
     skewed = np.flatnonzero(scaled.min(axis=1) < _SKEW)
     if not len(skewed):
         return ()
-    return (f"skewed elements: {listed(skewed)}; scaled Jacobian down to {scaled.min():.3g}, where one layer of hexahedra "
-            "is far too stiff in bending",)
+    return (
+        f"skewed elements: {listed(skewed)}; scaled Jacobian down to {scaled.min():.3g}, where one "
+        f"layer of hexahedra "
+        "is far too stiff in bending",
+    )
 
 
 def _from_end_to_end(points: np.ndarray) -> np.ndarray:

@@ -1,6 +1,8 @@
-"""Passes over the rail nodes: kick and drift. Written without branches, so that they run at memory speed.
+"""Passes over the rail nodes: kick and drift. Written without branches, so that they run at memory
+speed.
 
-A node without inverse mass is clamped or padding: it has no resistance and stays where it is in the frame.
+A node without inverse mass is clamped or padding: it has no resistance and stays where it is in the
+frame.
 """
 
 import numpy as np
@@ -32,7 +34,8 @@ def _kicked(velocity, resistance, inverse_mass, pull, dt):
 
 @kernel
 def move_nodes(rail, frame, state, dt, first, last):
-    """Kick and drift nodes ``first`` to ``last`` in a frame that moves as ``state.motion`` says; see ``pose``."""
+    """Kick and drift nodes ``first`` to ``last`` in a frame that moves as ``state.motion`` says;
+    see ``pose``."""
     x, u, w, f = rail.points.T, state.displacement.T, state.velocity.T, state.resistance.T
     # Unsigned, because an index that might be negative would keep the loops from being vectorised.
     first, last, pull = np.uint64(first), np.uint64(last), state.motion[PULL:]
@@ -40,27 +43,65 @@ def move_nodes(rail, frame, state, dt, first, last):
         for i in range(3):
             _move_component(rail.inverse_mass, u[i], w[i], f[i], pull[i], dt, first, last)
     if frame is not None:
-        _move_in_frame(x[0], x[1], x[2], rail.inverse_mass, u[0], u[1], u[2], w[0], w[1], w[2], f[0], f[1], f[2], state.motion, dt,
-                       first, last)
+        _move_in_frame(
+            x[0],
+            x[1],
+            x[2],
+            rail.inverse_mass,
+            u[0],
+            u[1],
+            u[2],
+            w[0],
+            w[1],
+            w[2],
+            f[0],
+            f[1],
+            f[2],
+            state.motion,
+            dt,
+            first,
+            last,
+        )
 
 
 @kernel
 def _move_component(inverse_mass, displacement, velocity, resistance, pull, dt, first, last):
     for node in range(first, last):
         velocity[node] = _kicked(velocity[node], resistance[node], inverse_mass[node], pull, dt)
-        displacement[node] = displacement[node] + dt * velocity[node] if inverse_mass[node] > 0.0 else 0.0
+        displacement[node] = (
+            displacement[node] + dt * velocity[node] if inverse_mass[node] > 0.0 else 0.0
+        )
 
 
 @kernel
 def _move_in_frame(x, y, z, inverse_mass, u, v, w, p, q, r, a, b, c, motion, dt, first, last):
     # Read once: the compiler cannot know that the loop leaves them alone.
-    fx, fy, fz, gx, gy, gz = motion[0], motion[1], motion[2], motion[PULL], motion[PULL + 1], motion[PULL + 2]
-    t0, t1, t2, t3, t4, t5, t6, t7, t8 = (motion[3], motion[4], motion[5], motion[6], motion[7], motion[8], motion[9], motion[10],
-                                          motion[11])
+    fx, fy, fz, gx, gy, gz = (
+        motion[0],
+        motion[1],
+        motion[2],
+        motion[PULL],
+        motion[PULL + 1],
+        motion[PULL + 2],
+    )
+    t0, t1, t2, t3, t4, t5, t6, t7, t8 = (
+        motion[3],
+        motion[4],
+        motion[5],
+        motion[6],
+        motion[7],
+        motion[8],
+        motion[9],
+        motion[10],
+        motion[11],
+    )
     for node in range(first, last):
         m = inverse_mass[node]
-        px, py, pz = (_kicked(p[node], a[node], m, gx, dt), _kicked(q[node], b[node], m, gy, dt),
-                      _kicked(r[node], c[node], m, gz, dt))
+        px, py, pz = (
+            _kicked(p[node], a[node], m, gx, dt),
+            _kicked(q[node], b[node], m, gy, dt),
+            _kicked(r[node], c[node], m, gz, dt),
+        )
         dx, dy, dz = u[node] + dt * (px - fx), v[node] + dt * (py - fy), w[node] + dt * (pz - fz)
         ax, ay, az = x[node] + dx, y[node] + dy, z[node] + dz
         u[node] = dx + (t0 * ax + t1 * ay + t2 * az) if m > 0.0 else 0.0
@@ -73,9 +114,11 @@ def _move_in_frame(x, y, z, inverse_mass, u, v, w, p, q, r, a, b, c, motion, dt,
 
 @kernel
 def turning(displacement, resistance, first, last, lanes, total):
-    """Set ``total`` (3,) to the sum of u x r over nodes ``first`` to ``last``, whole vectors of them (N m).
+    """Set ``total`` (3,) to the sum of u x r over nodes ``first`` to ``last``, whole vectors of
+    them (N m).
 
-    ``lanes`` (3 or more, LANES) is room for sums taken lane by lane, in an order that does not hang on who computes them.
+    ``lanes`` (3 or more, LANES) is room for sums taken lane by lane, in an order that does not hang
+    on who computes them.
     """
     u, f = displacement.T, resistance.T
     lanes[:] = 0.0
@@ -98,8 +141,8 @@ def _add_cross(u, v, w, a, b, c, first, last, lanes):
 
 @kernel
 def hold(rail, resistance, first, last, total):
-    """Set ``total`` (6,) to force (N) and moment about the frame's origin (N m) of clamped nodes ``first`` to ``last``, then their
-    resistance to zero."""
+    """Set ``total`` (6,) to force (N) and moment about the frame's origin (N m) of clamped nodes
+    ``first`` to ``last``, then their resistance to zero."""
     total[:] = 0.0
     for k in range(first, last):
         node = rail.clamped[k]
@@ -113,11 +156,17 @@ def hold(rail, resistance, first, last, total):
 
 @kernel
 def follow_frame(rail, state, frame, nodes, first, last):
-    """Give clamped ``nodes`` from number ``first`` to ``last`` the frame's own inertial velocity, which friction needs."""
+    """Give clamped ``nodes`` from number ``first`` to ``last`` the frame's own inertial velocity,
+    which friction needs."""
     if frame is not None:
-        velocity, rate = triple(state.motion), (state.motion[RATE], state.motion[RATE + 1], state.motion[RATE + 2])
+        velocity, rate = (
+            triple(state.motion),
+            (state.motion[RATE], state.motion[RATE + 1], state.motion[RATE + 2]),
+        )
         for k in range(first, last):
             node = nodes[k]
-            spin = rotation.cross(rate, (rail.points[node, 0], rail.points[node, 1], rail.points[node, 2]))
+            spin = rotation.cross(
+                rate, (rail.points[node, 0], rail.points[node, 1], rail.points[node, 2])
+            )
             for i in range(3):
                 state.velocity[node, i] = velocity[i] + spin[i]

@@ -1,4 +1,5 @@
-"""Numerical choices of the finite-element reference: what may be refined without changing the scene."""
+"""Numerical choices of the finite-element reference: what may be refined without changing the
+scene."""
 
 import math
 from dataclasses import asdict, dataclass
@@ -8,8 +9,9 @@ from dataclasses import asdict, dataclass
 class Numerics:
     """Mesh, quadrature and step of one run.
 
-    ``element_size`` (m); ``quadrature``: Gauss points per facet edge (None: so many that points lie about 1 mm apart, between 2
-    and 8); ``safety``: fraction of the critical step; ``step`` (s): a step asked for, refused above the limit.
+    ``element_size`` (m); ``quadrature``: Gauss points per facet edge (None: so many that points lie
+    about 1 mm apart, between 2 and 8); ``safety``: fraction of the critical step; ``step`` (s): a
+    step asked for, refused above the limit.
     """
 
     element_size: float = 0.004
@@ -20,11 +22,17 @@ class Numerics:
     def __post_init__(self):
         faults = []
         if not (math.isfinite(self.element_size) and self.element_size > 0.0):
-            faults.append(f"element_size: given {self.element_size!r}, expected a length above zero (m)")
+            faults.append(
+                f"element_size: given {self.element_size!r}, expected a length above zero (m)"
+            )
         if self.quadrature is not None and not 1 <= self.quadrature <= 12:
-            faults.append(f"quadrature: given {self.quadrature!r}, expected 1 to 12 points per edge")
+            faults.append(
+                f"quadrature: given {self.quadrature!r}, expected 1 to 12 points per edge"
+            )
         if not 0.0 < self.safety <= 1.0:
-            faults.append(f"safety: given {self.safety!r}, expected a fraction above 0 and at most 1")
+            faults.append(
+                f"safety: given {self.safety!r}, expected a fraction above 0 and at most 1"
+            )
         if self.step is not None and not (math.isfinite(self.step) and self.step > 0.0):
             faults.append(f"step: given {self.step!r}, expected a time above zero (s)")
         if faults:

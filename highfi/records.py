@@ -1,8 +1,10 @@
-"""Arrays the time loop works on: what is constant (Rail, Surface, Frame, Drive) and what evolves (State, Active).
+"""Arrays the time loop works on: what is constant (Rail, Surface, Frame, Drive) and what evolves
+(State, Active).
 
-All places and nodal vectors are in the axes of the platform-fixed frame, whose origin is the mass centre of the platform's
-*rigid part* (platform without the moving rail nodes); for a fixed platform it is the scene origin. Nodal arrays are (n,3) with
-contiguous columns: one component of all nodes after the other, as vector instructions want them.
+All places and nodal vectors are in the axes of the platform-fixed frame, whose origin is the mass
+centre of the platform's *rigid part* (platform without the moving rail nodes); for a fixed platform
+it is the scene origin. Nodal arrays are (n,3) with contiguous columns: one component of all nodes
+after the other, as vector instructions want them.
 """
 
 from typing import NamedTuple
@@ -14,8 +16,9 @@ from scenes.effects.structural_damping import Damping
 
 
 class Elements(NamedTuple):
-    """Constant: a mesh of any shape. cells (e,k) and shape_class (e,), stiffness (c,3k,3k) N/m as in ``assembly.Operator``; slabs
-    (s+1,) first element of each slab along X, of which no two with one between them share a node."""
+    """Constant: a mesh of any shape. cells (e,k) and shape_class (e,), stiffness (c,3k,3k) N/m as
+    in ``assembly.Operator``; slabs (s+1,) first element of each slab along X, of which no two with
+    one between them share a node."""
 
     cells: np.ndarray
     shape_class: np.ndarray
@@ -24,10 +27,11 @@ class Elements(NamedTuple):
 
 
 class Rail(NamedTuple):
-    """Constant: points (n,3) m; mass (n,) kg; inverse_mass (n,) 1/kg, zero where clamped; clamped (k,) node numbers in
-    ascending order, held (b+1,) the first of them in each block; either
-    pencils, of an extruded mesh, or elements, the other one None; blocks (b+1,) first node of each run of nodes that is worked on
-    at once, the nodes of a chunk of pencils; damping, None where the scene has none."""
+    """Constant: points (n,3) m; mass (n,) kg; inverse_mass (n,) 1/kg, zero where clamped; clamped
+    (k,) node numbers in ascending order, held (b+1,) the first of them in each block; either
+    pencils, of an extruded mesh, or elements, the other one None; blocks (b+1,) first node of each
+    run of nodes that is worked on at once, the nodes of a chunk of pencils; damping, None where the
+    scene has none."""
 
     points: np.ndarray
     mass: np.ndarray
@@ -41,9 +45,10 @@ class Rail(NamedTuple):
 
 
 class Groups(NamedTuple):
-    """Constant: groups of pad faces of which no two can meet the same node. face (f,) group by group, the first of each in
-    first_face (g+1,); clamped (w,) nodes that pads can meet, the first of each group in first_clamped (g+1,); first_node (g,) and
-    first_point (g,): where the part of a group begins in the lists of Active."""
+    """Constant: groups of pad faces of which no two can meet the same node. face (f,) group by
+    group, the first of each in first_face (g+1,); clamped (w,) nodes that pads can meet, the first
+    of each group in first_clamped (g+1,); first_node (g,) and first_point (g,): where the part of a
+    group begins in the lists of Active."""
 
     face: np.ndarray
     first_face: np.ndarray
@@ -54,12 +59,14 @@ class Groups(NamedTuple):
 
 
 class Surface(NamedTuple):
-    """Constant: places (n,3) m of the nodes before any load, which are the rail's points but where it is warm; facets (m,k) node
-    numbers, four corners or the six nodes of a triangle; shape (q,k) functions at the Gauss points,
-    and what bounds their products, ``spread`` (q,k), see ``limits``; area (m,q) m2 per point; for face f the facets it can meet are
-    ``reach[first[f]:first[f+1]]``, sorted by their smallest X ``start`` (m); ``longest`` facet extent along X (m); control (6,6):
-    control points of a triangle from its nodes, None for facets of four corners, which need none; border (f,4) m: smallest and
-    largest X of the Gauss points that a face can meet, and the same across the rail; thickness (m) of the walls."""
+    """Constant: places (n,3) m of the nodes before any load, which are the rail's points but where
+    it is warm; facets (m,k) node numbers, four corners or the six nodes of a triangle; shape (q,k)
+    functions at the Gauss points, and what bounds their products, ``spread`` (q,k), see ``limits``;
+    area (m,q) m2 per point; for face f the facets it can meet are ``reach[first[f]:first[f+1]]``,
+    sorted by their smallest X ``start`` (m); ``longest`` facet extent along X (m); control (6,6):
+    control points of a triangle from its nodes, None for facets of four corners, which need none;
+    border (f,4) m: smallest and largest X of the Gauss points that a face can meet, and the same
+    across the rail; thickness (m) of the walls."""
 
     places: np.ndarray
     facets: np.ndarray
@@ -77,7 +84,8 @@ class Surface(NamedTuple):
 
 
 class Frame(NamedTuple):
-    """Constant: rigid part of the free platform. mass (kg), inverse_inertia (3,3), total_mass with rails (kg)."""
+    """Constant: rigid part of the free platform. mass (kg), inverse_inertia (3,3), total_mass with
+    rails (kg)."""
 
     mass: float
     inverse_inertia: np.ndarray
@@ -94,8 +102,8 @@ class Drive(NamedTuple):
 
 
 class Body(NamedTuple):
-    """Evolving: a rigid body. position (3) m, velocity (3) m/s at the half step, quaternion (4), spin (3) angular momentum
-    about its mass centre in inertial axes at the half step."""
+    """Evolving: a rigid body. position (3) m, velocity (3) m/s at the half step, quaternion (4),
+    spin (3) angular momentum about its mass centre in inertial axes at the half step."""
 
     position: np.ndarray
     velocity: np.ndarray
@@ -104,9 +112,10 @@ class Body(NamedTuple):
 
 
 class History(NamedTuple):
-    """Evolving, with structural damping only: what one step leaves to the next. elastic (n,3) N: K u; displacement (n,3) m; force
-    (n,3) N: what damping adds to the resistance; and of each block drag (b,6): force and moment, about the frame's origin and at
-    the undeformed places, of the part proportional to mass (N, N m); loss (b,) J: energy taken over the step."""
+    """Evolving, with structural damping only: what one step leaves to the next. elastic (n,3) N: K
+    u; displacement (n,3) m; force (n,3) N: what damping adds to the resistance; and of each block
+    drag (b,6): force and moment, about the frame's origin and at the undeformed places, of the part
+    proportional to mass (N, N m); loss (b,) J: energy taken over the step."""
 
     elastic: np.ndarray
     displacement: np.ndarray
@@ -116,14 +125,17 @@ class History(NamedTuple):
 
 
 class State(NamedTuple):
-    """Evolving. displacement (n,3) m; velocity (n,3) m/s: *inertial* nodal velocity at the half step, resolved in frame axes;
-    resistance (n,3) N: K u and damping minus contact, zero where clamped; contact (n,3) N on its way into it, else zero; turning
-    (b,3) N m: parts of the sum of u x resistance before contact; clamping (b,6) parts of its force (N) and moment about the frame's
-    origin (N m) on the clamped nodes; reaction (6): force and moment about the frame's origin of minus the resistance of all moving
-    nodes (N, N m); motion: what nodes need of frame and gravity in the next drift, see MOTION; rail_momentum (3) = sum of m w and
-    rail_moment (3) = sum of m (X + u) over moving nodes (kg m/s, kg m); load: see LOAD, and loads (g,LOAD_SIZE) those of each group
-    of faces; work: see WORK; impulse (6) of external forces and moments about the scene origin (N s, N m s); face_force (f,3) N on
-    the payload in frame axes; history, None without damping."""
+    """Evolving. displacement (n,3) m; velocity (n,3) m/s: *inertial* nodal velocity at the half
+    step, resolved in frame axes; resistance (n,3) N: K u and damping minus contact, zero where
+    clamped; contact (n,3) N on its way into it, else zero; turning (b,3) N m: parts of the sum of u
+    x resistance before contact; clamping (b,6) parts of its force (N) and moment about the frame's
+    origin (N m) on the clamped nodes; reaction (6): force and moment about the frame's origin of
+    minus the resistance of all moving nodes (N, N m); motion: what nodes need of frame and gravity
+    in the next drift, see MOTION; rail_momentum (3) = sum of m w and rail_moment (3) = sum of m (X
+    + u) over moving nodes (kg m/s, kg m); load: see LOAD, and loads (g,LOAD_SIZE) those of each
+    group of faces; work: see WORK; impulse (6) of external forces and moments about the scene
+    origin (N s, N m s); face_force (f,3) N on the payload in frame axes; history, None without
+    damping."""
 
     payload: Body
     platform: Body
@@ -146,12 +158,13 @@ class State(NamedTuple):
 
 
 class Active(NamedTuple):
-    """Evolving: where contact is now. count (g,2): border points and nodes of each group in use; point (k,2) facet and Gauss point,
-    face (k,) and energy (k,) J stored of loaded points near the border of their face; node (m,) numbers of the nodes that carry
-    load; seen (n,) whether a node is among them; drag (n,3) N: their shares of the friction on the payload in frame axes;
-    node_damping (n,) N s/m that friction brings to them; wait (f,) steps for which a face cannot touch; side (f,): whether a face
-    was over its wall when last looked at, see OVER; struck (f,3): penetration (m) and X (m) of a face that struck an edge of its
-    wall, and steps since then."""
+    """Evolving: where contact is now. count (g,2): border points and nodes of each group in use;
+    point (k,2) facet and Gauss point, face (k,) and energy (k,) J stored of loaded points near the
+    border of their face; node (m,) numbers of the nodes that carry load; seen (n,) whether a node
+    is among them; drag (n,3) N: their shares of the friction on the payload in frame axes;
+    node_damping (n,) N s/m that friction brings to them; wait (f,) steps for which a face cannot
+    touch; side (f,): whether a face was over its wall when last looked at, see OVER; struck (f,3):
+    penetration (m) and X (m) of a face that struck an edge of its wall, and steps since then."""
 
     count: np.ndarray
     point: np.ndarray
@@ -171,17 +184,35 @@ OVER, AWAY, UNKNOWN = 0, 1, 2
 # Slots of Active.count.
 BORDER, NODES = 0, 1
 
-# Slots of State.load: contact on the payload in frame axes. GAINED is the energy (J) of points that came under a pressed face over
-# its edge in this step, less that of points that left so.
-NORMAL_FORCE, FRICTION_FORCE, MOMENT, MOMENT_ON_RAIL, FRICTION_MOMENT, STORED, DAMPING_RATIO, GAINED = 0, 3, 6, 9, 12, 15, 16, 17
+# Slots of State.load: contact on the payload in frame axes. GAINED is the energy (J) of points that
+# came under a pressed face over its edge in this step, less that of points that left so.
+(
+    NORMAL_FORCE,
+    FRICTION_FORCE,
+    MOMENT,
+    MOMENT_ON_RAIL,
+    FRICTION_MOMENT,
+    STORED,
+    DAMPING_RATIO,
+    GAINED,
+) = 0, 3, 6, 9, 12, 15, 16, 17
 LOAD_SIZE = 18
 
-# Slots of State.motion, in frame axes: the frame's velocity (m/s), its turn over the step less one (nine numbers), its rate
-# (rad/s), gravity (m/s2).
+# Slots of State.motion, in frame axes: the frame's velocity (m/s), its turn over the step less one
+# (nine numbers), its rate (rad/s), gravity (m/s2).
 FRAME_VELOCITY, TURN, RATE, PULL = 0, 3, 12, 15
 MOTION_SIZE = 18
 
 # Slots of State.work (J).
-(THRUST, GRAVITY, FRICTION, RELEASED, THRUST_AXIAL, GRAVITY_AXIAL, FRICTION_AXIAL, CONTACT_AXIAL,
- STRUCTURAL_DAMPING) = range(9)
+(
+    THRUST,
+    GRAVITY,
+    FRICTION,
+    RELEASED,
+    THRUST_AXIAL,
+    GRAVITY_AXIAL,
+    FRICTION_AXIAL,
+    CONTACT_AXIAL,
+    STRUCTURAL_DAMPING,
+) = range(9)
 WORK_SIZE = 9

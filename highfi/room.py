@@ -1,4 +1,5 @@
-"""Refusal of a mesh that the memory of this process cannot hold, before it is made where its size can be foretold."""
+"""Refusal of a mesh that the memory of this process cannot hold, before it is made where its size
+can be foretold."""
 
 from highfi import assembly, footprint
 from highfi.mesh import RailMesh
@@ -13,7 +14,8 @@ _COARSEST = 0.1  # m
 
 
 def check_before(scene: Scene, element_size: float) -> None:
-    """Raise SceneError where the built-in section of ``scene`` with elements of ``element_size`` (m) will not fit into memory."""
+    """Raise SceneError where the built-in section of ``scene`` with elements of ``element_size``
+    (m) will not fit into memory."""
     left = footprint.available()
     if left is None or not isinstance(scene.rail, SectionTable):
         return
@@ -26,12 +28,19 @@ def check_before(scene: Scene, element_size: float) -> None:
         size = element_size
         while needed(size) > left and size < _COARSEST:
             size *= _COARSER
-        raise _too_large(scene, element_size, l_rail.elements(section, element_size), needed(element_size), left,
-                         f"{1e3 * size:.2g} mm or more")
+        raise _too_large(
+            scene,
+            element_size,
+            l_rail.elements(section, element_size),
+            needed(element_size),
+            left,
+            f"{1e3 * size:.2g} mm or more",
+        )
 
 
 def check_mesh(scene: Scene, element_size: float, mesh: RailMesh) -> None:
-    """Raise SceneError where the run will not fit into the memory that the ``mesh`` of ``scene``, given by a file, has left."""
+    """Raise SceneError where the run will not fit into the memory that the ``mesh`` of ``scene``,
+    given by a file, has left."""
     left = footprint.available()
     if left is None or isinstance(scene.rail, SectionTable):
         return
@@ -40,10 +49,17 @@ def check_mesh(scene: Scene, element_size: float, mesh: RailMesh) -> None:
     if needed > left:  # as if no two elements were alike; only then is it worth while to count them
         needed = footprint.of_mesh(elements, nodes, len(assembly.shape_classes(mesh)[1]))
     if needed > left:
-        raise _too_large(scene, element_size, elements, needed, left, "a larger one, or a coarser file")
+        raise _too_large(
+            scene, element_size, elements, needed, left, "a larger one, or a coarser file"
+        )
 
 
-def _too_large(scene: Scene, element_size: float, elements: int, needed: float, left: float, expected: str) -> SceneError:
-    given = (f"{1e3 * element_size:.4g} mm: {elements:,} elements take about {footprint.in_words(needed)} of memory, and "
-             f"{footprint.in_words(left)} can be had")
+def _too_large(
+    scene: Scene, element_size: float, elements: int, needed: float, left: float, expected: str
+) -> SceneError:
+    given = (
+        f"{1e3 * element_size:.4g} mm: {elements:,} elements take about "
+        f"{footprint.in_words(needed)} of memory, and "
+        f"{footprint.in_words(left)} can be had"
+    )
     return SceneError([Fault(scene.name, "element_size", given, expected)])

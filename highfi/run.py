@@ -33,7 +33,8 @@ from scenes.trajectory import Trajectory
 
 _STOP_RATIO = 0.1  # of the transverse scale: a run that loses so much energy is not a result
 _ELEMENTS_PER_THREAD = 4000
-_STEPS_PER_LOOK = 250  # steps at most from one look at the balances to the next, at samples or between
+# steps at most from one look at the balances to the next, at samples or between
+_STEPS_PER_LOOK = 250
 _REPORT_EVERY = 20  # looks from one report of progress to the next
 _ROUNDING = 1e-9
 _MESHES: dict[tuple, RailMesh] = {}
@@ -41,10 +42,11 @@ _MESH_LOCK = threading.Lock()
 
 
 def prepare(scene: Scene, numerics: Numerics | None = None) -> RailMesh:
-    """Mesh of a scene, made once per process. gmsh, which meshes solids, must run in the main thread: call this there before runs
-    in other threads.
+    """Mesh of a scene, made once per process. gmsh, which meshes solids, must run in the main
+    thread: call this there before runs in other threads.
 
-    Raises SceneError, also where memory does not suffice, MeshError, or GmshUnavailable where a solid cannot be meshed here.
+    Raises SceneError, also where memory does not suffice, MeshError, or GmshUnavailable where a
+    solid cannot be meshed here.
     """
     require_two_step(scene)
     numerics = numerics or Numerics()
@@ -60,25 +62,39 @@ def prepare(scene: Scene, numerics: Numerics | None = None) -> RailMesh:
     return mesh
 
 
-def run(scene: Scene, numerics: Numerics | None = None, progress: Callable[[float], None] | None = None,
-        threads: int | None = None, checkpoint: str | Path | None = None, checkpoint_every: float = 60.0,
-        resume: bool = False, observer: Callable[["Loop"], None] | None = None) -> Trajectory:
-    """Solve ``scene`` with flexible rails until the settled window is complete, a jam, or the scene's duration.
+def run(
+    scene: Scene,
+    numerics: Numerics | None = None,
+    progress: Callable[[float], None] | None = None,
+    threads: int | None = None,
+    checkpoint: str | Path | None = None,
+    checkpoint_every: float = 60.0,
+    resume: bool = False,
+    observer: Callable[["Loop"], None] | None = None,
+) -> Trajectory:
+    """Solve ``scene`` with flexible rails until the settled window is complete, a jam, or the
+    scene's duration.
 
-    ``progress`` is called with the fraction of the duration done. ``threads`` share the run, unless said otherwise as many as
-    there are processors and elements enough for; the result does not hang on their number. With the path of a ``checkpoint`` the
-    run is kept there every ``checkpoint_every`` seconds (wall clock), and the file stays; with ``resume`` it goes on from that
-    file if there is one, to the same bits, and its cost is that of all parts. ``observer`` is called with the loop at every
-    sample, the first one at ignition; it may read all and must change nothing. Raises SceneError, MeshError, StepError or
-    CheckpointError before any stepping; what goes wrong later is the status of the result.
+    ``progress`` is called with the fraction of the duration done. ``threads`` share the run, unless
+    said otherwise as many as there are processors and elements enough for; the result does not hang
+    on their number. With the path of a ``checkpoint`` the run is kept there every
+    ``checkpoint_every`` seconds (wall clock), and the file stays; with ``resume`` it goes on from
+    that file if there is one, to the same bits, and its cost is that of all parts. ``observer`` is
+    called with the loop at every sample, the first one at ignition; it may read all and must change
+    nothing. Raises SceneError, MeshError, StepError or CheckpointError before any stepping; what
+    goes wrong later is the status of the result.
     """
     if resume and checkpoint is None:
-        raise ValueError("resume: given True without checkpoint, expected the path of the file to go on from")
+        raise ValueError(
+            "resume: given True without checkpoint, expected the path of the file to go on from"
+        )
     numerics = numerics or Numerics()
     began, cpu = clock.perf_counter(), clock.thread_time()
     system = build(scene, numerics, prepare(scene, numerics))
     loop = Loop(scene, system, choose(system, scene, numerics), threads or _worth_while(system))
-    kept = Checkpoint(checkpoint, checkpoint_every, loop, numerics) if checkpoint is not None else None
+    kept = (
+        Checkpoint(checkpoint, checkpoint_every, loop, numerics) if checkpoint is not None else None
+    )
     saved = kept.read() if resume else None
     compiling, set_up_cpu = clock.perf_counter(), clock.thread_time() - cpu
     loop.begin()
@@ -87,10 +103,16 @@ def run(scene: Scene, numerics: Numerics | None = None, progress: Callable[[floa
         restore(loop, saved)
     loop.march(progress, kept, observer)
     elements = int(system.operator.cells.shape[0])
-    cost = {"wall_s": (compiling - began) + loop.wall, "compile_s": compiled - compiling, "kernel_s": loop.wall,
-            "cpu_s": set_up_cpu + loop.cpu + loop.other_cpu,
-            "steps": loop.steps, **loop.stepping.as_dict(), "elements": elements,
-            "ns_per_element_step": 1e9 * loop.wall / max(loop.steps * elements, 1)}
+    cost = {
+        "wall_s": (compiling - began) + loop.wall,
+        "compile_s": compiled - compiling,
+        "kernel_s": loop.wall,
+        "cpu_s": set_up_cpu + loop.cpu + loop.other_cpu,
+        "steps": loop.steps,
+        **loop.stepping.as_dict(),
+        "elements": elements,
+        "ns_per_element_step": 1e9 * loop.wall / max(loop.steps * elements, 1),
+    }
     return loop.trajectory(cost, numerics)
 
 
@@ -108,31 +130,63 @@ class Loop:
         self.state, self.active = initial_state(system)
         self.walls = np.unique(system.surface.facets)
         self.marks = outcome.milestones(scene, system.model)
-        self.last, self.most = scene.output.last(scene.duration), int(scene.duration / stepping.dt_s * (1.0 + _ROUNDING))
+        self.last, self.most = (
+            scene.output.last(scene.duration),
+            int(scene.duration / stepping.dt_s * (1.0 + _ROUNDING)),
+        )
         self.exit, self.ending = ending.build(system)
         self.wall, self.cpu, self.looks = 0.0, 0.0, 0
         self.steps, self.damping, self.scale, self.other_cpu, self.message = 0, 0.0, 0.0, 0.0, ""
         self.rows, self.work, self.forces, self.gauges = [], [], [], []
-        self.watch, self.worst = watch.build(system, scene.rail.material, stepping.steps_per_sample, threads), worst.nothing()
+        self.watch, self.worst = (
+            watch.build(system, scene.rail.material, stepping.steps_per_sample, threads),
+            worst.nothing(),
+        )
 
     def arguments(self) -> tuple:
         """Records the kernels take, in their order."""
         s, m = self.system, self.system.model
-        return (s.rail, s.surface, s.faces, m.payload, s.frame, s.drive, m.thrust.pulses, m.thrust.curve, m.thrust_offset,
-                m.penalty, m.friction, m.gravity, self.state, self.active)
+        return (
+            s.rail,
+            s.surface,
+            s.faces,
+            m.payload,
+            s.frame,
+            s.drive,
+            m.thrust.pulses,
+            m.thrust.curve,
+            m.thrust_offset,
+            m.penalty,
+            m.friction,
+            m.gravity,
+            self.state,
+            self.active,
+        )
 
     def followed(self) -> tuple:
         """Records by which the kernels follow the payload off the rail, in their order."""
         return self.exit, self.marks, self.ending
 
     def begin(self) -> None:
-        """First forces, velocities set back to -1/2 so that they pass through the given ones at t = 0, and the first sample.
+        """First forces, velocities set back to -1/2 so that they pass through the given ones at t =
+        0, and the first sample.
 
         Compiles the kernels.
         """
         s, m = self.system, self.system.model
-        evaluate(s.rail, s.surface, s.faces, m.payload, s.frame, m.penalty, m.friction, self.state, self.active,
-                 self.team, self.stepping.dt_s)
+        evaluate(
+            s.rail,
+            s.surface,
+            s.faces,
+            m.payload,
+            s.frame,
+            m.penalty,
+            m.friction,
+            self.state,
+            self.active,
+            self.team,
+            self.stepping.dt_s,
+        )
         self._kick(-0.5 * self.stepping.dt_s)
         ending.begin(self.exit, m.payload, s.frame, self.state, self.marks, self.ending.book)
         self.advance_steps(0)
@@ -149,7 +203,9 @@ class Loop:
             if observer and len(self.rows) > taken:
                 observer(self)
             if progress and self.looks % _REPORT_EVERY == 0:
-                end = min(self.most * self.stepping.dt_s, self.ending.book[WINDOW] + outcome.SETTLE_WINDOW)
+                end = min(
+                    self.most * self.stepping.dt_s, self.ending.book[WINDOW] + outcome.SETTLE_WINDOW
+                )
                 progress(min(1.0, self.steps * self.stepping.dt_s / end))
             self.wall, self.cpu = clock.perf_counter() - began, clock.thread_time() - cpu
             if kept:
@@ -160,7 +216,9 @@ class Loop:
         if self.message or self.steps >= self.most:
             return False
         interval = self.scene.output.interval
-        return self.ending.book[DONE] == np.inf or not is_left_out(self.ending.book, len(self.rows) * interval, interval)
+        return self.ending.book[DONE] == np.inf or not is_left_out(
+            self.ending.book, len(self.rows) * interval, interval
+        )
 
     def advance_one_sample(self) -> None:
         """Step to the next sample and take it; less where something goes wrong before."""
@@ -169,8 +227,12 @@ class Loop:
             self._advance_one_look()
 
     def _advance_one_look(self) -> None:
-        """Step to the next sample, or not so far where that is long, and look at the balances there."""
-        there, left = self.stepping.steps_per_sample - self.steps % self.stepping.steps_per_sample, self.most - self.steps
+        """Step to the next sample, or not so far where that is long, and look at the balances
+        there."""
+        there, left = (
+            self.stepping.steps_per_sample - self.steps % self.stepping.steps_per_sample,
+            self.most - self.steps,
+        )
         count = min(there, _STEPS_PER_LOOK, left if left > 0 else there)
         self.advance_steps(count)
         self.looks += 1
@@ -178,9 +240,18 @@ class Loop:
 
     def advance_steps(self, count: int) -> None:
         """``count`` steps, by all threads of the team."""
+
         def part(thread):
             began = clock.thread_time()
-            damping = advance(*self.arguments(), *self.followed(), self.team, thread, self.steps, count, self.stepping.dt_s)
+            damping = advance(
+                *self.arguments(),
+                *self.followed(),
+                self.team,
+                thread,
+                self.steps,
+                count,
+                self.stepping.dt_s,
+            )
             return damping, clock.thread_time() - began
 
         others = [self.pool.submit(part, thread) for thread in range(1, self.team.size)]
@@ -199,7 +270,9 @@ class Loop:
         if keep and np.isfinite(row).all():
             self.rows.append(row)
             self.work.append(state.work.copy())
-            self.forces.append(state.face_force @ rotation.matrices(state.platform.quaternion[None])[0].T)
+            self.forces.append(
+                state.face_force @ rotation.matrices(state.platform.quaternion[None])[0].T
+            )
             self._watch()
 
     def _watch(self) -> None:
@@ -207,11 +280,13 @@ class Loop:
         if self.watch.patch is not None:
             self.gauges.append(watch.gauge(self.watch, self.deformed()))
         if (len(self.rows) - 1) % self.watch.every == 0:
-            watch.look(self.watch, self.deformed(), self.steps * self.stepping.dt_s, self.worst, self.pool)
+            watch.look(
+                self.watch, self.deformed(), self.steps * self.stepping.dt_s, self.worst, self.pool
+            )
 
     def deformed(self) -> np.ndarray:
-        """Displacement (n,3) m of the nodal arrays from the rail as it was mounted: by load, and by temperature where it is
-        warm."""
+        """Displacement (n,3) m of the nodal arrays from the rail as it was mounted: by load, and by
+        temperature where it is warm."""
         warm = self.system.warm
         return self.state.displacement if warm is None else self.state.displacement + warm
 
@@ -219,38 +294,76 @@ class Loop:
         """Advance the velocities alone, over ``step`` (s), by the present forces."""
         s, m, state = self.system, self.system.model, self.state
         pose = seen_from_frame(state, m.payload, s.frame)
-        thrust = thrust_load(state, s.drive, m.thrust.pulses, m.thrust.curve, m.thrust_offset, self.steps * self.stepping.dt_s)
+        thrust = thrust_load(
+            state,
+            s.drive,
+            m.thrust.pulses,
+            m.thrust.curve,
+            m.thrust_offset,
+            self.steps * self.stepping.dt_s,
+        )
         kick_bodies(m.payload, s.frame, s.drive, m.gravity, state, pose, thrust, step)
-        kick_nodes(s.rail.inverse_mass, state.velocity, state.resistance, pull_on_nodes(m.gravity, pose), step)
+        kick_nodes(
+            s.rail.inverse_mass,
+            state.velocity,
+            state.resistance,
+            pull_on_nodes(m.gravity, pose),
+            step,
+        )
 
     def _fault(self, row: np.ndarray) -> str:
         """Why the run must stop here, or nothing."""
         now = f"at {self.steps * self.stepping.dt_s:.6g} s"
         if not (np.isfinite(row).all() and np.isfinite(self.state.work).all()):
             return f"a value became infinite {now}"
-        _, transverse = samples.ledgers(np.array([*self.rows[:1], row]), np.array([*self.work[:1], self.state.work]))
+        _, transverse = samples.ledgers(
+            np.array([*self.rows[:1], row]), np.array([*self.work[:1], self.state.work])
+        )
         self.scale = max(self.scale, transverse[-1, 2:5].sum())
         if self.active.struck.any():
             return self._strike()
         loss, work = abs(ledger.residual(transverse)[-1]), abs(self.state.work[records.THRUST])
         # Rounding of the large axial work is no fault while nothing has moved sideways yet.
         if loss > _STOP_RATIO * self.scale + 1e-11 * work:
-            return f"transverse energy is off by {loss:.3g} J, its scale being {self.scale:.3g} J, {now}"
-        if self.system.model.penalty is not None and (speed := self._approach_speed()) > FASTEST_APPROACH:
-            return f"payload and rails approach at up to {speed:.3g} m/s, contact search allows {FASTEST_APPROACH:g} m/s, {now}"
+            return (
+                f"transverse energy is off by {loss:.3g} J, its scale being {self.scale:.3g} J, "
+                f"{now}"
+            )
+        if (
+            self.system.model.penalty is not None
+            and (speed := self._approach_speed()) > FASTEST_APPROACH
+        ):
+            return (
+                f"payload and rails approach at up to {speed:.3g} m/s, contact search allows "
+                f"{FASTEST_APPROACH:g} m/s, {now}"
+            )
         if self.stepping.used() + 0.5 * self.damping > 1.0:
-            return f"friction damps nodes faster than the step of {self.stepping.dt_s:.4g} s can follow, {now}; lower safety"
+            return (
+                f"friction damps nodes faster than the step of {self.stepping.dt_s:.4g} s can "
+                f"follow, {now}; lower safety"
+            )
         return ""
 
     def _strike(self) -> str:
         """What met an edge of a wall first, where and when."""
-        face = max(np.flatnonzero(self.active.struck[:, 0]), key=lambda struck: self.active.struck[struck, 2])
+        face = max(
+            np.flatnonzero(self.active.struck[:, 0]),
+            key=lambda struck: self.active.struck[struck, 2],
+        )
         depth, x, since = self.active.struck[face]
         time = (self.steps - since) * self.stepping.dt_s
-        return outcome.strike(self.system.model.faces, face, "strikes an edge or the back", depth, x + self.system.origin[0], time)
+        return outcome.strike(
+            self.system.model.faces,
+            face,
+            "strikes an edge or the back",
+            depth,
+            x + self.system.origin[0],
+            time,
+        )
 
     def _approach_speed(self) -> float:
-        """Bound (m/s) of the speed across the rail at which any pad and any point of a wall can approach each other now."""
+        """Bound (m/s) of the speed across the rail at which any pad and any point of a wall can
+        approach each other now."""
         state, payload = self.state, self.system.model.payload
         spin = np.linalg.norm(payload.inverse_inertia, 2) * np.linalg.norm(state.payload.spin)
         reach = np.linalg.norm(self.system.faces.centre, axis=1).max()
@@ -260,14 +373,18 @@ class Loop:
         return float(magnification(self.system.surface) * nodes + spin * reach)
 
     def _motion(self) -> outcome.Motion:
-        return samples.motion(np.array(self.rows), self.scene.output.interval, self.system.body_offset)
+        return samples.motion(
+            np.array(self.rows), self.scene.output.interval, self.system.body_offset
+        )
 
     def _stress(self) -> dict:
-        return watch.record(self.watch, self.system, self.worst, self.scene.rail.material.yield_strength)
+        return watch.record(
+            self.watch, self.system, self.worst, self.scene.rail.material.yield_strength
+        )
 
     def _broken(self, checks: dict[str, float]) -> str:
-        """The promises that the run broke, and what helps, or nothing. It is not run again with smaller steps: that is for who pays
-        for it to decide."""
+        """The promises that the run broke, and what helps, or nothing. It is not run again with
+        smaller steps: that is for who pays for it to decide."""
         words = broken(checks, FINITE_ELEMENTS)
         return f"{words}; lower safety or element_size" if words else ""
 
@@ -277,22 +394,43 @@ class Loop:
         total, transverse = samples.ledgers(rows, np.array(self.work))
         status, result = ending.found(self.system, self.ending.book)
         forces = np.array(self.forces)
-        linear, angular = samples.momentum_errors(rows, moved, self.system.model.payload.mass, forces)
-        friction = np.diff(total[:, ledger.ENTRIES.index("friction")], prepend=0.0) / self.scene.output.interval
-        checks = {"energy_error": ledger.total_error(total, FINITE_ELEMENTS),
-                  "transverse_energy_error": ledger.transverse_error(transverse, total, FINITE_ELEMENTS),
-                  "linear_momentum_error": linear, "angular_momentum_error": angular,
-                  "quaternion_error": float(np.abs(np.linalg.norm(moved.quaternion, axis=1) - 1.0).max()),
-                  "friction_power_max": float(-friction.min()), "friction_step_ratio": float(self.damping)}
+        linear, angular = samples.momentum_errors(
+            rows, moved, self.system.model.payload.mass, forces
+        )
+        friction = (
+            np.diff(total[:, ledger.ENTRIES.index("friction")], prepend=0.0)
+            / self.scene.output.interval
+        )
+        checks = {
+            "energy_error": ledger.total_error(total, FINITE_ELEMENTS),
+            "transverse_energy_error": ledger.transverse_error(transverse, total, FINITE_ELEMENTS),
+            "linear_momentum_error": linear,
+            "angular_momentum_error": angular,
+            "quaternion_error": float(np.abs(np.linalg.norm(moved.quaternion, axis=1) - 1.0).max()),
+            "friction_power_max": float(-friction.min()),
+            "friction_step_ratio": float(self.damping),
+        }
         broken = self._broken(checks)
         if self.message or broken:
             status, result = "diverged", outcome.Outcome()
-        pressed = outcome.pressed_at_ignition(self.system.faces, self.forces[0]) if self.forces else ""
+        pressed = (
+            outcome.pressed_at_ignition(self.system.faces, self.forces[0]) if self.forces else ""
+        )
         message = "; ".join(filter(None, [self.message, broken, pressed]))
         seen_from = comoving.frame(self.system.model)
-        return Trajectory(model=fidelity.FINITE_ELEMENTS, status=status, message=message,
-                          **comoving.motion(seen_from, moved)._asdict(), pad_force=forces, energy=total,
-                          transverse_energy=transverse, outcome=comoving.outcome(seen_from, result),
-                          checks=checks, cost=cost, scene=self.scene.resolved(), numerics=numerics.as_dict(),
-                          stress=None if status == "diverged" else self._stress(),
-                          wall_stress=np.array(self.gauges).reshape(len(rows), -1, 6) if self.gauges else None)
+        return Trajectory(
+            model=fidelity.FINITE_ELEMENTS,
+            status=status,
+            message=message,
+            **comoving.motion(seen_from, moved)._asdict(),
+            pad_force=forces,
+            energy=total,
+            transverse_energy=transverse,
+            outcome=comoving.outcome(seen_from, result),
+            checks=checks,
+            cost=cost,
+            scene=self.scene.resolved(),
+            numerics=numerics.as_dict(),
+            stress=None if status == "diverged" else self._stress(),
+            wall_stress=np.array(self.gauges).reshape(len(rows), -1, 6) if self.gauges else None,
+        )

@@ -1,4 +1,5 @@
-"""From a scene and its mesh to the arrays of the loop: operator, surfaces, the rigid part of a free platform, initial state."""
+"""From a scene and its mesh to the arrays of the loop: operator, surfaces, the rigid part of a free
+platform, initial state."""
 
 from typing import NamedTuple
 
@@ -22,9 +23,10 @@ _SAME = 1e-9  # m: two places closer than this are the same
 class System(NamedTuple):
     """Constant records of one run.
 
-    ``number`` (n,) of each mesh node in the nodal arrays; ``moving_mass`` kg of the nodal arrays, zero where clamped;
-    ``origin`` (3,) m: the frame's origin at ignition in scene axes; ``body_offset`` (3,) m from it to the platform's mass centre;
-    ``warm`` (n,3) m: displacement by temperature of the nodal arrays, None where the scene has none.
+    ``number`` (n,) of each mesh node in the nodal arrays; ``moving_mass`` kg of the nodal arrays,
+    zero where clamped; ``origin`` (3,) m: the frame's origin at ignition in scene axes;
+    ``body_offset`` (3,) m from it to the platform's mass centre; ``warm`` (n,3) m: displacement by
+    temperature of the nodal arrays, None where the scene has none.
     """
 
     model: scene_model.Model
@@ -43,11 +45,13 @@ class System(NamedTuple):
 
 
 def build(scene: Scene, numerics: Numerics, mesh: RailMesh) -> System:
-    """Constant records of a run on ``mesh``. Raises SceneError for a platform that cannot hold its rails, MeshError for warm rails
-    that nothing holds."""
+    """Constant records of a run on ``mesh``. Raises SceneError for a platform that cannot hold its
+    rails, MeshError for warm rails that nothing holds."""
     model = scene_model.build(scene)
     material = scene.rail.material
-    operator = assembly.build(mesh, material.density, material.youngs_modulus, material.poisson_ratio)
+    operator = assembly.build(
+        mesh, material.density, material.youngs_modulus, material.poisson_ratio
+    )
     moving = np.where(operator.free, operator.mass, 0.0)
     frame, origin, offset = None, np.zeros(3), np.zeros(3)
     if model.platform is not None:
@@ -61,12 +65,30 @@ def build(scene: Scene, numerics: Numerics, mesh: RailMesh) -> System:
     surfaces = {name: number[facets] for name, facets in mesh.surfaces.items()}
     warm = _warmed(scene, model, mesh, rail, number)
     places = rail.points if warm is None else rail.points + warm
-    gauss = surface.build(surfaces, places, faces, numerics.points_per_edge(), rail.clamped, model.plate.thickness)
+    gauss = surface.build(
+        surfaces, places, faces, numerics.points_per_edge(), rail.clamped, model.plate.thickness
+    )
     drive = records.Drive(model.thrust_arm, model.reacts_on_platform, float(moving.sum()))
-    return System(model, mesh, operator, number, rail, masses, gauss, faces, frame, drive, origin, offset, warm)
+    return System(
+        model,
+        mesh,
+        operator,
+        number,
+        rail,
+        masses,
+        gauss,
+        faces,
+        frame,
+        drive,
+        origin,
+        offset,
+        warm,
+    )
 
 
-def _warmed(scene: Scene, model: scene_model.Model, mesh: RailMesh, rail: records.Rail, number: np.ndarray) -> np.ndarray | None:
+def _warmed(
+    scene: Scene, model: scene_model.Model, mesh: RailMesh, rail: records.Rail, number: np.ndarray
+) -> np.ndarray | None:
     if model.thermal is None:
         return None
     found = zeros(rail.points.shape, order="F")
@@ -74,7 +96,9 @@ def _warmed(scene: Scene, model: scene_model.Model, mesh: RailMesh, rail: record
     return found
 
 
-def _rail(points: np.ndarray, operator: assembly.Operator, damping: Damping | None) -> tuple[records.Rail, np.ndarray]:
+def _rail(
+    points: np.ndarray, operator: assembly.Operator, damping: Damping | None
+) -> tuple[records.Rail, np.ndarray]:
     """Nodal arrays in the loop's own numbering, and the number (n,) of each mesh node in it."""
     found = pencils.find(points, operator)
     columns, number = found if found else (None, along_x(points))
@@ -84,12 +108,17 @@ def _rail(points: np.ndarray, operator: assembly.Operator, damping: Damping | No
     inverse[number[operator.free]] = 1.0 / operator.mass[operator.free]
     elements, blocks = None, None
     if columns is None:
-        elements, blocks = general_elements(points, operator, number), np.append(np.arange(0, size, pencils.CHUNK), size)
+        elements, blocks = (
+            general_elements(points, operator, number),
+            np.append(np.arange(0, size, pencils.CHUNK), size),
+        )
     else:
         blocks = columns.chunks * columns.stride
     clamped = np.sort(number[~operator.free])
     held = np.searchsorted(clamped, blocks)
-    return records.Rail(place, mass, inverse, clamped, held, columns, elements, blocks, damping), number
+    return records.Rail(
+        place, mass, inverse, clamped, held, columns, elements, blocks, damping
+    ), number
 
 
 def along_x(points: np.ndarray) -> np.ndarray:
@@ -101,11 +130,15 @@ def along_x(points: np.ndarray) -> np.ndarray:
     return number
 
 
-def general_elements(points: np.ndarray, operator: assembly.Operator, number: np.ndarray) -> records.Elements:
-    """Elements in slabs along X, by the ``number`` (n,) of each node in the nodal arrays and in the order of their first one.
+def general_elements(
+    points: np.ndarray, operator: assembly.Operator, number: np.ndarray
+) -> records.Elements:
+    """Elements in slabs along X, by the ``number`` (n,) of each node in the nodal arrays and in the
+    order of their first one.
 
-    A slab is at least as thick as the longest element, and an element belongs to the one that holds the middle of its extent (the
-    mean of its nodes may lie elsewhere): so elements of slabs with one between share no node.
+    A slab is at least as thick as the longest element, and an element belongs to the one that holds
+    the middle of its extent (the mean of its nodes may lie elsewhere): so elements of slabs with
+    one between share no node.
     """
     x = points[operator.cells][:, :, 0]
     middle, longest = 0.5 * (x.min(axis=1) + x.max(axis=1)), np.ptp(x, axis=1).max()
@@ -114,11 +147,14 @@ def general_elements(points: np.ndarray, operator: assembly.Operator, number: np
     cells = number[operator.cells]
     order = np.lexsort((cells.min(axis=1), slab))
     slabs = np.searchsorted(slab[order], np.arange(slab.max() + 2))
-    return records.Elements(cells[order].astype(np.uint32), operator.shape_class[order], operator.stiffness, slabs)
+    return records.Elements(
+        cells[order].astype(np.uint32), operator.shape_class[order], operator.stiffness, slabs
+    )
 
 
 def _rigid_part(scene, platform, points, moving) -> tuple[records.Frame, np.ndarray]:
-    """Platform without its moving rail nodes: mass, inverse inertia, mass centre (parallel axes)."""
+    """Platform without its moving rail nodes: mass, inverse inertia, mass centre (parallel
+    axes)."""
     mass = platform.mass - moving.sum()
     centre = (platform.mass * np.array(platform.mass_centre) - moving @ points) / mass
     arm = points - np.array(platform.mass_centre)
@@ -126,8 +162,17 @@ def _rigid_part(scene, platform, points, moving) -> tuple[records.Frame, np.ndar
     shift = mass * _parallel_axis((centre - np.array(platform.mass_centre))[None])[0]
     inertia = tensor(scene.platform.inertia) - nodes - shift
     if mass <= 0.0 or np.linalg.eigvalsh(inertia)[0] <= 0.0:
-        raise SceneError([Fault(scene.name, "platform.mass, platform.inertia", f"{platform.mass:g} kg",
-                                f"a platform that can hold its rails, whose moving part weighs {moving.sum():.4g} kg")])
+        raise SceneError(
+            [
+                Fault(
+                    scene.name,
+                    "platform.mass, platform.inertia",
+                    f"{platform.mass:g} kg",
+                    f"a platform that can hold its rails, whose moving part weighs "
+                    f"{moving.sum():.4g} kg",
+                )
+            ]
+        )
     return records.Frame(mass, np.linalg.inv(inertia), platform.mass), centre
 
 
@@ -139,35 +184,68 @@ def _parallel_axis(arm: np.ndarray) -> np.ndarray:
 def initial_state(system: System) -> tuple[records.State, records.Active]:
     """State at ignition, in the frame of ``scenes.comoving``; velocities are still at t = 0."""
     model, first, start = system.model, system.model.initial, comoving.start(system.model)
-    payload = records.Body(start.place, start.velocity, np.array(rotation.exponential(first.attitude)), np.zeros(3))
+    payload = records.Body(
+        start.place, start.velocity, np.array(rotation.exponential(first.attitude)), np.zeros(3)
+    )
     turn = rotation.matrices(payload.quaternion[None])[0]
     payload.spin[:] = turn @ (model.payload.inertia @ np.array(first.rate))
-    platform = records.Body(np.subtract(system.origin, comoving.frame(model).origin), np.zeros(3), np.array([1.0, 0.0, 0.0, 0.0]),
-                            np.zeros(3))
+    platform = records.Body(
+        np.subtract(system.origin, comoving.frame(model).origin),
+        np.zeros(3),
+        np.array([1.0, 0.0, 0.0, 0.0]),
+        np.zeros(3),
+    )
     nodes = system.rail.points.shape
     velocity = zeros(nodes, order="F")
     if system.frame is not None:
         rate = np.array(first.platform_rate)
         platform.velocity[:] = start.platform_velocity - np.cross(rate, system.body_offset)
         platform.spin[:] = np.linalg.inv(system.frame.inverse_inertia) @ rate
-        velocity[system.number] = platform.velocity + np.cross(rate, system.rail.points[system.number])
+        velocity[system.number] = platform.velocity + np.cross(
+            rate, system.rail.points[system.number]
+        )
     count = system.faces.axis.size
     parts, groups = system.rail.blocks.size - 1, system.surface.groups.first_face.size - 1
-    state = records.State(payload, platform, zeros(nodes, order="F"), velocity, zeros(nodes, order="F"), np.zeros(nodes),
-                          np.zeros((parts, 3)), np.zeros((parts, 6)), np.zeros(6), np.zeros(records.MOTION_SIZE),
-                          system.moving_mass @ velocity, system.moving_mass @ system.rail.points, np.zeros(records.LOAD_SIZE),
-                          np.zeros((groups, records.LOAD_SIZE)), np.zeros(records.WORK_SIZE), np.zeros(6), np.zeros((count, 3)),
-                          _history(system.rail, nodes, parts))
+    state = records.State(
+        payload,
+        platform,
+        zeros(nodes, order="F"),
+        velocity,
+        zeros(nodes, order="F"),
+        np.zeros(nodes),
+        np.zeros((parts, 3)),
+        np.zeros((parts, 6)),
+        np.zeros(6),
+        np.zeros(records.MOTION_SIZE),
+        system.moving_mass @ velocity,
+        system.moving_mass @ system.rail.points,
+        np.zeros(records.LOAD_SIZE),
+        np.zeros((groups, records.LOAD_SIZE)),
+        np.zeros(records.WORK_SIZE),
+        np.zeros(6),
+        np.zeros((count, 3)),
+        _history(system.rail, nodes, parts),
+    )
     room, size = surface.capacity(system.surface), nodes[0]
-    active = records.Active(np.zeros((groups, 2), dtype=np.int64), np.zeros((room, 2), dtype=np.int64),
-                            np.zeros(room, dtype=np.int64), np.zeros(room),
-                            np.zeros(np.unique(system.surface.facets).size, dtype=np.int64), np.zeros(size, dtype=np.bool_),
-                            np.zeros(nodes), np.zeros(size), np.zeros(count, dtype=np.int64), np.full(count, records.UNKNOWN),
-                            np.zeros((count, 3)))
+    active = records.Active(
+        np.zeros((groups, 2), dtype=np.int64),
+        np.zeros((room, 2), dtype=np.int64),
+        np.zeros(room, dtype=np.int64),
+        np.zeros(room),
+        np.zeros(np.unique(system.surface.facets).size, dtype=np.int64),
+        np.zeros(size, dtype=np.bool_),
+        np.zeros(nodes),
+        np.zeros(size),
+        np.zeros(count, dtype=np.int64),
+        np.full(count, records.UNKNOWN),
+        np.zeros((count, 3)),
+    )
     return state, active
 
 
 def _history(rail: records.Rail, nodes: tuple[int, ...], parts: int) -> records.History | None:
     if rail.damping is None:
         return None
-    return records.History(*(zeros(nodes, order="F") for _ in range(3)), np.zeros((parts, 6)), np.zeros(parts))
+    return records.History(
+        *(zeros(nodes, order="F") for _ in range(3)), np.zeros((parts, 6)), np.zeros(parts)
+    )

@@ -1,6 +1,7 @@
 """Threads that share one run: they take the same steps side by side and meet at barriers.
 
-The barrier spins, because a step lasts tens of microseconds; a thread that waits for long offers its processor to others.
+The barrier spins, because a step lasts tens of microseconds; a thread that waits for long offers
+its processor to others.
 """
 
 import os
@@ -21,8 +22,8 @@ _PATIENCE = 4000  # looks at the barrier before the processor is offered to othe
 
 
 class Team(NamedTuple):
-    """``size`` threads, the ``counters`` of their barrier and of their tickets, and room of its own for each: (4, LANES) ``lanes``,
-    which also hold the forces of one element."""
+    """``size`` threads, the ``counters`` of their barrier and of their tickets, and room of its own
+    for each: (4, LANES) ``lanes``, which also hold the forces of one element."""
 
     size: int
     counters: np.ndarray
@@ -47,6 +48,7 @@ def _element(context, builder, signature, arguments):
 @intrinsic
 def _add_one(typing, counters, index):
     """counters[index] += 1 in one piece; returns the value before."""
+
     def generate(context, builder, signature, arguments):
         place = _element(context, builder, signature, arguments)
         return builder.atomic_rmw("add", place, ir.Constant(ir.IntType(64), 1), "seq_cst")
@@ -57,6 +59,7 @@ def _add_one(typing, counters, index):
 @intrinsic
 def _read(typing, counters, index):
     """counters[index] as other threads left it, with all they wrote before."""
+
     def generate(context, builder, signature, arguments):
         return builder.load_atomic(_element(context, builder, signature, arguments), "seq_cst", 8)
 
@@ -66,8 +69,11 @@ def _read(typing, counters, index):
 @intrinsic
 def _write(typing, counters, index, value):
     """counters[index] = value, and all written before it, for every thread that reads it."""
+
     def generate(context, builder, signature, arguments):
-        builder.store_atomic(arguments[2], _element(context, builder, signature, arguments), "seq_cst", 8)
+        builder.store_atomic(
+            arguments[2], _element(context, builder, signature, arguments), "seq_cst", 8
+        )
         return context.get_dummy_value()
 
     return types.void(counters, types.intp, types.int64), generate
@@ -76,9 +82,15 @@ def _write(typing, counters, index, value):
 @intrinsic
 def _let_others_run(typing):
     """Offer the processor to other threads, where the system has a call for it."""
+
     def generate(context, builder, signature, arguments):
         if os.name == "posix":
-            builder.call(cgutils.get_or_insert_function(builder.module, ir.FunctionType(ir.IntType(32), []), "sched_yield"), [])
+            builder.call(
+                cgutils.get_or_insert_function(
+                    builder.module, ir.FunctionType(ir.IntType(32), []), "sched_yield"
+                ),
+                [],
+            )
         return context.get_dummy_value()
 
     return types.void(), generate
@@ -102,7 +114,8 @@ def meet(team):
 
 @kernel
 def deal(team):
-    """Let tickets start from zero again; one thread calls this where no other one takes any before they have met."""
+    """Let tickets start from zero again; one thread calls this where no other one takes any before
+    they have met."""
     _write(team.counters, _TICKET, 0)
 
 

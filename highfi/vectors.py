@@ -15,7 +15,8 @@ class Vectors:
     def __init__(self, builder):
         self.builder = builder
         self._fma = cgutils.get_or_insert_function(
-            builder.module, ir.FunctionType(VECTOR, [VECTOR] * 3), f"llvm.fmuladd.v{WIDTH}f64")
+            builder.module, ir.FunctionType(VECTOR, [VECTOR] * 3), f"llvm.fmuladd.v{WIDTH}f64"
+        )
 
     def plus(self, index, offset: int):
         """An index moved by a constant."""
@@ -31,7 +32,9 @@ class Vectors:
 
     def spread(self, scalar):
         """A vector of equal elements."""
-        one = self.builder.insert_element(ir.Constant(VECTOR, ir.Undefined), scalar, ir.Constant(ir.IntType(32), 0))
+        one = self.builder.insert_element(
+            ir.Constant(VECTOR, ir.Undefined), scalar, ir.Constant(ir.IntType(32), 0)
+        )
         return self._shuffle(one, ir.Constant(VECTOR, ir.Undefined), [0] * WIDTH)
 
     def read(self, pointer, index):
@@ -58,4 +61,6 @@ class Vectors:
         return self.builder.bitcast(self.builder.gep(pointer, [index]), VECTOR.as_pointer())
 
     def _shuffle(self, a, b, order):
-        return self.builder.shuffle_vector(a, b, ir.Constant(ir.VectorType(ir.IntType(32), WIDTH), list(order)))
+        return self.builder.shuffle_vector(
+            a, b, ir.Constant(ir.VectorType(ir.IntType(32), WIDTH), list(order))
+        )

@@ -1,6 +1,6 @@
 """Modes of vibration of a rail held at its mounts, with the lumped mass of the reference.
 
-    K psi_m = omega_m^2 M psi_m,   psi_m' M psi_n = 1 where m is n, else 0
+K psi_m = omega_m^2 M psi_m,   psi_m' M psi_n = 1 where m is n, else 0
 """
 
 from collections.abc import Callable
@@ -11,10 +11,12 @@ from scipy.sparse import csc_array, diags_array
 from scipy.sparse.linalg import LinearOperator, eigsh
 
 
-def modes(stiffness: csc_array, mass: np.ndarray, solve: Callable[[np.ndarray], np.ndarray],
-          count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Frequencies (n,) rad/s, ascending, and shapes (d,n) 1/kg^0.5 of the lowest ``count`` modes over d freedoms that nothing
-    holds, of ``stiffness`` (d,d) N/m and ``mass`` (d,) kg; ``solve`` answers the displacement (m) under a load (N).
+def modes(
+    stiffness: csc_array, mass: np.ndarray, solve: Callable[[np.ndarray], np.ndarray], count: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Frequencies (n,) rad/s, ascending, and shapes (d,n) 1/kg^0.5 of the lowest ``count`` modes
+    over d freedoms that nothing holds, of ``stiffness`` (d,d) N/m and ``mass`` (d,) kg; ``solve``
+    answers the displacement (m) under a load (N).
 
     Raises ValueError where there are not so many.
     """
@@ -25,10 +27,18 @@ def modes(stiffness: csc_array, mass: np.ndarray, solve: Callable[[np.ndarray], 
         return np.zeros(0), np.zeros((freedoms, 0))
     if 2 * count > freedoms:  # more than an iteration can tell apart
         root = np.sqrt(mass)
-        squares, shapes = eigh(stiffness.toarray() / root / root[:, None], subset_by_index=(0, count - 1))
+        squares, shapes = eigh(
+            stiffness.toarray() / root / root[:, None], subset_by_index=(0, count - 1)
+        )
         return np.sqrt(squares), shapes / root[:, None]
     # The same bits each time; nothing symmetric, or half the modes stay unseen.
     start = np.random.default_rng(1).standard_normal(freedoms)
-    squares, shapes = eigsh(stiffness, count, diags_array(mass), sigma=0.0, v0=start,
-                            OPinv=LinearOperator(stiffness.shape, matvec=solve, dtype=float))
+    squares, shapes = eigsh(
+        stiffness,
+        count,
+        diags_array(mass),
+        sigma=0.0,
+        v0=start,
+        OPinv=LinearOperator(stiffness.shape, matvec=solve, dtype=float),
+    )
     return np.sqrt(squares), shapes

@@ -1,4 +1,5 @@
-"""Rigid surrogate: payload and platform as rigid bodies, contact laws at the pad faces, adaptive Runge-Kutta."""
+"""Rigid surrogate: payload and platform as rigid bodies, contact laws at the pad faces, adaptive
+Runge-Kutta."""
 
 from lowfi.compiled import compiled_effects
 from lowfi.ensemble import run_many

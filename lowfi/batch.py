@@ -32,7 +32,8 @@ class Case(NamedTuple):
 
 
 class _Group(NamedTuple):
-    """Records that all cases of a group share; ``rows`` are their numbers and overrides, ``cases`` their models."""
+    """Records that all cases of a group share; ``rows`` are their numbers and overrides, ``cases``
+    their models."""
 
     built: Built
     marks: outcome.Milestones
@@ -42,12 +43,26 @@ class _Group(NamedTuple):
 
 
 class Family:
-    """The cases of one scene. A row is run by the kernel of its group, or, where that leaves it open, by ``lowfi.run``."""
+    """The cases of one scene. A row is run by the kernel of its group, or, where that leaves it
+    open, by ``lowfi.run``."""
 
-    def __init__(self, scene: Scene, calibration: Calibration | None, numerics: Numerics, walls: Walls | None = None):
-        self.scene, self.calibration, self.numerics, self.walls = scene, calibration, numerics, walls
+    def __init__(
+        self,
+        scene: Scene,
+        calibration: Calibration | None,
+        numerics: Numerics,
+        walls: Walls | None = None,
+    ):
+        self.scene, self.calibration, self.numerics, self.walls = (
+            scene,
+            calibration,
+            numerics,
+            walls,
+        )
         self.calibrated = calibration.apply(scene) if calibration else scene
-        self.touched = {key.partition(".")[0] for key in calibration.constants} if calibration else set()
+        self.touched = (
+            {key.partition(".")[0] for key in calibration.constants} if calibration else set()
+        )
         self.variations = Variations(self.calibrated)
         self.base = models.built(self.calibrated)
         self.marks = outcome.milestones(self.calibrated, self.base.model)
@@ -71,8 +86,12 @@ class Family:
             group.rows.append((number, row))
             group.cases.append(built.model)
         found = [lambda group=group: self._settled(group) for group in groups.values()]
-        return found + [lambda pair=pair: [(pair[0], pair[1] if isinstance(pair[1], Case) else self._whole(pair[1]))]
-                        for pair in alone]
+        return found + [
+            lambda pair=pair: [
+                (pair[0], pair[1] if isinstance(pair[1], Case) else self._whole(pair[1]))
+            ]
+            for pair in alone
+        ]
 
     def _require_walls(self, built: Built) -> None:
         scene, base = built.scene, self.base.scene
@@ -84,27 +103,47 @@ class Family:
     def _group(self, groups: dict, built: Built) -> _Group:
         scene, model = built.scene, built.model
         # The damping of rails that vibrate is no part of a model.
-        key = (self._shared(built), scene.thrust.kind, scene.duration, scene.rail.damping and scene.rail.damping.record())
+        key = (
+            self._shared(built),
+            scene.thrust.kind,
+            scene.duration,
+            scene.rail.damping and scene.rail.damping.record(),
+        )
         if key not in groups:
-            same = scene.thrust is self.base.scene.thrust and scene.duration == self.base.scene.duration
+            same = (
+                scene.thrust is self.base.scene.thrust
+                and scene.duration == self.base.scene.duration
+            )
             marks = self.marks if same else outcome.milestones(scene, model)
             # The next row may be written over the tables of this one.
             kept = Built(scene.model_copy(deep=True), model, built.nominal)
-            groups[key] = _Group(kept, marks._replace(jam_speed=outcome.jam_speed(model)),
-                                 plan.make(model, scene.duration, self.numerics), [], [])
+            groups[key] = _Group(
+                kept,
+                marks._replace(jam_speed=outcome.jam_speed(model)),
+                plan.make(model, scene.duration, self.numerics),
+                [],
+                [],
+            )
         return groups[key]
 
     def _shared(self, built: Built) -> tuple:
-        """By content, all that a model has but what ``_stacked`` takes from each case; None for what is the scene's own record."""
+        """By content, all that a model has but what ``_stacked`` takes from each case; None for
+        what is the scene's own record."""
+
         def parts(of: Built) -> tuple:
-            shared = of.model._replace(payload=None, faces=None, initial=None, thrust_offset=of.model.thrust_offset is None)
+            shared = of.model._replace(
+                payload=None, faces=None, initial=None, thrust_offset=of.model.thrust_offset is None
+            )
             return *shared, of.nominal
 
-        return tuple(None if part is own else (_content(part),) for part, own in zip(parts(built), parts(self.base)))
+        return tuple(
+            None if part is own else (_content(part),)
+            for part, own in zip(parts(built), parts(self.base))
+        )
 
     def kernels(self, table: Sequence[Mapping[str, Any]]) -> list[Callable[[], np.ndarray]]:
-        """Calls of the bare kernel for the groups of ``table``, set up beforehand: each returns ``settle``'s results.
-        For timing."""
+        """Calls of the bare kernel for the groups of ``table``, set up beforehand: each returns
+        ``settle``'s results. For timing."""
         groups: dict[tuple, _Group] = {}
         for number, row in enumerate(table):
             built = models.built(self.variations.of(row), self.base)
@@ -115,9 +154,14 @@ class Family:
 
     def _kernel(self, group: _Group) -> Callable[[], np.ndarray]:
         model, planned, marks = group.built.model, group.plan, group.marks
-        under_pads = wall_record.under_pads(group.built.scene, model, self.walls, self.numerics.modes)
+        under_pads = wall_record.under_pads(
+            group.built.scene, model, self.walls, self.numerics.modes
+        )
         under_law = bow.under_pads(group.built.scene, model, self.walls)
-        common, first = system.build(model, walls=under_pads, bow=under_law), plan.first_step(planned)
+        common, first = (
+            system.build(model, walls=under_pads, bow=under_law),
+            plan.first_step(planned),
+        )
         loop, cases = march.ready(common, state.initial(model), first), _stacked(common, group)
         results = np.zeros((len(group.cases), settle.RESULT_SIZE))
         allowed = accuracy.tolerance(self.numerics, promises_of(self.numerics), 0.0)
@@ -132,25 +176,40 @@ class Family:
         began = clock.perf_counter()
         results = self._kernel(group)()
         share = (clock.perf_counter() - began) / len(results)
-        return [(number, self._case(group, case, row, result, share))
-                for (number, row), case, result in zip(group.rows, group.cases, results)]
+        return [
+            (number, self._case(group, case, row, result, share))
+            for (number, row), case, result in zip(group.rows, group.cases, results)
+        ]
 
-    def _case(self, group: _Group, model, row: Mapping[str, Any], result: np.ndarray, share: float) -> Case:
+    def _case(
+        self, group: _Group, model, row: Mapping[str, Any], result: np.ndarray, share: float
+    ) -> Case:
         if result[settle.LEFT_OPEN]:
             return self._whole(row)
-        status, found = ending.found(result[settle.BOOK:])
-        return Case(status, "", comoving.outcome(comoving.frame(model), found), int(result[settle.TAKEN_STEPS]), share)
+        status, found = ending.found(result[settle.BOOK :])
+        return Case(
+            status,
+            "",
+            comoving.outcome(comoving.frame(model), found),
+            int(result[settle.TAKEN_STEPS]),
+            share,
+        )
 
     def _whole(self, row: Mapping[str, Any]) -> Case:
         try:
-            found = solved(self.scene.replace(row), self.calibration, self.numerics, walls=self.walls)
+            found = solved(
+                self.scene.replace(row), self.calibration, self.numerics, walls=self.walls
+            )
         except SceneError as error:
             return Case("refused", str(error), outcome.Outcome(), 0, 0.0)
-        return Case(found.status, found.message, found.outcome, found.cost["steps"], found.cost["wall_s"])
+        return Case(
+            found.status, found.message, found.outcome, found.cost["steps"], found.cost["wall_s"]
+        )
 
 
 def _content(record: Any) -> Any:
-    """What a record of records, arrays and numbers holds, to the last bit, as something to compare and to hash."""
+    """What a record of records, arrays and numbers holds, to the last bit, as something to compare
+    and to hash."""
     if record is None:
         return None
     if isinstance(record, tuple):
@@ -165,10 +224,14 @@ def _stacked(common: system.System, group: _Group) -> settle.Cases:
     models_ = group.cases
     centre = np.stack([model.faces.centre for model in models_])
     faces = np.repeat(common.faces[None], len(models_), axis=0)
-    faces[:, :, system.CENTRE:system.CENTRE + 3] = centre
+    faces[:, :, system.CENTRE : system.CENTRE + 3] = centre
     offset = common.thrust_offset is not None
     return settle.Cases(
-        np.array([model.payload.mass for model in models_]), np.stack([model.payload.inverse_inertia for model in models_]),
-        faces, np.array([model.thrust_offset.direction for model in models_]) if offset else None,
+        np.array([model.payload.mass for model in models_]),
+        np.stack([model.payload.inverse_inertia for model in models_]),
+        faces,
+        np.array([model.thrust_offset.direction for model in models_]) if offset else None,
         np.array([model.thrust_offset.arm for model in models_]) if offset else None,
-        np.stack([state.initial(model) for model in models_]), np.sqrt((centre**2).sum(axis=2).max(axis=1)))
+        np.stack([state.initial(model) for model in models_]),
+        np.sqrt((centre**2).sum(axis=2).max(axis=1)),
+    )

@@ -1,12 +1,14 @@
 """Where warm walls stand, for a contact law with one point per face.
 
-With W(x) the mean over a face of how far its wall stands away from the payload when the face's centre is at x along the rail, in
-platform axes, n the outward normal of the straight wall and e the unit vector along the rail::
+With W(x) the mean over a face of how far its wall stands away from the payload when the face's
+centre is at x along the rail, in platform axes, n the outward normal of the straight wall and e the
+unit vector along the rail::
 
     p = n . x - wall - W,     dp/dx = n - W' e
 
-Contact pushes along dp/dx and friction acts across it, so a wall that recedes ahead pushes forward, and no energy is lost on the
-way. W is the cubic spline through what the statics of the rail has found (``scenes.walls``), and goes on straight beyond its ends.
+Contact pushes along dp/dx and friction acts across it, so a wall that recedes ahead pushes forward,
+and no energy is lost on the way. W is the cubic spline through what the statics of the rail has
+found (``scenes.walls``), and goes on straight beyond its ends.
 """
 
 from typing import NamedTuple
@@ -21,8 +23,8 @@ from scenes.walls import GRAM, Walls, cubic
 
 
 class Bow(NamedTuple):
-    """cubic (s-1,f,4): W between stations as powers of the way (m) from the one before, ``spacing`` (m) apart from ``origin`` (f,),
-    X (m) of the centres at ignition, on."""
+    """cubic (s-1,f,4): W between stations as powers of the way (m) from the one before, ``spacing``
+    (m) apart from ``origin`` (f,), X (m) of the centres at ignition, on."""
 
     cubic: np.ndarray
     spacing: float
@@ -30,15 +32,19 @@ class Bow(NamedTuple):
 
 
 def under_pads(scene: Scene, model: Model, walls: Walls | None) -> Bow | None:
-    """Record for the kernels; None where nothing is warm, nothing touches, or walls that give way know it themselves. Raises
-    SceneError as ``require`` does."""
+    """Record for the kernels; None where nothing is warm, nothing touches, or walls that give way
+    know it themselves. Raises SceneError as ``require`` does."""
     require(scene, walls)
     if model.thermal is None or model.contact is None or walls.flexibility is not None:
         return None
     mean = walls.moved(model.thermal.amounts) @ GRAM[0]
     platform = model.platform.mass_centre[0] if model.platform is not None else 0.0
     origin = model.faces.centre[:, 0] + (model.payload.mass_centre[0] - platform)
-    return Bow(cubic(walls.travel, mean), float(walls.travel[1] - walls.travel[0]), np.ascontiguousarray(origin))
+    return Bow(
+        cubic(walls.travel, mean),
+        float(walls.travel[1] - walls.travel[0]),
+        np.ascontiguousarray(origin),
+    )
 
 
 def require(scene: Scene, walls: Walls | None) -> None:
@@ -46,7 +52,10 @@ def require(scene: Scene, walls: Walls | None) -> None:
     if scene.thermal is None or scene.contact is None:
         return
     if walls is None:
-        expected = "walls found for warm rails (highfi.compliance.walls), or their rigid() for a contact law to stand on"
+        expected = (
+            "walls found for warm rails (highfi.compliance.walls), or their rigid() for a "
+            "contact law to stand on"
+        )
         raise SceneError([Fault(scene.name, "thermal", "no walls", expected)])
     walls.require(scene)
 

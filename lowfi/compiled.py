@@ -10,23 +10,47 @@ from scenes.jit import contains, machine_code
 from scenes.scene import Scene
 from scenes.walls import Walls
 
-# A function that only this effect calls. Mass offset and initial state are numbers without code, and so is the damping of rails
-# that vibrate; compliant contact has the temperature in its own code.
-LAWS = {"contact": touch.load, "walls": solution.solve, "modes": modes.swing, "friction": coefficient_over_speed,
-        "sticking": grip.traction, "gravity": equations._weigh, "platform": touch._relative_turn,
-        "thrust_offset": equations._offset_line, "thermal": bow.stand}
+# A function that only this effect calls. Mass offset and initial state are numbers without code,
+# and so is the damping of rails that vibrate; compliant contact has the temperature in its own
+# code.
+LAWS = {
+    "contact": touch.load,
+    "walls": solution.solve,
+    "modes": modes.swing,
+    "friction": coefficient_over_speed,
+    "sticking": grip.traction,
+    "gravity": equations._weigh,
+    "platform": touch._relative_turn,
+    "thrust_offset": equations._offset_line,
+    "thermal": bow.stand,
+}
 
 
-def compiled_effects(scene: Scene, numerics: Numerics | None = None, walls: Walls | None = None) -> dict[str, bool]:
-    """For each effect with code of its own, whether the kernel compiled for ``scene``, on compliant ``walls`` or springs,
-    contains it."""
+def compiled_effects(
+    scene: Scene, numerics: Numerics | None = None, walls: Walls | None = None
+) -> dict[str, bool]:
+    """For each effect with code of its own, whether the kernel compiled for ``scene``, on compliant
+    ``walls`` or springs, contains it."""
     code = compiled_code(scene, numerics, walls)
     return {effect: contains(code, law) for effect, law in LAWS.items()}
 
 
-def compiled_code(scene: Scene, numerics: Numerics | None = None, walls: Walls | None = None) -> bytes:
+def compiled_code(
+    scene: Scene, numerics: Numerics | None = None, walls: Walls | None = None
+) -> bytes:
     """Object code of the time loop."""
     begun = Run(scene, numerics or Numerics(), walls)
     sampling = Sampling(begun.interval, begun.last, 0, begun.whole)
-    return machine_code(march, (begun.system, begun.plan, begun.tolerance, begun.marks, begun.loop, sampling, begun.rows,
-                                begun.forces))
+    return machine_code(
+        march,
+        (
+            begun.system,
+            begun.plan,
+            begun.tolerance,
+            begun.marks,
+            begun.loop,
+            sampling,
+            begun.rows,
+            begun.forces,
+        ),
+    )

@@ -1,14 +1,15 @@
 """Exit, settled window and jam of the surrogate, found on the interpolant of every step.
 
-A step is looked at in pieces, and where a piece begins and ends on different sides of the rail end, or of the jam speed, the
-crossing is found by regula falsi (Illinois) to rounding. Means over the window are integrals of the interpolant by Gauss and
-Legendre::
+A step is looked at in pieces, and where a piece begins and ends on different sides of the rail end,
+or of the jam speed, the crossing is found by regula falsi (Illinois) to rounding. Means over the
+window are integrals of the interpolant by Gauss and Legendre::
 
     integral over h = h / 2 sum_k w_k f(t_k)         error <= 4e-13 h^11 max |f^(10)|  (five points)
 
-The velocity is a polynomial of degree four in a step, which that integrates exactly. The rate in body axes is not: it turns with up
-to twice the attitude. A step may turn by 4 rad where the relative tolerance is 1e-2, the loosest allowed, and the rule then misses
-3e-4 of the rate; at 1e-4 these are 1.2 rad and 2e-9.
+The velocity is a polynomial of degree four in a step, which that integrates exactly. The rate in
+body axes is not: it turns with up to twice the attitude. A step may turn by 4 rad where the
+relative tolerance is 1e-2, the loosest allowed, and the rule then misses 3e-4 of the rate; at 1e-4
+these are 1.2 rad and 2e-9.
 """
 
 from typing import NamedTuple
@@ -22,11 +23,23 @@ from scenes import ending as books
 from scenes.ending import AT_EXIT, DONE, EXCESS, EXIT, NOW, PAST, ROW_SIZE
 from scenes.jit import inlined, kernel
 
-PIECE = 1e-3  # s, longest piece of a step: what leaves the rail or its rest and comes back sooner may be overlooked
+# s, longest piece of a step: what leaves the rail or its rest and comes back sooner may be
+# overlooked
+PIECE = 1e-3
 _EDGE, _SPEED = range(2)  # what is looked at
 _ROUNDING = 1e-15  # of places (m) and speeds (m/s)
-_POINTS = np.array([-0.9061798459386640, -0.5384693101056831, 0.0, 0.5384693101056831, 0.9061798459386640])
-_WEIGHTS = np.array([0.2369268850561891, 0.4786286704993665, 0.5688888888888889, 0.4786286704993665, 0.2369268850561891])
+_POINTS = np.array(
+    [-0.9061798459386640, -0.5384693101056831, 0.0, 0.5384693101056831, 0.9061798459386640]
+)
+_WEIGHTS = np.array(
+    [
+        0.2369268850561891,
+        0.4786286704993665,
+        0.5688888888888889,
+        0.4786286704993665,
+        0.2369268850561891,
+    ]
+)
 
 
 class Step(NamedTuple):
@@ -60,10 +73,20 @@ def _watch(system, marks, loop, step):
             return
     pieces, begin = int(np.ceil((step.ended - step.began) / PIECE)), step.began
     for piece in range(1, pieces + 1):
-        end = step.ended if piece == pieces else step.began + (step.ended - step.began) * piece / pieces
+        end = (
+            step.ended
+            if piece == pieces
+            else step.began + (step.ended - step.began) * piece / pieces
+        )
         past = _gauge(_EDGE, system, marks, loop, step, end)
         if past > 0.0:
-            _leave(system, marks, loop, step, _crossing(_EDGE, system, marks, loop, step, (begin, end), (book[PAST], past)))
+            _leave(
+                system,
+                marks,
+                loop,
+                step,
+                _crossing(_EDGE, system, marks, loop, step, (begin, end), (book[PAST], past)),
+            )
             return
         book[PAST] = past
         _look_at_speed(system, marks, loop, step, begin, end)
@@ -81,7 +104,8 @@ def _leave(system, marks, loop, step, at):
 
 @inlined
 def _look_at_speed(system, marks, loop, step, begin, end):
-    """Look at the axial speed at the ``end`` (s) of a piece, and at its first moment if that is the first one to count."""
+    """Look at the axial speed at the ``end`` (s) of a piece, and at its first moment if that is the
+    first one to count."""
     book, low = loop.book, max(begin, books.watched_from(marks))
     if low > end:
         return
@@ -107,7 +131,8 @@ def _count(system, loop, step):
 
 @kernel
 def _crossing(kind, system, marks, loop, step, between, values):
-    """Instant (s) in ``between`` at which a gauge, whose ``values`` have different signs there, passes zero."""
+    """Instant (s) in ``between`` at which a gauge, whose ``values`` have different signs there,
+    passes zero."""
     (low, high), (f_low, f_high) = between, values
     side = 0
     for _ in range(60):
@@ -130,7 +155,8 @@ def _crossing(kind, system, marks, loop, step, between, values):
 
 @inlined
 def _gauge(kind, system, marks, loop, step, time):
-    """At ``time`` (s): distance (m) of the rearmost trailing edge past the rail end, or the excess (m/s) of the axial speed."""
+    """At ``time`` (s): distance (m) of the rearmost trailing edge past the rail end, or the excess
+    (m/s) of the axial speed."""
     _fill(system, loop, step, time)
     if kind == _EDGE:
         return rearmost_edge(system.faces, system.platform, loop.book[NOW:]) - system.rail_end
@@ -145,5 +171,13 @@ def _fill(system, loop, step, time):
     elif time == step.began:
         slot.copy(loop.start, loop.work, slot.STATE_SIZE)
     else:
-        interpolate(step.size, (time - step.began) / step.size, loop.start, loop.stages, slot.DYNAMIC_SIZE, 0, loop.work)
+        interpolate(
+            step.size,
+            (time - step.began) / step.size,
+            loop.start,
+            loop.stages,
+            slot.DYNAMIC_SIZE,
+            0,
+            loop.work,
+        )
     posture(system, loop.work, loop.book[NOW:])

@@ -26,30 +26,52 @@ if TYPE_CHECKING:
     import xarray
 
 _AXES = ("x", "y", "z")
-PIECE = 256  # cases set up together: enough for the calls to cost nothing, few enough for memory to stay flat
+# cases set up together: enough for the calls to cost nothing, few enough for memory to stay flat
+PIECE = 256
 
 
-def run_many(scene: Scene, table: Sequence[Mapping[str, Any]] | Uncertainty, model: str = COMPLIANT, *, walls: Walls | None = None,
-             calibration: Calibration | None = None, numerics: Numerics | None = None, workers: int | None = None,
-             store: str | Path | None = None) -> "xarray.Dataset":
-    """Run ``scene`` once per row of ``table``, a row being dotted overrides as in ``Scene.replace``, or per draw of an Uncertainty.
+def run_many(
+    scene: Scene,
+    table: Sequence[Mapping[str, Any]] | Uncertainty,
+    model: str = COMPLIANT,
+    *,
+    walls: Walls | None = None,
+    calibration: Calibration | None = None,
+    numerics: Numerics | None = None,
+    workers: int | None = None,
+    store: str | Path | None = None,
+) -> "xarray.Dataset":
+    """Run ``scene`` once per row of ``table``, a row being dotted overrides as in
+    ``Scene.replace``, or per draw of an Uncertainty.
 
-    The values are those of ``lowfi.run`` to the last bit, with its ``model``, ``walls`` and ``calibration``; no curves are kept.
-    A row the scene refuses has the status ``refused`` and the reason as its message; the others run. Settled values are NaN where
-    a run has none. ``wall_s`` of a case is its share of the piece it ran in. The attributes count ``asked = ok + refused +
-    failed``, failed being the diverged. With a ``store``, a folder, cases go there chunk by chunk and what it holds already is
-    not run again (``lowfi.fill``, which needs no room for all results); it has no ``wall_s``.
+    The values are those of ``lowfi.run`` to the last bit, with its ``model``, ``walls`` and
+    ``calibration``; no curves are kept. A row the scene refuses has the status ``refused`` and the
+    reason as its message; the others run. Settled values are NaN where a run has none. ``wall_s``
+    of a case is its share of the piece it ran in. The attributes count ``asked = ok + refused +
+    failed``, failed being the diverged. With a ``store``, a folder, cases go there chunk by chunk
+    and what it holds already is not run again (``lowfi.fill``, which needs no room for all
+    results); it has no ``wall_s``.
     """
     require(scene, model, walls, calibration, numerics)
-    source, numerics = Drawn(table) if isinstance(table, Uncertainty) else Listed(table), numerics or Numerics()
+    source, numerics = (
+        Drawn(table) if isinstance(table, Uncertainty) else Listed(table),
+        numerics or Numerics(),
+    )
     if store is not None:
         from lowfi.request import Ensemble
 
         return _stored(Ensemble(scene, source, calibration, numerics, walls), workers, store)
-    pieces = (source.rows(begin, min(begin + PIECE, source.asked)) for begin in range(0, source.asked, PIECE))
-    cases = list(chain.from_iterable(completed(Family(scene, calibration, numerics, walls), pieces, workers)))
+    pieces = (
+        source.rows(begin, min(begin + PIECE, source.asked))
+        for begin in range(0, source.asked, PIECE)
+    )
+    cases = list(
+        chain.from_iterable(completed(Family(scene, calibration, numerics, walls), pieces, workers))
+    )
     shares = np.array([case.wall_s for case in cases], dtype=float)
-    return _dataset(columns.of(cases), [case.message for case in cases]).assign(wall_s=("case", shares, {"units": "s"}))
+    return _dataset(columns.of(cases), [case.message for case in cases]).assign(
+        wall_s=("case", shares, {"units": "s"})
+    )
 
 
 def _stored(ensemble, workers, path) -> "xarray.Dataset":
@@ -60,12 +82,16 @@ def _stored(ensemble, workers, path) -> "xarray.Dataset":
     return _dataset(*store.results())
 
 
-def completed(family: Family, pieces: Iterable[Sequence[Mapping[str, Any]]], workers: int | None = None) -> Iterator[list[Case]]:
-    """Cases of each of ``pieces`` of rows, in their order; a piece is taken when a thread is free for it soon."""
+def completed(
+    family: Family, pieces: Iterable[Sequence[Mapping[str, Any]]], workers: int | None = None
+) -> Iterator[list[Case]]:
+    """Cases of each of ``pieces`` of rows, in their order; a piece is taken when a thread is free
+    for it soon."""
     count, waiting = _workers(workers), deque()
     with ThreadPoolExecutor(count) as pool:
         for rows in pieces:
-            # Setting up holds the interpreter lock, stepping does not: one thread prepares what the others run.
+            # Setting up holds the interpreter lock, stepping does not: one thread prepares what the
+            # others run.
             waiting.append([pool.submit(job) for job in family.jobs(rows)])
             while len(waiting) > count:
                 yield in_order(future.result() for future in waiting.popleft())
@@ -85,10 +111,20 @@ def _workers(workers: int | None) -> int:
 def _dataset(found: columns.Columns, messages: list[str]) -> "xarray.Dataset":
     import xarray  # slow to load, and a single run does without
 
-    dimensions = {name: ("case", "axis") if name in columns.VECTORS else "case" for name in columns.UNITS}
+    dimensions = {
+        name: ("case", "axis") if name in columns.VECTORS else "case" for name in columns.UNITS
+    }
     variables = {
         "status": ("case", np.array(columns.STATUSES, dtype=object)[found.status]),
         "message": ("case", np.array(messages, dtype=object)),
-        **{name: (dimensions[name], getattr(found, name), {"units": unit}) for name, unit in columns.UNITS.items()},
-        "steps": ("case", found.steps)}
-    return xarray.Dataset(variables, {"case": np.arange(len(messages)), "axis": list(_AXES)}, attrs=columns.counts(found.status))
+        **{
+            name: (dimensions[name], getattr(found, name), {"units": unit})
+            for name, unit in columns.UNITS.items()
+        },
+        "steps": ("case", found.steps),
+    }
+    return xarray.Dataset(
+        variables,
+        {"case": np.arange(len(messages)), "axis": list(_AXES)},
+        attrs=columns.counts(found.status),
+    )

@@ -2,8 +2,9 @@
 
     r' = v,   m v' = sum F,   q' = w q / 2,   A' = sum X x F   (X the point a force acts at, all about the scene origin)
 
-Every effect adds itself to the derivative in one line of ``derivative``; while it is filled, the velocity slots hold forces (N).
-Axial power is each force's X component times the X velocity of the mass centre of the body it acts on (``scenes.ledger``).
+Every effect adds itself to the derivative in one line of ``derivative``; while it is filled, the
+velocity slots hold forces (N). Axial power is each force's X component times the X velocity of the
+mass centre of the body it acts on (``scenes.ledger``).
 """
 
 from lowfi import grip as grips
@@ -21,17 +22,48 @@ from scenes.jit import inlined, kernel
 
 @inlined
 def derivative(system, active, grip, time, state, out):
-    """Fill ``out`` with the time derivative of ``state`` (both STATE_SIZE,). ``active`` (f,) tells which faces are felt, ``grip``
-    (f, GRIP_SIZE) or None how they stick."""
+    """Fill ``out`` with the time derivative of ``state`` (both STATE_SIZE,). ``active`` (f,) tells
+    which faces are felt, ``grip`` (f, GRIP_SIZE) or None how they stick."""
     body = slot.motion(system.payload.mass, system.payload.inverse_inertia, state, PAYLOAD)
     base = slot.frame(system.platform, state)
     out[:] = 0.0
-    add_thrust(system.thrust, system.thrust_offset, system.platform, system.reacts_on_platform, system.ledger, time, body, base,
-               out)
+    add_thrust(
+        system.thrust,
+        system.thrust_offset,
+        system.platform,
+        system.reacts_on_platform,
+        system.ledger,
+        time,
+        body,
+        base,
+        out,
+    )
     add_gravity(system.gravity, system.payload, system.platform, system.ledger, body, base, out)
-    add_contact(system.contact, system.friction, system.sticking, system.faces, system.platform, system.ledger, active, grip, body,
-                base, out)
-    add_walls(system.walls, system.friction, system.faces, system.platform, system.ledger, active, body, base, state, out)
+    add_contact(
+        system.contact,
+        system.friction,
+        system.sticking,
+        system.faces,
+        system.platform,
+        system.ledger,
+        active,
+        grip,
+        body,
+        base,
+        out,
+    )
+    add_walls(
+        system.walls,
+        system.friction,
+        system.faces,
+        system.platform,
+        system.ledger,
+        active,
+        body,
+        base,
+        state,
+        out,
+    )
     move(system.payload.mass, state[:PLATFORM], body, out[:PLATFORM])
     move_platform(system.platform, state, base, out)
 
@@ -39,7 +71,9 @@ def derivative(system, active, grip, time, state, out):
 @inlined
 def move(mass, state, body, out):
     """Turn the force in the velocity slots into acceleration and add the kinematics."""
-    turning = rotation.product((0.0, 0.5 * body.rate[0], 0.5 * body.rate[1], 0.5 * body.rate[2]), slot.quaternion(state, 0))
+    turning = rotation.product(
+        (0.0, 0.5 * body.rate[0], 0.5 * body.rate[1], 0.5 * body.rate[2]), slot.quaternion(state, 0)
+    )
     for i in range(3):
         out[PLACE + i] = body.velocity[i]
         out[VELOCITY + i] /= mass
@@ -69,7 +103,16 @@ def add_thrust(thrust, offset, platform, reacts, ledger, time, body, base, out):
         return
     force, point = line_of_action(offset, size, body)
     push(out, PAYLOAD + VELOCITY, PAYLOAD + MOMENT, force, point, 1.0)
-    _book(ledger, slot.THRUST, slot.THRUST_AXIAL, force, slot.velocity_at(body, point), body.velocity[0], 1.0, out)
+    _book(
+        ledger,
+        slot.THRUST,
+        slot.THRUST_AXIAL,
+        force,
+        slot.velocity_at(body, point),
+        body.velocity[0],
+        1.0,
+        out,
+    )
     react(platform, reacts, ledger, force, point, base, out)
 
 
@@ -90,7 +133,8 @@ def _outside(ledger, force, point, out):
 
 @inlined
 def line_of_action(offset, size, body):
-    """Thrust (N) and a point of its line (m) in scene axes; without an offset the line passes through the mass centre."""
+    """Thrust (N) and a point of its line (m) in scene axes; without an offset the line passes
+    through the mass centre."""
     if offset is not None:
         return _offset_line(offset, size, body)
     return (size * body.turn[0], size * body.turn[3], size * body.turn[6]), body.place
@@ -116,7 +160,16 @@ def react(platform, reacts, ledger, force, point, base, out):
 def _react_on_free_platform(reacts, ledger, force, point, base, out):
     if reacts:
         push(out, PLATFORM + VELOCITY, PLATFORM + MOMENT, force, point, -1.0)
-        _book(ledger, slot.THRUST, slot.THRUST_AXIAL, force, slot.velocity_at(base, point), base.velocity[0], -1.0, out)
+        _book(
+            ledger,
+            slot.THRUST,
+            slot.THRUST_AXIAL,
+            force,
+            slot.velocity_at(base, point),
+            base.velocity[0],
+            -1.0,
+            out,
+        )
     else:
         _outside(ledger, force, point, out)
 
@@ -139,7 +192,9 @@ def _weigh(gravity, mass, which, ledger, body, out):
     weight = (mass * gravity.x, mass * gravity.y, mass * gravity.z)
     push(out, which + VELOCITY, which + MOMENT, weight, body.place, 1.0)
     _outside(ledger, weight, body.place, out)
-    _book(ledger, slot.GRAVITY, slot.GRAVITY_AXIAL, weight, body.velocity, body.velocity[0], 1.0, out)
+    _book(
+        ledger, slot.GRAVITY, slot.GRAVITY_AXIAL, weight, body.velocity, body.velocity[0], 1.0, out
+    )
 
 
 @inlined
@@ -164,8 +219,15 @@ def add_walls(walls, friction, faces, platform, ledger, active, body, base, stat
             for k in range(count):
                 face = walls.room.order[k]
                 if walls.room.force[face, 0] > 0.0:
-                    _press(wall_load(walls, friction, platform, faces, face, body, base), friction, platform, ledger,
-                           body, base, out)
+                    _press(
+                        wall_load(walls, friction, platform, faces, face, body, base),
+                        friction,
+                        platform,
+                        ledger,
+                        body,
+                        base,
+                        out,
+                    )
                     _lean(walls, faces, face, platform, ledger, body, base, out)
             if count > 0:
                 _drive(walls, count, platform, ledger, body, base, out)
@@ -197,13 +259,17 @@ def _drive(walls, count, platform, ledger, body, base, out):
     force = rotation.rotate(base.turn, (pull, 0.0, 0.0))
     _pair(platform, ledger, force, body.place, out)
     if ledger is not None:
-        out[slot.RELEASED] += fading * rotation.unrotate(base.turn, relative_velocity(platform, body, base, body.place))[0]
+        out[slot.RELEASED] += (
+            fading
+            * rotation.unrotate(base.turn, relative_velocity(platform, body, base, body.place))[0]
+        )
         out[slot.CONTACT_AXIAL] += force[0] * _axial_speed(platform, body, base)
 
 
 @inlined
 def _press(face, friction, platform, ledger, body, base, out):
-    """Add the load of one touching face: the pair of forces at one point, and what its energy becomes."""
+    """Add the load of one touching face: the pair of forces at one point, and what its energy
+    becomes."""
     _pair(platform, ledger, face.normal, face.point, out)
     _spend(ledger, face, platform, body, base, out)
     _rub(friction, face, platform, ledger, body, base, out)
@@ -211,8 +277,8 @@ def _press(face, friction, platform, ledger, body, base, out):
 
 @inlined
 def _grip(sticking, grip, number, faces, face, platform, ledger, body, base, out):
-    """Add the friction that sticks. Of its work only the heat is lost, what the spring takes is stored; the axial part of all of it
-    stands with friction, where the spring's energy ends too."""
+    """Add the friction that sticks. Of its work only the heat is lost, what the spring takes is
+    stored; the axial part of all of it stands with friction, where the spring's energy ends too."""
     if sticking is not None:
         drag, heat = grips.traction(sticking, grip[number], faces[number], face, base)
         _pair(platform, ledger, drag, face.point, out)
@@ -240,12 +306,22 @@ def _spend(ledger, face, platform, body, base, out):
 def _rub(friction, face, platform, ledger, body, base, out):
     if friction is not None:
         _pair(platform, ledger, face.drag, face.point, out)
-        _book(ledger, slot.FRICTION, slot.FRICTION_AXIAL, face.drag, face.slip, _axial_speed(platform, body, base), -1.0, out)
+        _book(
+            ledger,
+            slot.FRICTION,
+            slot.FRICTION_AXIAL,
+            face.drag,
+            face.slip,
+            _axial_speed(platform, body, base),
+            -1.0,
+            out,
+        )
 
 
 @inlined
 def _pair(platform, ledger, force, point, out):
-    """A force on the payload and its opposite at the same point, on the platform or on the ground."""
+    """A force on the payload and its opposite at the same point, on the platform or on the
+    ground."""
     push(out, PAYLOAD + VELOCITY, PAYLOAD + MOMENT, force, point, 1.0)
     if platform is None:
         _outside(ledger, force, point, out)

@@ -1,18 +1,21 @@
 """Friction that sticks: what holds or drags a touching face, and when that changes.
 
-With the tangential spring k and damper c, the way xi of the face's centre from its anchor on the wall, its slip velocity u, the
-normal force N, the direction e of a slide and the capture speed s_c, the force on the payload is::
+With the tangential spring k and damper c, the way xi of the face's centre from its anchor on the
+wall, its slip velocity u, the normal force N, the direction e of a slide and the capture speed s_c,
+the force on the payload is::
 
     held      F = -k xi - c u                                           until |F| = mu_s N
     sliding   F = -mu_d N g/|g|,   g = u + (s_c + |u.e| - u.e) e        until u.e = 0
 
-Sliding, that is Coulomb's law with its direction turned by at most s_c/|u|; along a straight line it is one and the same force
-before the stop and after it, so a step may pass the stop, which is found on its interpolant as a touch is. There the face is held
-if |u| <= s_c, else e is turned to u. Like the set of touching faces, all this is constant within a step.
+Sliding, that is Coulomb's law with its direction turned by at most s_c/|u|; along a straight line
+it is one and the same force before the stop and after it, so a step may pass the stop, which is
+found on its interpolant as a touch is. There the face is held if |u| <= s_c, else e is turned to u.
+Like the set of touching faces, all this is constant within a step.
 
-The spring keeps its stretch while the face slides, as the bristles of a brush do, and is taken up with it, up to the force mu_d N,
-where the face is held again; what it does not take up is lost as friction. Taken up slack it would overshoot under any load near
-mu_s N, slip and be taken up anew without end. It can give back only what was put in while the face was held: friction is passive.
+The spring keeps its stretch while the face slides, as the bristles of a brush do, and is taken up
+with it, up to the force mu_d N, where the face is held again; what it does not take up is lost as
+friction. Taken up slack it would overshoot under any load near mu_s N, slip and be taken up anew
+without end. It can give back only what was put in while the face was held: friction is passive.
 """
 
 import numpy as np
@@ -21,10 +24,12 @@ from lowfi.system import NORMAL_Y, NORMAL_Z
 from scenes import rotation
 from scenes.jit import inlined
 
-# Columns of the table of grips, one row per face: whether it is held; its anchor (m) if so, else e, in platform axes; stretch (m)
-# that a slide keeps.
+# Columns of the table of grips, one row per face: whether it is held; its anchor (m) if so, else e,
+# in platform axes; stretch (m) that a slide keeps.
 HELD, MARK, STRETCH, GRIP_SIZE = 0, 1, 4, 5
-STOPPED = 1e-3  # u.e over s_c that counts as zero: far above the rounding of u, and positive, so that friction never drives
+# u.e over s_c that counts as zero: far above the rounding of u, and positive, so that friction
+# never drives
+STOPPED = 1e-3
 SLIPPED = -1e-7  # margin of a held face at which it slips: nearer to zero rounding decides
 
 
@@ -38,12 +43,17 @@ def row_of(sticking, grip, number):
 
 @inlined
 def traction(sticking, row, face, touch, base):
-    """Friction on the payload (N, scene axes) of a ``face`` with the load ``touch``, and the power (W) it turns into heat."""
+    """Friction on the payload (N, scene axes) of a ``face`` with the load ``touch``, and the power
+    (W) it turns into heat."""
     u = touch.slip
     if row[HELD] != 0.0:
         xi = _from_anchor(row, face, touch.point, base)
         k, c = sticking.stiffness, sticking.damping
-        return (-k * xi[0] - c * u[0], -k * xi[1] - c * u[1], -k * xi[2] - c * u[2]), c * rotation.dot(u, u)
+        return (
+            -k * xi[0] - c * u[0],
+            -k * xi[1] - c * u[1],
+            -k * xi[2] - c * u[2],
+        ), c * rotation.dot(u, u)
     g = heading(sticking, row, u, base)
     factor = -sticking.dynamic * max(touch.raw, 0.0) / _size(g)
     force = (factor * g[0], factor * g[1], factor * g[2])
@@ -61,7 +71,8 @@ def heading(sticking, row, u, base):
 
 @inlined
 def margin(sticking, row, face, touch, base):
-    """What is left until the grip of a touching face changes: (mu_s N - |F|)/(mu_s N + |F|) if it is held, u.e/s_c if it slides."""
+    """What is left until the grip of a touching face changes: (mu_s N - |F|)/(mu_s N + |F|) if it
+    is held, u.e/s_c if it slides."""
     left = 1.0
     if row[HELD] == 0.0:
         left = rotation.dot(touch.slip, _mark(row, base)) / sticking.capture_speed
@@ -75,14 +86,15 @@ def margin(sticking, row, face, touch, base):
 
 @inlined
 def used_up(row, before, after):
-    """Whether the grip has come to its end in a step from margin ``before`` to ``after``. A face that has just slipped has hardly
-    any margin yet, but it gains some."""
+    """Whether the grip has come to its end in a step from margin ``before`` to ``after``. A face
+    that has just slipped has hardly any margin yet, but it gains some."""
     return after <= 0.5 * SLIPPED if row[HELD] != 0.0 else (after <= STOPPED and after < before)
 
 
 @inlined
 def last_margin(row, before):
-    """Margin at which a grip that begins a step with ``before`` is to be cut: just within what ``used_up`` asks for."""
+    """Margin at which a grip that begins a step with ``before`` is to be cut: just within what
+    ``used_up`` asks for."""
     return SLIPPED if row[HELD] != 0.0 else 0.5 * min(before, STOPPED)
 
 
@@ -104,7 +116,8 @@ def let_go(row):
 
 @inlined
 def stop(sticking, row, touch, base):
-    """Hold a face that slid, or begins to touch, unless it still moves: then it slides where it goes. The energy (J) lost."""
+    """Hold a face that slid, or begins to touch, unless it still moves: then it slides where it
+    goes. The energy (J) lost."""
     u, lost = touch.slip, 0.0
     speed = _size(u)
     spare = sticking.dynamic * max(touch.raw, 0.0) - sticking.damping * speed  # N
@@ -113,8 +126,14 @@ def stop(sticking, row, touch, base):
         stretch = min(row[STRETCH], spare / sticking.stiffness)
         lost = 0.5 * sticking.stiffness * (row[STRETCH] + stretch) * (row[STRETCH] - stretch)
         back = stretch / _size(g)
-        place = (touch.point[0] - base.place[0], touch.point[1] - base.place[1], touch.point[2] - base.place[2])
-        _set_mark(row, (place[0] - back * g[0], place[1] - back * g[1], place[2] - back * g[2]), 1.0, base)
+        place = (
+            touch.point[0] - base.place[0],
+            touch.point[1] - base.place[1],
+            touch.point[2] - base.place[2],
+        )
+        _set_mark(
+            row, (place[0] - back * g[0], place[1] - back * g[1], place[2] - back * g[2]), 1.0, base
+        )
         row[HELD] = 1.0
     else:
         _set_mark(row, u, 1.0 / speed, base)
@@ -123,7 +142,8 @@ def stop(sticking, row, touch, base):
 
 @inlined
 def slip(sticking, row, face, touch, base):
-    """Let a held face slide: where it moves, or, while it is slower than s_c, where the spring let it go."""
+    """Let a held face slide: where it moves, or, while it is slower than s_c, where the spring let
+    it go."""
     u, speed = touch.slip, _size(touch.slip)
     force, _ = traction(sticking, row, face, touch, base)
     row[STRETCH] = _size(_from_anchor(row, face, touch.point, base))
@@ -150,7 +170,11 @@ def _set_mark(row, vector, factor, base):
 def _from_anchor(row, face, point, base):
     """xi (m) in scene axes: along the wall only, whose normal is that of the face."""
     anchor, n = _mark(row, base), rotation.rotate(base.turn, (0.0, face[NORMAL_Y], face[NORMAL_Z]))
-    d = (point[0] - base.place[0] - anchor[0], point[1] - base.place[1] - anchor[1], point[2] - base.place[2] - anchor[2])
+    d = (
+        point[0] - base.place[0] - anchor[0],
+        point[1] - base.place[1] - anchor[1],
+        point[2] - base.place[2] - anchor[2],
+    )
     out = rotation.dot(d, n)
     return (d[0] - out * n[0], d[1] - out * n[1], d[2] - out * n[2])
 

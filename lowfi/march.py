@@ -1,4 +1,5 @@
-"""The time loop: steps as long as error, events and the proven limit allow, samples on their own grid in between."""
+"""The time loop: steps as long as error, events and the proven limit allow, samples on their own
+grid in between."""
 
 from typing import NamedTuple
 
@@ -24,23 +25,39 @@ from scenes.memory import zeros
 
 # What ``march`` returns: all samples taken, nothing left to learn, or why it stopped before.
 SAMPLED, ENDED, UNDERFLOW, OUT_OF_STEPS, NOT_FINITE, STRUCK, LOST_ENERGY = range(7)
-# Slots of Loop.clock: ends of the last step and its size before an event cut it (s), the fraction kept, step the controller
-# wants (s), bound of the contact's rates at the end (1/s), smallest proven limit met (s), largest step over its limit (1), largest
-# friction and damping power (W, not above zero).
-BEGAN, NOW, SIZE, SPAN, WANTED, RATE, LIMIT, LIMIT_USED, FRICTION_POWER, DAMPING_POWER, CLOCK_SIZE = range(11)
+# Slots of Loop.clock: ends of the last step and its size before an event cut it (s), the fraction
+# kept, step the controller wants (s), bound of the contact's rates at the end (1/s), smallest
+# proven limit met (s), largest step over its limit (1), largest friction and damping power (W, not
+# above zero).
+(
+    BEGAN,
+    NOW,
+    SIZE,
+    SPAN,
+    WANTED,
+    RATE,
+    LIMIT,
+    LIMIT_USED,
+    FRICTION_POWER,
+    DAMPING_POWER,
+    CLOCK_SIZE,
+) = range(11)
 # Slots of Loop.count; STRIKING is the face that struck an edge of its wall, or -1.
 SEGMENT, STEPS, REJECTED, EVENTS, EVALUATIONS, TAKEN, STRIKING, COUNT_SIZE = range(8)
 _SAFETY, _SHRINK, _GROW = 0.9, 0.2, 5.0
-_SPARE = 0.1  # largest error ratio at which a step may be cut by interpolation, whose error is some times larger
-# Last share of a step in which a change of law cannot be felt: its effect goes with the square. Of the energy of a pad that springs
-# back freely in one step the ledger misses the square of it.
+# largest error ratio at which a step may be cut by interpolation, whose error is some times larger
+_SPARE = 0.1
+# Last share of a step in which a change of law cannot be felt: its effect goes with the square. Of
+# the energy of a pad that springs back freely in one step the ledger misses the square of it.
 _NEAR_END = 1e-4
 _LANDINGS = 40  # cuts of one step
-_HALVINGS = 6  # of one step for the sake of the ledgers: what is off still is not a matter of its length
+# of one step for the sake of the ledgers: what is off still is not a matter of its length
+_HALVINGS = 6
 
 
 class Plan(NamedTuple):
-    """Times (s) a step must end at, the last one the end of the scene, the longest step (s) before each, the step budget."""
+    """Times (s) a step must end at, the last one the end of the scene, the longest step (s) before
+    each, the step budget."""
 
     stops: np.ndarray
     caps: np.ndarray
@@ -48,8 +65,8 @@ class Plan(NamedTuple):
 
 
 class Sampling(NamedTuple):
-    """Time between samples (s), number of the last one in the scene, number of the one to stop at, and whether the run goes on
-    although nothing is left to learn."""
+    """Time between samples (s), number of the last one in the scene, number of the one to stop at,
+    and whether the run goes on although nothing is left to learn."""
 
     interval: float
     last: int
@@ -58,9 +75,10 @@ class Sampling(NamedTuple):
 
 
 class Loop(NamedTuple):
-    """What evolves: states at the ends of the last step, its stages, surveys of its ends, faces that stand over their walls,
-    penetrations (m) with which those left that are partly over them still, faces felt in the last step and their grips in it (None
-    where friction does not stick), clock and counts, the book of exit, settled window and jam (``scenes.ending``), and the ledgers
+    """What evolves: states at the ends of the last step, its stages, surveys of its ends, faces
+    that stand over their walls, penetrations (m) with which those left that are partly over them
+    still, faces felt in the last step and their grips in it (None where friction does not stick),
+    clock and counts, the book of exit, settled window and jam (``scenes.ending``), and the ledgers
     (``lowfi.audit``)."""
 
     start: np.ndarray
@@ -80,14 +98,27 @@ class Loop(NamedTuple):
 
 
 def ready(system, state: np.ndarray, first_step: float) -> Loop:
-    """A loop about to take its first sample of ``system`` at ``state`` (STATE_SIZE,), and its first step of ``first_step`` (s).
-    Rails are at rest, or as modes at the end of ``state`` say."""
+    """A loop about to take its first sample of ``system`` at ``state`` (STATE_SIZE,), and its first
+    step of ``first_step`` (s). Rails are at rest, or as modes at the end of ``state`` say."""
     faces, size = system.faces.shape[0], slot.STATE_SIZE + states(system.walls)
     state_, survey_ = (size,), (faces, SURVEY_SIZE)
     grip = zeros((faces, GRIP_SIZE)) if system.sticking is not None else None
-    loop = Loop(zeros(state_), zeros(state_), zeros((STAGES, size)), zeros(survey_), zeros(survey_),
-                np.zeros(faces, dtype=np.bool_), zeros((faces,)), np.zeros(faces, dtype=np.bool_), grip, zeros((CLOCK_SIZE,)),
-                np.zeros(COUNT_SIZE, dtype=np.int64), zeros(state_), zeros((books.BOOK_SIZE,)), zeros((audit.AUDIT_SIZE,)))
+    loop = Loop(
+        zeros(state_),
+        zeros(state_),
+        zeros((STAGES, size)),
+        zeros(survey_),
+        zeros(survey_),
+        np.zeros(faces, dtype=np.bool_),
+        zeros((faces,)),
+        np.zeros(faces, dtype=np.bool_),
+        grip,
+        zeros((CLOCK_SIZE,)),
+        np.zeros(COUNT_SIZE, dtype=np.int64),
+        zeros(state_),
+        zeros((books.BOOK_SIZE,)),
+        zeros((audit.AUDIT_SIZE,)),
+    )
     reset(system, state, first_step, loop)
     return loop
 
@@ -129,10 +160,12 @@ def _flatten(walls):
 
 @inlined
 def _on_rail(system, loop):
-    """Whether faces came over their walls or left them, the energy (J) that went with them, and what came back of it."""
+    """Whether faces came over their walls or left them, the energy (J) that went with them, and
+    what came back of it."""
     rail = (system.rail_start, system.rail_end)
-    left, energy, returned, loop.count[STRIKING] = on_rail(system.contact, system.walls, rail, system.faces, loop.after, loop.left,
-                                                           loop.engaged)
+    left, energy, returned, loop.count[STRIKING] = on_rail(
+        system.contact, system.walls, rail, system.faces, loop.after, loop.left, loop.engaged
+    )
     return left, energy, returned
 
 
@@ -145,21 +178,52 @@ def _let_go(grip):
 
 @inlined
 def _survey(system, loop):
-    loop.audit[audit.ON_WALLS] = survey(system.contact, system.walls, system.sticking, system.faces, system.platform,
-                                        system.payload, loop.active, loop.grip, loop.end, loop.after)
+    loop.audit[audit.ON_WALLS] = survey(
+        system.contact,
+        system.walls,
+        system.sticking,
+        system.faces,
+        system.platform,
+        system.payload,
+        loop.active,
+        loop.grip,
+        loop.end,
+        loop.after,
+    )
 
 
 @inlined
 def _regrip(system, loop):
     """As the step after ``loop.end`` begins."""
-    return regrip(system.contact, system.sticking, system.payload, system.platform, system.faces, loop.engaged, loop.active,
-                  loop.grip, loop.before, loop.after, loop.end)
+    return regrip(
+        system.contact,
+        system.sticking,
+        system.payload,
+        system.platform,
+        system.faces,
+        loop.engaged,
+        loop.active,
+        loop.grip,
+        loop.before,
+        loop.after,
+        loop.end,
+    )
 
 
 @inlined
 def _fastest_rate(system, loop, state, ahead):
-    rate = fastest_rate(system.contact, system.friction, system.sticking, system.faces, system.platform, system.payload,
-                        loop.active, loop.grip, state, ahead)
+    rate = fastest_rate(
+        system.contact,
+        system.friction,
+        system.sticking,
+        system.faces,
+        system.platform,
+        system.payload,
+        loop.active,
+        loop.grip,
+        state,
+        ahead,
+    )
     return max(rate, _rate_on_walls(system.walls, system, loop, state))
 
 
@@ -167,22 +231,36 @@ def _fastest_rate(system, loop, state, ahead):
 def _rate_on_walls(walls, system, loop, state):
     rate = 0.0
     if walls is not None:
-        stiffness, damping = stiffness_and_damping(walls, system.friction, system.faces, system.platform, system.payload,
-                                                   loop.active, state)
+        stiffness, damping = stiffness_and_damping(
+            walls,
+            system.friction,
+            system.faces,
+            system.platform,
+            system.payload,
+            loop.active,
+            state,
+        )
         rate = 0.5 * damping + np.sqrt(0.25 * damping * damping + stiffness)
     return rate
 
 
 @kernel
 def march(system, plan, tolerance, marks, loop, sampling, rows, forces):
-    """Take samples up to ``sampling.number`` into ``rows`` (n, SAMPLE_SIZE) and ``forces`` (n, f, 3), and after the last one go on
-    to the scene's end; or less, when nothing is left to learn of the settled window or of a jam: the steps end then at the same
-    instant, whatever is sampled."""
-    clock, count, end, ended = loop.clock, loop.count, plan.stops[-1], sampling.number == sampling.last
+    """Take samples up to ``sampling.number`` into ``rows`` (n, SAMPLE_SIZE) and ``forces`` (n, f,
+    3), and after the last one go on to the scene's end; or less, when nothing is left to learn of
+    the settled window or of a jam: the steps end then at the same instant, whatever is sampled."""
+    clock, count, end, ended = (
+        loop.clock,
+        loop.count,
+        plan.stops[-1],
+        sampling.number == sampling.last,
+    )
     for taken in range(count[TAKEN], sampling.number + 1):
         time = min(taken * sampling.interval, end)
         status = _reach(system, plan, tolerance, marks, loop, sampling.whole, time)
-        if status == ENDED or (not sampling.whole and books.is_left_out(loop.book, time, sampling.interval)):
+        if status == ENDED or (
+            not sampling.whole and books.is_left_out(loop.book, time, sampling.interval)
+        ):
             ended = True
             break
         if status != SAMPLED:
@@ -190,11 +268,20 @@ def march(system, plan, tolerance, marks, loop, sampling, rows, forces):
         if time == clock[NOW]:
             slot.copy_all(loop.end, loop.work, slot.modal_size(system.walls))
         else:
-            interpolate(clock[SIZE], (time - clock[BEGAN]) / clock[SIZE], loop.start, loop.stages, slot.STATE_SIZE,
-                        slot.modal_size(system.walls), loop.work)
+            interpolate(
+                clock[SIZE],
+                (time - clock[BEGAN]) / clock[SIZE],
+                loop.start,
+                loop.stages,
+                slot.STATE_SIZE,
+                slot.modal_size(system.walls),
+                loop.work,
+            )
         # Before the first step nothing is felt yet, and every face may press.
         felt_ = loop.active if count[STEPS] > 0 else loop.engaged
-        if not observe(system, loop.engaged, felt_, loop.grip, loop.work, rows[taken], forces[taken]):
+        if not observe(
+            system, loop.engaged, felt_, loop.grip, loop.work, rows[taken], forces[taken]
+        ):
             return NOT_FINITE
         count[TAKEN] += 1
     if not ended:
@@ -222,7 +309,13 @@ def advance(system, plan, tolerance, marks, loop):
     if loop.count[STEPS] >= plan.maximum_steps:
         return OUT_OF_STEPS
     if not step(system, plan, tolerance, loop):
-        return STRUCK if loop.count[STRIKING] >= 0 else UNDERFLOW if loop.audit[audit.LOST] == 0.0 else LOST_ENERGY
+        return (
+            STRUCK
+            if loop.count[STRIKING] >= 0
+            else UNDERFLOW
+            if loop.audit[audit.LOST] == 0.0
+            else LOST_ENERGY
+        )
     if not _has_finite_energy(loop.end, slot.modal_size(system.walls)):
         return NOT_FINITE
     ending.follow(system, marks, loop, ending.Step(clock[BEGAN], clock[NOW], clock[SIZE]))
@@ -242,8 +335,8 @@ def _has_finite_energy(state, modal):
 
 @kernel
 def step(system, plan, tolerance, loop):
-    """Take one step; False when none is short enough, when it lost a tenth of the energy, or when a face strikes an edge of its
-    wall where the step would begin."""
+    """Take one step; False when none is short enough, when it lost a tenth of the energy, or when a
+    face strikes an edge of its wall where the step would begin."""
     clock, count = loop.clock, loop.count
     fresh = _begin(system, plan, loop)
     if count[STRIKING] >= 0:
@@ -251,22 +344,56 @@ def step(system, plan, tolerance, loop):
     start, segment = clock[BEGAN], count[SEGMENT]
     stop, rate, landings, halvings = plan.stops[segment], clock[RATE], 0, 0
     # At a corner the thrust is the one of the stretch it is seen from.
-    stretch = (np.nextafter(0.0 if segment == 0 else plan.stops[segment - 1], np.inf), np.nextafter(stop, -np.inf))
-    ceiling = _foreseen(system, loop, min(clock[WANTED], plan.caps[segment], STABLE_RADIUS / rate, stop - start,
-                                          _while_hanging(system.walls, system, loop)))
+    stretch = (
+        np.nextafter(0.0 if segment == 0 else plan.stops[segment - 1], np.inf),
+        np.nextafter(stop, -np.inf),
+    )
+    ceiling = _foreseen(
+        system,
+        loop,
+        min(
+            clock[WANTED],
+            plan.caps[segment],
+            STABLE_RADIUS / rate,
+            stop - start,
+            _while_hanging(system.walls, system, loop),
+        ),
+    )
     while True:
         dt = min(clock[WANTED], ceiling)
         reaches = start + dt * (1.0 + 1e-9) >= stop
         dt = stop - start if reaches else dt
         if start + dt == start or not dt > 0.0:
             return False
-        attempt(system, loop.active, loop.grip, stretch, start, dt, fresh, loop.start, loop.stages, loop.end)
+        attempt(
+            system,
+            loop.active,
+            loop.grip,
+            stretch,
+            start,
+            dt,
+            fresh,
+            loop.start,
+            loop.stages,
+            loop.end,
+        )
         count[EVALUATIONS] += STAGES if fresh else STAGES - 1
         fresh = False
-        ratio = error_ratio(tolerance, system.payload, system.platform, system.walls, dt, loop.stages, loop.end, loop.work)
+        ratio = error_ratio(
+            tolerance,
+            system.payload,
+            system.platform,
+            system.walls,
+            dt,
+            loop.stages,
+            loop.end,
+            loop.work,
+        )
         if not ratio <= 1.0:
             count[REJECTED] += 1
-            clock[WANTED] = dt * (max(_SHRINK, _SAFETY * ratio**-0.2) if ratio < np.inf else _SHRINK)
+            clock[WANTED] = dt * (
+                max(_SHRINK, _SAFETY * ratio**-0.2) if ratio < np.inf else _SHRINK
+            )
             continue
         clock[RATE] = _fastest_rate(system, loop, loop.end, 0.0)
         limit = STABLE_RADIUS / max(rate, clock[RATE])
@@ -279,9 +406,23 @@ def step(system, plan, tolerance, loop):
         span, face = _land(system, loop, dt)
         if face >= 0:  # it touches as the step begins, by rounding on the wrong side
             loop.active[face] = fresh = True
-            grasp(system.contact, system.sticking, system.payload, system.platform, system.faces, loop.grip, face, loop.start)
+            grasp(
+                system.contact,
+                system.sticking,
+                system.payload,
+                system.platform,
+                system.faces,
+                loop.grip,
+                face,
+                loop.start,
+            )
             continue
-        if span < 1.0 and not smooth and not (landings > 0 and span > 1.0 - _NEAR_END) and landings < _LANDINGS:
+        if (
+            span < 1.0
+            and not smooth
+            and not (landings > 0 and span > 1.0 - _NEAR_END)
+            and landings < _LANDINGS
+        ):
             landings, ceiling = landings + 1, span * dt * (1.0 + 0.2 * _NEAR_END)
             continue
         balances = audit.after_step(system.ledger, system, loop)
@@ -294,31 +435,43 @@ def step(system, plan, tolerance, loop):
         if span < 1.0:
             _accept_part(clock, count, dt, start + span * dt, limit)
         else:
-            _accept(loop.stages[STAGES - 1], clock, count, dt, stop if reaches else start + dt, ratio, limit)
+            _accept(
+                loop.stages[STAGES - 1],
+                clock,
+                count,
+                dt,
+                stop if reaches else start + dt,
+                ratio,
+                limit,
+            )
         return audit.record_step(system, tolerance, loop, balances)
 
 
 @inlined
 def _release(walls, system, loop, left, sign):
-    """Book what faces that ``left`` the walls took with them: the energy in the walls before less that after."""
+    """Book what faces that ``left`` the walls took with them: the energy in the walls before less
+    that after."""
     if walls is not None:
         if left:
-            loop.start[slot.RELEASED] += sign * energy_on_walls(walls, system.faces, system.platform, system.payload,
-                                                                loop.active, loop.start)
+            loop.start[slot.RELEASED] += sign * energy_on_walls(
+                walls, system.faces, system.platform, system.payload, loop.active, loop.start
+            )
 
 
 @inlined
 def _while_hanging(walls, system, loop):
     longest = np.inf
     if walls is not None:
-        longest = while_hanging(walls, system.faces, system.platform, system.payload, loop.active, loop.start)
+        longest = while_hanging(
+            walls, system.faces, system.platform, system.payload, loop.active, loop.start
+        )
     return longest
 
 
 @inlined
 def _foreseen(system, loop, dt):
-    """``dt`` (s), less where the proven limit will certainly have fallen below it when such a step ends:
-    a guess that saves attempts."""
+    """``dt`` (s), less where the proven limit will certainly have fallen below it when such a step
+    ends: a guess that saves attempts."""
     touching = False
     for felt_now in loop.active:
         touching = touching or felt_now
@@ -335,23 +488,51 @@ def _land(system, loop, dt):
     or a face to be felt from the start."""
     span = 1.0
     for _ in range(_LANDINGS):
-        theta, face = first_event(system.contact, system.walls, system.sticking, system.payload, system.platform, system.faces,
-                                  (system.rail_start, system.rail_end), loop.engaged, loop.active, loop.grip, loop.before,
-                                  loop.after, dt, span, loop.start, loop.stages, loop.work)
+        theta, face = first_event(
+            system.contact,
+            system.walls,
+            system.sticking,
+            system.payload,
+            system.platform,
+            system.faces,
+            (system.rail_start, system.rail_end),
+            loop.engaged,
+            loop.active,
+            loop.grip,
+            loop.before,
+            loop.after,
+            dt,
+            span,
+            loop.start,
+            loop.stages,
+            loop.work,
+        )
         if theta >= 1.0 - 1e-9:
             return span, -1
-        if theta * span <= SOONEST or loop.clock[BEGAN] + 0.01 * theta * span * dt == loop.clock[BEGAN]:
+        if (
+            theta * span <= SOONEST
+            or loop.clock[BEGAN] + 0.01 * theta * span * dt == loop.clock[BEGAN]
+        ):
             return span, -1 if loop.active[face] or not loop.engaged[face] else face
         span *= theta
         loop.count[EVENTS] += 1
-        interpolate(dt, span, loop.start, loop.stages, slot.STATE_SIZE, slot.modal_size(system.walls), loop.end)
+        interpolate(
+            dt,
+            span,
+            loop.start,
+            loop.stages,
+            slot.STATE_SIZE,
+            slot.modal_size(system.walls),
+            loop.end,
+        )
         _survey(system, loop)
     return span, -1
 
 
 @inlined
 def _begin(system, plan, loop):
-    """Make the end of the last step the start of the next; what jumps in between jumps here. True when the derivative jumps too."""
+    """Make the end of the last step the start of the next; what jumps in between jumps here. True
+    when the derivative jumps too."""
     clock, count = loop.clock, loop.count
     slot.copy_all(loop.end, loop.start, slot.modal_size(system.walls))
     clock[BEGAN] = clock[NOW]

@@ -1,4 +1,5 @@
-"""The two models of the surrogate, ``compliant`` and ``springs``: whether what a run is given belongs to its model."""
+"""The two models of the surrogate, ``compliant`` and ``springs``: whether what a run is given
+belongs to its model."""
 
 from lowfi.numerics import Numerics
 from scenes.calibration import Calibration
@@ -8,23 +9,48 @@ from scenes.scene import Scene
 from scenes.walls import Walls, model_of
 
 
-def require(scene: Scene, model: str, walls: Walls | None, calibration: Calibration | None, numerics: Numerics | None) -> None:
-    """Raises SceneError, every fault listed, where ``model`` is unknown, lacks what it needs, or is given what belongs to the other
-    one. Without contact both models are the same and need nothing."""
+def require(
+    scene: Scene,
+    model: str,
+    walls: Walls | None,
+    calibration: Calibration | None,
+    numerics: Numerics | None,
+) -> None:
+    """Raises SceneError, every fault listed, where ``model`` is unknown, lacks what it needs, or is
+    given what belongs to the other one. Without contact both models are the same and need
+    nothing."""
     if model not in SURROGATES:
-        raise SceneError([Fault(scene.name, "model", repr(model), f"one of {', '.join(SURROGATES)}")])
+        raise SceneError(
+            [Fault(scene.name, "model", repr(model), f"one of {', '.join(SURROGATES)}")]
+        )
     if scene.contact is None:
         return
     faults = []
     if model == COMPLIANT:
         if model_of(scene, walls) != COMPLIANT:
-            faults.append(("walls", "no rail compliance", "calibrate.compliance(scene), or model='springs'"))
+            faults.append(
+                ("walls", "no rail compliance", "calibrate.compliance(scene), or model='springs'")
+            )
         if calibration is not None:
-            faults.append(("calibration", "constants of springs", "none: compliant contact has no fitted constants"))
+            faults.append(
+                (
+                    "calibration",
+                    "constants of springs",
+                    "none: compliant contact has no fitted constants",
+                )
+            )
     else:
         if model_of(scene, walls) == COMPLIANT:
-            faults.append(("walls", "a rail compliance", "none, or rigid walls where rails are warm: model='compliant' uses it"))
+            faults.append(
+                (
+                    "walls",
+                    "a rail compliance",
+                    "none, or rigid walls where rails are warm: model='compliant' uses it",
+                )
+            )
         if numerics is not None and numerics.modes:
-            faults.append(("numerics.modes", str(numerics.modes), "0: springs stand on rigid rails"))
+            faults.append(
+                ("numerics.modes", str(numerics.modes), "0: springs stand on rigid rails")
+            )
     if faults:
         raise SceneError([Fault(f"{scene.name}, model {model}", *fault) for fault in faults])

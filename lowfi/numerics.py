@@ -14,12 +14,15 @@ _COARSEST, _FINEST = 1e-2, 1e-13
 class Numerics:
     """Error control of one run.
 
-    ``relative_tolerance``: local error of a step, relative to the speeds of the body; ``speed_floor`` (m/s): speeds below it count
-    as this much, so it is the absolute tolerance divided by the relative one; ``maximum_steps``: a run that needs more is given up;
-    ``modes``: how many of the lowest modes of each rail vibrate on compliant contact, 0 for a rail without inertia.
+    ``relative_tolerance``: local error of a step, relative to the speeds of the body;
+    ``speed_floor`` (m/s): speeds below it count as this much, so it is the absolute tolerance
+    divided by the relative one; ``maximum_steps``: a run that needs more is given up; ``modes``:
+    how many of the lowest modes of each rail vibrate on compliant contact, 0 for a rail without
+    inertia.
 
-    A run whose energy ledgers do not close as promised is run again at a tenth of the tolerance. The promises are those of the
-    default; at a looser tolerance, asked for because it is faster, they are looser in proportion (``promises_of``).
+    A run whose energy ledgers do not close as promised is run again at a tenth of the tolerance.
+    The promises are those of the default; at a looser tolerance, asked for because it is faster,
+    they are looser in proportion (``promises_of``).
     """
 
     relative_tolerance: float = 2e-7
@@ -30,11 +33,18 @@ class Numerics:
     def __post_init__(self):
         faults = []
         if not _FINEST <= self.relative_tolerance <= _COARSEST:
-            faults.append(f"relative_tolerance: given {self.relative_tolerance!r}, expected {_FINEST:g} to {_COARSEST:g}")
+            faults.append(
+                f"relative_tolerance: given {self.relative_tolerance!r}, expected {_FINEST:g} to "
+                f"{_COARSEST:g}"
+            )
         if not (math.isfinite(self.speed_floor) and self.speed_floor > 0.0):
-            faults.append(f"speed_floor: given {self.speed_floor!r}, expected a speed above zero (m/s)")
+            faults.append(
+                f"speed_floor: given {self.speed_floor!r}, expected a speed above zero (m/s)"
+            )
         if not (isinstance(self.maximum_steps, int) and self.maximum_steps > 0):
-            faults.append(f"maximum_steps: given {self.maximum_steps!r}, expected a whole number above zero")
+            faults.append(
+                f"maximum_steps: given {self.maximum_steps!r}, expected a whole number above zero"
+            )
         if not (type(self.modes) is int and 0 <= self.modes <= MODES):
             faults.append(f"modes: given {self.modes!r}, expected a whole number from 0 to {MODES}")
         if faults:

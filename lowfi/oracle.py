@@ -1,10 +1,12 @@
-"""The same physics written a second time, plainly: fixed-step Runge-Kutta of order four on Newton's and Euler's equations.
+"""The same physics written a second time, plainly: fixed-step Runge-Kutta of order four on Newton's
+and Euler's equations.
 
     m v' = F,    I w' = M - w x I w    (w and M in body axes, M about the body's own mass centre),    q' = q w / 2
 
-It shares only the laws in ``scenes.effects``, the table of warm walls (``lowfi.bow``) and the rotations with the fast path: other
-state variables, another integrator, no events, no error control, and it goes on where a pad strikes an edge of a wall. Tests hold
-the fast path against it; benchmarks take it as the baseline.
+It shares only the laws in ``scenes.effects``, the table of warm walls (``lowfi.bow``) and the
+rotations with the fast path: other state variables, another integrator, no events, no error
+control, and it goes on where a pad strikes an edge of a wall. Tests hold the fast path against it;
+benchmarks take it as the baseline.
 """
 
 from typing import NamedTuple
@@ -28,7 +30,8 @@ _SIZE = 2 * _BODY
 
 
 class Samples(NamedTuple):
-    """time (n,) s; position, velocity (n,3) scene axes; quaternion (n,4); rate (n,3) body axes; number of right-hand sides."""
+    """time (n,) s; position, velocity (n,3) scene axes; quaternion (n,4); rate (n,3) body axes;
+    number of right-hand sides."""
 
     time: np.ndarray
     position: np.ndarray
@@ -38,39 +41,75 @@ class Samples(NamedTuple):
     evaluations: int
 
 
-def solve(scene: Scene, steps_per_sample: int, samples: int | None = None, interval: float | None = None,
-          walls: Walls | None = None) -> Samples:
-    """Motion of the payload of ``scene`` with ``steps_per_sample`` equal steps between samples, to the scene's duration; a warm
-    scene asks for rigid ``walls``."""
+def solve(
+    scene: Scene,
+    steps_per_sample: int,
+    samples: int | None = None,
+    interval: float | None = None,
+    walls: Walls | None = None,
+) -> Samples:
+    """Motion of the payload of ``scene`` with ``steps_per_sample`` equal steps between samples, to
+    the scene's duration; a warm scene asks for rigid ``walls``."""
     interval = interval or scene.output.interval
     samples = samples if samples is not None else round(scene.duration / interval)
     job, rows = prepared(scene, steps_per_sample, samples, interval, walls)
     integrate(*job, rows)
-    return Samples(np.arange(len(rows)) * interval, rows[:, 0:3], rows[:, 3:6], rows[:, 6:10], rows[:, 10:13],
-                   4 * steps_per_sample * (len(rows) - 1))
+    return Samples(
+        np.arange(len(rows)) * interval,
+        rows[:, 0:3],
+        rows[:, 3:6],
+        rows[:, 6:10],
+        rows[:, 10:13],
+        4 * steps_per_sample * (len(rows) - 1),
+    )
 
 
-def prepared(scene: Scene, steps_per_sample: int, samples: int, interval: float,
-             walls: Walls | None = None) -> tuple[tuple, np.ndarray]:
-    """Arguments of ``integrate`` but the last, and the last: rows (samples + 1, 26) of which only the first is filled.
+def prepared(
+    scene: Scene, steps_per_sample: int, samples: int, interval: float, walls: Walls | None = None
+) -> tuple[tuple, np.ndarray]:
+    """Arguments of ``integrate`` but the last, and the last: rows (samples + 1, 26) of which only
+    the first is filled.
 
     Raises SceneError for the law of friction that sticks.
     """
     require_two_step(scene)
     model = models.build(scene)
-    inertias = (model.payload.inertia, model.platform.inertia if model.platform is not None else np.eye(3))
+    inertias = (
+        model.payload.inertia,
+        model.platform.inertia if model.platform is not None else np.eye(3),
+    )
     rows = np.zeros((samples + 1, _SIZE))
     rows[0] = _start(model)
-    return (build(model, bow=bow.under_pads(scene, model, walls)), *inertias, interval / steps_per_sample, steps_per_sample), rows
+    return (
+        build(model, bow=bow.under_pads(scene, model, walls)),
+        *inertias,
+        interval / steps_per_sample,
+        steps_per_sample,
+    ), rows
 
 
 def _start(model) -> np.ndarray:
     first = model.initial
-    payload = [*np.add(model.payload.mass_centre, first.position), *first.velocity, *rotation.exponential(first.attitude),
-               *first.rate]
+    payload = [
+        *np.add(model.payload.mass_centre, first.position),
+        *first.velocity,
+        *rotation.exponential(first.attitude),
+        *first.rate,
+    ]
     if model.platform is None:
         return np.array(payload + [0.0] * 6 + [1.0] + [0.0] * 6)
-    return np.array([*payload, *model.platform.mass_centre, *first.platform_velocity, 1.0, 0.0, 0.0, 0.0, *first.platform_rate])
+    return np.array(
+        [
+            *payload,
+            *model.platform.mass_centre,
+            *first.platform_velocity,
+            1.0,
+            0.0,
+            0.0,
+            0.0,
+            *first.platform_rate,
+        ]
+    )
 
 
 @njit
@@ -99,7 +138,8 @@ def slope(system, inertia, platform_inertia, time, state, out):
     turn, frame = rotation.matrix(q), rotation.matrix(Q)
     spin, frame_spin = rotation.rotate(turn, w), rotation.rotate(frame, W)
     force, moment = thrust(system.thrust, system.thrust_offset, time, turn)
-    # The wrench on the platform about its own mass centre: what acts on the payload, reversed, where it acts.
+    # The wrench on the platform about its own mass centre: what acts on the payload, reversed,
+    # where it acts.
     given = system.reacts_on_platform
     F = (-force[0], -force[1], -force[2]) if given else (0.0, 0.0, 0.0)
     M = _reversed(force, moment, r, R) if given else (0.0, 0.0, 0.0)
@@ -107,14 +147,35 @@ def slope(system, inertia, platform_inertia, time, state, out):
     x, y, z = _column(frame, turn, 0), _column(frame, turn, 1), _column(frame, turn, 2)
     axes = (x[0], y[0], z[0], x[1], y[1], z[1], x[2], y[2], z[2])
     for i in range(system.faces.shape[0]):
-        push, arm = touch(system.contact, system.friction, system.faces[i], system.rail_start, system.rail_end, place, axes,
-                          (r, v, turn, spin), (R, V, frame, frame_spin))
+        push, arm = touch(
+            system.contact,
+            system.friction,
+            system.faces[i],
+            system.rail_start,
+            system.rail_end,
+            place,
+            axes,
+            (r, v, turn, spin),
+            (R, V, frame, frame_spin),
+        )
         if push[0] != 0.0 or push[1] != 0.0 or push[2] != 0.0:
             twist = rotation.cross(arm, push)
             force, moment = _sum(force, push), _sum(moment, twist)
             F, M = _sum(F, (-push[0], -push[1], -push[2])), _sum(M, _reversed(push, twist, r, R))
     fall = acceleration(system.gravity)
-    _newton_euler(system.payload.mass, inertia, system.payload.inverse_inertia, turn, q, v, w, force, moment, fall, out[:_BODY])
+    _newton_euler(
+        system.payload.mass,
+        inertia,
+        system.payload.inverse_inertia,
+        turn,
+        q,
+        v,
+        w,
+        force,
+        moment,
+        fall,
+        out[:_BODY],
+    )
     _platform(system.platform, platform_inertia, frame, Q, V, W, F, M, fall, out[_BODY:])
 
 
@@ -130,14 +191,18 @@ def _platform(platform, inertia, frame, Q, V, W, F, M, fall, out):
         for j in range(_BODY):
             out[j] = 0.0
     if platform is not None:
-        _newton_euler(platform.mass, inertia, platform.inverse_inertia, frame, Q, V, W, F, M, fall, out)
+        _newton_euler(
+            platform.mass, inertia, platform.inverse_inertia, frame, Q, V, W, F, M, fall, out
+        )
 
 
 @inlined
 def _newton_euler(mass, inertia, inverse, turn, q, v, w, force, moment, fall, out):
-    h = (inertia[0, 0] * w[0] + inertia[0, 1] * w[1] + inertia[0, 2] * w[2],
-         inertia[1, 0] * w[0] + inertia[1, 1] * w[1] + inertia[1, 2] * w[2],
-         inertia[2, 0] * w[0] + inertia[2, 1] * w[1] + inertia[2, 2] * w[2])
+    h = (
+        inertia[0, 0] * w[0] + inertia[0, 1] * w[1] + inertia[0, 2] * w[2],
+        inertia[1, 0] * w[0] + inertia[1, 1] * w[1] + inertia[1, 2] * w[2],
+        inertia[2, 0] * w[0] + inertia[2, 1] * w[1] + inertia[2, 2] * w[2],
+    )
     gyro, body_moment = rotation.cross(w, h), rotation.unrotate(turn, moment)
     turning = rotation.product(q, (0.0, 0.5 * w[0], 0.5 * w[1], 0.5 * w[2]))
     for i in range(3):
@@ -162,7 +227,8 @@ def thrust(record, offset, time, turn):
 
 @inlined
 def touch(laws, friction, face, rail_start, rail_end, place, axes, payload, platform):
-    """Force (N) of one face on the payload and its arm from the payload's mass centre (m), scene axes.
+    """Force (N) of one face on the payload and its arm from the payload's mass centre (m), scene
+    axes.
 
     ``place`` (m) and ``axes`` (nine numbers) are the payload's as the platform sees them.
     """
@@ -173,13 +239,20 @@ def touch(laws, friction, face, rail_start, rail_end, place, axes, payload, plat
         away, slope = _bowed(laws.bow, face, x[0])
         p = face[3] * x[1] + face[4] * x[2] - face[5] - away
         side = (x[1] if face[3] == 0.0 else x[2]) - face[SIDE_MIDDLE]
-        if 0.0 < p < face[BACK] and rail_start <= x[0] <= rail_end and abs(side) <= face[SIDE_REACH]:
+        if (
+            0.0 < p < face[BACK]
+            and rail_start <= x[0] <= rail_end
+            and abs(side) <= face[SIDE_REACH]
+        ):
             r, v, turn, spin = payload
             R, V, frame, frame_spin = platform
             arm = rotation.rotate(turn, (face[0], face[1], face[2]))
             d = (r[0] + arm[0] - R[0], r[1] + arm[1] - R[1], r[2] + arm[2] - R[2])
             a, b = rotation.cross(spin, arm), rotation.cross(frame_spin, d)
-            u = rotation.unrotate(frame, (v[0] + a[0] - V[0] - b[0], v[1] + a[1] - V[1] - b[1], v[2] + a[2] - V[2] - b[2]))
+            u = rotation.unrotate(
+                frame,
+                (v[0] + a[0] - V[0] - b[0], v[1] + a[1] - V[1] - b[1], v[2] + a[2] - V[2] - b[2]),
+            )
             n = (-slope, face[3], face[4])
             closing = rotation.dot(n, u)
             elastic, damping = law.parts(laws.impact, laws.hunt_crossley, laws.linear, p, closing)
@@ -187,8 +260,14 @@ def touch(laws, friction, face, rail_start, rail_end, place, axes, payload, plat
             off = closing / rotation.dot(n, n)
             slip = (u[0] - off * n[0], u[1] - off * n[1], u[2] - off * n[2])
             drag = normal * _drag(friction, slip)
-            force = rotation.rotate(frame, (-normal * n[0] - drag * slip[0], -normal * n[1] - drag * slip[1],
-                                            -normal * n[2] - drag * slip[2]))
+            force = rotation.rotate(
+                frame,
+                (
+                    -normal * n[0] - drag * slip[0],
+                    -normal * n[1] - drag * slip[1],
+                    -normal * n[2] - drag * slip[2],
+                ),
+            )
     return force, arm
 
 
@@ -222,6 +301,9 @@ def _sum(a, b):
 
 @inlined
 def _parts(state, first):
-    return ((state[first], state[first + 1], state[first + 2]), (state[first + 3], state[first + 4], state[first + 5]),
-            (state[first + 6], state[first + 7], state[first + 8], state[first + 9]),
-            (state[first + 10], state[first + 11], state[first + 12]))
+    return (
+        (state[first], state[first + 1], state[first + 2]),
+        (state[first + 3], state[first + 4], state[first + 5]),
+        (state[first + 6], state[first + 7], state[first + 8], state[first + 9]),
+        (state[first + 10], state[first + 11], state[first + 12]),
+    )

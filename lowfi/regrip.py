@@ -1,4 +1,5 @@
-"""Between two steps: which faces are held from now on, which slide, and what energy leaves their springs (law: ``lowfi.grip``)."""
+"""Between two steps: which faces are held from now on, which slide, and what energy leaves their
+springs (law: ``lowfi.grip``)."""
 
 from lowfi import grip as grips
 from lowfi import state as slot
@@ -8,18 +9,26 @@ from scenes.jit import inlined
 
 
 @inlined
-def regrip(laws, sticking, payload, platform, faces, engaged, active, grip, before, surveyed, state):
-    """Bring ``grip`` (f, GRIP_SIZE) and the margins of ``surveyed`` up to date as a step begins at ``state``.
+def regrip(
+    laws, sticking, payload, platform, faces, engaged, active, grip, before, surveyed, state
+):
+    """Bring ``grip`` (f, GRIP_SIZE) and the margins of ``surveyed`` up to date as a step begins at
+    ``state``.
 
-    ``active`` (f,) still tells which faces touched in the step before, ``before`` surveys the begin of that. Returns whether
-    anything changed and the energy (J) that friction takes from the springs.
+    ``active`` (f,) still tells which faces touched in the step before, ``before`` surveys the begin
+    of that. Returns whether anything changed and the energy (J) that friction takes from the
+    springs.
     """
     changed, lost = False, 0.0
     if sticking is not None:
         for i in range(engaged.size):
             touches = engaged[i] and surveyed[i, MODE] != OPEN
-            if touches != active[i] or (touches and grips.used_up(grip[i], before[i, MARGIN], surveyed[i, MARGIN])):
-                energy, margin = change(laws, sticking, payload, platform, faces[i], grip[i], active[i], touches, state)
+            if touches != active[i] or (
+                touches and grips.used_up(grip[i], before[i, MARGIN], surveyed[i, MARGIN])
+            ):
+                energy, margin = change(
+                    laws, sticking, payload, platform, faces[i], grip[i], active[i], touches, state
+                )
                 surveyed[i, MARGIN] = margin
                 lost += energy
                 changed = True
@@ -35,10 +44,16 @@ def grasp(laws, sticking, payload, platform, faces, grip, number, state):
 
 @inlined
 def change(laws, sticking, payload, platform, face, row, touched, touches, state):
-    """Change the grip of a face that begins to touch, slips, stops, or ceases to touch; the energy (J) lost, and its new margin."""
-    body, base = slot.motion(payload.mass, payload.inverse_inertia, state, slot.PAYLOAD), slot.frame(platform, state)
+    """Change the grip of a face that begins to touch, slips, stops, or ceases to touch; the energy
+    (J) lost, and its new margin."""
+    body, base = (
+        slot.motion(payload.mass, payload.inverse_inertia, state, slot.PAYLOAD),
+        slot.frame(platform, state),
+    )
     place, turn = relative_pose(platform, body, base)
-    now = load(laws, None, platform, face, max(penetration(laws.bow, face, place, turn), 0.0), body, base)
+    now = load(
+        laws, None, platform, face, max(penetration(laws.bow, face, place, turn), 0.0), body, base
+    )
     lost = 0.0
     if not (touched and touches):
         lost = grips.kept(sticking, row, face, now.point, base)

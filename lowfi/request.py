@@ -1,4 +1,5 @@
-"""What an ensemble is asked for: the scene, where its cases come from, and everything else the numbers depend on."""
+"""What an ensemble is asked for: the scene, where its cases come from, and everything else the
+numbers depend on."""
 
 from collections.abc import Mapping
 from functools import lru_cache
@@ -15,12 +16,13 @@ from scenes.files import content_hash, source_hash
 from scenes.scene import Scene
 from scenes.walls import Walls
 
-_LIBRARIES = ("numpy", "scipy", "numba", "llvmlite")  # whose version may change the last bits of a result
+# whose version may change the last bits of a result
+_LIBRARIES = ("numpy", "scipy", "numba", "llvmlite")
 
 
 class Ensemble(NamedTuple):
-    """A scene, where its cases come from (``lowfi.rows``, ``lowfi.table``), calibrated constants or none, numerics, and walls that
-    give way or none."""
+    """A scene, where its cases come from (``lowfi.rows``, ``lowfi.table``), calibrated constants or
+    none, numerics, and walls that give way or none."""
 
     scene: Scene
     source: Any
@@ -34,9 +36,14 @@ class Ensemble(NamedTuple):
 
     def identity(self) -> dict:
         """Everything the numbers depend on, as JSON."""
-        return {"scene": self.scene.hash, "cases": self.source.identity, "numerics": self.numerics.as_dict(),
-                "calibration": self.calibration.constants if self.calibration else {},
-                "walls": self.walls.hash if self.walls else "", "chunk": stores.CHUNK} | code()
+        return {
+            "scene": self.scene.hash,
+            "cases": self.source.identity,
+            "numerics": self.numerics.as_dict(),
+            "calibration": self.calibration.constants if self.calibration else {},
+            "walls": self.walls.hash if self.walls else "",
+            "chunk": stores.CHUNK,
+        } | code()
 
     @property
     def key(self) -> str:
@@ -45,18 +52,29 @@ class Ensemble(NamedTuple):
 
     def store(self, path: str | Path) -> stores.Store:
         """The store of this ensemble at ``path``, made when there is none. Raises StoreError."""
-        rerun = "case n has the inputs stored under n, and is drawn again from seed and n alone: tipoff ensemble ... --case n"
-        return stores.Store(path, self.source.asked, self.source.keys, self.identity(),
-                            {"scene": self.scene.resolved(), "rerun": rerun})
+        rerun = (
+            "case n has the inputs stored under n, and is drawn again from seed and n alone: "
+            "tipoff ensemble ... --case n"
+        )
+        return stores.Store(
+            path,
+            self.source.asked,
+            self.source.keys,
+            self.identity(),
+            {"scene": self.scene.resolved(), "rerun": rerun},
+        )
 
     def case(self, number: int) -> tuple[Mapping[str, Any], Case]:
         """Inputs and result of one case, run alone, to the same bits."""
-        row, = self.source.rows(number, number + 1)
-        (found,), = completed(self.family(), [[row]], workers=1)
+        (row,) = self.source.rows(number, number + 1)
+        ((found,),) = completed(self.family(), [[row]], workers=1)
         return row, found
 
 
 @lru_cache  # the sources do not change while the program runs
 def code() -> dict:
     """Digest of the sources and versions of the libraries that make the numbers."""
-    return {"code": source_hash("scenes", "lowfi"), "versions": {name: version(name) for name in _LIBRARIES}}
+    return {
+        "code": source_hash("scenes", "lowfi"),
+        "versions": {name: version(name) for name in _LIBRARIES},
+    }

@@ -1,8 +1,9 @@
-"""Where the cases of an ensemble come from: drawn by number, or listed by a program; ``lowfi.table`` reads them from a file.
+"""Where the cases of an ensemble come from: drawn by number, or listed by a program;
+``lowfi.table`` reads them from a file.
 
-All answer alike: ``asked`` cases with ``keys``, an ``identity`` (JSON) that tells one ensemble from another, and
-``rows(begin, end)``, a list of dotted overrides as ``Scene.replace`` takes them, made when it is asked for, so that drawn cases are
-never held all at once.
+All answer alike: ``asked`` cases with ``keys``, an ``identity`` (JSON) that tells one ensemble from
+another, and ``rows(begin, end)``, a list of dotted overrides as ``Scene.replace`` takes them, made
+when it is asked for, so that drawn cases are never held all at once.
 """
 
 import hashlib
@@ -25,7 +26,11 @@ class Drawn:
 
     def __init__(self, uncertainty: Uncertainty):
         self.uncertainty = uncertainty
-        self.asked, self.keys, self.identity = uncertainty.cases, list(uncertainty.vary), uncertainty.resolved()
+        self.asked, self.keys, self.identity = (
+            uncertainty.cases,
+            list(uncertainty.vary),
+            uncertainty.resolved(),
+        )
         self._points, self._vary = Points(uncertainty), list(uncertainty.vary.values())
 
     def rows(self, begin: int, end: int) -> list[dict[str, float]]:
@@ -60,9 +65,16 @@ class Listed:
 
 
 def numbers(names: Sequence[str], rows: Sequence[Mapping[str, Any]]) -> np.ndarray:
-    """Numbers (n, k) in SI under the k keys ``names`` of n rows; NaN where a row has none, or anything else than a number."""
+    """Numbers (n, k) in SI under the k keys ``names`` of n rows; NaN where a row has none, or
+    anything else than a number."""
     wanted = [(name, keys.unit(Scene, name)) for name in names]
-    found = [[value if type(value := row.get(name)) is float else _si(value, unit) for name, unit in wanted] for row in rows]
+    found = [
+        [
+            value if type(value := row.get(name)) is float else _si(value, unit)
+            for name, unit in wanted
+        ]
+        for row in rows
+    ]
     return np.array(found, dtype=float).reshape(len(rows), len(names))
 
 

@@ -31,30 +31,50 @@ from scenes.trajectory import Trajectory
 from scenes.walls import Walls, model_of
 
 _STRIDE = 5e-3  # s, from one report of progress to the next
-_REASONS = {march.UNDERFLOW: "no step is short enough: the state is no longer finite or its equations too stiff",
-            march.NOT_FINITE: "a value became infinite",
-            march.OUT_OF_STEPS: "the step budget is spent (numerics.maximum_steps)",
-            march.LOST_ENERGY: "a tenth of the energy is lost or came from nothing"}
-_RERUNS = 4  # at a tenth of the tolerance each, while that makes the ledgers' errors smaller by half at least
+_REASONS = {
+    march.UNDERFLOW: "no step is short enough: the state is no longer finite or its equations too "
+    "stiff",
+    march.NOT_FINITE: "a value became infinite",
+    march.OUT_OF_STEPS: "the step budget is spent (numerics.maximum_steps)",
+    march.LOST_ENERGY: "a tenth of the energy is lost or came from nothing",
+}
+# at a tenth of the tolerance each, while that makes the ledgers' errors smaller by half at least
+_RERUNS = 4
 
 
-def run(scene: Scene, model: str = COMPLIANT, *, walls: Walls | None = None, calibration: Calibration | None = None,
-        numerics: Numerics | None = None, progress: Callable[[float], None] | None = None) -> Trajectory:
-    """Solve ``scene`` with rigid bodies until the settled window is complete, a jam, or the scene's duration.
+def run(
+    scene: Scene,
+    model: str = COMPLIANT,
+    *,
+    walls: Walls | None = None,
+    calibration: Calibration | None = None,
+    numerics: Numerics | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> Trajectory:
+    """Solve ``scene`` with rigid bodies until the settled window is complete, a jam, or the scene's
+    duration.
 
-    The ``model`` is ``compliant``: pads press on the rail compliance ``walls`` (``calibrate.compliance``) through the penalty of
-    the reference; or ``springs``: the scene's contact law at each pad face, with the constants of a ``calibration`` if one is
-    given, on rigid ``walls`` where the rails are warm. ``progress`` is called with the fraction of the duration done. A run whose
-    ledgers do not close as promised is run again at tighter tolerances, as message and cost say; one that keeps breaking a promise
-    is diverged. Raises SceneError, every fault listed, before any stepping; what goes wrong later is the status of the result.
+    The ``model`` is ``compliant``: pads press on the rail compliance ``walls``
+    (``calibrate.compliance``) through the penalty of the reference; or ``springs``: the scene's
+    contact law at each pad face, with the constants of a ``calibration`` if one is given, on rigid
+    ``walls`` where the rails are warm. ``progress`` is called with the fraction of the duration
+    done. A run whose ledgers do not close as promised is run again at tighter tolerances, as
+    message and cost say; one that keeps breaking a promise is diverged. Raises SceneError, every
+    fault listed, before any stepping; what goes wrong later is the status of the result.
     """
     require(scene, model, walls, calibration, numerics)
     return solved(scene, calibration, numerics, progress, walls)
 
 
-def solved(scene: Scene, calibration: Calibration | None = None, numerics: Numerics | None = None,
-           progress: Callable[[float], None] | None = None, walls: Walls | None = None) -> Trajectory:
-    """``run`` without its check that options belong to a model: the model is the one that ``walls`` make."""
+def solved(
+    scene: Scene,
+    calibration: Calibration | None = None,
+    numerics: Numerics | None = None,
+    progress: Callable[[float], None] | None = None,
+    walls: Walls | None = None,
+) -> Trajectory:
+    """``run`` without its check that options belong to a model: the model is the one that ``walls``
+    make."""
     began, cpu = clock.perf_counter(), clock.thread_time()
     scene = calibration.apply(scene) if calibration else scene
     known = len(march.march.overloads)
@@ -68,16 +88,23 @@ def solved(scene: Scene, calibration: Calibration | None = None, numerics: Numer
     run_ = improved(run_, progress)
     kernel_s = clock.perf_counter() - marching
     result = run_.trajectory()
-    result.cost.update(wall_s=clock.perf_counter() - began - compile_s, compile_s=compile_s, kernel_s=kernel_s)
+    result.cost.update(
+        wall_s=clock.perf_counter() - began - compile_s, compile_s=compile_s, kernel_s=kernel_s
+    )
     result.cost["cpu_s"] = clock.thread_time() - (compile_cpu if compile_s else cpu)
     return result
 
 
 def improved(first: "Run", progress: Callable[[float], None] | None = None) -> "Run":
-    """``first``, which has marched, or the same scene run again with smaller steps, because its ledgers call for them."""
+    """``first``, which has marched, or the same scene run again with smaller steps, because its
+    ledgers call for them."""
     best, numerics = first, first.numerics
     for reruns in range(1, _RERUNS + 1):
-        if best.usage() <= 1.0 or (best.message and not best.lost_energy()) or numerics == numerics.tightened():
+        if (
+            best.usage() <= 1.0
+            or (best.message and not best.lost_energy())
+            or numerics == numerics.tightened()
+        ):
             break
         numerics = numerics.tightened()
         finer = Run(first.scene, first.numerics, first.walls, numerics)
@@ -91,14 +118,25 @@ def improved(first: "Run", progress: Callable[[float], None] | None = None) -> "
 
 
 class Run:
-    """State of a run in progress and its samples, up to number ``end`` as far as is known; one that is ``whole`` goes on to the end
-    of the scene although nothing is left to learn of exit and jam. It keeps the promises of ``numerics``, with the steps of
-    ``finer`` ones if given."""
+    """State of a run in progress and its samples, up to number ``end`` as far as is known; one that
+    is ``whole`` goes on to the end of the scene although nothing is left to learn of exit and jam.
+    It keeps the promises of ``numerics``, with the steps of ``finer`` ones if given."""
 
     reruns, discarded = 0, 0  # runs of the scene before this one, and their steps
 
-    def __init__(self, scene: Scene, numerics: Numerics, walls: Walls | None = None, finer: Numerics | None = None):
-        self.scene, self.numerics, self.walls, self.promised = scene, numerics, walls, promises_of(numerics)
+    def __init__(
+        self,
+        scene: Scene,
+        numerics: Numerics,
+        walls: Walls | None = None,
+        finer: Numerics | None = None,
+    ):
+        self.scene, self.numerics, self.walls, self.promised = (
+            scene,
+            numerics,
+            walls,
+            promises_of(numerics),
+        )
         self.used = used = finer or numerics
         self.model = model = models.build(scene)
         self.marks = outcome.milestones(scene, model)
@@ -107,10 +145,16 @@ class Run:
         self.plan = plan.make(model, scene.duration, used)
         reach = float(np.sqrt((model.faces.centre**2).sum(axis=1).max()))
         self.tolerance = accuracy.tolerance(used, self.promised, reach)
-        self.system = system.build(model, walls=wall_record.under_pads(scene, model, walls, numerics.modes),
-                                   bow=bow.under_pads(scene, model, walls))
+        self.system = system.build(
+            model,
+            walls=wall_record.under_pads(scene, model, walls, numerics.modes),
+            bow=bow.under_pads(scene, model, walls),
+        )
         self.loop = march.ready(self.system, state.initial(model), plan.first_step(self.plan))
-        self.rows, self.forces = np.zeros((self.end + 1, SAMPLE_SIZE)), np.zeros((self.end + 1, model.faces.axis.size, 3))
+        self.rows, self.forces = (
+            np.zeros((self.end + 1, SAMPLE_SIZE)),
+            np.zeros((self.end + 1, model.faces.axis.size, 3)),
+        )
         self.last, self.taken, self.whole, self.message = self.end, 0, False, ""
 
     def begin(self) -> None:
@@ -128,7 +172,16 @@ class Run:
     def _advance(self, number: int) -> None:
         """Take samples up to ``number``, fewer where nothing is left to learn."""
         sampling = Sampling(self.interval, self.last, number, self.whole)
-        status = march.march(self.system, self.plan, self.tolerance, self.marks, self.loop, sampling, self.rows, self.forces)
+        status = march.march(
+            self.system,
+            self.plan,
+            self.tolerance,
+            self.marks,
+            self.loop,
+            sampling,
+            self.rows,
+            self.forces,
+        )
         self.taken = int(self.loop.count[TAKEN])
         if status == march.STRUCK:
             self.message = self._strike()
@@ -140,10 +193,13 @@ class Run:
     def _strike(self) -> str:
         """What met the edge of a wall, where and when."""
         face = int(self.loop.count[STRIKING])
-        return edges.strike(self.model, face, self.system.faces[face], self.loop.after[face], self.loop.clock[NOW])
+        return edges.strike(
+            self.model, face, self.system.faces[face], self.loop.after[face], self.loop.clock[NOW]
+        )
 
     def usage(self) -> float:
-        """Largest share that a ledger uses of half of what is promised of it at the ends of steps."""
+        """Largest share that a ledger uses of half of what is promised of it at the ends of
+        steps."""
         return float(audit.usage(self.loop.audit, self.tolerance.total, self.tolerance.across))
 
     def lost_energy(self) -> bool:
@@ -155,37 +211,59 @@ class Run:
         return ("diverged", outcome.Outcome()) if self.message else ending.found(self.loop.book)
 
     def motion(self) -> outcome.Motion:
-        """Motion of the samples taken so far, in the frame it is solved in (``scenes.comoving``)."""
-        return balance.motion(self.rows[:self.taken], self.interval)
+        """Motion of the samples taken so far, in the frame it is solved in
+        (``scenes.comoving``)."""
+        return balance.motion(self.rows[: self.taken], self.interval)
 
     def trajectory(self) -> Trajectory:
         """The result of the samples taken so far."""
-        moved, rows, forces = self.motion(), self.rows[:self.taken], self.forces[:self.taken]
+        moved, rows, forces = self.motion(), self.rows[: self.taken], self.forces[: self.taken]
         total, across = balance.ledgers(rows)
-        checks = balance.checks(rows, moved, forces, self.model.payload.mass, self.loop, self.promised)
+        checks = balance.checks(
+            rows, moved, forces, self.model.payload.mass, self.loop, self.promised
+        )
         broken, seen_from = promises.broken(checks, self.promised), comoving.frame(self.model)
         status, result = ("diverged", outcome.Outcome()) if broken else self.judged()
         pressed = outcome.pressed_at_ignition(self.model.faces, self.forces[0])
         message = "; ".join(filter(None, [self.message, broken, self._again(), pressed]))
         return Trajectory(
-            model=model_of(self.scene, self.walls), status=status, message=message,
-            **comoving.motion(seen_from, moved)._asdict(), pad_force=forces, energy=total, transverse_energy=across,
-            outcome=comoving.outcome(seen_from, result), checks=checks, cost=self._cost(), scene=self.scene.resolved(),
-            numerics=self.numerics.as_dict())
+            model=model_of(self.scene, self.walls),
+            status=status,
+            message=message,
+            **comoving.motion(seen_from, moved)._asdict(),
+            pad_force=forces,
+            energy=total,
+            transverse_energy=across,
+            outcome=comoving.outcome(seen_from, result),
+            checks=checks,
+            cost=self._cost(),
+            scene=self.scene.resolved(),
+            numerics=self.numerics.as_dict(),
+        )
 
     def _again(self) -> str:
         """That smaller steps than asked for were taken, or nothing."""
         if not self.reruns:
             return ""
         times = "once" if self.reruns == 1 else f"{self.reruns} times"
-        return f"run again {times}, with relative_tolerance {self.used.relative_tolerance:.3g}, for the energy ledgers to close"
+        return (
+            f"run again {times}, with relative_tolerance {self.used.relative_tolerance:.3g}, "
+            f"for the energy ledgers to close"
+        )
 
     def _cost(self) -> dict[str, float]:
-        """Counts; dt_limit_s is the smallest proven limit met while anything touched, limit_used the largest step over its limit.
-        Where the scene was run again, how often, and the steps of the runs before."""
+        """Counts; dt_limit_s is the smallest proven limit met while anything touched, limit_used
+        the largest step over its limit. Where the scene was run again, how often, and the steps of
+        the runs before."""
         clock_, count = self.loop.clock, self.loop.count
         steps, limit = int(count[STEPS]), float(clock_[LIMIT])
-        cost = {"steps": steps, "rhs_evaluations": int(count[EVALUATIONS]), "rejected": int(count[REJECTED]),
-                "events": int(count[EVENTS]), "dt_s": float(clock_[NOW]) / max(steps, 1), "limit_used": float(clock_[LIMIT_USED])}
+        cost = {
+            "steps": steps,
+            "rhs_evaluations": int(count[EVALUATIONS]),
+            "rejected": int(count[REJECTED]),
+            "events": int(count[EVENTS]),
+            "dt_s": float(clock_[NOW]) / max(steps, 1),
+            "limit_used": float(clock_[LIMIT_USED]),
+        }
         again = {"reruns": self.reruns, "discarded_steps": self.discarded} if self.reruns else {}
         return cost | again | ({"dt_limit_s": limit} if np.isfinite(limit) else {})

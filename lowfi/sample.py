@@ -1,4 +1,5 @@
-"""One sample of a run: places, velocities, rates, energies and momenta of a state, and the force on every pad face."""
+"""One sample of a run: places, velocities, rates, energies and momenta of a state, and the force on
+every pad face."""
 
 import numpy as np
 
@@ -16,7 +17,8 @@ from lowfi.walls.solution import solve
 from scenes import rotation
 from scenes.jit import inlined, kernel
 
-# Slots of a sample: payload and platform first (place, velocity, quaternion, rate in body axes), each BODY_SIZE long.
+# Slots of a sample: payload and platform first (place, velocity, quaternion, rate in body axes),
+# each BODY_SIZE long.
 RATE = slot.MOMENT  # where the state holds angular momentum the sample holds the rate
 KINETIC, AXIAL_KINETIC, STORED, STRAIN, WORKS = 26, 27, 28, 29, 30
 LINEAR, ANGULAR, GIVEN = WORKS + WORK_SIZE, WORKS + WORK_SIZE + 3, WORKS + WORK_SIZE + 6
@@ -25,17 +27,40 @@ SAMPLE_SIZE = GIVEN + 6
 
 @kernel
 def observe(system, engaged, active, grip, state, row, forces):
-    """Fill ``row`` (SAMPLE_SIZE,) and ``forces`` (f,3) N on the payload in scene axes; False where a number is not finite. Walls
-    that give way are pressed by the ``active`` faces (f,)."""
+    """Fill ``row`` (SAMPLE_SIZE,) and ``forces`` (f,3) N on the payload in scene axes; False where
+    a number is not finite. Walls that give way are pressed by the ``active`` faces (f,)."""
     payload = system.payload
-    body, base = slot.motion(payload.mass, payload.inverse_inertia, state, PAYLOAD), slot.frame(system.platform, state)
+    body, base = (
+        slot.motion(payload.mass, payload.inverse_inertia, state, PAYLOAD),
+        slot.frame(system.platform, state),
+    )
     row[:] = 0.0
     _place(state, body, base, row)
     _body(payload.mass, state[:PLATFORM], body, row)
     _platform(system.platform, state, base, row)
-    row[STORED] = _press(system.contact, system.friction, system.sticking, system.faces, system.platform, engaged, grip, body, base,
-                         forces)
-    row[STORED] += _press_walls(system.walls, system.friction, system.faces, system.platform, active, body, base, state, forces)
+    row[STORED] = _press(
+        system.contact,
+        system.friction,
+        system.sticking,
+        system.faces,
+        system.platform,
+        engaged,
+        grip,
+        body,
+        base,
+        forces,
+    )
+    row[STORED] += _press_walls(
+        system.walls,
+        system.friction,
+        system.faces,
+        system.platform,
+        active,
+        body,
+        base,
+        state,
+        forces,
+    )
     _rails(system.walls, state, row)
     slot.copy(state[WORK:], row[WORKS:], WORK_SIZE)
     slot.copy(state[IMPULSE:], row[GIVEN:], 6)
@@ -50,14 +75,22 @@ def observe(system, engaged, active, grip, state, row, forces):
 @inlined
 def posture(system, state, row):
     """Fill only what ``row`` tells of the motion: its first two bodies."""
-    _place(state, slot.motion(system.payload.mass, system.payload.inverse_inertia, state, PAYLOAD),
-           slot.frame(system.platform, state), row)
+    _place(
+        state,
+        slot.motion(system.payload.mass, system.payload.inverse_inertia, state, PAYLOAD),
+        slot.frame(system.platform, state),
+        row,
+    )
 
 
 @inlined
 def payload_rates(payload, state, row):
     """Fill only the payload's part of ``row``."""
-    _copy(state[:PLATFORM], slot.motion(payload.mass, payload.inverse_inertia, state, PAYLOAD), row[:PLATFORM])
+    _copy(
+        state[:PLATFORM],
+        slot.motion(payload.mass, payload.inverse_inertia, state, PAYLOAD),
+        row[:PLATFORM],
+    )
 
 
 @inlined
@@ -71,8 +104,13 @@ def rearmost_edge(faces, platform, row):
     """X (m) in platform axes of the rearmost trailing edge of the pads."""
     place, turn = slot.triple(row, PAYLOAD + PLACE), rotation.matrix(slot.quaternion(row, PAYLOAD))
     body = Motion(place, place, turn, place)
-    base_place, base_turn = slot.triple(row, PLATFORM + PLACE), rotation.matrix(slot.quaternion(row, PLATFORM))
-    place, turn = relative_pose(platform, body, Motion(base_place, base_place, base_turn, base_place))
+    base_place, base_turn = (
+        slot.triple(row, PLATFORM + PLACE),
+        rotation.matrix(slot.quaternion(row, PLATFORM)),
+    )
+    place, turn = relative_pose(
+        platform, body, Motion(base_place, base_place, base_turn, base_place)
+    )
     rearmost = np.inf
     for i in range(faces.shape[0]):
         rearmost = min(rearmost, along(faces[i], place, turn) - turn[0] * faces[i, HALF_LENGTH])
@@ -99,7 +137,9 @@ def _body(mass, state, body, row):
     """Add kinetic energy and momenta of one body."""
     moment, orbit = slot.triple(state, MOMENT), rotation.cross(body.place, body.velocity)
     spin = (moment[0] - mass * orbit[0], moment[1] - mass * orbit[1], moment[2] - mass * orbit[2])
-    row[KINETIC] += 0.5 * (mass * rotation.dot(body.velocity, body.velocity) + rotation.dot(spin, body.rate))
+    row[KINETIC] += 0.5 * (
+        mass * rotation.dot(body.velocity, body.velocity) + rotation.dot(spin, body.rate)
+    )
     row[AXIAL_KINETIC] += 0.5 * mass * body.velocity[0] * body.velocity[0]
     for i in range(3):
         row[LINEAR + i] += mass * state[VELOCITY + i]

@@ -1,13 +1,15 @@
 """The state vector: where each quantity stands, and the motion of a body read from it.
 
-Each body has place r, velocity v, quaternion q and the *total* angular momentum about the scene origin::
+Each body has place r, velocity v, quaternion q and the *total* angular momentum about the scene
+origin::
 
     A = r x m v + h,      h = R I R' w,      w = R I^-1 R' (A - r x m v)
 
-Explicit Runge-Kutta methods keep linear invariants to rounding. The sums of m v and of A over both bodies, less the impulse and
-its moment from outside, are such invariants when every internal force acts as a pair at one common point; a wrong pair still shows.
-The work entries behind them are quadratures: the same method integrates them, so that both ledgers close to its accuracy. Behind
-all that stand the modes of the rails, where there are any (``lowfi.walls.modes``).
+Explicit Runge-Kutta methods keep linear invariants to rounding. The sums of m v and of A over both
+bodies, less the impulse and its moment from outside, are such invariants when every internal force
+acts as a pair at one common point; a wrong pair still shows. The work entries behind them are
+quadratures: the same method integrates them, so that both ledgers close to its accuracy. Behind all
+that stand the modes of the rails, where there are any (``lowfi.walls.modes``).
 """
 
 from typing import NamedTuple
@@ -24,15 +26,26 @@ PLACE, VELOCITY, QUATERNION, MOMENT, BODY_SIZE = 0, 3, 6, 10, 13
 PAYLOAD, PLATFORM, IMPULSE, TURN, WORK = 0, 13, 26, 29, 32
 DYNAMIC_SIZE = 26  # what the equations of motion depend on, besides modes
 # Slots of work and loss (J), total and axial part.
-(THRUST, THRUST_AXIAL, GRAVITY, GRAVITY_AXIAL, FRICTION, FRICTION_AXIAL, DAMPING, RELEASED, CONTACT_AXIAL,
- STRUCTURAL) = range(WORK, WORK + 10)
+(
+    THRUST,
+    THRUST_AXIAL,
+    GRAVITY,
+    GRAVITY_AXIAL,
+    FRICTION,
+    FRICTION_AXIAL,
+    DAMPING,
+    RELEASED,
+    CONTACT_AXIAL,
+    STRUCTURAL,
+) = range(WORK, WORK + 10)
 WORK_SIZE = 10
-STATE_SIZE = 48  # WORK + WORK_SIZE, filled up to whole cache lines: rows of stages are read as vectors of eight
+# WORK + WORK_SIZE, filled up to whole cache lines: rows of stages are read as vectors of eight
+STATE_SIZE = 48
 
 
 class Motion(NamedTuple):
-    """A body now: place of its mass centre (m), velocity (m/s), rotation matrix (nine numbers), angular velocity (rad/s), all in
-    scene axes."""
+    """A body now: place of its mass centre (m), velocity (m/s), rotation matrix (nine numbers),
+    angular velocity (rad/s), all in scene axes."""
 
     place: tuple
     velocity: tuple
@@ -42,14 +55,16 @@ class Motion(NamedTuple):
 
 @inlined
 def copy(source, target, size):
-    """Copy the first ``size`` numbers. A loop, because a slice brings Numba's broadcasting and its error texts into each kernel."""
+    """Copy the first ``size`` numbers. A loop, because a slice brings Numba's broadcasting and its
+    error texts into each kernel."""
     for j in range(size):
         target[j] = source[j]
 
 
 @inlined
 def modal_size(walls):
-    """How many numbers the modes of ``walls`` add to the state: all amplitudes q (kg^0.5 m), rail by rail, then all their rates."""
+    """How many numbers the modes of ``walls`` add to the state: all amplitudes q (kg^0.5 m), rail
+    by rail, then all their rates."""
     size = 0
     if walls is not None:
         size = _modal_size(walls.modes)
@@ -122,23 +137,49 @@ def normalise(state):
 
 def initial(model: Model) -> np.ndarray:
     """State (STATE_SIZE,) at ignition, in the frame of ``scenes.comoving``."""
-    state, first, payload, platform = np.zeros(STATE_SIZE), model.initial, model.payload, model.platform
+    state, first, payload, platform = (
+        np.zeros(STATE_SIZE),
+        model.initial,
+        model.payload,
+        model.platform,
+    )
     start = comoving.start(model)
-    _fill(state, PAYLOAD, payload.mass, payload.inertia, tuple(start.place), tuple(start.velocity),
-          rotation.exponential(first.attitude), first.rate)
+    _fill(
+        state,
+        PAYLOAD,
+        payload.mass,
+        payload.inertia,
+        tuple(start.place),
+        tuple(start.velocity),
+        rotation.exponential(first.attitude),
+        first.rate,
+    )
     state[PLATFORM + QUATERNION] = 1.0
     if platform is not None:
-        _fill(state, PLATFORM, platform.mass, platform.inertia, tuple(start.platform_place), tuple(start.platform_velocity),
-              (1.0, 0.0, 0.0, 0.0), first.platform_rate)
+        _fill(
+            state,
+            PLATFORM,
+            platform.mass,
+            platform.inertia,
+            tuple(start.platform_place),
+            tuple(start.platform_velocity),
+            (1.0, 0.0, 0.0, 0.0),
+            first.platform_rate,
+        )
     return state
 
 
 @kernel
 def _fill(state, body, mass, inertia, place, velocity, attitude, rate):
     orbit, turn, j = rotation.cross(place, velocity), rotation.matrix(attitude), inertia
-    spin = rotation.rotate(turn, (j[0, 0] * rate[0] + j[0, 1] * rate[1] + j[0, 2] * rate[2],
-                                  j[1, 0] * rate[0] + j[1, 1] * rate[1] + j[1, 2] * rate[2],
-                                  j[2, 0] * rate[0] + j[2, 1] * rate[1] + j[2, 2] * rate[2]))
+    spin = rotation.rotate(
+        turn,
+        (
+            j[0, 0] * rate[0] + j[0, 1] * rate[1] + j[0, 2] * rate[2],
+            j[1, 0] * rate[0] + j[1, 1] * rate[1] + j[1, 2] * rate[2],
+            j[2, 0] * rate[0] + j[2, 1] * rate[1] + j[2, 2] * rate[2],
+        ),
+    )
     for i in range(3):
         state[body + PLACE + i], state[body + VELOCITY + i] = place[i], velocity[i]
         state[body + MOMENT + i] = mass * orbit[i] + spin[i]

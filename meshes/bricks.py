@@ -1,24 +1,32 @@
-"""Bricks of a grid: cells between planes across the three axes, of which only those that are metal become elements."""
+"""Bricks of a grid: cells between planes across the three axes, of which only those that are metal
+become elements."""
 
 import numpy as np
 
-CUBE = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]])  # VTK order
+# VTK order
+CUBE = np.array(
+    [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]]
+)
 
 
 def filled(lines: list[np.ndarray], metal: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Points (n,3) m and hexahedra (e,8), VTK order, of the cells of a grid where ``metal`` is true.
+    """Points (n,3) m and hexahedra (e,8), VTK order, of the cells of a grid where ``metal`` is
+    true.
 
-    ``lines``: ascending places (m) of the planes across each of three right-handed axes, p, q and r of them; ``metal``
-    (p-1,q-1,r-1). Points and elements are numbered along the third axis first and along the first one last; the elements stand in
-    the order of ``np.argwhere(metal)``.
+    ``lines``: ascending places (m) of the planes across each of three right-handed axes, p, q and r
+    of them; ``metal`` (p-1,q-1,r-1). Points and elements are numbered along the third axis first
+    and along the first one last; the elements stand in the order of ``np.argwhere(metal)``.
     """
-    nodes = np.ravel_multi_index(np.moveaxis(np.argwhere(metal)[:, None] + CUBE, -1, 0), [len(line) for line in lines])
+    nodes = np.ravel_multi_index(
+        np.moveaxis(np.argwhere(metal)[:, None] + CUBE, -1, 0), [len(line) for line in lines]
+    )
     points = np.stack(np.meshgrid(*lines, indexing="ij"), axis=-1).reshape(-1, 3)
     used, number = np.unique(nodes, return_inverse=True)
     return points[used], number.reshape(-1, 8)
 
 
 def divided(line: np.ndarray, divisions: np.ndarray) -> np.ndarray:
-    """All planes along an axis: ``line`` (b,) m, borders in order, with ``divisions`` (b-1,) equal cells between two of them."""
+    """All planes along an axis: ``line`` (b,) m, borders in order, with ``divisions`` (b-1,) equal
+    cells between two of them."""
     pieces = [np.linspace(*ends, count + 1)[:-1] for *ends, count in zip(line, line[1:], divisions)]
     return np.append(np.concatenate(pieces), line[-1])

@@ -1,18 +1,21 @@
 """The mesh generator gmsh, opened for one model at a time. Only solids drawn in CAD need it.
 
-Its wheel brings the mesher but not the graphics libraries it is linked against, so on a machine without a desktop `import gmsh`
-fails with a loader error. This file imports nothing else, so that any Python can read what it asks for.
+Its wheel brings the mesher but not the graphics libraries it is linked against, so on a machine
+without a desktop `import gmsh` fails with a loader error. This file imports nothing else, so that
+any Python can read what it asks for.
 """
 
 import contextlib
 
-# All six are needed and no fewer: tried one by one on a minimal Debian 12. The names are the same on Ubuntu.
+# All six are needed and no fewer: tried one by one on a minimal Debian 12. The names are the same
+# on Ubuntu.
 SYSTEM_PACKAGES = ("libgl1", "libglu1-mesa", "libgomp1", "libxcursor1", "libxft2", "libxinerama1")
 SYSTEM_INSTALL = "apt-get install --no-install-recommends " + " ".join(SYSTEM_PACKAGES)
 
 
 class GmshUnavailable(RuntimeError):
-    """gmsh does not load on this machine; the message says what is missing and what mends it, in one line."""
+    """gmsh does not load on this machine; the message says what is missing and what mends it, in
+    one line."""
 
 
 def load():
@@ -20,17 +23,23 @@ def load():
     try:
         import gmsh  # here and not above: nothing but a solid needs gmsh's graphics libraries
     except ModuleNotFoundError as error:
-        raise GmshUnavailable("a solid is meshed by gmsh, which is not installed: pip install gmsh") from error
+        raise GmshUnavailable(
+            "a solid is meshed by gmsh, which is not installed: pip install gmsh"
+        ) from error
     except OSError as error:
         library = str(error).split(":")[0]
-        raise GmshUnavailable(f"a solid is meshed by gmsh, which lacks the system library {library}; on Debian and Ubuntu, as "
-                              f"root: {SYSTEM_INSTALL}") from error
+        raise GmshUnavailable(
+            f"a solid is meshed by gmsh, which lacks the system library {library}; on Debian and "
+            f"Ubuntu, as "
+            f"root: {SYSTEM_INSTALL}"
+        ) from error
     return gmsh
 
 
 @contextlib.contextmanager
 def session(name: str):
-    """gmsh with no signal handler, no user settings, one thread, no output; finalised on the way out.
+    """gmsh with no signal handler, no user settings, one thread, no output; finalised on the way
+    out.
 
     Raises GmshUnavailable where it does not load.
     """

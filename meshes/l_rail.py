@@ -1,12 +1,14 @@
 """Four L-section launch rails as structured hexahedra.
 
-Scene frame: SI, origin at the payload mass centre at t = 0, +X to the open end. One rail stands at each corner
-(sign_y, sign_z) = (+-1, +-1). Its outer corner edge is at |y| = inner_corner_y + thickness, |z| = inner_corner_z + thickness,
-and its inner walls |y| = inner_corner_y and |z| = inner_corner_z face the payload.
+Scene frame: SI, origin at the payload mass centre at t = 0, +X to the open end. One rail stands at
+each corner (sign_y, sign_z) = (+-1, +-1). Its outer corner edge is at |y| = inner_corner_y +
+thickness, |z| = inner_corner_z + thickness, and its inner walls |y| = inner_corner_y and |z| =
+inner_corner_z face the payload.
 
-A grid gives the rail of the (+,+) corner. The other three are that mesh with signs changed, so that the four are mirror images bit
-for bit and a symmetric scene has a symmetric answer; their elements are then numbered along the axes again, which restores the
-orientation that a reflection reverses. A section of rectangles needs no mesh generator; one makes the same mesh in the tests.
+A grid gives the rail of the (+,+) corner. The other three are that mesh with signs changed, so that
+the four are mirror images bit for bit and a symmetric scene has a symmetric answer; their elements
+are then numbered along the axes again, which restores the orientation that a reflection reverses. A
+section of rectangles needs no mesh generator; one makes the same mesh in the tests.
 """
 
 import itertools
@@ -21,16 +23,26 @@ from meshes import bricks, msh
 SURFACES = ("contact_y", "contact_z", "mount")
 
 _CORNERS = [(1, 1), (-1, 1), (-1, -1), (1, -1)]
-# Position in the VTK corner order of the corner with axis bits x + 2 y + 4 z (bit set: on the larger side).
+# Position in the VTK corner order of the corner with axis bits x + 2 y + 4 z (bit set: on the
+# larger side).
 _VTK_POSITION = np.array([0, 1, 3, 2, 4, 5, 7, 6])
-# Corners of a brick of the grid inwards from the outer corner: its faces towards the payload and towards the platform.
-_INWARD_Y, _INWARD_Z, _OUTWARD_Y, _OUTWARD_Z = [3, 7, 6, 2], [4, 5, 6, 7], [0, 1, 5, 4], [0, 3, 2, 1]
+# Corners of a brick of the grid inwards from the outer corner: its faces towards the payload and
+# towards the platform.
+_INWARD_Y, _INWARD_Z, _OUTWARD_Y, _OUTWARD_Z = (
+    [3, 7, 6, 2],
+    [4, 5, 6, 7],
+    [0, 1, 5, 4],
+    [0, 3, 2, 1],
+)
 _TOUCH = 1e-9  # m: two coordinates closer than this are the same plane
-_EVEN = 0.1  # of the element size: layers all along the rail have one length where that length is no further from it
+# of the element size: layers all along the rail have one length where that length is no further
+# from it
+_EVEN = 0.1
 
 
 class LRailGeometry(NamedTuple):
-    """Dimensions in metres; `mount_spans` are measured from the rear end of the rail, `mount_width` from its outer corner."""
+    """Dimensions in metres; `mount_spans` are measured from the rear end of the rail, `mount_width`
+    from its outer corner."""
 
     leg: float = 0.024
     thickness: float = 0.004
@@ -43,15 +55,17 @@ class LRailGeometry(NamedTuple):
 
 
 def build(geometry: LRailGeometry, element_size: float) -> meshio.Mesh:
-    """Mesh the four rails; every border of a mount and of a wall lies on a grid plane, whatever the element size.
+    """Mesh the four rails; every border of a mount and of a wall lies on a grid plane, whatever the
+    element size.
 
-    Each interval between borders gets round(length / element_size) divisions, one at least; along X all layers have the same length
-    where one near the element size divides every interval, since an even extrusion is solved several times faster. With the default
-    geometry all elements are cubes for sizes of 4, 2 and 1 mm.
+    Each interval between borders gets round(length / element_size) divisions, one at least; along X
+    all layers have the same length where one near the element size divides every interval, since an
+    even extrusion is solved several times faster. With the default geometry all elements are cubes
+    for sizes of 4, 2 and 1 mm.
 
-    Returns a mesh with one `hexahedron` block (volume `rail`) and one `quad` block per surface in `SURFACES`, numbered from 0
-    and tagged with the field `gmsh:physical`.
-    Raises ValueError for dimensions that do not make a rail.
+    Returns a mesh with one `hexahedron` block (volume `rail`) and one `quad` block per surface in
+    `SURFACES`, numbered from 0 and tagged with the field `gmsh:physical`. Raises ValueError for
+    dimensions that do not make a rail.
     """
     _check(geometry, element_size)
     return msh.tagged(*_mirrored(*_corner_rail(geometry, element_size)))
@@ -61,9 +75,16 @@ def elements(geometry: LRailGeometry, element_size: float) -> int:
     """Elements that ``build`` would make, without making them. Raises ValueError as it does."""
     _check(geometry, element_size)
     depths, stations = _depths(geometry), _stations(geometry)
-    layer, across = _layer_length(stations, element_size), [_divisions(b - a, element_size) for a, b in itertools.pairwise(depths)]
+    layer, across = (
+        _layer_length(stations, element_size),
+        [_divisions(b - a, element_size) for a, b in itertools.pairwise(depths)],
+    )
     section = sum(across[i] * across[j] for i, j in _section(geometry, depths))
-    return len(_CORNERS) * section * sum(_divisions(end - start, layer) for start, end in itertools.pairwise(stations))
+    return (
+        len(_CORNERS)
+        * section
+        * sum(_divisions(end - start, layer) for start, end in itertools.pairwise(stations))
+    )
 
 
 def _depths(geometry: LRailGeometry) -> list[float]:
@@ -73,14 +94,20 @@ def _depths(geometry: LRailGeometry) -> list[float]:
 
 def _stations(geometry: LRailGeometry) -> list[float]:
     """Grid planes along X (m)."""
-    return _grid_lines(geometry.x_start, geometry.x_end,
-                       *(geometry.x_start + border for span in geometry.mount_spans for border in span))
+    return _grid_lines(
+        geometry.x_start,
+        geometry.x_end,
+        *(geometry.x_start + border for span in geometry.mount_spans for border in span),
+    )
 
 
 def _section(geometry: LRailGeometry, depths: list[float]) -> list[tuple[int, int]]:
     """Intervals of depth along y and along z whose rectangles lie inside the L."""
-    return [(i, j) for i, j in itertools.product(range(len(depths) - 1), repeat=2)
-            if min(depths[i], depths[j]) < geometry.thickness - _TOUCH]
+    return [
+        (i, j)
+        for i, j in itertools.product(range(len(depths) - 1), repeat=2)
+        if min(depths[i], depths[j]) < geometry.thickness - _TOUCH
+    ]
 
 
 def _check(geometry: LRailGeometry, element_size: float) -> None:
@@ -88,10 +115,16 @@ def _check(geometry: LRailGeometry, element_size: float) -> None:
     borders = [0.0, *itertools.chain.from_iterable(geometry.mount_spans), length]
     if not 0.0 < element_size:
         raise ValueError(f"element_size must be positive, got {element_size!r}")
-    if not 0.0 < geometry.mount_width <= geometry.leg or not 0.0 < geometry.thickness < geometry.leg:
+    if (
+        not 0.0 < geometry.mount_width <= geometry.leg
+        or not 0.0 < geometry.thickness < geometry.leg
+    ):
         raise ValueError(f"need 0 < thickness < leg and 0 < mount_width <= leg, got {geometry}")
     if any(right < left for left, right in itertools.pairwise(borders)) or length <= 0.0:
-        raise ValueError(f"mount_spans must be in order and inside the length {length:g} m, got {geometry.mount_spans}")
+        raise ValueError(
+            f"mount_spans must be in order and inside the length {length:g} m, got "
+            f"{geometry.mount_spans}"
+        )
 
 
 def _grid_lines(*borders: float) -> list[float]:
@@ -101,8 +134,12 @@ def _grid_lines(*borders: float) -> list[float]:
 
 
 def _layer_length(stations: list[float], element_size: float) -> float:
-    """Length (m) that divides every interval between stations and is close to the element size; where there is none, that size."""
-    common = math.gcd(*(round((right - left) / _TOUCH) for left, right in itertools.pairwise(stations))) * _TOUCH
+    """Length (m) that divides every interval between stations and is close to the element size;
+    where there is none, that size."""
+    common = (
+        math.gcd(*(round((right - left) / _TOUCH) for left, right in itertools.pairwise(stations)))
+        * _TOUCH
+    )
     even = common / _divisions(common, element_size)
     return even if abs(even - element_size) <= _EVEN * element_size else element_size
 
@@ -111,25 +148,43 @@ def _divisions(length: float, element_size: float) -> int:
     return max(1, round(length / element_size))
 
 
-def _corner_rail(geometry: LRailGeometry, element_size: float) -> tuple[np.ndarray, np.ndarray, dict[str, np.ndarray]]:
-    """Points (n,3), hexes (e,8) and facets per surface of the (+,+) rail: a grid along X and inwards from the outer corner, axes
-    that are right-handed like x, y and z."""
+def _corner_rail(
+    geometry: LRailGeometry, element_size: float
+) -> tuple[np.ndarray, np.ndarray, dict[str, np.ndarray]]:
+    """Points (n,3), hexes (e,8) and facets per surface of the (+,+) rail: a grid along X and
+    inwards from the outer corner, axes that are right-handed like x, y and z."""
     depths, stations = np.array(_depths(geometry)), np.array(_stations(geometry))
     fine = bricks.divided(depths, _all_divisions(depths, element_size))
-    along = bricks.divided(stations, _all_divisions(stations, _layer_length(list(stations), element_size)))
-    middle, station = 0.5 * (fine[1:] + fine[:-1]), 0.5 * (along[1:] + along[:-1]) - geometry.x_start
+    along = bricks.divided(
+        stations, _all_divisions(stations, _layer_length(list(stations), element_size))
+    )
+    middle, station = (
+        0.5 * (fine[1:] + fine[:-1]),
+        0.5 * (along[1:] + along[:-1]) - geometry.x_start,
+    )
     in_wall = middle < geometry.thickness
     metal = np.broadcast_to(in_wall[:, None] | in_wall, (len(station), len(middle), len(middle)))
     points, hexes = bricks.filled([along, fine, fine], metal)
 
     layer, in_y, in_z = np.argwhere(metal).T  # of each hexahedron
-    held = np.array([any(start < place < end for start, end in geometry.mount_spans) for place in station])[layer]
+    held = np.array(
+        [any(start < place < end for start, end in geometry.mount_spans) for place in station]
+    )[layer]
     strip, wall = middle < geometry.mount_width, np.count_nonzero(in_wall)
     contact_y, contact_z = (in_y == wall - 1) & (in_z >= wall), (in_z == wall - 1) & (in_y >= wall)
     back_y, back_z = held & (in_y == 0) & strip[in_z], held & (in_z == 0) & strip[in_y]
-    surfaces = {"contact_y": hexes[contact_y][:, _INWARD_Y], "contact_z": hexes[contact_z][:, _INWARD_Z],
-                "mount": np.concatenate([hexes[back_y][:, _OUTWARD_Y], hexes[back_z][:, _OUTWARD_Z]])}
-    outer = np.array([0.0, geometry.inner_corner_y + geometry.thickness, geometry.inner_corner_z + geometry.thickness])
+    surfaces = {
+        "contact_y": hexes[contact_y][:, _INWARD_Y],
+        "contact_z": hexes[contact_z][:, _INWARD_Z],
+        "mount": np.concatenate([hexes[back_y][:, _OUTWARD_Y], hexes[back_z][:, _OUTWARD_Z]]),
+    }
+    outer = np.array(
+        [
+            0.0,
+            geometry.inner_corner_y + geometry.thickness,
+            geometry.inner_corner_z + geometry.thickness,
+        ]
+    )
     return outer + points * (1, -1, -1), hexes, surfaces
 
 
@@ -138,17 +193,21 @@ def _all_divisions(borders: np.ndarray, element_size: float) -> list[int]:
 
 
 def _mirrored(points, hexes, surfaces):
-    """One rail per corner of the launcher, their elements numbered alike (see the module docstring)."""
+    """One rail per corner of the launcher, their elements numbered alike (see the module
+    docstring)."""
     count = len(points)
     all_points = np.concatenate([points * (1, sign_y, sign_z) for sign_y, sign_z in _CORNERS])
     all_hexes = np.concatenate([hexes + rail * count for rail in range(len(_CORNERS))])
-    all_surfaces = {name: np.concatenate([facets + rail * count for rail in range(len(_CORNERS))])
-                    for name, facets in surfaces.items()}
+    all_surfaces = {
+        name: np.concatenate([facets + rail * count for rail in range(len(_CORNERS))])
+        for name, facets in surfaces.items()
+    }
     return all_points, _along_axes(all_points, all_hexes), all_surfaces
 
 
 def _along_axes(points, hexes):
-    """Number the corners of axis-parallel bricks in VTK order along +x, +y, +z: translated bricks are then equal."""
+    """Number the corners of axis-parallel bricks in VTK order along +x, +y, +z: translated bricks
+    are then equal."""
     corners = points[hexes]
     upper = corners > corners.mean(axis=1, keepdims=True)
     ordered = np.empty_like(hexes)

@@ -1,4 +1,5 @@
-"""Elements with named surfaces as meshio holds them, tagged so that they read the same from memory and from a gmsh file."""
+"""Elements with named surfaces as meshio holds them, tagged so that they read the same from memory
+and from a gmsh file."""
 
 from pathlib import Path
 
@@ -6,19 +7,29 @@ import meshio
 import numpy as np
 
 VOLUME = "rail"
-_TYPES = {8: ("hexahedron", "quad"), 10: ("tetra10", "triangle6")}  # of elements and facets, by the nodes of an element
+# of elements and facets, by the nodes of an element
+_TYPES = {8: ("hexahedron", "quad"), 10: ("tetra10", "triangle6")}
 
 
-def tagged(points: np.ndarray, elements: np.ndarray, surfaces: dict[str, np.ndarray]) -> meshio.Mesh:
-    """One block (volume `rail`) of elements (e,8) or (e,10) and one per named surface (m,4) or (m,6), numbered from 0."""
+def tagged(
+    points: np.ndarray, elements: np.ndarray, surfaces: dict[str, np.ndarray]
+) -> meshio.Mesh:
+    """One block (volume `rail`) of elements (e,8) or (e,10) and one per named surface (m,4) or
+    (m,6), numbered from 0."""
     solid, face = _TYPES[elements.shape[1]]
     cells = [(solid, elements), *((face, facets) for facets in surfaces.values())]
     tags = [len(surfaces) + 1, *range(1, len(surfaces) + 1)]
     blocks = [np.full(len(block), tag, dtype=np.int32) for tag, (_, block) in zip(tags, cells)]
-    field_data = {name: np.array([tag, 2], dtype=np.int32) for tag, name in enumerate(surfaces, start=1)}
+    field_data = {
+        name: np.array([tag, 2], dtype=np.int32) for tag, name in enumerate(surfaces, start=1)
+    }
     field_data[VOLUME] = np.array([tags[0], 3], dtype=np.int32)
-    return meshio.Mesh(points, cells, field_data=field_data,
-                       cell_data={"gmsh:physical": blocks, "gmsh:geometrical": [block.copy() for block in blocks]})
+    return meshio.Mesh(
+        points,
+        cells,
+        field_data=field_data,
+        cell_data={"gmsh:physical": blocks, "gmsh:geometrical": [block.copy() for block in blocks]},
+    )
 
 
 def save(mesh: meshio.Mesh, path) -> None:

@@ -1,10 +1,13 @@
-"""A solid from a CAD file (STEP, IGES, BREP) as hexahedra or as quadratic tetrahedra, made with gmsh.
+"""A solid from a CAD file (STEP, IGES, BREP) as hexahedra or as quadratic tetrahedra, made with
+gmsh.
 
-A solid whose faces are all plane and parallel to the axes is a set of bricks: the planes of its faces cut space into cells, each of
-which is metal or not. A solid with the same section from end to end along X is its section in quadrilaterals, drawn out in layers.
-Any other solid is filled with tetrahedra of twice the size asked for, each split into four hexahedra at the centres of its edges
-and faces; such elements are skewed, which costs steps and makes thin walls too stiff. Where tetrahedra are asked for they have ten
-nodes, about ``element_size`` apart, and edges that follow curved faces.
+A solid whose faces are all plane and parallel to the axes is a set of bricks: the planes of its
+faces cut space into cells, each of which is metal or not. A solid with the same section from end to
+end along X is its section in quadrilaterals, drawn out in layers. Any other solid is filled with
+tetrahedra of twice the size asked for, each split into four hexahedra at the centres of its edges
+and faces; such elements are skewed, which costs steps and makes thin walls too stiff. Where
+tetrahedra are asked for they have ten nodes, about ``element_size`` apart, and edges that follow
+curved faces.
 """
 
 from pathlib import Path
@@ -19,12 +22,16 @@ _PROBES = 9  # points of an edge looked at to see whether it bends
 _TETRAHEDRON = [0, 1, 2, 3, 4, 5, 6, 7, 9, 8]  # nodes of gmsh's quadratic tetrahedron in VTK order
 
 
-def build(path: Path, element_size: float, planes: np.ndarray, tetrahedra: bool = False) -> tuple[np.ndarray, np.ndarray]:
-    """Points (n,3) m and hexahedra (e,8), or tetrahedra (e,10), VTK order, of every solid in a file, whatever its length unit.
+def build(
+    path: Path, element_size: float, planes: np.ndarray, tetrahedra: bool = False
+) -> tuple[np.ndarray, np.ndarray]:
+    """Points (n,3) m and hexahedra (e,8), or tetrahedra (e,10), VTK order, of every solid in a
+    file, whatever its length unit.
 
-    ``planes`` (p,3) m: places along x, y and z at which elements should have borders. Bricks have them at all of these, a section
-    drawn out at those along x, tetrahedra at none.
-    Raises ValueError for a file without a solid that gmsh can read, GmshUnavailable where gmsh does not load.
+    ``planes`` (p,3) m: places along x, y and z at which elements should have borders. Bricks have
+    them at all of these, a section drawn out at those along x, tetrahedra at none. Raises
+    ValueError for a file without a solid that gmsh can read, GmshUnavailable where gmsh does not
+    load.
     """
     with generator.session("solid") as gmsh:
         gmsh.option.setString("Geometry.OCCTargetUnit", "M")
@@ -42,9 +49,15 @@ def build(path: Path, element_size: float, planes: np.ndarray, tetrahedra: bool 
         try:
             if tetrahedra:
                 return _tetrahedra(gmsh, element_size)
-            return _drawn_out(gmsh, element_size, planes) if _is_drawn_out(gmsh) else _split_tetrahedra(gmsh, element_size)
+            return (
+                _drawn_out(gmsh, element_size, planes)
+                if _is_drawn_out(gmsh)
+                else _split_tetrahedra(gmsh, element_size)
+            )
         except Exception as fault:  # gmsh knows no other class
-            raise ValueError(f"gmsh cannot fill it with elements of {element_size:g} m ({fault})") from fault
+            raise ValueError(
+                f"gmsh cannot fill it with elements of {element_size:g} m ({fault})"
+            ) from fault
 
 
 def _vertices(gmsh, dimension: int, tag: int) -> np.ndarray:
@@ -56,11 +69,17 @@ def _vertices(gmsh, dimension: int, tag: int) -> np.ndarray:
 
 def _is_bricks(gmsh) -> bool:
     straight = all(gmsh.model.getType(1, tag) == "Line" for _, tag in gmsh.model.getEntities(1))
-    return straight and all((np.ptp(_vertices(gmsh, 2, tag), axis=0) < _SAME).any() for _, tag in gmsh.model.getEntities(2))
+    return straight and all(
+        (np.ptp(_vertices(gmsh, 2, tag), axis=0) < _SAME).any()
+        for _, tag in gmsh.model.getEntities(2)
+    )
 
 
-def _bricks(gmsh, volumes: list[int], element_size: float, planes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Cells between all planes that lie in a solid, each interval with about length / element_size divisions, one at least."""
+def _bricks(
+    gmsh, volumes: list[int], element_size: float, planes: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Cells between all planes that lie in a solid, each interval with about length / element_size
+    divisions, one at least."""
     corners = _vertices(gmsh, 3, -1)
     lines = [_different(corners[:, axis], planes[:, axis]) for axis in range(3)]
     middles = [0.5 * (line[1:] + line[:-1]) for line in lines]
@@ -74,13 +93,15 @@ def _bricks(gmsh, volumes: list[int], element_size: float, planes: np.ndarray) -
 
 
 def _different(solid: np.ndarray, asked: np.ndarray) -> np.ndarray:
-    """Places of the solid's own planes and of those asked for inside it, in order, those that coincide taken once."""
+    """Places of the solid's own planes and of those asked for inside it, in order, those that
+    coincide taken once."""
     places = np.sort(np.concatenate([solid, asked[(asked > solid.min()) & (asked < solid.max())]]))
     return places[np.append(True, np.diff(places) > _SAME)]
 
 
 def _divisions(line: np.ndarray, element_size: float) -> np.ndarray:
-    """Elements in each interval. Halves go down however the places are rounded, so that symmetric solids are cut symmetrically."""
+    """Elements in each interval. Halves go down however the places are rounded, so that symmetric
+    solids are cut symmetrically."""
     return np.maximum(1, np.ceil(np.diff(line) / element_size - 0.5 - _TIE).astype(int))
 
 
@@ -90,11 +111,14 @@ def _divided(line: np.ndarray, element_size: float) -> np.ndarray:
 
 
 def _is_drawn_out(gmsh) -> bool:
-    """Whether every edge runs along X from one end to the other, or lies in one of the two end planes."""
+    """Whether every edge runs along X from one end to the other, or lies in one of the two end
+    planes."""
     x = _vertices(gmsh, 3, -1)[:, 0]
     for _, edge in gmsh.model.getEntities(1):
         low, high = np.array(gmsh.model.getParametrizationBounds(1, edge)).ravel()
-        along = np.array(gmsh.model.getValue(1, edge, np.linspace(low, high, _PROBES))).reshape(-1, 3)
+        along = np.array(gmsh.model.getValue(1, edge, np.linspace(low, high, _PROBES))).reshape(
+            -1, 3
+        )
         across = np.ptp(along, axis=0)
         in_end = across[0] < _SAME and np.abs(along[0, 0] - [x.min(), x.max()]).min() < _SAME
         from_end_to_end = across[1:].max() < _SAME and abs(across[0] - np.ptp(x)) < _SAME
@@ -106,19 +130,28 @@ def _is_drawn_out(gmsh) -> bool:
 def _drawn_out(gmsh, element_size: float, planes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     x = _different(_vertices(gmsh, 3, -1)[:, 0], planes[:, 0])
     stations = _divided(x, element_size)
-    ends = [tag for _, tag in gmsh.model.getEntities(2) if np.abs(_vertices(gmsh, 2, tag)[:, 0] - x[0]).max() < _SAME]
+    ends = [
+        tag
+        for _, tag in gmsh.model.getEntities(2)
+        if np.abs(_vertices(gmsh, 2, tag)[:, 0] - x[0]).max() < _SAME
+    ]
     _set_size(gmsh, 2.0 * element_size)
     gmsh.option.setNumber("Mesh.RecombineAll", 1)
-    gmsh.option.setNumber("Mesh.SubdivisionAlgorithm", 1)  # halves every side, so that no triangle is left over
+    # halves every side, so that no triangle is left over
+    gmsh.option.setNumber("Mesh.SubdivisionAlgorithm", 1)
     gmsh.model.mesh.generate(2)
     places, quads = _elements(gmsh, "Quadrangle", ends)
     used, number = np.unique(quads, return_inverse=True)
     section, quads = places[used, 1:], number.reshape(-1, 4)
     a, b, c = (section[quads[:, i]] for i in range(3))
-    clockwise = (b[:, 0] - a[:, 0]) * (c[:, 1] - b[:, 1]) < (b[:, 1] - a[:, 1]) * (c[:, 0] - b[:, 0])
+    clockwise = (b[:, 0] - a[:, 0]) * (c[:, 1] - b[:, 1]) < (b[:, 1] - a[:, 1]) * (
+        c[:, 0] - b[:, 0]
+    )
     quads[clockwise] = quads[clockwise][:, ::-1]
     layer = len(section) * np.arange(len(stations))[:, None, None] + quads
-    points = np.column_stack([np.repeat(stations, len(section)), np.tile(section, (len(stations), 1))])
+    points = np.column_stack(
+        [np.repeat(stations, len(section)), np.tile(section, (len(stations), 1))]
+    )
     return points, np.concatenate([layer[:-1], layer[1:]], axis=2).reshape(-1, 8)
 
 
@@ -131,10 +164,13 @@ def _split_tetrahedra(gmsh, element_size: float) -> tuple[np.ndarray, np.ndarray
 
 def _tetrahedra(gmsh, element_size: float) -> tuple[np.ndarray, np.ndarray]:
     _set_size(gmsh, 2.0 * element_size)
-    gmsh.option.setNumber("Mesh.HighOrderOptimize", 1)  # edges bent around a hole must not fold the elements behind them
+    # edges bent around a hole must not fold the elements behind them
+    gmsh.option.setNumber("Mesh.HighOrderOptimize", 1)
     gmsh.model.mesh.generate(3)
     gmsh.model.mesh.setOrder(2)
-    points, nodes = _elements(gmsh, "Tetrahedron", [tag for _, tag in gmsh.model.getEntities(3)], order=2)
+    points, nodes = _elements(
+        gmsh, "Tetrahedron", [tag for _, tag in gmsh.model.getEntities(3)], order=2
+    )
     return points, nodes[:, _TETRAHEDRON]
 
 
@@ -143,8 +179,11 @@ def _set_size(gmsh, size: float) -> None:
     gmsh.option.setNumber("Mesh.MeshSizeMax", size)
 
 
-def _elements(gmsh, family: str, entities: list[int], order: int = 1) -> tuple[np.ndarray, np.ndarray]:
-    """All points (n,3) m of the mesh and the nodes (e,k) of the elements of one family in some entities."""
+def _elements(
+    gmsh, family: str, entities: list[int], order: int = 1
+) -> tuple[np.ndarray, np.ndarray]:
+    """All points (n,3) m of the mesh and the nodes (e,k) of the elements of one family in some
+    entities."""
     tags, places, _ = gmsh.model.mesh.getNodes()
     number = np.zeros(int(tags.max()) + 1, dtype=np.int64)
     number[tags.astype(np.int64)] = np.arange(len(tags))

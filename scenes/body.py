@@ -8,7 +8,8 @@ from scenes.units import Inertia, PositiveInertia
 
 
 class InertiaTensor(Table):
-    """Inertia tensor entries (kg m2) about the mass centre in body axes; xy, xz, yz are tensor entries, not products' negatives."""
+    """Inertia tensor entries (kg m2) about the mass centre in body axes; xy, xz, yz are tensor
+    entries, not products' negatives."""
 
     xx: PositiveInertia
     yy: PositiveInertia
@@ -29,6 +30,10 @@ class InertiaTensor(Table):
 
 def tensor(inertia: InertiaTensor) -> np.ndarray:
     """The (3,3) tensor (kg m2) of an inertia table."""
-    return np.array([[inertia.xx, inertia.xy, inertia.xz],
-                     [inertia.xy, inertia.yy, inertia.yz],
-                     [inertia.xz, inertia.yz, inertia.zz]])
+    return np.array(
+        [
+            [inertia.xx, inertia.xy, inertia.xz],
+            [inertia.xy, inertia.yy, inertia.yz],
+            [inertia.xz, inertia.yz, inertia.zz],
+        ]
+    )

@@ -1,4 +1,5 @@
-"""Calibrated surrogate constants: values with their evidence, as a TOML file. Data only; the fit itself is in ``calibrate``."""
+"""Calibrated surrogate constants: values with their evidence, as a TOML file. Data only; the fit
+itself is in ``calibrate``."""
 
 import json
 import math
@@ -17,10 +18,11 @@ from scenes.scene import Scene
 class Calibration:
     """Constants found for a scene.
 
-    ``constants`` are dotted overrides in SI, applied to a scene by ``apply``. ``parameters`` name the fitted coordinates
-    (with ``values``, their 95 % ``intervals``, infinite where the curves do not tell and without model error, ``lower``, ``upper``
-    bounds and ``justification``); ``information`` is the matrix (p,p) of the scaled
-    parameters; ``weak_directions`` describe what the curves cannot tell; ``residuals`` are per condition.
+    ``constants`` are dotted overrides in SI, applied to a scene by ``apply``. ``parameters`` name
+    the fitted coordinates (with ``values``, their 95 % ``intervals``, infinite where the curves do
+    not tell and without model error, ``lower``, ``upper`` bounds and ``justification``);
+    ``information`` is the matrix (p,p) of the scaled parameters; ``weak_directions`` describe what
+    the curves cannot tell; ``residuals`` are per condition.
     """
 
     constants: dict[str, float]
@@ -39,33 +41,46 @@ class Calibration:
     intervals: list[list[float]] = field(default_factory=list)
 
     def apply(self, scene: Scene) -> Scene:
-        """``scene`` with the calibrated constants; constants of an effect the scene lacks are left out."""
-        return scene.replace({key: value for key, value in self.constants.items()
-                              if getattr(scene, key.split(".")[0], "unknown") is not None})
+        """``scene`` with the calibrated constants; constants of an effect the scene lacks are left
+        out."""
+        return scene.replace(
+            {
+                key: value
+                for key, value in self.constants.items()
+                if getattr(scene, key.split(".")[0], "unknown") is not None
+            }
+        )
 
     def save(self, path: str | Path) -> None:
-        """Write TOML with its digest, atomically. Raises ValueError for a NaN (an interval without an end is inf)."""
+        """Write TOML with its digest, atomically. Raises ValueError for a NaN (an interval without
+        an end is inf)."""
         tables = asdict(self) | {"information": np.asarray(self.information).tolist()}
         plain = {key: value for key, value in tables.items() if not isinstance(value, dict)}
         nested = {key: value for key, value in tables.items() if isinstance(value, dict)}
         lines = [f"{key} = {_toml(value)}" for key, value in plain.items()]
         for name, table in nested.items():
-            lines += ["", f"[{name}]"] + [f"{_toml(key)} = {_toml(value)}" for key, value in table.items()]
+            lines += ["", f"[{name}]"] + [
+                f"{_toml(key)} = {_toml(value)}" for key, value in table.items()
+            ]
         with sealed(path) as temporary:
             temporary.write_text("\n".join(lines) + "\n", encoding="utf-8", newline="\n")
 
     @classmethod
     def load(cls, path: str | Path) -> "Calibration":
-        """Read what ``save`` wrote, or what a user did, whose file need not have a digest. Raises FileNotFoundError, or ValueError
-        for a foreign file or one that does not fit the digest it has."""
+        """Read what ``save`` wrote, or what a user did, whose file need not have a digest. Raises
+        FileNotFoundError, or ValueError for a foreign file or one that does not fit the digest it
+        has."""
         try:
             if is_sealed(path):
                 require_whole(path)
             data = tomllib.loads(Path(path).read_text(encoding="utf-8"))
             return cls(**data | {"information": np.array(data["information"])})
         except DamageError as fault:
-            raise ValueError(f"{path} {fault.reason}: make it again, or remove the line '# sha-256 ...' if you edited the file on "
-                             "purpose") from fault
+            raise ValueError(
+                f"{path} {fault.reason}: make it again, or remove the line '# sha-256 ...' if you "
+                f"edited the file on "
+                "purpose"
+            ) from fault
         except (ValueError, TypeError, KeyError) as error:
             raise ValueError(f"{path}: not a calibration file ({error})") from error
 
@@ -80,9 +95,12 @@ def _toml(value) -> str:
             raise ValueError("a calibration holds NaN")
         return repr(float(value))
     if isinstance(value, str):
-        return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")  # JSON's escapes are TOML's
+        # JSON's escapes are TOML's
+        return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
     if isinstance(value, (list, tuple)):
         return "[" + ", ".join(_toml(item) for item in value) + "]"
     if isinstance(value, dict):
-        return "{ " + ", ".join(f"{_toml(key)} = {_toml(item)}" for key, item in value.items()) + " }"
+        return (
+            "{ " + ", ".join(f"{_toml(key)} = {_toml(item)}" for key, item in value.items()) + " }"
+        )
     raise TypeError(f"cannot write {type(value).__name__} as TOML")

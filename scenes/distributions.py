@@ -1,12 +1,14 @@
-"""How an uncertain number is spread: one table per distribution, with its quantile function ``ppf``::
+"""How an uncertain number is spread: one table per distribution, with its quantile function
+``ppf``::
 
     x = F^-1(u), u uniform in (0, 1):   normal  m + s z(u)     Rayleigh  s sqrt(-2 ln(1 - u))     z = Phi^-1
     truncated normal, a < x < b:        redraw  m + s z(A + u (B - A)), A = Phi((a - m)/s), B = Phi((b - m)/s)
                                         clip    min(max(m + s z(u), a), b)
 
-A truncated normal names its rule. "redraw" is the law of a draw repeated until it lies inside the limits; "clip" puts what lies
-outside onto the limit, so that probability piles up there. Each value depends on its own u alone, in every bit: ``scipy.special``
-works element by element, where NumPy's vector code may treat the end of an array in another way than its middle.
+A truncated normal names its rule. "redraw" is the law of a draw repeated until it lies inside the
+limits; "clip" puts what lies outside onto the limit, so that probability piles up there. Each value
+depends on its own u alone, in every bit: ``scipy.special`` works element by element, where NumPy's
+vector code may treat the end of an array in another way than its middle.
 """
 
 from typing import Annotated, Any, Literal
@@ -22,7 +24,11 @@ from scenes.units import parse
 def _in_unit_of_key(value: Any, info: ValidationInfo) -> float:
     unit = info.context["unit"]
     # A number whose unit depends on other keys of the scene can only be given in SI.
-    return parse(value, unit or "dimensionless", bare_numbers_are_si=not unit or info.context["bare_numbers_are_si"])
+    return parse(
+        value,
+        unit or "dimensionless",
+        bare_numbers_are_si=not unit or info.context["bare_numbers_are_si"],
+    )
 
 
 def _positive(value: float) -> float:
@@ -85,7 +91,8 @@ class Normal(Table):
 
 
 class TruncatedNormal(_Limits):
-    """Gaussian (``mean`` and ``sd`` before it is cut) between ``low`` and ``high`` by a ``rule``."""
+    """Gaussian (``mean`` and ``sd`` before it is cut) between ``low`` and ``high`` by a
+    ``rule``."""
 
     distribution: Literal["truncated-normal"]
     mean: Value
@@ -99,7 +106,8 @@ class TruncatedNormal(_Limits):
         """Quantiles (SI) of probabilities ``u``, any shape."""
         if self.rule == "redraw":
             a, b = (self.low - self.mean) / self.sd, (self.high - self.mean) / self.sd
-            # Probabilities near one have no digits left, so limits above the mean are mirrored to below it.
+            # Probabilities near one have no digits left, so limits above the mean are mirrored to
+            # below it.
             z = -_between(-b, -a, 1.0 - u) if a > 0.0 else _between(a, b, u)
         else:
             z = ndtri(u)
@@ -126,5 +134,10 @@ def _between(a: float, b: float, u: np.ndarray) -> np.ndarray:
 
 
 Distribution = Fixed | Uniform | Normal | TruncatedNormal | Rayleigh
-BY_NAME: dict[str, type[Distribution]] = {"fixed": Fixed, "uniform": Uniform, "normal": Normal,
-                                          "truncated-normal": TruncatedNormal, "rayleigh": Rayleigh}
+BY_NAME: dict[str, type[Distribution]] = {
+    "fixed": Fixed,
+    "uniform": Uniform,
+    "normal": Normal,
+    "truncated-normal": TruncatedNormal,
+    "rayleigh": Rayleigh,
+}

@@ -1,4 +1,5 @@
-"""Bad input is reported at once and whole: every fault with file, key, what was given and what is expected."""
+"""Bad input is reported at once and whole: every fault with file, key, what was given and what is
+expected."""
 
 from typing import Any, NamedTuple
 
@@ -29,15 +30,28 @@ class SceneError(ValueError):
 
 def within(key: str, given: str, expected: str) -> PydanticCustomError:
     """A fault of ``key`` of a table, for a validator that sees the table as a whole."""
-    return PydanticCustomError("within", "{expected}", {"key": key, "given": given, "expected": expected})
+    return PydanticCustomError(
+        "within", "{expected}", {"key": key, "given": given, "expected": expected}
+    )
 
 
-# Pydantic puts the chosen variant into the location: ("thrust", "gaussian", "width") is the key thrust.width.
+# Pydantic puts the chosen variant into the location: ("thrust", "gaussian", "width") is the key
+# thrust.width.
 _VARIANTS = ("thrust", "contact", "friction", "rail")
-_FILED = (("rail", "mesh"), ("rail", "geometry"))  # variants chosen by the presence of a key, which the user may not have meant
-_WORDS = {"extra_forbidden": "no such key", "missing": "this key", "model_type": "a table", "model_attributes_type": "a table",
-          "dict_type": "a table", "tuple_type": "a list", "list_type": "a list", "string_type": "text",
-          "bool_parsing": "true or false", "bool_type": "true or false"}
+# variants chosen by the presence of a key, which the user may not have meant
+_FILED = (("rail", "mesh"), ("rail", "geometry"))
+_WORDS = {
+    "extra_forbidden": "no such key",
+    "missing": "this key",
+    "model_type": "a table",
+    "model_attributes_type": "a table",
+    "dict_type": "a table",
+    "tuple_type": "a list",
+    "list_type": "a list",
+    "string_type": "text",
+    "bool_parsing": "true or false",
+    "bool_type": "true or false",
+}
 
 
 def _key(error: dict) -> str:

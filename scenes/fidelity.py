@@ -1,7 +1,10 @@
-"""The models of an ejection, one name each wherever a model is named: options, arguments, result files.
+"""The models of an ejection, one name each wherever a model is named: options, arguments, result
+files.
 
-* ``compliant``: rigid bodies; pads press on the rail's static compliance, condensed from the finite elements. The default.
-* ``springs``: rigid bodies; one spring and damper at each pad face, with the scene's constants or calibrated ones.
+* ``compliant``: rigid bodies; pads press on the rail's static compliance, condensed from the finite
+  elements. The default.
+* ``springs``: rigid bodies; one spring and damper at each pad face, with the scene's constants or
+  calibrated ones.
 * ``finite-elements``: the reference, with flexible rails.
 """
 

@@ -1,11 +1,13 @@
 """Files that are never half written, and that carry the digest of what they hold.
 
-Every file is written beside its final name, flushed to disk, then renamed. A file that is read back ends with the bytes::
+Every file is written beside its final name, flushed to disk, then renamed. A file that is read back
+ends with the bytes::
 
     # sha-256 <hexadecimal digest of every byte before this line>
 
-a line that TOML reads as a comment, and which readers of HDF5, netCDF and zip pass over. A JSON file holds the digest under the key
-``sha256`` instead: that of the canonical JSON of all its other keys, so that another layout of the same content is no damage.
+a line that TOML reads as a comment, and which readers of HDF5, netCDF and zip pass over. A JSON
+file holds the digest under the key ``sha256`` instead: that of the canonical JSON of all its other
+keys, so that another layout of the same content is no damage.
 """
 
 import glob
@@ -29,16 +31,20 @@ _DIFFERS = "does not fit the digest it carries (damaged, or edited)"
 
 
 class DamageError(ValueError):
-    """A file that does not fit the digest it carries, or carries none; ``reason`` goes on with a sentence that its path begins."""
+    """A file that does not fit the digest it carries, or carries none; ``reason`` goes on with a
+    sentence that its path begins."""
 
     def __init__(self, path: str | Path, reason: str):
         self.reason = reason
-        super().__init__(f"{path} {reason}; remove it, and the command that wrote it writes it again")
+        super().__init__(
+            f"{path} {reason}; remove it, and the command that wrote it writes it again"
+        )
 
 
 @contextmanager
 def replacing(path: str | Path) -> Iterator[Path]:
-    """Yield a temporary path; on success it replaces ``path`` atomically, on any exception it is removed."""
+    """Yield a temporary path; on success it replaces ``path`` atomically, on any exception it is
+    removed."""
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     handle, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=path.suffix, dir=path.parent)
@@ -55,7 +61,8 @@ def replacing(path: str | Path) -> Iterator[Path]:
 
 
 def discard(path: str | Path) -> None:
-    """Remove ``path`` if it is there, and what a kill in the middle of ``replacing`` left beside it."""
+    """Remove ``path`` if it is there, and what a kill in the middle of ``replacing`` left beside
+    it."""
     path = Path(path)
     path.unlink(missing_ok=True)
     for leftover in path.parent.glob(f".{glob.escape(path.name)}.*{glob.escape(path.suffix)}"):
@@ -80,7 +87,8 @@ def sealed(path: str | Path) -> Iterator[Path]:
 
 
 def require_whole(path: str | Path) -> None:
-    """Raises DamageError unless the file is as ``sealed`` left it, FileNotFoundError or another OSError where it cannot be read."""
+    """Raises DamageError unless the file is as ``sealed`` left it, FileNotFoundError or another
+    OSError where it cannot be read."""
     content = memoryview(Path(path).read_bytes())
     told = _LINE.fullmatch(content[-_LENGTH:])
     if told is None:
@@ -90,33 +98,39 @@ def require_whole(path: str | Path) -> None:
 
 
 def is_sealed(path: str | Path) -> bool:
-    """Whether any line of the file begins as the line of a digest does. Raises OSError where the file cannot be read."""
+    """Whether any line of the file begins as the line of a digest does. Raises OSError where the
+    file cannot be read."""
     return any(line.startswith(_MARK) for line in Path(path).read_bytes().splitlines())
 
 
 def write_json(path: str | Path, value: Mapping[str, Any]) -> dict[str, Any]:
-    """Write ``value`` as strict JSON (no NaN) with its digest, atomically; returns the object as the file holds it."""
+    """Write ``value`` as strict JSON (no NaN) with its digest, atomically; returns the object as
+    the file holds it."""
     found = with_digest(value)
     write_text(path, json.dumps(found, indent=1, allow_nan=False) + "\n")
     return found
 
 
 def read_json(path: str | Path) -> dict[str, Any]:
-    """The object that ``write_json`` wrote. Raises DamageError, or OSError where the file cannot be read."""
+    """The object that ``write_json`` wrote. Raises DamageError, or OSError where the file cannot be
+    read."""
     try:
         found = json.loads(Path(path).read_bytes())
         whole = isinstance(found, dict) and fits_digest(found)
     except ValueError as fault:
         raise DamageError(path, "is no JSON (damaged, or edited)") from fault
     if not whole:
-        raise DamageError(path, _DIFFERS if isinstance(found, dict) and KEY in found else _CARRIES_NONE)
+        raise DamageError(
+            path, _DIFFERS if isinstance(found, dict) and KEY in found else _CARRIES_NONE
+        )
     return found
 
 
 def with_digest(value: Mapping[str, Any]) -> dict[str, Any]:
     """``value`` with the digest of its content, in place of one that it has."""
     rest = {key: item for key, item in value.items() if key != KEY}
-    return rest | {KEY: content_hash(json.loads(json.dumps(rest, allow_nan=False)))}  # keys are text only once they were JSON
+    # keys are text only once they were JSON
+    return rest | {KEY: content_hash(json.loads(json.dumps(rest, allow_nan=False)))}
 
 
 def fits_digest(value: Mapping[str, Any]) -> bool:

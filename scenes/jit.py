@@ -1,8 +1,8 @@
 """Numba settings shared by every kernel, and a disk cache that cannot go stale.
 
-Numba keys its cache by the file of the compiled function only: a kernel whose *callee* in another file changed is loaded
-from disk with the old callee inside. The cache directory is therefore named by a digest of all kernel sources, so any
-edit starts an empty cache.
+Numba keys its cache by the file of the compiled function only: a kernel whose *callee* in another
+file changed is loaded from disk with the old callee inside. The cache directory is therefore named
+by a digest of all kernel sources, so any edit starts an empty cache.
 """
 
 import functools
@@ -33,26 +33,32 @@ def _cache_directory() -> Path:
     return (Path(chosen) if chosen else default) / kernel_digest()
 
 
-# Kernels are compiled as parts of those that call them, each time from code that was optimised before. At level 3 the first pass
-# turns vectors of states into scalars, which the next one does not mend: the surrogate then takes half as long again.
+# Kernels are compiled as parts of those that call them, each time from code that was optimised
+# before. At level 3 the first pass turns vectors of states into scalars, which the next one does
+# not mend: the surrogate then takes half as long again.
 if "NUMBA_OPT" not in os.environ:
     numba.config.OPT = type(numba.config.OPT)("max")
 
 numba.config.CACHE_DIR = str(_cache_directory())
 
-# error_model="numpy": division by zero gives inf, which reaches the status check, instead of an exception inside a kernel.
+# error_model="numpy": division by zero gives inf, which reaches the status check, instead of an
+# exception inside a kernel.
 njit = functools.partial(numba.njit, cache=True, error_model="numpy", nogil=True)
-# For kernels that neither make nor return arrays: without reference counts, which cost more than the arithmetic where records of
-# arrays are handed from function to function, and half the time to compile.
+# For kernels that neither make nor return arrays: without reference counts, which cost more than
+# the arithmetic where records of arrays are handed from function to function, and half the time to
+# compile.
 kernel = functools.partial(njit, _nrt=False)
-# The same for what innermost loops call with whole records: each call would copy some hundred words of array headers.
+# The same for what innermost loops call with whole records: each call would copy some hundred words
+# of array headers.
 inlined = functools.partial(kernel, forceinline=True)
 
 
 def machine_code(kernel, arguments: tuple) -> bytes:
-    """Object code of ``kernel`` for the types of ``arguments``, the very code that runs: what it does not name, it cannot call.
+    """Object code of ``kernel`` for the types of ``arguments``, the very code that runs: what it
+    does not name, it cannot call.
 
-    Read from the disk cache, since Numba keeps no copy of code once it is loaded. Raises RuntimeError without a cache.
+    Read from the disk cache, since Numba keeps no copy of code once it is loaded. Raises
+    RuntimeError without a cache.
     """
     signature = tuple(numba.typeof(argument) for argument in arguments)
     kernel.compile(signature)
@@ -65,8 +71,9 @@ def machine_code(kernel, arguments: tuple) -> bytes:
 
 
 def contains(code: bytes, function) -> bool:
-    """Whether object ``code`` holds the compiled ``function``, called or inlined: Numba leaves one symbol for each, in which module
-    and name stand with their lengths, so that no other name can be taken for it."""
+    """Whether object ``code`` holds the compiled ``function``, called or inlined: Numba leaves one
+    symbol for each, in which module and name stand with their lengths, so that no other name can be
+    taken for it."""
     python = function.py_func
     parts = (*python.__module__.split("."), *python.__qualname__.split("."))
     return ("NumbaEnv" + "".join(f"{len(part)}{part}" for part in parts) + "B").encode() in code

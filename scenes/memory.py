@@ -10,7 +10,7 @@ def zeros(shape: tuple[int, ...], order: str = "C") -> np.ndarray:
     size = 8 * int(np.prod(shape))
     room = np.zeros(size + _CACHE_LINE, dtype=np.uint8)
     start = -room.ctypes.data % _CACHE_LINE
-    return room[start:start + size].view(np.float64).reshape(shape, order=order)
+    return room[start : start + size].view(np.float64).reshape(shape, order=order)
 
 
 def aligned(array: np.ndarray) -> np.ndarray:

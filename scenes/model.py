@@ -1,7 +1,9 @@
-"""What kernels of both fidelities are given: constant records made once from a scene, None where an effect is absent.
+"""What kernels of both fidelities are given: constant records made once from a scene, None where an
+effect is absent.
 
-Places on the payload are measured from its *actual* mass centre in body axes; places on the rail from the platform's mass
-centre at ignition (the scene origin when the platform is fixed), in platform axes, which coincide with scene axes then.
+Places on the payload are measured from its *actual* mass centre in body axes; places on the rail
+from the platform's mass centre at ignition (the scene origin when the platform is fixed), in
+platform axes, which coincide with scene axes then.
 """
 
 from typing import NamedTuple
@@ -20,11 +22,22 @@ from scenes.rail import SectionTable
 from scenes.scene import Scene
 
 # Tables of a scene whose records may be kept.
-_REUSED = ("payload", "pads", "rail", "thrust", "initial", "contact", "friction", "platform", "thermal")
+_REUSED = (
+    "payload",
+    "pads",
+    "rail",
+    "thrust",
+    "initial",
+    "contact",
+    "friction",
+    "platform",
+    "thermal",
+)
 
 
 class Payload(NamedTuple):
-    """Mass (kg), inertia about the mass centre (3,3), its inverse, and the mass centre at rest in scene axes (m)."""
+    """Mass (kg), inertia about the mass centre (3,3), its inverse, and the mass centre at rest in
+    scene axes (m)."""
 
     mass: float
     inertia: np.ndarray
@@ -35,8 +48,9 @@ class Payload(NamedTuple):
 class Faces(NamedTuple):
     """Pad faces, f of them, and the rail walls they may touch.
 
-    centre (f,3) m in body axes; axis (f,) 1 or 2, the normal's axis; sign (f,) of the normal; half_length and half_width
-    (f,) m; relief (f,) m; wall (f,) m, coordinate of the undeformed wall along axis in platform axes; pad (f,) index.
+    centre (f,3) m in body axes; axis (f,) 1 or 2, the normal's axis; sign (f,) of the normal;
+    half_length and half_width (f,) m; relief (f,) m; wall (f,) m, coordinate of the undeformed wall
+    along axis in platform axes; pad (f,) index.
     """
 
     centre: np.ndarray
@@ -50,9 +64,10 @@ class Faces(NamedTuple):
 
 
 class Plate(NamedTuple):
-    """What bounds every wall besides the ends of the rail: its thickness (m); the leg (m), which no wall is wider than; and where
-    each face stands across the rail when it is centred, across (f,) m in platform axes. A rail given as a file that does not say
-    its thickness or leg is taken to have those of the built-in section."""
+    """What bounds every wall besides the ends of the rail: its thickness (m); the leg (m), which no
+    wall is wider than; and where each face stands across the rail when it is centred, across (f,) m
+    in platform axes. A rail given as a file that does not say its thickness or leg is taken to have
+    those of the built-in section."""
 
     thickness: float
     leg: float
@@ -94,37 +109,75 @@ def build(scene: Scene) -> Model:
 
 
 def built(scene: Scene, known: Built | None = None) -> Built:
-    """Records of ``scene``; those that come from the very tables of a ``known`` scene are taken from there."""
-    same = {name for name in _REUSED if getattr(known.scene, name) is getattr(scene, name)} if known else set()
+    """Records of ``scene``; those that come from the very tables of a ``known`` scene are taken
+    from there."""
+    same = (
+        {name for name in _REUSED if getattr(known.scene, name) is getattr(scene, name)}
+        if known
+        else set()
+    )
 
     def kept(*names: str) -> bool:
         return same.issuperset(names)
 
     offset = scene.mass_offset.eccentricity.offset() if scene.mass_offset else (0.0, 0.0, 0.0)
-    platform = known.model.platform if kept("platform") else scene.platform.record() if scene.platform else None
+    platform = (
+        known.model.platform
+        if kept("platform")
+        else scene.platform.record()
+        if scene.platform
+        else None
+    )
     touching = scene.contact is not None
     origin = platform.mass_centre[0] if platform else 0.0
-    nominal = known.nominal if kept("pads", "rail", "contact", "platform") else _faces(scene, platform)
-    return Built(scene, Model(
-        payload=_payload(scene, offset, known.model.payload if kept("payload") else None),
-        faces=nominal._replace(centre=nominal.centre - np.array(offset)),
-        plate=known.model.plate if kept("pads", "rail", "contact", "platform") else _plate(scene, nominal, platform),
-        rail_start=scene.rail.start - origin,
-        rail_end=scene.rail.end - origin,
-        thrust=known.model.thrust if kept("thrust") else scene.thrust.record(),
-        reacts_on_platform=scene.thrust.reaction == "platform",
-        thrust_offset=thrust_offset.record(scene.thrust_offset, scene.mass_offset, scene.thrust.arm),
-        contact=known.model.contact if kept("contact") else contact.laws(scene.contact.record()) if touching else None,
-        penalty=scene.contact.penalty if touching else None,
-        # Friction without contact has no normal force to act on, so it is absent too.
-        friction=(known.model.friction if kept("friction", "contact")
-                  else scene.friction.record() if scene.friction and touching else None),
-        platform=platform,
-        gravity=scene.gravity.record() if scene.gravity else None,
-        thermal=known.model.thermal if kept("rail", "thermal") else scene.thermal.record(scene.rail) if scene.thermal else None,
-        initial=known.model.initial if kept("initial") else scene.initial.record() if scene.initial else Initial(),
-        thrust_arm=scene.thrust.arm,
-    ), nominal)
+    nominal = (
+        known.nominal if kept("pads", "rail", "contact", "platform") else _faces(scene, platform)
+    )
+    return Built(
+        scene,
+        Model(
+            payload=_payload(scene, offset, known.model.payload if kept("payload") else None),
+            faces=nominal._replace(centre=nominal.centre - np.array(offset)),
+            plate=known.model.plate
+            if kept("pads", "rail", "contact", "platform")
+            else _plate(scene, nominal, platform),
+            rail_start=scene.rail.start - origin,
+            rail_end=scene.rail.end - origin,
+            thrust=known.model.thrust if kept("thrust") else scene.thrust.record(),
+            reacts_on_platform=scene.thrust.reaction == "platform",
+            thrust_offset=thrust_offset.record(
+                scene.thrust_offset, scene.mass_offset, scene.thrust.arm
+            ),
+            contact=known.model.contact
+            if kept("contact")
+            else contact.laws(scene.contact.record())
+            if touching
+            else None,
+            penalty=scene.contact.penalty if touching else None,
+            # Friction without contact has no normal force to act on, so it is absent too.
+            friction=(
+                known.model.friction
+                if kept("friction", "contact")
+                else scene.friction.record()
+                if scene.friction and touching
+                else None
+            ),
+            platform=platform,
+            gravity=scene.gravity.record() if scene.gravity else None,
+            thermal=known.model.thermal
+            if kept("rail", "thermal")
+            else scene.thermal.record(scene.rail)
+            if scene.thermal
+            else None,
+            initial=known.model.initial
+            if kept("initial")
+            else scene.initial.record()
+            if scene.initial
+            else Initial(),
+            thrust_arm=scene.thrust.arm,
+        ),
+        nominal,
+    )
 
 
 def _payload(scene: Scene, offset: tuple, known: Payload | None) -> Payload:
@@ -136,8 +189,13 @@ def _payload(scene: Scene, offset: tuple, known: Payload | None) -> Payload:
 
 def _plate(scene: Scene, nominal: Faces, platform: Platform | None) -> Plate:
     origin = np.array(platform.mass_centre if platform else (0.0, 0.0, 0.0))
-    thickness, leg = (getattr(scene.rail, name) or SectionTable.model_fields[name].default for name in ("thickness", "leg"))
-    return Plate(thickness, leg, (nominal.centre - origin)[np.arange(nominal.axis.size), 3 - nominal.axis])
+    thickness, leg = (
+        getattr(scene.rail, name) or SectionTable.model_fields[name].default
+        for name in ("thickness", "leg")
+    )
+    return Plate(
+        thickness, leg, (nominal.centre - origin)[np.arange(nominal.axis.size), 3 - nominal.axis]
+    )
 
 
 def _faces(scene: Scene, platform: Platform | None) -> Faces:
@@ -153,9 +211,16 @@ def _faces(scene: Scene, platform: Platform | None) -> Faces:
             across = 3 - axis
             centre = corner.copy()
             centre[across] -= np.sign(corner[across]) * pad.inset
-            centre[axis] += sign * (gap - clearance)  # a shim, where the walls of a file stand off the pads by another clearance
+            # a shim, where the walls of a file stand off the pads by another clearance
+            centre[axis] += sign * (gap - clearance)
             wall = corner[axis] + sign * gap - origin[axis]
-            rows.append((centre, axis, sign, pad.length / 2, pad.width / 2, pad.relief, wall, index))
+            rows.append(
+                (centre, axis, sign, pad.length / 2, pad.width / 2, pad.relief, wall, index)
+            )
     columns = list(zip(*rows))
-    return Faces(np.array(columns[0]), np.array(columns[1], dtype=np.int64), *map(np.array, columns[2:7]),
-                 np.array(columns[7], dtype=np.int64))
+    return Faces(
+        np.array(columns[0]),
+        np.array(columns[1], dtype=np.int64),
+        *map(np.array, columns[2:7]),
+        np.array(columns[7], dtype=np.int64),
+    )

@@ -1,10 +1,12 @@
-"""How well a run keeps linear and angular momentum, in the frame it is solved in (``scenes.comoving``).
+"""How well a run keeps linear and angular momentum, in the frame it is solved in
+(``scenes.comoving``).
 
     error = largest |change of a sum of momenta - impulse from outside| / scale
 
-The scale is the largest momentum of the payload or of the whole. What acts in a run are forces; their impulses round where they
-cancel, and so do moments about the origin of forces along lines near it: both sizes go into the smallest scale that can tell
-whether the promise is kept (``scenes.promises``).
+The scale is the largest momentum of the payload or of the whole. What acts in a run are forces;
+their impulses round where they cancel, and so do moments about the origin of forces along lines
+near it: both sizes go into the smallest scale that can tell whether the promise is kept
+(``scenes.promises``).
 """
 
 import numpy as np
@@ -13,10 +15,17 @@ from scenes import promises, rotation
 from scenes.outcome import Motion
 
 
-def errors(moved: Motion, mass: float, values: np.ndarray, given: np.ndarray, forces: np.ndarray,
-           promised: promises.Promises) -> tuple[float, float]:
-    """Errors of linear and angular momentum (1) of n samples of a payload of ``mass`` (kg): ``values`` (n,6) kg m/s and kg m2/s of
-    the whole, ``given`` (n,6) N s and N m s from outside, pad ``forces`` (n,f,3) N."""
+def errors(
+    moved: Motion,
+    mass: float,
+    values: np.ndarray,
+    given: np.ndarray,
+    forces: np.ndarray,
+    promised: promises.Promises,
+) -> tuple[float, float]:
+    """Errors of linear and angular momentum (1) of n samples of a payload of ``mass`` (kg):
+    ``values`` (n,6) kg m/s and kg m2/s of the whole, ``given`` (n,6) N s and N m s from outside,
+    pad ``forces`` (n,f,3) N."""
     own = mass * moved.velocity
     orbit = rotation.crosses(moved.position, own)
     lost = values - values[0] - (given - given[0])
@@ -24,9 +33,17 @@ def errors(moved: Motion, mass: float, values: np.ndarray, given: np.ndarray, fo
     pressed = interval * float(np.sqrt((forces**2).sum(axis=2)).sum())
     terms = max(_largest(own), _largest(values[:, :3]), _largest(given[:, :3])) + pressed
     reach = max(_largest(moved.position), _largest(moved.platform_position))
-    linear = promises.scale(max(_largest(own), _largest(values[:, :3])), terms, promised.linear_momentum_error)
-    angular = promises.scale(max(_largest(orbit), _largest(values[:, 3:])), terms * reach, promised.angular_momentum_error)
-    return promises.relative(_largest(lost[:, :3]), linear), promises.relative(_largest(lost[:, 3:]), angular)
+    linear = promises.scale(
+        max(_largest(own), _largest(values[:, :3])), terms, promised.linear_momentum_error
+    )
+    angular = promises.scale(
+        max(_largest(orbit), _largest(values[:, 3:])),
+        terms * reach,
+        promised.angular_momentum_error,
+    )
+    return promises.relative(_largest(lost[:, :3]), linear), promises.relative(
+        _largest(lost[:, 3:]), angular
+    )
 
 
 def _largest(values: np.ndarray) -> float:

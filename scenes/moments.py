@@ -1,11 +1,13 @@
 """The moment that a thrust beside the mass centre leaves a payload with, for many cases at once.
 
-Thrust along the unit vector f through the point r, from the mass centre, turns a free payload by the moment impulse::
+Thrust along the unit vector f through the point r, from the mass centre, turns a free payload by
+the moment impulse::
 
     L = J (r x f),   J = integral of F dt
     f = (cos t, sin t cos p, sin t sin p),   r = (-arm, e sin a - m sin b, e cos a - m cos b)
 
-with misalignment t at p, thrust eccentricity e at a and mass eccentricity m at b: the angles of ``scenes.effects``, here of arrays.
+with misalignment t at p, thrust eccentricity e at a and mass eccentricity m at b: the angles of
+``scenes.effects``, here of arrays.
 """
 
 from collections.abc import Mapping
@@ -17,8 +19,8 @@ Inputs = Mapping[str, np.ndarray]
 
 
 def column(scene, inputs: Inputs, key: str) -> np.ndarray | float:
-    """The numbers (n,) under a dotted ``key`` in ``inputs``, SI; the scene's own, zero where it has none, where a case has
-    none (NaN)."""
+    """The numbers (n,) under a dotted ``key`` in ``inputs``, SI; the scene's own, zero where it has
+    none, where a case has none (NaN)."""
     own = reduce(lambda table, part: getattr(table, part, None), key.split("."), scene)
     own = 0.0 if own is None else own
     values = inputs.get(key)
@@ -26,21 +28,28 @@ def column(scene, inputs: Inputs, key: str) -> np.ndarray | float:
 
 
 def moment_impulses(scene, inputs: Inputs, impulse: np.ndarray | float) -> np.ndarray:
-    """Moment impulses (n,3) or (3,) in N m s, body axes, about the mass centre, of variations of ``scene`` by ``inputs`` (n,), SI,
-    whose thrusts have the ``impulse`` (n,) in N s."""
+    """Moment impulses (n,3) or (3,) in N m s, body axes, about the mass centre, of variations of
+    ``scene`` by ``inputs`` (n,), SI, whose thrusts have the ``impulse`` (n,) in N s."""
+
     def offset(table: str) -> tuple:
-        size, angle = (column(scene, inputs, f"{table}.eccentricity.{name}") for name in ("axial", "radial"))
+        size, angle = (
+            column(scene, inputs, f"{table}.eccentricity.{name}") for name in ("axial", "radial")
+        )
         return size * np.sin(angle), size * np.cos(angle)
 
     (thrust_y, thrust_z), (centre_y, centre_z) = offset("thrust_offset"), offset("mass_offset")
-    tilt, turn = (column(scene, inputs, f"thrust_offset.misalignment.{name}") for name in ("axial", "radial"))
+    tilt, turn = (
+        column(scene, inputs, f"thrust_offset.misalignment.{name}") for name in ("axial", "radial")
+    )
     arm, sine = column(scene, inputs, "thrust.arm"), np.sin(tilt)
     place = np.broadcast_arrays(-arm, thrust_y - centre_y, thrust_z - centre_z)
     direction = np.broadcast_arrays(np.cos(tilt), sine * np.cos(turn), sine * np.sin(turn))
-    return np.asarray(impulse)[..., None] * np.cross(np.stack(place, axis=-1), np.stack(direction, axis=-1))
+    return np.asarray(impulse)[..., None] * np.cross(
+        np.stack(place, axis=-1), np.stack(direction, axis=-1)
+    )
 
 
 def transverse(scene, inputs: Inputs, impulse: np.ndarray | float) -> np.ndarray:
-    """Size (n,) or () of the part of the moment impulse across the axis, |L_yz| in N m s: what turns a payload against its
-    rails."""
+    """Size (n,) or () of the part of the moment impulse across the axis, |L_yz| in N m s: what
+    turns a payload against its rails."""
     return np.hypot(*np.moveaxis(moment_impulses(scene, inputs, impulse)[..., 1:], -1, 0))

@@ -1,4 +1,5 @@
-"""Names of scenes and conditions: results are filed under them, so they are names of files on every system."""
+"""Names of scenes and conditions: results are filed under them, so they are names of files on every
+system."""
 
 import re
 from collections.abc import Iterable
@@ -11,17 +12,25 @@ _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,63}")
 def of_scene(name: str) -> str:
     """``name``, if a scene may have it. Raises ValueError saying what is expected."""
     if not _NAME.fullmatch(name):
-        raise ValueError(f"{EXPECTED}; a scene file without this key is called by the name of the file")
+        raise ValueError(
+            f"{EXPECTED}; a scene file without this key is called by the name of the file"
+        )
     return name
 
 
 def faults(conditions: Iterable[Any]) -> list[tuple[str, str, str]]:
-    """Faults (key, given, expected) of the names of ``conditions``: each must be a name, and not that of another one on a disk that
-    does not tell upper from lower case."""
+    """Faults (key, given, expected) of the names of ``conditions``: each must be a name, and not
+    that of another one on a disk that does not tell upper from lower case."""
     found, known = [], {}
     for name in conditions:
         if not (isinstance(name, str) and _NAME.fullmatch(name)):
             found.append(("conditions", repr(name), EXPECTED))
         elif (other := known.setdefault(name.lower(), name)) != name:
-            found.append(("conditions", repr(name), f"a name that differs from {other!r} in more than upper and lower case"))
+            found.append(
+                (
+                    "conditions",
+                    repr(name),
+                    f"a name that differs from {other!r} in more than upper and lower case",
+                )
+            )
     return found

@@ -1,9 +1,11 @@
-"""What became of an ejection: exit, settled velocity and rate, jam. One home for the definitions, used by both fidelities.
+"""What became of an ejection: exit, settled velocity and rate, jam. One home for the definitions,
+used by both fidelities.
 
 * **Exit**: first instant at which the trailing edge of the last pad face is past the rail end.
-* **Settled window**: 2 ms from the later of exit + 1 ms and thrust below 0.1 % of its peak; settled values are means over it.
-* **Jammed**: after thrust fell below 1 % of its peak, or under constant thrust, relative axial speed below the friction
-  transition speed (10 mm/s where friction has none) for 5 ms.
+* **Settled window**: 2 ms from the later of exit + 1 ms and thrust below 0.1 % of its peak; settled
+  values are means over it.
+* **Jammed**: after thrust fell below 1 % of its peak, or under constant thrust, relative axial
+  speed below the friction transition speed (10 mm/s where friction has none) for 5 ms.
 
 All of it is read from the steps of a run (``scenes.ending``), whatever is sampled.
 """
@@ -38,9 +40,10 @@ class Motion(NamedTuple):
 
 
 class Outcome(NamedTuple):
-    """Exit time (s), settled window start (s), means over it: velocity (m/s), rate (rad/s); lateral velocity (m/s), direction
-    error of the velocity (rad). At the exit: attitude of the payload as a rotation vector (rad), its position (m), and position
-    (m), velocity (m/s), attitude (rad) and rate (rad/s) of the platform. All None unless the payload exited and settled."""
+    """Exit time (s), settled window start (s), means over it: velocity (m/s), rate (rad/s); lateral
+    velocity (m/s), direction error of the velocity (rad). At the exit: attitude of the payload as a
+    rotation vector (rad), its position (m), and position (m), velocity (m/s), attitude (rad) and
+    rate (rad/s) of the platform. All None unless the payload exited and settled."""
 
     exit_time: float | None = None
     window_start: float | None = None
@@ -57,8 +60,8 @@ class Outcome(NamedTuple):
 
 
 class Milestones(NamedTuple):
-    """What a scene fixes beforehand: thrust below 0.1 % and 1 % of its peak (s), the jam speed (m/s), whether thrust is
-    constant."""
+    """What a scene fixes beforehand: thrust below 0.1 % and 1 % of its peak (s), the jam speed
+    (m/s), whether thrust is constant."""
 
     settled_thrust: float
     spent_thrust: float
@@ -68,8 +71,11 @@ class Milestones(NamedTuple):
 
 def milestones(scene: Scene, model) -> Milestones:
     """Instants and speed that decide what becomes of a run of ``scene``."""
-    return Milestones(*thrust.burnouts(model.thrust, (1e-3, 1e-2), scene.duration), jam_speed(model),
-                      scene.thrust.kind == "constant")
+    return Milestones(
+        *thrust.burnouts(model.thrust, (1e-3, 1e-2), scene.duration),
+        jam_speed(model),
+        scene.thrust.kind == "constant",
+    )
 
 
 def jam_speed(model) -> float:
@@ -78,15 +84,18 @@ def jam_speed(model) -> float:
 
 
 def relative_motion(motion) -> dict[str, np.ndarray]:
-    """Payload position (m) and velocity (m/s) relative to the platform in its axes, and rate (rad/s) in payload body axes."""
+    """Payload position (m) and velocity (m/s) relative to the platform in its axes, and rate
+    (rad/s) in payload body axes."""
     frame = rotation.matrices(motion.platform_quaternion)
     separation = motion.position - motion.platform_position
     spin = np.einsum("nij,nj->ni", frame, motion.platform_rate)
     drift = motion.velocity - motion.platform_velocity - rotation.crosses(spin, separation)
     body = rotation.matrices(motion.quaternion)
-    return {"relative_position": np.einsum("nji,nj->ni", frame, separation),
-            "relative_velocity": np.einsum("nji,nj->ni", frame, drift),
-            "relative_rate": motion.rate - np.einsum("nji,nj->ni", body, spin)}
+    return {
+        "relative_position": np.einsum("nji,nj->ni", frame, separation),
+        "relative_velocity": np.einsum("nji,nj->ni", frame, drift),
+        "relative_rate": motion.rate - np.einsum("nji,nj->ni", body, spin),
+    }
 
 
 @kernel
@@ -96,14 +105,23 @@ def window_start(exit_at, marks):
 
 
 def pressed_at_ignition(faces, forces: np.ndarray) -> str:
-    """A warning that names the pads on which there are ``forces`` (f,3) N before anything moves, or nothing."""
+    """A warning that names the pads on which there are ``forces`` (f,3) N before anything moves, or
+    nothing."""
     pads = sorted(set(faces.pad[(forces != 0.0).any(axis=1)].tolist()))
-    return f"initial interference: pads {', '.join(map(str, pads))} press on the rail at ignition" if pads else ""
+    return (
+        f"initial interference: pads {', '.join(map(str, pads))} press on the rail at ignition"
+        if pads
+        else ""
+    )
 
 
 def strike(faces, face: int, how: str, depth: float, place: float, time: float) -> str:
-    """Why a run ends at a pad that meets a wall where no contact is modelled: what it does (``how``), with the penetration
-    ``depth`` (m), the middle of the face standing at X = ``place`` (m, as the scene counts it at ignition), at ``time`` (s)."""
+    """Why a run ends at a pad that meets a wall where no contact is modelled: what it does
+    (``how``), with the penetration ``depth`` (m), the middle of the face standing at X = ``place``
+    (m, as the scene counts it at ignition), at ``time`` (s)."""
     name = f"{'+' if faces.sign[face] > 0.0 else '-'}{'xyz'[faces.axis[face]]}"
-    return (f"pad {faces.pad[face]} {how} of its rail with its face {name}, {depth * 1e3:.4g} mm behind the surface of the wall, "
-            f"X = {place:.6g} m, at {time:.6g} s: no contact is modelled there")
+    return (
+        f"pad {faces.pad[face]} {how} of its rail with its face {name}, {depth * 1e3:.4g} mm "
+        f"behind the surface of the wall, "
+        f"X = {place:.6g} m, at {time:.6g} s: no contact is modelled there"
+    )

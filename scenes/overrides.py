@@ -1,4 +1,5 @@
-"""Dotted keys such as ``thrust_offset.misalignment.axial`` or ``pads.0.relief``: set, dropped, and checked against the tables."""
+"""Dotted keys such as ``thrust_offset.misalignment.axial`` or ``pads.0.relief``: set, dropped, and
+checked against the tables."""
 
 from collections.abc import Iterator, Mapping
 from types import UnionType
@@ -17,7 +18,8 @@ def plain(value: Any) -> Any:
 
 
 def dotted(table: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
-    """(dotted key, value) pairs of a nested mapping, so that ``a.b = 1`` means the same as ``"a.b" = 1`` in a file."""
+    """(dotted key, value) pairs of a nested mapping, so that ``a.b = 1`` means the same as ``"a.b"
+    = 1`` in a file."""
     for key, value in table.items():
         if isinstance(value, Mapping) and value:
             yield from dotted(value, f"{prefix}{key}.")
@@ -42,7 +44,8 @@ def is_key(annotation: Any, key: str) -> bool:
 def unit(annotation: Any, key: str) -> str | None:
     """SI unit of the number that a table of type ``annotation`` holds under the dotted ``key``.
 
-    Empty where it depends on other keys (a contact stiffness on its exponent), None where there is no number.
+    Empty where it depends on other keys (a contact stiffness on its exponent), None where there is
+    no number.
     """
     part, _, rest = key.partition(".")
     found = [unit(item, rest) if rest else _unit(item) for item in _inside(annotation, part)]
@@ -54,7 +57,11 @@ def _unit(annotation: Any) -> str | None:
         return ""
     if get_origin(annotation) not in (Annotated, Union, UnionType):
         return None
-    known = [item.json_schema_extra["unit"] for item in get_args(annotation) if getattr(item, "json_schema_extra", None)]
+    known = [
+        item.json_schema_extra["unit"]
+        for item in get_args(annotation)
+        if getattr(item, "json_schema_extra", None)
+    ]
     found = known + [_unit(item) for item in get_args(annotation)]
     return next((item for item in found if item is not None), None)
 
@@ -75,10 +82,13 @@ def is_drop(value: Any) -> bool:
     return value is None or (isinstance(value, str) and value == "absent")
 
 
-def apply_all(raw: dict, overrides: Mapping[str, Any], table_type: type) -> list[tuple[str, str, str]]:
+def apply_all(
+    raw: dict, overrides: Mapping[str, Any], table_type: type
+) -> list[tuple[str, str, str]]:
     """Apply overrides in place; faults (key, given, expected) of keys that lead nowhere.
 
-    A misspelt key that is set is found by the validation of ``table_type``; one that is dropped only here.
+    A misspelt key that is set is found by the validation of ``table_type``; one that is dropped
+    only here.
     """
     faults = []
     for key, value in overrides.items():
@@ -90,15 +100,19 @@ def apply_all(raw: dict, overrides: Mapping[str, Any], table_type: type) -> list
 
 
 def apply(raw: dict, key: str, value: Any) -> tuple[str, str, str] | None:
-    """Set one dotted key in place, or drop it; returns (key, given, expected) when it leads nowhere.
+    """Set one dotted key in place, or drop it; returns (key, given, expected) when it leads
+    nowhere.
 
-    A table that loses its last key is dropped with it: an empty table would be present without meaning anything.
+    A table that loses its last key is dropped with it: an empty table would be present without
+    meaning anything.
     """
     head, _, rest = key.partition(".")
     return _apply_inside(raw, head, rest, key, value)
 
 
-def _apply_inside(table: Any, head: str, rest: str, key: str, value: Any) -> tuple[str, str, str] | None:
+def _apply_inside(
+    table: Any, head: str, rest: str, key: str, value: Any
+) -> tuple[str, str, str] | None:
     if isinstance(table, list):
         if not (head.isdigit() and int(head) < len(table)):
             return key, repr(head), f"an index below {len(table)}"

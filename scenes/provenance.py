@@ -1,7 +1,9 @@
-"""Where values come from: free text under dotted keys. Of a key speaks its own text, else that of the innermost table around it.
+"""Where values come from: free text under dotted keys. Of a key speaks its own text, else that of
+the innermost table around it.
 
-What is overridden is no longer what the text spoke of. The key is then the user's, unless its provenance is given anew. A table
-around it passes its text on to what else it holds, and says itself that a part is the user's.
+What is overridden is no longer what the text spoke of. The key is then the user's, unless its
+provenance is given anew. A table around it passes its text on to what else it holds, and says
+itself that a part is the user's.
 """
 
 from collections.abc import Iterable, Mapping
@@ -12,21 +14,29 @@ _PARTLY = ", in part user"
 _NO_QUANTITIES = ("name", "description", "conditions", "agreement", "provenance")
 
 
-def overridden(stated: Mapping[str, str], raw: Mapping[str, Any], changes: Mapping[str, bool],
-               given: Mapping[str, str]) -> dict[str, str]:
-    """Provenance by dotted key of a scene written as ``raw`` after ``changes``: which dotted keys were set, and True for those
-    that were dropped. ``stated`` is what was known before, ``given`` what comes with the changes."""
+def overridden(
+    stated: Mapping[str, str],
+    raw: Mapping[str, Any],
+    changes: Mapping[str, bool],
+    given: Mapping[str, str],
+) -> dict[str, str]:
+    """Provenance by dotted key of a scene written as ``raw`` after ``changes``: which dotted keys
+    were set, and True for those that were dropped. ``stated`` is what was known before, ``given``
+    what comes with the changes."""
     found = {**stated, **given}
     for key, dropped in changes.items():
         if key.partition(".")[0] in _NO_QUANTITIES:
             continue
-        for other in [other for other in found if other not in given and f"{other}.".startswith(f"{key}.")]:
+        for other in [
+            other for other in found if other not in given and f"{other}.".startswith(f"{key}.")
+        ]:
             del found[other]
         if (text := of(given, key)) is None:
             _pass_on(found, raw, key)
             if not dropped:
                 found[key] = USER
-        elif of(found, key) != text:  # a table inside the one that is spoken of had a text of its own
+        # a table inside the one that is spoken of had a text of its own
+        elif of(found, key) != text:
             found[key] = text
     return found
 
@@ -34,7 +44,14 @@ def overridden(stated: Mapping[str, str], raw: Mapping[str, Any], changes: Mappi
 def of(texts: Mapping[str, str], key: str) -> str | None:
     """What ``texts`` say of a dotted key or of the innermost table around it; None without."""
     parts = key.split(".")
-    return next((texts[name] for length in range(len(parts), 0, -1) if (name := ".".join(parts[:length])) in texts), None)
+    return next(
+        (
+            texts[name]
+            for length in range(len(parts), 0, -1)
+            if (name := ".".join(parts[:length])) in texts
+        ),
+        None,
+    )
 
 
 def _pass_on(found: dict[str, str], raw: Any, key: str) -> None:
@@ -52,10 +69,20 @@ def _pass_on(found: dict[str, str], raw: Any, key: str) -> None:
 
 
 def _names(table: Any) -> Iterable[str]:
-    return list(table) if isinstance(table, dict) else map(str, range(len(table))) if isinstance(table, list) else ()
+    return (
+        list(table)
+        if isinstance(table, dict)
+        else map(str, range(len(table)))
+        if isinstance(table, list)
+        else ()
+    )
 
 
 def _inside(table: Any, part: str) -> Any:
     if isinstance(table, dict):
         return table.get(part)
-    return table[int(part)] if isinstance(table, list) and part.isdigit() and int(part) < len(table) else None
+    return (
+        table[int(part)]
+        if isinstance(table, list) and part.isdigit() and int(part) < len(table)
+        else None
+    )

@@ -1,10 +1,12 @@
-"""``[rail]``: the built-in L section, a mesh of the user's own, or a solid of the user's own that is meshed here.
+"""``[rail]``: the built-in L section, a mesh of the user's own, or a solid of the user's own that
+is meshed here.
 
-Presence of ``mesh`` or ``geometry`` is the switch. Such a file stands in scene axes (m, origin at the nominal mass centre at
-ignition, +X to the open end), its walls one ``clearance`` off the pads. The surrogate sees none of it: ``start`` and ``end`` say
-where the walls begin and end, pads and clearance where they stand; the reference refuses a file that says otherwise
-(``highfi.fit``). ``damping`` (``scenes.effects.structural_damping``), which any kind of rail may have, is felt by the reference and
-by modes of the rails (``scenes.effects.flexibility``).
+Presence of ``mesh`` or ``geometry`` is the switch. Such a file stands in scene axes (m, origin at
+the nominal mass centre at ignition, +X to the open end), its walls one ``clearance`` off the pads.
+The surrogate sees none of it: ``start`` and ``end`` say where the walls begin and end, pads and
+clearance where they stand; the reference refuses a file that says otherwise (``highfi.fit``).
+``damping`` (``scenes.effects.structural_damping``), which any kind of rail may have, is felt by the
+reference and by modes of the rails (``scenes.effects.flexibility``).
 """
 
 import hashlib
@@ -56,7 +58,8 @@ class Span(Table):
 
 
 class MaterialTable(Table):
-    """``[rail.material]``: isotropic linear elasticity; ``expansion`` (1/K) is what ``[thermal]`` asks for, and nothing else."""
+    """``[rail.material]``: isotropic linear elasticity; ``expansion`` (1/K) is what ``[thermal]``
+    asks for, and nothing else."""
 
     density: Density
     youngs_modulus: Pressure
@@ -66,7 +69,8 @@ class MaterialTable(Table):
 
 
 class _RailTable(Table):
-    """What every rail has: the stretch of X (m) in which its walls stand, its material, and its damping, if it has any."""
+    """What every rail has: the stretch of X (m) in which its walls stand, its material, and its
+    damping, if it has any."""
 
     GIVEN_BY: ClassVar[str]
     start: Length
@@ -77,16 +81,19 @@ class _RailTable(Table):
     _forward = field_validator("end")(_beyond_start)
 
     def contents(self) -> dict[str, str]:
-        """The keys that name files, each with the digest of what its file holds: what a result depends on."""
+        """The keys that name files, each with the digest of what its file holds: what a result
+        depends on."""
         return {}
 
     def gap(self, clearance: float) -> float:
-        """Distance (m) of the walls from the pads as drawn, in a scene of that clearance (m): here walls follow the clearance."""
+        """Distance (m) of the walls from the pads as drawn, in a scene of that clearance (m): here
+        walls follow the clearance."""
         return clearance
 
 
 class SectionTable(_RailTable):
-    """Built-in L sections from ``start`` to ``end`` along X, clamped to the platform at ``mounts``."""
+    """Built-in L sections from ``start`` to ``end`` along X, clamped to the platform at
+    ``mounts``."""
 
     GIVEN_BY = "section"
     leg: PositiveLength = 0.024
@@ -117,9 +124,10 @@ class SectionTable(_RailTable):
 class _FileTable(_RailTable):
     """A rail given by a file.
 
-    ``clearance`` (m) is the one the file was drawn for; a scene of another one has shims of the difference under its pads.
-    ``thickness`` (m) of its walls and ``leg`` (m), how far they reach unsupported, are what the bounds of a calibration scale with,
-    and where a wall ends for a pad that comes from behind or from beside (``scenes.model.Plate``).
+    ``clearance`` (m) is the one the file was drawn for; a scene of another one has shims of the
+    difference under its pads. ``thickness`` (m) of its walls and ``leg`` (m), how far they reach
+    unsupported, are what the bounds of a calibration scale with, and where a wall ends for a pad
+    that comes from behind or from beside (``scenes.model.Plate``).
     """
 
     clearance: NonNegativeLength | None = None
@@ -136,7 +144,8 @@ class _FileTable(_RailTable):
         return hashlib.sha256(self.path().read_bytes()).hexdigest()
 
     def is_as_found(self) -> bool:
-        """Whether the file still holds what it held when the scene was read, under which results are filed."""
+        """Whether the file still holds what it held when the scene was read, under which results
+        are filed."""
         return self._digest_now() == self._digest
 
     def path(self) -> Path:
@@ -148,7 +157,8 @@ class _FileTable(_RailTable):
         return {self.GIVEN_BY: self._digest}
 
     def gap(self, clearance: float) -> float:
-        """Distance (m) of the walls from the pads as drawn: a file does not follow the clearance of the scene."""
+        """Distance (m) of the walls from the pads as drawn: a file does not follow the clearance of
+        the scene."""
         return clearance if self.clearance is None else self.clearance
 
 
@@ -162,8 +172,8 @@ def _readable(file: str) -> str:
 
 
 class MeshTable(_FileTable):
-    """``[rail] mesh``: 8-node hexahedra or 10-node tetrahedra in any format meshio reads, with named surfaces ``contact...`` and
-    ``mount`` (``highfi.mesh``)."""
+    """``[rail] mesh``: 8-node hexahedra or 10-node tetrahedra in any format meshio reads, with
+    named surfaces ``contact...`` and ``mount`` (``highfi.mesh``)."""
 
     GIVEN_BY = "mesh"
     mesh: Annotated[str, AfterValidator(_readable)]
@@ -184,8 +194,8 @@ class BoxTable(Table):
 
 
 class GeometryTable(_FileTable):
-    """``[rail] geometry``: a solid drawn in CAD, meshed here with ``elements`` of 8-node hexahedra or 10-node tetrahedra.
-    ``surfaces`` names the parts of its boundary that lie in boxes."""
+    """``[rail] geometry``: a solid drawn in CAD, meshed here with ``elements`` of 8-node hexahedra
+    or 10-node tetrahedra. ``surfaces`` names the parts of its boundary that lie in boxes."""
 
     GIVEN_BY = "geometry"
     geometry: Annotated[str, AfterValidator(_readable)]
@@ -202,8 +212,11 @@ class GeometryTable(_FileTable):
     @field_validator("surfaces")
     @classmethod
     def _walls_and_mount(cls, surfaces):
-        wrong = [f"a name that starts with 'contact' or is 'mount' instead of {name!r}" for name in surfaces
-                 if not name.startswith("contact") and name != "mount"]
+        wrong = [
+            f"a name that starts with 'contact' or is 'mount' instead of {name!r}"
+            for name in surfaces
+            if not name.startswith("contact") and name != "mount"
+        ]
         if not any(name.startswith("contact") for name in surfaces):
             wrong.append("a surface whose name starts with 'contact'")
         if "mount" not in surfaces:
@@ -219,4 +232,9 @@ def _given_by(rail: Any) -> str:
     return getattr(rail, "GIVEN_BY", "section")
 
 
-RailTable = Annotated[Annotated[SectionTable, Tag("section")] | Annotated[MeshTable, Tag("mesh")] | Annotated[GeometryTable, Tag("geometry")], Discriminator(_given_by)]
+RailTable = Annotated[
+    Annotated[SectionTable, Tag("section")]
+    | Annotated[MeshTable, Tag("mesh")]
+    | Annotated[GeometryTable, Tag("geometry")],
+    Discriminator(_given_by),
+]

@@ -1,8 +1,9 @@
 """Scene files: TOML on disk to one nested mapping, a file that ``extends`` another merged over it.
 
-In a file that extends another, a table set to ``"absent"`` drops the inherited one, and a ``[thrust]`` of another kind, a
-``[contact]`` of another law or a ``[rail]`` given by a file replaces the inherited table instead of mixing with it. What it sets is
-the user's (``scenes.provenance``), unless it says otherwise in a ``[provenance]`` of its own.
+In a file that extends another, a table set to ``"absent"`` drops the inherited one, and a
+``[thrust]`` of another kind, a ``[contact]`` of another law or a ``[rail]`` given by a file
+replaces the inherited table instead of mixing with it. What it sets is the user's
+(``scenes.provenance``), unless it says otherwise in a ``[provenance]`` of its own.
 """
 
 import tomllib
@@ -14,7 +15,8 @@ from scenes.faults import Fault, SceneError
 
 CATALOG = Path(__file__).resolve().parent / "catalog"
 _CHOICE = {"thrust": "kind", "contact": "law"}
-_FILES = (("thrust", "file"), *(("rail", key) for key in rail.FILES))  # written relative to the scene file
+# written relative to the scene file
+_FILES = (("thrust", "file"), *(("rail", key) for key in rail.FILES))
 _FREE_TEXT = {"conditions", "provenance"}
 
 
@@ -40,14 +42,21 @@ def _known() -> str:
 
 
 def _inherit(path: Path, user_file: str, chain: tuple[Path, ...]) -> dict:
-    """``path`` merged over what it extends. Faults of an inherited file name the file the user gave, and that file."""
+    """``path`` merged over what it extends. Faults of an inherited file name the file the user
+    gave, and that file."""
     key = "file" if not chain else "extends"
     if path.resolve() in chain:
-        raise SceneError([Fault(user_file, key, str(path), "files that do not extend each other in a circle")])
+        raise SceneError(
+            [Fault(user_file, key, str(path), "files that do not extend each other in a circle")]
+        )
     raw = toml(path, user_file, key)
     for name, entry in _FILES:
         table = raw.get(name)
-        if isinstance(table, dict) and isinstance(table.get(entry), str) and table[entry] != "absent":
+        if (
+            isinstance(table, dict)
+            and isinstance(table.get(entry), str)
+            and table[entry] != "absent"
+        ):
             table[entry] = str((path.parent / table[entry]).resolve())
     base = raw.pop("extends", None)
     if base is None:
@@ -58,11 +67,14 @@ def _inherit(path: Path, user_file: str, chain: tuple[Path, ...]) -> dict:
     if not base_path.is_file():
         raise SceneError([Fault(user_file, "extends", repr(base), _known())])
     inherited = _inherit(base_path, user_file, (*chain, path.resolve()))
-    inherited.pop("name", None)  # results are filed by name: a variation may not pass for what it varies
+    # results are filed by name: a variation may not pass for what it varies
+    inherited.pop("name", None)
     merged = _merged(inherited, raw)
     known, given = (overrides.texts(table.get("provenance")) for table in (inherited, raw))
     if known is not None and given is not None:
-        merged["provenance"] = provenance.overridden(known, merged, dict(_changes(inherited, raw)), given)
+        merged["provenance"] = provenance.overridden(
+            known, merged, dict(_changes(inherited, raw)), given
+        )
     return merged
 
 
@@ -73,7 +85,9 @@ def toml(path: Path, user_file: str, key: str = "file") -> dict:
         with open(path, "rb") as stream:
             return tomllib.load(stream)
     except OSError as error:
-        raise SceneError([Fault(user_file, key, f"{inherited}{error.strerror}", "a readable TOML file")]) from error
+        raise SceneError(
+            [Fault(user_file, key, f"{inherited}{error.strerror}", "a readable TOML file")]
+        ) from error
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise SceneError([Fault(user_file, key, f"{inherited}{error}", "valid TOML")]) from error
 
@@ -85,7 +99,11 @@ def _merged(base: dict, extra: dict) -> dict:
             merged.pop(key, None)
         elif key in _FREE_TEXT and isinstance(value, dict) and isinstance(merged.get(key), dict):
             merged[key] = merged[key] | value
-        elif isinstance(value, dict) and isinstance(merged.get(key), dict) and not _other_choice(key, merged[key], value):
+        elif (
+            isinstance(value, dict)
+            and isinstance(merged.get(key), dict)
+            and not _other_choice(key, merged[key], value)
+        ):
             merged[key] = _merged(merged[key], value)
         else:
             merged[key] = value

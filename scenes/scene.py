@@ -1,4 +1,5 @@
-"""The scene: one immutable, validated description that feeds both fidelities. Presence of a table is the switch.
+"""The scene: one immutable, validated description that feeds both fidelities. Presence of a table
+is the switch.
 
 >>> scene = load("reference")
 >>> scene.replace({"thrust_offset.misalignment.axial": "0.3 deg"}).condition("phi35")
@@ -39,14 +40,26 @@ from scenes.tables import MOST_SAMPLES, AgreementTable, OutputTable, PadTable, P
 from scenes.units import Duration
 
 CATALOG = reading.CATALOG
-EFFECTS = ("thrust_offset", "mass_offset", "initial", "contact", "friction", "platform", "gravity", "thermal", "rail.damping")
+EFFECTS = (
+    "thrust_offset",
+    "mass_offset",
+    "initial",
+    "contact",
+    "friction",
+    "platform",
+    "gravity",
+    "thermal",
+    "rail.damping",
+)
 NOMINAL = "nominal"  # the scene itself, named like a condition
 _BESIDE = ("conditions", "agreement", "provenance")
-_NOT_PHYSICS = {"name", "description", "flight", *_BESIDE}  # what comes after the exit changes nothing before it
+# what comes after the exit changes nothing before it
+_NOT_PHYSICS = {"name", "description", "flight", *_BESIDE}
 
 
 class Scene(Table):
-    """Everything a run needs. Fields are SI; an absent effect is None. Use ``replace`` for variations."""
+    """Everything a run needs. Fields are SI; an absent effect is None. Use ``replace`` for
+    variations."""
 
     name: Annotated[str, AfterValidator(names.of_scene)]
     description: str = ""
@@ -74,22 +87,33 @@ class Scene(Table):
     @field_validator("thermal")
     @classmethod
     def _expanding(cls, thermal: ThermalTable | None, info: ValidationInfo):
-        if thermal is not None and "rail" in info.data and info.data["rail"].material.expansion is None:
-            raise ValueError('rails that expand: rail.material.expansion, for example "23.6e-6 1/K"')
+        if (
+            thermal is not None
+            and "rail" in info.data
+            and info.data["rail"].material.expansion is None
+        ):
+            raise ValueError(
+                'rails that expand: rail.material.expansion, for example "23.6e-6 1/K"'
+            )
         return thermal
 
     @field_validator("output")
     @classmethod
     def _of_fitting_interval(cls, output: OutputTable, info: ValidationInfo):
         if "duration" in info.data and not output.fits(duration := info.data["duration"]):
-            raise within("interval", f"{output.interval:g} s",
-                         f"{duration / MOST_SAMPLES:g} s to {duration:g} s: at least one and at most {MOST_SAMPLES:,} samples in "
-                         f"the duration of {duration:g} s")
+            raise within(
+                "interval",
+                f"{output.interval:g} s",
+                f"{duration / MOST_SAMPLES:g} s to {duration:g} s: at least one and at most "
+                f"{MOST_SAMPLES:,} samples in "
+                f"the duration of {duration:g} s",
+            )
         return output
 
     def replace(self, overrides: Mapping[str, Any]) -> "Scene":
-        """A new scene with dotted keys set. Text carries units, a bare number is SI, None or "absent" drops a table. What is set
-        has the provenance "user", unless ``overrides`` give another under ``provenance.<key>``.
+        """A new scene with dotted keys set. Text carries units, a bare number is SI, None or
+        "absent" drops a table. What is set has the provenance "user", unless ``overrides`` give
+        another under ``provenance.<key>``.
 
         Raises SceneError listing every fault.
         """
@@ -97,15 +121,19 @@ class Scene(Table):
         lost = keys.apply_all(raw, overrides, Scene)
         _mark(raw, overrides)
         scene, faults = _validated(raw, True)
-        if any(key.split(".")[0] in _BESIDE for key in overrides):  # else they stay as they were found sound
+        # else they stay as they were found sound
+        if any(key.split(".")[0] in _BESIDE for key in overrides):
             faults = faults + _beside_faults(raw, True, faults)
         if lost or faults:
-            raise SceneError([Fault(f"override of {self._source}", *fault) for fault in lost + faults])
+            raise SceneError(
+                [Fault(f"override of {self._source}", *fault) for fault in lost + faults]
+            )
         scene._raw, scene._source = raw, self._source
         return scene
 
     def condition(self, name: str) -> "Scene":
-        """The scene of one named condition, or itself as ``NOMINAL``. Raises SceneError for a name the scene does not have."""
+        """The scene of one named condition, or itself as ``NOMINAL``. Raises SceneError for a name
+        the scene does not have."""
         if name == NOMINAL and name not in self.conditions:
             return self
         if name not in self.conditions:
@@ -114,7 +142,8 @@ class Scene(Table):
         return self.replace(self.conditions[name])
 
     def given(self, key: str) -> Any:
-        """What was written under a dotted ``key``, before it was read as a quantity; None where nothing was."""
+        """What was written under a dotted ``key``, before it was read as a quantity; None where
+        nothing was."""
         found: Any = self._raw
         for part in key.split("."):
             found = found.get(part) if isinstance(found, dict) else None
@@ -128,12 +157,14 @@ class Scene(Table):
         return found
 
     def resolved(self) -> dict:
-        """Every input in SI, as written into result files; ``parse(..., bare_numbers_are_si=True)`` reads it back."""
+        """Every input in SI, as written into result files; ``parse(..., bare_numbers_are_si=True)``
+        reads it back."""
         return self.model_dump(mode="json", exclude_none=True)
 
     @cached_property
     def hash(self) -> str:
-        """SHA-256 of the physical inputs. A file counts by what it holds, a measured thrust by its points, not by where it lies."""
+        """SHA-256 of the physical inputs. A file counts by what it holds, a measured thrust by its
+        points, not by where it lies."""
         physics = self.physics()
         physics["rail"] |= self.rail.contents()
         measured = self.thrust.kind == "measured"
@@ -147,16 +178,20 @@ class Scene(Table):
         return plausibility.warnings(self)
 
     def agrees(self) -> bool:
-        """Whether tables that were each found sound are so together: rails can follow a temperature, where there is one, and the
-        sampling interval fits the duration."""
-        return (self.thermal is None or self.rail.material.expansion is not None) and self.output.fits(self.duration)
+        """Whether tables that were each found sound are so together: rails can follow a
+        temperature, where there is one, and the sampling interval fits the duration."""
+        return (
+            self.thermal is None or self.rail.material.expansion is not None
+        ) and self.output.fits(self.duration)
 
     def absent_effects(self) -> list[str]:
         """Dotted keys of the effect tables this scene does not have."""
         return [key for key in EFFECTS if attrgetter(key)(self) is None]
 
 
-def parse(raw: Mapping[str, Any], source: str = "scene", bare_numbers_are_si: bool = False) -> Scene:
+def parse(
+    raw: Mapping[str, Any], source: str = "scene", bare_numbers_are_si: bool = False
+) -> Scene:
     """Validate a nested mapping, all its conditions included.
 
     Raises SceneError listing every fault with file, key, given and expected.
@@ -185,7 +220,8 @@ _Faults = list[tuple[str, str, str]]
 
 
 def _validated(raw: Any, bare_numbers_are_si: bool) -> tuple[Scene | None, _Faults]:
-    """The scene, or None with its faults as (key, given, expected). Puts conditions and provenance under dotted keys."""
+    """The scene, or None with its faults as (key, given, expected). Puts conditions and provenance
+    under dotted keys."""
     if isinstance(raw, dict):
         if isinstance(raw.get("provenance"), dict):
             raw["provenance"] = dict(keys.dotted(raw["provenance"]))
@@ -198,27 +234,48 @@ def _validated(raw: Any, bare_numbers_are_si: bool) -> tuple[Scene | None, _Faul
 
 
 def _mark(raw: dict, overrides: Mapping[str, Any]) -> None:
-    """Bring the provenance in ``raw``, to which ``overrides`` were applied, up to date with them."""
+    """Bring the provenance in ``raw``, to which ``overrides`` were applied, up to date with
+    them."""
     stated = keys.texts(raw.get("provenance"))
     if stated is None:
         return
     given = keys.texts(overrides.get("provenance")) or {}
-    given |= {key.removeprefix("provenance."): text for key, text in overrides.items() if key.startswith("provenance.")}
+    given |= {
+        key.removeprefix("provenance."): text
+        for key, text in overrides.items()
+        if key.startswith("provenance.")
+    }
     before = {key: text for key, text in stated.items() if key not in given}
     changes = {key: keys.is_drop(value) for key, value in overrides.items()}
-    raw["provenance"] = provenance.overridden(before, raw, changes, {key: text for key, text in given.items() if key in stated})
+    raw["provenance"] = provenance.overridden(
+        before, raw, changes, {key: text for key, text in given.items() if key in stated}
+    )
 
 
 def _tables(raw: Any) -> list[tuple[str, dict]]:
-    return [(name, table) for name, table in raw.items() if isinstance(table, dict)] if isinstance(raw, dict) else []
+    return (
+        [(name, table) for name, table in raw.items() if isinstance(table, dict)]
+        if isinstance(raw, dict)
+        else []
+    )
 
 
 def _beside_faults(raw: dict, bare_numbers_are_si: bool, known: _Faults) -> _Faults:
-    """What is wrong in conditions, agreement and provenance, apart from the ``known`` faults of the scene itself."""
+    """What is wrong in conditions, agreement and provenance, apart from the ``known`` faults of the
+    scene itself."""
     found = []
     for name, table in _tables(raw.get("conditions")):
         varied = keys.plain({key: item for key, item in raw.items() if key not in _BESIDE})
         faults = keys.apply_all(varied, table, Scene) + _validated(varied, bare_numbers_are_si)[1]
-        found += [(f"conditions.{name}.{key}", *rest) for key, *rest in faults if (key, *rest) not in known]
-    # A misspelt key that was set is known by its own name, and need not be told by that of its provenance too.
-    return found + [fault for fault in roles.faults(raw, Scene) if not (known and fault[1] == repr(provenance.USER))]
+        found += [
+            (f"conditions.{name}.{key}", *rest)
+            for key, *rest in faults
+            if (key, *rest) not in known
+        ]
+    # A misspelt key that was set is known by its own name, and need not be told by that of its
+    # provenance too.
+    return found + [
+        fault
+        for fault in roles.faults(raw, Scene)
+        if not (known and fault[1] == repr(provenance.USER))
+    ]

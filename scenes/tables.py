@@ -1,4 +1,5 @@
-"""The small tables every scene has: payload, pads, output, and what the agreement study fits and scores."""
+"""The small tables every scene has: payload, pads, output, and what the agreement study fits and
+scores."""
 
 import math
 from typing import Annotated, Literal
@@ -24,7 +25,8 @@ Normal = Literal["+y", "-y", "+z", "-z"]
 
 
 class PayloadTable(Table):
-    """``[payload]``: mass, inertia about the actual mass centre, and (for plausibility) outer size."""
+    """``[payload]``: mass, inertia about the actual mass centre, and (for plausibility) outer
+    size."""
 
     mass: Mass
     inertia: InertiaTensor
@@ -32,10 +34,11 @@ class PayloadTable(Table):
 
 
 class PadTable(Table):
-    """``[[pads]]``: a pad on the payload; each normal is one flat face, crowned by ``relief`` at its edges.
+    """``[[pads]]``: a pad on the payload; each normal is one flat face, crowned by ``relief`` at
+    its edges.
 
-    ``position`` is the pad's corner measured from the nominal mass centre. A face with normal along y is centred
-    ``inset`` towards the payload's axis along z (and the other way round).
+    ``position`` is the pad's corner measured from the nominal mass centre. A face with normal along
+    y is centred ``inset`` towards the payload's axis along z (and the other way round).
     """
 
     position: tuple[Length, Length, Length]
@@ -54,22 +57,26 @@ class PadTable(Table):
 
 
 class OutputTable(Table):
-    """``[output]``: sampling interval of every result (s). What becomes of a payload does not hang on it."""
+    """``[output]``: sampling interval of every result (s). What becomes of a payload does not hang
+    on it."""
 
     interval: PositiveTime = 5e-5
 
     def fits(self, duration: float) -> bool:
-        """Whether a scene that lasts ``duration`` (s) has at least one sample after ignition, and no more than MOST_SAMPLES."""
+        """Whether a scene that lasts ``duration`` (s) has at least one sample after ignition, and
+        no more than MOST_SAMPLES."""
         return 1 <= duration / self.interval * (1.0 + _ROUNDING) < MOST_SAMPLES + 1
 
     def last(self, duration: float) -> int:
-        """Number of the last sample of a scene that lasts ``duration`` (s), the one at ignition being number 0."""
+        """Number of the last sample of a scene that lasts ``duration`` (s), the one at ignition
+        being number 0."""
         return int(duration / self.interval * (1.0 + _ROUNDING))
 
 
 class AgreementTable(Table):
-    """``[agreement]``: conditions that are fitted, those only scored, those that give the floor and the refinement error; and up to
-    which relative L2 of the rates and error of a settled rate (rad/s) a surrogate is said to agree."""
+    """``[agreement]``: conditions that are fitted, those only scored, those that give the floor and
+    the refinement error; and up to which relative L2 of the rates and error of a settled rate
+    (rad/s) a surrogate is said to agree."""
 
     fitted: tuple[str, ...] = ()
     held_out: tuple[str, ...] = ()

@@ -1,5 +1,5 @@
-"""What varies in an ensemble: distributions under dotted keys, the number of cases, a seed and a way of sampling,
-from a TOML file::
+"""What varies in an ensemble: distributions under dotted keys, the number of cases, a seed and a
+way of sampling, from a TOML file::
 
     cases = 1000
     seed = 1
@@ -41,8 +41,8 @@ class _File(Table):
 
 
 class Uncertainty(NamedTuple):
-    """``cases`` to be drawn with ``seed`` by ``sampling``: the numbers under the dotted keys of ``vary``,
-    each by its distribution."""
+    """``cases`` to be drawn with ``seed`` by ``sampling``: the numbers under the dotted keys of
+    ``vary``, each by its distribution."""
 
     cases: int
     seed: int
@@ -51,12 +51,17 @@ class Uncertainty(NamedTuple):
 
     def resolved(self) -> dict:
         """What the numbers of a case depend on, in SI, as written into result files."""
-        return self._asdict() | {"vary": {key: item.model_dump(mode="json", exclude={"provenance"})
-                                          for key, item in self.vary.items()}}
+        return self._asdict() | {
+            "vary": {
+                key: item.model_dump(mode="json", exclude={"provenance"})
+                for key, item in self.vary.items()
+            }
+        }
 
 
 def load(name_or_path: str | Path, scene: Scene, **changed: Any) -> Uncertainty:
-    """Read what varies in ``scene`` from a TOML file, or from the catalogue by name; ``changed`` replaces cases, seed or sampling.
+    """Read what varies in ``scene`` from a TOML file, or from the catalogue by name; ``changed``
+    replaces cases, seed or sampling.
 
     Raises SceneError listing every fault.
     """
@@ -65,26 +70,44 @@ def load(name_or_path: str | Path, scene: Scene, **changed: Any) -> Uncertainty:
         path = CATALOG / f"{name_or_path}.toml"
         if not path.is_file():
             known = ", ".join(sorted(item.stem for item in CATALOG.glob("*.toml")))
-            raise SceneError([Fault(str(name_or_path), "vary", "an unknown name", f"a path to a .toml file or one of {known}")])
+            raise SceneError(
+                [
+                    Fault(
+                        str(name_or_path),
+                        "vary",
+                        "an unknown name",
+                        f"a path to a .toml file or one of {known}",
+                    )
+                ]
+            )
     return parse(reading.toml(path, str(path)) | changed, scene, str(path))
 
 
-def parse(raw: Mapping[str, Any], scene: Scene, source: str = "vary", bare_numbers_are_si: bool = False) -> Uncertainty:
-    """Validate a mapping as a file holds it. Raises SceneError listing every fault with file, key, given and expected."""
+def parse(
+    raw: Mapping[str, Any], scene: Scene, source: str = "vary", bare_numbers_are_si: bool = False
+) -> Uncertainty:
+    """Validate a mapping as a file holds it. Raises SceneError listing every fault with file, key,
+    given and expected."""
     faults = []
     try:
         file = _File.model_validate(raw, context={})
     except ValidationError as error:
         faults = faults_of(error, source)
     tables = _tables(raw.get("vary"))
-    varied = {key: _distribution(source, key, table, bare_numbers_are_si, faults) for key, table in tables.items()}
+    varied = {
+        key: _distribution(source, key, table, bare_numbers_are_si, faults)
+        for key, table in tables.items()
+    }
     if faults:
         raise SceneError(faults)
     try:
-        # One draw as a trial: it finds what no single key shows, such as a pad that the scene does not have.
+        # One draw as a trial: it finds what no single key shows, such as a pad that the scene does
+        # not have.
         scene.replace({key: float(item.ppf(np.array(0.5))) for key, item in varied.items()})
     except SceneError as error:
-        raise SceneError([fault._replace(source=f"{source}, medians") for fault in error.faults]) from None
+        raise SceneError(
+            [fault._replace(source=f"{source}, medians") for fault in error.faults]
+        ) from None
     return Uncertainty(file.cases, file.seed, file.sampling, varied)
 
 
@@ -97,7 +120,9 @@ def _tables(vary: Any) -> dict[str, dict[str, Any]]:
     return found
 
 
-def _distribution(source: str, key: str, table: dict[str, Any], bare: bool, faults: list[Fault]) -> Distribution | None:
+def _distribution(
+    source: str, key: str, table: dict[str, Any], bare: bool, faults: list[Fault]
+) -> Distribution | None:
     place = f"vary.{key}"
     if (unit := keys.unit(Scene, key)) is None:
         expected = "a key that holds a number" if keys.is_key(Scene, key) else "no such key"
@@ -105,10 +130,14 @@ def _distribution(source: str, key: str, table: dict[str, Any], bare: bool, faul
         return None
     name = table.get("distribution")
     if name not in BY_NAME:
-        faults.append(Fault(source, f"{place}.distribution", repr(name), f"one of {', '.join(BY_NAME)}"))
+        faults.append(
+            Fault(source, f"{place}.distribution", repr(name), f"one of {', '.join(BY_NAME)}")
+        )
         return None
     try:
-        return BY_NAME[name].model_validate(table, context={"unit": unit, "bare_numbers_are_si": bare})
+        return BY_NAME[name].model_validate(
+            table, context={"unit": unit, "bare_numbers_are_si": bare}
+        )
     except ValidationError as error:
         faults += [fault._replace(key=f"{place}.{fault.key}") for fault in faults_of(error, source)]
         return None

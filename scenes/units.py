@@ -1,7 +1,8 @@
-"""Quantities with units: text such as ``"0.05 mm"`` becomes an SI float, or a fault that names what was expected.
+"""Quantities with units: text such as ``"0.05 mm"`` becomes an SI float, or a fault that names what
+was expected.
 
-Inside the program everything is SI and radians. Files must write units; a bare number is taken as SI only where the
-caller says so (overrides made by a program, resolved scenes read back).
+Inside the program everything is SI and radians. Files must write units; a bare number is taken as
+SI only where the caller says so (overrides made by a program, resolved scenes read back).
 """
 
 import math
@@ -17,18 +18,22 @@ from pydantic import BeforeValidator, Field, ValidationInfo
 registry: pint.UnitRegistry = pint.UnitRegistry()
 
 # The number is read by float, so that pint never evaluates arithmetic such as "9**9**9 m".
-_QUANTITY = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?|[+-]?(?:nan|inf(?:inity)?)\b)\s*(.*?)\s*", re.I)
+_QUANTITY = re.compile(
+    r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?|[+-]?(?:nan|inf(?:inity)?)\b)\s*(.*?)\s*", re.I
+)
 
 
 def named(unit: str) -> str:
     """What a field in ``unit`` should hold, in words."""
-    return "a number" if unit == "dimensionless" else f"a quantity in {unit}, for example \"1 {unit}\""
+    return (
+        "a number" if unit == "dimensionless" else f'a quantity in {unit}, for example "1 {unit}"'
+    )
 
 
 @lru_cache(maxsize=4096)
 def to_si(text: str, unit: str, absolute: bool = False) -> float:
-    """Value of ``text`` in ``unit`` (an SI unit). Raises ValueError for a wrong dimension, bad text, NaN and inf, and, unless it is
-    ``absolute``, for a unit whose zero is elsewhere."""
+    """Value of ``text`` in ``unit`` (an SI unit). Raises ValueError for a wrong dimension, bad
+    text, NaN and inf, and, unless it is ``absolute``, for a unit whose zero is elsewhere."""
     match = _QUANTITY.fullmatch(text)
     if match is None:
         raise ValueError(named(unit))
@@ -42,8 +47,12 @@ def to_si(text: str, unit: str, absolute: bool = False) -> float:
     if not quantity.is_compatible_with(unit):
         raise ValueError(f"{named(unit)} (given dimension {quantity.dimensionality})")
     if not absolute and registry.Quantity(0.0, quantity.units).to(unit).magnitude != 0.0:
-        raise ValueError(f"{named(unit)} ({given_unit!r} has its zero elsewhere: a difference is in K or delta_degC)")
-    # An angle has no dimension, so "0.1" would pass for 0.1 rad and "5 Hz" for 5 rad/s: ask for the unit itself.
+        raise ValueError(
+            f"{named(unit)} ({given_unit!r} has its zero elsewhere: a difference is in K or "
+            f"delta_degC)"
+        )
+    # An angle has no dimension, so "0.1" would pass for 0.1 rad and "5 Hz" for 5 rad/s: ask for the
+    # unit itself.
     if _radians(quantity) != _radians(registry.Quantity(1.0, unit)):
         raise ValueError(f"{named(unit)} (given unit {quantity.units})")
     value = float(quantity.to(unit).magnitude)
@@ -63,29 +72,34 @@ def are_units(cells: Iterable[str]) -> bool:
 
 
 def parse(value: Any, unit: str, bare_numbers_are_si: bool) -> float:
-    """SI value of a field that should carry ``unit``; ``value`` is text with a unit, or a number where that is allowed.
+    """SI value of a field that should carry ``unit``; ``value`` is text with a unit, or a number
+    where that is allowed.
 
     Raises ValueError that says what was expected.
     """
     if isinstance(value, str):
         return to_si(value, unit)
-    if type(value) is not float and (isinstance(value, bool) or not isinstance(value, Real)):  # abstract types are slow to ask
+    # abstract types are slow to ask
+    if type(value) is not float and (isinstance(value, bool) or not isinstance(value, Real)):
         raise ValueError(named(unit))
     if not math.isfinite(value):
         raise ValueError(f"{named(unit)}, neither NaN nor infinite")
     if unit != "dimensionless" and not bare_numbers_are_si:
-        raise ValueError(f"text with a unit of dimension {unit}, for example \"{value} {unit}\"")
+        raise ValueError(f'text with a unit of dimension {unit}, for example "{value} {unit}"')
     return float(value)
 
 
 def quantity(unit: str, **bounds: float) -> Any:
-    """Pydantic type of a quantity held in ``unit``, with bounds as in ``pydantic.Field`` (gt, ge, lt, le) in that unit."""
+    """Pydantic type of a quantity held in ``unit``, with bounds as in ``pydantic.Field`` (gt, ge,
+    lt, le) in that unit."""
 
     def convert(value: Any, info: ValidationInfo) -> float:
         bare = bool(info.context and info.context.get("bare_numbers_are_si"))
         return parse(value, unit, bare)
 
-    return Annotated[float, BeforeValidator(convert), Field(**bounds, json_schema_extra={"unit": unit})]
+    return Annotated[
+        float, BeforeValidator(convert), Field(**bounds, json_schema_extra={"unit": unit})
+    ]
 
 
 Number = quantity("dimensionless")

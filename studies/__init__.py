@@ -1,1 +1,2 @@
-"""Questions asked of both fidelities: agreement, cost, stability, ablation; the report and the command line."""
+"""Questions asked of both fidelities: agreement, cost, stability, ablation; the report and the
+command line."""

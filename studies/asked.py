@@ -10,8 +10,16 @@ from pathlib import Path
 import typer
 
 
-def study_of(scene: str, out: Path, overrides, conditions=None, element_size=None, workers=None, checkpoint_every=None,
-             resume=True):
+def study_of(
+    scene: str,
+    out: Path,
+    overrides,
+    conditions=None,
+    element_size=None,
+    workers=None,
+    checkpoint_every=None,
+    resume=True,
+):
     """The study that the options of a command ask for. Raises SceneError, every fault listed."""
     import scenes
     from scenes import plausibility
@@ -30,9 +38,12 @@ def study_of(scene: str, out: Path, overrides, conditions=None, element_size=Non
     if workers is not None:
         settings = replace(settings, workers=workers)
     if checkpoint_every is not None:
-        settings = replace(settings, checkpoint_every=quantity("--checkpoint-every", checkpoint_every, "s"))
+        settings = replace(
+            settings, checkpoint_every=quantity("--checkpoint-every", checkpoint_every, "s")
+        )
     study = Study(found, Path(out) / found.name, settings, tuple(conditions or ()))
-    _ = study.conditions  # a bad override or an unknown condition is a fault of the input, found before anything runs
+    # a bad override or an unknown condition is a fault of the input, found before anything runs
+    _ = study.conditions
     for warning in plausibility.of_all_conditions(found):
         say(f"implausible: {warning}")
     return study
@@ -67,8 +78,14 @@ def guarded(work: Callable[[], dict], as_json: bool = False) -> dict:
     except (StudyError, GmshUnavailable) as fault:
         stop(str(fault), 1)
     except KeyboardInterrupt:
-        print("tipoff: stopped; what was finished is kept, and the same command goes on from there", file=sys.stderr, flush=True)
-        os._exit(130)  # at once: files are complete at any moment, and a thread that compiles would hold the process for seconds
+        print(
+            "tipoff: stopped; what was finished is kept, and the same command goes on from there",
+            file=sys.stderr,
+            flush=True,
+        )
+        # at once: files are complete at any moment, and a thread that compiles would hold the
+        # process for seconds
+        os._exit(130)
     except ValueError as fault:
         if type(fault).__name__ not in INPUT_FAULTS:
             raise

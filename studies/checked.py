@@ -1,4 +1,5 @@
-"""Input from several places checked as one, so that a user who made two mistakes is told of both."""
+"""Input from several places checked as one, so that a user who made two mistakes is told of
+both."""
 
 from collections.abc import Callable
 from typing import Any

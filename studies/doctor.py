@@ -1,7 +1,9 @@
-"""Is this machine able to run tipoff? Says in plain words what is missing and the one command that mends it.
+"""Is this machine able to run tipoff? Says in plain words what is missing and the one command that
+mends it.
 
-The mesher gmsh must be installed, but need not load: only solids drawn in CAD call for its system libraries, and they say so
-(`meshes.generator`). This file imports nothing of the project: it must work when the rest does not.
+The mesher gmsh must be installed, but need not load: only solids drawn in CAD call for its system
+libraries, and they say so (`meshes.generator`). This file imports nothing of the project: it must
+work when the rest does not.
 """
 
 import importlib
@@ -21,8 +23,13 @@ def faults() -> list[str]:
     """Every reason why tipoff cannot run here, one sentence each; empty when it can."""
     found = []
     if sys.version_info < OLDEST_PYTHON:
-        found.append(f"Python {sys.version.split()[0]} is too old: tipoff needs {'.'.join(map(str, OLDEST_PYTHON))} or newer.")
-    found += [_python_package_fault(name, reason) for name in MODULES if (reason := _import_error(name))]
+        found.append(
+            f"Python {sys.version.split()[0]} is too old: tipoff needs "
+            f"{'.'.join(map(str, OLDEST_PYTHON))} or newer."
+        )
+    found += [
+        _python_package_fault(name, reason) for name in MODULES if (reason := _import_error(name))
+    ]
     if importlib.util.find_spec("gmsh") is None:
         found.append(_python_package_fault("gmsh", "not installed"))
     return found
@@ -47,7 +54,10 @@ def _import_error(name: str) -> Exception | None:
 
 
 def _python_package_fault(name: str, reason: Exception | str) -> str:
-    return f"the Python package {name} does not load ({reason}). `make` mends it: rm -rf .venv && make .venv/.ready"
+    return (
+        f"the Python package {name} does not load ({reason}). `make` mends it: rm -rf .venv && "
+        f"make .venv/.ready"
+    )
 
 
 if __name__ == "__main__":

@@ -7,10 +7,15 @@ from pathlib import Path
 
 def describe() -> dict:
     """Processor, cores this process may use, memory (GiB), operating system and Python."""
-    return {"processor": _line("/proc/cpuinfo", "model name") or platform.processor() or "unknown",
-            "cores": len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count(),
-            "memory_gib": _memory(), "system": f"{platform.system()} {platform.machine()}",
-            "python": platform.python_version()}
+    return {
+        "processor": _line("/proc/cpuinfo", "model name") or platform.processor() or "unknown",
+        "cores": len(os.sched_getaffinity(0))
+        if hasattr(os, "sched_getaffinity")
+        else os.cpu_count(),
+        "memory_gib": _memory(),
+        "system": f"{platform.system()} {platform.machine()}",
+        "python": platform.python_version(),
+    }
 
 
 def _memory() -> float | None:

@@ -1,4 +1,5 @@
-"""Progress of several runs at once: bars with the time left on a terminal, one line per finished run anywhere else."""
+"""Progress of several runs at once: bars with the time left on a terminal, one line per finished
+run anywhere else."""
 
 import threading
 import time
@@ -18,7 +19,8 @@ class Interrupted(Exception):
 
 
 class Board:
-    """Context manager that shows ``total`` runs; ``report`` and ``finished`` may be called from any thread."""
+    """Context manager that shows ``total`` runs; ``report`` and ``finished`` may be called from any
+    thread."""
 
     def __init__(self, title: str, total: int):
         self._title, self._total, self._done = title, total, 0
@@ -30,9 +32,16 @@ class Board:
 
     def __enter__(self) -> "Board":
         if console.is_terminal:
-            self._bars = Progress(TextColumn("{task.description}", justify="left"), BarColumn(),
-                                  TextColumn("{task.percentage:3.0f} %"), TimeElapsedColumn(), TextColumn("left"),
-                                  TimeRemainingColumn(), console=console, transient=True)
+            self._bars = Progress(
+                TextColumn("{task.description}", justify="left"),
+                BarColumn(),
+                TextColumn("{task.percentage:3.0f} %"),
+                TimeElapsedColumn(),
+                TextColumn("left"),
+                TimeRemainingColumn(),
+                console=console,
+                transient=True,
+            )
         return self
 
     def __exit__(self, *_) -> None:
@@ -81,8 +90,9 @@ class Board:
 
 @contextmanager
 def team(board: Board, workers: int) -> Iterator[ThreadPoolExecutor]:
-    """Threads for the runs of ``board``. Whatever ends the block early, Ctrl-C above all, makes running ones stop at their next
-    report: none is waited for (a kernel may still be compiled), and none of those that wait is begun."""
+    """Threads for the runs of ``board``. Whatever ends the block early, Ctrl-C above all, makes
+    running ones stop at their next report: none is waited for (a kernel may still be compiled), and
+    none of those that wait is begun."""
     pool = ThreadPoolExecutor(workers)
     try:
         yield pool

@@ -2,12 +2,13 @@
 
     key = SHA-256(physical inputs of the scene, numerics, calibrated constants, walls, sources of every package below the fidelity)
 
-A run whose file is there and fits the digest it carries is loaded, any other is made and written atomically; so what was
-interrupted goes on where it stopped, and neither a changed input or source nor a damaged file is answered with an old result. A run
-of the reference in progress is kept beside it as ``<label>-<key>.checkpoint``, which is removed once the result is written.
+A run whose file is there and fits the digest it carries is loaded, any other is made and written
+atomically; so what was interrupted goes on where it stopped, and neither a changed input or source
+nor a damaged file is answered with an old result. A run of the reference in progress is kept beside
+it as ``<label>-<key>.checkpoint``, which is removed once the result is written.
 
-Runs go side by side in threads: the kernels release the interpreter, and the mesh generator, which insists on the main thread, has
-been called before.
+Runs go side by side in threads: the kernels release the interpreter, and the mesh generator, which
+insists on the main thread, has been called before.
 """
 
 import functools
@@ -25,14 +26,18 @@ from scenes.trajectory import Trajectory
 from scenes.walls import Walls, model_of
 from studies.progress import Board, say, team
 
-SOURCES = {"highfi": ("scenes", "meshes", "highfi"), "lowfi": ("scenes", "lowfi"),
-           "calibrated": ("scenes", "meshes", "highfi", "lowfi", "calibrate")}
+SOURCES = {
+    "highfi": ("scenes", "meshes", "highfi"),
+    "lowfi": ("scenes", "lowfi"),
+    "calibrated": ("scenes", "meshes", "highfi", "lowfi", "calibrate"),
+}
 code_hash = functools.lru_cache(source_hash)  # the sources do not change while the program runs
 
 
 @dataclass(frozen=True)
 class Run:
-    """What is asked for: a fidelity, a label that is unique for the scene, the scene of one condition, and numerics."""
+    """What is asked for: a fidelity, a label that is unique for the scene, the scene of one
+    condition, and numerics."""
 
     fidelity: str
     label: str
@@ -50,20 +55,40 @@ class Run:
     def key(self) -> str:
         """Hexadecimal digest of everything the result depends on."""
         used = self.calibration.constants if self.calibration else None
-        return content_hash(self.fidelity, self.scene.hash, asdict(self.numerics), used, self.walls.hash if self.walls else None,
-                            code_hash(*SOURCES[self.fidelity]))
+        return content_hash(
+            self.fidelity,
+            self.scene.hash,
+            asdict(self.numerics),
+            used,
+            self.walls.hash if self.walls else None,
+            code_hash(*SOURCES[self.fidelity]),
+        )
 
 
-def execute(run: Run, progress: Callable[[float], None] | None = None, threads: int | None = None, **kept: Any) -> Trajectory:
-    """Run it, without any store; for a run of the reference ``threads``, its own choice when None, and where it is ``kept``, the
-    arguments of ``highfi.run`` on checkpoints."""
+def execute(
+    run: Run,
+    progress: Callable[[float], None] | None = None,
+    threads: int | None = None,
+    **kept: Any,
+) -> Trajectory:
+    """Run it, without any store; for a run of the reference ``threads``, its own choice when None,
+    and where it is ``kept``, the arguments of ``highfi.run`` on checkpoints."""
     if run.fidelity == "highfi":
         import highfi
 
-        return highfi.run(run.scene, numerics=run.numerics, progress=progress, threads=threads, **kept)
+        return highfi.run(
+            run.scene, numerics=run.numerics, progress=progress, threads=threads, **kept
+        )
     import lowfi
 
-    return lowfi.run(run.scene, run.model, walls=run.walls, calibration=run.calibration, numerics=run.numerics, progress=progress)
+    return lowfi.run(
+        run.scene,
+        run.model,
+        walls=run.walls,
+        calibration=run.calibration,
+        numerics=run.numerics,
+        progress=progress,
+    )
 
 
 def prepare(run: Run) -> None:
@@ -77,7 +102,9 @@ def prepare(run: Run) -> None:
 class Store:
     """Trajectories below one folder."""
 
-    def __init__(self, folder: Path, workers: int = 1, checkpoint_every: float = 60.0, resume: bool = True):
+    def __init__(
+        self, folder: Path, workers: int = 1, checkpoint_every: float = 60.0, resume: bool = True
+    ):
         self.folder, self.workers = Path(folder), workers
         self.checkpoint_every, self.resume = checkpoint_every, resume
 
@@ -90,14 +117,19 @@ class Store:
         return self.path(run).with_suffix(".checkpoint")
 
     def load(self, run: Run) -> Trajectory | None:
-        """The stored result, or None when there is none that can be read (a damaged file is named on standard error)."""
+        """The stored result, or None when there is none that can be read (a damaged file is named
+        on standard error)."""
         path = self.path(run)
         if not path.is_file():
             return None
         try:
             return Trajectory.load(path)
-        except Exception as fault:  # whatever the netCDF stack raises on damaged bytes, the remedy is the same
-            say(f"  {path} is damaged or was edited ({type(fault).__name__}), so {run.label} is run again")
+        # whatever the netCDF stack raises on damaged bytes, the remedy is the same
+        except Exception as fault:
+            say(
+                f"  {path} is damaged or was edited ({type(fault).__name__}), so {run.label} is "
+                f"run again"
+            )
             return None
 
     def get(self, run: Run) -> Trajectory:
@@ -105,9 +137,11 @@ class Store:
         return self.fill(run.fidelity, [run])[0]
 
     def fill(self, title: str, runs: Sequence[Run]) -> list[Trajectory]:
-        """Results of ``runs`` in their order; those missing are run, ``workers`` at a time, with progress on standard error.
+        """Results of ``runs`` in their order; those missing are run, ``workers`` at a time, with
+        progress on standard error.
 
-        On Ctrl-C running kernels are told to stop, finished results stay, and KeyboardInterrupt goes on to the caller.
+        On Ctrl-C running kernels are told to stop, finished results stay, and KeyboardInterrupt
+        goes on to the caller.
         """
         found = {run.key: trajectory for run in runs if (trajectory := self.load(run)) is not None}
         missing = list({run.key: run for run in runs if run.key not in found}.values())
@@ -119,7 +153,8 @@ class Store:
         for run in runs:
             prepare(run)
         made: dict[str, Trajectory] = {}
-        # Side by side each run is best left alone with one processor: threads of one run would wait for each other.
+        # Side by side each run is best left alone with one processor: threads of one run would wait
+        # for each other.
         threads = None if min(self.workers, len(runs)) == 1 else 1
         with Board(title, len(runs)) as board, team(board, self.workers) as pool:
             pending = {pool.submit(self._one, run, board, threads): run for run in runs}
@@ -135,18 +170,28 @@ class Store:
         trajectory.save(self.path(run))
         discard(self.checkpoint(run))
         message = f" ({trajectory.message})" if trajectory.message else ""
-        board.finished(run.label, f"{trajectory.status}{message} in {trajectory.cost['wall_s']:.3g} s")
+        board.finished(
+            run.label, f"{trajectory.status}{message} in {trajectory.cost['wall_s']:.3g} s"
+        )
         return trajectory
 
     def _kept(self, run: Run, progress: Callable[[float], None], threads: int | None) -> Trajectory:
-        """Run the reference from its checkpoint if there is one that can be used, else from the beginning."""
+        """Run the reference from its checkpoint if there is one that can be used, else from the
+        beginning."""
         import highfi
 
         path = self.checkpoint(run)
         if not self.resume:
             discard(path)
-        make = functools.partial(execute, run, progress, threads, checkpoint=path, checkpoint_every=self.checkpoint_every,
-                                 resume=True)
+        make = functools.partial(
+            execute,
+            run,
+            progress,
+            threads,
+            checkpoint=path,
+            checkpoint_every=self.checkpoint_every,
+            resume=True,
+        )
         if path.is_file():
             say(f"  {run.label} goes on from {path}")
         try:

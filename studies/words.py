@@ -7,8 +7,8 @@ from scenes.walls import Walls
 
 
 def model(scene: Scene, fitted: Calibration | None, walls: Walls | None) -> str:
-    """The model that this makes, with what its constants are. Springs may stand on rigid walls, where warm rails have bowed
-    them."""
+    """The model that this makes, with what its constants are. Springs may stand on rigid walls,
+    where warm rails have bowed them."""
     if scene.contact is None:
         return f"{COMPLIANT}, without contact"
     if walls is not None and walls.flexibility is not None:

@@ -1,7 +1,9 @@
-"""Settings every test shares: pictures are drawn without a display, and property tests draw the same examples each time.
+"""Settings every test shares: pictures are drawn without a display, and property tests draw the
+same examples each time.
 
-The directory of compiled kernels is chosen by `scenes.jit`, for tests and runs alike. To look for new examples, run pytest with
-`--hypothesis-profile=explore`. Tests marked `gmsh` are skipped where gmsh does not load, which a rail drawn in CAD alone needs.
+The directory of compiled kernels is chosen by `scenes.jit`, for tests and runs alike. To look for
+new examples, run pytest with `--hypothesis-profile=explore`. Tests marked `gmsh` are skipped where
+gmsh does not load, which a rail drawn in CAD alone needs.
 """
 
 import functools

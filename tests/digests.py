@@ -1,10 +1,12 @@
-"""Digests of what the solvers and studies compute, so that a change of the code's shape can be shown to change no number.
+"""Digests of what the solvers and studies compute, so that a change of the code's shape can be
+shown to change no number.
 
     python -m tests.digests > before.txt                      every catalogue scene, every model
     python -m tests.digests --against before.txt              exit 1 and the lines that differ
     python -m tests.digests --results out > stages.txt        numbers in the stage results below a folder
 
-A line is a name and the first 16 hexadecimal digits of a SHA-256. Times, the machine, versions, and digests of code are left out.
+A line is a name and the first 16 hexadecimal digits of a SHA-256. Times, the machine, versions, and
+digests of code are left out.
 """
 
 import argparse
@@ -30,28 +32,68 @@ CATALOG = ("channel", "paper_like", "reference", "sensitive", "thin", "tiny", "t
 CASES = 1000  # of an ensemble
 COARSE = 8e-3  # m, elements of the rails: the numbers need to be the same, not right
 # Parts of the names of entries that differ from run to run, or with the code alone.
-UNSTABLE = ("wall_s", "cpu_s", "kernel_s", "compile_s", "seconds", "speed", "machine", "version", "sha256", "key", "files", "created",
-            "ns_per", "threads", "times")
-_ARRAYS = ("time", "position", "velocity", "quaternion", "rate", "platform_position", "platform_velocity", "platform_quaternion",
-           "platform_rate", "pad_force", "energy", "transverse_energy", "wall_stress")
+UNSTABLE = (
+    "wall_s",
+    "cpu_s",
+    "kernel_s",
+    "compile_s",
+    "seconds",
+    "speed",
+    "machine",
+    "version",
+    "sha256",
+    "key",
+    "files",
+    "created",
+    "ns_per",
+    "threads",
+    "times",
+)
+_ARRAYS = (
+    "time",
+    "position",
+    "velocity",
+    "quaternion",
+    "rate",
+    "platform_position",
+    "platform_velocity",
+    "platform_quaternion",
+    "platform_rate",
+    "pad_force",
+    "energy",
+    "transverse_energy",
+    "wall_stress",
+)
 
 
 def digest(*parts: Any) -> str:
-    """First 16 hexadecimal digits of the SHA-256 of arrays (their bytes) and plain data (its JSON)."""
+    """First 16 hexadecimal digits of the SHA-256 of arrays (their bytes) and plain data (its
+    JSON)."""
     total = hashlib.sha256()
     for part in parts:
-        total.update(np.ascontiguousarray(part).tobytes() if isinstance(part, np.ndarray)
-                     else json.dumps(part, sort_keys=True).encode())
+        total.update(
+            np.ascontiguousarray(part).tobytes()
+            if isinstance(part, np.ndarray)
+            else json.dumps(part, sort_keys=True).encode()
+        )
     return total.hexdigest()[:16]
 
 
 def of_trajectory(run: Trajectory) -> str:
     """Digest of curves, status, outcome and checks."""
-    return digest(run.status, run.message, run.outcome._asdict(), run.checks, run.stress, *(getattr(run, name) for name in _ARRAYS))
+    return digest(
+        run.status,
+        run.message,
+        run.outcome._asdict(),
+        run.checks,
+        run.stress,
+        *(getattr(run, name) for name in _ARRAYS),
+    )
 
 
 def trajectories(names: tuple[str, ...]) -> Iterator[str]:
-    """A line for each condition of each scene and model; the finite elements run the first condition only."""
+    """A line for each condition of each scene and model; the finite elements run the first
+    condition only."""
     for name in names:
         scene = scenes.load(name)
         walls = calibrate.compliance(scene, COARSE)
@@ -59,7 +101,9 @@ def trajectories(names: tuple[str, ...]) -> Iterator[str]:
         for condition in scene.conditions:
             one = scene.condition(condition)
             for model, given in ((COMPLIANT, walls), (SPRINGS, None)):
-                yield line(f"{name}/{condition}/{model}", of_trajectory(lowfi.run(one, model, walls=given)))
+                yield line(
+                    f"{name}/{condition}/{model}", of_trajectory(lowfi.run(one, model, walls=given))
+                )
         first = next(iter(scene.conditions))
         found = highfi.run(scene.condition(first), numerics=highfi.Numerics(element_size=COARSE))
         yield line(f"{name}/{first}/finite-elements", of_trajectory(found))
@@ -70,15 +114,23 @@ def ensembles() -> Iterator[str]:
     scene, rows = scenes.load("reference"), varied(CASES)
     for model, walls in ((COMPLIANT, calibrate.compliance(scene, COARSE)), (SPRINGS, None)):
         found = lowfi.run_many(scene, rows, model, walls=walls)
-        columns = {name: found[name].values.tolist() for name in sorted(found.data_vars) if not _is_unstable(name)}
-        yield line(f"ensemble/{model}", digest({name: repr(column) for name, column in columns.items()}))
+        columns = {
+            name: found[name].values.tolist()
+            for name in sorted(found.data_vars)
+            if not _is_unstable(name)
+        }
+        yield line(
+            f"ensemble/{model}", digest({name: repr(column) for name, column in columns.items()})
+        )
 
 
 def results(folder: Path) -> Iterator[str]:
     """A line for each entry of each JSON result below ``folder``."""
     for path in sorted(folder.rglob("*.json")):
         document = json.loads(path.read_text(encoding="utf-8"))
-        for entry, value in sorted(document.items() if isinstance(document, dict) else [("", document)]):
+        for entry, value in sorted(
+            document.items() if isinstance(document, dict) else [("", document)]
+        ):
             if not _is_unstable(entry):
                 yield line(f"{path.relative_to(folder)}:{entry}", digest(stable(value)))
 
@@ -105,13 +157,31 @@ def _arrays(walls: Walls) -> list[np.ndarray]:
 
 def main(arguments: list[str] | None = None) -> int:
     """Print digests; 1 if some differ from those asked for."""
-    parser = argparse.ArgumentParser(description="Digests of everything the solvers and studies compute.")
-    parser.add_argument("scenes", nargs="*", default=CATALOG, metavar="SCENE", help="catalogue scenes (default: all)")
-    parser.add_argument("--results", type=Path, help="a folder of stage results, instead of solving anything")
-    parser.add_argument("--against", type=Path, help="digests printed before; lines that differ are shown, and the exit code is 1")
+    parser = argparse.ArgumentParser(
+        description="Digests of everything the solvers and studies compute."
+    )
+    parser.add_argument(
+        "scenes",
+        nargs="*",
+        default=CATALOG,
+        metavar="SCENE",
+        help="catalogue scenes (default: all)",
+    )
+    parser.add_argument(
+        "--results", type=Path, help="a folder of stage results, instead of solving anything"
+    )
+    parser.add_argument(
+        "--against",
+        type=Path,
+        help="digests printed before; lines that differ are shown, and the exit code is 1",
+    )
     asked = parser.parse_args(arguments)
     found = []
-    for item in results(asked.results) if asked.results else [*trajectories(tuple(asked.scenes)), *ensembles()]:
+    for item in (
+        results(asked.results)
+        if asked.results
+        else [*trajectories(tuple(asked.scenes)), *ensembles()]
+    ):
         print(item, flush=True)
         found.append(item)
     if asked.against is None:

@@ -1,7 +1,8 @@
-"""The rules of the house that a machine can check: who may import whom, how long a file may be, what a kernel may hold.
+"""The rules of the house that a machine can check: who may import whom, how long a file may be,
+what a kernel may hold.
 
-Imports are checked twice. A fresh interpreter sees what a package really pulls in, also through others; the sources show
-an import that hides inside a function.
+Imports are checked twice. A fresh interpreter sees what a package really pulls in, also through
+others; the sources show an import that hides inside a function.
 """
 
 import ast
@@ -40,14 +41,24 @@ def sources(*folders: str) -> list[Path]:
 
 
 def test_an_installed_package_holds_every_module_and_data_file():
-    """The project is used from its folder here, where nothing is missing; a wheel holds what is listed and no more."""
+    """The project is used from its folder here, where nothing is missing; a wheel holds what is
+    listed and no more."""
     settings = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["setuptools"]
     held = {str(path.parent.relative_to(ROOT)).replace("/", ".") for path in sources(*PACKAGES)}
     assert set(settings["packages"]) == held
-    listed = {path for package, patterns in settings["package-data"].items() for pattern in patterns
-              for path in (ROOT / package.replace(".", "/")).glob(pattern)}
-    data = {path for package in PACKAGES for path in (ROOT / package).rglob("*.*")
-            if path.suffix in (".toml", ".csv", ".msh", ".json", ".txt") and "__pycache__" not in path.parts}
+    listed = {
+        path
+        for package, patterns in settings["package-data"].items()
+        for pattern in patterns
+        for path in (ROOT / package.replace(".", "/")).glob(pattern)
+    }
+    data = {
+        path
+        for package in PACKAGES
+        for path in (ROOT / package).rglob("*.*")
+        if path.suffix in (".toml", ".csv", ".msh", ".json", ".txt")
+        and "__pycache__" not in path.parts
+    }
     assert data == listed
 
 
@@ -60,25 +71,48 @@ def imported(tree: ast.AST) -> set[str]:
         elif isinstance(node, ast.ImportFrom) and node.level == 0:
             names.add(node.module)
         elif isinstance(node, ast.Call) and _called(node) in ("import_module", "__import__"):
-            names |= {argument.value for argument in node.args if isinstance(argument, ast.Constant)}
+            names |= {
+                argument.value for argument in node.args if isinstance(argument, ast.Constant)
+            }
     return {name.partition(".")[0] for name in names if isinstance(name, str)}
 
 
 def breaches(tree: ast.AST) -> list[str]:
-    """What a source may not hold: fast maths, code from data, compilation outside `scenes.jit`, output in a kernel."""
+    """What a source may not hold: fast maths, code from data, compilation outside `scenes.jit`,
+    output in a kernel."""
     found = [f"imports {name}" for name in sorted(imported(tree) & SERIALISERS)]
     for node in ast.walk(tree):
-        if isinstance(node, ast.keyword) and node.arg in ("fastmath", "allow_pickle") and not _is_false(node.value):
+        if (
+            isinstance(node, ast.keyword)
+            and node.arg in ("fastmath", "allow_pickle")
+            and not _is_false(node.value)
+        ):
             found.append(f"{node.arg} on line {node.value.lineno}")
-        elif isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in ("eval", "exec"):
+        elif (
+            isinstance(node, ast.Call)
+            and isinstance(node.func, ast.Name)
+            and node.func.id in ("eval", "exec")
+        ):
             found.append(f"{node.func.id} on line {node.lineno}")
         elif isinstance(node, ast.ImportFrom) and node.module == "numba":
-            found += [f"numba.{alias.name} on line {node.lineno}" for alias in node.names if alias.name in COMPILERS]
-        elif isinstance(node, ast.Attribute) and node.attr in COMPILERS and getattr(node.value, "id", "") in ("numba", "nb"):
+            found += [
+                f"numba.{alias.name} on line {node.lineno}"
+                for alias in node.names
+                if alias.name in COMPILERS
+            ]
+        elif (
+            isinstance(node, ast.Attribute)
+            and node.attr in COMPILERS
+            and getattr(node.value, "id", "") in ("numba", "nb")
+        ):
             found.append(f"numba.{node.attr} on line {node.lineno}")
         elif isinstance(node, ast.FunctionDef) and _is_kernel(node):
             inner = [inside for inside in ast.walk(node) if isinstance(inside, ast.Call)]
-            found += [f"{_called(call)} in kernel {node.name}" for call in inner if _called(call) in ("print", "open")]
+            found += [
+                f"{_called(call)} in kernel {node.name}"
+                for call in inner
+                if _called(call) in ("print", "open")
+            ]
     return found
 
 
@@ -91,7 +125,10 @@ def _is_false(value: ast.expr) -> bool:
 
 
 def _is_kernel(function: ast.FunctionDef) -> bool:
-    plain = [decorator.func if isinstance(decorator, ast.Call) else decorator for decorator in function.decorator_list]
+    plain = [
+        decorator.func if isinstance(decorator, ast.Call) else decorator
+        for decorator in function.decorator_list
+    ]
     names = [getattr(name, "id", getattr(name, "attr", "")) for name in plain]
     return any("jit" in name or name in ("kernel", "inlined") for name in names)
 
@@ -103,7 +140,11 @@ def _parsed(path: Path) -> ast.AST:
 @pytest.mark.parametrize("package", FORBIDDEN)
 def test_fresh_interpreter_loads_no_higher_layer(package):
     loaded = subprocess.run(
-        [sys.executable, "-c", IMPORT_EVERYTHING, package], cwd=ROOT, capture_output=True, text=True, timeout=300
+        [sys.executable, "-c", IMPORT_EVERYTHING, package],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        timeout=300,
     )
     assert loaded.returncode == 0, loaded.stderr
     names = set(loaded.stdout.split())
@@ -115,33 +156,53 @@ def test_fresh_interpreter_loads_no_higher_layer(package):
 def test_sources_name_no_higher_layer(package):
     paths = sources(package)
     assert paths
-    wrong = {str(path.relative_to(ROOT)): found for path in paths if (found := imported(_parsed(path)) & FORBIDDEN[package])}
+    wrong = {
+        str(path.relative_to(ROOT)): found
+        for path in paths
+        if (found := imported(_parsed(path)) & FORBIDDEN[package])
+    }
     assert not wrong
 
 
 def test_doctor_needs_only_the_standard_library():
-    """-S hides every installed package, as on a machine where the install failed: then the doctor must still speak."""
-    run = subprocess.run([sys.executable, "-S", "-m", "studies.doctor"], cwd=ROOT, capture_output=True, text=True, timeout=60)
+    """-S hides every installed package, as on a machine where the install failed: then the doctor
+    must still speak."""
+    run = subprocess.run(
+        [sys.executable, "-S", "-m", "studies.doctor"],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        timeout=60,
+    )
     assert run.returncode == 1
     assert "Traceback" not in run.stderr
     assert "numpy does not load" in run.stderr
 
 
 def test_files_are_short():
-    lengths = {str(path.relative_to(ROOT)): len(path.read_text().splitlines()) for path in sources(*PACKAGES, "tests")}
+    lengths = {
+        str(path.relative_to(ROOT)): len(path.read_text().splitlines())
+        for path in sources(*PACKAGES, "tests")
+    }
     assert {name: length for name, length in lengths.items() if length > 400} == {}
     assert statistics.median(lengths.values()) < 150
 
 
 def test_lines_are_short():
-    long = [f"{path.relative_to(ROOT)}:{number}" for path in sources(*PACKAGES, "tests")
-            for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1) if len(line) > 132]
+    long = [
+        f"{path.relative_to(ROOT)}:{number}"
+        for path in sources(*PACKAGES, "tests")
+        for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1)
+        if len(line) > 132
+    ]
     assert long == []
 
 
 def test_sources_keep_the_house_rules():
     paths = [path for path in sources(*PACKAGES, "tests") if path != ROOT / "scenes" / "jit.py"]
-    wrong = {str(path.relative_to(ROOT)): found for path in paths if (found := breaches(_parsed(path)))}
+    wrong = {
+        str(path.relative_to(ROOT)): found for path in paths if (found := breaches(_parsed(path)))
+    }
     assert wrong == {}
 
 
@@ -167,14 +228,20 @@ def test_every_house_rule_can_fail(source):
 
 
 @pytest.mark.parametrize(
-    "source", ["def late():\n    import lowfi.step", "from lowfi import run", "importlib.import_module('lowfi.run')"]
+    "source",
+    [
+        "def late():\n    import lowfi.step",
+        "from lowfi import run",
+        "importlib.import_module('lowfi.run')",
+    ],
 )
 def test_import_check_sees_hidden_imports(source):
     assert "lowfi" in imported(ast.parse(source))
 
 
 def test_make_targets_are_phony():
-    """Folders are named like targets; without .PHONY `make calibrate` would find the folder and do nothing."""
+    """Folders are named like targets; without .PHONY `make calibrate` would find the folder and do
+    nothing."""
     text = (ROOT / "Makefile").read_text()
     targets = set(re.findall(r"^([a-z][a-z-]*):", text, re.MULTILINE))
     phony = set(re.search(r"^\.PHONY: (.*)$", text, re.MULTILINE).group(1).split())
@@ -183,14 +250,27 @@ def test_make_targets_are_phony():
 
 
 def test_lock_holds_every_dependency():
-    """The project is installed with --no-deps, so what the lock forgets is missing in a fresh clone."""
+    """The project is installed with --no-deps, so what the lock forgets is missing in a fresh
+    clone."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
     extras = project["optional-dependencies"]
-    asked = project["dependencies"] + extras["test"] + extras["ensemble"] + extras["studies"] + extras["cluster"]
-    pinned = set(re.findall(r"^([A-Za-z0-9_.-]+)==", (ROOT / "requirements.lock").read_text(), re.MULTILINE))
+    asked = (
+        project["dependencies"]
+        + extras["test"]
+        + extras["ensemble"]
+        + extras["studies"]
+        + extras["cluster"]
+    )
+    pinned = set(
+        re.findall(r"^([A-Za-z0-9_.-]+)==", (ROOT / "requirements.lock").read_text(), re.MULTILINE)
+    )
     normal = {re.sub(r"[-_.]+", "-", name).lower() for name in pinned}
     assert {re.match(r"[A-Za-z0-9_.-]+", name).group().lower() for name in asked} <= normal
     # The extra for pictures has a lock of its own, beside the first one and not against it.
-    added = set(re.findall(r"^([A-Za-z0-9_.-]+)==", (ROOT / "requirements-view.lock").read_text(), re.MULTILINE))
+    added = set(
+        re.findall(
+            r"^([A-Za-z0-9_.-]+)==", (ROOT / "requirements-view.lock").read_text(), re.MULTILINE
+        )
+    )
     assert {re.match(r"[A-Za-z0-9_.-]+", name).group() for name in extras["view"]} <= added
     assert not added & pinned

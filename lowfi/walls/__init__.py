@@ -1,1 +1,2 @@
-"""Walls that give way: pads pressed through cells of their faces on the static flexibility of the rail (data: ``scenes.walls``)."""
+"""Walls that give way: pads pressed through cells of their faces on the static flexibility of the
+rail (data: ``scenes.walls``)."""

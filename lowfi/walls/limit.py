@@ -1,14 +1,16 @@
-"""The proven step limit on walls that give way: stiffness and damping of the faces of each rail (``lowfi.limits`` has the bound).
+"""The proven step limit on walls that give way: stiffness and damping of the faces of each rail
+(``lowfi.limits`` has the bound).
 
-With the tangent T = K (1 + F K)^-1 of ``lowfi.walls.solution`` and the wrenches g of depth, tilt along and tilt across of each
-rigid face, the linearised springs are sum_ab T_ab g_a g_b', and the trace over both bodies bounds what they can do. A way across
-the rail along a wall of slope du/deta' = U_2 + xi' U_4 + 2 eta' U_5 is a depth and tilts too,
-so each g has its part of a force there::
+With the tangent T = K (1 + F K)^-1 of ``lowfi.walls.solution`` and the wrenches g of depth, tilt
+along and tilt across of each rigid face, the linearised springs are sum_ab T_ab g_a g_b', and the
+trace over both bodies bounds what they can do. A way across the rail along a wall of slope du/deta'
+= U_2 + xi' U_4 + 2 eta' U_5 is a depth and tilts too, so each g has its part of a force there::
 
     K = sum over rails of sum_ab T_ab (g_a . M^-1 g_b)
 
-Modes of rails that move or are pressed add a diagonal of omega^2 and d to the matrices, which raises their spectra by the largest
-of each (Weyl), and the trace of what contact does to them, W' T W.
+Modes of rails that move or are pressed add a diagonal of omega^2 and d to the matrices, which
+raises their spectra by the largest of each (Weyl), and the trace of what contact does to them, W' T
+W.
 """
 
 from lowfi import state as slot
@@ -28,7 +30,10 @@ _RIGID = 3  # depth, tilt along, tilt across
 @kernel
 def stiffness_and_damping(walls, friction, faces, platform, payload, active, state):
     """Traces K (1/s2) and C (1/s) of all faces that are ``active`` (f,) at ``state``."""
-    body, base = slot.motion(payload.mass, payload.inverse_inertia, state, slot.PAYLOAD), slot.frame(platform, state)
+    body, base = (
+        slot.motion(payload.mass, payload.inverse_inertia, state, slot.PAYLOAD),
+        slot.frame(platform, state),
+    )
     place, turn = relative_pose(platform, body, base)
     springs, dampers, square, drag = 0.0, 0.0, 0.0, 0.0
     for rail in range(walls.members.shape[0]):
@@ -39,17 +44,21 @@ def stiffness_and_damping(walls, friction, faces, platform, payload, active, sta
             face = walls.room.order[i]
             if walls.room.force[face, 0] > 0.0:
                 now = load(walls, friction, platform, faces, face, body, base)
-                dampers += friction_damping(friction, now, platform, payload, body, base, outward(faces[face], base))
+                dampers += friction_damping(
+                    friction, now, platform, payload, body, base, outward(faces[face], base)
+                )
         if count > 0:
             columns = _tangent(walls, count)
-            springs += (_trace(walls, faces, platform, payload, count, body, base)
-                        + _trace_of_modes(walls.modes, walls.room, count, columns))
+            springs += _trace(walls, faces, platform, payload, count, body, base) + _trace_of_modes(
+                walls.modes, walls.room, count, columns
+            )
     return springs + square, dampers + drag
 
 
 @kernel
 def _tangent(walls, count):
-    """Fill ``right`` with dU (w,) by a unit of each rigid motion, then of each mode; how many columns the former take."""
+    """Fill ``right`` with dU (w,) by a unit of each rigid motion, then of each mode; how many
+    columns the former take."""
     room = walls.room
     fill_matrix(room, count)
     wide = count * PATTERNS
@@ -79,7 +88,9 @@ def _add_modes(modes, room, count):
                 for j in range(count):
                     face = room.order[j]
                     for c in range(PATTERNS):
-                        total += room.flexibility[row, j * PATTERNS + c] * _pressure(modes, room, face, c, i)
+                        total += room.flexibility[row, j * PATTERNS + c] * _pressure(
+                            modes, room, face, c, i
+                        )
                 room.right[row, count * _RIGID + i] = total
     return number
 
@@ -102,8 +113,9 @@ def _trace_of_modes(modes, room, count, first):
             face = room.order[k]
             for a in range(PATTERNS):
                 for i in range(modes.square.shape[1]):
-                    total += (_pressure(modes, room, face, a, i)
-                              * (modes.shape[face, i, a] - room.right[k * PATTERNS + a, first + i]))
+                    total += _pressure(modes, room, face, a, i) * (
+                        modes.shape[face, i, a] - room.right[k * PATTERNS + a, first + i]
+                    )
     return total
 
 
@@ -124,7 +136,8 @@ def _beyond(room, face, rigid):
 
 @kernel
 def _answer(room, i, rigid, column):
-    """Generalised force of rigid motion ``rigid`` on face i of the order, by a unit of motion number ``column``."""
+    """Generalised force of rigid motion ``rigid`` on face i of the order, by a unit of motion
+    number ``column``."""
     face = room.order[i]
     total = _own(room, face, rigid, column % _RIGID) if column // _RIGID == i else 0.0
     for c in range(PATTERNS):
@@ -149,7 +162,9 @@ def _trace(walls, faces, platform, payload, count, body, base):
             for j in range(count):
                 for b in range(_RIGID):
                     second = _wrench(walls, faces, walls.room.order[j], b, body, base)
-                    total += _answer(walls.room, i, a, j * _RIGID + b) * _met(platform, payload, body, base, first, second)
+                    total += _answer(walls.room, i, a, j * _RIGID + b) * _met(
+                        platform, payload, body, base, first, second
+                    )
     return abs(total)
 
 
@@ -157,16 +172,23 @@ def _trace(walls, faces, platform, payload, count, body, base):
 def _wrench(walls, faces, face, rigid, body, base):
     """Force, a point it acts at (m), and couple that belong to a rigid motion of the face."""
     n, half = outward(faces[face], base), walls.half[face]
-    aside = rotation.rotate(base.turn, along_width(faces[face], -_by_slope(walls.room, face, rigid) / half[1]))
+    aside = rotation.rotate(
+        base.turn, along_width(faces[face], -_by_slope(walls.room, face, rigid) / half[1])
+    )
     if rigid == 0:
-        return (n[0] + aside[0], n[1] + aside[1], n[2] + aside[2]), pad_point(faces[face], body), (0.0, 0.0, 0.0)
+        return (
+            (n[0] + aside[0], n[1] + aside[1], n[2] + aside[2]),
+            pad_point(faces[face], body),
+            (0.0, 0.0, 0.0),
+        )
     edge = along_width(faces[face], half[1]) if rigid == 2 else (half[0], 0.0, 0.0)
     return aside, pad_point(faces[face], body), rotation.cross(rotation.rotate(body.turn, edge), n)
 
 
 @inlined
 def _by_slope(room, face, rigid):
-    """What the slope of the wall across has of a rigid motion, as a sum over 1, xi and eta of the pad."""
+    """What the slope of the wall across has of a rigid motion, as a sum over 1, xi and eta of the
+    pad."""
     u, lever = room.displacement[face], room.lever[face]
     if rigid == 0:
         return u[2] + lever[SHIFT] * u[4] + 2.0 * lever[ASIDE] * u[5]
@@ -185,7 +207,9 @@ def _met(platform, payload, body, base, first, second):
 @inlined
 def _of_body(mass, inverse_inertia, body, first, second):
     a, b = _moment(body, first), _moment(body, second)
-    return rotation.dot(first[0], second[0]) / mass + rotation.dot(a, rotation.angular_velocity(body.turn, inverse_inertia, b))
+    return rotation.dot(first[0], second[0]) / mass + rotation.dot(
+        a, rotation.angular_velocity(body.turn, inverse_inertia, b)
+    )
 
 
 @inlined

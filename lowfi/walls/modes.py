@@ -1,17 +1,19 @@
-"""Vibration of the rails that pads press: their lowest modes, states of their own behind those of the bodies (data:
-``scenes.walls``).
+"""Vibration of the rails that pads press: their lowest modes, states of their own behind those of
+the bodies (data: ``scenes.walls``).
 
     U = F_res P + W q,    q_m'' + d_m q_m' + omega_m^2 q_m = sum_ia W_iam P_ia,    d_m = alpha + beta omega_m^2
 
-with W at the place the pads are at. The other modes follow at once. These are Lagrange's equations of the potential in ``loads``
-with the modes' own energy sum_m (q_m'^2 + omega_m^2 q_m^2) / 2 beside it, so both ledgers close. At ignition a rail is at rest and
-straight, as in the reference. ``lowfi.accuracy`` and ``lowfi.walls.limit`` hold the steps to what the highest mode asks.
+with W at the place the pads are at. The other modes follow at once. These are Lagrange's equations
+of the potential in ``loads`` with the modes' own energy sum_m (q_m'^2 + omega_m^2 q_m^2) / 2 beside
+it, so both ledgers close. At ignition a rail is at rest and straight, as in the reference.
+``lowfi.accuracy`` and ``lowfi.walls.limit`` hold the steps to what the highest mode asks.
 
-Left out, in both directions, is that mounts move with the platform: the inertial load -L_m a of the modes under its acceleration a,
-and the momentum L_m q_m' of a rail that swings, which the contact force, taken to act on the platform at once, lacks or has too
-much. L_m^2 is the mode's effective mass, and all of them together are less than the rail weighs. The reference scene has rails of
-0.11 kg on a platform of 81 kg: a thousandth of the contact force, and 1e-5 m/s of the platform when a wall swings at 10 mm/s. The
-momenta of payload and platform are kept to rounding by that choice.
+Left out, in both directions, is that mounts move with the platform: the inertial load -L_m a of the
+modes under its acceleration a, and the momentum L_m q_m' of a rail that swings, which the contact
+force, taken to act on the platform at once, lacks or has too much. L_m^2 is the mode's effective
+mass, and all of them together are less than the rail weighs. The reference scene has rails of 0.11
+kg on a platform of 81 kg: a thousandth of the contact force, and 1e-5 m/s of the platform when a
+wall swings at 10 mm/s. The momenta of payload and platform are kept to rounding by that choice.
 """
 
 from lowfi.state import STATE_SIZE
@@ -23,8 +25,8 @@ _XI, _ETA = POWERS.T.copy()
 
 @kernel
 def take_swing(modes, rail, face, station, way, changes, state):
-    """Fill what the modes of ``rail`` are under ``face``, ``way`` (m) from a station where that changes by ``changes`` with the
-    place."""
+    """Fill what the modes of ``rail`` are under ``face``, ``way`` (m) from a station where that
+    changes by ``changes`` with the place."""
     if modes is not None:
         count = modes.square.shape[1]
         first, rates = STATE_SIZE + rail * count, STATE_SIZE + modes.square.size + rail * count
@@ -37,7 +39,9 @@ def take_swing(modes, rail, face, station, way, changes, state):
                 value = c[0] + way * (c[1] + way * (c[2] + way * c[3]))
                 modes.shape[face, i, a] = value
                 modes.offset[face, a] += state[first + i] * value
-                modes.slope[face, a] += state[first + i] * changes * (c[1] + way * (2.0 * c[2] + way * 3.0 * c[3]))
+                modes.slope[face, a] += (
+                    state[first + i] * changes * (c[1] + way * (2.0 * c[2] + way * 3.0 * c[3]))
+                )
                 modes.speed[face, a] += state[rates + i] * value
 
 
@@ -65,13 +69,14 @@ def speed_at(modes, face, xi, eta):
     value = 0.0
     if modes is not None:
         for a in range(PATTERNS):
-            value += modes.speed[face, a] * xi**_XI[a] * eta**_ETA[a]
+            value += modes.speed[face, a] * xi ** _XI[a] * eta ** _ETA[a]
     return value
 
 
 @kernel
 def swing(modes, room, rail, count, state, out):
-    """Fill the derivative ``out`` of the modes of ``rail``, pressed by the ``count`` faces solved for; what damping takes (W)."""
+    """Fill the derivative ``out`` of the modes of ``rail``, pressed by the ``count`` faces solved
+    for; what damping takes (W)."""
     loss = 0.0
     number = modes.square.shape[1]
     first, rates = STATE_SIZE + rail * number, STATE_SIZE + modes.square.size + rail * number
@@ -82,7 +87,9 @@ def swing(modes, room, rail, count, state, out):
             for a in range(PATTERNS):
                 pressed += modes.shape[face, i, a] * room.force[face, a]
         out[first + i] = rate
-        out[rates + i] = pressed - modes.square[rail, i] * state[first + i] - modes.drag[rail, i] * rate
+        out[rates + i] = (
+            pressed - modes.square[rail, i] * state[first + i] - modes.drag[rail, i] * rate
+        )
         loss += modes.drag[rail, i] * rate * rate
     return loss
 
@@ -95,7 +102,10 @@ def energies(modes, state):
         count = modes.square.shape[1]
         for rail in range(modes.square.shape[0]):
             for i in range(count):
-                q, rate = state[STATE_SIZE + rail * count + i], state[STATE_SIZE + modes.square.size + rail * count + i]
+                q, rate = (
+                    state[STATE_SIZE + rail * count + i],
+                    state[STATE_SIZE + modes.square.size + rail * count + i],
+                )
                 kinetic += 0.5 * rate * rate
                 strain += 0.5 * modes.square[rail, i] * q * q
     return kinetic, strain
@@ -103,8 +113,8 @@ def energies(modes, state):
 
 @inlined
 def fastest(modes, rail, pressed, state):
-    """Largest omega^2 (1/s2) and d (1/s) of the modes of a rail; zero while it is at rest and nothing has pressed it, for then it
-    stays so."""
+    """Largest omega^2 (1/s2) and d (1/s) of the modes of a rail; zero while it is at rest and
+    nothing has pressed it, for then it stays so."""
     square, drag = 0.0, 0.0
     if modes is not None:
         count = modes.square.shape[1]

@@ -1,11 +1,13 @@
-"""Displacement of the walls of one rail under the faces that press it, by Newton's method on piecewise linear equations.
+"""Displacement of the walls of one rail under the faces that press it, by Newton's method on
+piecewise linear equations.
 
     U = T + F P(U) + W q,    (1 + F K) dU = T + F P + W q - U,
     K_iab = dP_ia/d(-U_ib) = sum over pressed cells of penalty dA phi_a phi_b
 
-W q is what the rail's modes make of it (``lowfi.walls.modes``), F the rest; without modes there is only F. T is where walls stand
-that are warm (``lowfi.walls.warm``), zero otherwise. P is the gradient of a convex potential, so the solution is one; while the
-pressed cells do not change the equations are linear, and the last correction is exact. The displacement of the solution before is
+W q is what the rail's modes make of it (``lowfi.walls.modes``), F the rest; without modes there is
+only F. T is where walls stand that are warm (``lowfi.walls.warm``), zero otherwise. P is the
+gradient of a convex potential, so the solution is one; while the pressed cells do not change the
+equations are linear, and the last correction is exact. The displacement of the solution before is
 the first guess.
 """
 
@@ -25,8 +27,8 @@ _XI, _ETA = POWERS.T.copy()
 
 @kernel
 def solve(walls, faces, rail, active, place, turn, state):
-    """Number of ``active`` (f,) faces on ``rail``; ``walls.room`` holds them in ``order``, with lever, displacement and force. Of
-    ``state`` only the modes are read."""
+    """Number of ``active`` (f,) faces on ``rail``; ``walls.room`` holds them in ``order``, with
+    lever, displacement and force. Of ``state`` only the modes are read."""
     room, count = walls.room, 0
     for slot in range(walls.members.shape[1]):
         face = walls.members[rail, slot]
@@ -45,8 +47,9 @@ def solve(walls, faces, rail, active, place, turn, state):
 
 @inlined
 def between_stations(walls, place):
-    """Number of the station before X = ``place`` (m) of the first face, the way (m) from it, inside the table, and by how much that
-    changes with the place: at the last station it stops as the places of pads on the wall do at the end of the rail."""
+    """Number of the station before X = ``place`` (m) of the first face, the way (m) from it, inside
+    the table, and by how much that changes with the place: at the last station it stops as the
+    places of pads on the wall do at the end of the rail."""
     half = walls.half[0, 0]
     over, rate = eased((place - walls.origin - walls.spacing * walls.cubic.shape[0]) / half)
     way, changes = place - walls.origin - half * over, 1.0 - rate
@@ -58,19 +61,26 @@ def between_stations(walls, place):
 
 @kernel
 def take_flexibility(walls, count, place, state):
-    """Fill flexibility and slope between the first ``count`` faces in order, and what the modes are under them."""
+    """Fill flexibility and slope between the first ``count`` faces in order, and what the modes are
+    under them."""
     room = walls.room
     station, s, changes = between_stations(walls, place)
     for i in range(count):
-        take_swing(walls.modes, walls.rail[room.order[i]], room.order[i], station, s, changes, state)
+        take_swing(
+            walls.modes, walls.rail[room.order[i]], room.order[i], station, s, changes, state
+        )
         warm.take(walls.warm, room.order[i], station, s, changes)
         for j in range(count):
             block = walls.cubic[station, room.order[i], room.order[j]]
             for a in range(PATTERNS):
                 for b in range(PATTERNS):
                     c = block[a, b]
-                    room.flexibility[i * PATTERNS + a, j * PATTERNS + b] = c[0] + s * (c[1] + s * (c[2] + s * c[3]))
-                    room.slope[i * PATTERNS + a, j * PATTERNS + b] = changes * (c[1] + s * (2.0 * c[2] + s * 3.0 * c[3]))
+                    room.flexibility[i * PATTERNS + a, j * PATTERNS + b] = c[0] + s * (
+                        c[1] + s * (c[2] + s * c[3])
+                    )
+                    room.slope[i * PATTERNS + a, j * PATTERNS + b] = changes * (
+                        c[1] + s * (2.0 * c[2] + s * 3.0 * c[3])
+                    )
 
 
 @inlined
@@ -90,9 +100,16 @@ def _correct(walls, count, share):
     for row in range(wide):
         total = 0.0
         for column in range(wide):
-            total += room.flexibility[row, column] * room.force[room.order[column // PATTERNS], column % PATTERNS]
+            total += (
+                room.flexibility[row, column]
+                * room.force[room.order[column // PATTERNS], column % PATTERNS]
+            )
         face, a = room.order[row // PATTERNS], row % PATTERNS
-        room.right[row, 0] = total - (room.displacement[face, a] - warm.place(walls.warm, face, a) - offset(walls.modes, face, a))
+        room.right[row, 0] = total - (
+            room.displacement[face, a]
+            - warm.place(walls.warm, face, a)
+            - offset(walls.modes, face, a)
+        )
     eliminate(room.matrix, room.right, wide, 1)
     largest = 0.0
     for i in range(count):
@@ -122,7 +139,8 @@ def fill_matrix(room, count):
 
 @kernel
 def eliminate(matrix, right, size, columns):
-    """Solve for the first ``columns`` of ``right`` in place, by Gauss's method with partial pivoting."""
+    """Solve for the first ``columns`` of ``right`` in place, by Gauss's method with partial
+    pivoting."""
     for k in range(size):
         pivot = k
         for row in range(k + 1, size):
@@ -149,8 +167,8 @@ def eliminate(matrix, right, size, columns):
 
 @kernel
 def follow(walls, face, place, count, state, out):
-    """Fill ``out`` (p,) with the displacement of the wall under a face that may not press, by the ``count`` faces solved for and by
-    modes."""
+    """Fill ``out`` (p,) with the displacement of the wall under a face that may not press, by the
+    ``count`` faces solved for and by modes."""
     room = walls.room
     station, s, changes = between_stations(walls, place)
     take_swing(walls.modes, walls.rail[face], face, station, s, changes, state)

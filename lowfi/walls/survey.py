@@ -19,16 +19,16 @@ _THERE = 1e-9  # m, how far beyond its aim a step goes
 
 @kernel
 def depth(walls, faces, face, active, place, turn, state):
-    """Deepest penetration (m) of a face: negative across the gap, which other faces on the rail may narrow. ``active`` (f,) tells
-    which faces press."""
+    """Deepest penetration (m) of a face: negative across the gap, which other faces on the rail may
+    narrow. ``active`` (f,) tells which faces press."""
     count = solve(walls, faces, walls.rail[face], active, place, turn, state)
     return _deepest(walls, faces, face, count, active, place, turn, state)[0]
 
 
 @kernel
 def _deepest(walls, faces, face, count, active, place, turn, state):
-    """The same after ``solve``, and xi and eta of the deepest cell. A face past the end has the depth it would have there: else a
-    touch in the step in which it leaves would not be seen."""
+    """The same after ``solve``, and xi and eta of the deepest cell. A face past the end has the
+    depth it would have there: else a touch in the step in which it leaves would not be seen."""
     if not active[face]:
         take_lever(walls, faces, face, place, turn)
     displacement = walls.room.displacement[face]
@@ -41,17 +41,25 @@ def _deepest(walls, faces, face, count, active, place, turn, state):
 def _approach(walls, faces, face, xi, eta, drift, swing):
     """Rate (m/s) at which a point of the face comes up to its wall, which only modes move."""
     y, z, half = faces[face, NORMAL_Y], faces[face, NORMAL_Z], walls.half[face]
-    turning = xi * half[0] * (y * swing[3] + z * swing[6]) + eta * half[1] * (y * swing[5] + z * swing[7])
+    turning = xi * half[0] * (y * swing[3] + z * swing[6]) + eta * half[1] * (
+        y * swing[5] + z * swing[7]
+    )
     along, across = xi + walls.room.lever[face, SHIFT], eta + walls.room.lever[face, ASIDE]
-    away = speed_at(walls.modes, face, along, across) + warm.recess(walls.warm, face, along, across) * drift[0]
+    away = (
+        speed_at(walls.modes, face, along, across)
+        + warm.recess(walls.warm, face, along, across) * drift[0]
+    )
     return approach(None, faces[face], None, None, drift, swing) + turning - away
 
 
 @kernel
 def survey(walls, faces, platform, payload, active, state, open_, pressing, out):
-    """Fill ``out`` as ``lowfi.events.survey`` does; ``open_`` and ``pressing`` are the modes of a face. The energy (J) in all walls
-    under the ``active`` faces (f,)."""
-    body, base = slot.motion(payload.mass, payload.inverse_inertia, state, slot.PAYLOAD), slot.frame(platform, state)
+    """Fill ``out`` as ``lowfi.events.survey`` does; ``open_`` and ``pressing`` are the modes of a
+    face. The energy (J) in all walls under the ``active`` faces (f,)."""
+    body, base = (
+        slot.motion(payload.mass, payload.inverse_inertia, state, slot.PAYLOAD),
+        slot.frame(platform, state),
+    )
     place, turn = relative_pose(platform, body, base)
     drift, swing = relative_motion(platform, body, base, place, turn)
     total = 0.0
@@ -72,11 +80,15 @@ def survey(walls, faces, platform, payload, active, state, open_, pressing, out)
 
 @kernel
 def while_hanging(walls, faces, platform, payload, active, state):
-    """Longest step (s) where an ``active`` face (f,) comes to an end of the rail. The rate at which it leaves energy behind jumps
-    as it begins to hang over and bends with every row of cells that leaves, which no error estimate sees; and its last strip leaves
-    at once. So a step goes no farther than up to either, nor than to where a face that comes over an end is wholly over it, and a
-    quarter of a cell at most."""
-    body, base = slot.motion(payload.mass, payload.inverse_inertia, state, slot.PAYLOAD), slot.frame(platform, state)
+    """Longest step (s) where an ``active`` face (f,) comes to an end of the rail. The rate at which
+    it leaves energy behind jumps as it begins to hang over and bends with every row of cells that
+    leaves, which no error estimate sees; and its last strip leaves at once. So a step goes no
+    farther than up to either, nor than to where a face that comes over an end is wholly over it,
+    and a quarter of a cell at most."""
+    body, base = (
+        slot.motion(payload.mass, payload.inverse_inertia, state, slot.PAYLOAD),
+        slot.frame(platform, state),
+    )
     place, turn = relative_pose(platform, body, base)
     drift, _ = relative_motion(platform, body, base, place, turn)
     longest = np.inf
@@ -98,7 +110,10 @@ def while_hanging(walls, faces, platform, payload, active, state):
 @kernel
 def energy(walls, faces, platform, payload, active, state):
     """Energy (J) in all walls under the ``active`` faces (f,)."""
-    body, base = slot.motion(payload.mass, payload.inverse_inertia, state, slot.PAYLOAD), slot.frame(platform, state)
+    body, base = (
+        slot.motion(payload.mass, payload.inverse_inertia, state, slot.PAYLOAD),
+        slot.frame(platform, state),
+    )
     place, turn = relative_pose(platform, body, base)
     total = 0.0
     for rail in range(walls.members.shape[0]):

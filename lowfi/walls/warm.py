@@ -1,4 +1,5 @@
-"""Where warm walls that give way stand before anything presses them: T of ``scenes.walls``, on top of which comes what load does.
+"""Where warm walls that give way stand before anything presses them: T of ``scenes.walls``, on top
+of which comes what load does.
 
 Every function is nothing where ``warm`` is None.
 """
@@ -11,8 +12,8 @@ _XI, _ETA = POWERS.T.copy()
 
 @inlined
 def take(warm, face, station, s, changes):
-    """Fill T and its slope along the rail under ``face``, the way ``s`` (m) from a station, which goes on with ``changes`` of the
-    place."""
+    """Fill T and its slope along the rail under ``face``, the way ``s`` (m) from a station, which
+    goes on with ``changes`` of the place."""
     if warm is not None:
         _fill(warm, face, station, s, changes)
 
@@ -36,7 +37,8 @@ def place(warm, face, pattern):
 
 @inlined
 def pull(warm, face, force):
-    """Force (N) along the rail by which ``force`` (p,) N on a wall that stands farther away ahead pushes on."""
+    """Force (N) along the rail by which ``force`` (p,) N on a wall that stands farther away ahead
+    pushes on."""
     total = 0.0
     if warm is not None:
         for a in range(PATTERNS):

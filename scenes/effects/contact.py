@@ -1,13 +1,14 @@
 """Clearance and contact between pad faces and rail walls. Absent table: nothing touches.
 
-With penetration p > 0 and closing speed q = dp/dt the normal force is F = max(0, raw), where raw is::
+With penetration p > 0 and closing speed q = dp/dt the normal force is F = max(0, raw), where raw
+is::
 
     IMPACT          k p^e + c s(p/d) q,   s(x) = x^2 (3 - 2 x) on 0..1 and 1 beyond     (ADAMS/Solver)
     Hunt-Crossley   k p^e (1 + a q)                                                     (Hunt and Crossley 1975)
     linear          k p + c q
 
-The finite-element reference uses the penalty k_p (N/m3): pressure k_p p on the crowned pads, without damping.
-Stored energy is k p^(e+1) / (e+1) in each law.
+The finite-element reference uses the penalty k_p (N/m3): pressure k_p p on the crowned pads,
+without damping. Stored energy is k p^(e+1) / (e+1) in each law.
 """
 
 from typing import Annotated, Any, Literal, NamedTuple
@@ -85,7 +86,8 @@ ContactTable = Annotated[ImpactTable | HuntCrossleyTable | LinearTable, Field(di
 
 
 class Impact(NamedTuple):
-    """Kernel record: stiffness (N/m^e), exponent e, damping (N s/m) and the depth of its full effect (m)."""
+    """Kernel record: stiffness (N/m^e), exponent e, damping (N s/m) and the depth of its full
+    effect (m)."""
 
     stiffness: float
     exponent: float
@@ -120,7 +122,9 @@ def laws(record) -> Laws | None:
     """Kernel record of the contact law, or None for no contact."""
     if record is None:
         return None
-    return Laws(*(record if isinstance(record, kind) else None for kind in (Impact, HuntCrossley, Linear)))
+    return Laws(
+        *(record if isinstance(record, kind) else None for kind in (Impact, HuntCrossley, Linear))
+    )
 
 
 @njit
@@ -154,7 +158,8 @@ def linear(law, penetration, closing):
 
 @njit
 def parts(impact_law, hunt_crossley_law, linear_law, penetration, closing):
-    """(elastic, damping) in N for penetration > 0 (m) and closing speed (m/s) of whichever law is not None."""
+    """(elastic, damping) in N for penetration > 0 (m) and closing speed (m/s) of whichever law is
+    not None."""
     force = (0.0, 0.0)
     if impact_law is not None:
         force = impact(impact_law, penetration, closing)

@@ -1,13 +1,15 @@
-"""The flight after separation: a circular orbit, where the launch axis points there, and a target. Absent table: no flight.
+"""The flight after separation: a circular orbit, where the launch axis points there, and a target.
+Absent table: no flight.
 
-Orbit axes are R radially outwards, S along the flight, W along the orbit's normal. At zero angles scene +X is S, +Y is W and +Z is
-R; azimuth turns X from S towards W, elevation then raises it towards R, roll turns Y towards Z::
+Orbit axes are R radially outwards, S along the flight, W along the orbit's normal. At zero angles
+scene +X is S, +Y is W and +Z is R; azimuth turns X from S towards W, elevation then raises it
+towards R, roll turns Y towards Z::
 
     n = sqrt(mu / (R_e + h)^3)
 
-The target lies ``range`` along the launch axis from the payload's nominal mass centre, at rest in orbit axes at exit, and then
-falls freely like everything else. Constants: WGS 84 (NIMA TR8350.2), equatorial radius. The ejection feels nothing of this table,
-and no result of it depends on it.
+The target lies ``range`` along the launch axis from the payload's nominal mass centre, at rest in
+orbit axes at exit, and then falls freely like everything else. Constants: WGS 84 (NIMA TR8350.2),
+equatorial radius. The ejection feels nothing of this table, and no result of it depends on it.
 """
 
 import math
@@ -22,14 +24,16 @@ from scenes.units import Angle, PositiveLength, PositiveTime, quantity
 
 GRAVITATION = 3.986004418e14  # m3/s2, of the Earth
 EARTH_RADIUS = 6378137.0  # m
-_ORBIT_FROM_LEVEL = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])  # R, S, W of a scene at zero angles
+# R, S, W of a scene at zero angles
+_ORBIT_FROM_LEVEL = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
 
 
 class FlightTable(Table):
-    """``[flight]``: orbit by altitude (m) or mean_motion (rad/s); azimuth, elevation and roll of the launch axis (rad); range of
-    the target (m); duration (s) of the flight, one orbit where absent; pointing_limit (rad), an error whose time is asked. ``body``
-    is the size (m) of the payload without its pads, ``payload.size`` where absent; ``envelope`` lists boxes that the platform lies
-    in, in scene axes at ignition, to which built-in rails are added."""
+    """``[flight]``: orbit by altitude (m) or mean_motion (rad/s); azimuth, elevation and roll of
+    the launch axis (rad); range of the target (m); duration (s) of the flight, one orbit where
+    absent; pointing_limit (rad), an error whose time is asked. ``body`` is the size (m) of the
+    payload without its pads, ``payload.size`` where absent; ``envelope`` lists boxes that the
+    platform lies in, in scene axes at ignition, to which built-in rails are added."""
 
     altitude: PositiveLength | None = None
     mean_motion: quantity("rad/s", gt=0.0) | None = None
@@ -51,13 +55,18 @@ class FlightTable(Table):
     def record(self) -> "Flight":
         """Plain record."""
         motion = self.mean_motion or math.sqrt(GRAVITATION / (EARTH_RADIUS + self.altitude) ** 3)
-        return Flight(motion, _ORBIT_FROM_LEVEL @ _turned(self.azimuth, self.elevation, self.roll), self.range,
-                      self.duration or 2.0 * math.pi / motion, self.pointing_limit)
+        return Flight(
+            motion,
+            _ORBIT_FROM_LEVEL @ _turned(self.azimuth, self.elevation, self.roll),
+            self.range,
+            self.duration or 2.0 * math.pi / motion,
+            self.pointing_limit,
+        )
 
 
 class Flight(NamedTuple):
-    """Mean motion (rad/s); ``axes`` (3,3), R, S and W components of scene vectors; range (m); duration (s); pointing limit (rad) or
-    None."""
+    """Mean motion (rad/s); ``axes`` (3,3), R, S and W components of scene vectors; range (m);
+    duration (s); pointing limit (rad) or None."""
 
     mean_motion: float
     axes: np.ndarray
@@ -68,7 +77,10 @@ class Flight(NamedTuple):
 
 def _turned(azimuth: float, elevation: float, roll: float) -> np.ndarray:
     """Scene axes, as columns, in those of the scene at zero angles."""
-    (ca, ce, cr), (sa, se, sr) = np.cos([azimuth, elevation, roll]), np.sin([azimuth, elevation, roll])
+    (ca, ce, cr), (sa, se, sr) = (
+        np.cos([azimuth, elevation, roll]),
+        np.sin([azimuth, elevation, roll]),
+    )
     about_z = np.array([[ca, -sa, 0.0], [sa, ca, 0.0], [0.0, 0.0, 1.0]])
     about_y = np.array([[ce, 0.0, -se], [0.0, 1.0, 0.0], [se, 0.0, ce]])
     return about_z @ about_y @ np.array([[1.0, 0.0, 0.0], [0.0, cr, -sr], [0.0, sr, cr]])

@@ -1,7 +1,8 @@
 """Initial state of payload and platform at ignition. Absent table: centred, aligned, at rest.
 
-Position is the displacement of the payload from its centred place; attitude is a rotation vector (axis times angle) from
-scene axes to body axes. Velocities are inertial, in scene axes; rates are in the body's own axes.
+Position is the displacement of the payload from its centred place; attitude is a rotation vector
+(axis times angle) from scene axes to body axes. Velocities are inertial, in scene axes; rates are
+in the body's own axes.
 """
 
 from typing import NamedTuple
@@ -54,8 +55,19 @@ class InitialTable(Table):
 
     def record(self) -> "Initial":
         """Kernel record."""
-        return Initial(*(tuple(part.model_dump().values()) for part in (
-            self.position, self.attitude, self.velocity, self.rate, self.platform_velocity, self.platform_rate)))
+        return Initial(
+            *(
+                tuple(part.model_dump().values())
+                for part in (
+                    self.position,
+                    self.attitude,
+                    self.velocity,
+                    self.rate,
+                    self.platform_velocity,
+                    self.platform_rate,
+                )
+            )
+        )
 
 
 class Initial(NamedTuple):

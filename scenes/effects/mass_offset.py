@@ -1,7 +1,9 @@
-"""Mass eccentricity: the payload's mass centre lies off its nominal place, ``l_y = r1 sin b``, ``l_z = r1 cos b``.
+"""Mass eccentricity: the payload's mass centre lies off its nominal place, ``l_y = r1 sin b``,
+``l_z = r1 cos b``.
 
-Pads and thrust keep their places relative to the nominal centre, so their arms about the actual mass centre change by
-``-l``. The inertia is given about the actual mass centre and does not change. Absent table: the centres coincide.
+Pads and thrust keep their places relative to the nominal centre, so their arms about the actual
+mass centre change by ``-l``. The inertia is given about the actual mass centre and does not change.
+Absent table: the centres coincide.
 """
 
 import math

@@ -17,7 +17,8 @@ class MeasuredCurve(NamedTuple):
 
 
 class GaussianFit(NamedTuple):
-    """Peak (N), centre and width (s), relative L2 residual, impulse of the fit and of the curve (N s)."""
+    """Peak (N), centre and width (s), relative L2 residual, impulse of the fit and of the curve (N
+    s)."""
 
     peak: float
     centre: float
@@ -28,7 +29,8 @@ class GaussianFit(NamedTuple):
 
 
 def read_curve(path: str | Path) -> MeasuredCurve:
-    """Read a CSV with header ``time_s,force_N``. Raises ValueError naming everything that is wrong with the table."""
+    """Read a CSV with header ``time_s,force_N``. Raises ValueError naming everything that is wrong
+    with the table."""
     try:
         # Spreadsheets put a byte-order mark in front of UTF-8, which "utf-8-sig" takes away.
         with open(path, newline="", encoding="utf-8-sig") as stream:
@@ -59,26 +61,37 @@ def read_curve(path: str | Path) -> MeasuredCurve:
 
 
 def fit_gaussian(curve: MeasuredCurve) -> GaussianFit:
-    """Least-squares Gaussian through a measured curve, started from its moments. Raises ValueError where none fits."""
+    """Least-squares Gaussian through a measured curve, started from its moments. Raises ValueError
+    where none fits."""
     time, force = curve
     total = np.trapezoid(force, time)
     if time.size < 4 or total <= 0.0:
-        raise ValueError("a curve of at least four points and positive impulse, for a Gaussian to fit")
+        raise ValueError(
+            "a curve of at least four points and positive impulse, for a Gaussian to fit"
+        )
 
     def gaussian(t, peak, centre, width):
         return peak * np.exp(-0.5 * ((t - centre) / width) ** 2)
 
     centre = np.trapezoid(force * time, time) / total
-    width = math.sqrt(max(np.trapezoid(force * (time - centre) ** 2, time) / total, np.diff(time).min() ** 2))
+    width = math.sqrt(
+        max(np.trapezoid(force * (time - centre) ** 2, time) / total, np.diff(time).min() ** 2)
+    )
     start = (total / (width * math.sqrt(2.0 * math.pi)), centre, width)
     try:
-        (peak, centre, width), _ = scipy.optimize.curve_fit(gaussian, time, force, p0=start, maxfev=20000)
+        (peak, centre, width), _ = scipy.optimize.curve_fit(
+            gaussian, time, force, p0=start, maxfev=20000
+        )
     except RuntimeError as error:
         raise ValueError("a curve that a Gaussian fits (least squares did not converge)") from error
     peak, centre, width = float(peak), float(centre), abs(float(width))
     # A flat curve is fitted perfectly by an endless Gaussian, which would push long after the burn.
     if not time[0] <= centre <= time[-1] or width > 0.5 * (time[-1] - time[0]):
-        raise ValueError(f"a curve that a Gaussian fits (found centre {centre:.4g} s, width {width:.4g} s, "
-                         f"for a curve from {time[0]:.4g} to {time[-1]:.4g} s)")
+        raise ValueError(
+            f"a curve that a Gaussian fits (found centre {centre:.4g} s, width {width:.4g} s, "
+            f"for a curve from {time[0]:.4g} to {time[-1]:.4g} s)"
+        )
     residual = np.linalg.norm(force - gaussian(time, peak, centre, width)) / np.linalg.norm(force)
-    return GaussianFit(peak, centre, width, float(residual), peak * width * math.sqrt(2.0 * math.pi), float(total))
+    return GaussianFit(
+        peak, centre, width, float(residual), peak * width * math.sqrt(2.0 * math.pi), float(total)
+    )

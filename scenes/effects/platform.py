@@ -1,4 +1,5 @@
-"""A free platform that recoils: a second rigid body that carries the rails. Absent table: the rails are fixed in space.
+"""A free platform that recoils: a second rigid body that carries the rails. Absent table: the rails
+are fixed in space.
 
 Its mass, inertia and mass centre are those of the whole platform *with* its undeformed rails.
 """
@@ -14,7 +15,8 @@ from scenes.units import Mass
 
 
 class PlatformTable(Table):
-    """``[platform]``: mass (kg), inertia about its mass centre (kg m2), mass centre at ignition in scene axes (m)."""
+    """``[platform]``: mass (kg), inertia about its mass centre (kg m2), mass centre at ignition in
+    scene axes (m)."""
 
     mass: Mass
     inertia: InertiaTensor

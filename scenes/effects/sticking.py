@@ -1,12 +1,14 @@
-"""Coulomb friction that truly sticks: a touching face is held by spring and damper until they bear mu_s N, or slides under mu_d N.
+"""Coulomb friction that truly sticks: a touching face is held by spring and damper until they bear
+mu_s N, or slides under mu_d N.
 
     held      F = -k xi - c u         while |F| <= mu_s N        (xi: way of the face from its anchor, u: slip velocity)
     sliding   F = -mu_d N u/|u|       until |u| <= the capture speed
 
-``lowfi.grip`` says where one becomes the other. The spring stands for the tangential compliance of one pad face, so a held face
-gives by F/k but does not creep. On springs alone the payload would ring: 2 sqrt(k m), m the mass a face carries, damps that
-critically. Sources: Cundall and Strack, Geotechnique 29 (1979) 47 (spring and slider); Karnopp, J. Dyn. Syst. Meas. Control 107
-(1985) 100 (a band about rest).
+``lowfi.grip`` says where one becomes the other. The spring stands for the tangential compliance of
+one pad face, so a held face gives by F/k but does not creep. On springs alone the payload would
+ring: 2 sqrt(k m), m the mass a face carries, damps that critically. Sources: Cundall and Strack,
+Geotechnique 29 (1979) 47 (spring and slider); Karnopp, J. Dyn. Syst. Meas. Control 107 (1985) 100
+(a band about rest).
 """
 
 from typing import Literal, NamedTuple
@@ -21,8 +23,8 @@ _SLOWEST = 1e-9
 
 
 class StickingTable(Table):
-    """``[friction] law = "sticking"``: coefficients (dimensionless), tangential stiffness (N/m) and damping (N s/m) of one held
-    face, and the slip (m/s) below which a face that stops is held."""
+    """``[friction] law = "sticking"``: coefficients (dimensionless), tangential stiffness (N/m) and
+    damping (N s/m) of one held face, and the slip (m/s) below which a face that stops is held."""
 
     law: Literal["sticking"]
     static: NonNegativeNumber
@@ -44,7 +46,8 @@ class StickingTable(Table):
 
 
 class Sticking(NamedTuple):
-    """Kernel record: coefficients, stiffness (N/m) and damping (N s/m) of a held face, capture speed (m/s)."""
+    """Kernel record: coefficients, stiffness (N/m) and damping (N s/m) of a held face, capture
+    speed (m/s)."""
 
     static: float
     dynamic: float

@@ -1,12 +1,15 @@
-"""Rails warmed unevenly before launch: a temperature linear in place, which does not change in the milliseconds of a launch.
+"""Rails warmed unevenly before launch: a temperature linear in place, which does not change in the
+milliseconds of a launch.
 
-With T the change of temperature since the rails were mounted free of stress, X_m the middle of their length on the payload's axis,
-alpha the coefficient of expansion and s the strain of the platform that carries the mounts::
+With T the change of temperature since the rails were mounted free of stress, X_m the middle of
+their length on the payload's axis, alpha the coefficient of expansion and s the strain of the
+platform that carries the mounts::
 
     T = mean + gradient . (X - X_m),      free strain alpha T in every direction,      mounts moved by s (X - X_m)
 
-So rails on the sunny side, 0.2 m from those in the shade and 20 K warmer, have a gradient of 0.1 K/mm, and a platform that warms
-with its rails and expands as they do has s = alpha mean and leaves them free of stress. Absent table: rails as they were mounted.
+So rails on the sunny side, 0.2 m from those in the shade and 20 K warmer, have a gradient of 0.1
+K/mm, and a platform that warms with its rails and expands as they do has s = alpha mean and leaves
+them free of stress. Absent table: rails as they were mounted.
 """
 
 from typing import NamedTuple
@@ -16,7 +19,9 @@ import numpy as np
 from scenes.table import Table
 from scenes.units import Number, TemperatureChange, TemperatureGradient
 
-FIELDS = 5  # of which every [thermal] is a sum: a free strain, its gradients along x, y and z, and the strain of the platform
+# of which every [thermal] is a sum: a free strain, its gradients along x, y and z, and the strain
+# of the platform
+FIELDS = 5
 
 
 class GradientTable(Table):
@@ -28,7 +33,8 @@ class GradientTable(Table):
 
 
 class ThermalTable(Table):
-    """``[thermal]``: mean change of temperature (K), its gradient, and the strain of the platform between the mounts."""
+    """``[thermal]``: mean change of temperature (K), its gradient, and the strain of the platform
+    between the mounts."""
 
     mean: TemperatureChange = 0.0
     gradient: GradientTable = GradientTable()
@@ -42,8 +48,8 @@ class ThermalTable(Table):
 
 
 class Thermal(NamedTuple):
-    """Plain record: amounts (FIELDS,), how much there is of each of the fields: free strain at X_m (1), its gradients (1/m), strain
-    of the platform (1); ``middle``, X_m in scene axes (m)."""
+    """Plain record: amounts (FIELDS,), how much there is of each of the fields: free strain at X_m
+    (1), its gradients (1/m), strain of the platform (1); ``middle``, X_m in scene axes (m)."""
 
     amounts: np.ndarray
     middle: float

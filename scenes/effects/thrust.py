@@ -2,9 +2,10 @@
 
     F(t) = sum_i P_i exp(-(t - t_i)^2 / (2 s_i^2))   begin <= t <= end,        impulse of one pulse J = P s sqrt(2 pi)
 
-A pulse cut at ``n`` widths keeps erf(n / sqrt 2) of its impulse; ``rescale`` restores it. A measured curve is used point by
-point, or through its least-squares Gaussian fit; ``describe`` says which, with the fit, its residual and both impulses.
-The law itself is in ``thrust_law``, whose names are also found here.
+A pulse cut at ``n`` widths keeps erf(n / sqrt 2) of its impulse; ``rescale`` restores it. A
+measured curve is used point by point, or through its least-squares Gaussian fit; ``describe`` says
+which, with the fit, its residual and both impulses. The law itself is in ``thrust_law``, whose
+names are also found here.
 """
 
 import math
@@ -47,8 +48,21 @@ from scenes.units import (
     Time,
 )
 
-__all__ = ["Curve", "Pulse", "Pulses", "Thrust", "ThrustTable", "burnout", "burnouts", "corners", "impulse", "magnitude", "peak",
-           "sample", "shortest_feature"]
+__all__ = [
+    "Curve",
+    "Pulse",
+    "Pulses",
+    "Thrust",
+    "ThrustTable",
+    "burnout",
+    "burnouts",
+    "corners",
+    "impulse",
+    "magnitude",
+    "peak",
+    "sample",
+    "shortest_feature",
+]
 
 
 class Pulse(Table):
@@ -75,21 +89,33 @@ class Pulse(Table):
 
 
 class _ThrustTable(Table):
-    """What every kind has: ``arm`` (m), distance of the point of application behind the nominal mass centre; ``reaction``."""
+    """What every kind has: ``arm`` (m), distance of the point of application behind the nominal
+    mass centre; ``reaction``."""
 
     arm: PositiveLength = 0.1
     reaction: Literal["platform", "exhaust"] = "platform"
 
     def describe(self, duration: float) -> dict[str, float | str]:
-        """What pushes, for results and report: numbers in SI by name, and ``text`` that says it in one sentence.
+        """What pushes, for results and report: numbers in SI by name, and ``text`` that says it in
+        one sentence.
 
-        ``impulse_requested_Ns`` is what the scene asks for, ``impulse_delivered_Ns`` what acts in 0..``duration`` (s).
+        ``impulse_requested_Ns`` is what the scene asks for, ``impulse_delivered_Ns`` what acts in
+        0..``duration`` (s).
         """
         record = self.record()
         asked, given = self.requested(), impulse(record, duration)
-        text = f"{self.kind}, {self.usage()}; impulse requested {asked:.7g} N s, delivered in the scene {given:.7g} N s"
-        return {"kind": self.kind, "peak_N": peak(record, duration), "impulse_requested_Ns": asked,
-                "impulse_delivered_Ns": given, **self.details(), "text": text}
+        text = (
+            f"{self.kind}, {self.usage()}; impulse requested {asked:.7g} N s, delivered in the "
+            f"scene {given:.7g} N s"
+        )
+        return {
+            "kind": self.kind,
+            "peak_N": peak(record, duration),
+            "impulse_requested_Ns": asked,
+            "impulse_delivered_Ns": given,
+            **self.details(),
+            "text": text,
+        }
 
     def usage(self) -> str:
         """How the table is turned into F(t), in words."""
@@ -101,9 +127,11 @@ class _ThrustTable(Table):
 
 
 class _PulsedTable(_ThrustTable):
-    """Gaussians, cut at ``cutoff`` widths before the first begins and after the last ends (absent: not cut).
+    """Gaussians, cut at ``cutoff`` widths before the first begins and after the last ends (absent:
+    not cut).
 
-    ``rescale`` raises each pulse by the share of it that the cut takes away, so that the impulse stays as asked.
+    ``rescale`` raises each pulse by the share of it that the cut takes away, so that the impulse
+    stays as asked.
     """
 
     cutoff: PositiveNumber | None = None
@@ -123,9 +151,15 @@ class _PulsedTable(_ThrustTable):
         if self.cutoff:
             begin = min(p.centre - self.cutoff * p.width for p in pulses)
             end = max(p.centre + self.cutoff * p.width for p in pulses)
-        factors = [1.0 / kept(begin, end, p.centre, p.width) if self.rescale else 1.0 for p in pulses]
-        rows = np.array([(p.height() * factor, p.centre, p.width) for p, factor in zip(pulses, factors)])
-        return Thrust(Pulses(*(np.ascontiguousarray(column) for column in rows.T), begin, end), None)
+        factors = [
+            1.0 / kept(begin, end, p.centre, p.width) if self.rescale else 1.0 for p in pulses
+        ]
+        rows = np.array(
+            [(p.height() * factor, p.centre, p.width) for p, factor in zip(pulses, factors)]
+        )
+        return Thrust(
+            Pulses(*(np.ascontiguousarray(column) for column in rows.T), begin, end), None
+        )
 
     def requested(self) -> float:
         """Impulse (N s) of the uncut pulses."""
@@ -173,7 +207,9 @@ class ConstantTable(_ThrustTable):
 
     def record(self) -> Thrust:
         """Kernel record: a curve that jumps on and off."""
-        times = np.array([self.start, self.start, self.start + self.duration, self.start + self.duration])
+        times = np.array(
+            [self.start, self.start, self.start + self.duration, self.start + self.duration]
+        )
         return Thrust(None, Curve(times, np.array([0.0, self.force, self.force, 0.0])))
 
     def requested(self) -> float:
@@ -182,7 +218,8 @@ class ConstantTable(_ThrustTable):
 
 
 class MeasuredTable(_ThrustTable):
-    """``[thrust] kind = "measured"``: CSV with columns ``time_s,force_N``; ``use`` the curve itself or its Gaussian fit."""
+    """``[thrust] kind = "measured"``: CSV with columns ``time_s,force_N``; ``use`` the curve itself
+    or its Gaussian fit."""
 
     kind: Literal["measured"]
     file: str
@@ -203,7 +240,8 @@ class MeasuredTable(_ThrustTable):
         return self
 
     def fit(self) -> GaussianFit:
-        """Least-squares Gaussian of the curve, with residual and impulses. Raises ValueError where none fits."""
+        """Least-squares Gaussian of the curve, with residual and impulses. Raises ValueError where
+        none fits."""
         return fit_gaussian(self._curve)
 
     def points(self) -> list[list[float]]:
@@ -229,8 +267,12 @@ class MeasuredTable(_ThrustTable):
             fit = self.fit()
         except ValueError:
             return f"{acting}, no Gaussian fits"
-        return (f"{acting}; fit peak {fit.peak:.6g} N, centre {fit.centre:.6g} s, width {fit.width:.6g} s, relative residual "
-                f"{fit.relative_residual:.3g}, impulse {fit.impulse:.7g} N s against {fit.curve_impulse:.7g} N s of the curve")
+        return (
+            f"{acting}; fit peak {fit.peak:.6g} N, centre {fit.centre:.6g} s, width "
+            f"{fit.width:.6g} s, relative residual "
+            f"{fit.relative_residual:.3g}, impulse {fit.impulse:.7g} N s against "
+            f"{fit.curve_impulse:.7g} N s of the curve"
+        )
 
     def details(self) -> dict[str, float | str]:
         """Which of curve and fit is used, and the fit."""
@@ -239,9 +281,16 @@ class MeasuredTable(_ThrustTable):
             fit = self.fit()
         except ValueError:
             return used
-        return used | {"fit_peak_N": fit.peak, "fit_centre_s": fit.centre, "fit_width_s": fit.width,
-                       "fit_relative_residual": fit.relative_residual, "fit_impulse_Ns": fit.impulse,
-                       "curve_impulse_Ns": fit.curve_impulse}
+        return used | {
+            "fit_peak_N": fit.peak,
+            "fit_centre_s": fit.centre,
+            "fit_width_s": fit.width,
+            "fit_relative_residual": fit.relative_residual,
+            "fit_impulse_Ns": fit.impulse,
+            "curve_impulse_Ns": fit.curve_impulse,
+        }
 
 
-ThrustTable = Annotated[GaussianTable | GaussiansTable | ConstantTable | MeasuredTable, Field(discriminator="kind")]
+ThrustTable = Annotated[
+    GaussianTable | GaussiansTable | ConstantTable | MeasuredTable, Field(discriminator="kind")
+]

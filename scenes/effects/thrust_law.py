@@ -1,6 +1,6 @@
 """The law of the thrust: kernel records, F(t), and what an integrator must know of it.
 
-    F(t) = sum_i P_i exp(-(t - t_i)^2 / (2 s_i^2))   begin <= t <= end,   or a piecewise linear curve
+F(t) = sum_i P_i exp(-(t - t_i)^2 / (2 s_i^2))   begin <= t <= end,   or a piecewise linear curve
 """
 
 import math
@@ -24,7 +24,8 @@ class Pulses(NamedTuple):
 
 
 class Curve(NamedTuple):
-    """Piecewise linear curve: times (s, not decreasing; a repeated time is a jump) and forces (N)."""
+    """Piecewise linear curve: times (s, not decreasing; a repeated time is a jump) and forces
+    (N)."""
 
     times: np.ndarray
     forces: np.ndarray
@@ -84,13 +85,19 @@ def sample(thrust: Thrust, time: np.ndarray) -> np.ndarray:
 
 
 def corners(thrust: Thrust, duration: float) -> np.ndarray:
-    """Sorted times (s) inside (0, duration) where F or its slope jumps: an integrator must stop there."""
-    times = thrust.curve.times if thrust.curve is not None else np.array([thrust.pulses.begin, thrust.pulses.end])
+    """Sorted times (s) inside (0, duration) where F or its slope jumps: an integrator must stop
+    there."""
+    times = (
+        thrust.curve.times
+        if thrust.curve is not None
+        else np.array([thrust.pulses.begin, thrust.pulses.end])
+    )
     return np.unique(times[(times > 0.0) & (times < duration)])
 
 
 def shortest_feature(thrust: Thrust) -> float:
-    """Time scale (s) no step may jump over: the narrowest pulse width, or the shortest segment of a curve."""
+    """Time scale (s) no step may jump over: the narrowest pulse width, or the shortest segment of a
+    curve."""
     if thrust.pulses is not None:
         return float(thrust.pulses.widths.min())
     return float(np.diff(np.unique(thrust.curve.times)).min())
@@ -98,7 +105,8 @@ def shortest_feature(thrust: Thrust) -> float:
 
 @njit
 def _bisected(pulses, curve, level, above, below):
-    """Time (s) where the size of the thrust falls to ``level`` (N), between one that is above it and one below."""
+    """Time (s) where the size of the thrust falls to ``level`` (N), between one that is above it
+    and one below."""
     while True:
         middle = 0.5 * (above + below)
         if not above < middle < below:
@@ -110,9 +118,13 @@ def _bisected(pulses, curve, level, above, below):
 
 
 def _grid(thrust: Thrust, duration: float) -> tuple[np.ndarray, np.ndarray]:
-    """Times (s) in 0..duration that miss no pulse and no point of a curve, and the size of the thrust (N) there."""
+    """Times (s) in 0..duration that miss no pulse and no point of a curve, and the size of the
+    thrust (N) there."""
     if thrust.pulses is not None:
-        near = thrust.pulses.centres[:, None] + np.linspace(-8.0, 8.0, 801) * thrust.pulses.widths[:, None]
+        near = (
+            thrust.pulses.centres[:, None]
+            + np.linspace(-8.0, 8.0, 801) * thrust.pulses.widths[:, None]
+        )
     else:
         near = thrust.curve.times
     time = np.union1d(np.linspace(0.0, duration, 1001), near[(near > 0.0) & (near < duration)])
@@ -120,17 +132,22 @@ def _grid(thrust: Thrust, duration: float) -> tuple[np.ndarray, np.ndarray]:
 
 
 def peak(thrust: Thrust, duration: float) -> float:
-    """Largest size of the thrust (N) in 0..duration: exact for one pulse and for a curve, else within 1e-4 of itself."""
+    """Largest size of the thrust (N) in 0..duration: exact for one pulse and for a curve, else
+    within 1e-4 of itself."""
     return float(_grid(thrust, duration)[1].max())
 
 
 def burnouts(thrust: Thrust, fractions: tuple[float, ...], duration: float) -> tuple[float, ...]:
-    """For each fraction the earliest time (s) after which thrust stays below this share of its peak; ``duration`` if that is later.
+    """For each fraction the earliest time (s) after which thrust stays below this share of its
+    peak; ``duration`` if that is later.
 
-    The last grid point above is found first, then the crossing behind it by bisection to the last bit.
+    The last grid point above is found first, then the crossing behind it by bisection to the last
+    bit.
     """
     time, force = _grid(thrust, duration)
-    return tuple(_last_above(thrust, time, force, fraction * force.max(), duration) for fraction in fractions)
+    return tuple(
+        _last_above(thrust, time, force, fraction * force.max(), duration) for fraction in fractions
+    )
 
 
 def burnout(thrust: Thrust, fraction: float, duration: float) -> float:
@@ -138,7 +155,9 @@ def burnout(thrust: Thrust, fraction: float, duration: float) -> float:
     return burnouts(thrust, (fraction,), duration)[0]
 
 
-def _last_above(thrust: Thrust, time: np.ndarray, force: np.ndarray, level: float, duration: float) -> float:
+def _last_above(
+    thrust: Thrust, time: np.ndarray, force: np.ndarray, level: float, duration: float
+) -> float:
     if level == 0.0:
         return 0.0
     above = np.flatnonzero(force >= level)[-1]
@@ -160,7 +179,11 @@ def impulse(thrust: Thrust, duration: float) -> float:
     if thrust.pulses is not None:
         peaks, centres, widths, begin, end = thrust.pulses
         window = max(0.0, begin), min(duration, end)
-        return float(sum(p * s * ROOT_TWO_PI * kept(*window, t, s) for p, t, s in zip(peaks, centres, widths)))
+        return float(
+            sum(
+                p * s * ROOT_TWO_PI * kept(*window, t, s) for p, t, s in zip(peaks, centres, widths)
+            )
+        )
     times, forces = thrust.curve
     inside = times <= duration
     total = np.trapezoid(forces[inside], times[inside])

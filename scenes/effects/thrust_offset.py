@@ -1,7 +1,8 @@
 """Thrust misalignment and eccentricity: direction and line of action of the thrust in body axes.
 
-Misalignment theta from +X, phi from +Y towards +Z: ``F (cos t, sin t cos p, sin t sin p)``. Eccentricity r at angle a:
-``l_z = r cos a``, ``l_y = r sin a``, measured from the nominal centre. Absent table: a centred axial force.
+Misalignment theta from +X, phi from +Y towards +Z: ``F (cos t, sin t cos p, sin t sin p)``.
+Eccentricity r at angle a: ``l_z = r cos a``, ``l_y = r sin a``, measured from the nominal centre.
+Absent table: a centred axial force.
 """
 
 import math
@@ -39,7 +40,8 @@ class ThrustOffset(NamedTuple):
 
 
 def record(thrust_offset, mass_offset, arm: float) -> ThrustOffset | None:
-    """Line of action about the actual mass centre, or None when thrust is axial through the mass centre.
+    """Line of action about the actual mass centre, or None when thrust is axial through the mass
+    centre.
 
     ``arm`` is the distance (m) of the point of application behind the nominal centre.
     """
@@ -47,7 +49,12 @@ def record(thrust_offset, mass_offset, arm: float) -> ThrustOffset | None:
         return None
     direction, line, centre = (1.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
     if thrust_offset is not None:
-        direction, line = thrust_offset.misalignment.direction(), thrust_offset.eccentricity.offset()
+        direction, line = (
+            thrust_offset.misalignment.direction(),
+            thrust_offset.eccentricity.offset(),
+        )
     if mass_offset is not None:
         centre = mass_offset.eccentricity.offset()
-    return ThrustOffset(direction, (line[0] - centre[0] - arm, line[1] - centre[1], line[2] - centre[2]))
+    return ThrustOffset(
+        direction, (line[0] - centre[0] - arm, line[1] - centre[1], line[2] - centre[2])
+    )

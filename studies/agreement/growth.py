@@ -4,16 +4,18 @@
     d_k  = mean of s over the free flight after contact k
     factor d_k / d_(k-1),   exponent ln(d_k / d_(k-1)) / (t_k - t_(k-1)),   t_k the end of contact k
 
-Walls and not the payload are moved, because that is the disturbance of the floor: it meets every face whatever way the payload
-goes, and both models know it. Before the first contact nothing differs. The first one turns a length into a rate, d_1; every later
-one adds such a part of its own, so that d_k up to k d_1 is no growth, and more is.
+Walls and not the payload are moved, because that is the disturbance of the floor: it meets every
+face whatever way the payload goes, and both models know it. Before the first contact nothing
+differs. The first one turns a length into a rate, d_1; every later one adds such a part of its own,
+so that d_k up to k d_1 is no growth, and more is.
 
-**Horizon**: the first instant at which s passes the gate of the settled rates and is not back below it after the same contact.
-Twins touch at different instants, so that s peaks while one of them is in contact and the other not yet; a peak that the contact
-takes back is a shift of time. Up to the horizon of the reference a curve can be compared with its own, from there on it is one of
-many that 1 um tells apart. **Sensitive**: 1 um moves a settled rate by more than the gate. **Chaotic**: sensitive, and d after the
-last of n contacts is more than n d_1, so that it is growth from contact to contact and not the first one alone that carries 1 um
-beyond the gate.
+**Horizon**: the first instant at which s passes the gate of the settled rates and is not back below
+it after the same contact. Twins touch at different instants, so that s peaks while one of them is
+in contact and the other not yet; a peak that the contact takes back is a shift of time. Up to the
+horizon of the reference a curve can be compared with its own, from there on it is one of many that
+1 um tells apart. **Sensitive**: 1 um moves a settled rate by more than the gate. **Chaotic**:
+sensitive, and d after the last of n contacts is more than n d_1, so that it is growth from contact
+to contact and not the first one alone that carries 1 um beyond the gate.
 """
 
 import math
@@ -31,8 +33,8 @@ _DRAWN = 300  # points of a curve that result files keep
 
 @dataclass(frozen=True)
 class Contact:
-    """One contact of any of the twins: its begin and end (s), the separation after it (deg/s), and since the one before the factor
-    and the exponent (1/s), None for the first."""
+    """One contact of any of the twins: its begin and end (s), the separation after it (deg/s), and
+    since the one before the factor and the exponent (1/s), None for the first."""
 
     start_s: float
     end_s: float
@@ -43,9 +45,10 @@ class Contact:
 
 @dataclass(frozen=True)
 class Growth:
-    """Separation of one model from its twins on one condition, settled in deg/s (None where a run did not settle) and per um of the
-    disturbance; factor and exponent (1/s) from the first contact to the last, None with fewer than two; horizon (s), None where the
-    gate is never left; the verdicts above; and the curve, of each stretch its largest value."""
+    """Separation of one model from its twins on one condition, settled in deg/s (None where a run
+    did not settle) and per um of the disturbance; factor and exponent (1/s) from the first contact
+    to the last, None with fewer than two; horizon (s), None where the gate is never left; the
+    verdicts above; and the curve, of each stretch its largest value."""
 
     condition: str
     model: str
@@ -64,9 +67,16 @@ class Growth:
     separation_deg_s: list[float]
 
 
-def growth(condition: str, model: str, nominal: Trajectory, twins: list[Trajectory], disturbance: float,
-           gate: float) -> Growth:
-    """Growth of a ``disturbance`` (m) in one model, from runs that differ by it; ``gate`` (deg/s) is that of the settled rates."""
+def growth(
+    condition: str,
+    model: str,
+    nominal: Trajectory,
+    twins: list[Trajectory],
+    disturbance: float,
+    gate: float,
+) -> Growth:
+    """Growth of a ``disturbance`` (m) in one model, from runs that differ by it; ``gate`` (deg/s)
+    is that of the settled rates."""
     time = min((common_time(nominal, twin) for twin in twins), key=lambda each: each[-1])
     apart = separation(time, nominal, twins)
     spans = contacts(time, np.any([_loaded(run, time) for run in (nominal, *twins)], axis=0))
@@ -76,21 +86,38 @@ def growth(condition: str, model: str, nominal: Trajectory, twins: list[Trajecto
     settled = None if None in changes else largest(changes)
     sensitive = None if settled is None else settled > gate
     chaotic = sensitive and factor is not None and factor > len(touched)
-    return Growth(condition, model, disturbance, gate, touched, factor, exponent, settled,
-                  None if settled is None else settled / (1e6 * disturbance), horizon(time, apart, spans, gate), float(time[-1]),
-                  sensitive, chaotic, *_drawn(time, apart))
+    return Growth(
+        condition,
+        model,
+        disturbance,
+        gate,
+        touched,
+        factor,
+        exponent,
+        settled,
+        None if settled is None else settled / (1e6 * disturbance),
+        horizon(time, apart, spans, gate),
+        float(time[-1]),
+        sensitive,
+        chaotic,
+        *_drawn(time, apart),
+    )
 
 
 def separation(time: np.ndarray, nominal: Trajectory, twins: list[Trajectory]) -> np.ndarray:
     """s (n,) deg/s at ``time`` (n,) s."""
+
     def rate(run):
-        return np.column_stack([np.interp(time, run.time, column) for column in np.degrees(run.rate).T])
+        return np.column_stack(
+            [np.interp(time, run.time, column) for column in np.degrees(run.rate).T]
+        )
 
     return np.max([np.abs(rate(twin) - rate(nominal)).max(axis=1) for twin in twins], axis=0)
 
 
 def contacts(time: np.ndarray, loaded: np.ndarray) -> list[tuple[int, int]]:
-    """First sample of each contact and the one after its last, where ``loaded`` (n,) says when a pad bears a force."""
+    """First sample of each contact and the one after its last, where ``loaded`` (n,) says when a
+    pad bears a force."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], loaded, [False]]).astype(int)))
     spans: list[tuple[int, int]] = []
     for first, after in zip(edges[::2].tolist(), edges[1::2].tolist()):
@@ -100,16 +127,22 @@ def contacts(time: np.ndarray, loaded: np.ndarray) -> list[tuple[int, int]]:
     return spans
 
 
-def horizon(time: np.ndarray, apart: np.ndarray, spans: list[tuple[int, int]], gate: float) -> float | None:
-    """First instant (s) at which ``apart`` (n,) passes ``gate`` for longer than the contact it is in, as ``contacts`` gives them;
-    None without one. Between samples s is taken to grow exponentially."""
+def horizon(
+    time: np.ndarray, apart: np.ndarray, spans: list[tuple[int, int]], gate: float
+) -> float | None:
+    """First instant (s) at which ``apart`` (n,) passes ``gate`` for longer than the contact it is
+    in, as ``contacts`` gives them; None without one. Between samples s is taken to grow
+    exponentially."""
     free = np.ones(time.size, dtype=bool)
     for first, after in spans:
-        free[first:min(after, time.size - 1)] = False
+        free[first : min(after, time.size - 1)] = False
     beyond = np.flatnonzero(free & (apart > gate))
     if not beyond.size:
         return None
-    begin = next((first for first, after in spans if after == beyond[0] or first <= beyond[0] < after), beyond[0])
+    begin = next(
+        (first for first, after in spans if after == beyond[0] or first <= beyond[0] < after),
+        beyond[0],
+    )
     at = begin + int(np.argmax(apart[begin:] > gate))
     if at == 0 or not 0.0 < apart[at - 1] < gate:
         return float(time[at])
@@ -122,7 +155,11 @@ def _after(time: np.ndarray, apart: np.ndarray, spans: list[tuple[int, int]]) ->
     for (first, after), following in zip(spans, [*(first for first, _ in spans[1:]), time.size]):
         free = apart[after:following] if following > after else apart[-1:]
         contact = Contact(float(time[first]), float(time[after - 1]), float(free.mean()))
-        found.append(replace(contact, **dict(zip(("factor", "exponent_per_s"), _rate(found[-1], contact)))) if found else contact)
+        found.append(
+            replace(contact, **dict(zip(("factor", "exponent_per_s"), _rate(found[-1], contact))))
+            if found
+            else contact
+        )
     return found
 
 
@@ -141,6 +178,10 @@ def _loaded(run: Trajectory, time: np.ndarray) -> np.ndarray:
 
 
 def _drawn(time: np.ndarray, apart: np.ndarray) -> tuple[list[float], list[float]]:
-    starts = np.unique(np.linspace(0, time.size, min(_DRAWN, time.size), endpoint=False).astype(int))
+    starts = np.unique(
+        np.linspace(0, time.size, min(_DRAWN, time.size), endpoint=False).astype(int)
+    )
     largest_of_each = np.maximum.reduceat(apart, starts)
-    return [round(float(value), 7) for value in time[starts]], [float(f"{value:.4g}") for value in largest_of_each]
+    return [round(float(value), 7) for value in time[starts]], [
+        float(f"{value:.4g}") for value in largest_of_each
+    ]

@@ -1,10 +1,13 @@
-"""Objective rating of two curves by ISO/TS 18571, built for crash tests and widely understood among engineers.
+"""Objective rating of two curves by ISO/TS 18571, built for crash tests and widely understood among
+engineers.
 
     R = 0.4 Z + 0.2 E_P + 0.2 E_M + 0.2 E_S          1 is a perfect match, above 0.94 "excellent", below 0.58 "poor"
 
-* corridor Z: mean over time of 1 inside 5 % of the reference's largest amplitude, 0 beyond 50 %, squared ramp between;
+* corridor Z: mean over time of 1 inside 5 % of the reference's largest amplitude, 0 beyond 50 %,
+  squared ramp between;
 * phase E_P: falls linearly with the shift of the best cross-correlation, 0 at 20 % of the length;
-* magnitude E_M: after that shift and dynamic time warping (band 10 %), falls with the relative L1 difference, 0 at 0.5;
+* magnitude E_M: after that shift and dynamic time warping (band 10 %), falls with the relative L1
+  difference, 0 at 0.5;
 * slope E_S: after that shift, the same of the derivatives smoothed over nine samples, 0 at 2.
 
 Source: ISO/TS 18571:2014, sections 6.2 to 6.6.
@@ -34,14 +37,18 @@ class Rating(NamedTuple):
 
 
 def rate(reference: np.ndarray, curve: np.ndarray) -> Rating:
-    """Rating of ``curve`` (n,) against ``reference`` (n,), both sampled at the same equidistant times, n >= 20.
+    """Rating of ``curve`` (n,) against ``reference`` (n,), both sampled at the same equidistant
+    times, n >= 20.
 
-    Raises ValueError for curves of different or too small length. A reference that is zero throughout is rated 1 when the
-    curve is zero too, else 0.
+    Raises ValueError for curves of different or too small length. A reference that is zero
+    throughout is rated 1 when the curve is zero too, else 0.
     """
     reference, curve = np.asarray(reference, dtype=float), np.asarray(curve, dtype=float)
     if reference.shape != curve.shape or reference.ndim != 1 or reference.size < 20:
-        raise ValueError(f"two curves of one length, at least 20 samples; given {reference.shape} and {curve.shape}")
+        raise ValueError(
+            f"two curves of one length, at least 20 samples; given {reference.shape} and "
+            f"{curve.shape}"
+        )
     if not reference.any():
         return Rating(*(float(not curve.any()),) * 5)
     shift = best_shift(reference, curve)
@@ -49,22 +56,26 @@ def rate(reference: np.ndarray, curve: np.ndarray) -> Rating:
     corridor = _corridor(reference, curve)
     phase = max(0.0, 1.0 - abs(shift) / (_LARGEST_SHIFT * reference.size))
     magnitude = _falling(_warped_difference(moved_reference, moved_curve), _LARGEST_MAGNITUDE_ERROR)
-    slope = _falling(_relative_l1(_slope(moved_reference), _slope(moved_curve)), _LARGEST_SLOPE_ERROR)
+    slope = _falling(
+        _relative_l1(_slope(moved_reference), _slope(moved_curve)), _LARGEST_SLOPE_ERROR
+    )
     overall = 0.4 * corridor + 0.2 * (phase + magnitude + slope)
     return Rating(overall, corridor, phase, magnitude, slope)
 
 
 def best_shift(reference: np.ndarray, curve: np.ndarray) -> int:
-    """Samples by which ``curve`` lags the reference (positive: late) where the normalised cross-correlation is largest."""
+    """Samples by which ``curve`` lags the reference (positive: late) where the normalised
+    cross-correlation is largest."""
     limit = math.floor(_LARGEST_SHIFT * reference.size)
-    shifts = sorted(range(-limit, limit + 1), key=abs)  # of equal correlations the smallest shift wins
+    # of equal correlations the smallest shift wins
+    shifts = sorted(range(-limit, limit + 1), key=abs)
     return max(shifts, key=lambda shift: _correlation(*_overlap(reference, curve, shift)))
 
 
 def _overlap(reference, curve, shift):
     if shift >= 0:
-        return reference[:reference.size - shift], curve[shift:]
-    return reference[-shift:], curve[:curve.size + shift]
+        return reference[: reference.size - shift], curve[shift:]
+    return reference[-shift:], curve[: curve.size + shift]
 
 
 def _correlation(a, b) -> float:
@@ -96,19 +107,24 @@ def _slope(values: np.ndarray) -> np.ndarray:
     for margin, width in enumerate(_SMOOTHING[:-1]):
         smooth[margin], smooth[-margin - 1] = gradient[:width].mean(), gradient[-width:].mean()
     inner = len(_SMOOTHING) - 1
-    smooth[inner:-inner] = np.convolve(gradient, np.full(_SMOOTHING[-1], 1.0 / _SMOOTHING[-1]), mode="valid")
+    smooth[inner:-inner] = np.convolve(
+        gradient, np.full(_SMOOTHING[-1], 1.0 / _SMOOTHING[-1]), mode="valid"
+    )
     return smooth
 
 
 def _warped_difference(reference, curve) -> float:
     band = max(1, math.ceil(_WARPING_BAND * reference.size))
-    difference, scale = _along_warping_path(np.ascontiguousarray(reference), np.ascontiguousarray(curve), band)
+    difference, scale = _along_warping_path(
+        np.ascontiguousarray(reference), np.ascontiguousarray(curve), band
+    )
     return difference / scale if scale > 0.0 else 0.0
 
 
 @njit
 def _along_warping_path(reference, curve, band):
-    """L1 norms of the difference and of the reference along the path of least squared distance within ``band`` samples."""
+    """L1 norms of the difference and of the reference along the path of least squared distance
+    within ``band`` samples."""
     n = reference.size
     cost = np.full((n + 1, n + 1), np.inf)
     cost[0, 0] = 0.0

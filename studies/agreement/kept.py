@@ -1,4 +1,5 @@
-"""How far a model is from the reference, from the agreement table that ``tipoff compare`` left for this very scene and code."""
+"""How far a model is from the reference, from the agreement table that ``tipoff compare`` left for
+this very scene and code."""
 
 from scenes.fidelity import COMPLIANT, FINITE_ELEMENTS
 from scenes.scene import NOMINAL
@@ -6,25 +7,41 @@ from studies.study import Study
 
 
 def rows(study: Study, model: str, calibrated: bool = False, modes: int = 0) -> list[dict]:
-    """Rows of ``model`` in the agreement table; none where no table is kept, or none of this model with its options."""
+    """Rows of ``model`` in the agreement table; none where no table is kept, or none of this model
+    with its options."""
     from studies.stages import compare
 
     found = compare.stored(study.unrestricted())
     if found is None or model == FINITE_ELEMENTS:
         return []
     if model == COMPLIANT:
-        return found["compliant"] if modes == 0 else found["modal"] if modes == found["rail_modes"] else []
+        return (
+            found["compliant"]
+            if modes == 0
+            else found["modal"]
+            if modes == found["rail_modes"]
+            else []
+        )
     return found["fitted"] + found["held_out"] if calibrated else found["uncalibrated"]
 
 
 def missed(study: Study, model: str, condition: str | None = None) -> list[dict]:
-    """Rows, those of ``condition`` if one is given, in which the reference is converged and ``model`` is beyond a gate."""
-    return [row for row in rows(study, model) if row["reference_converged"] and not row["passes"]
-            and condition in (None, row["condition"])]
+    """Rows, those of ``condition`` if one is given, in which the reference is converged and
+    ``model`` is beyond a gate."""
+    return [
+        row
+        for row in rows(study, model)
+        if row["reference_converged"]
+        and not row["passes"]
+        and condition in (None, row["condition"])
+    ]
 
 
-def words(study: Study, model: str, condition: str | None = None, calibrated: bool = False, modes: int = 0) -> str:
-    """The error of ``model`` on ``condition``, or its largest over all conditions that are judged, in words."""
+def words(
+    study: Study, model: str, condition: str | None = None, calibrated: bool = False, modes: int = 0
+) -> str:
+    """The error of ``model`` on ``condition``, or its largest over all conditions that are judged,
+    in words."""
     if model == FINITE_ELEMENTS:
         return "the reference itself"
     found = rows(study, model, calibrated, modes)
@@ -35,13 +52,19 @@ def words(study: Study, model: str, condition: str | None = None, calibrated: bo
     if not judged:
         return "not measured for this scene with this code (tipoff compare measures it)"
     where = "" if condition in (None, NOMINAL) else f"; {condition} is not one of them"
-    return (f"at most {max(row['settled_rate_error_deg_s'] for row in judged):.2g} deg/s from the reference on the "
-            f"{len(judged)} conditions where that is converged and pads touch{where}")
+    return (
+        f"at most {max(row['settled_rate_error_deg_s'] for row in judged):.2g} deg/s from the "
+        f"reference on the "
+        f"{len(judged)} conditions where that is converged and pads touch{where}"
+    )
 
 
 def _one(row: dict) -> str:
     if row["settled_rate_error_deg_s"] is None:
         return "unknown: the reference or this model did not settle"
-    off = f"settled rates within {row['settled_rate_error_deg_s']:.2g} deg/s of the reference, curves within " \
-          f"{100.0 * row['rate_relative_l2']:.2g} %"
+    off = (
+        f"settled rates within {row['settled_rate_error_deg_s']:.2g} deg/s of the reference, "
+        f"curves within "
+        f"{100.0 * row['rate_relative_l2']:.2g} %"
+    )
     return off if row["reference_converged"] else f"{off}, but the reference is not converged there"

@@ -4,8 +4,8 @@
     settled error = max_axes |w_settled - w_ref,settled|
     Sprague and Geers:  M = sqrt(I_cc / I_rr) - 1,   P = acos(I_rc / sqrt(I_rr I_cc)) / pi,   I_ab = sum_axes int a b dt
 
-Integrals run from ignition to the end of the reference's settled window, at the same times, without any shift. Source of the
-last: Sprague and Geers, Commun. Numer. Meth. Eng. 20 (2004) 467.
+Integrals run from ignition to the end of the reference's settled window, at the same times, without
+any shift. Source of the last: Sprague and Geers, Commun. Numer. Meth. Eng. 20 (2004) 467.
 """
 
 import math
@@ -23,10 +23,12 @@ CHANNELS = ("velocity_x", "rate_x", "rate_y", "rate_z")
 
 @dataclass(frozen=True)
 class Difference:
-    """Every metric between two runs of one condition; None where a run has no settled values or the reference is zero.
+    """Every metric between two runs of one condition; None where a run has no settled values or the
+    reference is zero.
 
-    ``iso18571`` is the mean rating of the three rates, ``iso18571_channels`` and ``sprague_geers_channels`` (M, P) list v_x
-    and each rate; rates in deg/s, velocities in m/s, angles in deg. Differences are surrogate minus reference.
+    ``iso18571`` is the mean rating of the three rates, ``iso18571_channels`` and
+    ``sprague_geers_channels`` (M, P) list v_x and each rate; rates in deg/s, velocities in m/s,
+    angles in deg. Differences are surrogate minus reference.
     """
 
     velocity_relative_l2: float | None
@@ -49,12 +51,20 @@ class Difference:
 def compare(reference: Trajectory, surrogate: Trajectory) -> Difference:
     """Metrics of ``surrogate`` against ``reference``."""
     time = common_time(reference, surrogate)
-    velocity_r, velocity_s = (_sampled(run.time, run.velocity[:, :1], time) for run in (reference, surrogate))
+    velocity_r, velocity_s = (
+        _sampled(run.time, run.velocity[:, :1], time) for run in (reference, surrogate)
+    )
     rate_r, rate_s = (_sampled(run.time, run.rate, time) for run in (reference, surrogate))
     curves_r, curves_s = np.hstack([velocity_r, rate_r]), np.hstack([velocity_s, rate_s])
-    ratings = {name: iso18571.rate(curves_r[:, i], curves_s[:, i]).overall for i, name in enumerate(CHANNELS)}
+    ratings = {
+        name: iso18571.rate(curves_r[:, i], curves_s[:, i]).overall
+        for i, name in enumerate(CHANNELS)
+    }
     together = sprague_geers(time, rate_r, rate_s) or (None, None)
-    channels = {name: sprague_geers(time, curves_r[:, i:i + 1], curves_s[:, i:i + 1]) for i, name in enumerate(CHANNELS)}
+    channels = {
+        name: sprague_geers(time, curves_r[:, i : i + 1], curves_s[:, i : i + 1])
+        for i, name in enumerate(CHANNELS)
+    }
     errors = settled_rate_errors(reference, surrogate)
     return Difference(
         velocity_relative_l2=relative_l2(time, velocity_r, velocity_s),
@@ -65,14 +75,21 @@ def compare(reference: Trajectory, surrogate: Trajectory) -> Difference:
         iso18571_channels=ratings,
         sprague_geers_magnitude=together[0],
         sprague_geers_phase=together[1],
-        sprague_geers_channels={name: list(pair) if pair else None for name, pair in channels.items()},
-        lateral_velocity_difference_m_s=_outcome_difference(reference, surrogate, "lateral_velocity"),
-        direction_error_difference_deg=_outcome_difference(reference, surrogate, "direction_error", 180.0 / math.pi),
+        sprague_geers_channels={
+            name: list(pair) if pair else None for name, pair in channels.items()
+        },
+        lateral_velocity_difference_m_s=_outcome_difference(
+            reference, surrogate, "lateral_velocity"
+        ),
+        direction_error_difference_deg=_outcome_difference(
+            reference, surrogate, "direction_error", 180.0 / math.pi
+        ),
     )
 
 
 def common_time(reference: Trajectory, surrogate: Trajectory) -> np.ndarray:
-    """Equidistant times (s) from ignition to the end of the reference's settled window, or as far as both runs go."""
+    """Equidistant times (s) from ignition to the end of the reference's settled window, or as far
+    as both runs go."""
     start = reference.outcome.window_start
     end = math.inf if start is None else start + SETTLE_WINDOW
     end = min(end, float(reference.time[-1]), float(surrogate.time[-1]))
@@ -81,14 +98,26 @@ def common_time(reference: Trajectory, surrogate: Trajectory) -> np.ndarray:
 
 
 def relative_l2(time: np.ndarray, reference: np.ndarray, other: np.ndarray) -> float | None:
-    """Relative L2 difference of curves (n,c) over ``time`` (n,) s, summed over columns; None where the reference is zero."""
+    """Relative L2 difference of curves (n,c) over ``time`` (n,) s, summed over columns; None where
+    the reference is zero."""
     scale = _inner(time, reference, reference)
-    return math.sqrt(_inner(time, other - reference, other - reference) / scale) if scale > 0.0 else None
+    return (
+        math.sqrt(_inner(time, other - reference, other - reference) / scale)
+        if scale > 0.0
+        else None
+    )
 
 
-def sprague_geers(time: np.ndarray, reference: np.ndarray, other: np.ndarray) -> tuple[float, float] | None:
-    """Magnitude and phase error of curves (n,c), summed over columns; None where one of them is zero."""
-    rr, cc, rc = _inner(time, reference, reference), _inner(time, other, other), _inner(time, reference, other)
+def sprague_geers(
+    time: np.ndarray, reference: np.ndarray, other: np.ndarray
+) -> tuple[float, float] | None:
+    """Magnitude and phase error of curves (n,c), summed over columns; None where one of them is
+    zero."""
+    rr, cc, rc = (
+        _inner(time, reference, reference),
+        _inner(time, other, other),
+        _inner(time, reference, other),
+    )
     if not (rr > 0.0 and cc > 0.0):
         return None
     cosine = rc / math.sqrt(rr * cc)

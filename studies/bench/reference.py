@@ -1,7 +1,9 @@
-"""Speed of the reference solver against the loop an engineer would write today, by turns on the same mesh in one run.
+"""Speed of the reference solver against the loop an engineer would write today, by turns on the
+same mesh in one run.
 
-Times are wall times of whole steps with contact on: each timed piece starts with the payload one micrometre deep in the walls that
-eight pad faces meet, and ends before it has bounced off. Compilation and set-up are apart; the median of the repeats counts.
+Times are wall times of whole steps with contact on: each timed piece starts with the payload one
+micrometre deep in the walls that eight pad faces meet, and ends before it has bounced off.
+Compilation and set-up are apart; the median of the repeats counts.
 """
 
 import resource
@@ -20,7 +22,9 @@ from studies.progress import say
 from studies.study import read
 
 SIZES = (0.002, 0.001, 0.0005)  # m: 19,360, 154,880 and 1,239,040 elements of the reference rails
-_BASELINE_MOST = 160_000  # elements whose assembly fits into memory with room to spare; a larger matrix is no faster per element
+# elements whose assembly fits into memory with room to spare; a larger matrix is no faster per
+# element
+_BASELINE_MOST = 160_000
 _WORK = 4e7  # elements times steps in one timed piece
 _PRESSED = 1e-4  # s that the payload certainly stays pressed
 
@@ -31,8 +35,11 @@ def pressed(scene: Scene) -> Scene:
     return scene.replace({"initial.position.y": depth, "initial.position.z": depth})
 
 
-def run(out: Path, sizes: tuple[float, ...] = SIZES, repeats: int = 5, steps: int | None = None) -> dict:
-    """``rows``, one per size, of pieces of ``steps`` steps; also written to ``out``/bench/highfi.json."""
+def run(
+    out: Path, sizes: tuple[float, ...] = SIZES, repeats: int = 5, steps: int | None = None
+) -> dict:
+    """``rows``, one per size, of pieces of ``steps`` steps; also written to
+    ``out``/bench/highfi.json."""
     scene = load("reference").condition("phi35")
     rows = []
     for size in sizes:
@@ -43,20 +50,35 @@ def run(out: Path, sizes: tuple[float, ...] = SIZES, repeats: int = 5, steps: in
 
 
 def stored(out: Path) -> dict | None:
-    """The ``rows`` of an earlier run, what there is of the surrogate (``lowfi``), and their digest, ``key``; None without any."""
-    found = {name: kept for name in ("highfi", "lowfi") if (kept := read(Path(out) / "bench" / f"{name}.json")) is not None}
+    """The ``rows`` of an earlier run, what there is of the surrogate (``lowfi``), and their digest,
+    ``key``; None without any."""
+    found = {
+        name: kept
+        for name in ("highfi", "lowfi")
+        if (kept := read(Path(out) / "bench" / f"{name}.json")) is not None
+    }
     if not found:
         return None
-    return {"rows": found.get("highfi", {}).get("rows", []), "lowfi": found.get("lowfi"), "key": content_hash(found)}
+    return {
+        "rows": found.get("highfi", {}).get("rows", []),
+        "lowfi": found.get("lowfi"),
+        "key": content_hash(found),
+    }
 
 
 def line(row: dict) -> str:
     """One row in words."""
-    return (f"  {row['elements']:>9,} elements: {row['ns_per_element_step']:.2f} ns per element and step on {row['threads']} "
-            f"threads with {row['faces_in_contact']} faces pressed, {row['ns_free']:.2f} without; {row['ns_one_thread']:.2f} on "
-            f"one thread; SciPy and NumPy {row['baseline_ns_per_element_step']:.0f}, {row['ratio']:.0f} times as much; set-up "
-            f"{row['set_up_s']:.1f} s; {row['bytes_per_element']:.0f} bytes per element; 40 ms would take "
-            f"{row['projected_40_ms_s'] / 3600.0:.2g} h")
+    return (
+        f"  {row['elements']:>9,} elements: {row['ns_per_element_step']:.2f} ns per element and "
+        f"step on {row['threads']} "
+        f"threads with {row['faces_in_contact']} faces pressed, {row['ns_free']:.2f} without; "
+        f"{row['ns_one_thread']:.2f} on "
+        f"one thread; SciPy and NumPy {row['baseline_ns_per_element_step']:.0f}, "
+        f"{row['ratio']:.0f} times as much; set-up "
+        f"{row['set_up_s']:.1f} s; {row['bytes_per_element']:.0f} bytes per element; 40 ms would "
+        f"take "
+        f"{row['projected_40_ms_s'] / 3600.0:.2g} h"
+    )
 
 
 def _measured(scene: Scene, size: float, repeats: int, steps: int | None) -> dict:
@@ -71,8 +93,11 @@ def _measured(scene: Scene, size: float, repeats: int, steps: int | None) -> dic
     touching, mesh = pressed(scene), prepare(scene, numerics)
     system = build(touching, numerics, mesh)
     stepping = choose(system, touching, numerics)
-    loops = {"pressed": Loop(touching, system, stepping, processors()), "alone": Loop(touching, system, stepping, 1),
-             "free": Loop(scene, build(scene, numerics, mesh), stepping, processors())}
+    loops = {
+        "pressed": Loop(touching, system, stepping, processors()),
+        "alone": Loop(touching, system, stepping, 1),
+        "free": Loop(scene, build(scene, numerics, mesh), stepping, processors()),
+    }
     set_up = time.perf_counter() - began
     for loop in loops.values():
         loop.begin()
@@ -87,14 +112,28 @@ def _measured(scene: Scene, size: float, repeats: int, steps: int | None) -> dic
             times[name].append(1e9 * _timed(advance, number) / size_of_it)
     median = {name: statistics.median(values) for name, values in times.items()}
     state, threads = loops["pressed"].state, loops["pressed"].team.size
-    return {"elements": elements, "element_size_m": size, "threads": threads, "ns_per_element_step": median["pressed"],
-            "ns_free": median["free"], "ns_one_thread": median["alone"], "baseline_ns_per_element_step": median["baseline"],
-            "ratio": median["baseline"] / median["pressed"], "baseline_elements": baseline.elements,
-            "bytes_per_element": memory(system, state) / elements, "range_ns": [min(times["pressed"]), max(times["pressed"])],
-            "steps_timed": count, "repeats": repeats, "faces_in_contact": int((np.abs(state.face_force).max(axis=1) > 0.0).sum()),
-            "set_up_s": set_up, "peak_memory_bytes": 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss,
-            "dt_s": stepping.dt_s, "dt_element_s": stepping.dt_element_s,
-            "projected_40_ms_s": 0.04 / stepping.dt_s * 1e-9 * median["pressed"] * elements, "hardware": machine.describe()}
+    return {
+        "elements": elements,
+        "element_size_m": size,
+        "threads": threads,
+        "ns_per_element_step": median["pressed"],
+        "ns_free": median["free"],
+        "ns_one_thread": median["alone"],
+        "baseline_ns_per_element_step": median["baseline"],
+        "ratio": median["baseline"] / median["pressed"],
+        "baseline_elements": baseline.elements,
+        "bytes_per_element": memory(system, state) / elements,
+        "range_ns": [min(times["pressed"]), max(times["pressed"])],
+        "steps_timed": count,
+        "repeats": repeats,
+        "faces_in_contact": int((np.abs(state.face_force).max(axis=1) > 0.0).sum()),
+        "set_up_s": set_up,
+        "peak_memory_bytes": 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss,
+        "dt_s": stepping.dt_s,
+        "dt_element_s": stepping.dt_element_s,
+        "projected_40_ms_s": 0.04 / stepping.dt_s * 1e-9 * median["pressed"] * elements,
+        "hardware": machine.describe(),
+    }
 
 
 class _Again:
@@ -127,5 +166,8 @@ def _timed(advance: Callable[[int], None], count: int) -> float:
 
 def memory(*records) -> int:
     """Bytes of all arrays in records of records."""
-    return sum(item.nbytes if isinstance(item, np.ndarray) else memory(*item) for item in records
-               if isinstance(item, (np.ndarray, tuple)))
+    return sum(
+        item.nbytes if isinstance(item, np.ndarray) else memory(*item)
+        for item in records
+        if isinstance(item, (np.ndarray, tuple))
+    )

@@ -14,15 +14,30 @@ def add(app: typer.Typer) -> None:
     app.command()(paper)
 
 
-def paper(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = None,
-          starts: Annotated[int, typer.Option("--starts", metavar="N", min=1, help="Independent searches for three conditions, "
-                                              "and as many for all five; each takes some minutes.")] = 3,
-          workers: Workers = None, json_: Json = False) -> None:
+def paper(
+    scene: SceneName = "reference",
+    out: Out = Path("out"),
+    set_: Set = None,
+    starts: Annotated[
+        int,
+        typer.Option(
+            "--starts",
+            metavar="N",
+            min=1,
+            help="Independent searches for three conditions, "
+            "and as many for all five; each takes some minutes.",
+        ),
+    ] = 3,
+    workers: Workers = None,
+    json_: Json = False,
+) -> None:
     """What the inputs the paper does not print must have been, and its tables beside ours.
 
-    Writes paper.json, paper.nc with every end and admissible point, and the best set as paper_like.toml.
+    Writes paper.json, paper.nc with every end and admissible point, and the best set as
+    paper_like.toml.
 
-    The scene gives what is not searched: the pads' size and the platform. Stopped, the same command goes on with the next search.
+    The scene gives what is not searched: the pads' size and the platform. Stopped, the same command
+    goes on with the next search.
     """
 
     def work() -> dict:

@@ -14,17 +14,41 @@ def add(app: typer.Typer) -> None:
     app.command()(sensitivity)
 
 
-def sensitivity(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = None,
-                vary: Annotated[Path | None, typer.Option("--vary", metavar="FILE",
-                                help="What is not certain, as a .toml file; default: studies/sensitivity/tolerances.toml.")] = None,
-                points: Annotated[int, typer.Option("--points", metavar="N", help="Base points of the Sobol' indices, a power "
-                                  "of two; each takes one case an input, and two.")] = 1024,
-                seed: Annotated[int, typer.Option("--seed", metavar="N", help="Seed of the points and of the bootstrap.")] = 1,
-                model: Surrogate = None, element_size: ElementSize = None, workers: Workers = None, json_: Json = False) -> None:
-    """Which numbers the answer depends on: contact constants as in the paper's Table 2, and Sobol' indices; writes
-    sensitivity.json.
+def sensitivity(
+    scene: SceneName = "reference",
+    out: Out = Path("out"),
+    set_: Set = None,
+    vary: Annotated[
+        Path | None,
+        typer.Option(
+            "--vary",
+            metavar="FILE",
+            help="What is not certain, as a .toml file; default: "
+            "studies/sensitivity/tolerances.toml.",
+        ),
+    ] = None,
+    points: Annotated[
+        int,
+        typer.Option(
+            "--points",
+            metavar="N",
+            help="Base points of the Sobol' indices, a power "
+            "of two; each takes one case an input, and two.",
+        ),
+    ] = 1024,
+    seed: Annotated[
+        int, typer.Option("--seed", metavar="N", help="Seed of the points and of the bootstrap.")
+    ] = 1,
+    model: Surrogate = None,
+    element_size: ElementSize = None,
+    workers: Workers = None,
+    json_: Json = False,
+) -> None:
+    """Which numbers the answer depends on: contact constants as in the paper's Table 2, and Sobol'
+    indices; writes sensitivity.json.
 
-    A file of tolerances holds a distribution for the number itself, or for a factor of the number that the surrogate has:
+    A file of tolerances holds a distribution for the number itself, or for a factor of the number
+    that the surrogate has:
 
       \\[factor."friction.dynamic"]
       distribution = "uniform"
@@ -41,7 +65,9 @@ def sensitivity(scene: SceneName = "reference", out: Out = Path("out"), set_: Se
         from studies.stages import sensitivity as stage
 
         study = study_of(scene, out, set_, element_size=element_size, workers=workers)
-        return stage.run(study, stage.Asked(vary and str(vary), points, seed, model and model.value))
+        return stage.run(
+            study, stage.Asked(vary and str(vary), points, seed, model and model.value)
+        )
 
     found = guarded(work, json_)
     if not json_:

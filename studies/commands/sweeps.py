@@ -14,14 +14,24 @@ def add(app: typer.Typer) -> None:
     app.command()(sweeps)
 
 
-def sweeps(scene: SceneName = "reference", out: Out = Path("out"), set_: Set = None,
-           angles: Annotated[int, typer.Option("--angles", metavar="N", help="Directions of each size.")] = 120,
-           model: Surrogate = None, element_size: ElementSize = None, workers: Workers = None, json_: Json = False) -> None:
-    """How large misalignment, thrust and mass eccentricity may be: sizes up to 1 deg and 1 mm in every direction; writes
-    sweeps.json.
+def sweeps(
+    scene: SceneName = "reference",
+    out: Out = Path("out"),
+    set_: Set = None,
+    angles: Annotated[
+        int, typer.Option("--angles", metavar="N", help="Directions of each size.")
+    ] = 120,
+    model: Surrogate = None,
+    element_size: ElementSize = None,
+    workers: Workers = None,
+    json_: Json = False,
+) -> None:
+    """How large misalignment, thrust and mass eccentricity may be: sizes up to 1 deg and 1 mm in
+    every direction; writes sweeps.json.
 
-    Says for the largest rate about each axis whether, and from which size on, it stops to grow, with the interval of that size; and
-    shows the same launcher with a thrust that acts beyond the exit, or burns out before it.
+    Says for the largest rate about each axis whether, and from which size on, it stops to grow,
+    with the interval of that size; and shows the same launcher with a thrust that acts beyond the
+    exit, or burns out before it.
     """
 
     def work() -> dict:

@@ -2,9 +2,10 @@
 
     time = ceil(runs / at a time) * elements * steps * ns per element and step + evaluations * conditions * time of the surrogate
 
-Elements are counted without a mesh where the rail is the built-in section. Steps and nanoseconds come from runs of the reference
-that are stored, of this scene, else of one beside it, else from a benchmark; where nothing was measured typical figures stand in,
-and the line says so. It may be wrong by what other programs take, and by the time after the exit that a run leaves out. It may not
+Elements are counted without a mesh where the rail is the built-in section. Steps and nanoseconds
+come from runs of the reference that are stored, of this scene, else of one beside it, else from a
+benchmark; where nothing was measured typical figures stand in, and the line says so. It may be
+wrong by what other programs take, and by the time after the exit that a run leaves out. It may not
 cost what it tells: after a second it is given up.
 """
 
@@ -27,7 +28,8 @@ from studies.store import Run
 from studies.study import Study
 
 PATIENCE = 1.0  # s
-_TYPICAL_NS = 11.0  # per element and step, the 2 mm mesh of the reference scene on one thread of an AMD EPYC
+# per element and step, the 2 mm mesh of the reference scene on one thread of an AMD EPYC
+_TYPICAL_NS = 11.0
 _TYPICAL_RUN = 3e-3  # s, the surrogate there
 _STEP = 0.7  # dt sqrt(E / rho) / h of meshes of the built-in section
 _COMPILED = " and a minute or two to compile, this once"
@@ -35,8 +37,8 @@ _LOOKED_AT = 4  # stored runs, newest first
 
 
 class Pace(NamedTuple):
-    """Cost of a reference run: nanoseconds per element and step; its mesh's element size (m), elements and steps, None where only
-    the speed is known; and where it was measured, in words."""
+    """Cost of a reference run: nanoseconds per element and step; its mesh's element size (m),
+    elements and steps, None where only the speed is known; and where it was measured, in words."""
 
     ns: float
     element_size: float | None = None
@@ -56,12 +58,17 @@ def search(study: Study, conditions: int) -> str:
     return work("the search", in_time(lambda: _search(study, conditions)))
 
 
-def _line(study: Study, asked: Sequence[Run], rest: Callable[[], float], name: str, bound: str) -> str:
+def _line(
+    study: Study, asked: Sequence[Run], rest: Callable[[], float], name: str, bound: str
+) -> str:
     for package in ("calibrate", "highfi", "h5py"):
         importlib.import_module(package)  # what is loaded in any case is no delay
     missing = [run for run in asked if not study.store.path(run).is_file()]
     together = min(study.settings.workers, len(missing))
-    reference, seconds = in_time(lambda: (_references(missing, together, pace(study)), rest())) or (None, None)
+    reference, seconds = in_time(lambda: (_references(missing, together, pace(study)), rest())) or (
+        None,
+        None,
+    )
     return words(len(missing), together, reference, work(name, seconds, bound))
 
 
@@ -71,10 +78,13 @@ def work(name: str, seconds: float | None, bound: str = "about") -> str:
 
 
 def words(missing: int, together: int, reference: tuple[float, str] | None, after: str) -> str:
-    """The line: runs ``missing``, so many ``together``, seconds of all and where they are from, and what comes ``after``."""
+    """The line: runs ``missing``, so many ``together``, seconds of all and where they are from, and
+    what comes ``after``."""
     if not missing:
         return f"no reference run to make; {after}"
-    head = f"{missing} reference run{'s' if missing > 1 else ''} to make" + (f", {together} at a time" if together > 1 else "")
+    head = f"{missing} reference run{'s' if missing > 1 else ''} to make" + (
+        f", {together} at a time" if together > 1 else ""
+    )
     if reference is None:
         return f"{head}: how long is not known, nothing like them was run; then {after}"
     seconds, source = reference
@@ -99,21 +109,29 @@ def pace(study: Study) -> Pace:
     for path in [*own[:_LOOKED_AT], *others[:_LOOKED_AT]]:
         if found := _stored(path):
             same = path.parent.parent == study.folder
-            return found if same else Pace(found.ns, source=f" (speed as measured in {path.parent.parent.name})")
+            return (
+                found
+                if same
+                else Pace(found.ns, source=f" (speed as measured in {path.parent.parent.name})")
+            )
     try:
         rows = read_json(study.folder.parent / "bench" / "highfi.json")["rows"]
-        nearest = min(rows, key=lambda row: abs(math.log(row["element_size_m"] / study.settings.element_size)))
+        nearest = min(
+            rows, key=lambda row: abs(math.log(row["element_size_m"] / study.settings.element_size))
+        )
         return Pace(float(nearest["ns_one_thread"]), source=" (speed as benchmarked)")
     except (OSError, ValueError, KeyError, TypeError):
         return Pace(_TYPICAL_NS, source=" (typical speed, none measured here yet)")
 
 
 def in_time(work: Callable):
-    """What ``work`` returns, or None where that takes longer than a second or fails: a forecast is worth no more."""
+    """What ``work`` returns, or None where that takes longer than a second or fails: a forecast is
+    worth no more."""
     found = []
 
     def attempt() -> None:
-        with contextlib.suppress(Exception):  # whatever it is, the runs themselves will meet it and say it better
+        # whatever it is, the runs themselves will meet it and say it better
+        with contextlib.suppress(Exception):
             found.append(work())
 
     thread = threading.Thread(target=attempt, daemon=True)
@@ -123,15 +141,19 @@ def in_time(work: Callable):
 
 
 def _references(missing: Sequence[Run], together: int, known: Pace) -> tuple[float, str] | None:
-    """Seconds of all ``missing`` runs, so many ``together``, those of one mesh after those of another; None as for one of them."""
+    """Seconds of all ``missing`` runs, so many ``together``, those of one mesh after those of
+    another; None as for one of them."""
     each = Counter(_reference(run, known) for run in missing)
     if not each or None in each:
         return None
-    return sum(math.ceil(count / together) * seconds for (seconds, _), count in each.items()), known.source
+    return sum(
+        math.ceil(count / together) * seconds for (seconds, _), count in each.items()
+    ), known.source
 
 
 def _reference(run: Run, known: Pace) -> tuple[float, str] | None:
-    """Seconds of one run, and where its speed comes from; None for a mesh that cannot be counted."""
+    """Seconds of one run, and where its speed comes from; None for a mesh that cannot be
+    counted."""
     size = run.numerics.element_size
     elements = _elements(run.scene, size, known)
     if elements is None:
@@ -140,7 +162,9 @@ def _reference(run: Run, known: Pace) -> tuple[float, str] | None:
         steps = known.steps * known.element_size / size
     else:
         material = run.scene.rail.material
-        steps = run.scene.duration / (_STEP * size * math.sqrt(material.density / material.youngs_modulus))
+        steps = run.scene.duration / (
+            _STEP * size * math.sqrt(material.density / material.youngs_modulus)
+        )
     return 1e-9 * elements * steps * known.ns, known.source
 
 
@@ -161,7 +185,9 @@ def _stored(path: Path) -> Pace | None:
         require_whole(path)
         with h5py.File(path) as file:
             cost, numerics = json.loads(file.attrs["cost"]), json.loads(file.attrs["numerics"])
-        return Pace(cost["ns_per_element_step"], numerics["element_size"], cost["elements"], cost["steps"])
+        return Pace(
+            cost["ns_per_element_step"], numerics["element_size"], cost["elements"], cost["steps"]
+        )
     except (OSError, KeyError, ValueError):
         return None
 
@@ -170,7 +196,11 @@ def _search(study: Study, conditions: int) -> float:
     """Seconds of the search over ``conditions``."""
     from calibrate import parameters, search
 
-    return search.evaluations(len(parameters.free(study.scene))) * conditions * _surrogate(study.folder)
+    return (
+        search.evaluations(len(parameters.free(study.scene)))
+        * conditions
+        * _surrogate(study.folder)
+    )
 
 
 def _is_cold() -> bool:
@@ -179,7 +209,8 @@ def _is_cold() -> bool:
 
 
 def _surrogate(folder: Path) -> float:
-    """Seconds of one run of the surrogate on springs: the fastest of those stored last, since the first ones load kernels."""
+    """Seconds of one run of the surrogate on springs: the fastest of those stored last, since the
+    first ones load kernels."""
     import h5py
 
     found = []

@@ -16,9 +16,10 @@ from studies.droptest.sheet import Sheet
 
 
 class Drop(NamedTuple):
-    """A drop test: its sheet, calibrated samples, filtered rate (n,3) rad/s, samples that are ``doubtful`` (n,) as they are missing
-    or clipped, events, windows, change of rate; largest rate (rad/s) in the window at rest, and ``notes``, everything that was
-    repaired, assumed or left out, in words."""
+    """A drop test: its sheet, calibrated samples, filtered rate (n,3) rad/s, samples that are
+    ``doubtful`` (n,) as they are missing or clipped, events, windows, change of rate; largest rate
+    (rad/s) in the window at rest, and ``notes``, everything that was repaired, assumed or left out,
+    in words."""
 
     name: str
     sheet: Sheet
@@ -47,17 +48,35 @@ def of(sheet: Sheet, log: Log, source: str) -> Drop:
     _require_whole(log, spans, source)
     result = reduced(sheet, samples, spans, source)
     unrest = float(np.abs(smooth[inside(log.time, spans.rest)]).max())
-    return Drop(Path(source).stem, sheet, samples, smooth, log.doubtful | log.clipped, events, spans, result, unrest,
-                _notes(sheet, log, events, unrest))
+    return Drop(
+        Path(source).stem,
+        sheet,
+        samples,
+        smooth,
+        log.doubtful | log.clipped,
+        events,
+        spans,
+        result,
+        unrest,
+        _notes(sheet, log, events, unrest),
+    )
 
 
 def _require_whole(log: Log, spans: Spans, source: str) -> None:
-    """No gap in a window, no clipped rate, nor acceleration, by which the rate is compensated. Raises SceneError else."""
+    """No gap in a window, no clipped rate, nor acceleration, by which the rate is compensated.
+    Raises SceneError else."""
     faults = []
     for name in WINDOWS:
         places = inside(log.time, getattr(spans, name))
         if bad := int((log.doubtful | log.clipped)[places].sum()):
-            faults.append(Fault(source, f"{name} window", f"{bad} of {places.size} samples missing or clipped", "none"))
+            faults.append(
+                Fault(
+                    source,
+                    f"{name} window",
+                    f"{bad} of {places.size} samples missing or clipped",
+                    "none",
+                )
+            )
     if faults:
         raise SceneError(faults)
 
@@ -68,10 +87,18 @@ def _notes(sheet: Sheet, log: Log, events: Events, unrest: float) -> list[str]:
         notes.append("release and ignition as the sheet gives them")
     if events.later:
         times = ", ".join(f"{at:.4g} s" for at in events.later)
-        notes.append(f"pushed along +X as long as by a burn after ignition too, at {times}: taken for the catch")
+        notes.append(
+            f"pushed along +X as long as by a burn after ignition too, at {times}: taken for the "
+            f"catch"
+        )
     if unrest > sheet.windows.rest_rate:
-        notes.append(f"settling rule broken: {np.degrees(unrest):.3g} deg/s in the {sheet.windows.rest:g} s before release, "
-                     f"{np.degrees(sheet.windows.rest_rate):g} deg/s allowed")
+        notes.append(
+            f"settling rule broken: {np.degrees(unrest):.3g} deg/s in the {sheet.windows.rest:g} s "
+            f"before release, "
+            f"{np.degrees(sheet.windows.rest_rate):g} deg/s allowed"
+        )
     if log.acceleration is None:
-        notes.append("no accelerations: the budget takes the specific force as the same in both windows")
+        notes.append(
+            "no accelerations: the budget takes the specific force as the same in both windows"
+        )
     return notes

@@ -1,9 +1,11 @@
-"""From raw samples to rates in payload body axes: the inverse of what a gyro triad does to the rate it feels.
+"""From raw samples to rates in payload body axes: the inverse of what a gyro triad does to the rate
+it feels.
 
     raw = (1 + diag s)(1 + E) w + b + G f + c (T - T0)          sensor axes
     w_body = R [(1 + diag s)(1 + E)]^-1 (raw - b - G f - c (T - T0))
 
-s scale errors, E misalignments (rad), b biases, G sensitivity to the specific force f, c drift with temperature, R mounting.
+s scale errors, E misalignments (rad), b biases, G sensitivity to the specific force f, c drift with
+temperature, R mounting.
 """
 
 from typing import NamedTuple
@@ -15,7 +17,8 @@ from studies.droptest.sheet import Sheet
 
 
 class Calibrated(NamedTuple):
-    """time (n,) s; rate (n,3) rad/s and specific force (n,3) m/s2, or None, in body axes; temperature (n,) K or None."""
+    """time (n,) s; rate (n,3) rad/s and specific force (n,3) m/s2, or None, in body axes;
+    temperature (n,) K or None."""
 
     time: np.ndarray
     rate: np.ndarray
@@ -33,11 +36,15 @@ def calibrated(sheet: Sheet, log: Log) -> Calibrated:
     gyro, turn = sheet.gyro, sheet.mounting
     felt, force = log.rate - np.array(gyro.bias), None
     if log.acceleration is not None:
-        force = (log.acceleration - np.array(sheet.accelerometer.bias)) / (1.0 + np.array(sheet.accelerometer.scale_error))
+        force = (log.acceleration - np.array(sheet.accelerometer.bias)) / (
+            1.0 + np.array(sheet.accelerometer.scale_error)
+        )
         felt = felt - force @ np.array(gyro.g_sensitivity).T
         force = force @ turn.T
     if log.temperature is not None:
-        felt = felt - (log.temperature - gyro.reference_temperature)[:, None] * np.array(gyro.temperature)
+        felt = felt - (log.temperature - gyro.reference_temperature)[:, None] * np.array(
+            gyro.temperature
+        )
     inverse = np.linalg.inv(sensitivity(gyro.scale_error, gyro.misalignment))
     return Calibrated(log.time, felt @ (turn @ inverse).T, force, log.temperature)
 

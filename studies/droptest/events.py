@@ -1,12 +1,14 @@
 """Release and ignition in the accelerations, and the windows that follow from them.
 
-**Release**: while the platform hangs its accelerometers feel g, in free fall nothing. Free fall is the first stretch in which the
-filtered force stays below g/2 for 50 ms, so that no knock passes for it; its beginning is then put where a step from the mean force
-before to zero fits the unfiltered samples best (least squares, which is maximum likelihood for white noise).
+**Release**: while the platform hangs its accelerometers feel g, in free fall nothing. Free fall is
+the first stretch in which the filtered force stays below g/2 for 50 ms, so that no knock passes for
+it; its beginning is then put where a step from the mean force before to zero fits the unfiltered
+samples best (least squares, which is maximum likelihood for white noise).
 
-**Ignition**: of all stretches after release in which the force along +X exceeds six standard deviations of its noise (and 1 m/s2),
-the first whose impulse is that of an ejection is the burn, and its beginning is ignition. A latch may knock harder, but not for as
-long; and whatever catches the platform may push for longer than the thruster, but not before it.
+**Ignition**: of all stretches after release in which the force along +X exceeds six standard
+deviations of its noise (and 1 m/s2), the first whose impulse is that of an ejection is the burn,
+and its beginning is ignition. A latch may knock harder, but not for as long; and whatever catches
+the platform may push for longer than the thruster, but not before it.
 """
 
 from typing import NamedTuple
@@ -31,8 +33,8 @@ _SHORTEST = 0.03  # s of a window
 
 
 class Events(NamedTuple):
-    """Instants (s of the log), and whether they are found or given; ``later``, where further pushes begin that are as long as a
-    burn and lie after the exit, and are taken for the catch."""
+    """Instants (s of the log), and whether they are found or given; ``later``, where further pushes
+    begin that are as long as a burn and lie after the exit, and are taken for the catch."""
 
     release: float
     ignition: float
@@ -41,8 +43,9 @@ class Events(NamedTuple):
 
 
 class Spans(NamedTuple):
-    """First and last instant (s) of the windows: at ``rest`` before release, ``reference`` in free fall, ``settled`` after exit;
-    ``instant`` is when the settled rate is told, in the middle of the window over which simulations take it."""
+    """First and last instant (s) of the windows: at ``rest`` before release, ``reference`` in free
+    fall, ``settled`` after exit; ``instant`` is when the settled rate is told, in the middle of the
+    window over which simulations take it."""
 
     rest: tuple[float, float]
     reference: tuple[float, float]
@@ -51,18 +54,35 @@ class Spans(NamedTuple):
 
 
 def find(sheet: Sheet, found: Calibrated, source: str) -> Events:
-    """Release and ignition. Raises SceneError for a log without one of them, or whose resting force is not g."""
+    """Release and ignition. Raises SceneError for a log without one of them, or whose resting force
+    is not g."""
     if sheet.events is not None:
         return Events(sheet.events.release, sheet.events.ignition, True)
     interval = found.time[1] - found.time[0]
     release = _release(sheet, found, interval, source)
-    hanging = found.force[:max(1, release - int(_NOISE_FROM / interval))]
+    hanging = found.force[: max(1, release - int(_NOISE_FROM / interval))]
     felt = float(np.linalg.norm(hanging.mean(axis=0)))
     if abs(felt / GRAVITY - 1.0) > _AT_REST:
-        raise SceneError([Fault(source, "units.acceleration", f"{felt:.4g} m/s2 at rest",
-                                f"{GRAVITY:.4g} m/s2 within {100.0 * _AT_REST:g} %: unit, scale or bias is wrong")])
-    ignition, *others = (float(found.time[place]) for place in _pushes(found, interval, release, source))
-    return Events(float(found.time[release]), ignition, False, tuple(at for at in others if at > ignition + sheet.windows.exit))
+        raise SceneError(
+            [
+                Fault(
+                    source,
+                    "units.acceleration",
+                    f"{felt:.4g} m/s2 at rest",
+                    f"{GRAVITY:.4g} m/s2 within {100.0 * _AT_REST:g} %: unit, scale or bias is "
+                    f"wrong",
+                )
+            ]
+        )
+    ignition, *others = (
+        float(found.time[place]) for place in _pushes(found, interval, release, source)
+    )
+    return Events(
+        float(found.time[release]),
+        ignition,
+        False,
+        tuple(at for at in others if at > ignition + sheet.windows.exit),
+    )
 
 
 def _release(sheet: Sheet, found: Calibrated, interval: float, source: str) -> int:
@@ -75,7 +95,7 @@ def _release(sheet: Sheet, found: Calibrated, interval: float, source: str) -> i
     crossing = falls[0][0]
     span = max(3, int(np.ceil(reach(sheet.channel_class) / interval)))
     low, high = max(crossing - span, 1), min(crossing + span, found.time.size - 1)
-    before = found.force[max(0, low - 5 * span):low].mean(axis=0)
+    before = found.force[max(0, low - 5 * span) : low].mean(axis=0)
     felt = found.force[low:high] @ before / (before @ before)  # 1 while hanging, 0 in free fall
     # Sum of squares that a step after k samples leaves, but for a constant.
     wrong = np.concatenate([[0.0], np.cumsum((felt - 1.0) ** 2 - felt**2)])
@@ -83,7 +103,8 @@ def _release(sheet: Sheet, found: Calibrated, interval: float, source: str) -> i
 
 
 def _pushes(found: Calibrated, interval: float, release: int, source: str) -> list[int]:
-    """Where pushes along +X with the impulse of an ejection begin, in order. Raises SceneError where there is none."""
+    """Where pushes along +X with the impulse of an ejection begin, in order. Raises SceneError
+    where there is none."""
     ahead = found.force[:, 0]
     begin, end = (release + int(after / interval) for after in (_NOISE_FROM, _NOISE_TO))
     calm = ahead[begin:end]
@@ -91,7 +112,11 @@ def _pushes(found: Calibrated, interval: float, release: int, source: str) -> li
     limit = max(_SIGMAS * 1.4826 * np.median(np.abs(calm - level)), _LEAST)
     pushed = np.flatnonzero(ahead[begin:] - level > limit) + begin
     burns = np.split(pushed, np.flatnonzero(np.diff(pushed) > _JOINED / interval) + 1)
-    strong = [int(burn[0]) for burn in burns if burn.size and interval * float(ahead[burn].sum()) >= _IMPULSE]
+    strong = [
+        int(burn[0])
+        for burn in burns
+        if burn.size and interval * float(ahead[burn].sum()) >= _IMPULSE
+    ]
     if not strong:
         expected = f"one of {_IMPULSE} m/s and more; do the axes point so?"
         raise SceneError([Fault(source, "ignition", "no push along +X in free fall", expected)])
@@ -105,15 +130,25 @@ def spans(sheet: Sheet, found: Calibrated, events: Events, source: str) -> Spans
     ask, guard = sheet.windows, reach(sheet.channel_class)
     left = events.ignition + ask.exit
     settled = left + SETTLE_DELAY + 2.0 * ask.exit_uncertainty
-    spans_ = Spans((events.release - ask.rest, events.release - guard),
-                   (events.release + ask.after_release, events.ignition - guard),
-                   (settled, settled + ask.settled), left + SETTLE_DELAY + 0.5 * SETTLE_WINDOW)
+    spans_ = Spans(
+        (events.release - ask.rest, events.release - guard),
+        (events.release + ask.after_release, events.ignition - guard),
+        (settled, settled + ask.settled),
+        left + SETTLE_DELAY + 0.5 * SETTLE_WINDOW,
+    )
     faults = []
     for name in WINDOWS:
         begin, end = getattr(spans_, name)
         if end - begin < _SHORTEST or begin < found.time[0] or end > found.time[-1]:
-            faults.append(Fault(source, f"{name} window", f"{begin:.4g} to {end:.4g} s",
-                                f"{1e3 * _SHORTEST:g} ms and more inside the log, {found.time[0]:.4g} to {found.time[-1]:.4g} s"))
+            faults.append(
+                Fault(
+                    source,
+                    f"{name} window",
+                    f"{begin:.4g} to {end:.4g} s",
+                    f"{1e3 * _SHORTEST:g} ms and more inside the log, {found.time[0]:.4g} to "
+                    f"{found.time[-1]:.4g} s",
+                )
+            )
     if faults:
         raise SceneError(faults)
     return spans_

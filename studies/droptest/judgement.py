@@ -1,13 +1,16 @@
 """How tests sit among simulated cases, by ranks alone: no shape of the distribution is assumed.
 
-If a test is one more draw of the model, its place among N simulated ones is as likely to be any of N + 1, so that
+If a test is one more draw of the model, its place among N simulated ones is as likely to be any of
+N + 1, so that
 
     p = (r + 1) / (N + 1),   r simulated cases being at least as extreme,
 
 is uniform (Barnard 1963; conformal prediction). Exactly so when
 
-* a case carries the same errors of measurement as the test: they are drawn for it from the test's uncertainty, and
-* extremeness treats all N + 1 alike: Mahalanobis distance from the mean of all, by the covariance of all, test included.
+* a case carries the same errors of measurement as the test: they are drawn for it from the test's
+  uncertainty, and
+* extremeness treats all N + 1 alike: Mahalanobis distance from the mean of all, by the covariance
+  of all, test included.
 
 The smallest p that N cases can show is 1 / (N + 1).
 """
@@ -23,8 +26,9 @@ _SUBSETS = 9999
 
 
 class Standing(NamedTuple):
-    """Of one test: ``percentile`` (3,) and two-sided ``p`` (3,) by component; distance ``p`` of all three together; percentile and
-    p of roll magnitude, transverse magnitude and total magnitude, which need no angle about X."""
+    """Of one test: ``percentile`` (3,) and two-sided ``p`` (3,) by component; distance ``p`` of all
+    three together; percentile and p of roll magnitude, transverse magnitude and total magnitude,
+    which need no angle about X."""
 
     percentile: np.ndarray
     p: np.ndarray
@@ -33,8 +37,11 @@ class Standing(NamedTuple):
     magnitude_p: np.ndarray
 
 
-def standing(simulated: np.ndarray, change: np.ndarray, uncertainty: np.ndarray, number: int = 0) -> Standing:
-    """Of test ``number`` with a change (3,) of rate and its standard uncertainty (3,) among simulated cases (n,3)."""
+def standing(
+    simulated: np.ndarray, change: np.ndarray, uncertainty: np.ndarray, number: int = 0
+) -> Standing:
+    """Of test ``number`` with a change (3,) of rate and its standard uncertainty (3,) among
+    simulated cases (n,3)."""
     drawn = measured(simulated, uncertainty, number)
     share, p = ranked(drawn, change)
     sizes, size = magnitudes(drawn), magnitudes(change)
@@ -43,8 +50,11 @@ def standing(simulated: np.ndarray, change: np.ndarray, uncertainty: np.ndarray,
 
 
 def measured(simulated: np.ndarray, uncertainty: np.ndarray, number: int = 0) -> np.ndarray:
-    """Simulated cases (n,3) with errors of measurement of standard uncertainty (3,), drawn afresh for a test by its ``number``."""
-    return simulated + uncertainty * np.random.default_rng([_SEED, number]).standard_normal(simulated.shape)
+    """Simulated cases (n,3) with errors of measurement of standard uncertainty (3,), drawn afresh
+    for a test by its ``number``."""
+    return simulated + uncertainty * np.random.default_rng([_SEED, number]).standard_normal(
+        simulated.shape
+    )
 
 
 def magnitudes(rate: np.ndarray) -> np.ndarray:
@@ -54,14 +64,16 @@ def magnitudes(rate: np.ndarray) -> np.ndarray:
 
 
 def ranked(simulated: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Percentile, (cases below + 1/2) / (n + 1), and two-sided p of each component (k,) among cases (n,k)."""
+    """Percentile, (cases below + 1/2) / (n + 1), and two-sided p of each component (k,) among cases
+    (n,k)."""
     below, above = (simulated <= values).sum(axis=0), (simulated >= values).sum(axis=0)
     count = len(simulated) + 1
     return (below + 0.5) / count, np.minimum(1.0, 2.0 * (np.minimum(below, above) + 1.0) / count)
 
 
 def p_distance(simulated: np.ndarray, value: np.ndarray) -> float:
-    """Share of all n + 1 that lie at least as far from their mean as ``value`` (k,), itself among them."""
+    """Share of all n + 1 that lie at least as far from their mean as ``value`` (k,), itself among
+    them."""
     distance = distances(np.vstack([simulated, value]))
     return float((distance >= distance[-1]).mean())
 
@@ -78,13 +90,15 @@ def _inverse(covariance: np.ndarray) -> np.ndarray:
 
 
 def combined(p: list[float]) -> float:
-    """Fisher's p that tests together are further out than the model has it; that they share n cases matters by 1/n."""
+    """Fisher's p that tests together are further out than the model has it; that they share n cases
+    matters by 1/n."""
     return float(scipy.stats.combine_pvalues(p, method="fisher").pvalue)
 
 
 def p_spread(simulated: np.ndarray, changes: np.ndarray, uncertainties: np.ndarray) -> float:
-    """Two-sided p of the sum of squared distances of k tests (k,3) among sums over as many cases drawn at random, with each test's
-    errors of measurement: small where the model is too narrow, and where it is too wide."""
+    """Two-sided p of the sum of squared distances of k tests (k,3) among sums over as many cases
+    drawn at random, with each test's errors of measurement: small where the model is too narrow,
+    and where it is too wide."""
     rng = np.random.default_rng([_SEED, len(changes)])
     drawn = simulated[rng.integers(len(simulated), size=(_SUBSETS, len(changes)))]
     drawn = drawn + uncertainties * rng.standard_normal(drawn.shape)
@@ -93,22 +107,34 @@ def p_spread(simulated: np.ndarray, changes: np.ndarray, uncertainties: np.ndarr
     return float(p[0])
 
 
-def spreads(sets: np.ndarray, simulated: np.ndarray, uncertainties: np.ndarray | float = 0.0) -> np.ndarray:
-    """Sums (m,) of squared distances of m sets (m,k,3) of rates from the mean of cases (n,3) with errors of k tests (k,3)."""
-    covariance = np.cov(simulated.T) + np.diag(np.mean(np.square(uncertainties * np.ones(3)).reshape(-1, 3), axis=0))
+def spreads(
+    sets: np.ndarray, simulated: np.ndarray, uncertainties: np.ndarray | float = 0.0
+) -> np.ndarray:
+    """Sums (m,) of squared distances of m sets (m,k,3) of rates from the mean of cases (n,3) with
+    errors of k tests (k,3)."""
+    covariance = np.cov(simulated.T) + np.diag(
+        np.mean(np.square(uncertainties * np.ones(3)).reshape(-1, 3), axis=0)
+    )
     away = sets - simulated.mean(axis=0)
     return np.einsum("mki,ij,mkj->m", away, _inverse(covariance), away)
 
 
 def region(points: np.ndarray, share: float = SHARE) -> tuple[np.ndarray, np.ndarray, float]:
-    """Mean (k,), covariance (k,k) and squared radius of the ellipsoid that holds the next draw with at least this probability:
-    the ceil(share (n + 1))-th distance; infinite where n is too small for it."""
+    """Mean (k,), covariance (k,k) and squared radius of the ellipsoid that holds the next draw with
+    at least this probability: the ceil(share (n + 1))-th distance; infinite where n is too small
+    for it."""
     ordered = np.sort(distances(points))
     place = int(np.ceil(share * (len(points) + 1)))
-    return points.mean(axis=0), np.cov(points.T), float(ordered[place - 1]) if place <= len(points) else np.inf
+    return (
+        points.mean(axis=0),
+        np.cov(points.T),
+        float(ordered[place - 1]) if place <= len(points) else np.inf,
+    )
 
 
-def outline(centre: np.ndarray, covariance: np.ndarray, squared_radius: float, points: int = 181) -> np.ndarray:
+def outline(
+    centre: np.ndarray, covariance: np.ndarray, squared_radius: float, points: int = 181
+) -> np.ndarray:
     """Closed curve (points,2) of an ellipse."""
     angle = np.linspace(0.0, 2.0 * np.pi, points)
     circle = np.sqrt(squared_radius) * np.column_stack([np.cos(angle), np.sin(angle)])

@@ -1,8 +1,10 @@
-"""Reading the log of an inertial unit: units, an even time base, and what had to be done to get there, in words.
+"""Reading the log of an inertial unit: units, an even time base, and what had to be done to get
+there, in words.
 
-Every sample belongs to an instant of an even grid. Time that jitters by less than half an interval is interpolated onto it; one or
-two samples that are missing or not a number are bridged by a straight line; longer gaps and clipped rates are marked, so that no
-window that matters may hold them. A temperature, which drifts in seconds, is interpolated over gaps of any length. Each of these
+Every sample belongs to an instant of an even grid. Time that jitters by less than half an interval
+is interpolated onto it; one or two samples that are missing or not a number are bridged by a
+straight line; longer gaps and clipped rates are marked, so that no window that matters may hold
+them. A temperature, which drifts in seconds, is interpolated over gaps of any length. Each of these
 leaves a note; anything worse is a fault.
 """
 
@@ -27,8 +29,9 @@ _SHOWN = 5
 
 
 class Log(NamedTuple):
-    """time (n,) s, even; raw rate (n,3) rad/s, acceleration (n,3) m/s2 or None, in sensor axes; temperature (n,) K or None;
-    samples that are ``doubtful`` (n,): not measured, or the rate clipped; those with ``clipped`` acceleration (n,); ``notes``."""
+    """time (n,) s, even; raw rate (n,3) rad/s, acceleration (n,3) m/s2 or None, in sensor axes;
+    temperature (n,) K or None; samples that are ``doubtful`` (n,): not measured, or the rate
+    clipped; those with ``clipped`` acceleration (n,); ``notes``."""
 
     time: np.ndarray
     rate: np.ndarray
@@ -49,15 +52,20 @@ def read(path: str | Path) -> tuple[Sheet, Log]:
     sheet = sheets.load(path)
     source = Path(path).parent / sheet.file
     names = sheet.columns
-    groups = {"time": (names.time,), "rate": names.rate, "acceleration": names.acceleration or (),
-              "temperature": (names.temperature,) if names.temperature else ()}
+    groups = {
+        "time": (names.time,),
+        "rate": names.rate,
+        "acceleration": names.acceleration or (),
+        "temperature": (names.temperature,) if names.temperature else (),
+    }
     table = _table(source, [name for group in groups.values() for name in group])
     values = {}
     for group, columns in groups.items():
         if columns:
             si = {"time": "s", "rate": "rad/s", "acceleration": "m/s**2", "temperature": "K"}[group]
             unit = getattr(sheet.units, group)
-            zero, one = to_si(f"0 {unit}", si, absolute=True), to_si(f"1 {unit}", si, absolute=True)  # degC has an offset
+            # degC has an offset
+            zero, one = to_si(f"0 {unit}", si, absolute=True), to_si(f"1 {unit}", si, absolute=True)
             values[group] = zero + (one - zero) * np.column_stack([table[name] for name in columns])
     return sheet, _even(sheet, str(source), values)
 
@@ -66,20 +74,33 @@ def _table(path: Path, wanted: list[str]) -> dict[str, np.ndarray]:
     """The wanted columns (n,) by name; an empty cell is NaN."""
     try:
         with open(path, newline="", encoding="utf-8-sig") as stream:
-            rows = list(csv.reader(line for line in stream if line.strip() and not line.startswith("#")))
+            rows = list(
+                csv.reader(line for line in stream if line.strip() and not line.startswith("#"))
+            )
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         raise SceneError([Fault(str(path), "file", str(error), "a readable CSV file")]) from error
     head = [cell.strip() for cell in rows[0]] if rows else []
     if missing := [name for name in wanted if head.count(name) != 1]:
         given = f"columns {', '.join(head) or 'none'}"
-        raise SceneError([Fault(str(path), name, given, "one column of this name") for name in missing])
+        raise SceneError(
+            [Fault(str(path), name, given, "one column of this name") for name in missing]
+        )
     places, faults = [head.index(name) for name in wanted], []
     data = np.full((len(rows) - 1, len(wanted)), np.nan)
     for number, row in enumerate(rows[1:]):
         try:
-            data[number] = [float(row[place]) if row[place].strip() else math.nan for place in places]
+            data[number] = [
+                float(row[place]) if row[place].strip() else math.nan for place in places
+            ]
         except (ValueError, IndexError):
-            faults.append(Fault(str(path), f"sample {number + 1}", ",".join(row)[:80], f"a number in each of {', '.join(wanted)}"))
+            faults.append(
+                Fault(
+                    str(path),
+                    f"sample {number + 1}",
+                    ",".join(row)[:80],
+                    f"a number in each of {', '.join(wanted)}",
+                )
+            )
     if faults:
         raise SceneError(faults[:_SHOWN])
     if len(data) < _FEWEST:
@@ -90,35 +111,61 @@ def _table(path: Path, wanted: list[str]) -> dict[str, np.ndarray]:
 def _even(sheet: Sheet, source: str, values: dict[str, np.ndarray]) -> Log:
     time = values["time"][:, 0]
     if not np.isfinite(time).all():
-        raise SceneError([Fault(source, "time", f"{(~np.isfinite(time)).sum()} samples without a time", "a time for every sample")])
+        raise SceneError(
+            [
+                Fault(
+                    source,
+                    "time",
+                    f"{(~np.isfinite(time)).sum()} samples without a time",
+                    "a time for every sample",
+                )
+            ]
+        )
     steps = np.diff(time)
     if (steps <= 0.0).any():
         given = f"{(steps <= 0.0).sum()} samples not later than the one before"
         raise SceneError([Fault(source, "time", given, "times in increasing order")])
     # Counted step by step: jitter may put the median off by more than the whole log forgives.
     place = np.concatenate([[0], np.cumsum(np.round(steps / np.median(steps)).astype(int))])
-    interval, start = (float(value) for value in np.polynomial.Polynomial.fit(place, time, 1).convert().coef[::-1])
+    interval, start = (
+        float(value) for value in np.polynomial.Polynomial.fit(place, time, 1).convert().coef[::-1]
+    )
     if interval * SAMPLES_PER_CLASS * sheet.channel_class > 1.0 + 1e-6:
-        expected = f"at least {SAMPLES_PER_CLASS * sheet.channel_class:g} Hz for CFC {sheet.channel_class} (SAE J211)"
+        expected = (
+            f"at least {SAMPLES_PER_CLASS * sheet.channel_class:g} Hz for CFC "
+            f"{sheet.channel_class} (SAE J211)"
+        )
         raise SceneError([Fault(source, "time", f"{1.0 / interval:.4g} Hz", expected)])
     off = np.abs(time - start - interval * place).max() / interval
     if off > _UNEVEN or (np.diff(place) == 0).any():
         given = f"samples up to {off:.2g} of an interval off an even grid"
         raise SceneError([Fault(source, "time", given, f"less than {_UNEVEN}")])
-    notes = [f"time jitters by up to {100.0 * off:.2g} % of an interval: interpolated onto an even grid"] if off > _JITTER else []
+    notes = (
+        [
+            f"time jitters by up to {100.0 * off:.2g} % of an interval: interpolated onto an even "
+            f"grid"
+        ]
+        if off > _JITTER
+        else []
+    )
     grid = start + interval * np.arange(place[-1] + 1)
     filled, doubtful = {"time": grid}, np.zeros(grid.size, dtype=bool)
     for name, columns in values.items():
         if name == "temperature":
             filled[name] = _drifting(time, columns[:, 0], grid, source, notes)
         elif name != "time":
-            filled[name], gone = _bridged(time if off > _JITTER else grid[place], columns, grid, place, name, notes)
+            filled[name], gone = _bridged(
+                time if off > _JITTER else grid[place], columns, grid, place, name, notes
+            )
             doubtful |= gone
     return _marked(sheet, filled, doubtful, notes)
 
 
-def _bridged(time, columns, grid, place, name: str, notes: list[str]) -> tuple[np.ndarray, np.ndarray]:
-    """Values (n,k) on the grid, and where (n,) a gap was too long to be bridged; says so in ``notes``."""
+def _bridged(
+    time, columns, grid, place, name: str, notes: list[str]
+) -> tuple[np.ndarray, np.ndarray]:
+    """Values (n,k) on the grid, and where (n,) a gap was too long to be bridged; says so in
+    ``notes``."""
     good = np.isfinite(columns).all(axis=1)
     missing = np.ones(grid.size, dtype=bool)
     missing[place[good]] = False
@@ -126,28 +173,48 @@ def _bridged(time, columns, grid, place, name: str, notes: list[str]) -> tuple[n
     short = [gap for gap in gaps if gap[1] - gap[0] <= _BRIDGED]
     long = [gap for gap in gaps if gap[1] - gap[0] > _BRIDGED]
     if short:
-        notes.append(f"{name}: {len(short)} gaps of one or two samples bridged by a straight line, the first at "
-                     f"{grid[short[0][0]]:.6g} s")
+        notes.append(
+            f"{name}: {len(short)} gaps of one or two samples bridged by a straight line, the "
+            f"first at "
+            f"{grid[short[0][0]]:.6g} s"
+        )
     gone = np.zeros(grid.size, dtype=bool)
     for begin, end in long:
         gone[begin:end] = True
-        notes.append(f"{name}: {end - begin} samples missing from {grid[begin]:.6g} s on: left out of every window")
+        notes.append(
+            f"{name}: {end - begin} samples missing from {grid[begin]:.6g} s on: left out of every "
+            f"window"
+        )
     if not good.any():
         return np.full((grid.size, columns.shape[1]), np.nan), gone
-    return np.column_stack([np.interp(grid, time[good], column[good]) for column in columns.T]), gone
+    return np.column_stack(
+        [np.interp(grid, time[good], column[good]) for column in columns.T]
+    ), gone
 
 
 def _drifting(time, values, grid, source: str, notes: list[str]) -> np.ndarray:
-    """Temperature (n,) on the grid; a logger may write it more slowly than rates. Raises SceneError for a column without
-    a number."""
+    """Temperature (n,) on the grid; a logger may write it more slowly than rates. Raises SceneError
+    for a column without a number."""
     good = np.isfinite(values)
     if not good.any():
-        raise SceneError([Fault(source, "temperature", "no number in the column", "a temperature, or no such column in the sheet")])
+        raise SceneError(
+            [
+                Fault(
+                    source,
+                    "temperature",
+                    "no number in the column",
+                    "a temperature, or no such column in the sheet",
+                )
+            ]
+        )
     if not good.all():
         known = time[good]
         longest = np.diff([time[0], *known, time[-1]]).max()
-        notes.append(f"temperature: given in {good.sum()} of {good.size} samples, interpolated between and held before the first "
-                     f"and after the last, over {longest:.3g} s at most")
+        notes.append(
+            f"temperature: given in {good.sum()} of {good.size} samples, interpolated between and "
+            f"held before the first "
+            f"and after the last, over {longest:.3g} s at most"
+        )
     return np.interp(grid, time[good], values[good])
 
 
@@ -156,12 +223,18 @@ def _marked(sheet: Sheet, filled: dict, doubtful: np.ndarray, notes: list[str]) 
     at_end = (np.abs(rate) >= sheet.gyro.range * (1.0 - 1e-9)).any(axis=1)
     clipped = np.zeros(doubtful.size, dtype=bool)
     if at_end.any():
-        notes.append(f"rate: {at_end.sum()} samples clipped at the range of {np.degrees(sheet.gyro.range):.4g} deg/s: left out of "
-                     "every window")
+        notes.append(
+            f"rate: {at_end.sum()} samples clipped at the range of "
+            f"{np.degrees(sheet.gyro.range):.4g} deg/s: left out of "
+            "every window"
+        )
     if force is not None:
         clipped = (np.abs(force) >= sheet.accelerometer.range * (1.0 - 1e-9)).any(axis=1)
     if clipped.any():
-        notes.append(f"acceleration: {clipped.sum()} samples clipped at the range of {sheet.accelerometer.range:.4g} m/s2")
+        notes.append(
+            f"acceleration: {clipped.sum()} samples clipped at the range of "
+            f"{sheet.accelerometer.range:.4g} m/s2"
+        )
     return Log(filled["time"], rate, force, temperature, doubtful | at_end, clipped, notes)
 
 

@@ -15,7 +15,8 @@
 | bent line | a free tumble bends: w'' = 2 w'^2 / w for equations quadratic in w; rectangular | B |
 | instant | slope times u(exit) | B |
 
-The samples are not filtered here: a mean needs no filter, which would only carry the burn into the windows.
+The samples are not filtered here: a mean needs no filter, which would only carry the burn into the
+windows.
 """
 
 from typing import NamedTuple
@@ -32,12 +33,14 @@ from studies.droptest.sheet import Sheet
 COVERAGE = 0.95
 _FITTED = 3  # parameters: a mean before, a straight line after
 _TINY = 1e-15  # rad/s; noise that is none
-_UNSETTLED = 1e-5  # probability of so large a residual by chance: less, and something still moves the payload
+# probability of so large a residual by chance: less, and something still moves the payload
+_UNSETTLED = 1e-5
 
 
 class Reduced(NamedTuple):
-    """Rates (3,) rad/s before ignition and after exit, their ``change``; ``parts``: standard uncertainties (3,) by name;
-    ``combined`` (3,), ``factor`` (3,) of expansion; noise of one sample (3,) rad/s, its correlation time in samples."""
+    """Rates (3,) rad/s before ignition and after exit, their ``change``; ``parts``: standard
+    uncertainties (3,) by name; ``combined`` (3,), ``factor`` (3,) of expansion; noise of one sample
+    (3,) rad/s, its correlation time in samples."""
 
     before: np.ndarray
     after: np.ndarray
@@ -65,19 +68,36 @@ def reduced(sheet: Sheet, found: Calibrated, spans: Spans, source: str) -> Reduc
     sigma = np.sqrt(sum((stretch**2).sum(axis=0) for stretch in residuals) / freedom)
     change, length = after - before, spans.settled[1] - spans.settled[0]
     bend = 2.0 * slope**2 / np.maximum(np.abs(after), np.maximum(sigma, _TINY))
-    _require_settled(residuals, tau, bend * length**2 / np.sqrt(720.0), sheet.gyro.resolution, source)
-    parts = {"noise": sigma * np.sqrt(tau * (weights**2).sum())} | _systematic(sheet, found, change, weights, (calm, settled))
+    _require_settled(
+        residuals, tau, bend * length**2 / np.sqrt(720.0), sheet.gyro.resolution, source
+    )
+    parts = {"noise": sigma * np.sqrt(tau * (weights**2).sum())} | _systematic(
+        sheet, found, change, weights, (calm, settled)
+    )
     parts["quantisation"] = _quantised(sheet.gyro.resolution, sigma, tau * (weights**2).sum())
     parts["bent line"] = 0.5 * bend * abs(lever**2 - length**2 / 12.0) / np.sqrt(3.0)
     parts["instant"] = np.abs(slope) * sheet.windows.exit_uncertainty
     combined = np.sqrt(sum(part**2 for part in parts.values()))
-    # All other parts count as known; a share of noise that small leaves the factor of a normal distribution.
+    # All other parts count as known; a share of noise that small leaves the factor of a normal
+    # distribution.
     effective = freedom / tau / np.maximum(parts["noise"] / np.maximum(combined, _TINY), 1e-2) ** 4
-    return Reduced(before, after, change, parts, combined, scipy.stats.t.ppf(0.5 + 0.5 * COVERAGE, effective), sigma, tau)
+    return Reduced(
+        before,
+        after,
+        change,
+        parts,
+        combined,
+        scipy.stats.t.ppf(0.5 + 0.5 * COVERAGE, effective),
+        sigma,
+        tau,
+    )
 
 
-def _systematic(sheet: Sheet, found: Calibrated, change: np.ndarray, weights: np.ndarray, windows) -> dict[str, np.ndarray]:
-    """What the calibration leaves uncertain. Scale and misalignment act on the change alone: both rates share their errors."""
+def _systematic(
+    sheet: Sheet, found: Calibrated, change: np.ndarray, weights: np.ndarray, windows
+) -> dict[str, np.ndarray]:
+    """What the calibration leaves uncertain. Scale and misalignment act on the change alone: both
+    rates share their errors."""
     sure, interval = sheet.gyro.uncertainty, found.time[1] - found.time[0]
     across = np.sqrt((change**2).sum() - change**2)
     calm, settled = windows
@@ -85,26 +105,43 @@ def _systematic(sheet: Sheet, found: Calibrated, change: np.ndarray, weights: np
     def moved(values) -> np.ndarray | float:
         return 0.0 if values is None else values[settled].mean(axis=0) - values[calm].mean(axis=0)
 
-    return {"bias instability": np.full(3, np.sqrt(noise.instability_variance(weights, interval, sure.bias_instability))),
-            "scale": sure.scale * np.abs(change), "misalignment": sure.misalignment * across,
-            "g-sensitivity": np.full(3, sure.g_sensitivity * np.linalg.norm(moved(found.force))),
-            "temperature": np.full(3, sure.temperature * abs(moved(found.temperature)))}
+    return {
+        "bias instability": np.full(
+            3, np.sqrt(noise.instability_variance(weights, interval, sure.bias_instability))
+        ),
+        "scale": sure.scale * np.abs(change),
+        "misalignment": sure.misalignment * across,
+        "g-sensitivity": np.full(3, sure.g_sensitivity * np.linalg.norm(moved(found.force))),
+        "temperature": np.full(3, sure.temperature * abs(moved(found.temperature))),
+    }
 
 
 def _quantised(resolution: float, sigma: np.ndarray, factor: float) -> np.ndarray:
-    """Rounding that noise of half a step spreads is averaged with it; with less, a mean may be off by a whole rounding."""
-    return np.where(sigma >= 0.5 * resolution, resolution * np.sqrt(factor / 12.0), resolution * np.sqrt(2.0 / 12.0))
+    """Rounding that noise of half a step spreads is averaged with it; with less, a mean may be off
+    by a whole rounding."""
+    return np.where(
+        sigma >= 0.5 * resolution,
+        resolution * np.sqrt(factor / 12.0),
+        resolution * np.sqrt(2.0 / 12.0),
+    )
 
 
-def _require_settled(residuals: list[np.ndarray], tau: float, bent: np.ndarray, resolution: float, source: str) -> None:
-    """The straight line of a settled payload leaves noise as small as the reference window has, and what a free tumble is ``bent``
-    (3,) rad/s. Raises SceneError else."""
-    calm, settled = ((stretch**2).sum(axis=0) / (len(stretch) - lost) for stretch, lost in zip(residuals, (1, 2)))
+def _require_settled(
+    residuals: list[np.ndarray], tau: float, bent: np.ndarray, resolution: float, source: str
+) -> None:
+    """The straight line of a settled payload leaves noise as small as the reference window has, and
+    what a free tumble is ``bent`` (3,) rad/s. Raises SceneError else."""
+    calm, settled = (
+        (stretch**2).sum(axis=0) / (len(stretch) - lost) for stretch, lost in zip(residuals, (1, 2))
+    )
     freedom = [max(1.0, len(stretch) / tau) for stretch in residuals]
     expected = np.maximum(calm, resolution**2 / 12.0 + _TINY**2)
     chance = scipy.stats.f.sf((settled - bent**2) / expected, freedom[1], freedom[0])
     if (chance < _UNSETTLED).any():
         worst = int(np.argmin(chance))
         given = f"{np.degrees(np.sqrt(settled[worst])):.3g} deg/s of scatter about {'xyz'[worst]}"
-        expected = f"the {np.degrees(np.sqrt(calm[worst])):.3g} deg/s of free fall; is windows.exit too early?"
+        expected = (
+            f"the {np.degrees(np.sqrt(calm[worst])):.3g} deg/s of free fall; is "
+            f"windows.exit too early?"
+        )
         raise SceneError([Fault(source, "settled window", given, expected)])

@@ -1,4 +1,5 @@
-"""The sheet of a log: a small TOML file beside the CSV file that says what the columns are and how sure the sensor is::
+"""The sheet of a log: a small TOML file beside the CSV file that says what the columns are and how
+sure the sensor is::
 
     file = "drop1.csv"
     channel_class = 60                         # CFC of SAE J211 and ISO 6487
@@ -9,7 +10,8 @@
     [gyro.uncertainty]                         # standard uncertainties of these (GUM)
     [accelerometer]  [events]  [windows]
 
-Quantities carry units, as in a scene; whatever is misspelt, missing or of another dimension is a fault.
+Quantities carry units, as in a scene; whatever is misspelt, missing or of another dimension is a
+fault.
 """
 
 from pathlib import Path
@@ -88,8 +90,9 @@ class Units(Table):
 
 
 class GyroUncertainty(Table):
-    """Standard uncertainties: ``bias_instability`` (rad/s) is B of IEEE 952, scale and ``misalignment`` (rad) are those of one
-    entry after calibration and mounting, ``g_sensitivity`` in rad s/m, ``temperature`` in rad/s/K. White noise is in the log."""
+    """Standard uncertainties: ``bias_instability`` (rad/s) is B of IEEE 952, scale and
+    ``misalignment`` (rad) are those of one entry after calibration and mounting, ``g_sensitivity``
+    in rad s/m, ``temperature`` in rad/s/K. White noise is in the log."""
 
     bias_instability: NonNegativeRate
     scale: NonNegativeNumber
@@ -99,7 +102,8 @@ class GyroUncertainty(Table):
 
 
 class Gyro(Table):
-    """Calibration of the gyros in sensor axes; zero where absent, except what clipping and quantisation are judged by."""
+    """Calibration of the gyros in sensor axes; zero where absent, except what clipping and
+    quantisation are judged by."""
 
     range: PositiveRate
     resolution: NonNegativeRate
@@ -121,15 +125,17 @@ class Accelerometer(Table):
 
 
 class Triggers(Table):
-    """Instants (s of the log) known from elsewhere, such as a trigger channel, in place of those found in the accelerations."""
+    """Instants (s of the log) known from elsewhere, such as a trigger channel, in place of those
+    found in the accelerations."""
 
     release: quantity("s")
     ignition: quantity("s")
 
 
 class Windows(Table):
-    """``exit`` (s after ignition) of the payload from its rail with its standard uncertainty; ``rest`` (s) before release during
-    which no rate may exceed ``rest_rate`` (rad/s); ``after_release`` (s) until it is calm; length of the ``settled`` window (s)."""
+    """``exit`` (s after ignition) of the payload from its rail with its standard uncertainty;
+    ``rest`` (s) before release during which no rate may exceed ``rest_rate`` (rad/s);
+    ``after_release`` (s) until it is calm; length of the ``settled`` window (s)."""
 
     exit: PositiveTime
     exit_uncertainty: PositiveTime = 1e-3
@@ -157,10 +163,16 @@ class Sheet(Table):
 
     @model_validator(mode="after")
     def _whole(self) -> "Sheet":
-        wrong = [f"{name} both in [columns] and in [units], or in neither" for name in ("acceleration", "temperature")
-                 if (getattr(self.columns, name) is None) != (getattr(self.units, name) is None)]
+        wrong = [
+            f"{name} both in [columns] and in [units], or in neither"
+            for name in ("acceleration", "temperature")
+            if (getattr(self.columns, name) is None) != (getattr(self.units, name) is None)
+        ]
         if self.columns.acceleration is None and self.events is None:
-            wrong.append("accelerations, in which release and ignition show, or [events] that says when they were")
+            wrong.append(
+                "accelerations, in which release and ignition show, or [events] that says when "
+                "they were"
+            )
         if self.columns.acceleration is not None and self.accelerometer is None:
             wrong.append("[accelerometer] with the range of the accelerations")
         axes = np.array(self.axes)
@@ -174,7 +186,8 @@ class Sheet(Table):
 
     @property
     def mounting(self) -> np.ndarray:
-        """Rotation (3,3) from sensor to body axes: the one nearest to ``axes``, which were typed with a few digits."""
+        """Rotation (3,3) from sensor to body axes: the one nearest to ``axes``, which were typed
+        with a few digits."""
         left, _, right = np.linalg.svd(np.array(self.axes))
         return left @ right
 

@@ -1,8 +1,11 @@
-"""The three logs that come with the package, all SIMULATED; ``python -m studies.droptest.shipped`` writes them again.
+"""The three logs that come with the package, all SIMULATED; ``python -m studies.droptest.shipped``
+writes them again.
 
-Each is a case of the surrogate on the reference scene with its own contact constants (not the calibrated ones), offsets drawn from
-the catalogue's ``paper`` distributions with a seed that no study uses, dropped in ``studies.droptest.tower`` and felt by the unit
-of ``studies.droptest.sensor``, whose true errors are those of the sheet plus a draw of their stated uncertainties.
+Each is a case of the surrogate on the reference scene with its own contact constants (not the
+calibrated ones), offsets drawn from the catalogue's ``paper`` distributions with a seed that no
+study uses, dropped in ``studies.droptest.tower`` and felt by the unit of
+``studies.droptest.sensor``, whose true errors are those of the sheet plus a draw of their stated
+uncertainties.
 """
 
 from pathlib import Path
@@ -21,9 +24,17 @@ FOLDER = Path(__file__).resolve().parent / "logs"
 COUNT = 3
 _SEED, _INTERVAL = 20260, 1e-3
 _LABEL = "SIMULATED, not measured: surrogate and sensor model, python -m studies.droptest.shipped"
-# What the sheet states, in its units (degrees). The unit lies with its x axis along the payload's -Y.
-_BIAS, _SCALE, _SKEW = (0.35, -0.22, 0.14), (0.004, -0.003, 0.002), ((0.0, 0.08, -0.05), (0.04, 0.0, 0.06), (-0.07, 0.03, 0.0))
-_G, _DRIFT = ((0.004, -0.001, 0.002), (0.001, 0.003, -0.002), (-0.002, 0.001, 0.005)), (0.010, -0.006, 0.004)
+# What the sheet states, in its units (degrees). The unit lies with its x axis along the payload's
+# -Y.
+_BIAS, _SCALE, _SKEW = (
+    (0.35, -0.22, 0.14),
+    (0.004, -0.003, 0.002),
+    ((0.0, 0.08, -0.05), (0.04, 0.0, 0.06), (-0.07, 0.03, 0.0)),
+)
+_G, _DRIFT = (
+    ((0.004, -0.001, 0.002), (0.001, 0.003, -0.002), (-0.002, 0.001, 0.005)),
+    (0.010, -0.006, 0.004),
+)
 _AXES = ((0.0, 1.0, 0.0), (-1.0, 0.0, 0.0), (0.0, 0.0, 1.0))
 _NOISE, _INSTABILITY, _RESOLUTION, _RANGE = 0.004, 0.003, 0.01, 250.0
 _U_SCALE, _U_SKEW, _U_G, _U_DRIFT, _U_BIAS = 5e-4, 0.03, 2e-4, 1e-3, 0.05
@@ -36,7 +47,9 @@ def make(number: int) -> tuple[str, str, Motion]:
     """CSV and TOML of log ``number`` (0 to COUNT - 1), and the true motion."""
     scene = scenes.load("reference")
     rng = np.random.default_rng([_SEED, number])
-    row = Drawn(uncertainty.load("paper", scene, cases=COUNT, seed=_SEED)).rows(number, number + 1)[0]
+    row = Drawn(uncertainty.load("paper", scene, cases=COUNT, seed=_SEED)).rows(number, number + 1)[
+        0
+    ]
     turns = np.radians(rng.uniform(-0.12, 0.12, 3))
     motion = tower.drop(scene.replace(row), Tower(rate=tuple(turns.tolist())), _INTERVAL)
     warm = 295.0 + 0.4 * number + 0.05 * motion.time
@@ -50,17 +63,33 @@ def make(number: int) -> tuple[str, str, Motion]:
 
 def _sensor(rng: np.random.Generator) -> Sensor:
     """A unit whose errors are those of the sheet, as far as its calibration knows them."""
+
     def near(values, spread):
         values = np.array(values)
         return values + spread * rng.standard_normal(values.shape)
 
     skew = near(_SKEW, _U_SKEW)
     np.fill_diagonal(skew, 0.0)
-    gyro = Channel(np.radians(near(_BIAS, _U_BIAS)), near(_SCALE, _U_SCALE), np.radians(_NOISE), np.radians(_RESOLUTION),
-                   np.radians(_RANGE))
-    force = Channel(np.array(_FORCE_BIAS), np.array(_FORCE_SCALE), _FORCE_NOISE, _FORCE_RESOLUTION, _FORCE_RANGE)
-    return Sensor(gyro, force, np.radians(skew), np.radians(near(_G, _U_G)), np.radians(near(_DRIFT, _U_DRIFT)), 298.15,
-                  np.radians(_INSTABILITY), np.array(_AXES))
+    gyro = Channel(
+        np.radians(near(_BIAS, _U_BIAS)),
+        near(_SCALE, _U_SCALE),
+        np.radians(_NOISE),
+        np.radians(_RESOLUTION),
+        np.radians(_RANGE),
+    )
+    force = Channel(
+        np.array(_FORCE_BIAS), np.array(_FORCE_SCALE), _FORCE_NOISE, _FORCE_RESOLUTION, _FORCE_RANGE
+    )
+    return Sensor(
+        gyro,
+        force,
+        np.radians(skew),
+        np.radians(near(_G, _U_G)),
+        np.radians(near(_DRIFT, _U_DRIFT)),
+        298.15,
+        np.radians(_INSTABILITY),
+        np.array(_AXES),
+    )
 
 
 def _sheet(number: int) -> str:

@@ -1,8 +1,10 @@
-"""How far a turning box is from others: the largest separation on the 15 axes that can part two boxes (Gottschalk, Lin and Manocha,
-SIGGRAPH 1996), or on the three faces of one of them together, where more than one part them.
+"""How far a turning box is from others: the largest separation on the 15 axes that can part two
+boxes (Gottschalk, Lin and Manocha, SIGGRAPH 1996), or on the three faces of one of them together,
+where more than one part them.
 
-Below zero it is the depth of overlap, exactly. Above zero it is exact where a corner is nearest to a face, an edge to an edge, or
-for boxes that are parallel, and else less than the distance: a box that is called clear is clear.
+Below zero it is the depth of overlap, exactly. Above zero it is exact where a corner is nearest to
+a face, an edge to an edge, or for boxes that are parallel, and else less than the distance: a box
+that is called clear is clear.
 """
 
 from collections.abc import Callable
@@ -13,33 +15,57 @@ _AGAIN = 16  # instants about the best of those before
 _PARALLEL = 1e-9  # sine of edges whose product is no axis: their faces tell what it would
 
 
-def separation(turn: np.ndarray, centre: np.ndarray, half: np.ndarray, other: np.ndarray) -> np.ndarray:
-    """Separation (...) m of boxes of half sizes ``half`` (...,3), whose axes are the columns of ``turn`` (...,3,3) and whose centre
-    lies at ``centre`` (...,3), from boxes of half sizes ``other`` (...,3) about the origin and along the axes."""
+def separation(
+    turn: np.ndarray, centre: np.ndarray, half: np.ndarray, other: np.ndarray
+) -> np.ndarray:
+    """Separation (...) m of boxes of half sizes ``half`` (...,3), whose axes are the columns of
+    ``turn`` (...,3,3) and whose centre lies at ``centre`` (...,3), from boxes of half sizes
+    ``other`` (...,3) about the origin and along the axes."""
     size = abs(turn)
-    found = np.maximum(_faces(abs(centre) - other - np.einsum("...ij,...j->...i", size, half)),
-                       _faces(abs(np.einsum("...i,...ij->...j", centre, turn)) - half - np.einsum("...ij,...i->...j", size, other)))
+    found = np.maximum(
+        _faces(abs(centre) - other - np.einsum("...ij,...j->...i", size, half)),
+        _faces(
+            abs(np.einsum("...i,...ij->...j", centre, turn))
+            - half
+            - np.einsum("...ij,...i->...j", size, other)
+        ),
+    )
     for i in range(3):
         j, k = (i + 1) % 3, (i + 2) % 3
         for m in range(3):
             p, q = (m + 1) % 3, (m + 2) % 3
-            long = np.hypot(turn[..., j, m], turn[..., k, m])  # sine between edge i of one and edge m of the other
-            apart = (abs(centre[..., k] * turn[..., j, m] - centre[..., j] * turn[..., k, m]) - other[..., j] * size[..., k, m]
-                     - other[..., k] * size[..., j, m] - half[..., p] * size[..., i, q] - half[..., q] * size[..., i, p])
-            found = np.where(long > _PARALLEL, np.maximum(found, apart / np.maximum(long, _PARALLEL)), found)
+            # sine between edge i of one and edge m of the other
+            long = np.hypot(turn[..., j, m], turn[..., k, m])
+            apart = (
+                abs(centre[..., k] * turn[..., j, m] - centre[..., j] * turn[..., k, m])
+                - other[..., j] * size[..., k, m]
+                - other[..., k] * size[..., j, m]
+                - half[..., p] * size[..., i, q]
+                - half[..., q] * size[..., i, p]
+            )
+            found = np.where(
+                long > _PARALLEL, np.maximum(found, apart / np.maximum(long, _PARALLEL)), found
+            )
     return found
 
 
 def _faces(apart: np.ndarray) -> np.ndarray:
-    """Separation (...) of what is ``apart`` (...,3) along three axes at right angles: the length of the gap."""
+    """Separation (...) of what is ``apart`` (...,3) along three axes at right angles: the length of
+    the gap."""
     largest = apart.max(axis=-1)
     return np.where(largest > 0.0, np.linalg.norm(np.maximum(apart, 0.0), axis=-1), largest)
 
 
-def least(of: Callable[[np.ndarray], np.ndarray], begin: np.ndarray, end: np.ndarray, points: int,
-          rounds: int) -> tuple[np.ndarray, np.ndarray]:
-    """Least value (n,) of n functions ``of`` times (n,k) between ``begin`` and ``end`` (n,), and when: on ``points`` instants, then
-    ``rounds`` times on fewer between the neighbours of the best."""
+def least(
+    of: Callable[[np.ndarray], np.ndarray],
+    begin: np.ndarray,
+    end: np.ndarray,
+    points: int,
+    rounds: int,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Least value (n,) of n functions ``of`` times (n,k) between ``begin`` and ``end`` (n,), and
+    when: on ``points`` instants, then ``rounds`` times on fewer between the neighbours of the
+    best."""
     rows, low, high = np.arange(len(begin)), begin, end
     for count in (points, *[_AGAIN] * rounds):
         time = low[:, None] + (high - low)[:, None] * np.linspace(0.0, 1.0, count)

@@ -1,1 +1,2 @@
-"""Tolerances that keep rates below limits: what is asked, cases within tolerances, the largest that are certified."""
+"""Tolerances that keep rates below limits: what is asked, cases within tolerances, the largest that
+are certified."""

@@ -8,16 +8,18 @@ from studies.checked import together
 from studies.populations import exceedance, order_statistics
 from studies.populations.exceedance import Limit
 
-TIMES_NEEDED = 10  # of the fewest cases: some may then be above, and tolerances are not cut for want of cases
+# of the fewest cases: some may then be above, and tolerances are not cut for want of cases
+TIMES_NEEDED = 10
 DRAWS, _MOST_DRAWS = 8, 1000
 
 
 @dataclass(frozen=True)
 class Asked:
-    """``limits`` as ``exceedance.limits`` reads them, all of which a case must keep with ``probability``, to be shown with
-    ``confidence`` from ``cases`` (None: ten times the fewest); the ``tolerances`` that are scaled together, advised or table3;
-    errors that do not vary as in the ``scene`` or ``zero``; ``draws`` of calibrated constants, which springs have alone,
-    None for eight; the name of a ``model``, None for the default."""
+    """``limits`` as ``exceedance.limits`` reads them, all of which a case must keep with
+    ``probability``, to be shown with ``confidence`` from ``cases`` (None: ten times the fewest);
+    the ``tolerances`` that are scaled together, advised or table3; errors that do not vary as in
+    the ``scene`` or ``zero``; ``draws`` of calibrated constants, which springs have alone, None for
+    eight; the name of a ``model``, None for the default."""
 
     limits: tuple[str, ...] = ("5 deg/s",)
     probability: float = 0.99
@@ -40,16 +42,22 @@ def _limits(texts: tuple[str, ...]) -> list[Limit]:
     found = exceedance.limits(texts)
     axes = [limit.axis for limit in found]
     if twice := sorted({axis for axis in axes if axes.count(axis) > 1}):
-        raise SceneError([Fault("--limit", axis, "two limits", "one limit for a rate") for axis in twice])
+        raise SceneError(
+            [Fault("--limit", axis, "two limits", "one limit for a rate") for axis in twice]
+        )
     return found
 
 
 def _cases(asked: Asked) -> int:
     faults = []
     if not 0.5 <= asked.probability < 1.0:
-        faults.append(Fault("--probability", "value", f"{asked.probability:g}", "0.5 or more and less than 1"))
+        faults.append(
+            Fault("--probability", "value", f"{asked.probability:g}", "0.5 or more and less than 1")
+        )
     if not 0.5 <= asked.confidence < 1.0:
-        faults.append(Fault("--confidence", "value", f"{asked.confidence:g}", "0.5 or more and less than 1"))
+        faults.append(
+            Fault("--confidence", "value", f"{asked.confidence:g}", "0.5 or more and less than 1")
+        )
     if asked.draws is not None and asked.model != SPRINGS:
         expected = f"none but with --model {SPRINGS}: compliant contact has no fitted constants"
         faults.append(Fault("--draws", "option", str(asked.draws), expected))
@@ -61,7 +69,13 @@ def _cases(asked: Asked) -> int:
             return TIMES_NEEDED * needed
         if asked.cases >= needed:
             return asked.cases
-        faults.append(Fault("--cases", "value", f"{asked.cases:,}",
-                            f"{needed:,} or more: with fewer, none above the limits does not show "
-                            f"{asked.probability:g} at a confidence of {asked.confidence:g}"))
+        faults.append(
+            Fault(
+                "--cases",
+                "value",
+                f"{asked.cases:,}",
+                f"{needed:,} or more: with fewer, none above the limits does not show "
+                f"{asked.probability:g} at a confidence of {asked.confidence:g}",
+            )
+        )
     raise SceneError(faults)

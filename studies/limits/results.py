@@ -1,4 +1,5 @@
-"""The quantities of all cases within one set of tolerances, as a netCDF file that explains itself."""
+"""The quantities of all cases within one set of tolerances, as a netCDF file that explains
+itself."""
 
 import json
 from collections.abc import Mapping
@@ -12,21 +13,32 @@ from studies.progress import say
 
 
 def save(path: Path, values: np.ndarray, scale: float, tolerances: Mapping[str, float]) -> None:
-    """Write ``values`` (n,k) of ``answers.ALL`` atomically; ``scale`` and the ``tolerances`` (SI) there are attributes."""
+    """Write ``values`` (n,k) of ``answers.ALL`` atomically; ``scale`` and the ``tolerances`` (SI)
+    there are attributes."""
     import xarray
 
     found = xarray.Dataset(
-        {"value": (("case", "quantity"), values, {"long_name": "what a case leaves the rail with, NaN where it did not settle"})},
-        {"case": np.arange(len(values)), "quantity": [item.name for item in answers.ALL],
-         "units": ("quantity", [item.unit for item in answers.ALL])},
-        {"scale": scale, "tolerances_si": json.dumps(dict(tolerances))})
+        {
+            "value": (
+                ("case", "quantity"),
+                values,
+                {"long_name": "what a case leaves the rail with, NaN where it did not settle"},
+            )
+        },
+        {
+            "case": np.arange(len(values)),
+            "quantity": [item.name for item in answers.ALL],
+            "units": ("quantity", [item.unit for item in answers.ALL]),
+        },
+        {"scale": scale, "tolerances_si": json.dumps(dict(tolerances))},
+    )
     with sealed(path) as temporary:
         found.to_netcdf(temporary, engine="h5netcdf")
 
 
 def load(path: Path) -> np.ndarray | None:
-    """The values (n,k) that ``save`` wrote; None where they are not there, those of other quantities, or not whole, which is
-    said."""
+    """The values (n,k) that ``save`` wrote; None where they are not there, those of other
+    quantities, or not whole, which is said."""
     if not path.is_file():
         return None
     import xarray
@@ -39,5 +51,6 @@ def load(path: Path) -> np.ndarray | None:
     except DamageError as fault:
         say(f"  {path} {fault.reason}: its cases are run again")
         return None
-    except (OSError, KeyError, TypeError, ValueError, RuntimeError):  # what HDF5 says of a foreign file depends on what it lacks
+    # what HDF5 says of a foreign file depends on what it lacks
+    except (OSError, KeyError, TypeError, ValueError, RuntimeError):
         return None

@@ -1,8 +1,10 @@
-"""The largest scale of a set of tolerances that is still certified, on the same draws at every scale.
+"""The largest scale of a set of tolerances that is still certified, on the same draws at every
+scale.
 
-``above(s)`` counts the cases above a limit at scale s, and s is certified while the count is at most ``allowed``. Scales halved
-from ``most`` down are all tried, so that it is seen, not assumed, whether the count grows with the scale; then the gap between the
-smallest scale that fails and the one tried before it is bisected. What passes again beyond the first failure is not used, but told.
+``above(s)`` counts the cases above a limit at scale s, and s is certified while the count is at
+most ``allowed``. Scales halved from ``most`` down are all tried, so that it is seen, not assumed,
+whether the count grows with the scale; then the gap between the smallest scale that fails and the
+one tried before it is bisected. What passes again beyond the first failure is not used, but told.
 """
 
 import math
@@ -22,9 +24,9 @@ class Trial(NamedTuple):
 
 
 class Found(NamedTuple):
-    """``scale`` is the largest certified below the first that fails, ``fails``. ``state``: FOUND; ALL, nothing that was searched
-    fails; SMALL, even the smallest that was searched fails, though not zero; NONE, zero fails too; LOST, nothing was searched, for
-    no limit is left."""
+    """``scale`` is the largest certified below the first that fails, ``fails``. ``state``: FOUND;
+    ALL, nothing that was searched fails; SMALL, even the smallest that was searched fails, though
+    not zero; NONE, zero fails too; LOST, nothing was searched, for no limit is left."""
 
     state: str
     scale: float | None
@@ -35,18 +37,27 @@ class Found(NamedTuple):
     @property
     def again(self) -> list[float]:
         """Certified scales beyond the first that fails."""
-        return [trial.scale for trial in self.trials if self.fails is not None and trial.scale > self.fails
-                and trial.above <= self.allowed]
+        return [
+            trial.scale
+            for trial in self.trials
+            if self.fails is not None and trial.scale > self.fails and trial.above <= self.allowed
+        ]
 
     @property
     def falls(self) -> list[tuple[float, float]]:
         """Neighbouring scales of which the larger has fewer cases above."""
-        return [(one.scale, two.scale) for one, two in zip(self.trials, self.trials[1:]) if two.above < one.above]
+        return [
+            (one.scale, two.scale)
+            for one, two in zip(self.trials, self.trials[1:])
+            if two.above < one.above
+        ]
 
 
 def largest(above: Callable[[float], int], allowed: int, most: float = 1.0) -> Found:
     """Search from ``most`` / 128 to ``most``."""
-    counts = {scale: above(scale) for scale in (most * 0.5**power for power in range(_HALVINGS, -1, -1))}
+    counts = {
+        scale: above(scale) for scale in (most * 0.5**power for power in range(_HALVINGS, -1, -1))
+    }
     failing = [scale for scale, count in counts.items() if count > allowed]
     if not failing:
         return _told(ALL, most, None, counts, allowed)
@@ -54,11 +65,20 @@ def largest(above: Callable[[float], int], allowed: int, most: float = 1.0) -> F
     if low not in counts:
         counts[0.0] = above(0.0)
         return _told(NONE if counts[0.0] > allowed else SMALL, None, high, counts, allowed)
-    return _told(FOUND, *_bisected(above, allowed, low, high, counts, _REFINEMENTS), counts, allowed)
+    return _told(
+        FOUND, *_bisected(above, allowed, low, high, counts, _REFINEMENTS), counts, allowed
+    )
 
 
-def near(above: Callable[[float], int], allowed: int, start: float, most: float = 1.0, least: float = 0.5**_HALVINGS) -> Found:
-    """Search outward from ``start``, where the answer to a slightly different question is known, within ``least`` to ``most``."""
+def near(
+    above: Callable[[float], int],
+    allowed: int,
+    start: float,
+    most: float = 1.0,
+    least: float = 0.5**_HALVINGS,
+) -> Found:
+    """Search outward from ``start``, where the answer to a slightly different question is known,
+    within ``least`` to ``most``."""
     counts = {start: above(start)}
     up = counts[start] <= allowed
     while True:
@@ -76,7 +96,9 @@ def near(above: Callable[[float], int], allowed: int, start: float, most: float 
     return _told(FOUND, *_bisected(above, allowed, low, high, counts, _CLOSER), counts, allowed)
 
 
-def _bisected(above, allowed: int, low: float, high: float, counts: dict[float, int], times: int) -> tuple[float, float]:
+def _bisected(
+    above, allowed: int, low: float, high: float, counts: dict[float, int], times: int
+) -> tuple[float, float]:
     for _ in range(times):
         middle = math.sqrt(low * high)
         counts[middle] = above(middle)
@@ -84,5 +106,7 @@ def _bisected(above, allowed: int, low: float, high: float, counts: dict[float, 
     return low, high
 
 
-def _told(state: str, scale: float | None, fails: float | None, counts: dict[float, int], allowed: int) -> Found:
+def _told(
+    state: str, scale: float | None, fails: float | None, counts: dict[float, int], allowed: int
+) -> Found:
     return Found(state, scale, fails, [Trial(*pair) for pair in sorted(counts.items())], allowed)

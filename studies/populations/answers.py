@@ -1,4 +1,5 @@
-"""What a payload leaves its rail with, as the studies of tolerances report it: rates, velocity across, its direction, and attitude.
+"""What a payload leaves its rail with, as the studies of tolerances report it: rates, velocity
+across, its direction, and attitude.
 
     settled rates w_x, w_y, w_z and |w|      deg/s, inertial, in payload body axes
     lateral velocity  sqrt(v_y^2 + v_z^2)    mm/s, initial scene axes
@@ -15,8 +16,8 @@ from lowfi.columns import Columns
 
 
 class Quantity(NamedTuple):
-    """A result: ``name`` with its unit, as in result files, its ``label`` and ``unit`` in figures, and its values (n,) of
-    columns."""
+    """A result: ``name`` with its unit, as in result files, its ``label`` and ``unit`` in figures,
+    and its values (n,) of columns."""
 
     name: str
     label: str
@@ -32,11 +33,32 @@ def _attitude(axis: int) -> Callable[[Columns], np.ndarray]:
     return lambda found: np.degrees(found.exit_attitude[:, axis])
 
 
-RATES = tuple(Quantity(f"rate_{axis}_deg_s", f"rate about {axis}", "deg/s", _rate(number)) for number, axis in enumerate("xyz"))
-TOTAL_RATE = Quantity("rate_deg_s", "total rate", "deg/s", lambda found: np.degrees(np.linalg.norm(found.rate, axis=1)))
-VELOCITY = (Quantity("lateral_velocity_mm_s", "lateral velocity", "mm/s", lambda found: 1e3 * found.lateral_velocity),
-            Quantity("direction_error_deg", "direction error of the velocity", "deg",
-                     lambda found: np.degrees(found.direction_error)))
-ATTITUDE = tuple(Quantity(f"attitude_{axis}_deg", f"attitude at exit about {axis}", "deg", _attitude(number))
-                 for number, axis in enumerate("xyz"))
+RATES = tuple(
+    Quantity(f"rate_{axis}_deg_s", f"rate about {axis}", "deg/s", _rate(number))
+    for number, axis in enumerate("xyz")
+)
+TOTAL_RATE = Quantity(
+    "rate_deg_s",
+    "total rate",
+    "deg/s",
+    lambda found: np.degrees(np.linalg.norm(found.rate, axis=1)),
+)
+VELOCITY = (
+    Quantity(
+        "lateral_velocity_mm_s",
+        "lateral velocity",
+        "mm/s",
+        lambda found: 1e3 * found.lateral_velocity,
+    ),
+    Quantity(
+        "direction_error_deg",
+        "direction error of the velocity",
+        "deg",
+        lambda found: np.degrees(found.direction_error),
+    ),
+)
+ATTITUDE = tuple(
+    Quantity(f"attitude_{axis}_deg", f"attitude at exit about {axis}", "deg", _attitude(number))
+    for number, axis in enumerate("xyz")
+)
 ALL = (*RATES, TOTAL_RATE, *VELOCITY, *ATTITUDE)

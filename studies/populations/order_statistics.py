@@ -1,8 +1,9 @@
 """What the order of independent draws says about a distribution of which nothing is known.
 
-Of n draws, k lie below the quantile of probability p with a binomial probability, whatever the distribution is, so that a pair of
-draws bounds the quantile (``scipy.stats.quantile_test``). The largest of n draws lies above it with confidence ``1 - p^n``; the
-smallest and largest hold a share p of the distribution between them with ``1 - n p^(n-1) + (n-1) p^n`` (Wilks, Ann. Math. Statist.
+Of n draws, k lie below the quantile of probability p with a binomial probability, whatever the
+distribution is, so that a pair of draws bounds the quantile (``scipy.stats.quantile_test``). The
+largest of n draws lies above it with confidence ``1 - p^n``; the smallest and largest hold a share
+p of the distribution between them with ``1 - n p^(n-1) + (n-1) p^n`` (Wilks, Ann. Math. Statist.
 12, 1941).
 """
 
@@ -13,19 +14,24 @@ from scipy.stats import quantile_test
 
 
 def runs_needed(share: float, confidence: float = 0.95, sides: int = 1) -> int:
-    """Fewest runs whose largest (``sides`` = 1), or smallest and largest (2), bound a ``share`` of all runs with this
-    confidence."""
+    """Fewest runs whose largest (``sides`` = 1), or smallest and largest (2), bound a ``share`` of
+    all runs with this confidence."""
+
     def confident(n: int) -> bool:
         missed = share**n if sides == 1 else n * share ** (n - 1) - (n - 1) * share**n
         return 1.0 - missed >= confidence
 
-    n = max(sides, math.floor(math.log(1.0 - confidence) / math.log(share)))  # of one side, at most one too few
+    # of one side, at most one too few
+    n = max(sides, math.floor(math.log(1.0 - confidence) / math.log(share)))
     while not confident(n):
         n += 1
     return n
 
 
-def bounds(values: np.ndarray, share: float, confidence: float = 0.95) -> tuple[float | None, float | None]:
-    """Two-sided bounds of the quantile ``share`` from independent draws (n,); None where n is too small for one."""
+def bounds(
+    values: np.ndarray, share: float, confidence: float = 0.95
+) -> tuple[float | None, float | None]:
+    """Two-sided bounds of the quantile ``share`` from independent draws (n,); None where n is too
+    small for one."""
     found = quantile_test(values, q=0.0, p=share).confidence_interval(confidence)
     return tuple(None if math.isnan(value) else float(value) for value in found)

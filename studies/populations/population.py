@@ -1,9 +1,9 @@
-"""Many cases of a scene on the surrogate that its studies use, kept in a store beside the results: what every study of tolerances
-asks.
+"""Many cases of a scene on the surrogate that its studies use, kept in a store beside the results:
+what every study of tolerances asks.
 
-The surrogate is compliant unless springs are asked for by name: those are the calibrated ones, with their constants laid over the
-scene, so that a case may vary them like any other number. A store that was left half filled is gone on with, and one that is whole
-is only read.
+The surrogate is compliant unless springs are asked for by name: those are the calibrated ones, with
+their constants laid over the scene, so that a case may vary them like any other number. A store
+that was left half filled is gone on with, and one that is whole is only read.
 """
 
 from typing import Any, NamedTuple
@@ -31,8 +31,8 @@ TOLERANCE = 1e-2  # relative error of a step: 95 % of reference cases within 0.2
 
 
 class Surrogate(NamedTuple):
-    """A scene, and either its rail compliance as ``walls``, or the ``calibration`` whose constants it has, on rigid walls where
-    the rails are warm. A scene without contact has none of them."""
+    """A scene, and either its rail compliance as ``walls``, or the ``calibration`` whose constants
+    it has, on rigid walls where the rails are warm. A scene without contact has none of them."""
 
     scene: Scene
     calibration: Calibration | None
@@ -54,8 +54,8 @@ class Surrogate(NamedTuple):
 
 
 class Population(NamedTuple):
-    """``inputs`` (n,) by dotted key, SI; results as columns, NaN in cases that did not settle; the folder of the store, and
-    counts as ``lowfi.columns.counts`` gives them."""
+    """``inputs`` (n,) by dotted key, SI; results as columns, NaN in cases that did not settle; the
+    folder of the store, and counts as ``lowfi.columns.counts`` gives them."""
 
     inputs: dict[str, np.ndarray]
     results: Columns
@@ -69,8 +69,9 @@ class Population(NamedTuple):
 
 
 def surrogate(study: Study, model: str | None = None, condition: str | None = None) -> Surrogate:
-    """The surrogate by the name of its ``model``, None for the default, on one condition of a study or on the scene itself; its
-    rail compliance or its constants are found where that was not done yet.
+    """The surrogate by the name of its ``model``, None for the default, on one condition of a study
+    or on the scene itself; its rail compliance or its constants are found where that was not done
+    yet.
 
     Raises StudyError where none is named and the agreement table rejects the default.
     """
@@ -85,8 +86,12 @@ def surrogate(study: Study, model: str | None = None, condition: str | None = No
 
 
 def answering(study: Study, model: Surrogate, condition: str | None = None) -> dict[str, str]:
-    """Which ``model`` answers, and its ``agreement`` with the reference, in words, as result files hold both."""
-    return {"model": model.words, "agreement": kept.words(study, model.name, condition, model.calibration is not None)}
+    """Which ``model`` answers, and its ``agreement`` with the reference, in words, as result files
+    hold both."""
+    return {
+        "model": model.words,
+        "agreement": kept.words(study, model.name, condition, model.calibration is not None),
+    }
 
 
 def said(found: dict) -> str:
@@ -94,17 +99,26 @@ def said(found: dict) -> str:
     return f"model {found['model']}; agreement: {found['agreement']}"
 
 
-def run(study: Study, name: str, model: Surrogate, source, tolerance: float = TOLERANCE) -> Population:
+def run(
+    study: Study, name: str, model: Surrogate, source, tolerance: float = TOLERANCE
+) -> Population:
     """Every case of ``source`` (``lowfi.rows``), in a store called after ``name``.
     Raises StudyError when it cannot go on."""
-    ensemble = Ensemble(model.scene, source, None, Numerics(relative_tolerance=tolerance), model.walls)
+    ensemble = Ensemble(
+        model.scene, source, None, Numerics(relative_tolerance=tolerance), model.walls
+    )
     path = study.path(f"{name}-{ensemble.key[:8]}")
     try:
         store = ensemble.store(path)
         label = f"{name}, {store.asked:,} cases"
         with Board(name, 1) as board:
             report = board.callback(label)
-            fill(ensemble, store, study.settings.workers, progress=lambda stored: report(stored / store.asked))
+            fill(
+                ensemble,
+                store,
+                study.settings.workers,
+                progress=lambda stored: report(stored / store.asked),
+            )
         results, inputs = store.read(0, store.asked)
         named = dict(zip(store.names, inputs.T))
     except StoreError as fault:

@@ -1,7 +1,9 @@
-"""The printed tables of the work this project starts from, as data, and the arithmetic that can be checked on them.
+"""The printed tables of the work this project starts from, as data, and the arithmetic that can be
+checked on them.
 
-Z. Jin, Z. Ma, H. Yang, S. Wu, Z. Tan, X. Tao: Rapid Modeling Method and Analysis of Factors Affecting the Dynamics of On-Orbit
-Launch Systems for Micro-Spacecraft. Aerospace 13 (2026) 541, doi 10.3390/aerospace13060541. Rates in deg/s about X, Y and Z.
+Z. Jin, Z. Ma, H. Yang, S. Wu, Z. Tan, X. Tao: Rapid Modeling Method and Analysis of Factors
+Affecting the Dynamics of On-Orbit Launch Systems for Micro-Spacecraft. Aerospace 13 (2026) 541, doi
+10.3390/aerospace13060541. Rates in deg/s about X, Y and Z.
 """
 
 import csv
@@ -13,18 +15,22 @@ import numpy as np
 
 _FOLDER = Path(__file__).resolve().parent
 CITATION = "Jin et al., Aerospace 2026, 13, 541"
-CONDITIONS = {"phi15": 2, "phi35": 3, "phi60": 4}  # of Table 2, by the name of the same misalignment in the catalogue
+# of Table 2, by the name of the same misalignment in the catalogue
+CONDITIONS = {"phi15": 2, "phi35": 3, "phi60": 4}
 SENSITIVE = tuple(CONDITIONS.values())
-PLATEAUS = {"misalignment": 0.4, "thrust_eccentricity": 0.6, "mass_eccentricity": 0.4}  # deg, mm, mm: sections 3.1 to 3.3
-CHANGES = (("k", 66000.0), ("k", 74000.0), ("c", 50.0), ("c", 70.0), ("d", 0.25), ("d", 0.35))  # its rows: N/mm^e, N s/mm, mm
+# deg, mm, mm: sections 3.1 to 3.3
+PLATEAUS = {"misalignment": 0.4, "thrust_eccentricity": 0.6, "mass_eccentricity": 0.4}
+# its rows: N/mm^e, N s/mm, mm
+CHANGES = (("k", 66000.0), ("k", 74000.0), ("c", 50.0), ("c", 70.0), ("d", 0.25), ("d", 0.35))
 BASELINE = {"k": 70000.0, "c": 60.0, "d": 0.30}
-CLAIMED_DEVIATION = (2.73, 1.47, 0.26)  # %, largest of x, y and z on conditions 2 and 4, section 2.3
+# %, largest of x, y and z on conditions 2 and 4, section 2.3
+CLAIMED_DEVIATION = (2.73, 1.47, 0.26)
 NEGLIGIBLE = (1, 5)  # conditions whose rates the paper calls negligible; it prints none
 
 
 class Changed(NamedTuple):
-    """A row of Table 2: the condition's number, ``symbol`` of the constant, whether it was raised (None: nothing was changed), and
-    the settled rates about x, y, z in deg/s."""
+    """A row of Table 2: the condition's number, ``symbol`` of the constant, whether it was raised
+    (None: nothing was changed), and the settled rates about x, y, z in deg/s."""
 
     condition: int
     symbol: str
@@ -33,7 +39,8 @@ class Changed(NamedTuple):
 
 
 class Sensitivity(NamedTuple):
-    """Table 2: settled rates at the baseline (3,3), condition by axis, and with one constant changed (3,6,3), deg/s."""
+    """Table 2: settled rates at the baseline (3,3), condition by axis, and with one constant
+    changed (3,6,3), deg/s."""
 
     baseline: np.ndarray
     changed: np.ndarray
@@ -43,7 +50,8 @@ class Sensitivity(NamedTuple):
         return self.changed - self.baseline[:, None, :]
 
     def largest_relative(self) -> np.ndarray:
-        """Largest change per axis (3,) as a fraction of the rate, on conditions 2 and 4: that of z on 3 is near zero."""
+        """Largest change per axis (3,) as a fraction of the rate, on conditions 2 and 4: that of z
+        on 3 is near zero."""
         share = np.abs(self.deviations() / self.baseline[:, None, :])
         return share[[0, 2]].max(axis=(0, 1))
 
@@ -51,16 +59,27 @@ class Sensitivity(NamedTuple):
 @cache
 def angles() -> dict[int, tuple[float, float]]:
     """Table 1: axial and radial misalignment (deg) by condition."""
-    return {int(row["condition"]): (float(row["axial_misalignment_deg"]), float(row["radial_misalignment_deg"]))
-            for row in _rows("table1_conditions.csv")}
+    return {
+        int(row["condition"]): (
+            float(row["axial_misalignment_deg"]),
+            float(row["radial_misalignment_deg"]),
+        )
+        for row in _rows("table1_conditions.csv")
+    }
 
 
 @cache
 def table_2() -> list[Changed]:
     """The rows of Table 2 in their order."""
-    return [Changed(int(row["condition"]), row["parameter"],
-                    float(row["value"]) > BASELINE[row["parameter"]] if row["value"] else None,
-                    tuple(float(row[f"omega_{axis}_deg_s"]) for axis in "xyz")) for row in _rows("table2_sensitivity.csv")]
+    return [
+        Changed(
+            int(row["condition"]),
+            row["parameter"],
+            float(row["value"]) > BASELINE[row["parameter"]] if row["value"] else None,
+            tuple(float(row[f"omega_{axis}_deg_s"]) for axis in "xyz"),
+        )
+        for row in _rows("table2_sensitivity.csv")
+    ]
 
 
 @cache
@@ -85,13 +104,23 @@ def factors() -> list[dict[str, str]]:
 def slips() -> list[str]:
     """Where a printed number is not what the printed tables give, in words."""
     largest, claimed = 100.0 * sensitivity().largest_relative()[2], CLAIMED_DEVIATION[2]
-    stiffness, damping, depth = (100.0 * (value - BASELINE[name]) / BASELINE[name] for name, value in CHANGES[1::2])
-    hours, seconds = float(headline()["high_fidelity_wall_time"]), float(headline()["low_fidelity_wall_time"])
-    return [f"The largest relative deviation of the z rate on conditions 2 and 4 of Table 2 is {largest:.2f} %; "
-            f"the text has {claimed:.2f} %.",
-            f"The stiffness is changed by {stiffness:.1f} %, damping by {damping:.1f} % and depth by {depth:.1f} %; "
-            "the text has 5 % and 15 %.",
-            f"{hours:g} h over {seconds:g} s is {3600.0 * hours / seconds:,.0f}; the text has {float(headline()['speedup']):,.0f}."]
+    stiffness, damping, depth = (
+        100.0 * (value - BASELINE[name]) / BASELINE[name] for name, value in CHANGES[1::2]
+    )
+    hours, seconds = (
+        float(headline()["high_fidelity_wall_time"]),
+        float(headline()["low_fidelity_wall_time"]),
+    )
+    return [
+        f"The largest relative deviation of the z rate on conditions 2 and 4 of Table 2 is "
+        f"{largest:.2f} %; "
+        f"the text has {claimed:.2f} %.",
+        f"The stiffness is changed by {stiffness:.1f} %, damping by {damping:.1f} % and depth by "
+        f"{depth:.1f} %; "
+        "the text has 5 % and 15 %.",
+        f"{hours:g} h over {seconds:g} s is {3600.0 * hours / seconds:,.0f}; the text has "
+        f"{float(headline()['speedup']):,.0f}.",
+    ]
 
 
 def _rows(name: str) -> list[dict[str, str]]:

@@ -1,9 +1,11 @@
-"""Contact loads of a run as numbers that refinement can be judged by: impulse of each pad, and the filtered peak force.
+"""Contact loads of a run as numbers that refinement can be judged by: impulse of each pad, and the
+filtered peak force.
 
-A contact force rings with the modes of the elements, so its plain maximum converges to nothing. The impulse is a mean and does, as
-far as the samples tell: those of ``reference`` leave 0.06 % of it open, those of ``tiny`` 2.6 %, against samples eight times as
-dense. The peak does below a frequency that is said beside it (Butterworth, second order, forwards and backwards: no shift, and half
-the amplitude at the cut-off).
+A contact force rings with the modes of the elements, so its plain maximum converges to nothing. The
+impulse is a mean and does, as far as the samples tell: those of ``reference`` leave 0.06 % of it
+open, those of ``tiny`` 2.6 %, against samples eight times as dense. The peak does below a frequency
+that is said beside it (Butterworth, second order, forwards and backwards: no shift, and half the
+amplitude at the cut-off).
 """
 
 import numpy as np
@@ -13,14 +15,17 @@ from scenes.scene import Scene
 from scenes.trajectory import Trajectory
 
 CUTOFF = 1000.0  # Hz
-_OF_SAMPLING = 0.2  # a cut-off above this part of the sampling frequency would filter little of what the samples hold
+# a cut-off above this part of the sampling frequency would filter little of what the samples hold
+_OF_SAMPLING = 0.2
 _ORDER = 2
 
 
 def by_pad(scene: Scene, pad_force: np.ndarray) -> np.ndarray:
     """Force (n,p,3) N on each pad of the scene, from the forces (n,f,3) on their faces."""
     pads = np.array([index for index, pad in enumerate(scene.pads) for _ in pad.normals])
-    return np.stack([pad_force[:, pads == pad].sum(axis=1) for pad in range(len(scene.pads))], axis=1)
+    return np.stack(
+        [pad_force[:, pads == pad].sum(axis=1) for pad in range(len(scene.pads))], axis=1
+    )
 
 
 def impulses(scene: Scene, run: Trajectory) -> np.ndarray:

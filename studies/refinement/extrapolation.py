@@ -1,12 +1,14 @@
-"""How far a value still is from that of an infinitely fine grid, judged from three grids, coarsest first.
+"""How far a value still is from that of an infinitely fine grid, judged from three grids, coarsest
+first.
 
     f(h) = f_0 + a h^p,   e32 / e21 = r21^p (r32^p - 1) / (r21^p - 1)      gives the observed order p
     GCI = F |e21 / f_1| / (r21^p - 1),   F = 1.25                          the finest value is within GCI of f_0
 
-with f_1 the finest value, e21 = f_2 - f_1, e32 = f_3 - f_2, r21 = h_2 / h_1, r32 = h_3 / h_2. Sources: Roache, J. Fluids Eng. 116
-(1994) 405; ASME V&V 20-2009, section 2-4. Where three values show no order (not monotone, or an order below 0.5) the uncertainty
-is three times half their range, and an order above that of the method is not believed: Eca and Hoekstra, J. Comput. Phys. 262
-(2014) 104, section 3.
+with f_1 the finest value, e21 = f_2 - f_1, e32 = f_3 - f_2, r21 = h_2 / h_1, r32 = h_3 / h_2.
+Sources: Roache, J. Fluids Eng. 116 (1994) 405; ASME V&V 20-2009, section 2-4. Where three values
+show no order (not monotone, or an order below 0.5) the uncertainty is three times half their range,
+and an order above that of the method is not believed: Eca and Hoekstra, J. Comput. Phys. 262 (2014)
+104, section 3.
 """
 
 import math
@@ -24,8 +26,8 @@ _STEEPEST = 60.0  # an order beyond this is a difference that vanished
 
 @dataclass(frozen=True)
 class Estimate:
-    """Observed ``order`` or None, ``uncertainty`` of the finest value in its own unit, the same in per cent of that value (None
-    where there is none), and in words by which ``method``."""
+    """Observed ``order`` or None, ``uncertainty`` of the finest value in its own unit, the same in
+    per cent of that value (None where there is none), and in words by which ``method``."""
 
     order: float | None
     uncertainty: float | None
@@ -34,8 +36,8 @@ class Estimate:
 
 
 def observed_order(sizes: Sequence[float], values: Sequence[float]) -> float | None:
-    """Order p of three values on grids of three falling ``sizes``; negative where differences grow, None where the values do
-    not go one way. Raises ValueError for other sizes."""
+    """Order p of three values on grids of three falling ``sizes``; negative where differences grow,
+    None where the values do not go one way. Raises ValueError for other sizes."""
     (r32, r21), (e32, e21) = _ratios(sizes), (values[0] - values[1], values[1] - values[2])
     if e32 * e21 <= 0.0:
         return None
@@ -51,7 +53,8 @@ def observed_order(sizes: Sequence[float], values: Sequence[float]) -> float | N
 
 
 def grid_convergence_index(sizes: Sequence[float], values: Sequence[float], order: float) -> float:
-    """GCI of the finest of three values on grids of three falling ``sizes``, as a fraction of it."""
+    """GCI of the finest of three values on grids of three falling ``sizes``, as a fraction of
+    it."""
     return abs(_uncertainty(sizes, values, order) / values[2])
 
 
@@ -61,7 +64,8 @@ def extrapolated(sizes: Sequence[float], values: Sequence[float], order: float) 
 
 
 def estimate(sizes: Sequence[float], values: Sequence[float | None]) -> Estimate:
-    """Uncertainty of the last of the ``values``, from the three finest grids; one that is None was not reached."""
+    """Uncertainty of the last of the ``values``, from the three finest grids; one that is None was
+    not reached."""
     sizes, values = sizes[-3:], values[-3:]
     if None in values:
         return Estimate(None, None, None, "a run did not settle")
@@ -70,14 +74,28 @@ def estimate(sizes: Sequence[float], values: Sequence[float | None]) -> Estimate
     order = observed_order(sizes, values)
     if order is None or order < _LEAST_ORDER:
         why = "not monotone" if order is None else f"order below {_LEAST_ORDER:g}"
-        return _told(order, _RANGE_FACTOR * 0.5 * (max(values) - min(values)), values, f"{why}: three times half the range")
+        return _told(
+            order,
+            _RANGE_FACTOR * 0.5 * (max(values) - min(values)),
+            values,
+            f"{why}: three times half the range",
+        )
     if order > METHOD_ORDER:
-        return _told(order, _uncertainty(sizes, values, METHOD_ORDER), values, f"GCI, order limited to {METHOD_ORDER:g}")
+        return _told(
+            order,
+            _uncertainty(sizes, values, METHOD_ORDER),
+            values,
+            f"GCI, order limited to {METHOD_ORDER:g}",
+        )
     return _told(order, _uncertainty(sizes, values, order), values, "GCI")
 
 
-def _told(order: float | None, uncertainty: float, values: Sequence[float], method: str) -> Estimate:
-    return Estimate(order, uncertainty, 100.0 * uncertainty / abs(values[-1]) if values[-1] else None, method)
+def _told(
+    order: float | None, uncertainty: float, values: Sequence[float], method: str
+) -> Estimate:
+    return Estimate(
+        order, uncertainty, 100.0 * uncertainty / abs(values[-1]) if values[-1] else None, method
+    )
 
 
 def _uncertainty(sizes, values, order: float) -> float:

@@ -1,4 +1,5 @@
-"""The engineer's answers on the page: a section for each study, from its own result, or the target that makes it."""
+"""The engineer's answers on the page: a section for each study, from its own result, or the target
+that makes it."""
 
 from collections.abc import Callable
 from importlib import import_module
@@ -9,8 +10,8 @@ from studies.report.markup import Html
 
 
 class Answer(NamedTuple):
-    """A study: ``name`` of its stage, result file, target and of its module here and in ``studies.stages``; ``title`` of its
-    section and ``link`` to it."""
+    """A study: ``name`` of its stage, result file, target and of its module here and in
+    ``studies.stages``; ``title`` of its section and ``link`` to it."""
 
     name: str
     title: str

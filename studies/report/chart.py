@@ -1,6 +1,8 @@
-"""A figure described once and drawn twice: with plotly for the page, with matplotlib for PNG and SVG.
+"""A figure described once and drawn twice: with plotly for the page, with matplotlib for PNG and
+SVG.
 
-Colours differ in lightness, and models differ in width and dash, so that figures read in grey and on paper.
+Colours differ in lightness, and models differ in width and dash, so that figures read in grey and
+on paper.
 """
 
 import base64
@@ -22,13 +24,22 @@ _GAP = 106.0  # px between rows: an axis label, and the title below it
 _FONT = 'system-ui, "Segoe UI", Roboto, "Liberation Sans", sans-serif'
 _INK, _RULE = "#24292f", "#e3e6ea"
 _PLOTLY_DASH = {"-": "solid", "--": "dash", "-.": "dashdot", ":": "dot", "": "solid"}
-_PLOTLY_MARKER = {"o": "circle", "s": "square", "^": "triangle-up", "v": "triangle-down", "D": "diamond", "": "circle", "x": "x"}
+_PLOTLY_MARKER = {
+    "o": "circle",
+    "s": "square",
+    "^": "triangle-up",
+    "v": "triangle-down",
+    "D": "diamond",
+    "": "circle",
+    "x": "x",
+}
 
 
 @dataclass(frozen=True)
 class Line:
-    """One curve (x, y); ``dash`` as in matplotlib, "" for markers only; ``marker`` "o", "s", "^", "v", "D", "x" or "";
-    ``labels`` are texts at the points, ``size`` that of a marker (px); about ``kept`` points are on the page."""
+    """One curve (x, y); ``dash`` as in matplotlib, "" for markers only; ``marker`` "o", "s", "^",
+    "v", "D", "x" or ""; ``labels`` are texts at the points, ``size`` that of a marker (px); about
+    ``kept`` points are on the page."""
 
     x: Sequence[float]
     y: Sequence[float]
@@ -46,8 +57,9 @@ class Line:
 
 @dataclass(frozen=True)
 class Panel:
-    """One set of axes, both logarithmic, or x or y alone; ``band`` shades y below a value, with a text, ``spans`` stretches of x;
-    ``ticks`` are labelled on a logarithmic x in place of whole decades."""
+    """One set of axes, both logarithmic, or x or y alone; ``band`` shades y below a value, with a
+    text, ``spans`` stretches of x; ``ticks`` are labelled on a logarithmic x in place of whole
+    decades."""
 
     title: str
     x_label: str
@@ -68,7 +80,8 @@ class Panel:
 
 @dataclass(frozen=True)
 class Chart:
-    """Panels in rows of ``columns``; ``name`` is the file name and the id, ``height`` (px) that of one row."""
+    """Panels in rows of ``columns``; ``name`` is the file name and the id, ``height`` (px) that of
+    one row."""
 
     name: str
     panels: list[Panel] = field(default_factory=list)
@@ -83,7 +96,8 @@ class Chart:
 
 @dataclass(frozen=True)
 class Picture:
-    """A ``figure`` of matplotlib where a chart has no such kind: a map, bars. It stands on the page as an image."""
+    """A ``figure`` of matplotlib where a chart has no such kind: a map, bars. It stands on the page
+    as an image."""
 
     name: str
     figure: Any
@@ -94,48 +108,114 @@ def to_html(chart: Chart | Picture) -> str:
     if isinstance(chart, Picture):
         stream = io.BytesIO()
         chart.figure.savefig(stream, format="png")
-        return (f'<img id="chart-{chart.name}" alt="{chart.name}" '
-                f'src="data:image/png;base64,{base64.b64encode(stream.getvalue()).decode()}">')
+        return (
+            f'<img id="chart-{chart.name}" alt="{chart.name}" '
+            f'src="data:image/png;base64,{base64.b64encode(stream.getvalue()).decode()}">'
+        )
     import plotly.graph_objects as go
     from plotly.subplots import make_subplots
 
-    figure = make_subplots(rows=chart.rows, cols=chart.columns, subplot_titles=[panel.title for panel in chart.panels],
-                           horizontal_spacing=0.09 if chart.columns > 1 else 0.0,
-                           vertical_spacing=_GAP / (chart.height * chart.rows))
+    figure = make_subplots(
+        rows=chart.rows,
+        cols=chart.columns,
+        subplot_titles=[panel.title for panel in chart.panels],
+        horizontal_spacing=0.09 if chart.columns > 1 else 0.0,
+        vertical_spacing=_GAP / (chart.height * chart.rows),
+    )
     shown: set[str] = set()
     for index, panel in enumerate(chart.panels):
         place = {"row": index // chart.columns + 1, "col": index % chart.columns + 1}
         for line in panel.lines:
             x, y = _thinned(line)
-            figure.add_trace(go.Scatter(
-                x=x, y=y, name=line.name, legendgroup=line.name, opacity=line.opacity, text=list(line.labels) or None,
-                showlegend=line.legend and line.name not in shown, mode=_mode(line), textposition="top center",
-                line={"color": line.colour, "width": line.width, "dash": _PLOTLY_DASH[line.dash]},
-                marker={"symbol": _PLOTLY_MARKER[line.marker], "size": line.size}),
-                **place)
+            figure.add_trace(
+                go.Scatter(
+                    x=x,
+                    y=y,
+                    name=line.name,
+                    legendgroup=line.name,
+                    opacity=line.opacity,
+                    text=list(line.labels) or None,
+                    showlegend=line.legend and line.name not in shown,
+                    mode=_mode(line),
+                    textposition="top center",
+                    line={
+                        "color": line.colour,
+                        "width": line.width,
+                        "dash": _PLOTLY_DASH[line.dash],
+                    },
+                    marker={"symbol": _PLOTLY_MARKER[line.marker], "size": line.size},
+                ),
+                **place,
+            )
             shown |= {line.name} if line.legend else set()
-        x_kind = _log_axis(_across(panel), panel.ticks) if panel.log else {"type": "log", "dtick": 1} if panel.log_x else {}
+        x_kind = (
+            _log_axis(_across(panel), panel.ticks)
+            if panel.log
+            else {"type": "log", "dtick": 1}
+            if panel.log_x
+            else {}
+        )
         y_kind = _log_axis(_upwards(panel)) if panel.steep else {}
         figure.update_xaxes(title_text=panel.x_label, **x_kind, **place)
         figure.update_yaxes(title_text=panel.y_label, **y_kind, **place)
         for low, high in panel.spans:
             figure.add_vrect(x0=low, x1=high, fillcolor=GREY, opacity=0.16, line_width=0, **place)
         if panel.band:
-            figure.add_hrect(y0=_upwards(panel)[0] if panel.steep else 0.0, y1=panel.band[0], fillcolor=GREY, opacity=0.16,
-                             line_width=0, **place)
-            figure.add_annotation(text=panel.band[1], xref="x domain", yref="y domain", x=0.98, y=0.02, xanchor="right",
-                                  yanchor="bottom", showarrow=False, **place)
-    figure.update_layout(height=chart.height * chart.rows + 90, template="plotly_white",
-                         margin={"l": 62, "r": 18, "t": 40, "b": 60},
-                         font={"family": _FONT, "size": 13, "color": _INK}, hovermode="closest",
-                         legend={"orientation": "h", "yanchor": "top", "y": -90.0 / (chart.height * chart.rows), "x": 0.0})
+            figure.add_hrect(
+                y0=_upwards(panel)[0] if panel.steep else 0.0,
+                y1=panel.band[0],
+                fillcolor=GREY,
+                opacity=0.16,
+                line_width=0,
+                **place,
+            )
+            figure.add_annotation(
+                text=panel.band[1],
+                xref="x domain",
+                yref="y domain",
+                x=0.98,
+                y=0.02,
+                xanchor="right",
+                yanchor="bottom",
+                showarrow=False,
+                **place,
+            )
+    figure.update_layout(
+        height=chart.height * chart.rows + 90,
+        template="plotly_white",
+        margin={"l": 62, "r": 18, "t": 40, "b": 60},
+        font={"family": _FONT, "size": 13, "color": _INK},
+        hovermode="closest",
+        legend={
+            "orientation": "h",
+            "yanchor": "top",
+            "y": -90.0 / (chart.height * chart.rows),
+            "x": 0.0,
+        },
+    )
     figure.update_annotations(font={"size": 14})
-    figure.update_xaxes(title_font={"size": 13}, showline=True, linecolor="#9aa1a9", gridcolor=_RULE, zerolinecolor="#c9ced4",
-                        ticks="outside")
-    figure.update_yaxes(title_font={"size": 13}, showline=True, linecolor="#9aa1a9", gridcolor=_RULE, zerolinecolor="#c9ced4",
-                        ticks="outside")
-    return figure.to_html(full_html=False, include_plotlyjs=False, div_id=f"chart-{chart.name}",
-                          config={"displayModeBar": False, "responsive": True})
+    figure.update_xaxes(
+        title_font={"size": 13},
+        showline=True,
+        linecolor="#9aa1a9",
+        gridcolor=_RULE,
+        zerolinecolor="#c9ced4",
+        ticks="outside",
+    )
+    figure.update_yaxes(
+        title_font={"size": 13},
+        showline=True,
+        linecolor="#9aa1a9",
+        gridcolor=_RULE,
+        zerolinecolor="#c9ced4",
+        ticks="outside",
+    )
+    return figure.to_html(
+        full_html=False,
+        include_plotlyjs=False,
+        div_id=f"chart-{chart.name}",
+        config={"displayModeBar": False, "responsive": True},
+    )
 
 
 def to_files(chart: Chart | Picture, folder: Path) -> list[Path]:
@@ -144,36 +224,67 @@ def to_files(chart: Chart | Picture, folder: Path) -> list[Path]:
         return save(chart.figure, folder / chart.name)
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(4.1 * chart.columns + 1.4 if chart.columns > 1 else 8.0, chart.height / 96.0 * chart.rows + 0.9),
-                    dpi=130, layout="constrained")
+    figure = Figure(
+        figsize=(
+            4.1 * chart.columns + 1.4 if chart.columns > 1 else 8.0,
+            chart.height / 96.0 * chart.rows + 0.9,
+        ),
+        dpi=130,
+        layout="constrained",
+    )
     handles = {}
     for index, panel in enumerate(chart.panels):
         axes = figure.add_subplot(chart.rows, chart.columns, index + 1)
         for line in panel.lines:
-            handle, = axes.plot(line.x, line.y, color=line.colour, linewidth=0.75 * line.width, linestyle=line.dash or "none",
-                                alpha=line.opacity, marker=line.marker or None, markersize=line.size * 2.0 / 3.0,
-                                rasterized=len(line.x) > _VECTORS)
+            (handle,) = axes.plot(
+                line.x,
+                line.y,
+                color=line.colour,
+                linewidth=0.75 * line.width,
+                linestyle=line.dash or "none",
+                alpha=line.opacity,
+                marker=line.marker or None,
+                markersize=line.size * 2.0 / 3.0,
+                rasterized=len(line.x) > _VECTORS,
+            )
             if line.legend:
                 handles.setdefault(line.name, handle)
             for x, y, label in zip(line.x, line.y, line.labels):
-                axes.annotate(label, (x, y), textcoords="offset points", xytext=(4, 6), fontsize=7.5, color=_INK)
+                axes.annotate(
+                    label,
+                    (x, y),
+                    textcoords="offset points",
+                    xytext=(4, 6),
+                    fontsize=7.5,
+                    color=_INK,
+                )
         _dress(axes, panel)
     if len(handles) > 1:
-        figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=min(len(handles), 4), frameon=False,
-                      fontsize=9)
+        figure.legend(
+            handles.values(),
+            handles.keys(),
+            loc="outside lower center",
+            ncols=min(len(handles), 4),
+            frameon=False,
+            fontsize=9,
+        )
     return save(figure, folder / chart.name)
 
 
 def save(figure, stem: Path) -> list[Path]:
-    """Write a figure of matplotlib to ``stem``.png and ``stem``.svg, each in one piece and the same bytes every time; their
-    paths."""
+    """Write a figure of matplotlib to ``stem``.png and ``stem``.svg, each in one piece and the same
+    bytes every time; their paths."""
     import matplotlib
 
     paths = [stem.with_name(f"{stem.name}.{kind}") for kind in ("png", "svg")]
     with matplotlib.rc_context({"svg.hashsalt": stem.name}):
         for path in paths:
             with replacing(path) as temporary:
-                figure.savefig(temporary, format=path.suffix[1:], metadata={"Date": None} if path.suffix == ".svg" else None)
+                figure.savefig(
+                    temporary,
+                    format=path.suffix[1:],
+                    metadata={"Date": None} if path.suffix == ".svg" else None,
+                )
     return paths
 
 
@@ -196,8 +307,21 @@ def _dress(axes, panel: Panel) -> None:
     for low, high in panel.spans:
         axes.axvspan(low, high, color=GREY, alpha=0.16, linewidth=0)
     if panel.band:
-        axes.axhspan(_upwards(panel)[0] if panel.steep else 0.0, panel.band[0], color=GREY, alpha=0.16, linewidth=0)
-        axes.annotate(panel.band[1], (0.98, 0.02), xycoords="axes fraction", ha="right", va="bottom", fontsize=8)
+        axes.axhspan(
+            _upwards(panel)[0] if panel.steep else 0.0,
+            panel.band[0],
+            color=GREY,
+            alpha=0.16,
+            linewidth=0,
+        )
+        axes.annotate(
+            panel.band[1],
+            (0.98, 0.02),
+            xycoords="axes fraction",
+            ha="right",
+            va="bottom",
+            fontsize=8,
+        )
     axes.grid(color=_RULE, linewidth=0.8)
     axes.set_axisbelow(True)
     axes.spines[["top", "right"]].set_visible(False)
@@ -206,11 +330,17 @@ def _dress(axes, panel: Panel) -> None:
 
 def _log_axis(limits: tuple[float, float], ticks: Sequence[float] = ()) -> dict:
     marks = {"tickvals": list(ticks)} if ticks else {"dtick": 1, "minor_ticks": "outside"}
-    return {"type": "log", "range": [math.log10(value) for value in limits], "exponentformat": "power", **marks}
+    return {
+        "type": "log",
+        "range": [math.log10(value) for value in limits],
+        "exponentformat": "power",
+        **marks,
+    }
 
 
 def _across(panel: Panel) -> tuple[float, float]:
-    """Limits of a logarithmic x, whole decades that hold every point, or the ticks, with some air."""
+    """Limits of a logarithmic x, whole decades that hold every point, or the ticks, with some
+    air."""
     if panel.ticks:
         return min(panel.ticks) / 1.5, max(panel.ticks) * 1.5
     return _decades([value for line in panel.lines for value in line.x])
@@ -218,7 +348,10 @@ def _across(panel: Panel) -> tuple[float, float]:
 
 def _upwards(panel: Panel) -> tuple[float, float]:
     """The same of y, with the band."""
-    return _decades([value for line in panel.lines for value in line.y] + ([panel.band[0]] if panel.band else []))
+    return _decades(
+        [value for line in panel.lines for value in line.y]
+        + ([panel.band[0]] if panel.band else [])
+    )
 
 
 def _decades(values: list[float]) -> tuple[float, float]:
@@ -227,13 +360,20 @@ def _decades(values: list[float]) -> tuple[float, float]:
 
 
 def _mode(line: Line) -> str:
-    parts = (["lines"] if line.dash else []) + (["markers"] if line.marker else []) + (["text"] if line.labels else [])
+    parts = (
+        (["lines"] if line.dash else [])
+        + (["markers"] if line.marker else [])
+        + (["text"] if line.labels else [])
+    )
     return "+".join(parts)
 
 
 def _thinned(line: Line) -> tuple[list, list]:
-    """About as many points as are kept, and six digits, which no screen can tell from all of them."""
+    """About as many points as are kept, and six digits, which no screen can tell from all of
+    them."""
     x, y = np.asarray(line.x, dtype=float), np.asarray(line.y, dtype=float)
     every = max(1, x.size // line.kept)
     keep = np.unique(np.append(np.arange(0, x.size, every), np.arange(x.size)[-1:]))
-    return [float(f"{value:.6g}") for value in x[keep]], [float(f"{value:.6g}") for value in y[keep]]
+    return [float(f"{value:.6g}") for value in x[keep]], [
+        float(f"{value:.6g}") for value in y[keep]
+    ]

@@ -1,4 +1,5 @@
-"""The scene as the report shows it: every value with its unit and where it comes from, and what the thrust really delivers."""
+"""The scene as the report shows it: every value with its unit and where it comes from, and what the
+thrust really delivers."""
 
 import math
 import typing
@@ -18,7 +19,8 @@ _APART = {"name", "description", "conditions", "provenance", "agreement", "pads"
 
 
 def values(table_: BaseModel, prefix: str = "") -> Iterator[tuple[str, Any, str, bool]]:
-    """(dotted key, value, SI unit, whether the file states it) of every field that holds a value and is written with the scene."""
+    """(dotted key, value, SI unit, whether the file states it) of every field that holds a value
+    and is written with the scene."""
     for name, field in type(table_).model_fields.items():
         value, key = getattr(table_, name), f"{prefix}{name}"
         if value is None or field.exclude or (not prefix and name in _APART):
@@ -38,7 +40,11 @@ def values(table_: BaseModel, prefix: str = "") -> Iterator[tuple[str, Any, str,
 
 def _unit(field) -> str:
     extra = field.json_schema_extra
-    return extra["unit"] if isinstance(extra, dict) and "unit" in extra else _unit_inside(field.annotation)
+    return (
+        extra["unit"]
+        if isinstance(extra, dict) and "unit" in extra
+        else _unit_inside(field.annotation)
+    )
 
 
 def _unit_inside(annotation) -> str:
@@ -51,7 +57,11 @@ def _unit_inside(annotation) -> str:
 def readable(value: Any, unit: str) -> str:
     """A value in a unit an engineer reads: degrees, and prefixes that avoid strings of zeros."""
     if isinstance(value, (list, tuple)):
-        return ", ".join(readable(item, unit) for item in value) if not isinstance(value[0], str) else ", ".join(value)
+        return (
+            ", ".join(readable(item, unit) for item in value)
+            if not isinstance(value[0], str)
+            else ", ".join(value)
+        )
     if isinstance(value, bool) or not isinstance(value, (int, float)):
         return str(value)
     if unit == "rad":
@@ -65,7 +75,8 @@ def readable(value: Any, unit: str) -> str:
 
 
 def provenance(scene: Scene, key: str, stated: bool) -> str:
-    """What the scene says of a key or of the table around it; "default" where the file leaves it out."""
+    """What the scene says of a key or of the table around it; "default" where the file leaves it
+    out."""
     found = origin.of(scene.provenance, key)
     return found if found is not None else "not stated" if stated else "default"
 
@@ -76,43 +87,101 @@ def scene_tables(scene: Scene) -> Html:
     for key, value, unit, stated in values(scene):
         if key == "contact.stiffness":
             unit = f"N/m**{scene.contact.exponent:g}"
-        rows.append((code(key), Html(f"<span>{text(readable(value, unit))}</span>"), provenance(scene, key, stated)))
-    pads = [(index + 1, readable(pad.position, "m"), ", ".join(pad.normals),
-             f"{readable(pad.length, 'm')} x {readable(pad.width, 'm')}",
-             readable(pad.inset, "m"), readable(pad.relief, "m")) for index, pad in enumerate(scene.pads)]
-    conditions = [(name, _role(scene, name), "; ".join(f"{key} = {value}" for key, value in overrides.items()))
-                  for name, overrides in scene.conditions.items()]
+        rows.append(
+            (
+                code(key),
+                Html(f"<span>{text(readable(value, unit))}</span>"),
+                provenance(scene, key, stated),
+            )
+        )
+    pads = [
+        (
+            index + 1,
+            readable(pad.position, "m"),
+            ", ".join(pad.normals),
+            f"{readable(pad.length, 'm')} x {readable(pad.width, 'm')}",
+            readable(pad.inset, "m"),
+            readable(pad.relief, "m"),
+        )
+        for index, pad in enumerate(scene.pads)
+    ]
+    conditions = [
+        (
+            name,
+            _role(scene, name),
+            "; ".join(f"{key} = {value}" for key, value in overrides.items()),
+        )
+        for name, overrides in scene.conditions.items()
+    ]
     absent = ", ".join(scene.absent_effects()) or "none"
-    parts = [table(("key", "value", "provenance"), rows),
-             fold(f"{len(pads)} pads ({provenance(scene, 'pads', True)})",
-                  table(("pad", "corner x, y, z", "faces", "size", "inset", "relief"), pads))]
+    parts = [
+        table(("key", "value", "provenance"), rows),
+        fold(
+            f"{len(pads)} pads ({provenance(scene, 'pads', True)})",
+            table(("pad", "corner x, y, z", "faces", "size", "inset", "relief"), pads),
+        ),
+    ]
     if conditions:
-        parts.append(fold(f"{len(conditions)} conditions", table(("condition", "role", "what differs"), conditions)))
-    return Html("".join(parts) + f"<p>Effects this scene does not call for, absent from the compiled code: {absent}.</p>")
+        parts.append(
+            fold(
+                f"{len(conditions)} conditions",
+                table(("condition", "role", "what differs"), conditions),
+            )
+        )
+    return Html(
+        "".join(parts)
+        + f"<p>Effects this scene does not call for, absent from the compiled code: {absent}.</p>"
+    )
 
 
 def _role(scene: Scene, name: str) -> str:
-    return next((role.replace("_", " ") for role in ("fitted", "held_out") if name in getattr(scene.agreement, role)), "")
+    return next(
+        (
+            role.replace("_", " ")
+            for role in ("fitted", "held_out")
+            if name in getattr(scene.agreement, role)
+        ),
+        "",
+    )
 
 
 def thrust_facts(scene: Scene) -> Html:
     """Impulse, what the duration and a cutoff leave out, and the fit of a measured curve."""
     record = scene.thrust.record()
     delivered = thrust_law.impulse(record, scene.duration)
-    rows = [("impulse delivered within the scene", f"{delivered:.6g} N s"),
-            ("velocity it gives the payload alone", f"{delivered / scene.payload.mass:.5g} m/s"),
-            ("thrust at ignition", f"{thrust_law.sample(record, [0.0])[0]:.4g} N")]
+    rows = [
+        ("impulse delivered within the scene", f"{delivered:.6g} N s"),
+        ("velocity it gives the payload alone", f"{delivered / scene.payload.mass:.5g} m/s"),
+        ("thrust at ignition", f"{thrust_law.sample(record, [0.0])[0]:.4g} N"),
+    ]
     if record.pulses is not None:
         p = record.pulses
         whole = float((p.peaks * p.widths).sum() * math.sqrt(2.0 * math.pi))
-        rows.append(("impulse of the whole Gaussian", f"{whole:.6g} N s, of which {100.0 * (1.0 - delivered / whole):.3g} % falls "
-                     "before ignition, after the end, or beyond the cutoff"))
+        rows.append(
+            (
+                "impulse of the whole Gaussian",
+                f"{whole:.6g} N s, of which {100.0 * (1.0 - delivered / whole):.3g} % falls "
+                "before ignition, after the end, or beyond the cutoff",
+            )
+        )
         cutoff = getattr(scene.thrust, "cutoff", None)
-        rows.append(("cutoff", "none" if not cutoff else
-                     f"{cutoff:g} widths, {'rescaled' if scene.thrust.rescale else 'not rescaled'}"))
+        rows.append(
+            (
+                "cutoff",
+                "none"
+                if not cutoff
+                else f"{cutoff:g} widths, {'rescaled' if scene.thrust.rescale else 'not rescaled'}",
+            )
+        )
     if scene.thrust.kind == "measured":
         fit = scene.thrust.fit()
-        rows.append(("Gaussian fit of the measured curve", f"peak {fit.peak:.5g} N at {1e3 * fit.centre:.4g} ms, width "
-                     f"{1e3 * fit.width:.4g} ms, impulse {fit.impulse:.5g} N s against {fit.curve_impulse:.5g} N s of the curve, "
-                     f"residual {100.0 * fit.relative_residual:.3g} %"))
+        rows.append(
+            (
+                "Gaussian fit of the measured curve",
+                f"peak {fit.peak:.5g} N at {1e3 * fit.centre:.4g} ms, width "
+                f"{1e3 * fit.width:.4g} ms, impulse {fit.impulse:.5g} N s against "
+                f"{fit.curve_impulse:.5g} N s of the curve, "
+                f"residual {100.0 * fit.relative_residual:.3g} %",
+            )
+        )
     return table(("thrust", ""), [(name, Html(f"<span>{words}</span>")) for name, words in rows])

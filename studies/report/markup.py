@@ -1,4 +1,5 @@
-"""The little HTML the report needs: escaped text, tables with units in their heads, numbers of a sensible length."""
+"""The little HTML the report needs: escaped text, tables with units in their heads, numbers of a
+sensible length."""
 
 import re
 from collections.abc import Iterable, Sequence
@@ -38,26 +39,43 @@ def percent(value: float | None, digits: int = 3) -> str:
     return "–" if value is None else number(100.0 * value, digits)
 
 
-def table(heads: Sequence[str], rows: Iterable[Sequence], identity: str = "", kinds: Sequence[str] | None = None,
-          dense: bool = False) -> Html:
-    """A table; ``kinds`` names a class per row ("good", "bad", "doubt" or ""). Columns after the first are right-aligned
-    where they hold numbers."""
+def table(
+    heads: Sequence[str],
+    rows: Iterable[Sequence],
+    identity: str = "",
+    kinds: Sequence[str] | None = None,
+    dense: bool = False,
+) -> Html:
+    """A table; ``kinds`` names a class per row ("good", "bad", "doubt" or ""). Columns after the
+    first are right-aligned where they hold numbers."""
     body = []
     for index, row in enumerate(rows):
-        cells = "".join(f'<td{_side(cell)}>{text(cell)}</td>' for cell in row)
+        cells = "".join(f"<td{_side(cell)}>{text(cell)}</td>" for cell in row)
         kind = kinds[index] if kinds else ""
         body.append(f'<tr class="{kind}">{cells}</tr>' if kind else f"<tr>{cells}</tr>")
-    head = "".join(f"<th>{label if isinstance(label, Html) else escape(label)}</th>" for label in heads)
+    head = "".join(
+        f"<th>{label if isinstance(label, Html) else escape(label)}</th>" for label in heads
+    )
     name = f' id="{identity}"' if identity else ""
     look = ' class="dense"' if dense else ""
-    return Html(f'<div class="wide"><table{name}{look}><thead><tr>{head}</tr></thead><tbody>{"".join(body)}</tbody></table></div>')
+    return Html(
+        f'<div class="wide"><table{name}{look}><thead><tr>{head}</tr></thead><tbody>{"".join(body)}</tbody></table></div>'
+    )
 
 
 def _side(cell) -> str:
     """Right-aligned where a cell is a number with little text, such as a unit, behind it."""
     plain = re.sub(r"<[^>]*>", "", str(cell))
-    numeric = isinstance(cell, str) and plain[:1] in "+-0123456789–" and len(re.findall("[A-Za-z]", plain)) <= 6
-    return ' class="number"' if numeric or (isinstance(cell, (int, float)) and not isinstance(cell, bool)) else ""
+    numeric = (
+        isinstance(cell, str)
+        and plain[:1] in "+-0123456789–"
+        and len(re.findall("[A-Za-z]", plain)) <= 6
+    )
+    return (
+        ' class="number"'
+        if numeric or (isinstance(cell, (int, float)) and not isinstance(cell, bool))
+        else ""
+    )
 
 
 def section(identity: str, title: str, *parts: str) -> Html:

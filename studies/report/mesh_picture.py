@@ -1,4 +1,5 @@
-"""A drawing of the rail mesh: all rails, and one cross-section at full detail, named surfaces coloured."""
+"""A drawing of the rail mesh: all rails, and one cross-section at full detail, named surfaces
+coloured."""
 
 from pathlib import Path
 
@@ -23,8 +24,13 @@ def draw(mesh, path: Path) -> None:
     colours = _colours(mesh)
     _oblique(left, mesh, colours)
     _section(right, mesh, colours)
-    figure.legend([Patch(color=GREY, alpha=0.6), *(Patch(color=colour) for colour in colours.values())],
-                  ["rail", *(name.replace("_", " ") for name in colours)], loc="outside lower center", ncols=4, frameon=False)
+    figure.legend(
+        [Patch(color=GREY, alpha=0.6), *(Patch(color=colour) for colour in colours.values())],
+        ["rail", *(name.replace("_", " ") for name in colours)],
+        loc="outside lower center",
+        ncols=4,
+        frameon=False,
+    )
     with replacing(path) as temporary:
         figure.savefig(temporary, format="png")
 
@@ -36,11 +42,16 @@ def _colours(mesh) -> dict[str, str]:
 
 
 def _boundary(mesh) -> tuple[np.ndarray, list[str]]:
-    """Outer facets (m,4) of the solid and the surface each belongs to, ``rail`` where it has no name."""
+    """Outer facets (m,4) of the solid and the surface each belongs to, ``rail`` where it has no
+    name."""
     from highfi.mesh import boundary_facets
 
     facets = boundary_facets(mesh.cells)
-    names = {tuple(sorted(facet)): name for name, group in mesh.surfaces.items() for facet in group.tolist()}
+    names = {
+        tuple(sorted(facet)): name
+        for name, group in mesh.surfaces.items()
+        for facet in group.tolist()
+    }
     return facets, [names.get(tuple(sorted(facet)), "rail") for facet in facets.tolist()]
 
 
@@ -60,8 +71,14 @@ def _oblique(axes, mesh, colours: dict[str, str]) -> None:
     order = front[np.argsort(corners[front, :, 2].mean(axis=1))]
     shade = 0.62 + 0.38 * np.abs(normal @ (_LIGHT / np.linalg.norm(_LIGHT)))
     base = np.array([to_rgb(colours.get(name, "#c6cbd1")) for name in names])
-    axes.add_collection(PolyCollection(1e3 * corners[order][:, :, :2], facecolors=(base * shade[:, None])[order],
-                                       edgecolors="#3b4149", linewidths=0.18))
+    axes.add_collection(
+        PolyCollection(
+            1e3 * corners[order][:, :, :2],
+            facecolors=(base * shade[:, None])[order],
+            edgecolors="#3b4149",
+            linewidths=0.18,
+        )
+    )
     axes.autoscale()
     axes.set_aspect("equal")
     axes.set_axis_off()
@@ -69,7 +86,8 @@ def _oblique(axes, mesh, colours: dict[str, str]) -> None:
 
 
 def _section(axes, mesh, colours: dict[str, str]) -> None:
-    """Elements of the middle layer of the rail at +y +z (of all, where none is there), seen along X, named walls drawn thick."""
+    """Elements of the middle layer of the rail at +y +z (of all, where none is there), seen along
+    X, named walls drawn thick."""
     from matplotlib.collections import LineCollection, PolyCollection
 
     centres = mesh.points[mesh.cells].mean(axis=1)
@@ -77,12 +95,18 @@ def _section(axes, mesh, colours: dict[str, str]) -> None:
     corner |= not corner.any()  # a launcher of one's own may have no rail there
     inside = centres[corner, 0]
     layer = _cut(mesh, corner, inside[np.argmin(np.abs(inside - inside.mean()))])
-    axes.add_collection(PolyCollection(_outlines(mesh, layer), facecolors="#dfe3e7", edgecolors="#3b4149", linewidths=0.7))
+    axes.add_collection(
+        PolyCollection(
+            _outlines(mesh, layer), facecolors="#dfe3e7", edgecolors="#3b4149", linewidths=0.7
+        )
+    )
     reach = mesh.points[mesh.cells[layer]][:, :, 0]
     for name, colour in colours.items():
         facets = mesh.points[mesh.surfaces[name]]
-        near = facets[(facets[:, :, 1:].min(axis=(1, 2)) > 0.0)
-                      & (np.abs(facets[:, :, 0].mean(axis=1) - reach.mean()) < np.ptp(reach))]
+        near = facets[
+            (facets[:, :, 1:].min(axis=(1, 2)) > 0.0)
+            & (np.abs(facets[:, :, 0].mean(axis=1) - reach.mean()) < np.ptp(reach))
+        ]
         lines = [(1e3 * facet[:, 1:].min(axis=0), 1e3 * facet[:, 1:].max(axis=0)) for facet in near]
         axes.add_collection(LineCollection(lines, colors=colour, linewidths=3.0))
     axes.autoscale()
@@ -102,14 +126,18 @@ def _cut(mesh, among, x: float) -> np.ndarray:
 
 
 def _outlines(mesh, layer) -> list[np.ndarray]:
-    """Outlines (mm) of elements seen along X: the box around a hexahedron, the four faces of a tetrahedron."""
+    """Outlines (mm) of elements seen along X: the box around a hexahedron, the four faces of a
+    tetrahedron."""
     from highfi.cells import HEXAHEDRON, TETRAHEDRON, kind
 
     nodes = 1e3 * mesh.points[mesh.cells[layer]][:, :, 1:]
     if kind(mesh.cells) is not HEXAHEDRON:
         return list(nodes[:, TETRAHEDRON.faces[:, :3]].reshape(-1, 3, 2))
     low, high = nodes.min(axis=1), nodes.max(axis=1)
-    return [np.array([(a[0], a[1]), (b[0], a[1]), (b[0], b[1]), (a[0], b[1])]) for a, b in zip(low, high)]
+    return [
+        np.array([(a[0], a[1]), (b[0], a[1]), (b[0], b[1]), (a[0], b[1])])
+        for a, b in zip(low, high)
+    ]
 
 
 def _view(azimuth: float, elevation: float) -> np.ndarray:

@@ -1,13 +1,15 @@
-"""Sobol' indices of a model on independent inputs, by the points of Saltelli and the estimators of SALib.
+"""Sobol' indices of a model on independent inputs, by the points of Saltelli and the estimators of
+SALib.
 
 With V the variance of y over all inputs, x_i one of them and x_~i all others::
 
     first order  S_i = V[E(y | x_i)] / V           what would go if x_i were known
     total        T_i = E[V(y | x_~i)] / V           what would stay if all but x_i were known
 
-n base points take n (d + 2) cases: A, A with column i from B for each of the d inputs, and B. S_i is estimated by mean(B (A_B,i -
-A))/V and T_i by mean((A - A_B,i)^2)/(2 V) (Saltelli et al., Comput. Phys. Commun. 181, 2010); their intervals are of a bootstrap
-over base points. The points are a scrambled Sobol' sequence, of which the first half is one again.
+n base points take n (d + 2) cases: A, A with column i from B for each of the d inputs, and B. S_i
+is estimated by mean(B (A_B,i - A))/V and T_i by mean((A - A_B,i)^2)/(2 V) (Saltelli et al., Comput.
+Phys. Commun. 181, 2010); their intervals are of a bootstrap over base points. The points are a
+scrambled Sobol' sequence, of which the first half is one again.
 """
 
 from typing import Any, NamedTuple
@@ -20,7 +22,8 @@ _EDGE = 2.0**-53  # 0 and 1 themselves have no finite quantile in a normal distr
 
 
 class Indices(NamedTuple):
-    """First-order and total indices (d,) with half widths of their 95 % intervals (d,), and how many base points they come from."""
+    """First-order and total indices (d,) with half widths of their 95 % intervals (d,), and how
+    many base points they come from."""
 
     first: np.ndarray
     first_half_width: np.ndarray
@@ -30,21 +33,31 @@ class Indices(NamedTuple):
 
 
 def points(count: int, inputs: int, seed: int) -> np.ndarray:
-    """Points (count (inputs + 2), inputs) of the open unit cube; ``count`` a power of two, ``seed`` above zero."""
+    """Points (count (inputs + 2), inputs) of the open unit cube; ``count`` a power of two, ``seed``
+    above zero."""
     from SALib.sample import sobol
 
-    return np.clip(sobol.sample(_problem(inputs), count, calc_second_order=False, seed=seed), _EDGE, 1.0 - _EDGE)
+    return np.clip(
+        sobol.sample(_problem(inputs), count, calc_second_order=False, seed=seed),
+        _EDGE,
+        1.0 - _EDGE,
+    )
 
 
 def whole_blocks(settled: np.ndarray, inputs: int) -> np.ndarray:
-    """Which base points (n,) have a result in each of their d + 2 cases; ``settled`` (n (d + 2),)."""
+    """Which base points (n,) have a result in each of their d + 2 cases; ``settled`` (n (d +
+    2),)."""
     return settled.reshape(-1, inputs + 2).all(axis=1)
 
 
-def indices(values: np.ndarray, inputs: int, seed: int, resamples: int = RESAMPLES) -> Indices | None:
-    """Indices of a result ``values`` (n (inputs + 2),) at the points of ``points``; None where it does not vary.
+def indices(
+    values: np.ndarray, inputs: int, seed: int, resamples: int = RESAMPLES
+) -> Indices | None:
+    """Indices of a result ``values`` (n (inputs + 2),) at the points of ``points``; None where it
+    does not vary.
 
-    A base point without a result in one of its cases, NaN, is left out with all of them: the estimators need whole blocks.
+    A base point without a result in one of its cases, NaN, is left out with all of them: the
+    estimators need whole blocks.
     """
     from SALib.analyze import sobol
 
@@ -52,10 +65,22 @@ def indices(values: np.ndarray, inputs: int, seed: int, resamples: int = RESAMPL
     blocks = blocks[whole_blocks(np.isfinite(values), inputs)]
     if len(blocks) < 2 or np.ptp(blocks) <= 1e-12 * np.abs(blocks).max():
         return None
-    found = sobol.analyze(_problem(inputs), blocks.ravel(), calc_second_order=False, num_resamples=resamples, conf_level=CONFIDENCE,
-                          seed=seed)
-    return Indices(*(np.asarray(found[name]) for name in ("S1", "S1_conf", "ST", "ST_conf")), len(blocks))
+    found = sobol.analyze(
+        _problem(inputs),
+        blocks.ravel(),
+        calc_second_order=False,
+        num_resamples=resamples,
+        conf_level=CONFIDENCE,
+        seed=seed,
+    )
+    return Indices(
+        *(np.asarray(found[name]) for name in ("S1", "S1_conf", "ST", "ST_conf")), len(blocks)
+    )
 
 
 def _problem(inputs: int) -> dict[str, Any]:
-    return {"num_vars": inputs, "names": [f"x{number}" for number in range(inputs)], "bounds": [[0.0, 1.0]] * inputs}
+    return {
+        "num_vars": inputs,
+        "names": [f"x{number}" for number in range(inputs)],
+        "bounds": [[0.0, 1.0]] * inputs,
+    }

@@ -1,13 +1,16 @@
-"""What is not certain about a launcher, as a file says it (``tolerances.toml`` here), and from points of the unit cube to cases.
+"""What is not certain about a launcher, as a file says it (``tolerances.toml`` here), and from
+points of the unit cube to cases.
 
-Each key has a distribution of ``scenes.distributions``. Under ``[vary]`` it is that of the number itself, under ``[factor]`` that
-of a factor of the number the surrogate has. An offset that a scene holds as size r and angle a may be given by its components::
+Each key has a distribution of ``scenes.distributions``. Under ``[vary]`` it is that of the number
+itself, under ``[factor]`` that of a factor of the number the surrogate has. An offset that a scene
+holds as size r and angle a may be given by its components::
 
     misalignment  y = r cos a, z = r sin a        eccentricity  y = r sin a, z = r cos a        (angles as in ``scenes.effects``)
 
-so that independent normal components stand for a direction about which nothing is known. Where the exponent of a contact law
-varies, the force at the reference penetration p_r of the calibration stays: k' = k p_r^(e - e'). Friction at rest goes along with
-that of sliding, unless it has a distribution of its own.
+so that independent normal components stand for a direction about which nothing is known. Where the
+exponent of a contact law varies, the force at the reference penetration p_r of the calibration
+stays: k' = k p_r^(e - e'). Friction at rest goes along with that of sliding, unless it has a
+distribution of its own.
 """
 
 from functools import reduce
@@ -29,12 +32,18 @@ from studies.populations.derived import friction
 
 DEFAULT = Path(__file__).with_name("tolerances.toml")
 _KINDS = ("vary", "factor")
-_SPRINGS = ("contact.stiffness", "contact.exponent", "contact.damping", "contact.damping_depth", "contact.dissipation")
+_SPRINGS = (
+    "contact.stiffness",
+    "contact.exponent",
+    "contact.damping",
+    "contact.damping_depth",
+    "contact.dissipation",
+)
 
 
 class Input(NamedTuple):
-    """A number that is not certain: its dotted key, whether its distribution is that of a factor, the number in the scene or None,
-    unit (SI)."""
+    """A number that is not certain: its dotted key, whether its distribution is that of a factor,
+    the number in the scene or None, unit (SI)."""
 
     key: str
     is_factor: bool
@@ -57,15 +66,26 @@ class Tolerances(NamedTuple):
 
     def rows(self, probabilities: np.ndarray) -> list[dict[str, float]]:
         """Overrides (SI) of the cases at points (n, d) of the open unit cube."""
-        found = {item.key: item.values(column) for item, column in zip(self.inputs, probabilities.T)}
+        found = {
+            item.key: item.values(column) for item, column in zip(self.inputs, probabilities.T)
+        }
         if "contact.exponent" in found:
             contact = self.scene.contact
             stiffness = found.get("contact.stiffness", contact.stiffness)
-            found["contact.stiffness"] = stiffness * REFERENCE_PENETRATION ** (contact.exponent - found["contact.exponent"])
-        if "friction.dynamic" in found and "friction.static" not in found and self.scene.friction.dynamic > 0.0:
+            found["contact.stiffness"] = stiffness * REFERENCE_PENETRATION ** (
+                contact.exponent - found["contact.exponent"]
+            )
+        if (
+            "friction.dynamic" in found
+            and "friction.static" not in found
+            and self.scene.friction.dynamic > 0.0
+        ):
             found |= friction(self.scene, found["friction.dynamic"])
         polar = _polar(found)
-        return [dict(zip(polar, values)) for values in zip(*(column.tolist() for column in polar.values()))]
+        return [
+            dict(zip(polar, values))
+            for values in zip(*(column.tolist() for column in polar.values()))
+        ]
 
 
 def digest(path: str | Path) -> str:
@@ -74,30 +94,52 @@ def digest(path: str | Path) -> str:
 
 
 def load(path: str | Path, scene: Scene, model: str = COMPLIANT) -> Tolerances:
-    """What a file says of ``scene``, for the surrogate of the name ``model``. Raises SceneError listing every
-    fault."""
-    raw, source, faults, found, left_out = reading.toml(Path(path), str(path)), str(path), [], [], {}
+    """What a file says of ``scene``, for the surrogate of the name ``model``. Raises SceneError
+    listing every fault."""
+    raw, source, faults, found, left_out = (
+        reading.toml(Path(path), str(path)),
+        str(path),
+        [],
+        [],
+        {},
+    )
     known = ("description", *_KINDS)
-    faults += [Fault(source, key, "no such key", f"one of {', '.join(known)}") for key in raw if key not in known]
+    faults += [
+        Fault(source, key, "no such key", f"one of {', '.join(known)}")
+        for key in raw
+        if key not in known
+    ]
     for kind, key, table in _tables(raw, source, faults):
         item = _input(source, kind, key, table, scene, faults)
         if item is None:
             continue
         if key in {other.key for other in found} | left_out.keys():
-            faults.append(Fault(source, f"{kind}.{key}", "a second distribution", "one for each key"))
+            faults.append(
+                Fault(source, f"{kind}.{key}", "a second distribution", "one for each key")
+            )
         elif reason := _idle(item, scene, model):
             left_out[key] = reason
         else:
             found.append(item)
     if not (found or faults):
-        faults.append(Fault(source, "vary, factor", "nothing that the scene has", "at least one number that varies"))
+        faults.append(
+            Fault(
+                source,
+                "vary, factor",
+                "nothing that the scene has",
+                "at least one number that varies",
+            )
+        )
     if faults:
         raise SceneError(faults)
     tolerances = Tolerances(scene, found, left_out)
     try:
-        scene.replace(tolerances.rows(np.full((1, len(found)), 0.5))[0])  # finds what no single key shows
+        # finds what no single key shows
+        scene.replace(tolerances.rows(np.full((1, len(found)), 0.5))[0])
     except SceneError as error:
-        raise SceneError([fault._replace(source=f"{source}, medians") for fault in error.faults]) from None
+        raise SceneError(
+            [fault._replace(source=f"{source}, medians") for fault in error.faults]
+        ) from None
     return tolerances
 
 
@@ -114,14 +156,18 @@ def _tables(raw: dict, source: str, faults: list[Fault]) -> list[tuple[str, str,
     return [(*place, table) for place, table in found.items()]
 
 
-def _input(source: str, kind: str, key: str, table: dict, scene: Scene, faults: list[Fault]) -> Input | None:
+def _input(
+    source: str, kind: str, key: str, table: dict, scene: Scene, faults: list[Fault]
+) -> Input | None:
     place = f"{kind}.{key}"
     unit = keys.unit(Scene, _stored(key))
     if unit is None:
         faults.append(Fault(source, place, repr(table), "a key that holds a number"))
         return None
     if (name := table.get("distribution")) not in BY_NAME:
-        faults.append(Fault(source, f"{place}.distribution", repr(name), f"one of {', '.join(BY_NAME)}"))
+        faults.append(
+            Fault(source, f"{place}.distribution", repr(name), f"one of {', '.join(BY_NAME)}")
+        )
         return None
     context = {"unit": "dimensionless" if kind == "factor" else unit, "bare_numbers_are_si": False}
     try:
@@ -145,11 +191,16 @@ def _idle(item: Input, scene: Scene, model: str) -> str | None:
         return "the law is linear"
     if item.nominal is None and (item.is_factor or table in ("contact", "friction", "thrust")):
         return "the scene has no such number"
-    return "the scene's number is zero, and so is any multiple of it" if item.is_factor and item.nominal == 0.0 else None
+    return (
+        "the scene's number is zero, and so is any multiple of it"
+        if item.is_factor and item.nominal == 0.0
+        else None
+    )
 
 
 def _number(scene: Scene, key: str) -> float | None:
     """The number under a dotted key, or None where the scene holds none."""
+
     def inside(table: Any, part: str) -> Any:
         if isinstance(table, tuple):
             return table[int(part)] if part.isdigit() and int(part) < len(table) else None
@@ -161,7 +212,11 @@ def _number(scene: Scene, key: str) -> float | None:
 def _component(key: str) -> tuple[str, str] | None:
     """Table of an offset and y or z, for a key that is a component of one."""
     table, _, last = key.rpartition(".")
-    return (table, last) if table.endswith(("misalignment", "eccentricity")) and last in ("y", "z") else None
+    return (
+        (table, last)
+        if table.endswith(("misalignment", "eccentricity")) and last in ("y", "z")
+        else None
+    )
 
 
 def _stored(key: str) -> str:
@@ -182,5 +237,7 @@ def _polar(columns: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
         nothing = np.zeros_like(next(iter(parts.values())))
         y, z = parts.get("y", nothing), parts.get("z", nothing)
         found[f"{table}.axial"] = np.hypot(y, z)
-        found[f"{table}.radial"] = np.arctan2(z, y) if table.endswith("misalignment") else np.arctan2(y, z)
+        found[f"{table}.radial"] = (
+            np.arctan2(z, y) if table.endswith("misalignment") else np.arctan2(y, z)
+        )
     return found

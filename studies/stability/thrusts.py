@@ -1,4 +1,5 @@
-"""Hard thrusts for the rigid surrogate: shorter than a step, and corners that no step falls on. v = J / m (momentum)."""
+"""Hard thrusts for the rigid surrogate: shorter than a step, and corners that no step falls on. v =
+J / m (momentum)."""
 
 from scenes.effects import thrust_law
 from studies.stability import weaker_methods as weaker
@@ -8,17 +9,33 @@ from studies.stability.contacts import DEFAULT_STEP, run, single_pad
 _MASS = 20.0
 
 
-def _pushed(name: str, thrust: dict, duration: float, exact: float, limit: float, step: float) -> Verdict:
+def _pushed(
+    name: str, thrust: dict, duration: float, exact: float, limit: float, step: float
+) -> Verdict:
     """Speed (m/s) after a thrust, beside that of Runge-Kutta at a fixed ``step`` (s)."""
-    scene = single_pad(_MASS, None, duration=duration, thrust=thrust | {"reaction": "exhaust"}, output={"interval": step})
+    scene = single_pad(
+        _MASS,
+        None,
+        duration=duration,
+        thrust=thrust | {"reaction": "exhaust"},
+        output={"interval": step},
+    )
     found, record = run(scene), scene.thrust.record()
 
     def acceleration(t, _, __):
         return thrust_law.magnitude(record.pulses, record.curve, t) / _MASS
 
     _, control = weaker.runge_kutta(acceleration, 0.0, 0.0, step, round(duration / step))
-    return verdict(name, "lowfi", "relative error of the exit speed", abs(found.velocity[-1, 0] / exact - 1.0), limit,
-                   f"Runge-Kutta 4, fixed step {1e3 * step:g} ms: exit speed", abs(control / exact - 1.0), stable=stability(found))
+    return verdict(
+        name,
+        "lowfi",
+        "relative error of the exit speed",
+        abs(found.velocity[-1, 0] / exact - 1.0),
+        limit,
+        f"Runge-Kutta 4, fixed step {1e3 * step:g} ms: exit speed",
+        abs(control / exact - 1.0),
+        stable=stability(found),
+    )
 
 
 def short_pulse() -> Verdict:

@@ -1,6 +1,8 @@
-"""Simpler integrators, used only as controls: fixed-step Runge-Kutta of order four, semi-implicit and explicit Euler.
+"""Simpler integrators, used only as controls: fixed-step Runge-Kutta of order four, semi-implicit
+and explicit Euler.
 
-All solve x'' = a(t, x, v) for one coordinate, or for an array of them, with a step that looks at nothing.
+All solve x'' = a(t, x, v) for one coordinate, or for an array of them, with a step that looks at
+nothing.
 """
 
 from collections.abc import Callable

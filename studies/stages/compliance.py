@@ -1,7 +1,8 @@
-"""Stage ``compliance``: what compliant contact takes from the finite elements, the rail's compliance under the pads, by statics and
-without a single run of the reference.
+"""Stage ``compliance``: what compliant contact takes from the finite elements, the rail's
+compliance under the pads, by statics and without a single run of the reference.
 
-Where agreement is judged the mesh is the reference's own; elsewhere it is the coarsest whose compliance is within 1 % of that.
+Where agreement is judged the mesh is the reference's own; elsewhere it is the coarsest whose
+compliance is within 1 % of that.
 """
 
 import time
@@ -19,7 +20,9 @@ NAME = "compliance"
 
 
 def run(study: Study) -> dict:
-    """``file``, null for a scene without contact; stations, the compliance under a pad, the seconds it took."""
+    """``file``, null for a scene without contact; stations, the compliance under a pad, the seconds
+    it took."""
+
     def make() -> tuple[dict, list[Path]]:
         began = time.perf_counter()
         found = load(study, study.scene)
@@ -30,16 +33,21 @@ def run(study: Study) -> dict:
         asked = study.highfi(next(iter(study.conditions)))
         mesh = highfi.prepare(asked.scene, asked.numerics)
         path = _path(study, study.scene, study.settings.element_size)
-        return {"file": study.relative(path), "stations": len(found.travel), "rails": int(found.rail.max()) + 1,
-                "element_size_m": study.settings.element_size, "wall_s": time.perf_counter() - began,
-                "under_a_pad": under_a_pad(study.scene, found, mesh.points[mesh.surfaces["mount"]])}, [path]
+        return {
+            "file": study.relative(path),
+            "stations": len(found.travel),
+            "rails": int(found.rail.max()) + 1,
+            "element_size_m": study.settings.element_size,
+            "wall_s": time.perf_counter() - began,
+            "under_a_pad": under_a_pad(study.scene, found, mesh.points[mesh.surfaces["mount"]]),
+        }, [path]
 
     return study.stage(NAME, study.key(SOURCES["highfi"], study.settings.element_size), make)
 
 
 def load(study: Study, scene: Scene, judged: bool = True) -> Walls | None:
-    """Rail compliance under the pads of ``scene``, on the reference's own mesh where agreement is ``judged``; found if it is not
-    kept. None without contact."""
+    """Rail compliance under the pads of ``scene``, on the reference's own mesh where agreement is
+    ``judged``; found if it is not kept. None without contact."""
     if scene.contact is None:
         return None
     size = study.settings.element_size
@@ -71,7 +79,8 @@ def of_law(study: Study, scene: Scene) -> Walls | None:
 
 
 def under(study: Study, names) -> dict[str, Walls | None]:
-    """Rail compliance of each condition by name; conditions with the same rail and pads share it."""
+    """Rail compliance of each condition by name; conditions with the same rail and pads share
+    it."""
     scenes = {name: study.condition(name) for name in names}
     known = {digest(scene): load(study, scene) for scene in scenes.values() if scene.contact}
     return {name: known[digest(scene)] if scene.contact else None for name, scene in scenes.items()}

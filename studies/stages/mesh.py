@@ -1,4 +1,5 @@
-"""Stage ``mesh``: the rails as the reference will use them, with their size, quality and a picture."""
+"""Stage ``mesh``: the rails as the reference will use them, with their size, quality and a
+picture."""
 
 from pathlib import Path
 
@@ -29,13 +30,23 @@ def run(study: Study) -> dict:
         draw(mesh, picture)
         lengths = checks.edge_lengths(mesh.points, mesh.cells)
         _, scaled = checks.jacobians(mesh.points, mesh.cells)
-        surfaces = {name: {"facets": len(facets), "area_m2": area(mesh.points, facets)}
-                    for name, facets in mesh.surfaces.items()}
-        return {"element_size_m": asked.numerics.element_size, "elements": len(mesh.cells), "kind": checks.kind(mesh.cells).name,
-                "nodes": len(mesh.points),
-                "shortest_edge_m": float(lengths.min()), "longest_edge_m": float(lengths.max()),
-                "smallest_scaled_jacobian": float(scaled.min()), "warnings": list(mesh.warnings),
-                "surfaces": surfaces, "mesh": study.relative(path), "picture": study.relative(picture)}, [path, picture]
+        surfaces = {
+            name: {"facets": len(facets), "area_m2": area(mesh.points, facets)}
+            for name, facets in mesh.surfaces.items()
+        }
+        return {
+            "element_size_m": asked.numerics.element_size,
+            "elements": len(mesh.cells),
+            "kind": checks.kind(mesh.cells).name,
+            "nodes": len(mesh.points),
+            "shortest_edge_m": float(lengths.min()),
+            "longest_edge_m": float(lengths.max()),
+            "smallest_scaled_jacobian": float(scaled.min()),
+            "warnings": list(mesh.warnings),
+            "surfaces": surfaces,
+            "mesh": study.relative(path),
+            "picture": study.relative(picture),
+        }, [path, picture]
 
     return study.stage("mesh", study.key(SOURCES["highfi"], asked.key), make)
 
@@ -54,8 +65,13 @@ def _save(mesh, path: Path) -> None:
 
     names = list(mesh.surfaces)
     facets = np.concatenate([mesh.surfaces[name] for name in names])
-    group = np.concatenate([np.full(len(mesh.surfaces[name]), index + 1) for index, name in enumerate(names)])
-    document = meshio.Mesh(mesh.points, [(kind(mesh.cells).cell, mesh.cells), (kind(mesh.cells).facet, facets)],
-                           cell_data={"surface": [np.zeros(len(mesh.cells), dtype=int), group]})
+    group = np.concatenate(
+        [np.full(len(mesh.surfaces[name]), index + 1) for index, name in enumerate(names)]
+    )
+    document = meshio.Mesh(
+        mesh.points,
+        [(kind(mesh.cells).cell, mesh.cells), (kind(mesh.cells).facet, facets)],
+        cell_data={"surface": [np.zeros(len(mesh.cells), dtype=int), group]},
+    )
     with replacing(path) as temporary:
         document.write(temporary, file_format="vtu")

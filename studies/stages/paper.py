@@ -1,6 +1,8 @@
-"""Stage ``paper``: what the inputs that the paper does not print must have been, and its tables beside those of the best set found.
+"""Stage ``paper``: what the inputs that the paper does not print must have been, and its tables
+beside those of the best set found.
 
-Every search is kept as it ends, so that a stage that was stopped goes on with the next, and more starts add to those there are.
+Every search is kept as it ends, so that a stage that was stopped goes on with the next, and more
+starts add to those there are.
 """
 
 import math
@@ -29,7 +31,8 @@ SCENE = "paper_like.toml"
 CATALOGUED = "paper_like"  # the best set of those who made the catalogue
 STRESSES = (0.0, 1.0)  # without and with the rates that the paper calls negligible
 _WRITTEN = 1e-5  # relative: a scene file has nine digits of most numbers, six of the mounts
-_SEARCHED = ("scenes", "lowfi", "studies/inference", "studies/published")  # a search outlives a change of anything else
+# a search outlives a change of anything else
+_SEARCHED = ("scenes", "lowfi", "studies/inference", "studies/published")
 
 
 @dataclass(frozen=True)
@@ -41,16 +44,18 @@ class Asked:
 
 
 def run(study: Study, asked: Asked = Asked()) -> dict:
-    """The searches, what they tell of every input, and the best set beside the printed tables; writes it as a scene too,
-    and every end and admissible point as netCDF.
+    """The searches, what they tell of every input, and the best set beside the printed tables;
+    writes it as a scene too, and every end and admissible point as netCDF.
 
-    Raises SceneError for a scene that ``require`` refuses, StudyError where the best set could not be kept as a scene file.
+    Raises SceneError for a scene that ``require`` refuses, StudyError where the best set could not
+    be kept as a scene file.
     """
     require(study.scene)
 
     def make() -> tuple[dict, list[Path]]:
         base = _base(study.scene)
-        with TemporaryDirectory() as folder:  # before the searches, which are dear, and not only after them
+        # before the searches, which are dear, and not only after them
+        with TemporaryDirectory() as folder:
             _write(base, np.full(len(inputs.UNKNOWNS), 0.5), np.zeros((5, 3)), Path(folder, SCENE))
         found = _searches(study, base, asked)
         best = min(found, key=told.misfit_of)
@@ -58,15 +63,28 @@ def run(study: Study, asked: Asked = Asked()) -> dict:
         _write(base, best.shares, best.rates, path)
         left = exits.run(misfit.Launcher(base, asked.plan.tolerances[-1]), best.shares)
         results.save(data, found, found.index(best), left)
-        result = {"asked": {"starts": asked.starts, "plan": _plain(asked.plan)},
-                  "admissible_deg_s": solutions.ADMISSIBLE,
-                  "negligible_deg_s": misfit.NEGLIGIBLE, "scatter_deg_s": misfit.SCATTER.tolist(),
-                  "searches": [told.summary(item) for item in found], "best": found.index(best),
-                  "inputs": told.ranges(found, best), "admissible": told.counted(found), "exit": exits.told(left),
-                  "known": known.errors(load(CATALOGUED), asked.plan.tolerances[-1]),
-                  "front": told.front(found).tolist(), "slips": published.slips(),
-                  "headline": published.headline(), "scene_file": study.relative(path), "data": study.relative(data)}
-        pictures = [file for chart in drawn.charts(result) for file in to_files(chart, study.path("figures"))]
+        result = {
+            "asked": {"starts": asked.starts, "plan": _plain(asked.plan)},
+            "admissible_deg_s": solutions.ADMISSIBLE,
+            "negligible_deg_s": misfit.NEGLIGIBLE,
+            "scatter_deg_s": misfit.SCATTER.tolist(),
+            "searches": [told.summary(item) for item in found],
+            "best": found.index(best),
+            "inputs": told.ranges(found, best),
+            "admissible": told.counted(found),
+            "exit": exits.told(left),
+            "known": known.errors(load(CATALOGUED), asked.plan.tolerances[-1]),
+            "front": told.front(found).tolist(),
+            "slips": published.slips(),
+            "headline": published.headline(),
+            "scene_file": study.relative(path),
+            "data": study.relative(data),
+        }
+        pictures = [
+            file
+            for chart in drawn.charts(result)
+            for file in to_files(chart, study.path("figures"))
+        ]
         return result, [path, data, *pictures]
 
     return _with_present(study, study.stage(NAME, _key(study, asked), make))
@@ -79,17 +97,58 @@ def stored(study: Study) -> dict | None:
 
 
 def require(scene: Scene) -> None:
-    """Raise SceneError unless ``scene`` is one whose inputs the searches can replace: every fault of it."""
+    """Raise SceneError unless ``scene`` is one whose inputs the searches can replace: every fault
+    of it."""
     impact = scene.contact is not None and scene.contact.law == "impact"
     corners = {(x > 0.0, y > 0.0, z > 0.0) for x, y, z in (pad.position for pad in scene.pads)}
-    wrong = [Fault(scene.name, key, given, expected) for holds, key, given, expected in (
-        (scene.rail.GIVEN_BY == "section", "rail", f"a {scene.rail.GIVEN_BY}", "the built-in section, whose ends are searched"),
-        (scene.thermal is None, "thermal", "a table", "absent, for the searches have rails that stand where they are drawn"),
-        (impact, "contact.law", "another law, or no contact", "impact, of which the paper prints the constants"),
-        (scene.thrust.kind == "gaussian", "thrust.kind", scene.thrust.kind, "gaussian, as the paper fits its thrust"),
-        (scene.friction is not None and hasattr(scene.friction, "static"), "friction", "absent", "a table with static and dynamic"),
-        (len(scene.pads) == len(corners) == 8, "pads", f"{len(scene.pads)} pads", "eight, one at each corner of the body"),
-        (scene.thrust_offset is not None, "thrust_offset", "absent", "the misalignment of the paper's Table 1")) if not holds]
+    wrong = [
+        Fault(scene.name, key, given, expected)
+        for holds, key, given, expected in (
+            (
+                scene.rail.GIVEN_BY == "section",
+                "rail",
+                f"a {scene.rail.GIVEN_BY}",
+                "the built-in section, whose ends are searched",
+            ),
+            (
+                scene.thermal is None,
+                "thermal",
+                "a table",
+                "absent, for the searches have rails that stand where they are drawn",
+            ),
+            (
+                impact,
+                "contact.law",
+                "another law, or no contact",
+                "impact, of which the paper prints the constants",
+            ),
+            (
+                scene.thrust.kind == "gaussian",
+                "thrust.kind",
+                scene.thrust.kind,
+                "gaussian, as the paper fits its thrust",
+            ),
+            (
+                scene.friction is not None and hasattr(scene.friction, "static"),
+                "friction",
+                "absent",
+                "a table with static and dynamic",
+            ),
+            (
+                len(scene.pads) == len(corners) == 8,
+                "pads",
+                f"{len(scene.pads)} pads",
+                "eight, one at each corner of the body",
+            ),
+            (
+                scene.thrust_offset is not None,
+                "thrust_offset",
+                "absent",
+                "the misalignment of the paper's Table 1",
+            ),
+        )
+        if not holds
+    ]
     if wrong:
         raise SceneError(wrong)
 
@@ -100,10 +159,13 @@ def _base(scene: Scene) -> Scene:
 
 
 def _write(base: Scene, shares: np.ndarray, rates: np.ndarray, path: Path) -> None:
-    """Write the set at ``shares`` (p,) as a scene that extends ``base`` by its name. Raises StudyError unless the file loads and is
-    the scene that was searched: what was put over a file of the catalogue is not in it."""
+    """Write the set at ``shares`` (p,) as a scene that extends ``base`` by its name. Raises
+    StudyError unless the file loads and is the scene that was searched: what was put over a file of
+    the catalogue is not in it."""
     write_text(path, toml.scene(base, inputs.values(shares), rates))
-    cannot = f"the best set cannot be kept as {path.name}, which extends {base.name!r} of the catalogue"
+    cannot = (
+        f"the best set cannot be kept as {path.name}, which extends {base.name!r} of the catalogue"
+    )
     try:
         kept = load(path)
     except SceneError as fault:
@@ -113,12 +175,22 @@ def _write(base: Scene, shares: np.ndarray, rates: np.ndarray, path: Path) -> No
 
 
 def _differing(first, second, key: str = "") -> list[str]:
-    """Dotted keys at which two scenes (``Scene.physics``) are not the same to the digits of a scene file."""
+    """Dotted keys at which two scenes (``Scene.physics``) are not the same to the digits of a scene
+    file."""
     if isinstance(first, dict) and isinstance(second, dict):
-        return [name for entry in {**first, **second}
-                for name in _differing(first.get(entry), second.get(entry), f"{key}.{entry}".lstrip("."))]
+        return [
+            name
+            for entry in {**first, **second}
+            for name in _differing(
+                first.get(entry), second.get(entry), f"{key}.{entry}".lstrip(".")
+            )
+        ]
     if isinstance(first, list) and isinstance(second, list) and len(first) == len(second):
-        return [name for number, pair in enumerate(zip(first, second)) for name in _differing(*pair, f"{key}.{number}")]
+        return [
+            name
+            for number, pair in enumerate(zip(first, second))
+            for name in _differing(*pair, f"{key}.{number}")
+        ]
     if isinstance(first, float) and isinstance(second, float):
         return [] if math.isclose(first, second, rel_tol=_WRITTEN, abs_tol=1e-12) else [key]
     return [] if first == second else [key]
@@ -136,11 +208,20 @@ def _searches(study: Study, base: Scene, asked: Asked) -> list[solutions.Search]
             if kept and kept.get("key") == key:
                 return solutions.restored(kept)
             label = f"search {seed + 1}, {'all five conditions' if stress else 'three conditions'}"
-            found = solutions.run(lambda tolerance: misfit.Launcher(base, tolerance), stress, seed, asked.plan,
-                                  board.callback(label))
+            found = solutions.run(
+                lambda tolerance: misfit.Launcher(base, tolerance),
+                stress,
+                seed,
+                asked.plan,
+                board.callback(label),
+            )
             write_json(path, {"key": key, **solutions.plain(found)})
-            board.finished(label, f"largest error of nine rates {np.abs(misfit.nine(found.rates)).max():.3g} deg/s, "
-                                  f"largest rate of conditions 1 and 5 {solutions.largest_negligible(found.rates):.3g} deg/s")
+            board.finished(
+                label,
+                f"largest error of nine rates {np.abs(misfit.nine(found.rates)).max():.3g} deg/s, "
+                f"largest rate of conditions 1 and 5 "
+                f"{solutions.largest_negligible(found.rates):.3g} deg/s",
+            )
             return found
 
         pending = [pool.submit(one, *plan) for plan in plans]
@@ -150,13 +231,21 @@ def _searches(study: Study, base: Scene, asked: Asked) -> list[solutions.Search]
 
 
 def _with_present(study: Study, found: dict) -> dict:
-    """The result with what stands beside it now, which comes and goes without it: the cost of both fidelities where the present
-    agreement study measured it, and whether the best set is the catalogue's."""
+    """The result with what stands beside it now, which comes and goes without it: the cost of both
+    fidelities where the present agreement study measured it, and whether the best set is the
+    catalogue's."""
     kept = load(CATALOGUED)
-    best = misfit.Launcher(_base(study.scene)).scene(inputs.shares(found["searches"][found["best"]]["values"]))
-    return found | {"ours": (compare.stored(study) or {}).get("speedup"),
-                    "catalogue": {"name": kept.name, "same": not _differing(kept.physics(), best.physics()),
-                                  "description": kept.description}}
+    best = misfit.Launcher(_base(study.scene)).scene(
+        inputs.shares(found["searches"][found["best"]]["values"])
+    )
+    return found | {
+        "ours": (compare.stored(study) or {}).get("speedup"),
+        "catalogue": {
+            "name": kept.name,
+            "same": not _differing(kept.physics(), best.physics()),
+            "description": kept.description,
+        },
+    }
 
 
 def _key(study: Study, asked: Asked) -> str:
@@ -166,7 +255,9 @@ def _key(study: Study, asked: Asked) -> str:
 def _asked(plain: dict) -> Asked:
     """Inverse of what a result holds of it."""
     plan = plain["plan"]
-    return Asked(plain["starts"], solutions.Plan(**plan | {"tolerances": tuple(plan["tolerances"])}))
+    return Asked(
+        plain["starts"], solutions.Plan(**plan | {"tolerances": tuple(plan["tolerances"])})
+    )
 
 
 def _plain(plan: solutions.Plan) -> dict:
@@ -176,15 +267,38 @@ def _plain(plan: solutions.Plan) -> dict:
 def lines(found: dict) -> list[str]:
     """The result in words and units."""
     best = found["searches"][found["best"]]
-    said = [f"best of {len(found['searches'])} searches: a printed rate missed by {best['largest_error_deg_s']:.3g} deg/s at most, "
-            f"a deviation by {best['largest_deviation_error_deg_s']:.3g} deg/s; rates of conditions 1 and 5 up to "
-            f"{best['largest_negligible_deg_s']:.3g} deg/s", drawn.in_catalogue(found), drawn.admissible(found)]
+    said = [
+        f"best of {len(found['searches'])} searches: a printed rate missed by "
+        f"{best['largest_error_deg_s']:.3g} deg/s at most, "
+        f"a deviation by {best['largest_deviation_error_deg_s']:.3g} deg/s; rates of conditions 1 "
+        f"and 5 up to "
+        f"{best['largest_negligible_deg_s']:.3g} deg/s",
+        drawn.in_catalogue(found),
+        drawn.admissible(found),
+    ]
     for item in found["inputs"]:
-        kept = "nothing admissible" if item["share"] is None else f"admissible at least {item['from']:.3g} to {item['to']:.3g}"
-        said.append(f"  {item['name']:16}{item['best']:.4g} {item['unit']}, {kept} of {item['low']:.3g} to {item['high']:.3g}")
+        kept = (
+            "nothing admissible"
+            if item["share"] is None
+            else f"admissible at least {item['from']:.3g} to {item['to']:.3g}"
+        )
+        said.append(
+            f"  {item['name']:16}{item['best']:.4g} {item['unit']}, {kept} of {item['low']:.3g} to "
+            f"{item['high']:.3g}"
+        )
     ours = found["ours"]
-    cost = (f"{ours['highfi_wall_s']:.3g} s in finite elements, {1e3 * ours['lowfi_wall_s']:.3g} ms calibrated: "
-            f"{ours['ratio']:,.0f} times as fast" if ours else f"not measured yet: make compare SCENE={found['scene']} does it")
+    cost = (
+        f"{ours['highfi_wall_s']:.3g} s in finite elements, {1e3 * ours['lowfi_wall_s']:.3g} ms "
+        f"calibrated: "
+        f"{ours['ratio']:,.0f} times as fast"
+        if ours
+        else f"not measured yet: make compare SCENE={found['scene']} does it"
+    )
     said += exits.lines(found["exit"])
-    return [*said, *(f"  note          {words}" for words in found["slips"]), f"  one case      {cost}",
-            f"  scene         {found['scene_file']}", f"  data          {found['data']}"]
+    return [
+        *said,
+        *(f"  note          {words}" for words in found["slips"]),
+        f"  one case      {cost}",
+        f"  scene         {found['scene_file']}",
+        f"  data          {found['data']}",
+    ]

@@ -1,4 +1,5 @@
-"""Stages ``highfi`` and ``lowfi``: every condition of the scene in one fidelity, the surrogate on compliant contact."""
+"""Stages ``highfi`` and ``lowfi``: every condition of the scene in one fidelity, the surrogate on
+compliant contact."""
 
 import math
 from pathlib import Path
@@ -25,9 +26,17 @@ def run(study: Study, fidelity: str) -> dict:
 
     def make() -> tuple[dict, list[Path]]:
         runs = dict(zip(asked, study.store.fill(fidelity, list(asked.values()))))
-        rows = [row(name, runs[name], study.relative(study.store.path(asked[name]))) for name in asked]
-        failed = [f"{name}: {found.status}: {found.message}" for name, found in runs.items() if found.status in FAILED]
-        return {"conditions": rows, "failed": failed}, [study.store.path(item) for item in asked.values()]
+        rows = [
+            row(name, runs[name], study.relative(study.store.path(asked[name]))) for name in asked
+        ]
+        failed = [
+            f"{name}: {found.status}: {found.message}"
+            for name, found in runs.items()
+            if found.status in FAILED
+        ]
+        return {"conditions": rows, "failed": failed}, [
+            study.store.path(item) for item in asked.values()
+        ]
 
     sources = SOURCES["highfi" if fidelity == "highfi" else "calibrated"]
     return study.stage(fidelity, study.key(sources, [item.key for item in asked.values()]), make)
@@ -36,15 +45,39 @@ def run(study: Study, fidelity: str) -> dict:
 def row(name: str, run: Trajectory, path: str) -> dict:
     """One condition as result files hold it; a run that did not settle has ``settled`` null."""
     result, cost, checks = run.outcome, run.cost, run.checks
-    settled = None if result.rate is None else {
-        "velocity_m_s": result.velocity, "rate_deg_s": [math.degrees(rate) for rate in result.rate],
-        "lateral_velocity_m_s": result.lateral_velocity, "direction_error_deg": math.degrees(result.direction_error)}
-    found = {"condition": name, "model": run.model, "status": run.status, "message": run.message, "exit_time_s": result.exit_time,
-             "wall_s": cost["wall_s"], "compile_s": cost["compile_s"], "steps": cost["steps"], "dt_s": cost["dt_s"],
-             "energy_error": checks.get("energy_error"), "transverse_energy_error": checks.get("transverse_energy_error"),
-             "linear_momentum_error": checks.get("linear_momentum_error"),
-             "angular_momentum_error": checks.get("angular_momentum_error"), "settled": settled, "trajectory": path,
-             "checks": checks, "cost": cost, "numerics": run.numerics}
+    settled = (
+        None
+        if result.rate is None
+        else {
+            "velocity_m_s": result.velocity,
+            "rate_deg_s": [math.degrees(rate) for rate in result.rate],
+            "lateral_velocity_m_s": result.lateral_velocity,
+            "direction_error_deg": math.degrees(result.direction_error),
+        }
+    )
+    found = {
+        "condition": name,
+        "model": run.model,
+        "status": run.status,
+        "message": run.message,
+        "exit_time_s": result.exit_time,
+        "wall_s": cost["wall_s"],
+        "compile_s": cost["compile_s"],
+        "steps": cost["steps"],
+        "dt_s": cost["dt_s"],
+        "energy_error": checks.get("energy_error"),
+        "transverse_energy_error": checks.get("transverse_energy_error"),
+        "linear_momentum_error": checks.get("linear_momentum_error"),
+        "angular_momentum_error": checks.get("angular_momentum_error"),
+        "settled": settled,
+        "trajectory": path,
+        "checks": checks,
+        "cost": cost,
+        "numerics": run.numerics,
+    }
     if run.model == FINITE_ELEMENTS:
-        found |= {"elements": cost["elements"], "ns_per_element_step": cost["ns_per_element_step"]} | stresses.facts(run)
+        found |= {
+            "elements": cost["elements"],
+            "ns_per_element_step": cost["ns_per_element_step"],
+        } | stresses.facts(run)
     return found

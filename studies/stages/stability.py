@@ -1,4 +1,5 @@
-"""Stage ``stability``: hard cases of both fidelities, each beside a simpler method that fails on it."""
+"""Stage ``stability``: hard cases of both fidelities, each beside a simpler method that fails on
+it."""
 
 from pathlib import Path
 
@@ -10,7 +11,8 @@ from studies.study import Study
 
 
 def run(study: Study) -> dict:
-    """``cases``: one verdict each; ``failed`` names those not held, or whose control did not fail."""
+    """``cases``: one verdict each; ``failed`` names those not held, or whose control did not
+    fail."""
 
     def make() -> tuple[dict, list[Path]]:
         found = []
@@ -20,9 +22,14 @@ def run(study: Study) -> dict:
                 board.callback(name)(0.0)
                 found.append(case())
                 board.finished(name, "held" if found[-1].held else "NOT held")
-        failed = [f"{item.name}: {'not held' if not item.held else 'its control did not fail'}"
-                  for item in found if not (item.held and item.control_failed)]
+        failed = [
+            f"{item.name}: {'not held' if not item.held else 'its control did not fail'}"
+            for item in found
+            if not (item.held and item.control_failed)
+        ]
         return {"cases": [item._asdict() for item in found], "failed": failed}, []
 
     # The cases bring their own scenes, so the scene under study is not part of the key.
-    return study.stage("stability", content_hash("stability", code_hash(*SOURCES["calibrated"], "studies")), make)
+    return study.stage(
+        "stability", content_hash("stability", code_hash(*SOURCES["calibrated"], "studies")), make
+    )

@@ -1,7 +1,8 @@
-"""Stage ``view``: one condition of the reference to look at, as VTK files for ParaView and, with pyvista, as pictures.
+"""Stage ``view``: one condition of the reference to look at, as VTK files for ParaView and, with
+pyvista, as pictures.
 
-The run is made once more with an observer that writes each frame as it comes, so no more than one of them is ever in memory; it
-ends with the bits of the stored run, which is checked.
+The run is made once more with an observer that writes each frame as it comes, so no more than one
+of them is ever in memory; it ends with the bits of the stored run, which is checked.
 """
 
 import importlib.metadata
@@ -25,10 +26,14 @@ _SHOWN = 8e-3  # m that the largest deformation may take up in a picture
 _HOW = "pictures need pyvista (0.6 GB): make pictures, or pip install 'tipoff[view]'"
 
 
-def run(study: Study, condition: str | None = None, frames: int = FRAMES, factor: float | None = None) -> dict:
-    """Times and files of the frames, the collection ParaView opens, the peak stress, the exaggeration, and pictures or why none.
+def run(
+    study: Study, condition: str | None = None, frames: int = FRAMES, factor: float | None = None
+) -> dict:
+    """Times and files of the frames, the collection ParaView opens, the peak stress, the
+    exaggeration, and pictures or why none.
 
-    Raises SceneError for an unknown condition or fewer than two frames, StudyError where the run fails.
+    Raises SceneError for an unknown condition or fewer than two frames, StudyError where the run
+    fails.
     """
     if frames < 2:
         raise SceneError([Fault("view", "frames", str(frames), "2 or more")])
@@ -43,7 +48,9 @@ def run(study: Study, condition: str | None = None, frames: int = FRAMES, factor
         document, files = _document(study, asked, known, folder, taken, factor)
         drawn, why = _draw(document, folder)
         document |= {"asked_frames": frames, "asked_factor": factor}
-        document["pictures"] = {Path(picture).stem: study.relative(folder / picture) for picture in drawn}
+        document["pictures"] = {
+            Path(picture).stem: study.relative(folder / picture) for picture in drawn
+        }
         document["without_pictures"] = why
         if why:
             say(f"view: {why}")
@@ -54,11 +61,23 @@ def run(study: Study, condition: str | None = None, frames: int = FRAMES, factor
 
 def stored(study: Study) -> list[dict]:
     """Results made from the present scene, code and settings, for the report, which makes none."""
-    found = [item for path in sorted((study.folder / "view").glob("*.json")) if (item := read(path)) is not None]
-    known = {**{name: study.condition(name) for name in study.scene.conditions}, "nominal": study.scene}
-    return [item for item in found if item["condition"] in known
-            and item["key"] == _key(study, study.highfi(item["condition"]), item["asked_frames"], item["asked_factor"])
-            and study.whole(item, "the report does without it until tipoff view makes it again")]
+    found = [
+        item
+        for path in sorted((study.folder / "view").glob("*.json"))
+        if (item := read(path)) is not None
+    ]
+    known = {
+        **{name: study.condition(name) for name in study.scene.conditions},
+        "nominal": study.scene,
+    }
+    return [
+        item
+        for item in found
+        if item["condition"] in known
+        and item["key"]
+        == _key(study, study.highfi(item["condition"]), item["asked_frames"], item["asked_factor"])
+        and study.whole(item, "the report does without it until tipoff view makes it again")
+    ]
 
 
 def _key(study: Study, asked: Run, frames: int, factor: float | None) -> str:
@@ -78,7 +97,8 @@ def _folder(study: Study, name: str) -> Path:
 
 
 def chosen(frames: int, known: Trajectory) -> list[int]:
-    """Samples to show: evenly spread over the run, one of them moved to the moment of the peak stress."""
+    """Samples to show: evenly spread over the run, one of them moved to the moment of the peak
+    stress."""
     last = known.time.size - 1
     samples = sorted({round(place) for place in np.linspace(0, last, min(frames, last + 1))})
     peak = int(np.abs(known.time - known.stress["peak_stress_time_s"]).argmin())
@@ -106,16 +126,28 @@ class _Observer:
             self.camera = views.Camera(loop)
             self.boxes, self.pads = views.bodies(loop.scene, loop.system.model)
         frame, mesh = self.camera.take(loop), loop.system.mesh
-        paths = vtk_files.write_frame(self.folder, len(self.frames), frame, mesh, self.boxes, self.pads)
+        paths = vtk_files.write_frame(
+            self.folder, len(self.frames), frame, mesh, self.boxes, self.pads
+        )
         self._widen(mesh.points)
         self._widen((self.boxes @ frame.turn.T + frame.centre).reshape(-1, 3))
-        self.frames.append({"time_s": frame.time, "rails": paths[0].name, "bodies": paths[1].name,
-                            "largest_stress_pa": float(frame.worst.max()), "largest_mean_stress_pa": float(frame.von_mises.max()),
-                            "largest_displacement_m": float(np.linalg.norm(frame.displacement, axis=1).max()),
-                            "largest_pressure_pa": float(frame.pressure.max())})
+        self.frames.append(
+            {
+                "time_s": frame.time,
+                "rails": paths[0].name,
+                "bodies": paths[1].name,
+                "largest_stress_pa": float(frame.worst.max()),
+                "largest_mean_stress_pa": float(frame.von_mises.max()),
+                "largest_displacement_m": float(np.linalg.norm(frame.displacement, axis=1).max()),
+                "largest_pressure_pa": float(frame.pressure.max()),
+            }
+        )
 
     def _widen(self, points: np.ndarray) -> None:
-        self.low, self.high = np.minimum(self.low, points.min(axis=0)), np.maximum(self.high, points.max(axis=0))
+        self.low, self.high = (
+            np.minimum(self.low, points.min(axis=0)),
+            np.maximum(self.high, points.max(axis=0)),
+        )
 
 
 def _take(study: Study, asked: Run, known: Trajectory, folder: Path, frames: int) -> _Observer:
@@ -124,34 +156,64 @@ def _take(study: Study, asked: Run, known: Trajectory, folder: Path, frames: int
     observer = _Observer(folder, chosen(frames, known))
     highfi.prepare(asked.scene, asked.numerics)
     with Board("view", 1) as board:
-        again = highfi.run(asked.scene, asked.numerics, progress=board.callback(asked.label), observer=observer)
-        board.finished(asked.label, f"{len(observer.frames)} frames in {again.cost['wall_s']:.3g} s")
+        again = highfi.run(
+            asked.scene, asked.numerics, progress=board.callback(asked.label), observer=observer
+        )
+        board.finished(
+            asked.label, f"{len(observer.frames)} frames in {again.cost['wall_s']:.3g} s"
+        )
     if not (np.array_equal(again.rate, known.rate) and again.stress == known.stress):
-        say("view: the run shown is not the stored one to the last bit, as on another kind of processor")
+        say(
+            "view: the run shown is not the stored one to the last bit, as on another kind of "
+            "processor"
+        )
     return observer
 
 
-def _document(study: Study, asked: Run, known: Trajectory, folder: Path, taken: _Observer,
-              factor: float | None) -> tuple[dict, list[Path]]:
+def _document(
+    study: Study,
+    asked: Run,
+    known: Trajectory,
+    folder: Path,
+    taken: _Observer,
+    factor: float | None,
+) -> tuple[dict, list[Path]]:
     from studies.view import vtk_files
 
     paths = [[folder / frame["rails"], folder / frame["bodies"]] for frame in taken.frames]
     files = [path for pair in paths for path in pair]
-    files.append(vtk_files.write_collection(folder, [frame["time_s"] for frame in taken.frames], paths))
+    files.append(
+        vtk_files.write_collection(folder, [frame["time_s"] for frame in taken.frames], paths)
+    )
     vtk_files.discard_others(folder, files)
     stress = known.stress
-    at_peak = min(range(len(taken.frames)), key=lambda index: abs(taken.frames[index]["time_s"] - stress["peak_stress_time_s"]))
-    peak = {"stress_pa": stress["peak_stress_pa"], "place_m": stress["peak_stress_place_m"], "rail": stress["peak_stress_rail"],
-            "time_s": stress["peak_stress_time_s"], "frame": at_peak}
-    return {"condition": asked.label, "folder": study.relative(folder),
-            "collection": study.relative(files[-1]), "frames": taken.frames, "peak": peak,
-            "bounds_m": [taken.low.tolist(), taken.high.tolist()],
-            "element_size_m": asked.numerics.element_size, "factor": factor or exaggeration(taken.frames),
-            "title": f"{study.scene.name} / {asked.label}"}, files
+    at_peak = min(
+        range(len(taken.frames)),
+        key=lambda index: abs(taken.frames[index]["time_s"] - stress["peak_stress_time_s"]),
+    )
+    peak = {
+        "stress_pa": stress["peak_stress_pa"],
+        "place_m": stress["peak_stress_place_m"],
+        "rail": stress["peak_stress_rail"],
+        "time_s": stress["peak_stress_time_s"],
+        "frame": at_peak,
+    }
+    return {
+        "condition": asked.label,
+        "folder": study.relative(folder),
+        "collection": study.relative(files[-1]),
+        "frames": taken.frames,
+        "peak": peak,
+        "bounds_m": [taken.low.tolist(), taken.high.tolist()],
+        "element_size_m": asked.numerics.element_size,
+        "factor": factor or exaggeration(taken.frames),
+        "title": f"{study.scene.name} / {asked.label}",
+    }, files
 
 
 def exaggeration(frames: list[dict]) -> float:
-    """Factor 1, 2 or 5 times a power of ten that shows the largest deformation well; 1 where there is none."""
+    """Factor 1, 2 or 5 times a power of ten that shows the largest deformation well; 1 where there
+    is none."""
     largest = max(frame["largest_displacement_m"] for frame in frames)
     if largest <= 0.0:
         return 1.0
@@ -161,7 +223,8 @@ def exaggeration(frames: list[dict]) -> float:
 
 
 def rounded_up(value: float) -> float:
-    """The end of a scale of five parts: the next of 1, 1.5, 2, 2.5, 3, 4, 5, 6, 8 times a power of ten; 1 for nothing."""
+    """The end of a scale of five parts: the next of 1, 1.5, 2, 2.5, 3, 4, 5, 6, 8 times a power of
+    ten; 1 for nothing."""
     power = 10.0 ** math.floor(math.log10(value)) if value > 0.0 else 1.0
     steps = (1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)
     return next(step * power for step in steps if value <= step * power * (1.0 + 1e-9))
@@ -171,16 +234,30 @@ def _draw(document: dict, folder: Path) -> tuple[list[str], str]:
     """Names of the pictures drawn, or none and why."""
     if pyvista_version() is None:
         return [], _HOW
-    order = {"folder": str(folder.resolve()), "frames": document["frames"], "factor": document["factor"],
-             "bounds": document["bounds_m"], "peak": document["peak"], "title": document["title"],
-             "mesh": f"elements of {1e3 * document['element_size_m']:g} mm",
-             "scale_pa": rounded_up(max(frame["largest_mean_stress_pa"] for frame in document["frames"]))}
+    order = {
+        "folder": str(folder.resolve()),
+        "frames": document["frames"],
+        "factor": document["factor"],
+        "bounds": document["bounds_m"],
+        "peak": document["peak"],
+        "title": document["title"],
+        "mesh": f"elements of {1e3 * document['element_size_m']:g} mm",
+        "scale_pa": rounded_up(
+            max(frame["largest_mean_stress_pa"] for frame in document["frames"])
+        ),
+    }
     # Complaints go to a file: a full pipe that nobody reads would stop the child.
     with Board("view", 1) as board, tempfile.TemporaryFile("w+") as complaints:
         report = board.callback("pictures")
         report(0.0)
-        child = subprocess.Popen([sys.executable, "-m", "studies.view.pictures"], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
-                                 stderr=complaints, text=True, cwd=Path(__file__).resolve().parent.parent.parent)
+        child = subprocess.Popen(
+            [sys.executable, "-m", "studies.view.pictures"],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=complaints,
+            text=True,
+            cwd=Path(__file__).resolve().parent.parent.parent,
+        )
         child.stdin.write(json.dumps(order))
         child.stdin.close()
         said = {}

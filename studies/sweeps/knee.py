@@ -1,4 +1,5 @@
-"""Where growth ends: a largest rate g over the size s of an error, and which of five simple laws tells it best.
+"""Where growth ends: a largest rate g over the size s of an error, and which of five simple laws
+tells it best.
 
     proportional   g = b s
     straight       g = a + b s
@@ -6,15 +7,16 @@
     plateau        g = a + b min(s, k)                   growth up to k, then none
     knee           g = a + b s + c max(s - k, 0)          growth up to k, then another one
 
-Each is fitted by least squares, k and h by scanning. The law with the smallest corrected information criterion (Hurvich and Tsai,
-Biometrika 76, 1989) is taken::
+Each is fitted by least squares, k and h by scanning. The law with the smallest corrected
+information criterion (Hurvich and Tsai, Biometrika 76, 1989) is taken::
 
     AICc = n ln(RSS/n) + 2 K + 2 K (K + 1)/(n - K - 1),   K = constants + 1
 
-so a bend must earn its constants. Residuals below a five hundredth of the largest rate, what many cases are exact to, count as
-that, so that errors of integration choose no law. The interval of k is a percentile bootstrap: angles are drawn again with
-replacement, the largest rate taken over those, and the chosen law fitted anew. The maximum of so many angles can only fall when
-they are drawn again, so the interval speaks of where the bend is, not of how high the curve.
+so a bend must earn its constants. Residuals below a five hundredth of the largest rate, what many
+cases are exact to, count as that, so that errors of integration choose no law. The interval of k is
+a percentile bootstrap: angles are drawn again with replacement, the largest rate taken over those,
+and the chosen law fitted anew. The maximum of so many angles can only fall when they are drawn
+again, so the interval speaks of where the bend is, not of how high the curve.
 """
 
 from typing import NamedTuple
@@ -24,16 +26,20 @@ import numpy as np
 RESAMPLES = 400
 LAWS = ("proportional", "straight", "levelling", "plateau", "knee")
 MISFIT = 0.1  # rms residual over the largest value, above which no law tells the curve
-LEVEL = 0.1  # what may be left to grow: beyond a knee, over the value there; of the height a levelling curve tends to
-_RESOLUTION = 2e-3  # of the largest value: what 95 % of cases are exact to at the coarsest tolerance, lowfi.Numerics
+# what may be left to grow: beyond a knee, over the value there; of the height a levelling curve
+# tends to
+LEVEL = 0.1
+# of the largest value: what 95 % of cases are exact to at the coarsest tolerance, lowfi.Numerics
+_RESOLUTION = 2e-3
 _LEAST = 6  # sizes; with fewer, AICc of the knee law has no denominator
 _SCANNED = 121
 
 
 class Growth(NamedTuple):
-    """What became of growth. ``law`` chosen; ``verdict`` in words; ``knee`` with the ends of its 95 % interval, None where the law
-    has none; slopes before and after it (or the only one); ``misfit``, rms residual over the largest value; ``plateau_share`` of
-    resamples whose verdict is a plateau; AICc by law."""
+    """What became of growth. ``law`` chosen; ``verdict`` in words; ``knee`` with the ends of its 95
+    % interval, None where the law has none; slopes before and after it (or the only one);
+    ``misfit``, rms residual over the largest value; ``plateau_share`` of resamples whose verdict is
+    a plateau; AICc by law."""
 
     law: str
     verdict: str
@@ -48,8 +54,8 @@ class Growth(NamedTuple):
 
 
 class _Fit(NamedTuple):
-    """The best of a law for curves (m,n): scanned constant (m,) or NaN, residual sums of squares (m,), linear constants (m,p), AICc
-    (m,)."""
+    """The best of a law for curves (m,n): scanned constant (m,) or NaN, residual sums of squares
+    (m,), linear constants (m,p), AICc (m,)."""
 
     scanned: np.ndarray
     residual: np.ndarray
@@ -57,9 +63,11 @@ class _Fit(NamedTuple):
     criterion: np.ndarray
 
 
-def growth(sizes: np.ndarray, values: np.ndarray, seed: int = 1, resamples: int = RESAMPLES) -> Growth | None:
-    """How the largest of ``values`` (s,a), one column an angle, grows over ``sizes`` (s,) above zero. NaN where a case did not
-    settle.
+def growth(
+    sizes: np.ndarray, values: np.ndarray, seed: int = 1, resamples: int = RESAMPLES
+) -> Growth | None:
+    """How the largest of ``values`` (s,a), one column an angle, grows over ``sizes`` (s,) above
+    zero. NaN where a case did not settle.
 
     None where fewer than six sizes have a value, or all are zero.
     """
@@ -68,20 +76,37 @@ def growth(sizes: np.ndarray, values: np.ndarray, seed: int = 1, resamples: int 
     if len(sizes) < _LEAST or not (values[np.isfinite(values)] != 0.0).any():
         return None
     drawn = np.random.default_rng(seed).integers(values.shape[1], size=(resamples, values.shape[1]))
-    curves = np.vstack([largest(values)[None], *(largest(values[:, angles])[None] for angles in drawn)])
+    curves = np.vstack(
+        [largest(values)[None], *(largest(values[:, angles])[None] for angles in drawn)]
+    )
     curves = curves[np.isfinite(curves).all(axis=1)]
     fits = {law: _fitted(law, sizes, curves) for law in LAWS}
     chosen = np.array(LAWS)[np.argmin([fit.criterion for fit in fits.values()], axis=0)]
-    verdicts = [_verdict(law, sizes, fits[law], curve, index) for index, (law, curve) in enumerate(zip(chosen, curves))]
+    verdicts = [
+        _verdict(law, sizes, fits[law], curve, index)
+        for index, (law, curve) in enumerate(zip(chosen, curves))
+    ]
     law, fit = chosen[0], fits[chosen[0]]
     bent = law in ("plateau", "knee")
     half = 0.5 * (sizes[-2] - sizes[1]) / (_SCANNED - 1)  # what the scan itself leaves open
-    low, high = (*np.percentile(fit.scanned[1:], (2.5, 97.5)), -half, half) if bent and len(curves) > 1 else (None, None)
+    low, high = (
+        (*np.percentile(fit.scanned[1:], (2.5, 97.5)), -half, half)
+        if bent and len(curves) > 1
+        else (None, None)
+    )
     before, after = _slopes(law, fit.constants[0])
-    return Growth(str(law), verdicts[0], float(fit.scanned[0]) if bent else None, None if low is None else float(low),
-                  None if high is None else float(high), before, after, _misfit(fit, curves[0], 0),
-                  float(np.mean([words == "plateau" for words in verdicts[1:]])) if len(curves) > 1 else 0.0,
-                  {name: float(item.criterion[0]) for name, item in fits.items()})
+    return Growth(
+        str(law),
+        verdicts[0],
+        float(fit.scanned[0]) if bent else None,
+        None if low is None else float(low),
+        None if high is None else float(high),
+        before,
+        after,
+        _misfit(fit, curves[0], 0),
+        float(np.mean([words == "plateau" for words in verdicts[1:]])) if len(curves) > 1 else 0.0,
+        {name: float(item.criterion[0]) for name, item in fits.items()},
+    )
 
 
 def largest(values: np.ndarray) -> np.ndarray:
@@ -91,20 +116,29 @@ def largest(values: np.ndarray) -> np.ndarray:
 
 
 def _fitted(law: str, sizes: np.ndarray, curves: np.ndarray) -> _Fit:
-    """Least squares, all curves at once, and of the values of a scanned constant the one that leaves least."""
+    """Least squares, all curves at once, and of the values of a scanned constant the one that
+    leaves least."""
     scanned, designs = _scan(law, sizes)
     constants = np.stack([curves @ np.linalg.pinv(design).T for design in designs])
-    residual = np.stack([((curves - found @ design.T) ** 2).sum(axis=1) for found, design in zip(constants, designs)])
+    residual = np.stack(
+        [
+            ((curves - found @ design.T) ** 2).sum(axis=1)
+            for found, design in zip(constants, designs)
+        ]
+    )
     best, all_curves = residual.argmin(axis=0), np.arange(len(curves))
     count, free = len(sizes), constants.shape[2] + np.isfinite(scanned[0]) + 1
     least = residual[best, all_curves]
     counted = np.maximum(least / count, (_RESOLUTION * curves.max(axis=1)) ** 2)
-    criterion = count * np.log(counted) + 2.0 * free + 2.0 * free * (free + 1.0) / (count - free - 1.0)
+    criterion = (
+        count * np.log(counted) + 2.0 * free + 2.0 * free * (free + 1.0) / (count - free - 1.0)
+    )
     return _Fit(scanned[best], least, constants[best, all_curves], criterion)
 
 
 def _scan(law: str, sizes: np.ndarray) -> tuple[np.ndarray, list[np.ndarray]]:
-    """Values of the scanned constant (NaN: there is none) and the matrix of the linear ones for each."""
+    """Values of the scanned constant (NaN: there is none) and the matrix of the linear ones for
+    each."""
     one, none = np.ones_like(sizes), np.array([np.nan])
     if law == "proportional":
         return none, [sizes[:, None]]
@@ -116,7 +150,9 @@ def _scan(law: str, sizes: np.ndarray) -> tuple[np.ndarray, list[np.ndarray]]:
     places = np.linspace(sizes[1], sizes[-2], _SCANNED)  # two sizes at least on either side
     if law == "plateau":
         return places, [np.column_stack([one, np.minimum(sizes, place)]) for place in places]
-    return places, [np.column_stack([one, sizes, np.maximum(sizes - place, 0.0)]) for place in places]
+    return places, [
+        np.column_stack([one, sizes, np.maximum(sizes - place, 0.0)]) for place in places
+    ]
 
 
 def _slopes(law: str, constants: np.ndarray) -> tuple[float | None, float | None]:
@@ -138,7 +174,10 @@ def _verdict(law: str, sizes: np.ndarray, fit: _Fit, curve: np.ndarray, index: i
         left = np.exp(-sizes[-1] / fit.scanned[index])  # of the way to the height it tends to
         return "levels off without a knee" if left <= LEVEL else "no plateau, grows ever slower"
     if law != "knee":
-        return {"proportional": "no plateau, in proportion", "straight": "no plateau, straight"}.get(law, law)
+        return {
+            "proportional": "no plateau, in proportion",
+            "straight": "no plateau, straight",
+        }.get(law, law)
     knee, (start, slope, more) = fit.scanned[index], fit.constants[index]
     there = start + slope * knee
     rise = (slope + more) * (sizes[-1] - knee)
@@ -146,4 +185,8 @@ def _verdict(law: str, sizes: np.ndarray, fit: _Fit, curve: np.ndarray, index: i
         return "plateau"
     if rise < 0.0:
         return "falls beyond the knee"
-    return "no plateau, grows faster beyond the knee" if more > 0.0 else "no plateau, grows slower beyond the knee"
+    return (
+        "no plateau, grows faster beyond the knee"
+        if more > 0.0
+        else "no plateau, grows slower beyond the knee"
+    )

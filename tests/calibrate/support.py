@@ -12,26 +12,44 @@ from calibrate.search import Plan
 CONDITIONS = ("phi15", "phi60")
 SMALL = Plan(points=32, starts=1, evaluations=80, polish=12)
 # Force at 0.02 mm 300 N, e 1.3, and damping that a few micrometres of penetration can show.
-TRUTH = {"contact.exponent": 1.3, "contact.stiffness": 300.0 / 2e-5**1.3, "contact.damping": 6000.0,
-         "friction.static": 0.13, "friction.dynamic": 0.13}
+TRUTH = {
+    "contact.exponent": 1.3,
+    "contact.stiffness": 300.0 / 2e-5**1.3,
+    "contact.damping": 6000.0,
+    "friction.static": 0.13,
+    "friction.dynamic": 0.13,
+}
 
 
 @functools.cache
 def scene() -> scenes.Scene:
-    """The reference scene asked to fit two conditions, its constants wrong by 30 % and more; d is known."""
-    return scenes.load("reference").replace({
-        "agreement.fitted": list(CONDITIONS), "contact.damping_depth": "0.05 mm", "contact.damping": "3 N*s/mm"})
+    """The reference scene asked to fit two conditions, its constants wrong by 30 % and more; d is
+    known."""
+    return scenes.load("reference").replace(
+        {
+            "agreement.fitted": list(CONDITIONS),
+            "contact.damping_depth": "0.05 mm",
+            "contact.damping": "3 N*s/mm",
+        }
+    )
 
 
 @functools.cache
 def own_curves() -> dict[str, scenes.Trajectory]:
     """The surrogate's own runs with the true constants."""
-    return {name: lowfi.run(scene().replace(TRUTH).condition(name), "springs") for name in CONDITIONS}
+    return {
+        name: lowfi.run(scene().replace(TRUTH).condition(name), "springs") for name in CONDITIONS
+    }
 
 
-def write_curves(path: Path, run: scenes.Trajectory, keep: slice | np.ndarray = slice(None)) -> Path:
-    """A CSV file of samples of a run in units of a test stand, as another code would write it, with a column nobody asked for."""
-    columns = np.column_stack([1e3 * run.time, run.velocity[:, 0], np.degrees(run.rate), np.zeros(run.time.size)])[keep]
+def write_curves(
+    path: Path, run: scenes.Trajectory, keep: slice | np.ndarray = slice(None)
+) -> Path:
+    """A CSV file of samples of a run in units of a test stand, as another code would write it, with
+    a column nobody asked for."""
+    columns = np.column_stack(
+        [1e3 * run.time, run.velocity[:, 0], np.degrees(run.rate), np.zeros(run.time.size)]
+    )[keep]
     lines = [",".join(f"{value:.12g}" for value in row) for row in columns]
     header = "time [ms], velocity_x [m/s], rate_x [deg/s], rate_y [deg/s], rate_z [deg/s], shock"
     path.write_text("\n".join([header, *lines]) + "\n")

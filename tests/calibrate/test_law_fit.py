@@ -12,20 +12,25 @@ MU = 0.2
 
 
 def bench(deepest: float, samples: int = 400) -> tuple[np.ndarray, ...]:
-    """Penetration, rate, normal and tangential force of the pad by the formula of IMPACT in plain NumPy, some of it pulling
-    back."""
+    """Penetration, rate, normal and tangential force of the pad by the formula of IMPACT in plain
+    NumPy, some of it pulling back."""
     p = deepest * np.linspace(0.01, 1.0, samples)
     q = 0.05 * np.cos(np.linspace(0.0, 40.0, samples))
     x = np.minimum(p / PAD.damping_depth, 1.0)
-    normal = np.maximum(0.0, PAD.stiffness * p**PAD.exponent + PAD.damping * x**2 * (3.0 - 2.0 * x) * q)
+    normal = np.maximum(
+        0.0, PAD.stiffness * p**PAD.exponent + PAD.damping * x**2 * (3.0 - 2.0 * x) * q
+    )
     return p, q, normal, MU * normal
 
 
 @pytest.mark.case("O42")
 @pytest.mark.parametrize("off", [0.7, 1.3])
 def test_recovers_the_paper_pad(off):
-    """F = k p^e + c s(p/d) q with p to 0.4 mm, beyond d: c and d are told apart. 1e-5 relative; rounding leaves 1e-10."""
-    start = Impact(PAD.stiffness * off, PAD.exponent * off, PAD.damping / off, PAD.damping_depth * off)
+    """F = k p^e + c s(p/d) q with p to 0.4 mm, beyond d: c and d are told apart. 1e-5 relative;
+    rounding leaves 1e-10."""
+    start = Impact(
+        PAD.stiffness * off, PAD.exponent * off, PAD.damping / off, PAD.damping_depth * off
+    )
     found = law_fit.fit(*bench(0.4e-3), start)
     np.testing.assert_allclose(found.law, PAD, rtol=1e-5)
     assert found.friction == pytest.approx(MU, rel=1e-5)
@@ -33,7 +38,8 @@ def test_recovers_the_paper_pad(off):
 
 
 def test_shallow_data_cannot_tell_damping_from_its_depth():
-    """To 0.01 mm the law is c (p/d)^2 (3 - 2 p/d) q with p/d below 1/30: the curves hold c/d^2, and the report must say so."""
+    """To 0.01 mm the law is c (p/d)^2 (3 - 2 p/d) q with p/d below 1/30: the curves hold c/d^2, and
+    the report must say so."""
     start = Impact(PAD.stiffness * 0.9, PAD.exponent, PAD.damping * 1.2, PAD.damping_depth)
     found = law_fit.fit(*bench(0.01e-3), start)
     weakest = found.weak_directions[0]
@@ -43,8 +49,15 @@ def test_shallow_data_cannot_tell_damping_from_its_depth():
     assert vectors[2, 0] / vectors[3, 0] == pytest.approx(2.0, rel=0.05)
 
 
-@pytest.mark.parametrize("spoil", [lambda d: (d[0][:3], *d[1:]), lambda d: tuple(c[:3] for c in d),
-                                   lambda d: (d[0], d[1], d[2] * np.nan, d[3]), lambda d: (-d[0], *d[1:])])
+@pytest.mark.parametrize(
+    "spoil",
+    [
+        lambda d: (d[0][:3], *d[1:]),
+        lambda d: tuple(c[:3] for c in d),
+        lambda d: (d[0], d[1], d[2] * np.nan, d[3]),
+        lambda d: (-d[0], *d[1:]),
+    ],
+)
 def test_refuses_samples_that_say_nothing(spoil):
     with pytest.raises(ValueError, match="samples"):
         law_fit.fit(*spoil(bench(0.4e-3)), PAD)

@@ -26,7 +26,8 @@ def test_the_coarsest_mesh_within_one_per_cent(monkeypatch, slope, expected):
 
 @pytest.mark.slow
 def test_the_estimate_is_what_the_reference_s_own_mesh_shows():
-    """The rail of the reference scene at 8 and 4 mm: the change to 2 mm is foreseen to a quarter, and is above 1 %."""
+    """The rail of the reference scene at 8 and 4 mm: the change to 2 mm is foreseen to a quarter,
+    and is above 1 %."""
     scene = load("reference")
     coarsest, coarse, own = (rail_compliance._direct(scene, size) for size in (8e-3, 4e-3, 2e-3))
     foreseen = 0.5 * np.abs(coarse - coarsest) / coarse

@@ -11,7 +11,8 @@ TARGET = np.array([0.71, 0.23, 0.55])
 
 
 def rugged(x: np.ndarray) -> np.ndarray:
-    """Zero at TARGET only; a basin every half of the cube in each coordinate, and a jump where x_0 crosses 0.6."""
+    """Zero at TARGET only; a basin every half of the cube in each coordinate, and a jump where x_0
+    crosses 0.6."""
     away = x - TARGET
     return np.concatenate([away, 0.5 * (1.0 - np.cos(4.0 * np.pi * away)), [0.3 * (x[0] < 0.6)]])
 
@@ -20,7 +21,8 @@ START = np.array([0.2, 0.75, 0.05])
 
 
 def test_finds_the_deepest_basin():
-    """Two basins a coordinate make 8; three starts after 128 points find the one, and least squares its last digits."""
+    """Two basins a coordinate make 8; three starts after 128 points find the one, and least squares
+    its last digits."""
     for seed in range(3):
         found = search(rugged, START, Plan(points=128, starts=3, evaluations=150), seed)
         np.testing.assert_allclose(found.shares, TARGET, atol=1e-6)
@@ -29,7 +31,9 @@ def test_finds_the_deepest_basin():
 
 def test_least_squares_alone_stays_where_it_starts():
     """Control: without the wide look the same polish ends in a basin near its start."""
-    alone = least_squares(rugged, START, lambda x: information.jacobian(rugged, x), bounds=(0.0, 1.0))
+    alone = least_squares(
+        rugged, START, lambda x: information.jacobian(rugged, x), bounds=(0.0, 1.0)
+    )
     assert 2.0 * alone.cost > 0.1
 
 
@@ -59,13 +63,16 @@ def test_jacobian_is_exact_for_quadratics_inside_and_one_sided_at_bounds():
     def square(x):
         return np.array([x[0] ** 2, x[0] * x[1]])
 
-    np.testing.assert_allclose(information.jacobian(square, np.array([0.3, 0.4])), [[0.6, 0.0], [0.4, 0.3]], atol=1e-12)
+    np.testing.assert_allclose(
+        information.jacobian(square, np.array([0.3, 0.4])), [[0.6, 0.0], [0.4, 0.3]], atol=1e-12
+    )
     edge = information.jacobian(square, np.array([0.0, 1.0]), step=1e-3)
     np.testing.assert_allclose(edge, [[1e-3, 0.0], [1.0, 0.0]], atol=1e-12)
 
 
 def test_weak_direction_names_the_combination_and_its_ratio():
-    """Data that hold only a + 2 b: the open direction is (2, -1)/sqrt 5, and nothing is left of a once b is fitted again."""
+    """Data that hold only a + 2 b: the open direction is (2, -1)/sqrt 5, and nothing is left of a
+    once b is fitted again."""
     matrix = information.information(np.outer(np.arange(1.0, 5.0), [1.0, 2.0]))
     (sentence,) = information.weak_directions(matrix, ["a", "b"])
     assert sentence.startswith("+0.89 a -0.45 b: eigenvalue")

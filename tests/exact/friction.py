@@ -6,7 +6,8 @@ from scipy.optimize import brentq
 
 
 def stopping(v: float, mu: float, g: float) -> tuple[float, float]:
-    """Distance v^2 / (2 mu g) (m) and time v / (mu g) (s) of a block sliding to rest on a level plane (Coulomb)."""
+    """Distance v^2 / (2 mu g) (m) and time v / (mu g) (s) of a block sliding to rest on a level
+    plane (Coulomb)."""
     return v * v / (2.0 * mu * g), v / (mu * g)
 
 
@@ -21,6 +22,6 @@ def sliding_acceleration(angle: float, mu: float, g: float) -> float:
 
 
 def creep_ratio(angle: float, mu: float) -> float:
-    """Steady creep over the static transition speed of the cubic step law: root r of mu (3r - r^3)/2 = tan(angle)
-    (ADAMS/Solver CONTACT; a smoothed law never sticks)."""
+    """Steady creep over the static transition speed of the cubic step law: root r of mu (3r -
+    r^3)/2 = tan(angle) (ADAMS/Solver CONTACT; a smoothed law never sticks)."""
     return brentq(lambda r: 0.5 * mu * (3.0 * r - r**3) - math.tan(angle), 0.0, 1.0, xtol=1e-15)

@@ -7,8 +7,9 @@ from scipy.special import ellipj, ellipk, fresnel
 
 
 def free_rates(inertia: tuple, start: tuple, time: np.ndarray) -> np.ndarray:
-    """Rates (n,3) of a free body with I1 < I2 < I3 started at (w1, 0, w3) with energy above the separatrix, 2 T I2 < L^2:
-    (w1 cn, w2 sn, w3 dn) of lambda t (Whittaker, Analytical Dynamics, section 69; Jacobi)."""
+    """Rates (n,3) of a free body with I1 < I2 < I3 started at (w1, 0, w3) with energy above the
+    separatrix, 2 T I2 < L^2: (w1 cn, w2 sn, w3 dn) of lambda t (Whittaker, Analytical Dynamics,
+    section 69; Jacobi)."""
     rate, parameter, middle = _jacobi(inertia, start)
     sn, cn, dn, _ = ellipj(rate * np.asarray(time), parameter)
     return np.stack([start[0] * cn, middle * sn, start[2] * dn], axis=-1)
@@ -32,8 +33,9 @@ def _jacobi(inertia, start):
 
 
 def flip_times(inertia: tuple, start: tuple) -> tuple[float, float]:
-    """First zero (s) of w2 and the time between zeros, 2 K(m) / lambda, of a body with I1 < I2 < I3 started at (0, w2, w3) near its
-    middle axis with L^2 > 2 T I2. w2 starts at its largest, so the first zero is at K(m) / lambda."""
+    """First zero (s) of w2 and the time between zeros, 2 K(m) / lambda, of a body with I1 < I2 < I3
+    started at (0, w2, w3) near its middle axis with L^2 > 2 T I2. w2 starts at its largest, so the
+    first zero is at K(m) / lambda."""
     i1, i2, i3 = inertia
     energy = sum(i * w * w for i, w in zip(inertia, start))
     square = sum((i * w) ** 2 for i, w in zip(inertia, start))
@@ -43,16 +45,26 @@ def flip_times(inertia: tuple, start: tuple) -> tuple[float, float]:
     return quarter, 2.0 * quarter
 
 
-def axisymmetric(axial: float, transverse: float, spin: float, wobble: float) -> tuple[float, float, float]:
-    """Rate (rad/s) of the transverse rate as seen in the body, of the axis in space, and cone half-angle (rad):
-    (Ia - It) w / It, H / It, atan(It w_t / (Ia w)) (Goldstein, Classical Mechanics, section 5.6)."""
+def axisymmetric(
+    axial: float, transverse: float, spin: float, wobble: float
+) -> tuple[float, float, float]:
+    """Rate (rad/s) of the transverse rate as seen in the body, of the axis in space, and cone
+    half-angle (rad): (Ia - It) w / It, H / It, atan(It w_t / (Ia w)) (Goldstein, Classical
+    Mechanics, section 5.6)."""
     momentum = math.hypot(axial * spin, transverse * wobble)
-    return (axial - transverse) * spin / transverse, momentum / transverse, math.atan2(transverse * wobble, axial * spin)
+    return (
+        (axial - transverse) * spin / transverse,
+        momentum / transverse,
+        math.atan2(transverse * wobble, axial * spin),
+    )
 
 
-def planar_thrust(force: float, arm: float, mass: float, inertia: float, time: float) -> tuple[float, float, float]:
-    """Rate (rad/s) and velocity (m/s) of a body pushed along its own axis at a constant offset ``arm`` from rest:
-    v = (F/m) sqrt(pi/a) (C, S)(t sqrt(a/pi)), a = F r / I (Fresnel integrals; Abramowitz and Stegun 7.3)."""
+def planar_thrust(
+    force: float, arm: float, mass: float, inertia: float, time: float
+) -> tuple[float, float, float]:
+    """Rate (rad/s) and velocity (m/s) of a body pushed along its own axis at a constant offset
+    ``arm`` from rest: v = (F/m) sqrt(pi/a) (C, S)(t sqrt(a/pi)), a = F r / I (Fresnel integrals;
+    Abramowitz and Stegun 7.3)."""
     a = force * arm / inertia
     sine, cosine = fresnel(time * math.sqrt(a / math.pi))
     scale = force / mass * math.sqrt(math.pi / a)
@@ -64,15 +76,23 @@ def impulsive_rate(inertia: np.ndarray, arm: np.ndarray, impulse: np.ndarray) ->
     return np.linalg.solve(inertia, np.cross(arm, impulse))
 
 
-def recoil(impulse: float, payload: float, platform: float, inertia: float, offset: float) -> dict[str, float]:
-    """Speeds (m/s), rate (rad/s), closing speed on the line and energy (J) after an impulse between a payload and a free platform
-    whose mass centre lies ``offset`` (m) beside the line: J/m, -J/M, -J b/I."""
+def recoil(
+    impulse: float, payload: float, platform: float, inertia: float, offset: float
+) -> dict[str, float]:
+    """Speeds (m/s), rate (rad/s), closing speed on the line and energy (J) after an impulse between
+    a payload and a free platform whose mass centre lies ``offset`` (m) beside the line: J/m, -J/M,
+    -J b/I."""
     v, base, rate = impulse / payload, -impulse / platform, -impulse * offset / inertia
-    return {"payload": v, "platform": base, "rate": rate, "closing": v - base - rate * offset,
-            "energy": 0.5 * (payload * v**2 + platform * base**2 + inertia * rate**2)}
+    return {
+        "payload": v,
+        "platform": base,
+        "rate": rate,
+        "closing": v - base - rate * offset,
+        "energy": 0.5 * (payload * v**2 + platform * base**2 + inertia * rate**2),
+    }
 
 
 def elastic_impact(mass: float, other: float, v: float) -> tuple[float, float]:
-    """Speeds (m/s) of a body at ``v`` and of ``other`` (kg) at rest after an impact without loss: v (m - M)/(m + M), 2 v m/(m + M)
-    (momentum and energy)."""
+    """Speeds (m/s) of a body at ``v`` and of ``other`` (kg) at rest after an impact without loss: v
+    (m - M)/(m + M), 2 v m/(m + M) (momentum and energy)."""
     return v * (mass - other) / (mass + other), 2.0 * v * mass / (mass + other)

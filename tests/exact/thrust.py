@@ -1,6 +1,8 @@
-"""Closed forms of Gaussian thrust: ``J = F0 s sqrt(2 pi)``; a cut at n widths keeps ``erf(n / sqrt 2)`` of it.
+"""Closed forms of Gaussian thrust: ``J = F0 s sqrt(2 pi)``; a cut at n widths keeps ``erf(n / sqrt
+2)`` of it.
 
-Source: Abramowitz and Stegun, Handbook of Mathematical Functions, 7.1.1 (erf) and 26.2 (normal distribution).
+Source: Abramowitz and Stegun, Handbook of Mathematical Functions, 7.1.1 (erf) and 26.2 (normal
+distribution).
 """
 
 import math

@@ -31,19 +31,25 @@ class Solution(NamedTuple):
 
 
 def solve(refinement: int, poisson_ratio: float, bubbles: bool = True) -> Solution:
-    """Static answer on 4 by 6 elements (through the wall, round the quarter), each divided `refinement` times both ways."""
+    """Static answer on 4 by 6 elements (through the wall, round the quarter), each divided
+    `refinement` times both ways."""
     flat = block((4 * refinement, 6 * refinement, 1), (OUTER - INNER, 0.5 * np.pi, 1.0))
     radius, angle, z = ([*flat.points, INNER, 0.0, 0.0]).T
-    mesh = replace(flat, points=np.stack([radius * np.cos(angle), radius * np.sin(angle), z], axis=1))
+    mesh = replace(
+        flat, points=np.stack([radius * np.cos(angle), radius * np.sin(angle), z], axis=1)
+    )
     operator = assembly.build(mesh, 1.0, MODULUS, poisson_ratio, fixed=())
     if not bubbles:
         operator = without_bubbles(mesh, operator, MODULUS, poisson_ratio)
-    held = np.stack([np.isclose(angle, 0.5 * np.pi), angle == 0.0, np.ones_like(angle)], axis=1).astype(bool)
+    held = np.stack(
+        [np.isclose(angle, 0.5 * np.pi), angle == 0.0, np.ones_like(angle)], axis=1
+    ).astype(bool)
     return Solution(mesh, operator.mass, static(operator, _pressure(mesh, radius == INNER), held))
 
 
 def _pressure(mesh, inside):
-    """Nodal forces (n,3) N of the pressure on the facets whose nodes are all `inside`; each facet is a plane rectangle."""
+    """Nodal forces (n,3) N of the pressure on the facets whose nodes are all `inside`; each facet
+    is a plane rectangle."""
     facets = boundary_facets(mesh.cells)
     facets = facets[inside[facets].all(axis=1)]
     corners, load = mesh.points[facets], np.zeros(mesh.points.shape)

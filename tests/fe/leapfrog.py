@@ -1,4 +1,5 @@
-"""The plain central difference loop, with nothing in it but the operator under test and, where asked, nodal forces.
+"""The plain central difference loop, with nothing in it but the operator under test and, where
+asked, nodal forces.
 
     v(n+1/2) = v(n-1/2) - dt M^-1 K u(n),    u(n+1) = u(n) + dt v(n+1/2)
 """
@@ -13,16 +14,39 @@ from scenes.jit import njit
 def march(operator, displacement, velocity, step, steps, watched=(0, 0)):
     """Advance displacement and velocity, both (n,3), in place; velocity lags by half a step.
 
-    Returns the displacement (steps+1,) of the watched (node, component), and the invariant (steps,) of case O14,
-    v(n+1/2)' M v(n+1/2) / 2 + u(n)' K u(n+1) / 2.
+    Returns the displacement (steps+1,) of the watched (node, component), and the invariant (steps,)
+    of case O14, v(n+1/2)' M v(n+1/2) / 2 + u(n)' K u(n+1) / 2.
     """
     inverse_mass = np.where(operator.free, 1.0 / operator.mass, 0.0)
-    return _march(displacement, velocity, step, steps, watched[0], watched[1], operator.cells, operator.shape_class,
-                  operator.stiffness, operator.mass, inverse_mass)
+    return _march(
+        displacement,
+        velocity,
+        step,
+        steps,
+        watched[0],
+        watched[1],
+        operator.cells,
+        operator.shape_class,
+        operator.stiffness,
+        operator.mass,
+        inverse_mass,
+    )
 
 
 @njit
-def _march(displacement, velocity, step, steps, node, component, cells, shape_class, stiffness, mass, inverse_mass):
+def _march(
+    displacement,
+    velocity,
+    step,
+    steps,
+    node,
+    component,
+    cells,
+    shape_class,
+    stiffness,
+    mass,
+    inverse_mass,
+):
     force = np.empty_like(displacement)
     trace = np.empty(steps + 1)
     invariant = np.empty(steps)
@@ -41,18 +65,24 @@ def _march(displacement, velocity, step, steps, node, component, cells, shape_cl
 
 
 def driven(operator, step, load, displacement, velocity):
-    """Advance displacement and velocity, both (n,3), in place by the product's own kick, under nodal forces.
+    """Advance displacement and velocity, both (n,3), in place by the product's own kick, under
+    nodal forces.
 
-    load(time, displacement) gives them in N, in any shape that broadcasts to (n,3). The velocity given is that at the start; from
-    then on it lags by half a step. Yields the time (s) of the displacement after each step, for as long as it is asked.
+    load(time, displacement) gives them in N, in any shape that broadcasts to (n,3). The velocity
+    given is that at the start; from then on it lags by half a step. Yields the time (s) of the
+    displacement after each step, for as long as it is asked.
     """
     inverse_mass = np.where(operator.free, 1.0 / operator.mass, 0.0)
     resistance = np.empty_like(displacement)
     number = 0
     while True:
-        internal_force(displacement, operator.cells, operator.shape_class, operator.stiffness, resistance)
+        internal_force(
+            displacement, operator.cells, operator.shape_class, operator.stiffness, resistance
+        )
         resistance -= load(number * step, displacement)
-        kick_nodes(inverse_mass, velocity, resistance, (0.0, 0.0, 0.0), step if number else 0.5 * step)
+        kick_nodes(
+            inverse_mass, velocity, resistance, (0.0, 0.0, 0.0), step if number else 0.5 * step
+        )
         displacement += step * velocity
         number += 1
         yield number * step

@@ -1,4 +1,5 @@
-"""Beams of hexahedra against beam theory: deflection and root stress of a cantilever, and the modes of a free beam."""
+"""Beams of hexahedra against beam theory: deflection and root stress of a cantilever, and the modes
+of a free beam."""
 
 import numpy as np
 import pytest
@@ -19,7 +20,8 @@ def beam(divisions):
 
 
 def loaded(mesh, mass, faces):
-    """Nodal forces (n,3) of shear forces (N) spread evenly over sections; `faces` maps the station (m) to its force."""
+    """Nodal forces (n,3) of shear forces (N) spread evenly over sections; `faces` maps the station
+    (m) to its force."""
     load = np.zeros(mesh.points.shape)
     for station, force in faces.items():
         share = np.where(mesh.points[:, 0] == station, mass, 0.0)
@@ -28,10 +30,12 @@ def loaded(mesh, mass, faces):
 
 
 def deflection(mesh, operator):
-    """Deflection (m) of the tip against the root under FORCE, and the displacement (n,3), on the supports of beam theory.
+    """Deflection (m) of the tip against the root under FORCE, and the displacement (n,3), on the
+    supports of beam theory.
 
-    The root section stays plane but may contract sideways, and its shear force is given. A solid clamp, which forbids the
-    contraction, bends 0.7 % less: that is elasticity, not the error looked for here.
+    The root section stays plane but may contract sideways, and its shear force is given. A solid
+    clamp, which forbids the contraction, bends 0.7 % less: that is elasticity, not the error looked
+    for here.
     """
     x, y, z = mesh.points.T
     load = loaded(mesh, operator.mass, {BEAM["length"]: FORCE, 0.0: -FORCE})
@@ -40,7 +44,10 @@ def deflection(mesh, operator):
     held[:, 0], held[:, 1] = x == 0.0, middle
     held[:, 2] = middle & np.isclose(z, 0.5 * BEAM["height"])
     displacement = static(operator, load, held)
-    mean = [np.average(displacement[x == station, 2], weights=operator.mass[x == station]) for station in (BEAM["length"], 0.0)]
+    mean = [
+        np.average(displacement[x == station, 2], weights=operator.mass[x == station])
+        for station in (BEAM["length"], 0.0)
+    ]
     return mean[0] - mean[1], displacement
 
 
@@ -54,7 +61,9 @@ def test_cantilever_deflection(divisions):
     operator = assembly.build(mesh, **ALUMINIUM, fixed=())
     assert deflection(mesh, operator)[0] == pytest.approx(bending + shear, rel=5e-3)
     # Control: without bubbles the same mesh is at least 6 % too stiff.
-    assert deflection(mesh, without_bubbles(mesh, operator, **ELASTIC))[0] < 0.94 * (bending + shear)
+    assert deflection(mesh, without_bubbles(mesh, operator, **ELASTIC))[0] < 0.94 * (
+        bending + shear
+    )
 
 
 @pytest.mark.case("O6")
@@ -67,14 +76,16 @@ def test_clamped_root_without_contraction(divisions):
     displacement = static(operator, load, np.repeat(~operator.free[:, None], 3, axis=1))
     tip = mesh.points[:, 0] == BEAM["length"]
     exact = sum(elasticity.cantilever_deflection(FORCE, **BEAM, **elastic))
-    assert np.average(displacement[tip, 2], weights=operator.mass[tip]) == pytest.approx(exact, rel=5e-3)
+    assert np.average(displacement[tip, 2], weights=operator.mass[tip]) == pytest.approx(
+        exact, rel=5e-3
+    )
 
 
 @pytest.mark.case("O6")
 @MESHES
 def test_root_stress(divisions):
-    """6 P L / b h^2 = 7.5 MPa in the outer fibre of the root: the stress of the first layer's outer elements, taken from their
-    centres to the root along M(x) and to the fibre along z."""
+    """6 P L / b h^2 = 7.5 MPa in the outer fibre of the root: the stress of the first layer's outer
+    elements, taken from their centres to the root along M(x) and to the fibre along z."""
     assert ROOT_STRESS == pytest.approx(7.5e6, rel=1e-12)
     mesh = beam(divisions)
     operator = assembly.build(mesh, **ALUMINIUM, fixed=())
@@ -89,11 +100,15 @@ def test_root_stress(divisions):
         return -(stress[outer, 0] / height / (1.0 - centre[outer, 0] / BEAM["length"])).mean()
 
     assert fibre_stress(deflection(mesh, operator)[1]) == pytest.approx(ROOT_STRESS, rel=5e-3)
-    assert fibre_stress(deflection(mesh, without_bubbles(mesh, operator, **ELASTIC))[1]) < 0.95 * ROOT_STRESS
+    assert (
+        fibre_stress(deflection(mesh, without_bubbles(mesh, operator, **ELASTIC))[1])
+        < 0.95 * ROOT_STRESS
+    )
 
 
 def free_frequencies(operator):
-    """The six lowest frequencies (Hz), and the first three of the flexible modes that move mostly across the height."""
+    """The six lowest frequencies (Hz), and the first three of the flexible modes that move mostly
+    across the height."""
     frequencies, shapes = modes(operator, 14, shift=-1e6)
     order = np.argsort(frequencies)
     frequencies, shapes = frequencies[order], shapes[order]

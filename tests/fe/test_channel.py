@@ -1,4 +1,5 @@
-"""The channels of the catalogue: the committed file is what the script makes, and it is the solid that its docstring describes."""
+"""The channels of the catalogue: the committed file is what the script makes, and it is the solid
+that its docstring describes."""
 
 import math
 
@@ -25,13 +26,18 @@ def test_the_file_of_the_catalogue_is_what_the_script_makes(tmp_path):
 
 
 def test_volume_and_walls(mesh):
-    """Section 60.5 x 4 of the web and two flanges of 26 x 4 mm, twelve octagonal holes of 7 mm in all."""
+    """Section 60.5 x 4 of the web and two flanges of 26 x 4 mm, twelve octagonal holes of 7 mm in
+    all."""
     hole = 8 * 0.5 * 0.007**2 * math.sin(math.pi / 4)
     volume = 2 * (0.220 * 0.004 * (0.0605 + 2 * 0.026) - 6 * hole * 0.004)
     jacobian, scaled = corner_jacobians(mesh.points, mesh.cells)
     assert jacobian.mean(axis=1).sum() == pytest.approx(volume, rel=1e-6)
     assert scaled.min() > 0.9 and mesh.warnings == ()
-    areas = {"contact_web": 4 * 0.220 * 0.01825, "contact_flange": 4 * 0.220 * 0.022, "mount": 4 * 3 * 0.020 * 0.01825}
+    areas = {
+        "contact_web": 4 * 0.220 * 0.01825,
+        "contact_flange": 4 * 0.220 * 0.022,
+        "mount": 4 * 3 * 0.020 * 0.01825,
+    }
     for name, area in areas.items():
         vectors, centres = facet_vectors(mesh, name)
         assert np.linalg.norm(vectors, axis=1).sum() == pytest.approx(area, rel=1e-9)

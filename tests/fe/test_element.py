@@ -1,4 +1,5 @@
-"""The hexahedron: constant strain on distorted meshes, bending without locking, objectivity, and what the law refuses."""
+"""The hexahedron: constant strain on distorted meshes, bending without locking, objectivity, and
+what the law refuses."""
 
 import numpy as np
 import pytest
@@ -16,13 +17,33 @@ from tests.fe.blocks import ALUMINIUM, block, free_stiffness, modes, without_bub
 TURN = rotation.matrices(np.array([[np.sqrt(0.5), *np.full(3, np.sqrt(0.5 / 3.0))]]))[0]
 
 # MacNeal and Harder, Finite Elements in Analysis and Design 1 (1985) 3-20, figure 2.
-PATCH_INNER = np.array([[0.249, 0.342, 0.192], [0.826, 0.288, 0.288], [0.850, 0.649, 0.263], [0.273, 0.750, 0.230],
-                        [0.320, 0.186, 0.643], [0.677, 0.305, 0.683], [0.788, 0.693, 0.644], [0.165, 0.745, 0.702]])
-PATCH_OUTER = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]], dtype=float)
-PATCH_HEXES = np.array([[8, 9, 10, 11, 12, 13, 14, 15],
-                        [0, 1, 2, 3, 8, 9, 10, 11], [12, 13, 14, 15, 4, 5, 6, 7],
-                        [0, 1, 9, 8, 4, 5, 13, 12], [11, 10, 2, 3, 15, 14, 6, 7],
-                        [0, 8, 11, 3, 4, 12, 15, 7], [9, 1, 2, 10, 13, 5, 6, 14]])
+PATCH_INNER = np.array(
+    [
+        [0.249, 0.342, 0.192],
+        [0.826, 0.288, 0.288],
+        [0.850, 0.649, 0.263],
+        [0.273, 0.750, 0.230],
+        [0.320, 0.186, 0.643],
+        [0.677, 0.305, 0.683],
+        [0.788, 0.693, 0.644],
+        [0.165, 0.745, 0.702],
+    ]
+)
+PATCH_OUTER = np.array(
+    [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]],
+    dtype=float,
+)
+PATCH_HEXES = np.array(
+    [
+        [8, 9, 10, 11, 12, 13, 14, 15],
+        [0, 1, 2, 3, 8, 9, 10, 11],
+        [12, 13, 14, 15, 4, 5, 6, 7],
+        [0, 1, 9, 8, 4, 5, 13, 12],
+        [11, 10, 2, 3, 15, 14, 6, 7],
+        [0, 8, 11, 3, 4, 12, 15, 7],
+        [9, 1, 2, 10, 13, 5, 6, 14],
+    ]
+)
 PATCH_GRADIENT = 0.5e-3 * np.array([[2.0, 1.0, 1.0], [1.0, 2.0, 1.0], [1.0, 1.0, 2.0]])
 
 
@@ -49,10 +70,15 @@ def test_patch_has_constant_stress(turn):
     displacement[inner] = spsolve(matrix[inner][:, inner].tocsc(), -(matrix @ displacement)[inner])
     law, corners = element.elasticity(1e6, 0.25), mesh.points[mesh.cells]
     nodal = displacement.reshape(-1, 3)[mesh.cells]
-    gauss, centre = element.gauss_strain(corners, law, nodal) @ law, element.centre_strain(corners, nodal) @ law
+    gauss, centre = (
+        element.gauss_strain(corners, law, nodal) @ law,
+        element.centre_strain(corners, nodal) @ law,
+    )
     for stress in (*np.moveaxis(gauss, 1, 0), centre):
         xx, yy, zz, xy, yz, zx = stress.T
-        tensor = turn.T @ np.array([[xx, xy, zx], [xy, yy, yz], [zx, yz, zz]]).transpose(2, 0, 1) @ turn
+        tensor = (
+            turn.T @ np.array([[xx, xy, zx], [xy, yy, yz], [zx, yz, zz]]).transpose(2, 0, 1) @ turn
+        )
         exact = np.full((3, 3), 400.0) + 1600.0 * np.eye(3)
         assert np.abs(tensor - exact).max() < 1e-10 * 2000.0
 
@@ -75,12 +101,15 @@ def beam(divisions=(40, 3, 4)):
 def test_cantilever_frequencies():
     exact = elasticity.timoshenko_cantilever(3, **BEAM, **ALUMINIUM)
     assert exact == pytest.approx([90.530, 555.602, 1507.433], abs=1e-3)
-    assert bending_frequencies(assembly.build(beam(), **ALUMINIUM)) == pytest.approx(exact, rel=0.01)
+    assert bending_frequencies(assembly.build(beam(), **ALUMINIUM)) == pytest.approx(
+        exact, rel=0.01
+    )
 
 
 @pytest.mark.case("O7")
 def test_hexahedron_without_bubbles_locks():
-    """Control: the same mesh without incompatible modes is 3.9 % off, four times what the case allows."""
+    """Control: the same mesh without incompatible modes is 3.9 % off, four times what the case
+    allows."""
     mesh = beam()
     operator = assembly.build(mesh, **ALUMINIUM)
     plain = without_bubbles(mesh, operator, ALUMINIUM["youngs_modulus"], ALUMINIUM["poisson_ratio"])
@@ -95,12 +124,16 @@ def test_turned_rail_has_turned_forces(rail):
     turned = RailMesh(rail.points @ TURN.T, rail.cells, rail.surfaces)
     here, there = assembly.build(rail, **ALUMINIUM), assembly.build(turned, **ALUMINIUM)
     expected = force(here, displacement) @ TURN.T
-    assert np.abs(force(there, displacement @ TURN.T) - expected).max() < 1e-12 * np.abs(expected).max()
+    assert (
+        np.abs(force(there, displacement @ TURN.T) - expected).max()
+        < 1e-12 * np.abs(expected).max()
+    )
 
 
 @pytest.mark.case("O12")
 def test_rigid_motion_stores_no_energy(rail):
-    """In the frame that turns with the platform a spin is no displacement; what is left is small, and it must be free."""
+    """In the frame that turns with the platform a spin is no displacement; what is left is small,
+    and it must be free."""
     operator = assembly.build(rail, **ALUMINIUM)
     rigid = np.array([0.3, -0.2, 0.5]) + np.cross([0.7, -0.4, 0.2], rail.points)
     strained = np.random.default_rng(2).standard_normal(rail.points.shape)
@@ -120,7 +153,9 @@ def test_spinning_bar_stretches():
     displacement = np.zeros(free.size)
     displacement[free] = spsolve(stiffness.tocsc(), mass * pull.ravel()[free])
     end = mesh.points[:, 0] == BEAM["length"]
-    exact = elasticity.spinning_bar_stretch(BEAM["length"], rate, ALUMINIUM["youngs_modulus"], ALUMINIUM["density"])
+    exact = elasticity.spinning_bar_stretch(
+        BEAM["length"], rate, ALUMINIUM["youngs_modulus"], ALUMINIUM["density"]
+    )
     assert exact == pytest.approx(1.1240e-6, rel=1e-4)
     assert displacement.reshape(-1, 3)[end, 0].mean() == pytest.approx(exact, rel=0.01)
 
@@ -130,9 +165,17 @@ def test_operator_is_linear_and_symmetric_and_agrees_with_the_assembled_matrix(r
     first, second = np.random.default_rng(3).standard_normal((2, *rail.points.shape))
     one, other = force(operator, first), force(operator, second)
     scale = np.abs(one).max()
-    assert np.abs(force(operator, 2.0 * first + second) - 2.0 * one - other).max() < 1e-14 * 4.0 * scale
-    assert np.vdot(second, one) == pytest.approx(np.vdot(first, other), abs=1e-14 * scale * first.size)
-    assert np.abs((assembly.sparse(operator) @ first.ravel()).reshape(-1, 3) - one).max() < 1e-14 * scale
+    assert (
+        np.abs(force(operator, 2.0 * first + second) - 2.0 * one - other).max()
+        < 1e-14 * 4.0 * scale
+    )
+    assert np.vdot(second, one) == pytest.approx(
+        np.vdot(first, other), abs=1e-14 * scale * first.size
+    )
+    assert (
+        np.abs((assembly.sparse(operator) @ first.ravel()).reshape(-1, 3) - one).max()
+        < 1e-14 * scale
+    )
     assert np.abs(one.sum(axis=0)).max() < 1e-12 * scale
 
 

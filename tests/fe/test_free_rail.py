@@ -1,4 +1,5 @@
-"""A rail that nothing holds: six rigid motions, momenta in the explicit loop, static loads balanced by acceleration."""
+"""A rail that nothing holds: six rigid motions, momenta in the explicit loop, static loads balanced
+by acceleration."""
 
 import numpy as np
 import pytest
@@ -32,8 +33,9 @@ def test_free_rail_has_six_rigid_motions(rail):
 @pytest.mark.case("X16")
 @pytest.mark.parametrize("fraction", [0.9, 0.45])
 def test_loaded_free_rail_keeps_its_momenta(rail, fraction):
-    """Under constant forces p = F t and, about the undeformed places, L = M t, but for rounding: each product of a stiffness and
-    a displacement is wrong by an ulp at most, in no common direction, and the displacement is largest at the end."""
+    """Under constant forces p = F t and, about the undeformed places, L = M t, but for rounding:
+    each product of a stiffness and a displacement is wrong by an ulp at most, in no common
+    direction, and the displacement is largest at the end."""
     operator = assembly.build(rail, **ALUMINIUM, fixed=())
     load = np.random.default_rng(7).standard_normal(rail.points.shape)
     force, moment = load.sum(axis=0), np.cross(rail.points, load).sum(axis=0)
@@ -43,19 +45,24 @@ def test_loaded_free_rail_keeps_its_momenta(rail, fraction):
     for _ in range(5000):
         time = next(times) - 0.5 * step
     momentum = operator.mass[:, None] * velocity
-    products = operator.stiffness[operator.shape_class] * displacement[operator.cells].reshape(-1, 1, 24)
+    products = operator.stiffness[operator.shape_class] * displacement[operator.cells].reshape(
+        -1, 1, 24
+    )
     rounding = np.finfo(float).eps * np.linalg.norm(products)
     assert rounding < 1e-11 * np.abs(load).sum()  # so that a force out of nothing would show
     assert np.abs(momentum.sum(axis=0) / time - force).max() < rounding
     turning = np.cross(rail.points, momentum).sum(axis=0)
-    assert np.abs(turning / time - moment).max() < rounding * np.linalg.norm(rail.points, axis=1).max()
+    assert (
+        np.abs(turning / time - moment).max() < rounding * np.linalg.norm(rail.points, axis=1).max()
+    )
 
 
 @pytest.mark.case("X16")
 @pytest.mark.parametrize("elements", [10, 20])
 def test_static_load_balanced_by_acceleration(elements):
-    """A free bar pushed at one end with 1000 N shortens by F L / 2 E A = 8.6806 um: by the sum over its flexible modes alone, and
-    by the static answer to the force less mass times acceleration, in which six held freedoms take no reaction."""
+    """A free bar pushed at one end with 1000 N shortens by F L / 2 E A = 8.6806 um: by the sum over
+    its flexible modes alone, and by the static answer to the force less mass times acceleration, in
+    which six held freedoms take no reaction."""
     length, width, modulus, density, force = 0.5, 0.02, 72e9, 2810.0, 1000.0
     mesh = block((elements, 1, 1), (length, width, width))
     operator = assembly.build(mesh, density, modulus, 0.0, fixed=())

@@ -1,8 +1,9 @@
-"""Hertz's impact on a meshed half-space: the contact law comes out of the elements instead of being put in.
+"""Hertz's impact on a meshed half-space: the contact law comes out of the elements instead of being
+put in.
 
-A quarter of the half-space is meshed, finest under the ball. The ball is rigid and the half-space carries the compliance of both,
-(1 - nu^2) / E = 1 / E*, as Hertz's law knows only E*. Impact is quasi-static, as in Hertz's theory: waves cross the contact
-thousands of times while it lasts.
+A quarter of the half-space is meshed, finest under the ball. The ball is rigid and the half-space
+carries the compliance of both, (1 - nu^2) / E = 1 / E*, as Hertz's law knows only E*. Impact is
+quasi-static, as in Hertz's theory: waves cross the contact thousands of times while it lasts.
 """
 
 from dataclasses import replace
@@ -23,7 +24,8 @@ REACH = 0.4e-3  # m from the axis within which nodes may touch; the contact radi
 
 
 def half_space(size, even, layers, growth=1.8):
-    """Quarter block: `even` elements of `size` (m) outwards and downwards, then `layers` of them that grow by `growth` each."""
+    """Quarter block: `even` elements of `size` (m) outwards and downwards, then `layers` of them
+    that grow by `growth` each."""
     edges = size * np.concatenate([np.ones(even), growth ** np.arange(1, layers + 1)])
     stations = np.concatenate([[0.0], np.cumsum(edges)])
     count = len(edges)
@@ -32,7 +34,8 @@ def half_space(size, even, layers, growth=1.8):
 
 
 def surface_flexibility(mesh):
-    """Places (k,2) m of the surface nodes that may touch, and their depth (k,k) m under unit forces on them."""
+    """Places (k,2) m of the surface nodes that may touch, and their depth (k,k) m under unit forces
+    on them."""
     operator = assembly.build(mesh, 1.0, MODULUS, NU, fixed=())
     x, y, z = mesh.points.T
     free = (np.stack([x > 0.0, y > 0.0, z >= 0.0], axis=1) & (z < z.max())[:, None]).ravel()
@@ -40,7 +43,9 @@ def surface_flexibility(mesh):
     freedoms = (np.cumsum(free) - 1)[3 * near + 2]
     unit = np.zeros((free.sum(), near.size))
     unit[freedoms, np.arange(near.size)] = 1.0
-    return mesh.points[near, :2], splu(assembly.sparse(operator)[free][:, free].tocsc()).solve(unit)[freedoms]
+    return mesh.points[near, :2], splu(assembly.sparse(operator)[free][:, free].tocsc()).solve(
+        unit
+    )[freedoms]
 
 
 def ball_force(places, flexibility, approach):
@@ -58,7 +63,8 @@ def ball_force(places, flexibility, approach):
 
 
 def impact(mesh):
-    """Deepest approach (m), largest force (N) and duration (s) of the ball thrown at the meshed half-space."""
+    """Deepest approach (m), largest force (N) and duration (s) of the ball thrown at the meshed
+    half-space."""
     places, flexibility = surface_flexibility(mesh)
     approach = np.linspace(0.0, 1.2, 61) * EXACT["penetration"]
     force = np.array([0.0] + [ball_force(places, flexibility, p) for p in approach[1:]])

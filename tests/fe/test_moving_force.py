@@ -1,4 +1,5 @@
-"""A force that runs along a simply supported beam, through the explicit loop: what a payload does to its rail."""
+"""A force that runs along a simply supported beam, through the explicit loop: what a payload does
+to its rail."""
 
 import numpy as np
 import pytest
@@ -15,16 +16,21 @@ STATIC = FORCE * LENGTH**3 / (4.0 * MODULUS * WIDTH * HEIGHT**3)
 
 
 def midspan(elements, ratio, fraction, bubbles=True):
-    """Share of the span done and midspan deflection (m), step by step, of a beam held at the axis of both ends."""
+    """Share of the span done and midspan deflection (m), step by step, of a beam held at the axis
+    of both ends."""
     mesh = block((elements, 1, 2), (LENGTH, WIDTH, HEIGHT))
     x, _, z = mesh.points.T
     axis = np.isclose(z, 0.5 * HEIGHT)
-    operator = assembly.build(mesh, **ALUMINIUM, fixed=())._replace(free=~(axis & ((x == 0.0) | (x == LENGTH))))
+    operator = assembly.build(mesh, **ALUMINIUM, fixed=())._replace(
+        free=~(axis & ((x == 0.0) | (x == LENGTH)))
+    )
     if not bubbles:
         operator = without_bubbles(mesh, operator, MODULUS, ALUMINIUM["poisson_ratio"])
     line = np.flatnonzero(axis)[np.argsort(x[axis], kind="stable")].reshape(elements + 1, 2)
     crossing = LENGTH / (ratio * CRITICAL)
-    steps = int(np.ceil(crossing / (fraction * timestep.critical_step(timestep.element_bound(operator)))))
+    steps = int(
+        np.ceil(crossing / (fraction * timestep.critical_step(timestep.element_bound(operator))))
+    )
     load, displacement, velocity = (np.zeros(mesh.points.shape) for _ in range(3))
 
     def force(time, _):
@@ -35,7 +41,10 @@ def midspan(elements, ratio, fraction, bubbles=True):
         load[line[element + 1], 2] = 0.5 * FORCE * (place - element)
         return load
 
-    times, deflection = driven(operator, crossing / steps, force, displacement, velocity), np.empty(steps)
+    times, deflection = (
+        driven(operator, crossing / steps, force, displacement, velocity),
+        np.empty(steps),
+    )
     for step in range(steps):
         next(times)
         deflection[step] = displacement[line[elements // 2], 2].mean()
@@ -46,8 +55,8 @@ def midspan(elements, ratio, fraction, bubbles=True):
 @pytest.mark.parametrize("elements, fraction", [(40, 0.9), (40, 0.45), (80, 0.9)])
 @pytest.mark.parametrize("ratio, factor, place", [(0.5, 1.70545, 0.6667), (0.25, 1.25761, 0.4021)])
 def test_moving_force(elements, fraction, ratio, factor, place):
-    """Critical speed 57.3829 m/s, static deflection 4.44444 mm; at half and a quarter of that speed the deflection peaks at 1.70545
-    and 1.25761 times it."""
+    """Critical speed 57.3829 m/s, static deflection 4.44444 mm; at half and a quarter of that speed
+    the deflection peaks at 1.70545 and 1.25761 times it."""
     assert (CRITICAL, STATIC) == pytest.approx((57.3829, 4.44444e-3), rel=2e-6)
     way = np.linspace(0.0, 1.0, 20001)
     exact = elasticity.moving_force_deflection(ratio, way)
@@ -56,7 +65,10 @@ def test_moving_force(elements, fraction, ratio, factor, place):
     assert deflection.max() / STATIC == pytest.approx(factor, rel=5e-3)
     assert done[deflection.argmax()] == pytest.approx(place, rel=5e-3)
     # The whole record, not only its peak.
-    assert np.abs(deflection / STATIC - elasticity.moving_force_deflection(ratio, done)).max() < 5e-3 * factor
+    assert (
+        np.abs(deflection / STATIC - elasticity.moving_force_deflection(ratio, done)).max()
+        < 5e-3 * factor
+    )
 
 
 @pytest.mark.case("O16")

@@ -15,7 +15,8 @@ from tests.fe.blocks import ALUMINIUM, block
 
 
 def graded(divisions, size):
-    """A brick whose section has elements of as many widths and heights as it has columns and rows."""
+    """A brick whose section has elements of as many widths and heights as it has columns and
+    rows."""
     mesh = block(divisions, size)
     points = mesh.points.copy()
     for axis in (1, 2):
@@ -24,14 +25,17 @@ def graded(divisions, size):
 
 
 def groups_of(mesh):
-    """Places (s,2) of the section points, and how many products and how many folded groups each has per layer."""
+    """Places (s,2) of the section points, and how many products and how many folded groups each has
+    per layer."""
     operator = assembly.build(mesh, **ALUMINIUM)
     columns, number = pencils.find(mesh.points, operator)
     places = np.zeros((number.max() // columns.stride + 1, 2))
     places[number // columns.stride] = mesh.points[:, 1:]
     counts = columns.groups.counts
-    return places, *(counts @ np.array(size)
-                     for size in zip(*((len(kind.numbers), len(kind.folded) > 0) for kind in folding.KINDS)))
+    return places, *(
+        counts @ np.array(size)
+        for size in zip(*((len(kind.numbers), len(kind.folded) > 0) for kind in folding.KINDS))
+    )
 
 
 def both_forces(mesh):
@@ -46,25 +50,37 @@ def both_forces(mesh):
     padded[:, number] = displacement.T
     turn = np.zeros(3)
     pencil_force(columns, padded, force, 0, columns.first.size - 1, zeros((3, pencils.LANES)), turn)
-    assert np.abs(turn - np.cross(displacement, expected).sum(axis=0)).max() <= 1e-12 * np.abs(displacement * expected).sum()
+    assert (
+        np.abs(turn - np.cross(displacement, expected).sum(axis=0)).max()
+        <= 1e-12 * np.abs(displacement * expected).sum()
+    )
     return force, number, expected
 
 
-@pytest.mark.parametrize("mesh", [
-    pytest.param(read(l_rail.build(l_rail.LRailGeometry(), 0.004)), id="L rails"),
-    pytest.param(graded((6, 5, 4), (0.03, 0.02, 0.02)), id="no symmetry in the section"),
-    pytest.param(block((3, 2, 2), (0.03, 0.02, 0.03)), id="three layers"),
-    pytest.param(block((40, 3, 4), (0.6, 0.03, 0.04)), id="cantilever")])
+@pytest.mark.parametrize(
+    "mesh",
+    [
+        pytest.param(read(l_rail.build(l_rail.LRailGeometry(), 0.004)), id="L rails"),
+        pytest.param(graded((6, 5, 4), (0.03, 0.02, 0.02)), id="no symmetry in the section"),
+        pytest.param(block((3, 2, 2), (0.03, 0.02, 0.03)), id="three layers"),
+        pytest.param(block((40, 3, 4), (0.6, 0.03, 0.04)), id="cantilever"),
+    ],
+)
 def test_pencils_give_the_force_of_the_elements(mesh):
     force, number, expected = both_forces(mesh)
     assert np.abs(force[:, number].T - expected).max() <= 1e-13 * np.abs(expected).max()
 
 
 def test_mirrored_neighbours_share_their_products():
-    """Nine neighbours with 14 numbers each are 126 products; folded twice 36, and on a side 44 instead of 84."""
+    """Nine neighbours with 14 numbers each are 126 products; folded twice 36, and on a side 44
+    instead of 84."""
     places, products, _ = groups_of(block((4, 5, 5), (0.04, 0.05, 0.05)))
     outside = ((places == places.min(axis=0)) | (places == places.max(axis=0))).sum(axis=1)
-    assert set(products[outside == 0]) == {36} and set(products[outside == 1]) == {44} and set(products[outside == 2]) == {56}
+    assert (
+        set(products[outside == 0]) == {36}
+        and set(products[outside == 1]) == {44}
+        and set(products[outside == 2]) == {56}
+    )
 
 
 def test_without_symmetry_nothing_is_folded():

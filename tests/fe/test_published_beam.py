@@ -1,7 +1,9 @@
-"""The straight cantilever of MacNeal and Harder, a row of six elements: what the hexahedron gives, and where it must not be used.
+"""The straight cantilever of MacNeal and Harder, a row of six elements: what the hexahedron gives,
+and where it must not be used.
 
-MacNeal and Harder, Finite Elements in Analysis and Design 1 (1985) 3-20, figure 3: 6 x 0.2 x 0.1, E 1e7, nu 0.3, unit load at the
-tip. Published: extension 3.0e-5, bending across the depth 0.1081 and across the thickness 0.4321, twist 0.03208.
+MacNeal and Harder, Finite Elements in Analysis and Design 1 (1985) 3-20, figure 3: 6 x 0.2 x 0.1, E
+1e7, nu 0.3, unit load at the tip. Published: extension 3.0e-5, bending across the depth 0.1081 and
+across the thickness 0.4321, twist 0.03208.
 """
 
 from dataclasses import replace
@@ -22,7 +24,8 @@ TWIST = 0.03208
 
 
 def cantilever(elements, lean=0.0):
-    """The mesh; every second of its inner sections leans by `lean` (1 for 45 degrees) one way and the others the other way."""
+    """The mesh; every second of its inner sections leans by `lean` (1 for 45 degrees) one way and
+    the others the other way."""
     mesh = block((elements, 1, 1), (LENGTH, DEPTH, THICKNESS))
     points = mesh.points.copy()
     section = np.round(points[:, 0] * elements / LENGTH)
@@ -59,15 +62,18 @@ def built(mesh):
 @pytest.mark.parametrize("elements", [6, 12])
 def test_regular_mesh_bends_as_published(elements):
     mesh = cantilever(elements)
-    assert (translations(mesh, built(mesh)) >= 0.97).all() and (translations(mesh, built(mesh)) <= 1.01).all()
+    assert (translations(mesh, built(mesh)) >= 0.97).all() and (
+        translations(mesh, built(mesh)) <= 1.01
+    ).all()
     # Control: without bubbles not even 40 % of the bending is left.
     assert (translations(mesh, without_bubbles(mesh, built(mesh), **ELASTIC))[1:] < 0.4).all()
 
 
 @pytest.mark.case("O10")
 def test_twist_of_one_element_per_section():
-    """One element cannot warp as the section does: 0.89 of the published twist. That is itself 6 % below Saint-Venant's 0.03411,
-    which a mesh that resolves the section comes to, less what the clamp takes."""
+    """One element cannot warp as the section does: 0.89 of the published twist. That is itself 6 %
+    below Saint-Venant's 0.03411, which a mesh that resolves the section comes to, less what the
+    clamp takes."""
     mesh = cantilever(6)
     assert twist(mesh, built(mesh)) / TWIST == pytest.approx(0.892, abs=0.002)
     exact = elasticity.twist_of_bar(1.0, LENGTH, DEPTH, THICKNESS, **ELASTIC)
@@ -78,16 +84,22 @@ def test_twist_of_one_element_per_section():
 
 @pytest.mark.case("O10")
 def test_trapezoids_are_warned_of():
-    """Leaning sections, at 45 degrees in turn, leave 5 % and 3 % of the bending: reading such a mesh says so."""
+    """Leaning sections, at 45 degrees in turn, leave 5 % and 3 % of the bending: reading such a
+    mesh says so."""
     good, bad = cantilever(6), cantilever(6, lean=1.0)
     assert translations(bad, built(bad))[1:] == pytest.approx([0.047, 0.030], abs=0.002)
     facets = boundary_facets(good.cells)
     tags = np.where((good.points[facets][:, :, 0] == 0.0).all(axis=1), 1, 2)
 
     def warnings(mesh):
-        return read(meshio.Mesh(mesh.points, [("hexahedron", mesh.cells), ("quad", facets)],
-                                cell_data={"gmsh:physical": [np.full(len(mesh.cells), 3), tags]},
-                                field_data={"mount": np.array([1, 2]), "contact": np.array([2, 2])})).warnings
+        return read(
+            meshio.Mesh(
+                mesh.points,
+                [("hexahedron", mesh.cells), ("quad", facets)],
+                cell_data={"gmsh:physical": [np.full(len(mesh.cells), 3), tags]},
+                field_data={"mount": np.array([1, 2]), "contact": np.array([2, 2])},
+            )
+        ).warnings
 
     assert warnings(good) == ()
     assert any("bending" in text and "1, 2, 3, 4, 5, 6" in text for text in warnings(bad))

@@ -11,8 +11,14 @@ TWO_MESHES = pytest.mark.parametrize("refinement", [4, 6])
 def ratio(refinement, poisson_ratio, bubbles=True):
     """Displacement of the inner wall over Lame's."""
     found = cylinder.solve(refinement, poisson_ratio, bubbles)
-    exact = elasticity.pressed_cylinder_displacement(cylinder.INNER, cylinder.INNER, cylinder.OUTER, cylinder.PRESSURE,
-                                                     cylinder.MODULUS, poisson_ratio)
+    exact = elasticity.pressed_cylinder_displacement(
+        cylinder.INNER,
+        cylinder.INNER,
+        cylinder.OUTER,
+        cylinder.PRESSURE,
+        cylinder.MODULUS,
+        poisson_ratio,
+    )
     return found.radial[found.radius < 1.0001 * cylinder.INNER].mean() / exact
 
 
@@ -24,7 +30,8 @@ def test_thick_cylinder(refinement, poisson_ratio, answer):
     exact = elasticity.pressed_cylinder_displacement(3.0, 3.0, 9.0, 1.0, 1000.0, poisson_ratio)
     assert exact == pytest.approx(answer, abs=6e-9)
     assert ratio(refinement, poisson_ratio) == pytest.approx(1.0, rel=5e-3)
-    # Control: without bubbles the hexahedron locks, by more than 1.5 % already at nu = 0.49 on these meshes.
+    # Control: without bubbles the hexahedron locks, by more than 1.5 % already at nu = 0.49 on
+    # these meshes.
     if poisson_ratio == 0.49:
         assert ratio(refinement, poisson_ratio, bubbles=False) < 0.985
 

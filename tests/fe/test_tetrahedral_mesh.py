@@ -1,4 +1,5 @@
-"""Meshes of ten-node tetrahedra: read as gmsh writes them, and every fault named by element number."""
+"""Meshes of ten-node tetrahedra: read as gmsh writes them, and every fault named by element
+number."""
 
 from types import SimpleNamespace
 
@@ -15,14 +16,22 @@ from tests.fe.blocks import ALUMINIUM, block
 
 
 def write_drilled(path, version=2.2, order=2):
-    """A brick of 20 x 10 x 5 mm with a hole of 4 mm through it, meshed and named in gmsh itself, as a user would."""
+    """A brick of 20 x 10 x 5 mm with a hole of 4 mm through it, meshed and named in gmsh itself, as
+    a user would."""
     with generator.session("brick") as gmsh:
         tool = gmsh.model.occ.addCylinder(0.01, 0.005, -1e-3, 0.0, 0.0, 7e-3, 0.002)
-        gmsh.model.occ.cut([(3, gmsh.model.occ.addBox(0.0, 0.0, 0.0, 0.020, 0.010, 0.005))], [(3, tool)])
+        gmsh.model.occ.cut(
+            [(3, gmsh.model.occ.addBox(0.0, 0.0, 0.0, 0.020, 0.010, 0.005))], [(3, tool)]
+        )
         gmsh.model.occ.synchronize()
-        sides = {tuple(np.round(gmsh.model.occ.getCenterOfMass(2, tag), 6)): tag for _, tag in gmsh.model.getEntities(2)}
+        sides = {
+            tuple(np.round(gmsh.model.occ.getCenterOfMass(2, tag), 6)): tag
+            for _, tag in gmsh.model.getEntities(2)
+        }
         gmsh.model.addPhysicalGroup(2, [sides[0.01, 0.005, 0.005]], name="contact_top")
-        gmsh.model.addPhysicalGroup(2, [sides[0.0, 0.005, 0.0025], sides[0.02, 0.005, 0.0025]], name="mount")
+        gmsh.model.addPhysicalGroup(
+            2, [sides[0.0, 0.005, 0.0025], sides[0.02, 0.005, 0.0025]], name="mount"
+        )
         gmsh.model.addPhysicalGroup(3, [tag for _, tag in gmsh.model.getEntities(3)], name="rail")
         gmsh.option.setNumber("Mesh.MeshSizeMax", 0.0025)
         gmsh.option.setNumber("Mesh.MeshSizeFromCurvature", 12)
@@ -37,7 +46,9 @@ def write_drilled(path, version=2.2, order=2):
 @pytest.mark.parametrize("version", [2.2, 4.1])
 def test_second_order_files_of_gmsh_are_read(tmp_path, version):
     mesh = read(write_drilled(tmp_path / "drilled.msh", version))
-    assert mesh.cells.shape[1] == 10 and {facets.shape[1] for facets in mesh.surfaces.values()} == {6}
+    assert mesh.cells.shape[1] == 10 and {facets.shape[1] for facets in mesh.surfaces.values()} == {
+        6
+    }
     # Quadratic edges, twelve to a circle, miss it by 1e-4 of its area.
     _, area = facets.gauss(mesh.points[mesh.surfaces["contact_top"]], 4)
     assert area.sum() == pytest.approx(0.02 * 0.01 - np.pi * 0.002**2, rel=2e-5)
@@ -55,7 +66,10 @@ def test_numbering_from_end_to_end_changes_nothing_else(tmp_path):
     ordered = along_x(mesh)
     assert (np.diff(np.round(ordered.points[:, 0], 9)) >= 0.0).all()
     for name in mesh.surfaces:
-        both = [facets.gauss(found.points[found.surfaces[name]], 2)[1].sum() for found in (mesh, ordered)]
+        both = [
+            facets.gauss(found.points[found.surfaces[name]], 2)[1].sum()
+            for found in (mesh, ordered)
+        ]
         assert both[0] == pytest.approx(both[1], rel=1e-12)
     assert len(boundary_facets(ordered.cells)) == len(boundary_facets(mesh.cells))
 
@@ -89,9 +103,12 @@ def test_inverted_elements_and_missing_surfaces_are_all_named():
 
 @pytest.mark.parametrize("share, sound", [(0.4, True), (0.8, False)])
 def test_a_face_that_bulges_through_its_element_is_refused(share, sound):
-    """The middles of the edges of one face drawn a share of the way to the centre of the solid: at 0.8 a plane inside is flat.
-    Control: at all four corners the Jacobian is positive in both cases."""
-    points, element = tets.quadratic(np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]), np.array([[0, 1, 2, 3]]))
+    """The middles of the edges of one face drawn a share of the way to the centre of the solid: at
+    0.8 a plane inside is flat. Control: at all four corners the Jacobian is positive in both
+    cases."""
+    points, element = tets.quadratic(
+        np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]), np.array([[0, 1, 2, 3]])
+    )
     points[4:7] += share * (np.full(3, 0.25) - points[4:7])
     inside = np.full(3, 0.125)
     _, gradients = tetrahedron.shape_functions(np.column_stack([np.zeros(3), np.eye(3), inside]))
@@ -110,15 +127,33 @@ def test_a_sliver_is_named_with_its_altitude_and_the_step_it_forces():
     mesh.points[data[:, 4:].ravel()] = mesh.points[edges].mean(axis=2).reshape(-1, 3)
     sliver, step = with_steps(read(mesh), SimpleNamespace(**ALUMINIUM)).warnings
     thin = ", ".join(map(str, np.flatnonzero(cells.thickness(mesh.points, data) < 2e-5) + 1))
-    assert thin and f"slivers: elements {thin};" in sliver and "shortest altitude" in sliver and "times the steps" in sliver
-    forced, other = (float(words.split(" s")[0]) for words in step.split("step of at most ")[1].split("one of "))
+    assert (
+        thin
+        and f"slivers: elements {thin};" in sliver
+        and "shortest altitude" in sliver
+        and "times the steps" in sliver
+    )
+    forced, other = (
+        float(words.split(" s")[0]) for words in step.split("step of at most ")[1].split("one of ")
+    )
     assert f"slivers {thin} force" in step and forced < 0.01 * other
 
 
-@pytest.mark.parametrize("kinds, words", [
-    (("tetra",), "4-node tetrahedra, which are far too stiff: let the mesh generator write elements of second order"),
-    (("tetra10", "hexahedron"), "both 8-node hexahedra and 10-node tetrahedra"),
-    (("tetra10", "wedge"), "solid elements other than 8-node hexahedra and 10-node tetrahedra: wedge")])
+@pytest.mark.parametrize(
+    "kinds, words",
+    [
+        (
+            ("tetra",),
+            "4-node tetrahedra, which are far too stiff: let the mesh generator write elements of "
+            "second order",
+        ),
+        (("tetra10", "hexahedron"), "both 8-node hexahedra and 10-node tetrahedra"),
+        (
+            ("tetra10", "wedge"),
+            "solid elements other than 8-node hexahedra and 10-node tetrahedra: wedge",
+        ),
+    ],
+)
 def test_other_elements_are_refused(kinds, words):
     sizes = {"tetra": 4, "tetra10": 10, "hexahedron": 8, "wedge": 6}
     points = np.concatenate([rail().points[rail().cells[0].data[0]], np.eye(8, 3)])
@@ -128,6 +163,11 @@ def test_other_elements_are_refused(kinds, words):
 
 def test_triangles_without_middles_are_no_surfaces(tmp_path):
     mesh = rail()
-    blocks = [(block.type, block.data) if block.type == "tetra10" else ("triangle", block.data[:, :3]) for block in mesh.cells]
-    with pytest.raises(MeshError, match="no 6-node triangle group whose name starts with 'contact'"):
+    blocks = [
+        (block.type, block.data) if block.type == "tetra10" else ("triangle", block.data[:, :3])
+        for block in mesh.cells
+    ]
+    with pytest.raises(
+        MeshError, match="no 6-node triangle group whose name starts with 'contact'"
+    ):
         read(meshio.Mesh(mesh.points, blocks, field_data=mesh.field_data, cell_data=mesh.cell_data))

@@ -1,4 +1,5 @@
-"""The ten-node tetrahedron: constant strain on distorted and curved meshes, bending, mass, and the step it forces."""
+"""The ten-node tetrahedron: constant strain on distorted and curved meshes, bending, mass, and the
+step it forces."""
 
 import numpy as np
 import pytest
@@ -21,7 +22,8 @@ def beam(divisions=COARSE) -> RailMesh:
 
 
 def patch(curved: bool) -> tuple[RailMesh, np.ndarray]:
-    """A cube of 48 tetrahedra, its inner corner out of place, its inner edges curved where asked; and which nodes are inside."""
+    """A cube of 48 tetrahedra, its inner corner out of place, its inner edges curved where asked;
+    and which nodes are inside."""
     mesh = tets.split(block((2, 2, 2), (1.0, 1.0, 1.0)))
     inside = np.setdiff1d(np.arange(len(mesh.points)), boundary_facets(mesh.cells))
     random, points = np.random.default_rng(5), mesh.points.copy()
@@ -36,7 +38,8 @@ def patch(curved: bool) -> tuple[RailMesh, np.ndarray]:
 
 
 def strained(mesh, inside, matrix):
-    """Displacement (n,3) of the patch when its surface is strained evenly and its inner nodes find their own places."""
+    """Displacement (n,3) of the patch when its surface is strained evenly and its inner nodes find
+    their own places."""
     displacement = (mesh.points @ PATCH_GRADIENT.T).ravel()
     free = (3 * inside[:, None] + np.arange(3)).ravel()
     displacement[free] = 0.0
@@ -65,7 +68,8 @@ def test_patch_has_constant_stress(curved):
 
 @pytest.mark.case("O9")
 def test_four_points_fail_the_patch_test_between_curved_edges():
-    """Control: the rule that is exact for straight edges lets inner nodes of a curved patch wander."""
+    """Control: the rule that is exact for straight edges lets inner nodes of a curved patch
+    wander."""
     mesh, inside = patch(curved=True)
     strain = tetrahedron.kinematics(mesh.points[mesh.cells], 2)
     law = element.elasticity(1e6, 0.25)
@@ -76,14 +80,18 @@ def test_four_points_fail_the_patch_test_between_curved_edges():
 
 
 def without_middles(operator):
-    """The same mesh of four-node tetrahedra: what is left when every middle stays half way between its corners."""
+    """The same mesh of four-node tetrahedra: what is left when every middle stays half way between
+    its corners."""
     weights = np.zeros((10, 4))
     weights[:4] = np.eye(4)
     weights[np.arange(4, 10)[:, None], tetrahedron.EDGES] = 0.5
     tie = np.kron(weights, np.eye(3))
     stiffness = np.zeros_like(operator.stiffness)
     stiffness[:, :12, :12] = tie.T @ operator.stiffness @ tie
-    corners, share = operator.cells[:, :4].ravel(), operator.node_mass[operator.shape_class].sum(axis=1) / 4.0
+    corners, share = (
+        operator.cells[:, :4].ravel(),
+        operator.node_mass[operator.shape_class].sum(axis=1) / 4.0,
+    )
     mass = np.bincount(corners, np.repeat(share, 4), minlength=len(operator.mass))
     return operator._replace(stiffness=stiffness, mass=mass, free=operator.free & (mass > 0.0))
 
@@ -101,7 +109,9 @@ def test_cantilever_deflection(divisions):
 @pytest.mark.parametrize("divisions", [COARSE, (40, 2, 2)])
 def test_cantilever_frequencies(divisions):
     exact = elasticity.timoshenko_cantilever(2, **BEAM, **ALUMINIUM)
-    assert bending_frequencies(assembly.build(beam(divisions), **ALUMINIUM), 2) == pytest.approx(exact, rel=0.01)
+    assert bending_frequencies(assembly.build(beam(divisions), **ALUMINIUM), 2) == pytest.approx(
+        exact, rel=0.01
+    )
 
 
 @pytest.mark.case("O7")
@@ -123,10 +133,17 @@ def test_free_beam_frequencies():
 def bulged():
     """A drum-shaped block: the edges on its sides are curved, and its volume (m3)."""
     mesh = beam((6, 1, 1))
-    return tets.bent(mesh, lambda x: np.column_stack([x[:, 0], x[:, 1] * (1.0 + x[:, 0]), x[:, 2] * (1.0 + 0.5 * x[:, 0])]))
+    return tets.bent(
+        mesh,
+        lambda x: np.column_stack(
+            [x[:, 0], x[:, 1] * (1.0 + x[:, 0]), x[:, 2] * (1.0 + 0.5 * x[:, 0])]
+        ),
+    )
 
 
-@pytest.mark.parametrize("mesh", [pytest.param(beam(), id="straight"), pytest.param(bulged(), id="curved")])
+@pytest.mark.parametrize(
+    "mesh", [pytest.param(beam(), id="straight"), pytest.param(bulged(), id="curved")]
+)
 def test_masses_are_positive_and_add_up(mesh):
     operator = assembly.build(mesh, **ALUMINIUM)
     volume = tetrahedron.kinematics(mesh.points[mesh.cells]).volume
@@ -135,8 +152,8 @@ def test_masses_are_positive_and_add_up(mesh):
 
 
 def test_volume_of_curved_elements():
-    """Sides drawn out as 1 + x and 1 + x/2: 0.03 x 0.04 x integral of (1 + x) (1 + x/2) over 0.6 m; edges follow the parabola that
-    a product of two lines is, but for the terms across."""
+    """Sides drawn out as 1 + x and 1 + x/2: 0.03 x 0.04 x integral of (1 + x) (1 + x/2) over 0.6 m;
+    edges follow the parabola that a product of two lines is, but for the terms across."""
     volume = tetrahedron.kinematics(bulged().points[bulged().cells]).volume.sum()
     assert volume == pytest.approx(0.03 * 0.04 * (0.6 + 0.75 * 0.36 + 0.5 * 0.216 / 3.0), rel=1e-3)
 
@@ -144,16 +161,21 @@ def test_volume_of_curved_elements():
 def test_straight_masses_are_those_of_the_scaled_diagonal():
     """1/36 of the element at each corner, 4/27 at each middle (Hinton, Rock, Zienkiewicz)."""
     shares = assembly.build(beam(), **ALUMINIUM).node_mass
-    assert shares / shares.sum(axis=1, keepdims=True) == pytest.approx(np.tile([1 / 36] * 4 + [4 / 27] * 6, (len(shares), 1)))
+    assert shares / shares.sum(axis=1, keepdims=True) == pytest.approx(
+        np.tile([1 / 36] * 4 + [4 / 27] * 6, (len(shares), 1))
+    )
 
 
 def test_row_sums_would_make_every_step_unstable():
-    """Control: masses by row sums are negative at corners, so M^-1 K has a negative eigenvalue, which grows without bound."""
+    """Control: masses by row sums are negative at corners, so M^-1 K has a negative eigenvalue,
+    which grows without bound."""
     mesh = beam((2, 1, 1))
     operator = assembly.build(mesh, **ALUMINIUM, fixed=())
     share = np.array([-1 / 20] * 4 + [1 / 5] * 6)
     total = operator.node_mass[operator.shape_class].sum(axis=1)
-    rows = np.bincount(mesh.cells.ravel(), np.outer(total, share).ravel(), minlength=len(mesh.points))
+    rows = np.bincount(
+        mesh.cells.ravel(), np.outer(total, share).ravel(), minlength=len(mesh.points)
+    )
     assert rows.min() < 0.0 and rows.sum() == pytest.approx(operator.mass.sum())
     stiffness = assembly.sparse(operator).toarray()
     for mass, grows in ((rows, True), (operator.mass, False)):
@@ -162,15 +184,25 @@ def test_row_sums_would_make_every_step_unstable():
 
 
 @pytest.mark.case("O12")
-@pytest.mark.parametrize("mesh", [pytest.param(beam((3, 1, 1)), id="straight"), pytest.param(bulged(), id="curved")])
+@pytest.mark.parametrize(
+    "mesh", [pytest.param(beam((3, 1, 1)), id="straight"), pytest.param(bulged(), id="curved")]
+)
 def test_rigid_motion_is_free_and_nothing_else(mesh):
     operator = assembly.build(mesh, **ALUMINIUM)
     eigenvalues = np.linalg.eigvalsh(operator.stiffness)
-    assert np.abs(eigenvalues[:, :6]).max() < 1e-12 * eigenvalues.max() and (eigenvalues[:, 6] > 1e-5 * eigenvalues[:, -1]).all()
-    rigid, force = np.array([0.3, -0.2, 0.5]) + np.cross([0.7, -0.4, 0.2], mesh.points), np.empty_like(mesh.points)
+    assert (
+        np.abs(eigenvalues[:, :6]).max() < 1e-12 * eigenvalues.max()
+        and (eigenvalues[:, 6] > 1e-5 * eigenvalues[:, -1]).all()
+    )
+    rigid, force = (
+        np.array([0.3, -0.2, 0.5]) + np.cross([0.7, -0.4, 0.2], mesh.points),
+        np.empty_like(mesh.points),
+    )
     internal_force(rigid, operator.cells, operator.shape_class, operator.stiffness, force)
     assert np.abs(force).max() < 1e-12 * np.abs(operator.stiffness).max()
-    internal_force(np.ones_like(rigid), operator.cells, operator.shape_class, operator.stiffness, force)
+    internal_force(
+        np.ones_like(rigid), operator.cells, operator.shape_class, operator.stiffness, force
+    )
     assert not force.any()
 
 
@@ -183,7 +215,9 @@ def test_kernel_agrees_with_the_assembled_matrix():
     assert np.abs(force - expected).max() < 1e-14 * 4.0 * np.abs(expected).max()
 
 
-@pytest.mark.parametrize("mesh", [pytest.param(beam((4, 1, 1)), id="straight"), pytest.param(bulged(), id="curved")])
+@pytest.mark.parametrize(
+    "mesh", [pytest.param(beam((4, 1, 1)), id="straight"), pytest.param(bulged(), id="curved")]
+)
 def test_bounds_enclose_the_highest_frequency(mesh):
     operator = assembly.build(mesh, **ALUMINIUM)
     exact, bound = highest_mode(operator)[0], timestep.operator_bound(operator)

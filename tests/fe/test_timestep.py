@@ -1,4 +1,5 @@
-"""The stable step: what bounds it, what a run may choose, and what happens to a loop that does not ask."""
+"""The stable step: what bounds it, what a run may choose, and what happens to a loop that does not
+ask."""
 
 import numpy as np
 import pytest
@@ -42,7 +43,14 @@ def test_growth_above_the_critical_step(operator, highest):
     assert elasticity.leapfrog_growth(1.01) == pytest.approx(1.326584, abs=1e-6)
     displacement, velocity = shape.copy(), np.zeros_like(shape)
     node, component = np.unravel_index(np.argmax(np.abs(shape)), shape.shape)
-    trace, _ = march(operator, displacement, velocity, 1.01 * timestep.critical_step(frequency), 60, (node, component))
+    trace, _ = march(
+        operator,
+        displacement,
+        velocity,
+        1.01 * timestep.critical_step(frequency),
+        60,
+        (node, component),
+    )
     assert -trace[-1] / trace[-2] == pytest.approx(elasticity.leapfrog_growth(1.01), abs=1e-6)
 
 
@@ -104,9 +112,13 @@ def test_sliver_costs_what_its_edge_says():
     """A 5 um layer brings the step down to its thickness over the pressure wave speed, 0.811 ns."""
     stations = [0.0, 0.005, 0.005005, 0.010005]
     sliver = assembly.build(block((3, 1, 1), (0.010, 0.005, 0.005), stations), **ALUMINIUM)
-    crossing = 5e-6 / elasticity.confined_speed(ALUMINIUM["youngs_modulus"], ALUMINIUM["poisson_ratio"], ALUMINIUM["density"])
+    crossing = 5e-6 / elasticity.confined_speed(
+        ALUMINIUM["youngs_modulus"], ALUMINIUM["poisson_ratio"], ALUMINIUM["density"]
+    )
     assert crossing == pytest.approx(0.811e-9, rel=1e-3)
-    assert timestep.critical_step(timestep.element_bound(sliver)) == pytest.approx(crossing, rel=1e-3)
+    assert timestep.critical_step(timestep.element_bound(sliver)) == pytest.approx(
+        crossing, rel=1e-3
+    )
 
 
 @pytest.mark.case("X15")

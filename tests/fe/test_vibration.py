@@ -1,4 +1,5 @@
-"""Modes of a clamped rail and what the walls under pads see of them: beam theory, and a full set that makes up the compliance."""
+"""Modes of a clamped rail and what the walls under pads see of them: beam theory, and a full set
+that makes up the compliance."""
 
 import numpy as np
 import pytest
@@ -12,8 +13,10 @@ from tests.fe.test_compliance import HEIGHT, LENGTH, MODULUS, WIDTH, beam, pads
 
 DENSITY = 2700.0
 # At a Poisson ratio of zero the clamp of a solid is that of beam theory.
-MATERIAL = MaterialTable.model_validate({"density": DENSITY, "youngs_modulus": MODULUS, "poisson_ratio": 0.0},
-                                        context={"bare_numbers_are_si": True})
+MATERIAL = MaterialTable.model_validate(
+    {"density": DENSITY, "youngs_modulus": MODULUS, "poisson_ratio": 0.0},
+    context={"bare_numbers_are_si": True},
+)
 PADS = pads(0.21, 0.45)
 
 
@@ -31,13 +34,18 @@ def test_frequencies_of_a_cantilever():
 @pytest.fixture(scope="module")
 def coarse():
     """Compliance and all modes under two pads of a beam of 180 freedoms."""
-    return compliance.of_mesh(beam((10, 1, 2)), MATERIAL, PADS, (0.0, LENGTH), (0.0, 0.03), patterns=3, modes=180)
+    return compliance.of_mesh(
+        beam((10, 1, 2)), MATERIAL, PADS, (0.0, LENGTH), (0.0, 0.03), patterns=3, modes=180
+    )
 
 
 def without(found, modes):
     """Residual compliance (s,w,w) after so many modes, over w = faces times patterns."""
     size = found.matrix.shape[1] * found.matrix.shape[2]
-    part = found.shape.reshape(-1, size, found.shape.shape[-1])[..., :modes] / found.frequency[0, :modes]
+    part = (
+        found.shape.reshape(-1, size, found.shape.shape[-1])[..., :modes]
+        / found.frequency[0, :modes]
+    )
     return found.matrix.reshape(-1, size, size) - part @ part.transpose(0, 2, 1)
 
 
@@ -45,9 +53,12 @@ def without(found, modes):
 def test_all_modes_make_up_the_compliance(coarse):
     size = np.abs(coarse.matrix).max()
     assert np.abs(without(coarse, 180)).max() < 1e-8 * size
-    # Controls: without the mode that bends the beam under its pads most is missing, and its mass off by a thousandth is seen.
+    # Controls: without the mode that bends the beam under its pads most is missing, and its mass
+    # off by a thousandth is seen.
     main = (np.abs(coarse.shape).max(axis=(0, 1, 2)) / coarse.frequency[0]).argmax()
-    assert np.abs(without(coarse, main + 1)).max() < 0.2 * size < np.abs(without(coarse, main)).max()
+    assert (
+        np.abs(without(coarse, main + 1)).max() < 0.2 * size < np.abs(without(coarse, main)).max()
+    )
     heavier = coarse._replace(shape=coarse.shape * np.where(np.arange(180) == main, 1.0005, 1.0))
     assert np.abs(without(heavier, 180)).max() > 1e-4 * size
 
@@ -65,29 +76,47 @@ def test_what_modes_leave_is_never_negative(coarse):
 
 def test_few_modes_are_the_lowest_of_all(coarse):
     """An iteration finds the same frequencies, and shapes but for their signs."""
-    found = compliance.of_mesh(beam((10, 1, 2)), MATERIAL, PADS, (0.0, LENGTH), (0.0, 0.03), patterns=3, modes=12)
+    found = compliance.of_mesh(
+        beam((10, 1, 2)), MATERIAL, PADS, (0.0, LENGTH), (0.0, 0.03), patterns=3, modes=12
+    )
     assert found.frequency[0] == pytest.approx(coarse.frequency[0, :12], rel=1e-9)
-    assert np.abs(found.shape) == pytest.approx(np.abs(coarse.shape[..., :12]), abs=1e-7 * np.abs(coarse.shape[..., :12]).max())
+    assert np.abs(found.shape) == pytest.approx(
+        np.abs(coarse.shape[..., :12]), abs=1e-7 * np.abs(coarse.shape[..., :12]).max()
+    )
 
 
 def test_shapes_have_unit_mass():
     operator = assembly.build(beam((10, 1, 2)), MATERIAL.density, MODULUS, 0.0)
     free = np.repeat(operator.free, 3)
-    stiffness, mass = csc_array(assembly.sparse(operator)[free][:, free]), np.repeat(operator.mass, 3)[free]
+    stiffness, mass = (
+        csc_array(assembly.sparse(operator)[free][:, free]),
+        np.repeat(operator.mass, 3)[free],
+    )
     solve = splu(stiffness).solve
     for count in (6, 150):  # by iteration, and all at once
         frequency, shape = vibration.modes(stiffness, mass, solve, count)
         assert np.abs(shape.T @ (mass[:, None] * shape) - np.eye(count)).max() < 1e-9
-        assert np.abs(shape.T @ (stiffness @ shape) / frequency / frequency[:, None] - np.eye(count)).max() < 1e-7
+        assert (
+            np.abs(
+                shape.T @ (stiffness @ shape) / frequency / frequency[:, None] - np.eye(count)
+            ).max()
+            < 1e-7
+        )
     with pytest.raises(ValueError, match="modes: given 181, expected 0 to 180"):
         vibration.modes(stiffness, mass, solve, 181)
 
 
 def test_stiffer_and_lighter_material_vibrates_faster():
     def found(factor, lighter):
-        changed = MATERIAL.model_copy(update={"youngs_modulus": factor * MODULUS, "density": DENSITY / lighter})
-        return compliance.of_mesh(beam((10, 1, 2)), changed, PADS, (0.0, LENGTH), (0.0,), patterns=1, modes=4)
+        changed = MATERIAL.model_copy(
+            update={"youngs_modulus": factor * MODULUS, "density": DENSITY / lighter}
+        )
+        return compliance.of_mesh(
+            beam((10, 1, 2)), changed, PADS, (0.0, LENGTH), (0.0,), patterns=1, modes=4
+        )
 
     plain, changed = found(1.0, 1.0), found(16.0, 4.0)
     assert changed.frequency == pytest.approx(8.0 * plain.frequency, rel=1e-9)
-    assert np.abs(changed.shape) == pytest.approx(2.0 * np.abs(plain.shape), rel=1e-6, abs=1e-6 * np.abs(plain.shape).max())
+    assert np.abs(changed.shape) == pytest.approx(
+        2.0 * np.abs(plain.shape), rel=1e-6, abs=1e-6 * np.abs(plain.shape).max()
+    )

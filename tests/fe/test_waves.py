@@ -1,7 +1,9 @@
-"""Travelling and standing waves in a column of hexahedra, against the exact solution of the discrete equations.
+"""Travelling and standing waves in a column of hexahedra, against the exact solution of the
+discrete equations.
 
-With nu = 0 a column moves axially like a bar. It is a thousand times wider than its layers, so that its lateral modes do not
-touch the stability limit h / c of the axial ones, and c dt / h = 1 can be run with the element itself.
+With nu = 0 a column moves axially like a bar. It is a thousand times wider than its layers, so that
+its lateral modes do not touch the stability limit h / c of the axial ones, and c dt / h = 1 can be
+run with the element itself.
 """
 
 import math
@@ -40,7 +42,8 @@ def test_standing_wave_has_the_discrete_frequency(mode, hertz, courant):
     velocity = displacement * (1.0 - math.cos(2.0 * math.pi * exact * step)) / step
     steps = round(20.0 / (exact * step))
     trace, _ = march(operator, displacement, velocity, step, steps, (int(np.argmax(along)), 0))
-    # u(n+1) + u(n-1) = 2 cos(w dt) u(n) for a single frequency; least squares over the whole record.
+    # u(n+1) + u(n-1) = 2 cos(w dt) u(n) for a single frequency; least squares over the whole
+    # record.
     cosine = 0.5 * (trace[2:] + trace[:-2]) @ trace[1:-1] / (trace[1:-1] @ trace[1:-1])
     measured = math.acos(cosine) / (2.0 * math.pi * step)
     assert measured == pytest.approx(exact, rel=1e-7)

@@ -19,11 +19,16 @@ COARSE = Numerics(element_size=0.008)
 
 def tiny(**overrides):
     """The tiny scene at clock angle 15 deg, with dotted overrides given with double underscores."""
-    return load("tiny").condition("phi15").replace({key.replace("__", "."): value for key, value in overrides.items()})
+    return (
+        load("tiny")
+        .condition("phi15")
+        .replace({key.replace("__", "."): value for key, value in overrides.items()})
+    )
 
 
 def bar_mesh(length: float, width: float, layers: int, across: int = 1) -> RailMesh:
-    """Straight bar along X from the origin: ``mount`` is the root section, ``contact_y`` one side."""
+    """Straight bar along X from the origin: ``mount`` is the root section, ``contact_y`` one
+    side."""
     x, y = np.linspace(0.0, length, layers + 1), np.linspace(-width / 2, width / 2, across + 1)
     points = np.stack(np.meshgrid(x, y, y, indexing="ij"), axis=-1).reshape(-1, 3)
 
@@ -31,18 +36,48 @@ def bar_mesh(length: float, width: float, layers: int, across: int = 1) -> RailM
         return (i * (across + 1) + j) * (across + 1) + k
 
     cells = [(i, j, k) for i in range(layers) for j in range(across) for k in range(across)]
-    hexes = [[node(i, j, k), node(i + 1, j, k), node(i + 1, j + 1, k), node(i, j + 1, k),
-              node(i, j, k + 1), node(i + 1, j, k + 1), node(i + 1, j + 1, k + 1), node(i, j + 1, k + 1)]
-             for i, j, k in cells]
-    root = [[node(0, j, k), node(0, j, k + 1), node(0, j + 1, k + 1), node(0, j + 1, k)]
-            for j in range(across) for k in range(across)]
-    side = [[node(i, across, k), node(i, across, k + 1), node(i + 1, across, k + 1), node(i + 1, across, k)]
-            for i in range(layers) for k in range(across)]
+    hexes = [
+        [
+            node(i, j, k),
+            node(i + 1, j, k),
+            node(i + 1, j + 1, k),
+            node(i, j + 1, k),
+            node(i, j, k + 1),
+            node(i + 1, j, k + 1),
+            node(i + 1, j + 1, k + 1),
+            node(i, j + 1, k + 1),
+        ]
+        for i, j, k in cells
+    ]
+    root = [
+        [node(0, j, k), node(0, j, k + 1), node(0, j + 1, k + 1), node(0, j + 1, k)]
+        for j in range(across)
+        for k in range(across)
+    ]
+    side = [
+        [
+            node(i, across, k),
+            node(i, across, k + 1),
+            node(i + 1, across, k + 1),
+            node(i + 1, across, k),
+        ]
+        for i in range(layers)
+        for k in range(across)
+    ]
     quads = root + side
     tags = [1] * len(root) + [2] * len(side)
-    return read(meshio.Mesh(points, [("hexahedron", hexes), ("quad", quads)],
-                            cell_data={"gmsh:physical": [[3] * len(hexes), tags]},
-                            field_data={"mount": np.array([1, 2]), "contact_y": np.array([2, 2]), "rail": np.array([3, 3])}))
+    return read(
+        meshio.Mesh(
+            points,
+            [("hexahedron", hexes), ("quad", quads)],
+            cell_data={"gmsh:physical": [[3] * len(hexes), tags]},
+            field_data={
+                "mount": np.array([1, 2]),
+                "contact_y": np.array([2, 2]),
+                "rail": np.array([3, 3]),
+            },
+        )
+    )
 
 
 def loop_on(scene, mesh: RailMesh, numerics: Numerics = Numerics()) -> Loop:
@@ -84,8 +119,11 @@ def stopped(samples: int, scene=None, numerics: Numerics = COARSE) -> Loop:
     return loop
 
 
-def spinning_bar_stretch(density: float, rate: float, length: float, youngs_modulus: float) -> float:
-    """Tip displacement (m) of a bar turning about its root: rho w^2 L^3 / (3 E) (Timoshenko and Goodier, rotating bar)."""
+def spinning_bar_stretch(
+    density: float, rate: float, length: float, youngs_modulus: float
+) -> float:
+    """Tip displacement (m) of a bar turning about its root: rho w^2 L^3 / (3 E) (Timoshenko and
+    Goodier, rotating bar)."""
     return density * rate**2 * length**3 / (3.0 * youngs_modulus)
 
 

@@ -21,8 +21,21 @@ from tests.highfi.support import COARSE, Stopped, begun, stopped, tiny
 
 pytestmark = pytest.mark.case("X20")
 ROOT = Path(__file__).resolve().parent.parent.parent
-ARRAYS = ("time", "position", "velocity", "quaternion", "rate", "platform_position", "platform_velocity", "platform_quaternion",
-          "platform_rate", "pad_force", "energy", "transverse_energy", "wall_stress")
+ARRAYS = (
+    "time",
+    "position",
+    "velocity",
+    "quaternion",
+    "rate",
+    "platform_position",
+    "platform_velocity",
+    "platform_quaternion",
+    "platform_rate",
+    "pad_force",
+    "energy",
+    "transverse_energy",
+    "wall_stress",
+)
 TOUCHING = 115  # a sample at which pads of ``tiny`` touch
 
 
@@ -42,7 +55,8 @@ def assert_same(found: Trajectory, expected: Trajectory) -> None:
 
 
 def test_run_stopped_at_37_percent_goes_on_to_the_same_bits(tmp_path):
-    """The first fraction the second part reports shows that it did not start anew, which would give the same bits too."""
+    """The first fraction the second part reports shows that it did not start anew, which would give
+    the same bits too."""
     seen = []
 
     def stop(fraction):
@@ -51,7 +65,9 @@ def test_run_stopped_at_37_percent_goes_on_to_the_same_bits(tmp_path):
 
     with pytest.raises(Stopped):
         highfi.run(tiny(), COARSE, progress=stop, checkpoint=tmp_path / "run", checkpoint_every=0.0)
-    resumed = highfi.run(tiny(), COARSE, progress=seen.append, checkpoint=tmp_path / "run", resume=True)
+    resumed = highfi.run(
+        tiny(), COARSE, progress=seen.append, checkpoint=tmp_path / "run", resume=True
+    )
     assert seen[0] >= 0.37
     assert np.abs(resumed.pad_force).max() > 1.0
     assert_same(resumed, whole())
@@ -59,7 +75,8 @@ def test_run_stopped_at_37_percent_goes_on_to_the_same_bits(tmp_path):
 
 @pytest.mark.parametrize("samples", [1, TOUCHING, 212])
 def test_any_sample_is_a_place_to_stop(tmp_path, samples):
-    """At the start, while pads touch, and after the run has seen where it ends; resumed by another number of threads."""
+    """At the start, while pads touch, and after the run has seen where it ends; resumed by another
+    number of threads."""
     first, second = stopped(samples), begun(threads=2)
     kept = Checkpoint(tmp_path / "run", 0.0, first, COARSE)
     kept.write(first)
@@ -70,8 +87,12 @@ def test_any_sample_is_a_place_to_stop(tmp_path, samples):
 
 
 def test_pencils_go_on_to_the_same_bits(tmp_path):
-    """The finer mesh is extruded and uses the other elastic kernel, whose arrays have nodes of no element between the rails."""
-    scene, numerics = tiny(duration="9 ms", contact__clearance="0.05 mm"), Numerics(element_size=0.004)
+    """The finer mesh is extruded and uses the other elastic kernel, whose arrays have nodes of no
+    element between the rails."""
+    scene, numerics = (
+        tiny(duration="9 ms", contact__clearance="0.05 mm"),
+        Numerics(element_size=0.004),
+    )
     first, second = stopped(45, scene, numerics), begun(scene, numerics)
     kept = Checkpoint(tmp_path / "run", 0.0, first, numerics)
     kept.write(first)
@@ -91,9 +112,17 @@ def test_every_evolving_array_is_in_the_file(tmp_path):
     kept.write(loop)
     saved = kept.read()
     bodies = [name for name in State._fields if isinstance(getattr(loop.state, name), Body)]
-    expected = {f"state.{body}.{name}": getattr(getattr(loop.state, body), name) for body in bodies for name in Body._fields}
+    expected = {
+        f"state.{body}.{name}": getattr(getattr(loop.state, body), name)
+        for body in bodies
+        for name in Body._fields
+    }
     assert loop.state.history is None  # no structural damping
-    expected |= {f"state.{name}": getattr(loop.state, name) for name in State._fields if name not in (*bodies, "history")}
+    expected |= {
+        f"state.{name}": getattr(loop.state, name)
+        for name in State._fields
+        if name not in (*bodies, "history")
+    }
     expected |= {f"active.{name}": getattr(loop.active, name) for name in Active._fields}
     assert len(bodies) == 2
     assert {name.partition(".")[0] for name in saved} == set(vars(loop)) - set(CONSTANT)
@@ -105,13 +134,29 @@ def test_every_evolving_array_is_in_the_file(tmp_path):
 
 def test_what_is_left_out_does_not_change():
     loop = begun()
-    system = {"system": loop.system._replace(mesh=None, operator=None)}  # not records, and no kernel is given them
-    before, others = digest(arrays(system | {"exit": loop.exit})), (loop.marks, loop.stepping, loop.last, loop.most)
+    # not records, and no kernel is given them
+    system = {"system": loop.system._replace(mesh=None, operator=None)}
+    before, others = (
+        digest(arrays(system | {"exit": loop.exit})),
+        (loop.marks, loop.stepping, loop.last, loop.most),
+    )
     loop.march(None)
     assert digest(arrays(system | {"exit": loop.exit})) == before
     assert (loop.marks, loop.stepping, loop.last, loop.most) == others
     # A scene is frozen; a team and a pool of threads are not of the run.
-    assert set(CONSTANT) == {"scene", "system", "stepping", "team", "pool", "marks", "exit", "last", "most", "walls", "watch"}
+    assert set(CONSTANT) == {
+        "scene",
+        "system",
+        "stepping",
+        "team",
+        "pool",
+        "marks",
+        "exit",
+        "last",
+        "most",
+        "walls",
+        "watch",
+    }
 
 
 CHILD = """
@@ -125,7 +170,8 @@ found.save(sys.argv[2])
 
 
 def test_killed_again_and_again_it_ends_with_the_same_bits(tmp_path):
-    """SIGKILL at seeded moments, first of the set-up, then of the march; each life begins where the file of the last one ends."""
+    """SIGKILL at seeded moments, first of the set-up, then of the march; each life begins where the
+    file of the last one ends."""
     whole()  # compiles what the children load
     moments, path, result = random.Random(20), tmp_path / "run", tmp_path / "result.nc"
     reader = Checkpoint(path, 0.0, begun(), COARSE)
@@ -148,7 +194,12 @@ def test_killed_again_and_again_it_ends_with_the_same_bits(tmp_path):
 
 
 def _child(path: Path, result: Path) -> subprocess.Popen:
-    return subprocess.Popen([sys.executable, "-c", CHILD, str(path), str(result)], cwd=ROOT, stdout=subprocess.PIPE, text=True)
+    return subprocess.Popen(
+        [sys.executable, "-c", CHILD, str(path), str(result)],
+        cwd=ROOT,
+        stdout=subprocess.PIPE,
+        text=True,
+    )
 
 
 def _kill(child: subprocess.Popen) -> None:

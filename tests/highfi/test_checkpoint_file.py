@@ -46,17 +46,30 @@ def test_cut_file_is_refused(kept, length):
         kept.read()
 
 
-@pytest.mark.parametrize("change, words", [
-    ({"scene": tiny(payload__mass="9 kg")}, "belongs to another scene;"),
-    ({"numerics": Numerics(element_size=0.008, safety=0.8)}, r"belongs to a run with other numerics \(safety 0.9, not 0.8\);"),
-])
+@pytest.mark.parametrize(
+    "change, words",
+    [
+        ({"scene": tiny(payload__mass="9 kg")}, "belongs to another scene;"),
+        (
+            {"numerics": Numerics(element_size=0.008, safety=0.8)},
+            r"belongs to a run with other numerics \(safety 0.9, not 0.8\);",
+        ),
+    ],
+)
 def test_checkpoint_of_another_run_is_refused(kept, change, words):
     """By the run itself, and before it has stepped: no progress is reported."""
     asked = {"scene": tiny(), "numerics": COARSE} | change
     with pytest.raises(CheckpointError, match=words) as fault:
-        highfi.run(**asked, progress=lambda fraction: pytest.fail("stepped"), checkpoint=kept.path, resume=True)
+        highfi.run(
+            **asked,
+            progress=lambda fraction: pytest.fail("stepped"),
+            checkpoint=kept.path,
+            resume=True,
+        )
     assert str(fault.value).startswith(str(kept.path))
-    assert str(fault.value).endswith("; remove it, or run without resuming, to start from the beginning")
+    assert str(fault.value).endswith(
+        "; remove it, or run without resuming, to start from the beginning"
+    )
 
 
 def test_checkpoint_of_another_program_mesh_or_format_is_refused(kept, monkeypatch):
@@ -95,7 +108,8 @@ def test_nothing_is_written_before_it_is_time(tmp_path):
 
 
 def test_reader_never_sees_half_a_file(kept):
-    """A thread reads as fast as it can what another writes as fast as it can: every look finds a whole file."""
+    """A thread reads as fast as it can what another writes as fast as it can: every look finds a
+    whole file."""
     loop, ended, seen = begun(), threading.Event(), []
 
     def read():

@@ -1,4 +1,5 @@
-"""Exit, settled means and jams of the reference: from its steps, however a run is sampled, and to their order."""
+"""Exit, settled means and jams of the reference: from its steps, however a run is sampled, and to
+their order."""
 
 import numpy as np
 import pytest
@@ -20,7 +21,10 @@ def assert_same(found, expected) -> None:
 
 def test_sampling_changes_no_bit():
     """From a sample in 0.05 ms to one in the whole of the flight."""
-    fine, *others = (highfi.run(tiny(output__interval=interval), COARSE) for interval in ("0.05 ms", "1 ms", "7 ms", "25 ms"))
+    fine, *others = (
+        highfi.run(tiny(output__interval=interval), COARSE)
+        for interval in ("0.05 ms", "1 ms", "7 ms", "25 ms")
+    )
     assert fine.status == "exited" and np.abs(fine.pad_force).max() > 1.0
     assert [other.time.size for other in others][1:] == [4, 1]
     for other in others:
@@ -28,17 +32,22 @@ def test_sampling_changes_no_bit():
 
 
 def test_an_interval_that_divides_nothing():
-    """The step divides it, and so is another one, by less than one in the steps of 50 us: what then differs is the error of the
-    scheme, of which that changes little."""
-    whole, other = (highfi.run(tiny(output__interval=interval), COARSE) for interval in ("0.1 ms", "0.73 ms"))
+    """The step divides it, and so is another one, by less than one in the steps of 50 us: what then
+    differs is the error of the scheme, of which that changes little."""
+    whole, other = (
+        highfi.run(tiny(output__interval=interval), COARSE) for interval in ("0.1 ms", "0.73 ms")
+    )
     assert other.cost["dt_s"] != whole.cost["dt_s"]
     assert other.outcome.exit_time == pytest.approx(whole.outcome.exit_time, abs=1e-10)
-    assert other.outcome.rate == pytest.approx(whole.outcome.rate, abs=1e-5 * np.linalg.norm(whole.outcome.rate))
+    assert other.outcome.rate == pytest.approx(
+        whole.outcome.rate, abs=1e-5 * np.linalg.norm(whole.outcome.rate)
+    )
 
 
 def straight(safety: float) -> tuple[float, float, float]:
-    """Errors of exit (s) and mean velocity (m/s) of a payload that is pushed along the rail and touches nothing, and the step (s).
-    Its platform is as free: both move by the Gaussian push over their masses."""
+    """Errors of exit (s) and mean velocity (m/s) of a payload that is pushed along the rail and
+    touches nothing, and the step (s). Its platform is as free: both move by the Gaussian push over
+    their masses."""
     scene = tiny(thrust_offset__misalignment__axial=0.0, output__interval="25 ms")
     found = highfi.run(scene, Numerics(element_size=COARSE.element_size, safety=safety))
     push, pad = scene.thrust, scene.pads[0]
@@ -48,22 +57,35 @@ def straight(safety: float) -> tuple[float, float, float]:
         return np.exp(-0.5 * ((t - push.centre) / push.width) ** 2)
 
     def speed(t, factor):
-        return factor * push.peak * scipy.integrate.quad(shape, 0.0, t, epsabs=0.0, epsrel=1e-13, limit=200)[0]
+        return (
+            factor
+            * push.peak
+            * scipy.integrate.quad(shape, 0.0, t, epsabs=0.0, epsrel=1e-13, limit=200)[0]
+        )
 
     def way(begin, end, factor):
-        return scipy.integrate.quad(speed, begin, end, args=(factor,), epsabs=0.0, epsrel=1e-12, limit=200)[0]
+        return scipy.integrate.quad(
+            speed, begin, end, args=(factor,), epsabs=0.0, epsrel=1e-12, limit=200
+        )[0]
 
     past = scene.rail.end + 0.5 * pad.length - min(pad.position[0] for pad in scene.pads)
-    exact = scipy.optimize.brentq(lambda t: way(0.0, t, together) - past, 1e-3, 0.025, xtol=1e-15, rtol=1e-14)
+    exact = scipy.optimize.brentq(
+        lambda t: way(0.0, t, together) - past, 1e-3, 0.025, xtol=1e-15, rtol=1e-14
+    )
     start = found.outcome.window_start
     assert start == pytest.approx(exact + 1e-3, abs=1e-7)  # the push is over
     mean = way(start, start + 2e-3, 1.0 / scene.payload.mass) / 2e-3
-    return abs(found.outcome.exit_time - exact), abs(found.outcome.velocity[0] - mean), found.cost["dt_s"]
+    return (
+        abs(found.outcome.exit_time - exact),
+        abs(found.outcome.velocity[0] - mean),
+        found.cost["dt_s"],
+    )
 
 
 def test_exit_and_means_of_a_straight_flight():
-    """Errors fall with the square of the step, at the least; the interval is the whole flight. Control: an exit at the nearest step
-    would be off by a quarter of a step on the average, 1e-7 s."""
+    """Errors fall with the square of the step, at the least; the interval is the whole flight.
+    Control: an exit at the nearest step would be off by a quarter of a step on the average, 1e-7
+    s."""
     (exit_at, mean, dt), (finer_exit, finer_mean, finer_dt) = straight(0.9), straight(0.3)
     assert exit_at < 1e-11 and mean < 1e-8
     allowed = 1.5 * (finer_dt / dt) ** 2
@@ -76,7 +98,10 @@ def test_a_jam_is_found_with_few_samples(interval):
     found = highfi.run(tiny(thrust__peak="5 N", output__interval=interval), COARSE)
     spent = 4.5e-3 + 1.5e-3 * np.sqrt(2.0 * np.log(100.0))
     assert found.status == "jammed" and found.outcome.exit_time is None
-    assert 0.0 <= found.cost["steps"] * found.cost["dt_s"] - (spent + 5e-3) < 250 * found.cost["dt_s"]  # to the next look
+    # to the next look
+    assert (
+        0.0 <= found.cost["steps"] * found.cost["dt_s"] - (spent + 5e-3) < 250 * found.cost["dt_s"]
+    )
 
 
 class _StopAt:
@@ -92,7 +117,8 @@ class _StopAt:
 
 @pytest.mark.parametrize("looks", [60, 133, 145])
 def test_a_resume_between_samples_goes_on_to_the_same_bits(tmp_path, looks):
-    """Before the exit, and twice in the settled window, whose sums are in the file. Control: without them the means are others."""
+    """Before the exit, and twice in the settled window, whose sums are in the file. Control:
+    without them the means are others."""
     scene = tiny(output__interval="25 ms")
     first, second, poor = (begun(scene) for _ in range(3))
     with pytest.raises(Stopped):

@@ -1,4 +1,5 @@
-"""The moving frame: inertial loads on the rail, and momenta with contact and friction but nothing from outside."""
+"""The moving frame: inertial loads on the rail, and momenta with contact and friction but nothing
+from outside."""
 
 import numpy as np
 import pytest
@@ -10,17 +11,27 @@ from tests.highfi.support import COARSE, bar_mesh, loop_on, spinning_bar_stretch
 
 @pytest.mark.case("O12")
 def test_bar_turning_about_its_root_stretches():
-    """rho w^2 L^3 / (3 E) = 1.1240 um for an aluminium bar of 0.6 m at 20 rad/s; started suddenly it swings about that."""
+    """rho w^2 L^3 / (3 E) = 1.1240 um for an aluminium bar of 0.6 m at 20 rad/s; started suddenly
+    it swings about that."""
     density, modulus, length, rate = 2810.0, 72e9, 0.6, 20.0
-    scene = parse({
-        "name": "bar", "duration": 9.483e-3, "output": {"interval": 1e-5}, "pads": [
-            {"position": [0.0, 5.0, 0.0], "normals": ["+y"]}],
-        "payload": {"mass": 1.0, "inertia": {"xx": 1.0, "yy": 1.0, "zz": 1.0}},
-        "platform": {"mass": 1e6, "inertia": {"xx": 1e6, "yy": 1e6, "zz": 1e6}},
-        "rail": {"start": 0.0, "end": length, "material": {
-            "density": density, "youngs_modulus": modulus, "poisson_ratio": 0.33}},
-        "thrust": {"kind": "constant", "force": 0.0, "duration": 1e-3},
-        "initial": {"platform_rate": {"z": rate}}}, bare_numbers_are_si=True)
+    scene = parse(
+        {
+            "name": "bar",
+            "duration": 9.483e-3,
+            "output": {"interval": 1e-5},
+            "pads": [{"position": [0.0, 5.0, 0.0], "normals": ["+y"]}],
+            "payload": {"mass": 1.0, "inertia": {"xx": 1.0, "yy": 1.0, "zz": 1.0}},
+            "platform": {"mass": 1e6, "inertia": {"xx": 1e6, "yy": 1e6, "zz": 1e6}},
+            "rail": {
+                "start": 0.0,
+                "end": length,
+                "material": {"density": density, "youngs_modulus": modulus, "poisson_ratio": 0.33},
+            },
+            "thrust": {"kind": "constant", "force": 0.0, "duration": 1e-3},
+            "initial": {"platform_rate": {"z": rate}},
+        },
+        bare_numbers_are_si=True,
+    )
     loop = loop_on(scene, bar_mesh(length, 0.02, 30))
     tip = loop.system.number[loop.system.mesh.points[:, 0] == length]
     loop.begin()
@@ -29,15 +40,24 @@ def test_bar_turning_about_its_root_stretches():
         loop.advance_one_sample()
         stretch.append(loop.state.displacement[tip, 0].mean())
     assert not loop.message
-    assert np.mean(stretch) == pytest.approx(spinning_bar_stretch(density, rate, length, modulus), rel=0.01)
+    assert np.mean(stretch) == pytest.approx(
+        spinning_bar_stretch(density, rate, length, modulus), rel=0.01
+    )
 
 
 @pytest.mark.case("O32")
 def test_momenta_without_outside_load():
-    """Payload, four elastic rails and free platform through penalty and friction: p and L stay fixed over 1e5 steps."""
-    scene = tiny(thrust={"kind": "constant", "force": 0.0, "duration": 1e-3, "arm": 0.1}, thrust_offset=None,
-                 duration="60 ms", initial={"velocity": {"x": 2.0, "y": 0.1, "z": 0.03},
-                                            "rate": {"x": 0.5, "y": 0.1, "z": -0.2}})
+    """Payload, four elastic rails and free platform through penalty and friction: p and L stay
+    fixed over 1e5 steps."""
+    scene = tiny(
+        thrust={"kind": "constant", "force": 0.0, "duration": 1e-3, "arm": 0.1},
+        thrust_offset=None,
+        duration="60 ms",
+        initial={
+            "velocity": {"x": 2.0, "y": 0.1, "z": 0.03},
+            "rate": {"x": 0.5, "y": 0.1, "z": -0.2},
+        },
+    )
     found = highfi.run(scene, COARSE)
     assert found.cost["steps"] >= 1e5
     touched = np.abs(found.pad_force).max(axis=(0, 2)) > 0.0

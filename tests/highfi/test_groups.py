@@ -19,9 +19,15 @@ def system():
 def nodes_of(surface, group):
     """Nodes that the faces of a group can meet."""
     groups = surface.groups
-    faces = groups.face[groups.first_face[group]:groups.first_face[group + 1]]
-    return np.unique(np.concatenate([surface.facets[surface.reach[surface.first[face]:surface.first[face + 1]]].ravel()
-                                     for face in faces]))
+    faces = groups.face[groups.first_face[group] : groups.first_face[group + 1]]
+    return np.unique(
+        np.concatenate(
+            [
+                surface.facets[surface.reach[surface.first[face] : surface.first[face + 1]]].ravel()
+                for face in faces
+            ]
+        )
+    )
 
 
 def test_each_rail_has_a_group_of_its_own():
@@ -29,7 +35,10 @@ def test_each_rail_has_a_group_of_its_own():
     groups = found.surface.groups
     assert np.diff(groups.first_face).tolist() == [4, 4, 4, 4]
     assert sorted(groups.face.tolist()) == list(range(16))
-    sides = [{tuple(np.sign(found.rail.points[node, 1:])) for node in nodes_of(found.surface, group)} for group in range(4)]
+    sides = [
+        {tuple(np.sign(found.rail.points[node, 1:])) for node in nodes_of(found.surface, group)}
+        for group in range(4)
+    ]
     assert all(len(side) == 1 for side in sides) and len(set.union(*sides)) == 4
 
 

@@ -14,7 +14,8 @@ NUMERICS = Numerics(element_size=0.004)
 
 
 def begun(kernel: str, threads: int = 1, **overrides) -> Loop:
-    """A run on the extruded rails of ``tiny`` at its first sample; "elements" makes the loop forget that they are extruded."""
+    """A run on the extruded rails of ``tiny`` at its first sample; "elements" makes the loop forget
+    that they are extruded."""
     scene = tiny(duration="9 ms", contact__clearance="0.05 mm", **overrides)
     system = build(scene, NUMERICS, highfi.prepare(scene, NUMERICS))
     assert system.rail.pencils is not None
@@ -48,5 +49,16 @@ def test_threads_do_not_change_a_bit(kernel):
     assert np.abs(alone.pad_force).max() > 0.0
     for threads in (2, 3):
         shared = run(kernel, threads)
-        for name in ("position", "velocity", "quaternion", "rate", "platform_velocity", "pad_force", "energy", "transverse_energy"):
-            np.testing.assert_array_equal(getattr(shared, name), getattr(alone, name), err_msg=f"{name}, {threads} threads")
+        for name in (
+            "position",
+            "velocity",
+            "quaternion",
+            "rate",
+            "platform_velocity",
+            "pad_force",
+            "energy",
+            "transverse_energy",
+        ):
+            np.testing.assert_array_equal(
+                getattr(shared, name), getattr(alone, name), err_msg=f"{name}, {threads} threads"
+            )

@@ -1,4 +1,5 @@
-"""Rails given as a file: the reference and the surrogate run them, and a file that contradicts its scene is refused."""
+"""Rails given as a file: the reference and the surrogate run them, and a file that contradicts its
+scene is refused."""
 
 import meshio
 import numpy as np
@@ -13,9 +14,15 @@ from scenes import SceneError, load
 from tests.fe.test_solid import drawn, l_sections, l_surfaces, scene_of
 from tests.highfi.support import COARSE, tiny
 
-# The catalogue's channel under the fast pulse of the tiny scene, and aimed so badly that pads press within its first 8 ms.
-FAST = {"thrust_offset.misalignment.axial": "1 deg", "thrust.peak": "24 kN", "thrust.width": "1.5 ms", "thrust.centre": "4.5 ms",
-        "output.interval": "0.1 ms"}
+# The catalogue's channel under the fast pulse of the tiny scene, and aimed so badly that pads press
+# within its first 8 ms.
+FAST = {
+    "thrust_offset.misalignment.axial": "1 deg",
+    "thrust.peak": "24 kN",
+    "thrust.width": "1.5 ms",
+    "thrust.centre": "4.5 ms",
+    "output.interval": "0.1 ms",
+}
 
 
 def channels(**overrides):
@@ -26,7 +33,9 @@ def channels(**overrides):
 def from_file(scene, path):
     """``scene`` with its rail given by a file."""
     start, end, material = scene.rail.start, scene.rail.end, scene.rail.material.model_dump()
-    return scene.replace({"rail": {"mesh": str(path), "start": start, "end": end, "material": material}})
+    return scene.replace(
+        {"rail": {"mesh": str(path), "start": start, "end": end, "material": material}}
+    )
 
 
 def saved(mesh: meshio.Mesh, path):
@@ -52,7 +61,10 @@ def test_promises_hold_on_a_rail_that_is_no_extrusion():
 
 @pytest.mark.slow
 def test_both_fidelities_leave_the_channels():
-    reference, surrogate = highfi.run(channels(duration="30 ms")), lowfi.run(channels(duration="30 ms"), "springs")
+    reference, surrogate = (
+        highfi.run(channels(duration="30 ms")),
+        lowfi.run(channels(duration="30 ms"), "springs"),
+    )
     assert reference.status == surrogate.status == "exited"
     assert_promises(reference)
     # Thrust sets both; only friction of impacts, which a rigid wall makes harder, tells them apart.
@@ -77,7 +89,9 @@ def test_the_built_in_rails_from_a_file_give_the_same_run(tmp_path):
 
 
 def test_a_smaller_element_size_splits_the_elements_of_the_file():
-    coarse, fine = (highfi.prepare(channels(), highfi.Numerics(element_size=size)) for size in (0.004, 0.002))
+    coarse, fine = (
+        highfi.prepare(channels(), highfi.Numerics(element_size=size)) for size in (0.004, 0.002)
+    )
     assert len(fine.cells) == 8 * len(coarse.cells)
 
 
@@ -90,12 +104,18 @@ def test_walls_that_the_scene_places_elsewhere_are_all_named():
 
 
 def test_another_clearance_is_a_shim_under_the_pads(tmp_path):
-    """Moving pads out by 0.05 mm does what moving walls in does. Control: left out, the change would be seen twenty times over."""
-    wide = tiny(duration="8 ms", thrust_offset__misalignment__axial="1 deg", contact__clearance="0.25 mm")
+    """Moving pads out by 0.05 mm does what moving walls in does. Control: left out, the change
+    would be seen twenty times over."""
+    wide = tiny(
+        duration="8 ms", thrust_offset__misalignment__axial="1 deg", contact__clearance="0.25 mm"
+    )
     path = saved(l_rail.build(geometry(wide), COARSE.element_size), tmp_path / "rails.msh")
     drawn_wide = from_file(wide, path).replace({"rail.clearance": "0.25 mm"})
     narrow = {"contact.clearance": "0.2 mm"}
-    wall, shim, before = (highfi.run(scene, COARSE).rate for scene in (wide.replace(narrow), drawn_wide.replace(narrow), wide))
+    wall, shim, before = (
+        highfi.run(scene, COARSE).rate
+        for scene in (wide.replace(narrow), drawn_wide.replace(narrow), wide)
+    )
     assert np.abs(shim - wall).max() < 0.05 * np.abs(before - wall).max()
 
 
@@ -130,10 +150,15 @@ def test_a_file_without_the_surfaces_and_with_turned_elements(tmp_path):
         highfi.prepare(from_file(channels(), path))
     text = str(caught.value)
     assert text.startswith(f"{path} cannot be used:")
-    assert "inverted or flat elements: 5, 42" in text and "no quadrilateral group named 'mount'" in text
+    assert (
+        "inverted or flat elements: 5, 42" in text
+        and "no quadrilateral group named 'mount'" in text
+    )
 
 
-@pytest.mark.parametrize("name, content", [("rails.msh", b"no mesh at all"), ("rails.xyz", b""), ("rails.vtu", b"<xml")])
+@pytest.mark.parametrize(
+    "name, content", [("rails.msh", b"no mesh at all"), ("rails.xyz", b""), ("rails.vtu", b"<xml")]
+)
 def test_a_file_that_no_reader_takes_is_a_fault_not_an_exit(tmp_path, name, content, capfd):
     (tmp_path / name).write_bytes(content)
     with pytest.raises(MeshError, match="meshio does not read it"):
@@ -151,7 +176,8 @@ def test_a_file_that_changes_after_the_scene_was_read_is_refused(tmp_path):
 
 @pytest.mark.case("X14")
 def test_slivers_are_warned_about_with_the_step_they_force(tmp_path):
-    """A brick of the 7075 alloy with an edge of 5 um: pressure waves at 6,161 m/s cross it in 0.811 ns."""
+    """A brick of the 7075 alloy with an edge of 5 um: pressure waves at 6,161 m/s cross it in 0.811
+    ns."""
     mesh = l_rail.build(geometry(tiny()), 0.004)
     mesh.points[np.isclose(mesh.points[:, 0], -0.084), 0] = -0.088 + 5e-6
     cost, step = highfi.prepare(from_file(tiny(), saved(mesh, tmp_path / "rails.msh"))).warnings
@@ -161,8 +187,15 @@ def test_slivers_are_warned_about_with_the_step_they_force(tmp_path):
 
 @pytest.mark.gmsh
 def test_the_built_in_rails_from_cad_give_the_same_run(tmp_path):
-    built = tiny(duration="8 ms", thrust_offset__misalignment__axial="1 deg", rail=load("reference").rail.model_dump())
+    built = tiny(
+        duration="8 ms",
+        thrust_offset__misalignment__axial="1 deg",
+        rail=load("reference").rail.model_dump(),
+    )
     drawing = scene_of(drawn(tmp_path / "rails.step", l_sections), l_surfaces()).rail
-    first, second = (highfi.run(scene, COARSE) for scene in (built, built.replace({"rail": drawing.model_dump()})))
+    first, second = (
+        highfi.run(scene, COARSE)
+        for scene in (built, built.replace({"rail": drawing.model_dump()}))
+    )
     assert np.abs(first.pad_force).max() > 100.0
     assert np.abs(second.rate - first.rate).max() <= 1e-9 * np.abs(first.rate).max()

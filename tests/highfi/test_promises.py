@@ -1,4 +1,5 @@
-"""The promises of every reference run: both ledgers, momenta, step, friction; and that a fault in them would be seen."""
+"""The promises of every reference run: both ledgers, momenta, step, friction; and that a fault in
+them would be seen."""
 
 import numpy as np
 import pytest
@@ -36,14 +37,19 @@ def test_friction_takes_energy_and_the_step_is_below_the_limit(result):
     assert result.cost["dt_s"] <= result.cost["dt_limit_s"] * result.cost["safety"]
 
 
-# Each set of effects is a kernel of its own, and compiling one takes longer than all runs here: most sets are slow tests.
-@pytest.mark.parametrize("change", [
-    {"thrust__reaction": "exhaust"},
-    {"platform": None, "gravity__z": "-9.80665 m/s**2"},
-    pytest.param({"platform": None}, marks=pytest.mark.slow),
-    pytest.param({"friction": None}, marks=pytest.mark.slow),
-    pytest.param({"gravity__y": "9.80665 m/s**2"}, marks=pytest.mark.slow),
-    pytest.param({"contact": None, "friction": None}, marks=pytest.mark.slow)])
+# Each set of effects is a kernel of its own, and compiling one takes longer than all runs here:
+# most sets are slow tests.
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"thrust__reaction": "exhaust"},
+        {"platform": None, "gravity__z": "-9.80665 m/s**2"},
+        pytest.param({"platform": None}, marks=pytest.mark.slow),
+        pytest.param({"friction": None}, marks=pytest.mark.slow),
+        pytest.param({"gravity__y": "9.80665 m/s**2"}, marks=pytest.mark.slow),
+        pytest.param({"contact": None, "friction": None}, marks=pytest.mark.slow),
+    ],
+)
 def test_promises_hold_with_other_effects(change):
     early = {} if "contact" in change else {"contact__clearance": "0.05 mm"}
     found = highfi.run(tiny(duration="12 ms", **early, **change), COARSE)
@@ -56,7 +62,8 @@ def test_promises_hold_with_other_effects(change):
 
 
 def test_spurious_contact_energy_is_seen():
-    """Stiffening pressed contact by 1 % creates 1 % of its stored energy out of nothing; the ledger must show just that."""
+    """Stiffening pressed contact by 1 % creates 1 % of its stored energy out of nothing; the ledger
+    must show just that."""
     loop = loop_on(tiny(), highfi.prepare(tiny(), COARSE), COARSE)
     loop.begin()
     created = 0.0
@@ -65,30 +72,43 @@ def test_spurious_contact_energy_is_seen():
         stored = loop.state.load[records.STORED]
         if stored > 3e-6:
             created = 0.01 * stored
-    loop.system = loop.system._replace(model=loop.system.model._replace(penalty=1.01 * loop.system.model.penalty))
+    loop.system = loop.system._replace(
+        model=loop.system.model._replace(penalty=1.01 * loop.system.model.penalty)
+    )
     loop.march(None)
     found = loop.trajectory({}, COARSE)
     lost = found.checks["transverse_energy_error"] * loop.scale
     assert lost == pytest.approx(created, rel=0.2)
-    assert found.checks["transverse_energy_error"] > 10.0 * highfi.run(tiny(), COARSE).checks["transverse_energy_error"]
+    assert (
+        found.checks["transverse_energy_error"]
+        > 10.0 * highfi.run(tiny(), COARSE).checks["transverse_energy_error"]
+    )
 
 
 def test_energy_of_points_that_cross_the_edge_is_released():
-    """Pads without a crown are pressed up to their edge, and slide: points leave it loaded and meet it loaded. The ledger closes
-    only with what they carry off and bring in; with crowned pads there is nothing to release."""
+    """Pads without a crown are pressed up to their edge, and slide: points leave it loaded and meet
+    it loaded. The ledger closes only with what they carry off and bring in; with crowned pads there
+    is nothing to release."""
     early = {"duration": "14 ms", "contact__clearance": "0.05 mm"}
     flat = [pad.model_dump() | {"relief": 0.0} for pad in tiny().pads]
     entry = ledger.ENTRIES.index("released")
     crowned, found = highfi.run(tiny(**early), COARSE), highfi.run(tiny(pads=flat, **early), COARSE)
     assert np.abs(crowned.pad_force).max() > 100.0 and (crowned.energy[:, entry] == 0.0).all()
     assert found.status == "time_limit" and found.checks["transverse_energy_error"] <= 1e-3
-    assert np.abs(found.energy[:, entry]).max() > 0.1 * np.abs(found.transverse_energy[:, ledger.ENTRIES.index("kinetic")]).max()
+    assert (
+        np.abs(found.energy[:, entry]).max()
+        > 0.1 * np.abs(found.transverse_energy[:, ledger.ENTRIES.index("kinetic")]).max()
+    )
 
 
 def test_mirror_image():
-    """Mirroring the scene in y mirrors the motion: rates are axial vectors, so x and z components change sign."""
+    """Mirroring the scene in y mirrors the motion: rates are axial vectors, so x and z components
+    change sign."""
     left = highfi.run(tiny(), COARSE)
-    right = highfi.run(tiny(thrust_offset__misalignment__radial="165 deg", payload__inertia__xy="-0.004 kg*m**2"), COARSE)
+    right = highfi.run(
+        tiny(thrust_offset__misalignment__radial="165 deg", payload__inertia__xy="-0.004 kg*m**2"),
+        COARSE,
+    )
     mirrored = np.array(right.outcome.rate) * [-1.0, 1.0, -1.0]
     assert mirrored == pytest.approx(left.outcome.rate, rel=1e-6, abs=1e-9)
 
@@ -102,7 +122,8 @@ def test_same_input_same_bits():
 
 @pytest.mark.slow
 def test_heavy_platform_is_a_fixed_one():
-    """The recoil falls as 1/M: two masses show the rate at which the fixed platform is approached."""
+    """The recoil falls as 1/M: two masses show the rate at which the fixed platform is
+    approached."""
     early = {"duration": "12 ms", "contact__clearance": "0.05 mm"}
     fixed = highfi.run(tiny(platform=None, **early), COARSE)
     assert np.abs(fixed.pad_force).max() > 0.0
@@ -111,5 +132,6 @@ def test_heavy_platform_is_a_fixed_one():
         scale = {f"platform__inertia__{axis}": 1e3 * mass for axis in ("xx", "yy", "zz")}
         free = highfi.run(tiny(platform__mass=mass, **scale, **early), COARSE)
         return np.abs(free.velocity - fixed.velocity).max()
+
     near, far = difference(1e6), difference(1e5)
     assert far / near == pytest.approx(10.0, rel=0.15)

@@ -14,14 +14,17 @@ FOUND = ("friction", "platform")  # kernels that other tests compile too
 
 
 def check(effect: str) -> None:
-    """Read from the machine code: what the scene has is there, what it has not is not, and one change changes nothing else. Without
-    contact there is no friction either."""
+    """Read from the machine code: what the scene has is there, what it has not is not, and one
+    change changes nothing else. Without contact there is no friction either."""
     added = {"gravity": {"gravity__z": -9.80665}, "rail.damping": DAMPED}
     present = highfi.compiled_effects(tiny(), COARSE)
     assert present == {name: name not in added for name in LAWS}
     changed = highfi.compiled_effects(tiny(**added.get(effect, {effect: None})), COARSE)
     also = {"friction"} if effect == "contact" else set()
-    assert changed == {name: not value if name == effect or name in also else value for name, value in present.items()}
+    assert changed == {
+        name: not value if name == effect or name in also else value
+        for name, value in present.items()
+    }
 
 
 @pytest.mark.parametrize("effect", FOUND)
@@ -36,8 +39,16 @@ def test_each_other_effect_is_compiled_where_it_is_present_only(effect):
 
 
 def test_code_read_from_the_disk_cache_is_the_code_that_runs():
-    """A second process finds the kernel compiled; what it reads must not depend on who compiled it."""
-    ask = ("import highfi; from tests.highfi.support import COARSE, tiny; "
-           "print(highfi.compiled_effects(tiny(friction=None), COARSE))")
-    said = [subprocess.run([sys.executable, "-c", ask], check=True, capture_output=True, text=True).stdout for _ in range(2)]
+    """A second process finds the kernel compiled; what it reads must not depend on who compiled
+    it."""
+    ask = (
+        "import highfi; from tests.highfi.support import COARSE, tiny; "
+        "print(highfi.compiled_effects(tiny(friction=None), COARSE))"
+    )
+    said = [
+        subprocess.run(
+            [sys.executable, "-c", ask], check=True, capture_output=True, text=True
+        ).stdout
+        for _ in range(2)
+    ]
     assert said[0] == said[1] == f"{highfi.compiled_effects(tiny(friction=None), COARSE)}\n"

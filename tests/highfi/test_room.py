@@ -1,4 +1,5 @@
-"""Memory is asked for before it is taken: what a run will need, what there is, and the refusal when that is less."""
+"""Memory is asked for before it is taken: what a run will need, what there is, and the refusal when
+that is less."""
 
 import importlib
 
@@ -17,15 +18,28 @@ runs = importlib.import_module("highfi.run")  # the name in the package is the f
 MEMINFO = "MemTotal:       16000000 kB\nMemFree:         1000000 kB\nMemAvailable:    8000000 kB\n"
 
 
-@pytest.mark.parametrize("name, size", [("reference", 0.004), ("reference", 0.003), ("reference", 0.0021), ("tiny", 0.016),
-                                        ("tiny", 0.008), ("tiny", 0.005)])
+@pytest.mark.parametrize(
+    "name, size",
+    [
+        ("reference", 0.004),
+        ("reference", 0.003),
+        ("reference", 0.0021),
+        ("tiny", 0.016),
+        ("tiny", 0.008),
+        ("tiny", 0.005),
+    ],
+)
 def test_elements_are_foretold(name, size):
     section = geometry(load(name))
     mesh = l_rail.build(section, size)
-    assert l_rail.elements(section, size) == sum(len(block.data) for block in mesh.cells if block.type == "hexahedron")
+    assert l_rail.elements(section, size) == sum(
+        len(block.data) for block in mesh.cells if block.type == "hexahedron"
+    )
 
 
-@pytest.mark.parametrize("elements, measured", [(154_880, 0.35e9), (1_239_040, 2.7e9), (4_050_000, 8.7e9)])
+@pytest.mark.parametrize(
+    "elements, measured", [(154_880, 0.35e9), (1_239_040, 2.7e9), (4_050_000, 8.7e9)]
+)
 def test_estimate_is_what_was_measured(elements, measured):
     """Within a quarter, and not below."""
     assert measured <= footprint.of_section(elements) <= 1.25 * measured
@@ -45,27 +59,45 @@ def test_machine_says_what_is_left(tmp_path):
     assert footprint.available(files(tmp_path, **{"proc/meminfo": MEMINFO})) == 8_192_000_000
 
 
-@pytest.mark.parametrize("line, folder, names", [
-    ("0::/a/b\n", "", ("memory.max", "memory.current", "inactive_file")),
-    ("4:memory:/a/b\n1:cpu:/\n", "memory/", ("memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file"))])
+@pytest.mark.parametrize(
+    "line, folder, names",
+    [
+        ("0::/a/b\n", "", ("memory.max", "memory.current", "inactive_file")),
+        (
+            "4:memory:/a/b\n1:cpu:/\n",
+            "memory/",
+            ("memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file"),
+        ),
+    ],
+)
 def test_control_group_and_those_around_it_count(tmp_path, line, folder, names):
     """3 GB less 2 GB in use, of which half a GB is cached files; the group itself has no limit."""
     limit, used, cached = names
     unlimited = "max" if limit == "memory.max" else "9223372036854771712"
     around, own = (f"sys/fs/cgroup/{folder}{place}" for place in ("a", "a/b"))
-    files(tmp_path, **{"proc/meminfo": MEMINFO, "proc/self/cgroup": line, f"{around}/{limit}": "3000000000\n",
-                       f"{around}/{used}": "2000000000\n", f"{around}/memory.stat": f"anon 5\n{cached} 500000000\n",
-                       f"{own}/{limit}": f"{unlimited}\n", f"{own}/{used}": "2000000000\n"})
+    files(
+        tmp_path,
+        **{
+            "proc/meminfo": MEMINFO,
+            "proc/self/cgroup": line,
+            f"{around}/{limit}": "3000000000\n",
+            f"{around}/{used}": "2000000000\n",
+            f"{around}/memory.stat": f"anon 5\n{cached} 500000000\n",
+            f"{own}/{limit}": f"{unlimited}\n",
+            f"{own}/{used}": "2000000000\n",
+        },
+    )
     assert footprint.available(tmp_path) == 1_500_000_000
 
 
 def test_section_that_does_not_fit_is_refused_before_it_is_meshed(monkeypatch):
-    """Both numbers are named, and a size that fits: at that size the check passes. Control: without it the mesh would be begun."""
+    """Both numbers are named, and a size that fits: at that size the check passes. Control: without
+    it the mesh would be begun."""
     monkeypatch.setattr(footprint, "available", lambda: 2_000_000_000)
     monkeypatch.setattr(runs, "make_mesh", lambda *_: pytest.fail("meshed"))
     with pytest.raises(SceneError) as caught:
         highfi.prepare(load("reference"), Numerics(element_size=0.00025))
-    fault, = caught.value.faults
+    (fault,) = caught.value.faults
     assert fault.key == "element_size" and "9,912,320 elements" in fault.given
     assert "23 GB" in fault.given and "2 GB can be had" in fault.given
     size = 1e-3 * float(fault.expected.split()[0])
@@ -74,7 +106,8 @@ def test_section_that_does_not_fit_is_refused_before_it_is_meshed(monkeypatch):
 
 
 def test_mesh_of_a_file_that_leaves_too_little_is_refused(monkeypatch):
-    """7,240 hexahedra, most of them alike; a limit below what they take, and one that only many shapes would break."""
+    """7,240 hexahedra, most of them alike; a limit below what they take, and one that only many
+    shapes would break."""
     scene = load("channel")
     mesh = highfi.prepare(scene)
     elements, nodes = mesh.cells.shape
@@ -82,7 +115,9 @@ def test_mesh_of_a_file_that_leaves_too_little_is_refused(monkeypatch):
     monkeypatch.setattr(footprint, "available", lambda: 0.9 * footprint.of_mesh(elements, nodes, 0))
     with pytest.raises(SceneError, match="a coarser file"):
         highfi.prepare(scene)
-    monkeypatch.setattr(footprint, "available", lambda: 0.9 * footprint.of_mesh(elements, nodes, elements))
+    monkeypatch.setattr(
+        footprint, "available", lambda: 0.9 * footprint.of_mesh(elements, nodes, elements)
+    )
     assert highfi.prepare(scene).cells.shape == (elements, nodes)
 
 
@@ -90,9 +125,15 @@ def test_mesh_of_a_file_that_leaves_too_little_is_refused(monkeypatch):
 def test_commands_say_so_without_a_traceback(tmp_path, monkeypatch, command):
     monkeypatch.setattr(footprint, "available", lambda: 100_000_000)
     runs._MESHES.clear()
-    result = CliRunner().invoke(app, [command, "--element-size", "1", "--out", str(tmp_path / "out")])
+    result = CliRunner().invoke(
+        app, [command, "--element-size", "1", "--out", str(tmp_path / "out")]
+    )
     assert result.exit_code == 2
-    assert "GB of memory" in result.stderr and "0.1 GB can be had" in result.stderr and "Traceback" not in result.output
+    assert (
+        "GB of memory" in result.stderr
+        and "0.1 GB can be had" in result.stderr
+        and "Traceback" not in result.output
+    )
 
 
 def test_other_systems_are_not_asked(monkeypatch):

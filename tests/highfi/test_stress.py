@@ -1,4 +1,5 @@
-"""Peak stress of a run: found where and when a plain look at every sample finds it, on any number of threads; wall gauges."""
+"""Peak stress of a run: found where and when a plain look at every sample finds it, on any number
+of threads; wall gauges."""
 
 import numpy as np
 import pytest
@@ -16,7 +17,8 @@ LAW = element.elasticity(72e9, 0.33)
 
 @pytest.fixture(scope="module")
 def seen():
-    """The run on ``tiny`` and, at every sample, the plain von Mises stress (e,8) Pa at all corners of all elements."""
+    """The run on ``tiny`` and, at every sample, the plain von Mises stress (e,8) Pa at all corners
+    of all elements."""
     stresses = []
 
     def look(loop):
@@ -41,16 +43,28 @@ def test_peak_is_that_of_the_plain_formulas(seen):
     assert run.stress["peak_stress_pa"] == pytest.approx(stresses[::every].max(), rel=1e-12)
     assert run.stress["peak_stress_time_s"] == pytest.approx(run.time[every * sample], rel=1e-12)
     place = np.array(run.stress["peak_stress_place_m"])
-    # Mirror images of the place are other rails; of corners that tie within rounding any may be named.
+    # Mirror images of the place are other rails; of corners that tie within rounding any may be
+    # named.
     there = stresses[every * sample][(mesh.points[mesh.cells] == place).all(axis=2)]
     assert there.max() == pytest.approx(stresses[::every].max(), rel=1e-12)
-    assert run.stress["peak_stress_rail"] == " ".join(f"{'+' if place[axis] > 0.0 else '-'}{'xyz'[axis]}" for axis in (1, 2))
+    assert run.stress["peak_stress_rail"] == " ".join(
+        f"{'+' if place[axis] > 0.0 else '-'}{'xyz'[axis]}" for axis in (1, 2)
+    )
 
 
 def test_observer_sees_every_sample_and_changes_no_bit(seen, bare):
     run, stresses = seen
     assert len(stresses) == run.time.size
-    for name in ("position", "velocity", "quaternion", "rate", "pad_force", "energy", "transverse_energy", "wall_stress"):
+    for name in (
+        "position",
+        "velocity",
+        "quaternion",
+        "rate",
+        "pad_force",
+        "energy",
+        "transverse_energy",
+        "wall_stress",
+    ):
         np.testing.assert_array_equal(getattr(run, name), getattr(bare, name), err_msg=name)
     assert (run.stress, run.checks, run.outcome) == (bare.stress, bare.checks, bare.outcome)
 
@@ -64,12 +78,18 @@ def test_stress_survives_the_file(bare, tmp_path):
 
 
 def test_yield_and_large_motion_are_warned_of(bare):
-    """Control: the run as it is bears a twentieth of its yield strength and is warned of nothing."""
+    """Control: the run as it is bears a twentieth of its yield strength and is warned of
+    nothing."""
     assert bare.stress["yield_strength_pa"] == 503e6 and bare.stress["warnings"] == []
     weak = highfi.run(tiny(duration="12 ms", rail__material__yield_strength="1 MPa"), COARSE)
     assert weak.stress["peak_stress_pa"] > 1e6
-    assert len(weak.stress["warnings"]) == 1 and "yield strength, 1 MPa" in weak.stress["warnings"][0]
-    large = watch.warnings(bare.stress | {"largest_strain": 0.02, "largest_rotation_rad": 0.05, "yield_strength_pa": None})
+    assert (
+        len(weak.stress["warnings"]) == 1 and "yield strength, 1 MPa" in weak.stress["warnings"][0]
+    )
+    large = watch.warnings(
+        bare.stress
+        | {"largest_strain": 0.02, "largest_rotation_rad": 0.05, "yield_strength_pa": None}
+    )
     assert [words.split()[0] for words in large] == ["strain", "an"]
 
 
@@ -79,25 +99,44 @@ def test_any_number_of_threads_finds_the_same_corner(threads):
     moved = 1e-6 * np.random.default_rng(7).standard_normal((2, *single.state.displacement.shape))
     for loop in (several, single):
         for time, displacement in enumerate(moved):
-            watch.look(loop.watch, np.asfortranarray(displacement), float(time), loop.worst, loop.pool)
+            watch.look(
+                loop.watch, np.asfortranarray(displacement), float(time), loop.worst, loop.pool
+            )
     for found, expected in zip(several.worst, single.worst):
         np.testing.assert_array_equal(found, expected)
 
 
 def test_strain_and_rotation_of_a_distorted_mesh():
-    """A gradient known everywhere: its symmetric part has the norm found as strain, its antisymmetric part that of the rotation."""
+    """A gradient known everywhere: its symmetric part has the norm found as strain, its
+    antisymmetric part that of the rotation."""
     mesh = block((3, 2, 2), (0.03, 0.02, 0.02))
     points = mesh.points + 1e-3 * np.random.default_rng(8).uniform(-1.0, 1.0, mesh.points.shape)
     gradient = 1e-4 * np.random.default_rng(9).standard_normal((3, 3))
     count = len(points)
     classes, worst = np.arange(len(mesh.cells), dtype=np.uint32), nothing()
     found = peaks.build(points, mesh.cells, classes, LAW, np.arange(count))
-    peaks.find(np.asfortranarray(points @ gradient.T), found, worst, np.zeros(peaks.SIZE), 0, len(mesh.cells))
+    peaks.find(
+        np.asfortranarray(points @ gradient.T),
+        found,
+        worst,
+        np.zeros(peaks.SIZE),
+        0,
+        len(mesh.cells),
+    )
     even, odd = 0.5 * (gradient + gradient.T), 0.5 * (gradient - gradient.T)
-    stress = np.array([even[0, 0], even[1, 1], even[2, 2], 2 * even[0, 1], 2 * even[1, 2], 2 * even[2, 0]]) @ LAW
-    assert LAW[3, 3] * np.sqrt(worst.square[STRESS]) == pytest.approx(recovery.von_mises(stress), rel=1e-10)
+    stress = (
+        np.array(
+            [even[0, 0], even[1, 1], even[2, 2], 2 * even[0, 1], 2 * even[1, 2], 2 * even[2, 0]]
+        )
+        @ LAW
+    )
+    assert LAW[3, 3] * np.sqrt(worst.square[STRESS]) == pytest.approx(
+        recovery.von_mises(stress), rel=1e-10
+    )
     assert np.sqrt(worst.square[STRAIN]) == pytest.approx(np.linalg.norm(even), rel=1e-10)
-    assert np.sqrt(worst.square[ROTATION]) == pytest.approx(np.linalg.norm(odd) / np.sqrt(2.0), rel=1e-10)
+    assert np.sqrt(worst.square[ROTATION]) == pytest.approx(
+        np.linalg.norm(odd) / np.sqrt(2.0), rel=1e-10
+    )
 
 
 def patches(size):
@@ -108,7 +147,8 @@ def patches(size):
 
 @pytest.mark.parametrize("size", [0.016, 0.008, 0.004, 0.003])
 def test_patches_are_where_they_are_on_every_mesh_and_see_a_uniform_stress(size):
-    """Midway between the last two clamps, on the track of the pads; under a constant gradient the mean is that constant."""
+    """Midway between the last two clamps, on the track of the pads; under a constant gradient the
+    mean is that constant."""
     system, found = patches(size)
     centres = found.centre + system.origin
     assert centres[:, 0] == pytest.approx(0.068, abs=1e-12)
@@ -116,7 +156,9 @@ def test_patches_are_where_they_are_on_every_mesh_and_see_a_uniform_stress(size)
     assert sorted(np.abs(centres[:, 1:]).min(axis=1)) == pytest.approx([0.091] * 8)
     gradient = 1e-4 * np.random.default_rng(10).standard_normal((3, 3))
     even = 0.5 * (gradient + gradient.T)
-    strain = np.array([even[0, 0], even[1, 1], even[2, 2], 2 * even[0, 1], 2 * even[1, 2], 2 * even[2, 0]])
+    strain = np.array(
+        [even[0, 0], even[1, 1], even[2, 2], 2 * even[0, 1], 2 * even[1, 2], 2 * even[2, 0]]
+    )
     stress = patch.stress(found, system.rail.points @ gradient.T)
     assert np.abs(stress - strain @ LAW).max() < 1e-9 * np.abs(strain @ LAW).max()
 
@@ -124,4 +166,8 @@ def test_patches_are_where_they_are_on_every_mesh_and_see_a_uniform_stress(size)
 def test_a_wall_too_narrow_for_a_patch_has_none():
     scene = tiny(rail__leg="14 mm")
     found = highfi.run(scene.replace({"duration": "1 ms"}), COARSE)
-    assert found.stress["patch_places_m"] == [] and found.wall_stress.shape == (found.time.size, 0, 6)
+    assert found.stress["patch_places_m"] == [] and found.wall_stress.shape == (
+        found.time.size,
+        0,
+        6,
+    )

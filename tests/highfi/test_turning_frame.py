@@ -1,10 +1,11 @@
-"""X18: the frame of the rails turns three full turns while the payload leaves it. Nothing seen from the frame may hang on the
-inertial axes, nor jump at a full turn.
+"""X18: the frame of the rails turns three full turns while the payload leaves it. Nothing seen from
+the frame may hang on the inertial axes, nor jump at a full turn.
 
-Really 38 s at 0.5 rad/s. Aluminium would take 1e8 steps, so the scene is the tiny one on a longer rail, played 300 times as slowly:
-with stiffnesses divided by 300^2 it takes as many steps as a quick one. A thrust across the rail holds the payload in a corner,
-since in the clearance centrifugal force would make any rounding error grow by exp(0.5 * 38) = 1e8; the axis lies 0.08 deg off the
-rail's, so that Coriolis force presses too.
+Really 38 s at 0.5 rad/s. Aluminium would take 1e8 steps, so the scene is the tiny one on a longer
+rail, played 300 times as slowly: with stiffnesses divided by 300^2 it takes as many steps as a
+quick one. A thrust across the rail holds the payload in a corner, since in the clearance
+centrifugal force would make any rounding error grow by exp(0.5 * 38) = 1e8; the axis lies 0.08 deg
+off the rail's, so that Coriolis force presses too.
 """
 
 import functools
@@ -25,16 +26,31 @@ SLOWER = 300.0
 RATE, OFFSET, BEHIND = (0.5, 6e-4, -4e-4), 0.06e-3, -0.05
 ISOTROPIC = {"xx": 4.9, "yy": 4.9, "zz": 4.9}
 # Close behind each other, so that the payload is held by both pairs of pads for most of its way.
-MOUNTS = [{"start": start, "end": start + 0.016} for start in (0.008, 0.104, 0.192, 0.288, 0.376, 0.464)]
-PADS = [pad.model_dump() | {"position": (0.1125 * pad.position[0], *pad.position[1:])} for pad in tiny().pads]
+MOUNTS = [
+    {"start": start, "end": start + 0.016} for start in (0.008, 0.104, 0.192, 0.288, 0.376, 0.464)
+]
+PADS = [
+    pad.model_dump() | {"position": (0.1125 * pad.position[0], *pad.position[1:])}
+    for pad in tiny().pads
+]
 TURNING = tiny(
-    pads=PADS, rail__end=0.4, rail__mounts=MOUNTS,
-    duration=40.0, output__interval=0.05, payload__inertia={"xx": 0.013, "yy": 0.027, "zz": 0.026}, platform__inertia=ISOTROPIC,
-    rail__material__youngs_modulus=72e9 / SLOWER**2, contact__penalty=1.8e12 / SLOWER**2, contact__clearance=0.05e-3,
-    payload__mass=2.0, friction={"static": 0.005, "dynamic": 0.005, "static_speed": 1e-3, "dynamic_speed": 2e-3},
+    pads=PADS,
+    rail__end=0.4,
+    rail__mounts=MOUNTS,
+    duration=40.0,
+    output__interval=0.05,
+    payload__inertia={"xx": 0.013, "yy": 0.027, "zz": 0.026},
+    platform__inertia=ISOTROPIC,
+    rail__material__youngs_modulus=72e9 / SLOWER**2,
+    contact__penalty=1.8e12 / SLOWER**2,
+    contact__clearance=0.05e-3,
+    payload__mass=2.0,
+    friction={"static": 0.005, "dynamic": 0.005, "static_speed": 1e-3, "dynamic_speed": 2e-3},
     thrust={"kind": "gaussian", "peak": 2e-2, "width": 1e4, "centre": 0.0, "arm": 1e-6},
     thrust_offset={"misalignment": {"axial": np.pi / 2, "radial": np.pi / 4}},
-    initial=turning.carried(RATE, (0.1 + BEHIND, OFFSET, OFFSET), 13.7e-3) | {"position": {"x": BEHIND, "y": OFFSET, "z": OFFSET}})
+    initial=turning.carried(RATE, (0.1 + BEHIND, OFFSET, OFFSET), 13.7e-3)
+    | {"position": {"x": BEHIND, "y": OFFSET, "z": OFFSET}},
+)
 NUDGE = rotation.exponential((1e-9, 0.0, 0.0))
 TWO_STEPS = pytest.mark.parametrize("safety", [0.9, pytest.param(0.7, marks=pytest.mark.slow)])
 BODIES = ("payload", "platform")
@@ -42,11 +58,13 @@ BODIES = ("payload", "platform")
 
 @functools.cache
 def ejected(safety: float, turn=None, bodies=BODIES):
-    """The run, its bodies turned beforehand about the scene's origin by the quaternion ``turn``; nodes are stored in frame axes."""
+    """The run, its bodies turned beforehand about the scene's origin by the quaternion ``turn``;
+    nodes are stored in frame axes."""
     numerics = Numerics(element_size=0.016, safety=safety)
     system = build(TURNING, numerics, highfi.prepare(TURNING, numerics))
     loop = Loop(TURNING, system, choose(system, TURNING, numerics))
-    loop.marks = loop.marks._replace(settled_thrust=0.0)  # what is left of the thrust does not keep the payload from settling
+    # what is left of the thrust does not keep the payload from settling
+    loop.marks = loop.marks._replace(settled_thrust=0.0)
     for body in (getattr(loop.state, name) for name in bodies if turn):
         body.quaternion[:] = rotation.product(turn, tuple(body.quaternion))
         for vector in (body.position, body.velocity, body.spin):
@@ -59,28 +77,39 @@ def ejected(safety: float, turn=None, bodies=BODIES):
 @pytest.mark.case("X18")
 @TWO_STEPS
 def test_three_turns_seen_from_the_platform(safety):
-    """All that moves agrees to 1e-9 (m, m/s, rad/s, J) and to 1e-8 of its own small size; so do exit and settled values."""
+    """All that moves agrees to 1e-9 (m, m/s, rad/s, J) and to 1e-8 of its own small size; so do
+    exit and settled values."""
     run, other = ejected(safety), ejected(safety, turning.TURN)
     assert run.status == other.status == "exited"
     assert turning.turns(run.platform_quaternion) > 3.0 and turning.turns(run.quaternion) > 3.0
     assert np.abs(run.pad_force).max() > 0.01
-    found, ours, theirs = turning.differences(run, other), turning.seen_from_platform(run), turning.seen_from_platform(other)
-    # A wall answers a rounding error of 1e-12 m in 0.5 m with 1e-9 N, and the largest force is 0.02 N: impulses agree better.
+    found, ours, theirs = (
+        turning.differences(run, other),
+        turning.seen_from_platform(run),
+        turning.seen_from_platform(other),
+    )
+    # A wall answers a rounding error of 1e-12 m in 0.5 m with 1e-9 N, and the largest force is 0.02
+    # N: impulses agree better.
     assert found.pop("pad_force") <= 1e-5
-    assert np.abs(turning.impulses(other) - turning.impulses(run)).max() <= 1e-7 * np.abs(turning.impulses(run)).max()
+    assert (
+        np.abs(turning.impulses(other) - turning.impulses(run)).max()
+        <= 1e-7 * np.abs(turning.impulses(run)).max()
+    )
     assert max(found.values()) <= 1e-8
     assert max(np.abs(theirs[name] - ours[name]).max() for name in found) <= 1e-9
     assert other.outcome.exit_time == pytest.approx(run.outcome.exit_time, rel=1e-9)
     assert other.outcome.rate == pytest.approx(run.outcome.rate, abs=1e-9)
     assert turning.turned(run.outcome.velocity) == pytest.approx(other.outcome.velocity, abs=1e-9)
-    # Control: it would see that only the payload starts turned, by as much as moves its pads by a tenth of a nanometre.
+    # Control: it would see that only the payload starts turned, by as much as moves its pads by a
+    # tenth of a nanometre.
     nudged = turning.differences(run, ejected(safety, NUDGE, BODIES[:1]))
     assert max(value for name, value in nudged.items() if name != "pad_force") > 1e-7
 
 
 @pytest.mark.case("X18")
 def test_no_output_jumps_at_a_full_turn():
-    """Nothing moves by more in one sample than its rate allows. Control: angles that wrap jump by a whole turn."""
+    """Nothing moves by more in one sample than its rate allows. Control: angles that wrap jump by a
+    whole turn."""
     run = ejected(0.9)
     turning.assert_smooth(run, TURNING.output.interval, np.linalg.norm(RATE))
     assert turning.largest_jump(turning.principal(run.quaternion)) > 5.0

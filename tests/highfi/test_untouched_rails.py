@@ -1,4 +1,5 @@
-"""What a rail matters that no pad touches: whether a run may leave it out, not yet touched or never."""
+"""What a rail matters that no pad touches: whether a run may leave it out, not yet touched or
+never."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -30,15 +31,18 @@ def touched(loop: Loop, first: int = 0) -> set[int]:
 
 
 def stiffened(mesh: RailMesh, rails: set[int]) -> RailMesh:
-    """``mesh`` with all nodes of the named rails fixed to the platform: they then move with it as parts of a rigid body."""
+    """``mesh`` with all nodes of the named rails fixed to the platform: they then move with it as
+    parts of a rigid body."""
     cells = mesh.cells[np.isin(rail_of(mesh.points[mesh.cells[:, 0]]), list(rails))]
     ends = np.concatenate([cells[:, :4], cells[:, 4:]])
-    return replace(mesh, surfaces=mesh.surfaces | {"mount": np.concatenate([mesh.surfaces["mount"], ends])})
+    return replace(
+        mesh, surfaces=mesh.surfaces | {"mount": np.concatenate([mesh.surfaces["mount"], ends])}
+    )
 
 
 def deflections(loop: Loop, mesh: RailMesh) -> Iterator[tuple[int, float]]:
-    """Each rail when a pad first touches it, with the largest displacement (m) of its walls along their normals a sample
-    earlier."""
+    """Each rail when a pad first touches it, with the largest displacement (m) of its walls along
+    their normals a sample earlier."""
     walls = [(mesh.surfaces[name], axis) for name, axis in (("contact_y", 1), ("contact_z", 2))]
     owner, known, before = rail_of(mesh.points), set(), {}
     while len(loop.rows) <= loop.last:
@@ -47,14 +51,24 @@ def deflections(loop: Loop, mesh: RailMesh) -> Iterator[tuple[int, float]]:
         yield from ((rail, before[rail]) for rail in sorted(new))
         known |= new
         moved = loop.state.displacement[loop.system.number]
-        before = {rail: max(float(np.abs(moved[facets, axis][owner[facets] == rail]).max()) for facets, axis in walls)
-                  for rail in range(4)}
+        before = {
+            rail: max(
+                float(np.abs(moved[facets, axis][owner[facets] == rail]).max())
+                for facets, axis in walls
+            )
+            for rail in range(4)
+        }
 
 
 @pytest.mark.slow  # a set of effects of its own: a kernel to compile
 def test_on_a_fixed_platform_an_untouched_rail_stays_at_rest():
-    """To the last bit, so that leaving it out would change nothing. Control: on a free one it does not."""
-    early = {"duration": "9 ms", "contact__clearance": "0.05 mm", "thrust_offset__misalignment__radial": "0 deg"}
+    """To the last bit, so that leaving it out would change nothing. Control: on a free one it does
+    not."""
+    early = {
+        "duration": "9 ms",
+        "contact__clearance": "0.05 mm",
+        "thrust_offset__misalignment__radial": "0 deg",
+    }
     for platform, moves in (({"platform": None}, False), ({}, True)):
         scene = tiny(**early, **platform)
         mesh = highfi.prepare(scene, COARSE)
@@ -73,9 +87,10 @@ def test_on_a_fixed_platform_an_untouched_rail_stays_at_rest():
 @pytest.mark.slow
 @pytest.mark.parametrize("condition", ["phi0", "phi15", "phi35"])
 def test_on_a_free_platform_it_cannot_be_left_out(condition):
-    """Two rails are never touched; made rigid they change a settled rate by 2e-7 (phi35) to 1.3e-6 (phi0) of it. The others lie up
-    to 5 nm off their place when they are touched first, for the platform's acceleration bends them: one stepped only from then on
-    would be that far off, which the floor of the scene turns into as much as 2e-5 of a rate."""
+    """Two rails are never touched; made rigid they change a settled rate by 2e-7 (phi35) to 1.3e-6
+    (phi0) of it. The others lie up to 5 nm off their place when they are touched first, for the
+    platform's acceleration bends them: one stepped only from then on would be that far off, which
+    the floor of the scene turns into as much as 2e-5 of a rate."""
     scene, numerics = load("reference").condition(condition), Numerics()
     mesh = highfi.prepare(scene, numerics)
     system = build(scene, numerics, mesh)

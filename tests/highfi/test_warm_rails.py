@@ -1,5 +1,5 @@
-"""Uneven temperature in the reference: the motion starts in the warm rails' equilibrium, contact meets the bowed walls, the ledgers
-close."""
+"""Uneven temperature in the reference: the motion starts in the warm rails' equilibrium, contact
+meets the bowed walls, the ledgers close."""
 
 import numpy as np
 import pytest
@@ -27,7 +27,10 @@ def warm():
 def test_no_difference_of_temperature_leaves_contact_where_it_was():
     """The time loop knows nothing else of it, so a run is the same to the bit."""
     zero, plain = (begun(scene).system.surface for scene in (tiny(thermal__mean=0.0), tiny()))
-    assert all(np.array_equal(getattr(zero, name), getattr(plain, name)) for name in ("places", "area", "reach", "start"))
+    assert all(
+        np.array_equal(getattr(zero, name), getattr(plain, name))
+        for name in ("places", "area", "reach", "start")
+    )
 
 
 @pytest.mark.slow
@@ -43,13 +46,16 @@ def test_ledgers_close_and_momentum_is_kept(cold, warm):
     assert warm.status == cold.status == "exited"
     for run in (cold, warm):
         assert run.checks["energy_error"] <= 1e-5 and run.checks["transverse_energy_error"] <= 1e-2
-        assert run.checks["linear_momentum_error"] <= 1e-12 and run.checks["angular_momentum_error"] <= 1e-8
+        assert (
+            run.checks["linear_momentum_error"] <= 1e-12
+            and run.checks["angular_momentum_error"] <= 1e-8
+        )
     assert np.abs(np.degrees(warm.outcome.rate) - np.degrees(cold.outcome.rate)).max() > 0.05
 
 
 def test_rails_do_not_ring():
-    """Until the first touch they move to the bit as cold ones do, by recoil alone, though they are bowed by thousands of times as
-    much."""
+    """Until the first touch they move to the bit as cold ones do, by recoil alone, though they are
+    bowed by thousands of times as much."""
     loop, plain = stopped(10, tiny(**WARM)), stopped(10)
     assert np.array_equal(loop.state.displacement, plain.state.displacement)
     assert np.abs(loop.deformed()).max() > 1e3 * np.abs(plain.deformed()).max()
@@ -62,24 +68,31 @@ def test_contact_meets_the_bowed_walls():
     system = loop.system
     moved = thermal.displacement(system.mesh, scene.rail.material, system.model.thermal)
     number, points = system.number, system.mesh.points - system.origin
-    assert np.array_equal(system.surface.places[number], points + moved) and np.array_equal(system.rail.points[number], points)
+    assert np.array_equal(system.surface.places[number], points + moved) and np.array_equal(
+        system.rail.points[number], points
+    )
     assert begun(tiny()).system.surface.places is not None and begun(tiny()).system.warm is None
 
 
 @pytest.mark.slow
 def test_a_platform_that_grows_with_its_rails_is_a_wider_clearance():
-    """Mounts and rails apart by a ten-thousandth: every wall 10 um farther out, and no stress. The rails are longer by as much."""
+    """Mounts and rails apart by a ten-thousandth: every wall 10 um farther out, and no stress. The
+    rails are longer by as much."""
     strain = 1e-4
-    grown = highfi.run(tiny(thermal__mean=strain / EXPANSION, thermal__platform_strain=strain), COARSE)
+    grown = highfi.run(
+        tiny(thermal__mean=strain / EXPANSION, thermal__platform_strain=strain), COARSE
+    )
     wide = highfi.run(tiny(contact__clearance=2.5e-4 + strain * 0.10025), COARSE)
     assert np.degrees(grown.outcome.rate) == pytest.approx(np.degrees(wide.outcome.rate), abs=0.01)
-    inward = highfi.run(tiny(thermal__mean=-strain / EXPANSION, thermal__platform_strain=-strain), COARSE)
+    inward = highfi.run(
+        tiny(thermal__mean=-strain / EXPANSION, thermal__platform_strain=-strain), COARSE
+    )
     assert np.abs(np.degrees(inward.outcome.rate) - np.degrees(wide.outcome.rate)).max() > 0.02
 
 
 def test_stress_is_that_of_the_held_rail():
-    """At ignition: von Mises stress of the static solution, free expansion taken off; none in rails that grow with their
-    platform."""
+    """At ignition: von Mises stress of the static solution, free expansion taken off; none in rails
+    that grow with their platform."""
     strain = 1e-4
     free = begun(tiny(thermal__mean=strain / EXPANSION, thermal__platform_strain=strain))
     modulus = free.scene.rail.material.youngs_modulus
@@ -94,21 +107,30 @@ def test_stress_is_that_of_the_held_rail():
 
 def test_a_bow_that_closes_the_clearance_is_warned_about():
     run = highfi.run(tiny(thermal__platform_strain=-0.0026, duration=2e-3), COARSE)
-    assert "initial interference: pads 0, 1, 2, 3, 4, 5, 6, 7 press on the rail at ignition" in run.message
+    assert (
+        "initial interference: pads 0, 1, 2, 3, 4, 5, 6, 7 press on the rail at ignition"
+        in run.message
+    )
 
 
 def test_walls_of_the_surrogate_stand_where_those_of_the_reference_do():
-    """The six patterns of a pad face at ignition against the nodes under it, within a sixth of what the wall moves over its
-    length."""
+    """The six patterns of a pad face at ignition against the nodes under it, within a sixth of what
+    the wall moves over its length."""
     scene = tiny(**WARM)
     walls, system = compliance.walls(scene, COARSE.element_size), begun(scene).system
     found, faces, surface = walls.moved(system.model.thermal.amounts), system.faces, system.surface
     for face in range(0, faces.axis.size, 3):
-        nodes = np.unique(surface.facets[surface.reach[surface.first[face]:surface.first[face + 1]]])
+        nodes = np.unique(
+            surface.facets[surface.reach[surface.first[face] : surface.first[face + 1]]]
+        )
         axis = faces.axis[face]
         plane = [0, 3 - axis]
-        local = (system.rail.points[nodes] + system.origin - faces.centre[face])[:, plane] / walls.half[face]
+        local = (system.rail.points[nodes] + system.origin - faces.centre[face])[
+            :, plane
+        ] / walls.half[face]
         under = (np.abs(local) < 1.01).all(axis=1)
         patterns = (local[under, None] ** POWERS).prod(axis=2)
         moved = faces.sign[face] * system.warm[nodes, axis]
-        assert under.any() and patterns @ found[0, face] == pytest.approx(moved[under], abs=np.ptp(moved) / 6.0)
+        assert under.any() and patterns @ found[0, face] == pytest.approx(
+            moved[under], abs=np.ptp(moved) / 6.0
+        )

@@ -1,8 +1,10 @@
-"""X8 in an interpreter of its own: 1 kg on four feet, dragged over a rough plane through a spring whose far end moves at 0.1 mm/s.
+"""X8 in an interpreter of its own: 1 kg on four feet, dragged over a rough plane through a spring
+whose far end moves at 0.1 mm/s.
 
-No scene holds a spring to something that moves, so one external force is added to the thrust before any kernel is compiled; all the
-rest, ``lowfi.run`` with its steps, events, grips, limits and ledgers, is the code under test. Called with the path of a thrust file
-that is next to nothing, it prints what it found as JSON.
+No scene holds a spring to something that moves, so one external force is added to the thrust before
+any kernel is compiled; all the rest, ``lowfi.run`` with its steps, events, grips, limits and
+ledgers, is the code under test. Called with the path of a thrust file that is next to nothing, it
+prints what it found as JSON.
 """
 
 import json
@@ -22,7 +24,13 @@ STATIC, DYNAMIC = 0.4, 0.3
 STRETCHED = 0.2 * G / STIFFNESS  # m, at the begin: half of what the feet bear
 FEET = [{"position": (x, y, 0.0), "normals": ["-z"]} for x in (-0.1, 0.1) for y in (-0.1, 0.1)]
 GROUND = {"law": "linear", "clearance": 0.0, "stiffness": 1e6, "damping": 500.0}
-STICKING = {"law": "sticking", "static": STATIC, "dynamic": DYNAMIC, "stiffness": 1e6, "damping": 500.0}
+STICKING = {
+    "law": "sticking",
+    "static": STATIC,
+    "dynamic": DYNAMIC,
+    "stiffness": 1e6,
+    "damping": 500.0,
+}
 TWO_STEP = {"static": STATIC, "dynamic": DYNAMIC, "static_speed": 1e-3, "dynamic_speed": 2e-3}
 _thrust = equations.add_thrust
 
@@ -31,25 +39,52 @@ _thrust = equations.add_thrust
 def _thrust_and_drag(thrust, offset, platform, reacts, ledger, time, body, base, out):
     _thrust(thrust, offset, platform, reacts, ledger, time, body, base, out)
     force = (STIFFNESS * (STRETCHED + SPEED * time - body.place[0]), 0.0, 0.0)
-    equations.push(out, slot.PAYLOAD + slot.VELOCITY, slot.PAYLOAD + slot.MOMENT, force, body.place, 1.0)
+    equations.push(
+        out, slot.PAYLOAD + slot.VELOCITY, slot.PAYLOAD + slot.MOMENT, force, body.place, 1.0
+    )
     equations._outside(ledger, force, body.place, out)
-    equations._book(ledger, slot.THRUST, slot.THRUST_AXIAL, force, body.velocity, body.velocity[0], 1.0, out)
+    equations._book(
+        ledger, slot.THRUST, slot.THRUST_AXIAL, force, body.velocity, body.velocity[0], 1.0, out
+    )
 
 
 def drag(friction: dict, tolerance: float, idle: str) -> dict:
     """Slips begin (s), their lengths (m), counts and promises of 6.2 s of dragging."""
-    run = lowfi.run(scene(6.2, 1e-3, mass=1.0, pads=FEET, contact=GROUND, friction=friction, gravity={"z": -G},
-                          initial={"position": {"z": -0.25 * G / GROUND["stiffness"]}}, thrust={"kind": "measured", "file": idle}),
-                     "springs",
-                    numerics=numerics(tolerance))
+    run = lowfi.run(
+        scene(
+            6.2,
+            1e-3,
+            mass=1.0,
+            pads=FEET,
+            contact=GROUND,
+            friction=friction,
+            gravity={"z": -G},
+            initial={"position": {"z": -0.25 * G / GROUND["stiffness"]}},
+            thrust={"kind": "measured", "file": idle},
+        ),
+        "springs",
+        numerics=numerics(tolerance),
+    )
     place, slipping = run.position[:, 0], run.velocity[:, 0] > 5.0 * SPEED
-    begins, ends = np.flatnonzero(slipping[1:] & ~slipping[:-1]), np.flatnonzero(~slipping[1:] & slipping[:-1]) + 1
+    begins, ends = (
+        np.flatnonzero(slipping[1:] & ~slipping[:-1]),
+        np.flatnonzero(~slipping[1:] & slipping[:-1]) + 1,
+    )
     rubbed = run.energy[:, ledger.ENTRIES.index("friction")]
-    return {"status": run.status, "slips": run.time[begins].tolist(), "lengths": (place[ends] - place[begins]).tolist(),
-            "least_rubbed": float(np.diff(rubbed).min()), "events": run.cost["events"], "checks": run.checks}
+    return {
+        "status": run.status,
+        "slips": run.time[begins].tolist(),
+        "lengths": (place[ends] - place[begins]).tolist(),
+        "least_rubbed": float(np.diff(rubbed).min()),
+        "events": run.cost["events"],
+        "checks": run.checks,
+    }
 
 
 if __name__ == "__main__":
     equations.add_thrust = _thrust_and_drag
-    found = {f"sticking {tolerance:g}": drag(STICKING, tolerance, sys.argv[1]) for tolerance in (1e-6, 1e-8)}
+    found = {
+        f"sticking {tolerance:g}": drag(STICKING, tolerance, sys.argv[1])
+        for tolerance in (1e-6, 1e-8)
+    }
     print(json.dumps(found | {"two-step": drag(TWO_STEP, 1e-6, sys.argv[1])}))

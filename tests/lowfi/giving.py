@@ -1,4 +1,5 @@
-"""Walls that give way, for tests: made by hand or for the reference scene, poses that press them, and the plain equations again."""
+"""Walls that give way, for tests: made by hand or for the reference scene, poses that press them,
+and the plain equations again."""
 
 from functools import cache, partial
 from typing import NamedTuple
@@ -19,7 +20,8 @@ from scenes.scene import Scene
 from scenes.walls import PATTERNS, POWERS, Walls, digest
 
 REFERENCE = scenes.load("reference")
-SMOOTH = {"friction.static": 0.0, "friction.dynamic": 0.0}  # the kernels of friction, without its forces
+# the kernels of friction, without its forces
+SMOOTH = {"friction.static": 0.0, "friction.dynamic": 0.0}
 UPRIGHT = (1.0, 0.0, 0.0, 0.0)
 
 
@@ -30,8 +32,8 @@ def reference_walls() -> Walls:
 
 
 def handmade(scene: Scene, entries: dict, rail=None) -> Walls:
-    """Walls whose flexibility is zero but for ``entries``: (face, pattern, face, pattern) -> m/N, everywhere the same; one rail
-    holds all faces, or ``rail`` (f,) tells."""
+    """Walls whose flexibility is zero but for ``entries``: (face, pattern, face, pattern) -> m/N,
+    everywhere the same; one rail holds all faces, or ``rail`` (f,) tells."""
     faces = models.build(scene).faces
     count = faces.axis.size
     flexibility = np.zeros((2, count, PATTERNS, count, PATTERNS))
@@ -39,8 +41,15 @@ def handmade(scene: Scene, entries: dict, rail=None) -> Walls:
         flexibility[:, i, a, j, b] = flexibility[:, j, b, i, a] = value
     half = np.column_stack([faces.half_length, faces.half_width])
     rail = np.zeros(count, dtype=np.int64) if rail is None else rail
-    return Walls(np.array([0.0, 1.0]), flexibility, rail, half, np.zeros((rail.max() + 1, 0)), np.zeros((2, count, PATTERNS, 0)),
-                 digest(scene))
+    return Walls(
+        np.array([0.0, 1.0]),
+        flexibility,
+        rail,
+        half,
+        np.zeros((rail.max() + 1, 0)),
+        np.zeros((2, count, PATTERNS, 0)),
+        digest(scene),
+    )
 
 
 def in_one_cell(monkeypatch) -> None:
@@ -57,29 +66,57 @@ class Pose(NamedTuple):
     base_attitude: tuple
 
     def moved(self, twist: np.ndarray, h: float) -> "Pose":
-        """The pose after ``h`` of ``twist`` (12,): velocity and rate in body axes, of payload and platform."""
-        turns = [rotation.product(q, rotation.exponential(tuple(h * w))) for q, w in
-                 ((self.attitude, twist[3:6]), (self.base_attitude, twist[9:]))]
-        return Pose(self.place + h * twist[:3], turns[0], self.base_place + h * twist[6:9], turns[1])
+        """The pose after ``h`` of ``twist`` (12,): velocity and rate in body axes, of payload and
+        platform."""
+        turns = [
+            rotation.product(q, rotation.exponential(tuple(h * w)))
+            for q, w in ((self.attitude, twist[3:6]), (self.base_attitude, twist[9:]))
+        ]
+        return Pose(
+            self.place + h * twist[:3], turns[0], self.base_place + h * twist[6:9], turns[1]
+        )
 
 
-def relative(model, travel: float, offset=(0.0, 0.0), attitude=(0.0, 0.0, 0.0), base=(0.0, 0.0, 0.0), turn=(0.0, 0.0, 0.0)) -> Pose:
-    """The payload ``travel`` (m) along the rails, ``offset`` (m) across them and turned by a rotation vector, all in the axes of a
-    platform that is itself moved by ``base`` (m) and turned by ``turn``."""
+def relative(
+    model,
+    travel: float,
+    offset=(0.0, 0.0),
+    attitude=(0.0, 0.0, 0.0),
+    base=(0.0, 0.0, 0.0),
+    turn=(0.0, 0.0, 0.0),
+) -> Pose:
+    """The payload ``travel`` (m) along the rails, ``offset`` (m) across them and turned by a
+    rotation vector, all in the axes of a platform that is itself moved by ``base`` (m) and turned
+    by ``turn``."""
     origin = np.array(model.platform.mass_centre)
     place = np.array(model.payload.mass_centre) - origin + [travel, *offset]
     base_attitude = rotation.exponential(turn)
     carried = np.array(rotation.rotate(rotation.matrix(base_attitude), tuple(place)))
-    return Pose(origin + base + carried, rotation.product(base_attitude, rotation.exponential(attitude)), origin + base,
-                base_attitude)
+    return Pose(
+        origin + base + carried,
+        rotation.product(base_attitude, rotation.exponential(attitude)),
+        origin + base,
+        base_attitude,
+    )
 
 
 def state_of(model, pose: Pose, twist: np.ndarray = np.zeros(12)) -> np.ndarray:
     """State (STATE_SIZE,) of both bodies at ``pose`` moving by ``twist`` (12,)."""
     state = np.zeros(slot.STATE_SIZE)
-    for first, body, place, attitude, motion in ((slot.PAYLOAD, model.payload, pose.place, pose.attitude, twist[:6]),
-                                                 (slot.PLATFORM, model.platform, pose.base_place, pose.base_attitude, twist[6:])):
-        slot._fill(state, first, body.mass, body.inertia, tuple(place), tuple(motion[:3]), attitude, tuple(motion[3:]))
+    for first, body, place, attitude, motion in (
+        (slot.PAYLOAD, model.payload, pose.place, pose.attitude, twist[:6]),
+        (slot.PLATFORM, model.platform, pose.base_place, pose.base_attitude, twist[6:]),
+    ):
+        slot._fill(
+            state,
+            first,
+            body.mass,
+            body.inertia,
+            tuple(place),
+            tuple(motion[:3]),
+            attitude,
+            tuple(motion[3:]),
+        )
     return state
 
 
@@ -94,31 +131,53 @@ def seen_from_platform(platform, payload, state):
 def add_walls(walls, friction, faces, platform, payload, active, state, out):
     """What walls alone add to ``out``, the derivative of ``state``."""
     body = slot.motion(payload.mass, payload.inverse_inertia, state, slot.PAYLOAD)
-    equations.add_walls(walls, friction, faces, platform, True, active, body, slot.frame(platform, state), state, out)
+    equations.add_walls(
+        walls,
+        friction,
+        faces,
+        platform,
+        True,
+        active,
+        body,
+        slot.frame(platform, state),
+        state,
+        out,
+    )
 
 
 def pressed(scene: Scene, walls: Walls, modes: int = 0):
     """Model and records of ``scene`` on ``walls``."""
     model = models.build(scene)
     damping = scene.rail.damping and scene.rail.damping.record()
-    return model, systems.build(model, walls=record.build(walls, model, modes=modes, damping=damping))
+    return model, systems.build(
+        model, walls=record.build(walls, model, modes=modes, damping=damping)
+    )
 
 
-def forces_of(walls: Walls, model, cells: int, face: int, pose: Pose, displacement: np.ndarray) -> np.ndarray:
-    """P (p,) N of a face on a wall displaced by (p,) m: the equations of ``lowfi.walls.cells`` cell by cell, over the middle of the
-    rail."""
+def forces_of(
+    walls: Walls, model, cells: int, face: int, pose: Pose, displacement: np.ndarray
+) -> np.ndarray:
+    """P (p,) N of a face on a wall displaced by (p,) m: the equations of ``lowfi.walls.cells`` cell
+    by cell, over the middle of the rail."""
     faces, base = model.faces, rotation.matrices([pose.base_attitude])[0]
-    turn, place = base.T @ rotation.matrices([pose.attitude])[0], base.T @ (pose.place - pose.base_place)
+    turn, place = (
+        base.T @ rotation.matrices([pose.attitude])[0],
+        base.T @ (pose.place - pose.base_place),
+    )
     axis, across, half = faces.axis[face], 3 - faces.axis[face], walls.half[face]
     edges = np.linspace(-1.0, 1.0, cells + 1)
     node, crown = 0.5 * (edges[1:] + edges[:-1]), np.diff(edges**5) / 5.0 / np.diff(edges)
     xi, eta = (grid.ravel() for grid in np.meshgrid(node, node, indexing="ij"))
     arms = np.zeros((xi.size, 3))
     arms[:, 0], arms[:, across] = half[0] * xi, half[1] * eta
-    depth = faces.sign[face] * ((place + (faces.centre[face] + arms) @ turn.T)[:, axis] - faces.wall[face])
+    depth = faces.sign[face] * (
+        (place + (faces.centre[face] + arms) @ turn.T)[:, axis] - faces.wall[face]
+    )
     depth -= faces.relief[face] * np.add.outer(crown, crown).ravel()
     origin = np.array(model.platform.mass_centre) if model.platform else np.zeros(3)
-    aside = (place + turn @ faces.centre[face] - faces.centre[face] - model.payload.mass_centre + origin)[across]
+    aside = (
+        place + turn @ faces.centre[face] - faces.centre[face] - model.payload.mass_centre + origin
+    )[across]
     phi = xi[:, None] ** POWERS[:, 0] * (eta + aside / half[1])[:, None] ** POWERS[:, 1]
     area = 4.0 * np.abs(half).prod() / cells**2
     return model.penalty * area * phi.T @ np.maximum(0.0, depth - phi @ displacement)

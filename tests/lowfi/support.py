@@ -8,9 +8,19 @@ from scenes import rotation
 from tests import turning
 
 G = 9.80665
-PAPER_PAD = {"law": "impact", "clearance": 1e-5, "exponent": 1.5, "stiffness": 70000.0 * 1000.0**1.5, "damping": 60000.0,
-             "damping_depth": 3e-4}
-RAIL = {"start": -100.0, "end": 100.0, "material": {"density": 2810.0, "youngs_modulus": 72e9, "poisson_ratio": 0.33}}
+PAPER_PAD = {
+    "law": "impact",
+    "clearance": 1e-5,
+    "exponent": 1.5,
+    "stiffness": 70000.0 * 1000.0**1.5,
+    "damping": 60000.0,
+    "damping_depth": 3e-4,
+}
+RAIL = {
+    "start": -100.0,
+    "end": 100.0,
+    "material": {"density": 2810.0, "youngs_modulus": 72e9, "poisson_ratio": 0.33},
+}
 ONE_PAD = [{"position": (0.0, 0.0, -0.1), "normals": ["-z"]}]
 
 
@@ -18,16 +28,38 @@ def corners(x: float = 0.1, y: float = 0.1, z: float = 0.1, normals=("y", "z")) 
     """Pads at the eight corners of a box, with outward normals along the named axes."""
     signs = [(a, b, c) for a in (-1, 1) for b in (-1, 1) for c in (-1, 1)]
     mark = {-1: "-", 1: "+"}
-    return [{"position": (a * x, b * y, c * z), "normals": [mark[b if n == "y" else c] + n for n in normals]} for a, b, c in signs]
+    return [
+        {
+            "position": (a * x, b * y, c * z),
+            "normals": [mark[b if n == "y" else c] + n for n in normals],
+        }
+        for a, b, c in signs
+    ]
 
 
-def scene(duration: float, interval: float, mass: float = 20.0, inertia: dict | None = None, pads: list | None = None,
-          rail: dict | None = None, thrust: dict | None = None, **tables) -> scenes.Scene:
-    """A scene whose fixed rails are so long that nothing leaves them, without thrust unless ``thrust`` says otherwise."""
+def scene(
+    duration: float,
+    interval: float,
+    mass: float = 20.0,
+    inertia: dict | None = None,
+    pads: list | None = None,
+    rail: dict | None = None,
+    thrust: dict | None = None,
+    **tables,
+) -> scenes.Scene:
+    """A scene whose fixed rails are so long that nothing leaves them, without thrust unless
+    ``thrust`` says otherwise."""
     none = {"kind": "constant", "force": 0.0, "duration": duration}
-    raw = {"name": "test", "duration": duration,
-           "payload": {"mass": mass, "inertia": inertia or {"xx": 0.3, "yy": 0.55, "zz": 0.6}},
-           "pads": pads or ONE_PAD, "rail": rail or RAIL, "thrust": thrust or none, "output": {"interval": interval}, **tables}
+    raw = {
+        "name": "test",
+        "duration": duration,
+        "payload": {"mass": mass, "inertia": inertia or {"xx": 0.3, "yy": 0.55, "zz": 0.6}},
+        "pads": pads or ONE_PAD,
+        "rail": rail or RAIL,
+        "thrust": thrust or none,
+        "output": {"interval": interval},
+        **tables,
+    }
     return scenes.parse(raw, bare_numbers_are_si=True)
 
 
@@ -37,11 +69,13 @@ def numerics(tolerance: float) -> lowfi.Numerics:
 
 
 def unwatched(asked: scenes.Scene, numerics: lowfi.Numerics, change=None) -> Run:
-    """A run over the scene's whole duration, from its state at ignition or what ``change`` makes of it: no exit and no jam ends
-    it."""
+    """A run over the scene's whole duration, from its state at ignition or what ``change`` makes of
+    it: no exit and no jam ends it."""
     run = Run(asked, numerics)
     if change is not None:
-        run.loop = march.ready(run.system, change(state.initial(run.model)), plan.first_step(run.plan))
+        run.loop = march.ready(
+            run.system, change(state.initial(run.model)), plan.first_step(run.plan)
+        )
     run.whole = True
     run.begin()
     run.march(None)
@@ -56,31 +90,58 @@ def turned_state(start, turn: tuple, bodies=(state.PAYLOAD, state.PLATFORM)):
             vector = slice(body + slot, body + slot + 3)
             new[vector] = turning.turned(start[vector], turn)
         first = body + state.QUATERNION
-        new[first:first + 4] = rotation.product(turn, tuple(start[first:first + 4]))
+        new[first : first + 4] = rotation.product(turn, tuple(start[first : first + 4]))
     return new
 
 
-def drop(contact: dict, tolerance: float, duration: float, v: float = 0.05, mass: float = 20.0, pads: list | None = None,
-         along: float = 1.0, **tables):
-    """A body thrown at ``v`` (m/s) along -z onto its pads' wall; ``duration`` (s) is that of the contact, roughly.
+def drop(
+    contact: dict,
+    tolerance: float,
+    duration: float,
+    v: float = 0.05,
+    mass: float = 20.0,
+    pads: list | None = None,
+    along: float = 1.0,
+    **tables,
+):
+    """A body thrown at ``v`` (m/s) along -z onto its pads' wall; ``duration`` (s) is that of the
+    contact, roughly.
 
-    It also slides along the rail at ``along`` (m/s), so that nobody takes it for jammed in a long contact. Returns what was
-    measured and the trajectory.
+    It also slides along the rail at ``along`` (m/s), so that nobody takes it for jammed in a long
+    contact. Returns what was measured and the trajectory.
     """
     gap = contact["clearance"]
     length = gap / v + 1.3 * duration
-    run = lowfi.run(scene(length, length / 6000, mass=mass, pads=pads, contact=contact,
-                          initial={"velocity": {"x": along, "z": -v}}, **tables), "springs", numerics=numerics(tolerance))
+    run = lowfi.run(
+        scene(
+            length,
+            length / 6000,
+            mass=mass,
+            pads=pads,
+            contact=contact,
+            initial={"velocity": {"x": along, "z": -v}},
+            **tables,
+        ),
+        "springs",
+        numerics=numerics(tolerance),
+    )
     assert run.status == "time_limit", run.message
     height, speed = run.position[:, 2] + gap, run.velocity[:, 2]
-    # Before and after the contact the body flies straight, so both ends of the contact are known exactly.
+    # Before and after the contact the body flies straight, so both ends of the contact are known
+    # exactly.
     begin, end = gap / v, run.time[-1] - height[-1] / speed[-1]
     force = run.pad_force[:, :, 2].sum(axis=1)
-    return {"restitution": speed[-1] / v, "penetration": -height.min(), "force": force.max(), "duration": end - begin}, run
+    return {
+        "restitution": speed[-1] / v,
+        "penetration": -height.min(),
+        "force": force.max(),
+        "duration": end - begin,
+    }, run
 
 
 def close(found: dict, expected: dict, relative: float) -> None:
     """Every expected number is met within ``relative``."""
     for name, value in expected.items():
-        assert abs(found[name] - value) <= relative * abs(value), f"{name}: {found[name]!r}, expected {value!r}"
-
+        assert abs(found[name] - value) <= relative * abs(value), (
+            f"{name}: {found[name]!r}, expected {value!r}"
+        )

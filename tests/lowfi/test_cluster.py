@@ -1,4 +1,5 @@
-"""The chunks of an ensemble on a real Dask cluster of processes: the bits of one process, also when a worker is killed half-way."""
+"""The chunks of an ensemble on a real Dask cluster of processes: the bits of one process, also when
+a worker is killed half-way."""
 
 import os
 import signal
@@ -27,11 +28,18 @@ def small_chunks(monkeypatch):
 
 def ensemble() -> Ensemble:
     scene = load("reference")
-    return Ensemble(scene, Drawn(uncertainty.load("paper", scene, cases=CASES)), None, lowfi.Numerics(relative_tolerance=1e-2))
+    return Ensemble(
+        scene,
+        Drawn(uncertainty.load("paper", scene, cases=CASES)),
+        None,
+        lowfi.Numerics(relative_tolerance=1e-2),
+    )
 
 
 def local_cluster(workers: int):
-    return distributed.LocalCluster(n_workers=workers, threads_per_worker=1, processes=True, dashboard_address=None)
+    return distributed.LocalCluster(
+        n_workers=workers, threads_per_worker=1, processes=True, dashboard_address=None
+    )
 
 
 def test_a_worker_that_is_killed_changes_no_bit(tmp_path):
@@ -62,7 +70,10 @@ def test_a_lost_scheduler_ends_with_a_message_and_a_store_that_resumes(tmp_path)
         if stored == 3 * CHUNK:
             workers.close()
 
-    with pytest.raises(StoreError, match=r"lost the scheduler .*cases are stored, and the same command goes on from there"):
+    with pytest.raises(
+        StoreError,
+        match=r"lost the scheduler .*cases are stored, and the same command goes on from there",
+    ):
         fill(asked, store, scheduler=workers.scheduler_address, progress=lose)
     kept = CASES - len(store.pending()) * CHUNK
     assert 3 * CHUNK <= kept < CASES
@@ -85,6 +96,8 @@ def test_no_scheduler_and_no_dask_say_what_is_missing(tmp_path, monkeypatch):
 
 def test_a_worker_of_other_sources_is_refused():
     asked = ensemble()
-    recipe = cluster.Recipe(asked.key, {"code": "other", "versions": {}}, asked.scene, None, asked.numerics)
+    recipe = cluster.Recipe(
+        asked.key, {"code": "other", "versions": {}}, asked.scene, None, asked.numerics
+    )
     with pytest.raises(RuntimeError, match="other code and versions"):
         cluster.run_rows(recipe, asked.source.rows(0, 1))

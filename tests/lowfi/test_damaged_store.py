@@ -1,5 +1,5 @@
-"""Damage to the store of an ensemble, in results, lists of failures or descriptions of arrays, is said and mended to the same
-bits."""
+"""Damage to the store of an ensemble, in results, lists of failures or descriptions of arrays, is
+said and mended to the same bits."""
 
 import json
 import shutil
@@ -27,15 +27,27 @@ def opened(path, identity=IDENTITY, scene="words") -> Store:
 
 
 def chunk(store: Store, number: int) -> Chunk:
-    """The results of a chunk, which depend on its number alone: every fifth case diverged, every seventh warns."""
+    """The results of a chunk, which depend on its number alone: every fifth case diverged, every
+    seventh warns."""
     begin, end = store.bounds(number)
     random, count = np.random.default_rng(number), end - begin
     cases = np.arange(begin, end)
     status = np.where(cases % 5 == 0, columns.STATUSES.index("diverged"), 0).astype(np.int8)
-    results = Columns(status=status, steps=cases.astype(np.int64),
-                      **{name: random.random((count, 3) if name in columns.VECTORS else count) for name in columns.UNITS})
+    results = Columns(
+        status=status,
+        steps=cases.astype(np.int64),
+        **{
+            name: random.random((count, 3) if name in columns.VECTORS else count)
+            for name in columns.UNITS
+        },
+    )
     messages = ["too deep" if case % 5 == 0 else "close" if case % 7 == 0 else "" for case in cases]
-    return Chunk(number, [{"payload.mass": float(9 + case), "thrust.peak": 6e3} for case in cases], results, messages)
+    return Chunk(
+        number,
+        [{"payload.mass": float(9 + case), "thrust.peak": 6e3} for case in cases],
+        results,
+        messages,
+    )
 
 
 def fill(store: Store) -> list[int]:
@@ -64,7 +76,10 @@ def test_any_bit_of_any_file_is_found_and_mended(whole, tmp_path, capsys):
     path, told = whole
     for number, file in enumerate(sorted(item for item in path.rglob("*") if item.is_file())):
         content = file.read_bytes()
-        for place in [(number * 7919 + k * 104729) % len(content) for k in range(3 if file.parent.name == "done" else 1)]:
+        for place in [
+            (number * 7919 + k * 104729) % len(content)
+            for k in range(3 if file.parent.name == "done" else 1)
+        ]:
             damaged = bytearray(content)
             damaged[place] ^= 1 << place % 8
             file.write_bytes(damaged)
@@ -73,14 +88,24 @@ def test_any_bit_of_any_file_is_found_and_mended(whole, tmp_path, capsys):
             again = fill(store)
             assert said(store) == told, (file, place)
             line = capsys.readouterr().err
-            assert again or "written again" in line or json.loads(damaged) == json.loads(content), (file, place)
+            assert again or "written again" in line or json.loads(damaged) == json.loads(content), (
+                file,
+                place,
+            )
             assert not again or "are run again" in line
             file.write_bytes(content)
 
 
-@pytest.mark.parametrize("change", [
-    lambda mark: mark["failures"].pop(), lambda mark: mark["failures"][0].update(reason="none"),
-    lambda mark: mark.update(warnings={}), lambda mark: mark.update(failed=0), lambda mark: mark.update(digest="0" * 64)])
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda mark: mark["failures"].pop(),
+        lambda mark: mark["failures"][0].update(reason="none"),
+        lambda mark: mark.update(warnings={}),
+        lambda mark: mark.update(failed=0),
+        lambda mark: mark.update(digest="0" * 64),
+    ],
+)
 def test_an_edited_list_of_failures_is_found(whole, capsys, change):
     path, told = whole
     file = path / "done" / "000001.json"
@@ -89,11 +114,17 @@ def test_an_edited_list_of_failures_is_found(whole, capsys, change):
     file.write_text(json.dumps(mark))
     store = opened(path)
     for ask in (store.failures, store.results, store.digest):
-        with pytest.raises(StoreError, match="000001.json is damaged or was edited; the same command runs its cases again"):
+        with pytest.raises(
+            StoreError,
+            match="000001.json is damaged or was edited; the same command runs its cases again",
+        ):
             ask()
     assert not store.holds(12) and store.holds(3)
     assert fill(store) == [1] and said(store) == told
-    assert f"{file} is damaged or was edited: the cases 8 to 15 are run again" in capsys.readouterr().err
+    assert (
+        f"{file} is damaged or was edited: the cases 8 to 15 are run again"
+        in capsys.readouterr().err
+    )
 
 
 def test_a_list_of_failures_of_another_ensemble_is_none_of_this_one(whole, tmp_path):
@@ -110,12 +141,16 @@ def test_descriptions_are_written_again_only_for_whose_store_it_is(whole, capsys
     path, told = whole
     description = path / "cases.zarr" / "zarr.json"
     content = description.read_text()
-    assert said(opened(path, scene="other words")) == told  # words of the scene are no part of the identity
+    # words of the scene are no part of the identity
+    assert said(opened(path, scene="other words")) == told
     assert capsys.readouterr().err == "" and description.read_text() == content
     with pytest.raises(StoreError, match="holds another ensemble: cases differ"):
         opened(path, IDENTITY | {"cases": {"seed": 2}})
-    description.write_text(content.replace('"seed": 1', '"seed": 2'))  # an edit cannot pass one ensemble for another
-    with pytest.raises(StoreError, match="no store of an ensemble, or its cases.zarr/zarr.json is damaged"):
+    # an edit cannot pass one ensemble for another
+    description.write_text(content.replace('"seed": 1', '"seed": 2'))
+    with pytest.raises(
+        StoreError, match="no store of an ensemble, or its cases.zarr/zarr.json is damaged"
+    ):
         opened(path, IDENTITY | {"cases": {"seed": 2}})
     assert said(opened(path)) == told and json.loads(description.read_text()) == json.loads(content)
     for mark in (path / "done").iterdir():

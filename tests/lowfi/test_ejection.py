@@ -1,4 +1,5 @@
-"""Whole ejections on eight pads: the symmetric one, promises, mirror image, and the plain rewrite as oracle."""
+"""Whole ejections on eight pads: the symmetric one, promises, mirror image, and the plain rewrite
+as oracle."""
 
 import numpy as np
 import pytest
@@ -9,16 +10,27 @@ from scenes import ledger, load, momenta, promises
 from scenes.outcome import Motion
 from tests.lowfi.support import PAPER_PAD, corners, scene
 
-SHORT = {"start": -0.2, "end": 0.3, "material": {"density": 2810.0, "youngs_modulus": 72e9, "poisson_ratio": 0.33}}
-CONDITIONS = [(name, condition) for name in ("reference", "sensitive") for condition in ("phi0", "phi35", "phi60", "phi90")]
+SHORT = {
+    "start": -0.2,
+    "end": 0.3,
+    "material": {"density": 2810.0, "youngs_modulus": 72e9, "poisson_ratio": 0.33},
+}
+CONDITIONS = [
+    (name, condition)
+    for name in ("reference", "sensitive")
+    for condition in ("phi0", "phi35", "phi60", "phi90")
+]
 
 
 @pytest.mark.case("X2")
 @pytest.mark.parametrize("tolerance", [1e-6, 1e-9])
 def test_zero_clearance_and_centred_thrust(tolerance):
-    """Pads that just touch feel nothing from an axial push through the mass centre: J/m, no rates, no chatter."""
+    """Pads that just touch feel nothing from an axial push through the mass centre: J/m, no rates,
+    no chatter."""
     push = {"kind": "constant", "force": 2000.0, "duration": 0.05}
-    centred = scene(0.2, 1e-3, pads=corners(), rail=SHORT, contact=PAPER_PAD | {"clearance": 0.0}, thrust=push)
+    centred = scene(
+        0.2, 1e-3, pads=corners(), rail=SHORT, contact=PAPER_PAD | {"clearance": 0.0}, thrust=push
+    )
     numerics = lowfi.Numerics(relative_tolerance=tolerance)
     run = lowfi.run(centred, "springs", numerics=numerics)
     assert run.status == "exited" and run.cost["events"] == 0
@@ -27,7 +39,11 @@ def test_zero_clearance_and_centred_thrust(tolerance):
     assert (run.pad_force[0] == 0.0).all()
     # Control: the same test sees a sideways speed of a micrometre per second.
     nudged = lowfi.run(centred.replace({"initial.velocity.y": 1e-6}), "springs", numerics=numerics)
-    assert nudged.status == "exited" and np.abs(nudged.velocity[:, 1:]).max() > 1e-7 and nudged.cost["events"] > 0
+    assert (
+        nudged.status == "exited"
+        and np.abs(nudged.velocity[:, 1:]).max() > 1e-7
+        and nudged.cost["events"] > 0
+    )
 
 
 @pytest.mark.parametrize("name, condition", CONDITIONS)
@@ -55,14 +71,20 @@ def test_a_lost_reaction_is_seen():
     """A force of 1 N for 1 us that has no opposite breaks the momentum balance."""
     samples, upright = np.zeros((3, 3)), np.tile([1.0, 0.0, 0.0, 0.0], (3, 1))
     moving = [*samples, 6.0, 0.0, 0.0]
-    moved = Motion(np.arange(3) * 1e-3, samples, moving, upright, samples, samples, samples, upright, samples)
+    moved = Motion(
+        np.arange(3) * 1e-3, samples, moving, upright, samples, samples, samples, upright, samples
+    )
     values = np.zeros((3, 6))
     values[:, 0] = (60.0, 60.0, 60.0 + 1e-6)
-    error, _ = momenta.errors(moved, 10.0, values, np.zeros((3, 6)), np.full((3, 4, 3), 500.0), promises.RIGID)
+    error, _ = momenta.errors(
+        moved, 10.0, values, np.zeros((3, 6)), np.full((3, 4, 3), 500.0), promises.RIGID
+    )
     assert error == pytest.approx(1e-6 / 60.0, rel=1e-3)
 
 
-@pytest.mark.parametrize("name, condition", [("reference", "phi15"), ("reference", "phi35"), ("sensitive", "phi60")])
+@pytest.mark.parametrize(
+    "name, condition", [("reference", "phi15"), ("reference", "phi35"), ("sensitive", "phi60")]
+)
 def test_agrees_with_the_plain_rewrite(name, condition):
     """Newton and Euler with fixed steps of 5 us, against the fast path at two tolerances."""
     asked = load(name).condition(condition)
@@ -71,18 +93,31 @@ def test_agrees_with_the_plain_rewrite(name, condition):
         run = lowfi.run(asked, "springs", numerics=lowfi.Numerics(relative_tolerance=tolerance))
         same = slice(0, run.time.size)
         assert np.abs(run.rate - plain.rate[same]).max() <= error * np.abs(run.rate).max()
-        assert np.abs(run.velocity - plain.velocity[same]).max() <= error * np.abs(run.velocity[:, 1:]).max()
-    # Control: at 1 ms per step, which the thrust alone would allow, the same plain method misses the impacts.
-    coarse, count = oracle.solve(asked.replace({"output.interval": 1e-3}), 1).rate, run.time.size // 20
-    assert not np.abs(coarse[:count] - run.rate[::20][:count]).max() <= 1e-2 * np.abs(run.rate).max()
+        assert (
+            np.abs(run.velocity - plain.velocity[same]).max()
+            <= error * np.abs(run.velocity[:, 1:]).max()
+        )
+    # Control: at 1 ms per step, which the thrust alone would allow, the same plain method misses
+    # the impacts.
+    coarse, count = (
+        oracle.solve(asked.replace({"output.interval": 1e-3}), 1).rate,
+        run.time.size // 20,
+    )
+    assert (
+        not np.abs(coarse[:count] - run.rate[::20][:count]).max() <= 1e-2 * np.abs(run.rate).max()
+    )
 
 
 def test_settled_rate_is_converged():
     """At most 0.1 % from a tolerance a thousand times finer, and better by orders in between."""
     asked, errors = load("sensitive").condition("phi35"), []
-    fine = np.array(lowfi.run(asked, "springs", numerics=lowfi.Numerics(relative_tolerance=2e-10)).outcome.rate)
+    fine = np.array(
+        lowfi.run(asked, "springs", numerics=lowfi.Numerics(relative_tolerance=2e-10)).outcome.rate
+    )
     for tolerance in (2e-5, 2e-7, 2e-9):
-        found = lowfi.run(asked, "springs", numerics=lowfi.Numerics(relative_tolerance=tolerance)).outcome.rate
+        found = lowfi.run(
+            asked, "springs", numerics=lowfi.Numerics(relative_tolerance=tolerance)
+        ).outcome.rate
         errors.append(np.abs(found - fine).max() / np.abs(fine).max())
     assert errors[1] <= 1e-3 and errors[2] < 0.1 * errors[1] and errors[1] < 0.1 * errors[0]
 
@@ -90,8 +125,17 @@ def test_settled_rate_is_converged():
 def test_mirror_image():
     """y to -y turns roll and yaw round and leaves pitch, whatever order the pads come in."""
     asked = load("sensitive").condition("phi35")
-    mirror = asked.replace({"thrust_offset.misalignment.radial": "145 deg", "payload.inertia.xy": -asked.payload.inertia.xy})
+    mirror = asked.replace(
+        {
+            "thrust_offset.misalignment.radial": "145 deg",
+            "payload.inertia.xy": -asked.payload.inertia.xy,
+        }
+    )
     one, other = lowfi.run(asked, "springs"), lowfi.run(mirror, "springs")
     scale = np.abs(one.outcome.rate).max()
-    assert np.array(other.outcome.rate) * (-1.0, 1.0, -1.0) == pytest.approx(np.array(one.outcome.rate), abs=1e-6 * scale)
-    assert np.array(other.outcome.velocity) * (1.0, -1.0, 1.0) == pytest.approx(np.array(one.outcome.velocity), abs=1e-8)
+    assert np.array(other.outcome.rate) * (-1.0, 1.0, -1.0) == pytest.approx(
+        np.array(one.outcome.rate), abs=1e-6 * scale
+    )
+    assert np.array(other.outcome.velocity) * (1.0, -1.0, 1.0) == pytest.approx(
+        np.array(one.outcome.velocity), abs=1e-8
+    )

@@ -1,4 +1,5 @@
-"""Tables of runs: bad rows are refused alone, the count closes, and no worker count changes a bit."""
+"""Tables of runs: bad rows are refused alone, the count closes, and no worker count changes a
+bit."""
 
 import numpy as np
 import pytest
@@ -14,8 +15,13 @@ ROWS = [{"thrust_offset.misalignment.radial": f"{angle} deg"} for angle in (5, 2
 
 @pytest.mark.case("X19")
 def test_bad_rows_are_refused_alone():
-    rows = [ROWS[0], {"payload.mass": -1.0}, {"contact.clearence": 1e-4},
-            {"thrust.peak": 1e200, "thrust_offset.misalignment.axial": 0.0}, ROWS[1]]
+    rows = [
+        ROWS[0],
+        {"payload.mass": -1.0},
+        {"contact.clearence": 1e-4},
+        {"thrust.peak": 1e200, "thrust_offset.misalignment.axial": 0.0},
+        ROWS[1],
+    ]
     found = lowfi.run_many(load("reference"), rows, "springs", workers=2)
     assert found.status.values.tolist() == ["exited", "refused", "refused", "diverged", "exited"]
     assert found.attrs == {"asked": 5, "ok": 2, "refused": 2, "failed": 1}
@@ -25,46 +31,79 @@ def test_bad_rows_are_refused_alone():
 
 @pytest.mark.case("X20")
 def test_same_bits_for_any_worker_count():
-    one, three = (lowfi.run_many(load("sensitive"), ROWS, "springs", workers=count) for count in (1, 3))
+    one, three = (
+        lowfi.run_many(load("sensitive"), ROWS, "springs", workers=count) for count in (1, 3)
+    )
     for name in ("rate", "velocity", "exit_time", "steps"):
         assert np.array_equal(one[name].values, three[name].values)
 
 
-NUMBERS = [*varied(6), {"contact.clearance": "0.1 mm"}, {"thrust.peak": "5 kN"}, {"duration": "30 ms"},
-           {"initial.position.y": 0.26e-3}, {"output.interval": "0.2 ms"}, {"thrust.peak": 20.0}]
+NUMBERS = [
+    *varied(6),
+    {"contact.clearance": "0.1 mm"},
+    {"thrust.peak": "5 kN"},
+    {"duration": "30 ms"},
+    {"initial.position.y": 0.26e-3},
+    {"output.interval": "0.2 ms"},
+    {"thrust.peak": 20.0},
+]
 # Each of these has kernels of its own.
-TABLES = [{"thrust_offset": "absent"}, {"platform": "absent", "payload.mass": 8.0}, {"friction": "absent"}, {"contact": "absent"},
-          {"gravity.z": -9.80665}]
+TABLES = [
+    {"thrust_offset": "absent"},
+    {"platform": "absent", "payload.mass": 8.0},
+    {"friction": "absent"},
+    {"contact": "absent"},
+    {"gravity.z": -9.80665},
+]
 
 
-@pytest.mark.parametrize("rows", [NUMBERS, pytest.param([*NUMBERS[:2], *TABLES], marks=pytest.mark.slow)])
+@pytest.mark.parametrize(
+    "rows", [NUMBERS, pytest.param([*NUMBERS[:2], *TABLES], marks=pytest.mark.slow)]
+)
 def test_same_bits_as_single_runs(rows):
-    """Varied numbers, text with units, other thrust, time that ends early, pads pressed at ignition, a payload that hardly moves,
-    tables that come and go: whichever way the ensemble takes, nothing differs from ``run``."""
+    """Varied numbers, text with units, other thrust, time that ends early, pads pressed at
+    ignition, a payload that hardly moves, tables that come and go: whichever way the ensemble
+    takes, nothing differs from ``run``."""
     base = load("reference")
     found = lowfi.run_many(base, rows, "springs", workers=2)
     for index, row in enumerate(rows):
         alone = lowfi.run(base.replace(row), "springs")
         case = found.isel(case=index)
         assert (str(case.status.values), str(case.message.values), int(case.steps)) == (
-            alone.status, alone.message, alone.cost["steps"])
+            alone.status,
+            alone.message,
+            alone.cost["steps"],
+        )
         for name in columns.UNITS:
             expected = getattr(alone.outcome, name)
-            assert np.array_equal(case[name].values, np.nan * case[name].values if expected is None else expected,
-                                  equal_nan=True), (row, name)
+            assert np.array_equal(
+                case[name].values,
+                np.nan * case[name].values if expected is None else expected,
+                equal_nan=True,
+            ), (row, name)
 
 
 def test_refused_rows_have_the_reason_of_replace():
     base = load("reference")
-    rows = [{"thrust_offset.misalignment.axial": value, "mass_offset.eccentricity.axial": radius}
-            for value, radius in ((1e-3, 1e-4), (2e-3, 1e-4), (float("nan"), 1e-4), ("1 mm", -1.0), (1e-3, 2e-4))]
+    rows = [
+        {"thrust_offset.misalignment.axial": value, "mass_offset.eccentricity.axial": radius}
+        for value, radius in (
+            (1e-3, 1e-4),
+            (2e-3, 1e-4),
+            (float("nan"), 1e-4),
+            ("1 mm", -1.0),
+            (1e-3, 2e-4),
+        )
+    ]
     found = lowfi.run_many(base, rows, "springs")
     assert found.status.values.tolist() == ["exited", "exited", "refused", "refused", "exited"]
     for index in (2, 3):
         with pytest.raises(SceneError) as refused:
             base.replace(rows[index])
         assert found.message.values[index] == str(refused.value)
-    assert np.array_equal(found.rate.values[4], lowfi.run(base.replace(rows[4]), "springs").outcome.rate)
+    assert np.array_equal(
+        found.rate.values[4], lowfi.run(base.replace(rows[4]), "springs").outcome.rate
+    )
 
 
 def test_an_empty_table_is_an_empty_result():

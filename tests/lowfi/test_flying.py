@@ -9,13 +9,19 @@ from scenes.scene import Scene
 from tests.lowfi.giving import reference_walls
 
 REFERENCE = load("reference").condition("phi35")
-FLIGHTS = [(1000.0, 0.0, 0.0), (0.0, -5000.0, 0.0), (4330.1, 3061.9, -5303.3)]  # m/s, the last one 7.5 km/s across the axes
+# m/s, the last one 7.5 km/s across the axes
+FLIGHTS = [(1000.0, 0.0, 0.0), (0.0, -5000.0, 0.0), (4330.1, 3061.9, -5303.3)]
 AXES = "xyz"
 
 
 def flying(scene: Scene, velocity: tuple) -> Scene:
-    return scene.replace({f"initial.{body}velocity.{axis}": value for body in ("", "platform_")
-                          for axis, value in zip(AXES, velocity)})
+    return scene.replace(
+        {
+            f"initial.{body}velocity.{axis}": value
+            for body in ("", "platform_")
+            for axis, value in zip(AXES, velocity)
+        }
+    )
 
 
 def assert_same(flown, rest, velocity: tuple) -> None:
@@ -24,9 +30,17 @@ def assert_same(flown, rest, velocity: tuple) -> None:
     assert flown.outcome.rate == pytest.approx(rest.outcome.rate, rel=1e-9)
     assert flown.outcome.exit_time == pytest.approx(rest.outcome.exit_time, rel=1e-9)
     speed = np.linalg.norm(rest.outcome.velocity)
-    assert np.abs(np.subtract(flown.outcome.velocity, velocity) - rest.outcome.velocity).max() <= 1e-9 * speed
+    assert (
+        np.abs(np.subtract(flown.outcome.velocity, velocity) - rest.outcome.velocity).max()
+        <= 1e-9 * speed
+    )
     way = np.multiply.outer(rest.time, velocity)
-    for name, moved in (("position", way), ("platform_position", way), ("velocity", velocity), ("platform_velocity", velocity)):
+    for name, moved in (
+        ("position", way),
+        ("platform_position", way),
+        ("velocity", velocity),
+        ("platform_velocity", velocity),
+    ):
         assert np.abs(getattr(flown, name) - moved - getattr(rest, name)).max() <= 1e-9, name
     assert np.abs(flown.rate - rest.rate).max() <= 1e-9 * np.abs(rest.rate).max()
     assert flown.checks["energy_error"] == pytest.approx(rest.checks["energy_error"], rel=1e-3)
@@ -38,34 +52,59 @@ def assert_same(flown, rest, velocity: tuple) -> None:
 
 @pytest.mark.parametrize("velocity", FLIGHTS)
 def test_springs(velocity):
-    assert_same(lowfi.run(flying(REFERENCE, velocity), "springs"), lowfi.run(REFERENCE, "springs"), velocity)
+    assert_same(
+        lowfi.run(flying(REFERENCE, velocity), "springs"), lowfi.run(REFERENCE, "springs"), velocity
+    )
 
 
 @pytest.mark.parametrize("velocity", FLIGHTS)
 def test_compliant_walls(velocity):
     walls = reference_walls()
-    assert_same(lowfi.run(flying(REFERENCE, velocity), walls=walls), lowfi.run(REFERENCE, walls=walls), velocity)
+    assert_same(
+        lowfi.run(flying(REFERENCE, velocity), walls=walls),
+        lowfi.run(REFERENCE, walls=walls),
+        velocity,
+    )
 
 
 def test_rows_of_an_ensemble_are_single_runs():
     velocity = FLIGHTS[-1]
     rows = [{"thrust_offset.misalignment.radial": value} for value in (0.2, 1.1)]
-    flown, rest = (lowfi.run_many(scene, rows, "springs") for scene in (flying(REFERENCE, velocity), REFERENCE))
+    flown, rest = (
+        lowfi.run_many(scene, rows, "springs") for scene in (flying(REFERENCE, velocity), REFERENCE)
+    )
     assert flown.rate.values == pytest.approx(rest.rate.values, rel=1e-9)
     assert np.abs(flown.velocity.values - velocity - rest.velocity.values).max() <= 1e-9
     for number, row in enumerate(rows):
         alone = lowfi.run(flying(REFERENCE, velocity).replace(row), "springs")
-        for name in ("velocity", "rate", "exit_position", "exit_platform_position", "exit_platform_velocity"):
+        for name in (
+            "velocity",
+            "rate",
+            "exit_position",
+            "exit_platform_position",
+            "exit_platform_velocity",
+        ):
             assert flown[name].values[number].tolist() == getattr(alone.outcome, name), name
         assert flown.direction_error.values[number] == alone.outcome.direction_error
 
 
 def test_origin():
-    """Payload, rails and platform 100 km along the axis: no more than what their places, rounded to 1 nm, change."""
+    """Payload, rails and platform 100 km along the axis: no more than what their places, rounded to
+    1 nm, change."""
+
     def moved(way: float):
         rail = REFERENCE.rail
-        return lowfi.run(REFERENCE.replace({"initial.position.x": way, "rail.start": rail.start + way, "rail.end": rail.end + way,
-                                            "platform.mass_centre.x": REFERENCE.platform.mass_centre.x + way}), "springs")
+        return lowfi.run(
+            REFERENCE.replace(
+                {
+                    "initial.position.x": way,
+                    "rail.start": rail.start + way,
+                    "rail.end": rail.end + way,
+                    "platform.mass_centre.x": REFERENCE.platform.mass_centre.x + way,
+                }
+            ),
+            "springs",
+        )
 
     def shift(way: float) -> float:
         found = lowfi.run(REFERENCE.replace({"initial.position.x": way}), "springs")
@@ -76,6 +115,9 @@ def test_origin():
 
 
 def test_a_platform_that_recoils_is_not_the_frame():
-    """Control: a velocity of the payload alone, as large as a thousandth of a flight, is no shared one."""
+    """Control: a velocity of the payload alone, as large as a thousandth of a flight, is no shared
+    one."""
     found = lowfi.run(REFERENCE.replace({"initial.velocity.x": 1.0}), "springs")
-    assert found.outcome.rate != pytest.approx(lowfi.run(REFERENCE, "springs").outcome.rate, rel=1e-3)
+    assert found.outcome.rate != pytest.approx(
+        lowfi.run(REFERENCE, "springs").outcome.rate, rel=1e-3
+    )

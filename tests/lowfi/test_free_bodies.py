@@ -1,4 +1,5 @@
-"""A body without contact: free rotation, body-fixed thrust, impulses, recoil. All against closed forms, at two tolerances."""
+"""A body without contact: free rotation, body-fixed thrust, impulses, recoil. All against closed
+forms, at two tolerances."""
 
 import math
 
@@ -10,14 +11,23 @@ from tests.exact import rigid as exact
 from tests.exact.thrust import kept_by_cut
 from tests.lowfi.support import numerics, scene
 
-CENTRED = {"eccentricity": {"axial": 0.0}}  # a table without effect, so that all these scenes share one compiled kernel
+# a table without effect, so that all these scenes share one compiled kernel
+CENTRED = {"eccentricity": {"axial": 0.0}}
 
 
 def spin(inertia: tuple, rate: tuple, duration: float, tolerance: float, interval: float = 0.01):
     """A free body with principal ``inertia`` (kg m2) started at ``rate`` (rad/s, body axes)."""
-    return lowfi.run(scene(duration, interval, inertia=dict(zip(("xx", "yy", "zz"), inertia)), thrust_offset=CENTRED,
-                           initial={"velocity": {"x": 1.0}, "rate": dict(zip("xyz", rate))}), "springs",
-                     numerics=numerics(tolerance))
+    return lowfi.run(
+        scene(
+            duration,
+            interval,
+            inertia=dict(zip(("xx", "yy", "zz"), inertia)),
+            thrust_offset=CENTRED,
+            initial={"velocity": {"x": 1.0}, "rate": dict(zip("xyz", rate))},
+        ),
+        "springs",
+        numerics=numerics(tolerance),
+    )
 
 
 def euler_rates(inertia: tuple, start: tuple, step: float, count: int) -> np.ndarray:
@@ -41,7 +51,8 @@ def test_free_rotation(tolerance, error):
     q = run.quaternion[-1] * -np.sign(run.quaternion[-1, 0])
     assert q == pytest.approx([-0.7685141217, 0.0384838400, 0.0223194370, -0.6382843266], abs=error)
     assert abs(np.linalg.norm(run.quaternion, axis=1) - 1.0).max() <= 1e-12
-    # Control: explicit Euler at a millisecond a step is off by a thousand times the looser tolerance.
+    # Control: explicit Euler at a millisecond a step is off by a thousand times the looser
+    # tolerance.
     assert abs(euler_rates(inertia, start, 1e-3, 10000)[-1] - run.rate[-1]).max() > 1e-3
     if tolerance == 1e-12:
         momentum = np.linalg.norm(run.rate * inertia, axis=1)
@@ -58,7 +69,9 @@ def test_flip_about_the_middle_axis(tolerance):
     run = spin(inertia, start, 16.0, tolerance, 0.002)
     middle = run.rate[:, 1]
     first = np.flatnonzero(np.signbit(middle[:-1]) != np.signbit(middle[1:]))
-    zeros = run.time[first] - middle[first] * (run.time[1] - run.time[0]) / (middle[first + 1] - middle[first])
+    zeros = run.time[first] - middle[first] * (run.time[1] - run.time[0]) / (
+        middle[first + 1] - middle[first]
+    )
     quarter, half = exact.flip_times(inertia, start)
     assert (quarter, half) == pytest.approx((3.041335, 6.082670), abs=1e-6)
     assert zeros == pytest.approx(quarter + half * np.arange(3), abs=1e-5)
@@ -74,7 +87,9 @@ def test_axisymmetric_precession(tolerance):
     """Body rate (Ia - It) w / It, space rate H / It, cone atan(It w_t / (Ia w))."""
     body, space, cone = exact.axisymmetric(0.3, 0.6, 4.0, 0.2)
     run = spin((0.3, 0.6, 0.6), (4.0, 0.2, 0.0), 3.0, tolerance)
-    assert run.rate[:, 1] + 1j * run.rate[:, 2] == pytest.approx(0.2 * np.exp(1j * body * run.time), abs=1e-8)
+    assert run.rate[:, 1] + 1j * run.rate[:, 2] == pytest.approx(
+        0.2 * np.exp(1j * body * run.time), abs=1e-8
+    )
     momentum = np.array([1.2, 0.12, 0.0])
     along = momentum / np.linalg.norm(momentum)
     w, x, y, z = run.quaternion.T
@@ -95,9 +110,16 @@ def test_axisymmetric_precession(tolerance):
 def test_body_fixed_thrust(tolerance, error):
     """Fresnel integrals: the thrust turns with the body."""
     offset = {"eccentricity": {"axial": 0.004, "radial": -math.pi / 2}}
-    run = lowfi.run(scene(1.0, 0.01, thrust_offset=offset, thrust={"kind": "constant", "force": 2000.0, "duration": 2.0}),
-                    "springs",
-                    numerics=numerics(tolerance))
+    run = lowfi.run(
+        scene(
+            1.0,
+            0.01,
+            thrust_offset=offset,
+            thrust={"kind": "constant", "force": 2000.0, "duration": 2.0},
+        ),
+        "springs",
+        numerics=numerics(tolerance),
+    )
     rate, along, across = exact.planar_thrust(2000.0, 0.004, 20.0, 0.6, 1.0)
     assert run.rate[-1] == pytest.approx([0.0, 0.0, rate], abs=error)
     assert run.velocity[-1] == pytest.approx([along, across, 0.0], abs=error)
@@ -108,20 +130,34 @@ def test_body_fixed_thrust(tolerance, error):
 @pytest.mark.case("O38")
 @pytest.mark.parametrize("tolerance", [2e-7, 1e-9])
 @pytest.mark.parametrize("pulse, error", [(1e-6, 1e-5), (1e-10, 1e-9)])
-@pytest.mark.parametrize("clock, expected", [(0.0, (-0.067341, 0.019414, -2.501026)), (35.0, (-0.107637, 1.581236, -2.059856))])
+@pytest.mark.parametrize(
+    "clock, expected",
+    [(0.0, (-0.067341, 0.019414, -2.501026)), (35.0, (-0.107637, 1.581236, -2.059856))],
+)
 def test_short_impulse(tolerance, pulse, error, clock, expected):
     """I^-1 (r x J) for an impulse that is short, and in the limit."""
     inertia = {"xx": 0.30, "yy": 0.55, "zz": 0.60, "xy": 0.010, "xz": -0.008, "yz": 0.004}
     tilt, phi = math.radians(0.1), math.radians(clock)
-    run = lowfi.run(scene(4.0 * pulse, pulse, inertia=inertia, thrust_offset={"misalignment": {"axial": tilt, "radial": phi}},
-                          thrust={"kind": "constant", "force": 100.0 / pulse, "duration": pulse, "arm": 0.15}), "springs",
-                    numerics=lowfi.Numerics(relative_tolerance=tolerance))
+    run = lowfi.run(
+        scene(
+            4.0 * pulse,
+            pulse,
+            inertia=inertia,
+            thrust_offset={"misalignment": {"axial": tilt, "radial": phi}},
+            thrust={"kind": "constant", "force": 100.0 / pulse, "duration": pulse, "arm": 0.15},
+        ),
+        "springs",
+        numerics=lowfi.Numerics(relative_tolerance=tolerance),
+    )
     tensor = np.array([[0.30, 0.010, -0.008], [0.010, 0.55, 0.004], [-0.008, 0.004, 0.60]])
-    push = 100.0 * np.array([math.cos(tilt), math.sin(tilt) * math.cos(phi), math.sin(tilt) * math.sin(phi)])
+    push = 100.0 * np.array(
+        [math.cos(tilt), math.sin(tilt) * math.cos(phi), math.sin(tilt) * math.sin(phi)]
+    )
     limit = exact.impulsive_rate(tensor, np.array([-0.15, 0.0, 0.0]), push)
     assert np.degrees(limit) == pytest.approx(expected, abs=1e-6)
     assert abs(run.rate[-1] - limit).max() <= error * abs(limit).max()
-    # Control: without the products of inertia the payload would not roll at all, which is off by more than a thousand tolerances.
+    # Control: without the products of inertia the payload would not roll at all, which is off by
+    # more than a thousand tolerances.
     plain = exact.impulsive_rate(np.diag(np.diag(tensor)), np.array([-0.15, 0.0, 0.0]), push)
     assert plain[0] == 0.0 and abs(plain - limit).max() > 0.01 * abs(limit).max()
 
@@ -130,11 +166,25 @@ def test_short_impulse(tolerance, pulse, error, clock, expected):
 @pytest.mark.parametrize("tolerance", [1e-7, 1e-10])
 def test_recoil_of_a_free_platform(tolerance):
     """J/m, -J/M, -J b/I; closing speed on the line; momentum and energy close."""
-    platform = {"mass": 150.0, "inertia": {"xx": 10.0, "yy": 10.0, "zz": 10.0}, "mass_centre": {"y": 0.3}}
-    run = lowfi.run(scene(4e-6, 1e-6, platform=platform, thrust={"kind": "constant", "force": 1e8, "duration": 1e-6}), "springs",
-                    numerics=numerics(tolerance))
+    platform = {
+        "mass": 150.0,
+        "inertia": {"xx": 10.0, "yy": 10.0, "zz": 10.0},
+        "mass_centre": {"y": 0.3},
+    }
+    run = lowfi.run(
+        scene(
+            4e-6,
+            1e-6,
+            platform=platform,
+            thrust={"kind": "constant", "force": 1e8, "duration": 1e-6},
+        ),
+        "springs",
+        numerics=numerics(tolerance),
+    )
     expected = exact.recoil(100.0, 20.0, 150.0, 10.0, 0.3)
-    assert (expected["closing"], expected["energy"]) == pytest.approx((6.566667, 328.3333), abs=1e-4)
+    assert (expected["closing"], expected["energy"]) == pytest.approx(
+        (6.566667, 328.3333), abs=1e-4
+    )
     assert run.velocity[-1] == pytest.approx([expected["payload"], 0.0, 0.0], abs=1e-4)
     assert run.velocity[-1, 0] == pytest.approx(expected["payload"], rel=1e-6)
     assert run.platform_velocity[-1, 0] == pytest.approx(expected["platform"], rel=1e-6)
@@ -145,7 +195,10 @@ def test_recoil_of_a_free_platform(tolerance):
     assert abs((run.velocity[-1, 0] - run.platform_velocity[-1, 0]) / closing - 1.0) > 0.1
     kinetic = run.energy[-1, 2]
     assert kinetic == pytest.approx(expected["energy"], rel=1e-6)
-    assert run.checks["linear_momentum_error"] <= 1e-12 and run.checks["angular_momentum_error"] <= 1e-12
+    assert (
+        run.checks["linear_momentum_error"] <= 1e-12
+        and run.checks["angular_momentum_error"] <= 1e-12
+    )
     assert run.checks["energy_error"] <= 1e-6
 
 
@@ -155,11 +208,15 @@ def test_recoil_of_a_free_platform(tolerance):
 def test_no_pulse_is_jumped_over(width, tolerance):
     """J/m = 5 m/s, whether the Gaussian lasts 20 us or half a second."""
     thrust = {"kind": "gaussian", "impulse": 100.0, "width": width, "centre": 0.8}
-    run = lowfi.run(scene(1.6, 0.01, thrust=thrust, thrust_offset=CENTRED), "springs",
-                    numerics=lowfi.Numerics(relative_tolerance=tolerance))
+    run = lowfi.run(
+        scene(1.6, 0.01, thrust=thrust, thrust_offset=CENTRED),
+        "springs",
+        numerics=lowfi.Numerics(relative_tolerance=tolerance),
+    )
     assert run.velocity[-1, 0] == pytest.approx(5.0, rel=1e-5)
     assert run.cost["steps"] < 400
-    if width < 0.01:  # control: steps of one sample that do not know the pulse find no impulse like it
+    # control: steps of one sample that do not know the pulse find no impulse like it
+    if width < 0.01:
         peak = 100.0 / (width * math.sqrt(2.0 * math.pi))
         force = peak * np.exp(-0.5 * ((run.time - 0.8) / width) ** 2)
         assert abs(np.trapezoid(force, run.time) / 100.0 - 1.0) > 1.0
@@ -170,20 +227,41 @@ def test_no_pulse_is_jumped_over(width, tolerance):
 def test_steps_stop_at_the_corners_of_the_thrust(tolerance):
     """12.5 kN for 8.3 ms, seen every 1 ms: 103.75 N s, 5.1875 m/s."""
     push = {"kind": "constant", "force": 12500.0, "start": 0.00123, "duration": 0.0083}
-    run = lowfi.run(scene(0.02, 0.001, thrust=push, thrust_offset=CENTRED), "springs", numerics=numerics(tolerance))
+    run = lowfi.run(
+        scene(0.02, 0.001, thrust=push, thrust_offset=CENTRED),
+        "springs",
+        numerics=numerics(tolerance),
+    )
     assert run.velocity[-1, 0] == pytest.approx(5.1875, rel=1e-6)
     # Control: the midpoint rule on steps of 1 ms misses the corners.
-    assert abs(sum(12500.0 * 1e-3 for i in range(20) if 0.00123 <= (i + 0.5) * 1e-3 < 0.00953) / 20.0 - 5.1875) > 0.1
+    assert (
+        abs(
+            sum(12500.0 * 1e-3 for i in range(20) if 0.00123 <= (i + 0.5) * 1e-3 < 0.00953) / 20.0
+            - 5.1875
+        )
+        > 0.1
+    )
 
 
 @pytest.mark.case("O41")
 @pytest.mark.parametrize("tolerance", [2e-7, 1e-9])
 @pytest.mark.parametrize("rescale, speed", [(False, 4.986501), (True, 5.0)])
 def test_cut_gaussian(rescale, speed, tolerance):
-    """100 N s with sigma 4 ms cut at 3 sigma: 4.986501 m/s, or 5 when rescaled; the result says which."""
-    thrust = {"kind": "gaussian", "impulse": 100.0, "width": 4e-3, "centre": 0.02, "cutoff": 3.0, "rescale": rescale}
-    run = lowfi.run(scene(0.05, 1e-3, thrust=thrust, thrust_offset=CENTRED), "springs",
-                    numerics=lowfi.Numerics(relative_tolerance=tolerance))
+    """100 N s with sigma 4 ms cut at 3 sigma: 4.986501 m/s, or 5 when rescaled; the result says
+    which."""
+    thrust = {
+        "kind": "gaussian",
+        "impulse": 100.0,
+        "width": 4e-3,
+        "centre": 0.02,
+        "cutoff": 3.0,
+        "rescale": rescale,
+    }
+    run = lowfi.run(
+        scene(0.05, 1e-3, thrust=thrust, thrust_offset=CENTRED),
+        "springs",
+        numerics=lowfi.Numerics(relative_tolerance=tolerance),
+    )
     assert 5.0 * (1.0 if rescale else kept_by_cut(3.0)) == pytest.approx(speed, rel=1e-7)
     assert run.velocity[-1, 0] == pytest.approx(speed, rel=1e-6)
     assert (run.scene["thrust"]["cutoff"], run.scene["thrust"]["rescale"]) == (3.0, rescale)

@@ -1,4 +1,5 @@
-"""A block on a rough plane, and a bouncing ball: stopping, threshold, acceleration, creep, and an end to the bounces."""
+"""A block on a rough plane, and a bouncing ball: stopping, threshold, acceleration, creep, and an
+end to the bounces."""
 
 import math
 
@@ -17,10 +18,27 @@ TWO_TOLERANCES = pytest.mark.parametrize("tolerance", [1e-6, 1e-8])
 
 
 def on_slope(angle: float, speed: float, duration: float, transition: float, tolerance: float):
-    """A block of 20 kg with coefficient 0.3 on a plane at ``angle`` (rad), started downhill at ``speed`` (m/s)."""
-    rough = {"static": 0.3, "dynamic": 0.3, "static_speed": transition, "dynamic_speed": 2.0 * transition}
-    return lowfi.run(scene(duration, 1e-3, pads=FEET, contact=GROUND, friction=rough, initial={"velocity": {"x": speed}},
-                           gravity={"x": G * math.sin(angle), "z": -G * math.cos(angle)}), "springs", numerics=numerics(tolerance))
+    """A block of 20 kg with coefficient 0.3 on a plane at ``angle`` (rad), started downhill at
+    ``speed`` (m/s)."""
+    rough = {
+        "static": 0.3,
+        "dynamic": 0.3,
+        "static_speed": transition,
+        "dynamic_speed": 2.0 * transition,
+    }
+    return lowfi.run(
+        scene(
+            duration,
+            1e-3,
+            pads=FEET,
+            contact=GROUND,
+            friction=rough,
+            initial={"velocity": {"x": speed}},
+            gravity={"x": G * math.sin(angle), "z": -G * math.cos(angle)},
+        ),
+        "springs",
+        numerics=numerics(tolerance),
+    )
 
 
 @pytest.mark.case("O24")
@@ -41,7 +59,8 @@ def test_stopping_distance_and_time(tolerance):
 @pytest.mark.case("O25")
 @TWO_TOLERANCES
 def test_sliding_threshold(tolerance):
-    """atan(mu) = 16.6992 deg: a hundredth of a degree below, the block comes to a creep; as much above, it runs away."""
+    """atan(mu) = 16.6992 deg: a hundredth of a degree below, the block comes to a creep; as much
+    above, it runs away."""
     limit, hundredth = exact.threshold(0.3), math.radians(0.01)
     assert math.degrees(limit) == pytest.approx(16.6992, abs=1e-4)
     below = on_slope(limit - hundredth, 2e-4, 1.0, 1e-4, tolerance)
@@ -67,11 +86,13 @@ def test_sliding_acceleration(tolerance):
 @pytest.mark.case("O25")
 @TWO_TOLERANCES
 def test_creep_of_the_smoothed_law(tolerance):
-    """Root of mu (3r - r^3)/2 = tan 15 deg: the law creeps at 0.719707 of its transition speed, where true sticking would not."""
+    """Root of mu (3r - r^3)/2 = tan 15 deg: the law creeps at 0.719707 of its transition speed,
+    where true sticking would not."""
     ratio = exact.creep_ratio(math.radians(15.0), 0.3)
     assert ratio == pytest.approx(0.719707, abs=1e-6)
     run = on_slope(math.radians(15.0), 0.0, 0.05, 2e-4, tolerance)
-    assert run.status == "jammed" and run.time[-1] >= 5e-3  # a creep is slower than a jam; it has settled before that is known
+    # a creep is slower than a jam; it has settled before that is known
+    assert run.status == "jammed" and run.time[-1] >= 5e-3
     assert run.velocity[-1, 0] == pytest.approx(ratio * 2e-4, rel=1e-4)
     # Control: the straight-line law mu s / v_s would creep at tan(15 deg) / mu of it.
     assert abs(math.tan(math.radians(15.0)) / 0.3 - ratio) > 0.1
@@ -80,24 +101,40 @@ def test_creep_of_the_smoothed_law(tolerance):
 @pytest.mark.case("O26")
 @TWO_TOLERANCES
 def test_bounces_come_to_an_end(tolerance):
-    """Rest after sqrt(2h/g)(1+e)/(1-e) and a path of h(1+e^2)/(1-e^2): infinitely many bounces in a finite time do not stall."""
+    """Rest after sqrt(2h/g)(1+e)/(1-e) and a path of h(1+e^2)/(1-e^2): infinitely many bounces in a
+    finite time do not stall."""
     height, e = 0.1, 0.8
     low, high = 0.01, 0.5
     for _ in range(60):  # damping ratio whose restitution is e
         zeta = 0.5 * (low + high)
         low, high = (zeta, high) if collisions.linear_restitution(zeta) > e else (low, zeta)
     stiffness = 2e10
-    ground = {"law": "linear", "clearance": height, "stiffness": stiffness, "damping": 2.0 * zeta * math.sqrt(stiffness)}
-    run = lowfi.run(scene(1.4, 5e-5, mass=1.0, contact=ground, gravity={"z": -G}, initial={"velocity": {"x": 1.0}}), "springs",
-                    numerics=numerics(tolerance))
+    ground = {
+        "law": "linear",
+        "clearance": height,
+        "stiffness": stiffness,
+        "damping": 2.0 * zeta * math.sqrt(stiffness),
+    }
+    run = lowfi.run(
+        scene(
+            1.4, 5e-5, mass=1.0, contact=ground, gravity={"z": -G}, initial={"velocity": {"x": 1.0}}
+        ),
+        "springs",
+        numerics=numerics(tolerance),
+    )
     expected = collisions.bouncing_ball(height, e, G, 11)
     assert tuple(expected.values()) == pytest.approx((1.285278, 0.455556, 1.162607), abs=1e-6)
     assert run.status == "time_limit" and run.time[-1] == pytest.approx(1.4)
     speed = run.velocity[:, 2]
-    assert run.time[np.flatnonzero(abs(speed) > 1e-3)[-1]] == pytest.approx(expected["rest"], rel=1e-3)
+    assert run.time[np.flatnonzero(abs(speed) > 1e-3)[-1]] == pytest.approx(
+        expected["rest"], rel=1e-3
+    )
     assert abs(np.diff(run.position[:, 2])).sum() == pytest.approx(expected["path"], rel=1e-3)
     bounces = np.flatnonzero((speed[:-1] < 0.0) & (speed[1:] > 0.0))
     assert run.time[bounces[10]] == pytest.approx(expected["contact"], rel=1e-3)
-    # Control: explicit Euler at the sampling step does not lose energy at the wall, it is thrown back faster than it came.
-    thrown = collisions.explicit_euler_restitution(lambda p, q: max(0.0, stiffness * p + ground["damping"] * q), 1.0, 1.4, 5e-5)
+    # Control: explicit Euler at the sampling step does not lose energy at the wall, it is thrown
+    # back faster than it came.
+    thrown = collisions.explicit_euler_restitution(
+        lambda p, q: max(0.0, stiffness * p + ground["damping"] * q), 1.0, 1.4, 5e-5
+    )
     assert thrown > 1.0

@@ -1,4 +1,5 @@
-"""Modes of the rails on walls that give way: one potential behind all forces, the step limit, and who may ask for them."""
+"""Modes of the rails on walls that give way: one potential behind all forces, the step limit, and
+who may ask for them."""
 
 from dataclasses import replace
 
@@ -19,11 +20,16 @@ DAMPED = {"rail.damping.ratios": [0.02, 0.01], "rail.damping.frequencies": [1e3,
 
 @pytest.fixture(scope="module")
 def vibrating():
-    """Model, records, and any motion of the modes: walls out by micrometres, at centimetres a second."""
+    """Model, records, and any motion of the modes: walls out by micrometres, at centimetres a
+    second."""
     model, system = pressed(REFERENCE.replace(SMOOTH | DAMPED), reference_walls(), COUNT)
     size = system.walls.modes.square.size
     random = np.random.default_rng(5)
-    return model, system, np.append(3e-7 * random.standard_normal(size), 3e-3 * random.standard_normal(size))
+    return (
+        model,
+        system,
+        np.append(3e-7 * random.standard_normal(size), 3e-3 * random.standard_normal(size)),
+    )
 
 
 def rails(system):
@@ -32,28 +38,48 @@ def rails(system):
 
 @pytest.mark.parametrize("name", POSES)
 def test_forces_are_the_gradient_of_the_energy(vibrating, name):
-    """By either body's ways and turns at modes held still, and by every mode: q'' = -dE/dq - omega^2 q - d q'."""
+    """By either body's ways and turns at modes held still, and by every mode: q'' = -dE/dq -
+    omega^2 q - d q'."""
     model, system, modes = vibrating
     pose, h, twists = pose_of(model, name, BASES["moved and turned"]), 1e-9, np.eye(12)
     out = [derivative(system, model, pose, twist, modes) for twist in twists]
     forces, released = generalised(pose, out[0]), np.array([each[slot.RELEASED] for each in out])
-    slopes = np.array([(energy(system, model, pose.moved(twist, h), modes) - energy(system, model, pose.moved(twist, -h), modes))
-                       / (2.0 * h)
-                       for twist in twists])
+    slopes = np.array(
+        [
+            (
+                energy(system, model, pose.moved(twist, h), modes)
+                - energy(system, model, pose.moved(twist, -h), modes)
+            )
+            / (2.0 * h)
+            for twist in twists
+        ]
+    )
     size = np.abs(forces).max()
     assert size > 20.0
     assert slopes == pytest.approx(-forces - released, abs=1e-7 * size, rel=0.0)
-    # Control: without the force along the rail of a wall that modes have bent they would not agree, but where the table ends and
-    # the place on the wall stands still.
-    assert (abs(pull_of_modes(system, model, pose, modes)) > 1e-6 * size) == (not name.startswith("rear"))
+    # Control: without the force along the rail of a wall that modes have bent they would not agree,
+    # but where the table ends and the place on the wall stands still.
+    assert (abs(pull_of_modes(system, model, pose, modes)) > 1e-6 * size) == (
+        not name.startswith("rear")
+    )
     q, rate = modes.reshape(2, -1)
     square, drag = system.walls.modes.square.ravel(), system.walls.modes.drag.ravel()
     steps = 1e-9 * np.eye(q.size, modes.size)
-    by_mode = np.array([energy(system, model, pose, modes + step) - energy(system, model, pose, modes - step)
-                        for step in steps]) / 2e-9
-    swung, found = out[0][slot.STATE_SIZE:].reshape(2, -1)
+    by_mode = (
+        np.array(
+            [
+                energy(system, model, pose, modes + step)
+                - energy(system, model, pose, modes - step)
+                for step in steps
+            ]
+        )
+        / 2e-9
+    )
+    swung, found = out[0][slot.STATE_SIZE :].reshape(2, -1)
     assert (swung == rate).all() and np.abs(by_mode).max() > 1.0
-    assert found + square * q + drag * rate == pytest.approx(-by_mode, abs=1e-6 * np.abs(by_mode).max())
+    assert found + square * q + drag * rate == pytest.approx(
+        -by_mode, abs=1e-6 * np.abs(by_mode).max()
+    )
     assert out[0][slot.STRUCTURAL] == pytest.approx(drag @ rate**2, rel=1e-12)
 
 
@@ -61,40 +87,54 @@ def pull_of_modes(system, model, pose, modes) -> float:
     """Force (N) along the rail on the payload by walls that modes have bent."""
     found = 0.0
     for rail in rails(system):
-        faces = system.walls.room.order[:solved(system, model, pose, rail, None, modes)]
+        faces = system.walls.room.order[: solved(system, model, pose, rail, None, modes)]
         found += (system.walls.room.force[faces] * system.walls.modes.slope[faces]).sum()
     return found
 
 
 @pytest.mark.parametrize("name", ["both legs", "rails of both sides"])
 def test_limit_holds_the_spectrum(vibrating, name):
-    """Every eigenvalue of the whole lies below the bound, which is not far above; the highest mode alone would not do."""
+    """Every eigenvalue of the whole lies below the bound, which is not far above; the highest mode
+    alone would not do."""
     model, system, modes = vibrating
     pose, bodies = pose_of(model, name), (model.payload, model.platform)
     metric = np.zeros((12 + modes.size // 2,) * 2)
     for first, body in zip((0, 6), bodies):
-        metric[first:first + 3, first:first + 3] = np.eye(3) / body.mass
-        metric[first + 3:first + 6, first + 3:first + 6] = body.inverse_inertia
+        metric[first : first + 3, first : first + 3] = np.eye(3) / body.mass
+        metric[first + 3 : first + 6, first + 3 : first + 6] = body.inverse_inertia
     metric[12:, 12:] = np.eye(modes.size // 2)
 
     def forces(moved, tail):
         out = derivative(system, model, moved, np.zeros(12), tail)
-        return np.append(generalised(moved, out), out[slot.STATE_SIZE + modes.size // 2:])
+        return np.append(generalised(moved, out), out[slot.STATE_SIZE + modes.size // 2 :])
 
     still = modes * (np.arange(modes.size) < modes.size // 2)
-    columns = [(forces(pose.moved(twist, 1e-9), still) - forces(pose.moved(twist, -1e-9), still)) / 2e-9 for twist in np.eye(12)]
-    columns += [(forces(pose, still + step) - forces(pose, still - step)) / 2e-9
-                for step in 1e-9 * np.eye(modes.size // 2, modes.size)]
+    columns = [
+        (forces(pose.moved(twist, 1e-9), still) - forces(pose.moved(twist, -1e-9), still)) / 2e-9
+        for twist in np.eye(12)
+    ]
+    columns += [
+        (forces(pose, still + step) - forces(pose, still - step)) / 2e-9
+        for step in 1e-9 * np.eye(modes.size // 2, modes.size)
+    ]
     fastest = np.abs(np.linalg.eigvals(metric @ np.array(columns).T)).max()
-    springs, dampers = limit.stiffness_and_damping(system.walls, system.friction, system.faces, system.platform, system.payload,
-                                                   np.ones(len(system.faces), dtype=np.bool_),
-                                                   np.append(state_of(model, pose), modes))
+    springs, dampers = limit.stiffness_and_damping(
+        system.walls,
+        system.friction,
+        system.faces,
+        system.platform,
+        system.payload,
+        np.ones(len(system.faces), dtype=np.bool_),
+        np.append(state_of(model, pose), modes),
+    )
     assert system.walls.modes.square.max() < fastest < springs < 10.0 * fastest
     assert dampers == system.walls.modes.drag.max() > 0.0
 
 
 def test_modes_need_a_compliance_that_has_them():
-    with pytest.raises(SceneError, match="numerics.modes: given 4, expected 0: springs stand on rigid rails"):
+    with pytest.raises(
+        SceneError, match="numerics.modes: given 4, expected 0: springs stand on rigid rails"
+    ):
         lowfi.run(REFERENCE, "springs", numerics=FOUR)
     walls = reference_walls()
     few = replace(walls, frequency=walls.frequency[:, :3], shape=walls.shape[..., :3])

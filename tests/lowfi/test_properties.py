@@ -1,10 +1,12 @@
-"""What must hold in every scene: promises, symmetries, time reversal without losses. Scenes are drawn at random.
+"""What must hold in every scene: promises, symmetries, time reversal without losses. Scenes are
+drawn at random.
 
-Contact makes small differences grow, by how much depends on the scene. So each comparison brings its own yardstick: the same scene
-with its state at ignition nudged by as much as one step may err. Two runs are compared as long as what the nudge changes is below a
-thousandth of the motion; a wrong sign or a lost term is a million times larger from the first touch on. Where both take the same
-steps ten nudges are allowed, for a pad that just touches may by rounding be open in one and closed in the other, which makes one
-step different; where they take different steps, one nudge for each.
+Contact makes small differences grow, by how much depends on the scene. So each comparison brings
+its own yardstick: the same scene with its state at ignition nudged by as much as one step may err.
+Two runs are compared as long as what the nudge changes is below a thousandth of the motion; a wrong
+sign or a lost term is a million times larger from the first touch on. Where both take the same
+steps ten nudges are allowed, for a pad that just touches may by rounding be open in one and closed
+in the other, which makes one step different; where they take different steps, one nudge for each.
 """
 
 import numpy as np
@@ -31,7 +33,8 @@ from tests.lowfi.support import RAIL, turned_state, unwatched
 
 QUICK = ("ejection", "guided", "frictionless", "free")  # kernels that other tests compile too
 TOLERANCE = NUDGE = 1e-9  # relative; m/s
-LEAST, REACH = 1e-2, 0.1  # m/s, below which nothing is called a motion; m from the mass centre to a pad
+# m/s, below which nothing is called a motion; m from the mass centre to a pad
+LEAST, REACH = 1e-2, 0.1
 KINETIC = ledger.ENTRIES.index("kinetic")
 BODIES = (state.PAYLOAD, state.PLATFORM)
 FEW = settings(max_examples=25, suppress_health_check=list(HealthCheck))
@@ -39,7 +42,8 @@ MANY = settings(max_examples=420, suppress_health_check=list(HealthCheck))
 
 
 def moved(raw: dict, change=None) -> Run:
-    """The run over its whole duration, from the scene's state at ignition or what ``change`` makes of it."""
+    """The run over its whole duration, from the scene's state at ignition or what ``change`` makes
+    of it."""
     run = unwatched(scene_of(raw), Numerics(relative_tolerance=TOLERANCE), change)
     assert not run.message and run.taken == run.end + 1, run.message
     return run
@@ -49,7 +53,7 @@ def nudged(start: np.ndarray) -> np.ndarray:
     """The state with all its motions changed a little."""
     new = start.copy()
     for slot, mass in ((state.VELOCITY, 1.0), (state.MOMENT, 0.1)):
-        new[slot:slot + 3] += NUDGE * mass * np.array([1.0, -0.7, 0.4])
+        new[slot : slot + 3] += NUDGE * mass * np.array([1.0, -0.7, 0.4])
     return new
 
 
@@ -64,8 +68,11 @@ def mapped(values: np.ndarray, matrix: np.ndarray) -> np.ndarray:
     return np.hstack([values[:, :3] @ matrix.T, values[:, 3:] @ (np.linalg.det(matrix) * matrix).T])
 
 
-def assert_equal_motion(found: np.ndarray, expected: np.ndarray, yardstick: np.ndarray, factor: float = 10.0) -> None:
-    """Two runs' speeds (n,6) agree within ``factor`` times the response to the nudge, as long as that tells anything."""
+def assert_equal_motion(
+    found: np.ndarray, expected: np.ndarray, yardstick: np.ndarray, factor: float = 10.0
+) -> None:
+    """Two runs' speeds (n,6) agree within ``factor`` times the response to the nudge, as long as
+    that tells anything."""
     size = max(np.abs(expected).max(), LEAST)
     response = np.maximum.accumulate(np.abs(yardstick - expected).max(axis=1))
     telling = response < 1e-3 * size
@@ -75,37 +82,58 @@ def assert_equal_motion(found: np.ndarray, expected: np.ndarray, yardstick: np.n
 
 
 def check_promises(raw: dict) -> None:
-    """A run as the user gets it: an honest status, finite numbers, closed balances, losses that lose, steps below the limit."""
+    """A run as the user gets it: an honest status, finite numbers, closed balances, losses that
+    lose, steps below the limit."""
     run = lowfi.run(scene_of(raw), "springs", numerics=Numerics(relative_tolerance=TOLERANCE))
     assert run.status in ("exited", "time_limit", "jammed"), run.message
-    assert all((value is not None) == (run.status == "exited") for value in run.outcome[1:])  # the exit time may stand alone
-    for name in ("position", "velocity", "rate", "quaternion", "platform_velocity", "pad_force", "energy", "transverse_energy"):
+    # the exit time may stand alone
+    assert all((value is not None) == (run.status == "exited") for value in run.outcome[1:])
+    for name in (
+        "position",
+        "velocity",
+        "rate",
+        "quaternion",
+        "platform_velocity",
+        "pad_force",
+        "energy",
+        "transverse_energy",
+    ):
         assert np.isfinite(getattr(run, name)).all()
     checks = run.checks
     assert checks["linear_momentum_error"] <= 1e-12 and checks["angular_momentum_error"] <= 1e-11
     assert checks["quaternion_error"] <= 1e-12
     assert checks["energy_error"] <= 1e-6
-    # Where next to nothing moves across the rail, the transverse ledger is the rounding of the axial energy it leaves out.
+    # Where next to nothing moves across the rail, the transverse ledger is the rounding of the
+    # axial energy it leaves out.
     unexplained = np.abs(ledger.residual(run.transverse_energy)).max()
-    assert checks["transverse_energy_error"] <= 1e-4 or unexplained <= 1e-14 * run.energy[:, KINETIC].max()
+    assert (
+        checks["transverse_energy_error"] <= 1e-4
+        or unexplained <= 1e-14 * run.energy[:, KINETIC].max()
+    )
     assert checks["friction_power_max"] <= 0.0 and checks["damping_power_max"] <= 0.0
     assert run.cost["limit_used"] <= 1.0 + 1e-9
 
 
 def check_symmetries(raw: dict) -> None:
-    """The mirror image, the scene turned by a right angle, and its pads in the opposite order move alike."""
+    """The mirror image, the scene turned by a right angle, and its pads in the opposite order move
+    alike."""
     base, yardstick = speeds(moved(raw)), speeds(moved(raw, nudged))
     for matrix in (MIRROR, QUARTER_TURN):
-        assert_equal_motion(speeds(moved(transformed(raw, matrix))), mapped(base, matrix), mapped(yardstick, matrix))
+        assert_equal_motion(
+            speeds(moved(transformed(raw, matrix))), mapped(base, matrix), mapped(yardstick, matrix)
+        )
     assert_equal_motion(speeds(moved(raw | {"pads": raw["pads"][::-1]})), base, yardstick)
     if "platform" in raw and "gravity" not in raw:
         check_other_axes(raw, base, yardstick)
 
 
 def check_other_axes(raw: dict, base: np.ndarray, yardstick: np.ndarray) -> None:
-    """With both bodies turned anyhow at ignition all velocities are turned alike, and rates in body axes are the same."""
+    """With both bodies turned anyhow at ignition all velocities are turned alike, and rates in body
+    axes are the same."""
     run = moved(raw, lambda start: turned_state(start, turning.TURN))
-    expected, nudge = (np.hstack([turning.turned(values[:, :3]), values[:, 3:]]) for values in (base, yardstick))
+    expected, nudge = (
+        np.hstack([turning.turned(values[:, :3]), values[:, 3:]]) for values in (base, yardstick)
+    )
     assert_equal_motion(speeds(run), expected, nudge, factor=run.loop.count[march.STEPS])
 
 
@@ -113,9 +141,9 @@ def reversed_motion(end: np.ndarray):
     """What turns any state into the state ``end`` with all motions reversed."""
     start = end.copy()
     for body in BODIES:
-        start[body + state.VELOCITY:body + state.QUATERNION] *= -1.0
-        start[body + state.MOMENT:body + state.BODY_SIZE] *= -1.0
-    start[state.IMPULSE:] = 0.0
+        start[body + state.VELOCITY : body + state.QUATERNION] *= -1.0
+        start[body + state.MOMENT : body + state.BODY_SIZE] *= -1.0
+    start[state.IMPULSE :] = 0.0
     return start
 
 
@@ -125,21 +153,37 @@ def check_reversal(raw: dict) -> None:
     end = there.loop.end.copy()
     back = moved(raw, lambda _: reversed_motion(end))
     yardstick = moved(raw, lambda _: nudged(reversed_motion(end)))
-    assert_equal_motion(-speeds(back), speeds(there)[::-1], -speeds(yardstick), factor=there.loop.count[march.STEPS])
+    assert_equal_motion(
+        -speeds(back), speeds(there)[::-1], -speeds(yardstick), factor=there.loop.count[march.STEPS]
+    )
 
 
 def test_a_wrong_sign_is_seen():
     """Control: a mirror image that keeps the sign of one product of inertia does not move alike."""
     offset = {"eccentricity": {"axial": 1e-3, "radial": 0.3}}
-    raw = {"name": "free", "duration": DURATION, "output": {"interval": INTERVAL},
-           "thrust_offset": {"misalignment": {"axial": 0.01, "radial": 0.6}, **offset}, "mass_offset": offset,
-           "pads": [{"position": (0.1, 0.1, 0.1), "normals": ["+y"]}], "rail": RAIL,
-           "payload": {"mass": 5.0, "inertia": {"xx": 0.2, "yy": 0.3, "zz": 0.4, "xy": 0.03, "xz": 0.0, "yz": 0.0}},
-           "thrust": {"kind": "constant", "force": 100.0, "duration": 1.0}, "initial": {"rate": {"x": 1.0, "y": 0.5, "z": 0.2}}}
+    raw = {
+        "name": "free",
+        "duration": DURATION,
+        "output": {"interval": INTERVAL},
+        "thrust_offset": {"misalignment": {"axial": 0.01, "radial": 0.6}, **offset},
+        "mass_offset": offset,
+        "pads": [{"position": (0.1, 0.1, 0.1), "normals": ["+y"]}],
+        "rail": RAIL,
+        "payload": {
+            "mass": 5.0,
+            "inertia": {"xx": 0.2, "yy": 0.3, "zz": 0.4, "xy": 0.03, "xz": 0.0, "yz": 0.0},
+        },
+        "thrust": {"kind": "constant", "force": 100.0, "duration": 1.0},
+        "initial": {"rate": {"x": 1.0, "y": 0.5, "z": 0.2}},
+    }
     mirrored = transformed(raw, MIRROR)
     mirrored["payload"]["inertia"]["xy"] *= -1.0
     with pytest.raises(AssertionError):
-        assert_equal_motion(speeds(moved(mirrored)), mapped(speeds(moved(raw)), MIRROR), mapped(speeds(moved(raw, nudged)), MIRROR))
+        assert_equal_motion(
+            speeds(moved(mirrored)),
+            mapped(speeds(moved(raw)), MIRROR),
+            mapped(speeds(moved(raw, nudged)), MIRROR),
+        )
 
 
 @pytest.mark.parametrize("kind", QUICK)

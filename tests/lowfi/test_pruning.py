@@ -11,9 +11,20 @@ from lowfi.compiled import LAWS, compiled_code
 from scenes import load
 from tests.lowfi.giving import reference_walls
 
-# How the effects that the reference scene lacks are added; a law that sticks stands in the place of the other.
-ADDED = {"gravity": {"gravity.z": -9.80665},
-         "sticking": {"friction": {"law": "sticking", "static": 0.2, "dynamic": 0.2, "stiffness": 1e7, "damping": 1e4}}}
+# How the effects that the reference scene lacks are added; a law that sticks stands in the place of
+# the other.
+ADDED = {
+    "gravity": {"gravity.z": -9.80665},
+    "sticking": {
+        "friction": {
+            "law": "sticking",
+            "static": 0.2,
+            "dynamic": 0.2,
+            "stiffness": 1e7,
+            "damping": 1e4,
+        }
+    },
+}
 ON_WALLS = ("walls", "modes", "thermal")  # effects that need walls found for the scene
 COUNT = """
 import numba
@@ -37,9 +48,15 @@ print(evaluate(reference.replace({"friction": None, "platform": None})), evaluat
 
 
 def test_pruned_kernels_know_no_friction(tmp_path):
-    """In a fresh interpreter and cache: without the table nothing compiles the friction law, with it something does."""
-    ran = subprocess.run([sys.executable, "-c", COUNT], capture_output=True, text=True, timeout=300,
-                         env=os.environ | {"NUMBA_CACHE_DIR": str(tmp_path)})
+    """In a fresh interpreter and cache: without the table nothing compiles the friction law, with
+    it something does."""
+    ran = subprocess.run(
+        [sys.executable, "-c", COUNT],
+        capture_output=True,
+        text=True,
+        timeout=300,
+        env=os.environ | {"NUMBA_CACHE_DIR": str(tmp_path)},
+    )
     assert ran.returncode == 0, ran.stderr
     without, with_friction = map(int, ran.stdout.split())
     assert without == 0 and with_friction > 0
@@ -47,19 +64,25 @@ def test_pruned_kernels_know_no_friction(tmp_path):
 
 @pytest.mark.parametrize("effect", [effect for effect in LAWS if effect not in ON_WALLS])
 def test_one_absent_effect_is_not_compiled(effect):
-    """Read from the machine code: what the scene has is there, what it has not is not, and one change changes nothing else. Without
-    contact there is no friction either."""
+    """Read from the machine code: what the scene has is there, what it has not is not, and one
+    change changes nothing else. Without contact there is no friction either."""
     base = load("reference")
     present = lowfi.compiled_effects(base)
     assert present == {name: name not in (*ADDED, *ON_WALLS) for name in LAWS}
     changed = lowfi.compiled_effects(base.replace(ADDED.get(effect, {effect: None})))
     also = {"friction"} if effect in ("contact", "sticking") else set()
-    assert changed == {name: not value if name == effect or name in also else value for name, value in present.items()}
+    assert changed == {
+        name: not value if name == effect or name in also else value
+        for name, value in present.items()
+    }
 
 
 def test_without_any_effect_nothing_of_them_is_compiled():
-    found = lowfi.compiled_effects(load("reference").replace(
-        dict.fromkeys(("friction", "platform", "contact", "thrust_offset"))))
+    found = lowfi.compiled_effects(
+        load("reference").replace(
+            dict.fromkeys(("friction", "platform", "contact", "thrust_offset"))
+        )
+    )
     assert not any(found.values())
 
 
@@ -68,19 +91,26 @@ def test_warm_walls_are_compiled_for_a_warm_scene_only():
     """A law asks where they stand, walls that give way know it in code of their own."""
     cold, name = load("reference"), b"5lowfi5walls4warm5_fill"
     warm, walls = cold.replace({"thermal.mean": 20.0}), reference_walls()
-    assert lowfi.compiled_effects(warm, walls=walls.rigid()) == lowfi.compiled_effects(cold) | {"thermal": True}
+    assert lowfi.compiled_effects(warm, walls=walls.rigid()) == lowfi.compiled_effects(cold) | {
+        "thermal": True
+    }
     assert name in compiled_code(warm, walls=walls) and name not in compiled_code(cold, walls=walls)
 
 
 def test_walls_that_give_way_stand_in_the_place_of_the_contact_law():
     """Nothing of the package is in a kernel without them."""
     scene, name = load("reference"), b"5lowfi5walls"
-    assert lowfi.compiled_effects(scene, walls=reference_walls()) == lowfi.compiled_effects(scene) | {
-        "contact": False, "walls": True}
-    assert name in compiled_code(scene, walls=reference_walls()) and name not in compiled_code(scene)
+    assert lowfi.compiled_effects(scene, walls=reference_walls()) == lowfi.compiled_effects(
+        scene
+    ) | {"contact": False, "walls": True}
+    assert name in compiled_code(scene, walls=reference_walls()) and name not in compiled_code(
+        scene
+    )
 
 
 def test_modes_of_the_rails_are_compiled_where_there_are_any():
     scene, walls = load("reference"), reference_walls()
-    without, with_modes = (lowfi.compiled_effects(scene, lowfi.Numerics(modes=count), walls) for count in (0, 4))
+    without, with_modes = (
+        lowfi.compiled_effects(scene, lowfi.Numerics(modes=count), walls) for count in (0, 4)
+    )
     assert with_modes == without | {"modes": True}

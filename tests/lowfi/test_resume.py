@@ -9,19 +9,35 @@ from lowfi.run import Run
 from scenes import load
 
 ASKED = load("sensitive").condition("phi35")
-ARRAYS = ("time", "position", "velocity", "quaternion", "rate", "platform_position", "platform_velocity", "platform_rate",
-          "pad_force", "energy", "transverse_energy")
+ARRAYS = (
+    "time",
+    "position",
+    "velocity",
+    "quaternion",
+    "rate",
+    "platform_position",
+    "platform_velocity",
+    "platform_rate",
+    "pad_force",
+    "energy",
+    "transverse_energy",
+)
 
 
 def put_away(tolerance: float, last: int, path) -> Run:
-    """A run that was stopped at sample ``last``, made anew from the scene and the arrays in a file."""
+    """A run that was stopped at sample ``last``, made anew from the scene and the arrays in a
+    file."""
     numerics = Numerics(relative_tolerance=tolerance)
     run = Run(ASKED, numerics)
     run.begin()
     run._advance(last)
     assert run.taken == last + 1
-    np.savez(path, rows=run.rows, forces=run.forces, **{name: array for name, array in run.loop._asdict().items()
-                                                        if array is not None})
+    np.savez(
+        path,
+        rows=run.rows,
+        forces=run.forces,
+        **{name: array for name, array in run.loop._asdict().items() if array is not None},
+    )
     kept, other = np.load(path), Run(ASKED, numerics)
     other.loop = march.Loop(*(kept.get(name) for name in march.Loop._fields))
     other.rows, other.forces, other.taken = kept["rows"], kept["forces"], last + 1
@@ -38,7 +54,8 @@ def test_resumed_run_ends_in_the_same_bits(tolerance, tmp_path):
     resumed = run.trajectory()
     assert resumed.status == whole.status == "exited" and resumed.outcome == whole.outcome
     assert all(np.array_equal(getattr(resumed, name), getattr(whole, name)) for name in ARRAYS)
-    # Control: with the state alone kept, and not the size of the next step and the stages, it ends elsewhere.
+    # Control: with the state alone kept, and not the size of the next step and the stages, it ends
+    # elsewhere.
     poor = put_away(tolerance, last, tmp_path / "run.npz")
     fresh = march.ready(poor.system, poor.loop.end, poor.interval)
     fresh.clock[march.NOW], fresh.count[march.TAKEN] = poor.loop.clock[march.NOW], last + 1

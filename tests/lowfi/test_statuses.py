@@ -10,8 +10,13 @@ from lowfi import columns
 from scenes import load
 
 BASE = load("reference").condition("phi15")
-ENDS = {"exited": ({}, {}), "time_limit": ({"duration": "5 ms"}, {}), "jammed": ({"thrust.peak": 5.0}, {}),
-        "spent": ({}, {"maximum_steps": 20}), "overflow": ({"thrust.peak": 1e200, "thrust_offset.misalignment.axial": 0.0}, {})}
+ENDS = {
+    "exited": ({}, {}),
+    "time_limit": ({"duration": "5 ms"}, {}),
+    "jammed": ({"thrust.peak": 5.0}, {}),
+    "spent": ({}, {"maximum_steps": 20}),
+    "overflow": ({"thrust.peak": 1e200, "thrust_offset.misalignment.axial": 0.0}, {}),
+}
 STATUS = {"spent": "diverged", "overflow": "diverged"}
 
 
@@ -22,10 +27,13 @@ def ended(name: str):
 
 @pytest.mark.parametrize("name", ENDS)
 def test_status_and_what_stands_behind_it(name):
-    """Settled values with an exit and with nothing else; a reason with a failure; finite samples always."""
+    """Settled values with an exit and with nothing else; a reason with a failure; finite samples
+    always."""
     run = ended(name)
     assert run.status == STATUS.get(name, name)
-    assert all((value is not None) == (name == "exited") for value in run.outcome._asdict().values())
+    assert all(
+        (value is not None) == (name == "exited") for value in run.outcome._asdict().values()
+    )
     assert bool(run.message) == (run.status == "diverged")
     for field in dataclasses.fields(run):
         value = getattr(run, field.name)
@@ -34,12 +42,15 @@ def test_status_and_what_stands_behind_it(name):
 
 
 def test_exit_without_a_settled_window_has_no_settled_values():
-    """The scene ends after the exit and before the window does: time_limit, an exit time, nothing else."""
+    """The scene ends after the exit and before the window does: time_limit, an exit time, nothing
+    else."""
     exit_time = ended("exited").outcome.exit_time
     run = lowfi.run(BASE.replace({"duration": exit_time + 1e-3}), "springs")
     assert run.status == "time_limit"
     assert run.outcome.exit_time == pytest.approx(exit_time, rel=1e-9)
-    assert [value for value in run.outcome._asdict().values() if value is not None] == [run.outcome.exit_time]
+    assert [value for value in run.outcome._asdict().values() if value is not None] == [
+        run.outcome.exit_time
+    ]
 
 
 def test_saved_results_hold_no_number_either(tmp_path):
@@ -48,11 +59,14 @@ def test_saved_results_hold_no_number_either(tmp_path):
         path = tmp_path / f"{name}.nc"
         ended(name).save(path)
         found = type(ended(name)).load(path)
-        assert found.status == STATUS.get(name, name) and (found.outcome.rate is not None) == (name == "exited")
+        assert found.status == STATUS.get(name, name) and (found.outcome.rate is not None) == (
+            name == "exited"
+        )
 
 
 def test_tables_of_runs_hold_none_either():
-    """In an ensemble the settled values of all but the exited are NaN, which no mean can swallow unseen."""
+    """In an ensemble the settled values of all but the exited are NaN, which no mean can swallow
+    unseen."""
     rows = [overrides for name, (overrides, numerics) in ENDS.items() if not numerics]
     found = lowfi.run_many(BASE, rows, "springs")
     assert found.status.values.tolist() == ["exited", "time_limit", "jammed", "diverged"]

@@ -1,4 +1,5 @@
-"""Friction that sticks: a block on a slope, a slider that jams with and without a platform, and no end of slips anywhere."""
+"""Friction that sticks: a block on a slope, a slider that jams with and without a platform, and no
+end of slips anywhere."""
 
 import math
 
@@ -34,19 +35,48 @@ def push(tmp_path):
     return write
 
 
-def on_slope(angle, speed, duration, tolerance=1e-6, downhill="x", stiffness=SPRING, damping=CRITICAL, thrust=None):
-    """20 kg with coefficient 0.3 on a plane at ``angle`` (rad), started downhill at ``speed`` (m/s) in normal equilibrium."""
-    grip = {"law": "sticking", "static": 0.3, "dynamic": 0.3, "stiffness": stiffness, "damping": damping}
+def on_slope(
+    angle,
+    speed,
+    duration,
+    tolerance=1e-6,
+    downhill="x",
+    stiffness=SPRING,
+    damping=CRITICAL,
+    thrust=None,
+):
+    """20 kg with coefficient 0.3 on a plane at ``angle`` (rad), started downhill at ``speed`` (m/s)
+    in normal equilibrium."""
+    grip = {
+        "law": "sticking",
+        "static": 0.3,
+        "dynamic": 0.3,
+        "stiffness": stiffness,
+        "damping": damping,
+    }
     sunk = 20.0 * G * math.cos(angle) / 4.0 / GROUND["stiffness"]
-    return lowfi.run(scene(duration, 1e-3, pads=FEET, contact=GROUND, friction=grip, thrust=thrust, thrust_offset=CENTRED,
-                           initial={"velocity": {downhill: speed}, "position": {"z": -sunk}},
-                           gravity={downhill: G * math.sin(angle), "z": -G * math.cos(angle)}), "springs",
-                     numerics=numerics(tolerance))
+    return lowfi.run(
+        scene(
+            duration,
+            1e-3,
+            pads=FEET,
+            contact=GROUND,
+            friction=grip,
+            thrust=thrust,
+            thrust_offset=CENTRED,
+            initial={"velocity": {downhill: speed}, "position": {"z": -sunk}},
+            gravity={downhill: G * math.sin(angle), "z": -G * math.cos(angle)},
+        ),
+        "springs",
+        numerics=numerics(tolerance),
+    )
 
 
 def passive(run) -> bool:
     """Friction took power in every step, and energy between any two samples."""
-    return run.checks["friction_power_max"] <= 0.0 and (np.diff(run.energy[:, FRICTION]) >= 0.0).all()
+    return (
+        run.checks["friction_power_max"] <= 0.0 and (np.diff(run.energy[:, FRICTION]) >= 0.0).all()
+    )
 
 
 @pytest.mark.case("O24")
@@ -66,15 +96,19 @@ def test_stopping_distance_and_time(tolerance):
 @pytest.mark.case("O25")
 @TWO_TOLERANCES
 def test_sliding_threshold(tolerance, push):
-    """atan(mu): a hundredth of a degree below, the block comes to rest for good; as much above, it runs away."""
+    """atan(mu): a hundredth of a degree below, the block comes to rest for good; as much above, it
+    runs away."""
     limit, hundredth = exact.threshold(0.3), math.radians(0.01)
-    # So near the limit a slack spring overshoots it, and some more slips load it: the stiffer, the sooner (0.12 s if rigid).
+    # So near the limit a slack spring overshoots it, and some more slips load it: the stiffer, the
+    # sooner (0.12 s if rigid).
     stiff = {"stiffness": 100.0 * SPRING, "damping": CRITICAL, "thrust": push(1e-12)}
     below = on_slope(limit - hundredth, 2e-4, 0.6, tolerance, **stiff)
     above = on_slope(limit + hundredth, 2e-4, 0.6, tolerance, **stiff)
     assert np.ptp(below.position[below.time > 0.4, 0]) <= 1e-15
     assert passive(below) and below.cost["events"] < 100
-    assert above.velocity[-1, 0] == pytest.approx(2e-4 + 0.6 * exact.sliding_acceleration(limit + hundredth, 0.3, G), rel=0.01)
+    assert above.velocity[-1, 0] == pytest.approx(
+        2e-4 + 0.6 * exact.sliding_acceleration(limit + hundredth, 0.3, G), rel=0.01
+    )
 
 
 @pytest.mark.case("O25")
@@ -91,11 +125,16 @@ def test_sliding_acceleration(tolerance):
 @TWO_TOLERANCES
 @pytest.mark.parametrize("downhill, speed", [("x", 0.0), ("x", 0.05), ("y", 0.05), ("y", -0.05)])
 def test_no_creep(tolerance, downhill, speed, push):
-    """At 15 deg the block, once it has come to rest, stays where it is to the last bit that a position has."""
+    """At 15 deg the block, once it has come to rest, stays where it is to the last bit that a
+    position has."""
     run = on_slope(math.radians(15.0), speed, 0.5, tolerance, downhill, thrust=push(1e-12))
     rest = run.position[run.time > 0.4]
     assert np.ptp(rest, axis=0).max() <= 1e-15
-    assert passive(run) and run.checks["energy_error"] <= 1e-6 and run.checks["transverse_energy_error"] <= 1e-4
+    assert (
+        passive(run)
+        and run.checks["energy_error"] <= 1e-6
+        and run.checks["transverse_energy_error"] <= 1e-4
+    )
     assert run.cost["events"] < 20
     # Control: the two-step law creeps from one sample to the next, by 0.72 of its transition speed.
     smoothed = smoothed_on_slope(math.radians(15.0), 0.0, 0.05, 2e-4, tolerance)
@@ -105,23 +144,37 @@ def test_no_creep(tolerance, downhill, speed, push):
 @pytest.mark.parametrize("damping", [0.0, 1e2, 1e5])
 @pytest.mark.parametrize("speed", [0.05, -0.05])
 def test_slips_come_to_an_end(damping, speed, push):
-    """Whatever the damping, even none: a face is held for good after a few slips, though it may ring on its spring."""
+    """Whatever the damping, even none: a face is held for good after a few slips, though it may
+    ring on its spring."""
     run = on_slope(math.radians(15.0), speed, 0.5, damping=damping, thrust=push(1e-12))
     assert run.cost["events"] < 20 and passive(run)
     assert np.ptp(run.position[run.time > 0.4, 0]) <= 2.0 * GIVES
 
 
 def slider(offset: float, thrust: dict, duration: float, friction: dict):
-    """20 kg guided over 0.2 m without clearance and pushed by 2 kN ``offset`` (m) off its centre."""
+    """20 kg guided over 0.2 m without clearance and pushed by 2 kN ``offset`` (m) off its
+    centre."""
     pads = {"law": "linear", "clearance": 0.0, "stiffness": 7e7, "damping": 3.704e4}
-    return lowfi.run(scene(duration, 1e-4, pads=corners(normals=("z",)), inertia={"xx": 0.8, "yy": 0.8, "zz": 0.8}, contact=pads,
-                           friction=friction, thrust=thrust, thrust_offset={"eccentricity": {"axial": offset}}, gravity={"z": 0.0}),
-                     "springs")
+    return lowfi.run(
+        scene(
+            duration,
+            1e-4,
+            pads=corners(normals=("z",)),
+            inertia={"xx": 0.8, "yy": 0.8, "zz": 0.8},
+            contact=pads,
+            friction=friction,
+            thrust=thrust,
+            thrust_offset={"eccentricity": {"axial": offset}},
+            gravity={"z": 0.0},
+        ),
+        "springs",
+    )
 
 
 @pytest.mark.case("X7")
 def test_wedged_slider(push):
-    """2 mu r/s = 1.04 locks: a jam, less than 0.5 mm of travel and then none at all. 0.96 leaves 4 % of the force."""
+    """2 mu r/s = 1.04 locks: a jam, less than 0.5 mm of travel and then none at all. 0.96 leaves 4
+    % of the force."""
     grip = {"law": "sticking", "static": 0.8, "dynamic": 0.8, "stiffness": 7e7, "damping": 3.7e4}
     constant = {"kind": "constant", "force": 2000.0, "duration": 0.2}
     jammed, locked = slider(0.13, constant, 0.2, grip), slider(0.13, push(2000.0), 0.2, grip)
@@ -130,24 +183,47 @@ def test_wedged_slider(push):
     assert np.ptp(locked.position[locked.time > 0.1], axis=0).max() <= 1e-15
     assert locked.cost["events"] < 100 and passive(locked)
     free = slider(0.12, constant, 0.05, grip)
-    assert np.interp([0.02, 0.04], free.time, free.velocity[:, 0]) @ (-1.0, 1.0) / 0.02 == pytest.approx(4.0, rel=0.02)
+    assert np.interp([0.02, 0.04], free.time, free.velocity[:, 0]) @ (
+        -1.0,
+        1.0,
+    ) / 0.02 == pytest.approx(4.0, rel=0.02)
 
 
-WEDGED = {"friction": {"law": "sticking", "static": 0.8, "dynamic": 0.7, "stiffness": 1e7, "damping": 1e4}, "thrust.peak": 2000.0,
-          "thrust_offset.eccentricity.axial": 0.13}
+WEDGED = {
+    "friction": {
+        "law": "sticking",
+        "static": 0.8,
+        "dynamic": 0.7,
+        "stiffness": 1e7,
+        "damping": 1e4,
+    },
+    "thrust.peak": 2000.0,
+    "thrust_offset.eccentricity.axial": 0.13,
+}
 
 
 def test_promises_of_a_jam_on_a_free_platform():
-    """Slips, stops, touches and recoil: both ledgers, both momenta, no energy back, and the mirror image."""
+    """Slips, stops, touches and recoil: both ledgers, both momenta, no energy back, and the mirror
+    image."""
     asked = load("sensitive").condition("phi35").replace(WEDGED)
-    mirror = asked.replace({"thrust_offset.misalignment.radial": "145 deg", "payload.inertia.xy": -asked.payload.inertia.xy})
+    mirror = asked.replace(
+        {
+            "thrust_offset.misalignment.radial": "145 deg",
+            "payload.inertia.xy": -asked.payload.inertia.xy,
+        }
+    )
     run, other = lowfi.run(asked, "springs"), lowfi.run(mirror, "springs")
     assert run.status == other.status == "jammed" and passive(run)
     assert run.checks["energy_error"] <= 1e-6 and run.checks["transverse_energy_error"] <= 1e-4
-    assert run.checks["linear_momentum_error"] <= 1e-12 and run.checks["angular_momentum_error"] <= 1e-11
+    assert (
+        run.checks["linear_momentum_error"] <= 1e-12
+        and run.checks["angular_momentum_error"] <= 1e-11
+    )
     assert run.checks["quaternion_error"] <= 1e-12 and 0.0 < run.cost["limit_used"] <= 1.0 + 1e-9
     assert run.cost["events"] < 1000
-    assert other.rate * (-1.0, 1.0, -1.0) == pytest.approx(run.rate, abs=1e-6 * np.abs(run.rate).max())
+    assert other.rate * (-1.0, 1.0, -1.0) == pytest.approx(
+        run.rate, abs=1e-6 * np.abs(run.rate).max()
+    )
     # Control: a hundredth less of the loss is seen.
     false = run.energy.copy()
     false[:, FRICTION] *= 0.99
@@ -158,7 +234,9 @@ def test_fast_faces_only_slide():
     """At metres per second the law is Coulomb's, and so is the two-step law: the same ejection."""
     asked = load("sensitive").condition("phi60")
     one = lowfi.run(asked, "springs").outcome.rate
-    other = lowfi.run(asked.replace({"friction": WEDGED["friction"] | {"static": 0.2, "dynamic": 0.2}}), "springs").outcome.rate
+    other = lowfi.run(
+        asked.replace({"friction": WEDGED["friction"] | {"static": 0.2, "dynamic": 0.2}}), "springs"
+    ).outcome.rate
     assert other == pytest.approx(one, rel=1e-6)
 
 
@@ -166,9 +244,16 @@ def test_same_bits_in_an_ensemble():
     slippery = WEDGED | {"friction.static": 0.3, "friction.dynamic": 0.2, "thrust.peak": "10 kN"}
     base = load("sensitive").condition("phi35").replace(slippery)
     rows = [{"thrust_offset.eccentricity.axial": 1e-3 * index} for index in range(3)]
-    rows += [WEDGED, {"friction.dynamic": 0.1}, {"initial.position.y": 0.06e-3}, {"friction.dynamic": 0.4}]
+    rows += [
+        WEDGED,
+        {"friction.dynamic": 0.1},
+        {"initial.position.y": 0.06e-3},
+        {"friction.dynamic": 0.4},
+    ]
     found = lowfi.run_many(base, rows, "springs")
-    assert found.status.values.tolist() == ["exited"] * 3 + ["jammed"] + ["exited"] * 2 + ["refused"]
+    assert found.status.values.tolist() == ["exited"] * 3 + ["jammed"] + ["exited"] * 2 + [
+        "refused"
+    ]
     for index, row in enumerate(rows[:-1]):
         alone, case = lowfi.run(base.replace(row), "springs"), found.isel(case=index)
         assert (str(case.status.values), int(case.steps)) == (alone.status, alone.cost["steps"])

@@ -1,4 +1,5 @@
-"""Tables of cases in CSV files: units in a line or in the cells, bad cells for the scene to refuse, bad headers at once."""
+"""Tables of cases in CSV files: units in a line or in the cells, bad cells for the scene to refuse,
+bad headers at once."""
 
 import numpy as np
 import pytest
@@ -19,15 +20,38 @@ def table(folder, *lines: str) -> TableFile:
 
 def test_units_in_a_line_or_in_the_cells_are_the_same_bits(tmp_path):
     texts = [f"{value:.6g}" for value in np.random.default_rng(1).uniform(0.0, 1.0, 200)]
-    line = table(tmp_path, f"{AXIAL},{MASS}", "deg,g", *(f"{text},{9000 + n}" for n, text in enumerate(texts)))
-    cells = table(tmp_path, f"{AXIAL}, {MASS}", *(f"{text} deg, {9000 + n} g" for n, text in enumerate(texts)))
+    line = table(
+        tmp_path,
+        f"{AXIAL},{MASS}",
+        "deg,g",
+        *(f"{text},{9000 + n}" for n, text in enumerate(texts)),
+    )
+    cells = table(
+        tmp_path, f"{AXIAL}, {MASS}", *(f"{text} deg, {9000 + n} g" for n, text in enumerate(texts))
+    )
     assert line.asked == cells.asked == 200 and line.identity == cells.identity
-    assert line.rows(7, 9) == cells.rows(7, 9) == [{AXIAL: to_si(f"{texts[n]} deg", "rad"), MASS: to_si(f"{9000 + n} g", "kg")}
-                                                   for n in (7, 8)]
+    assert (
+        line.rows(7, 9)
+        == cells.rows(7, 9)
+        == [
+            {AXIAL: to_si(f"{texts[n]} deg", "rad"), MASS: to_si(f"{9000 + n} g", "kg")}
+            for n in (7, 8)
+        ]
+    )
 
 
 def test_odd_cells_stay_text_and_empty_ones_are_left_out(tmp_path):
-    found = table(tmp_path, f"{AXIAL},{MASS},friction", "deg,kg,", "0.1,,", "x,9.9,absent", "nan,9.9,", "0.2", "0.3,9.9,,7", "")
+    found = table(
+        tmp_path,
+        f"{AXIAL},{MASS},friction",
+        "deg,kg,",
+        "0.1,,",
+        "x,9.9,absent",
+        "nan,9.9,",
+        "0.2",
+        "0.3,9.9,,7",
+        "",
+    )
     assert found.asked == 5
     rows = found.rows(0, 5)
     assert rows[0] == {AXIAL: to_si("0.1 deg", "rad")}
@@ -40,16 +64,20 @@ def test_odd_cells_stay_text_and_empty_ones_are_left_out(tmp_path):
 
 
 def test_a_bare_number_is_no_quantity(tmp_path):
-    """In a file every number of a dimension carries its unit: 0.1 alone is left for the scene to refuse."""
+    """In a file every number of a dimension carries its unit: 0.1 alone is left for the scene to
+    refuse."""
     assert table(tmp_path, AXIAL, "0.1").rows(0, 1) == [{AXIAL: "0.1"}]
     assert table(tmp_path, "friction.static", "0.1").rows(0, 1) == [{"friction.static": 0.1}]
 
 
-@pytest.mark.parametrize("lines, words", [
-    ((f"{MASS},payload.weight,{MASS}", "kg,kg,kg"), ["payload.weight", "twice"]),
-    ((f"{MASS},{AXIAL}", "m,deg"), [MASS, "'m'"]),
-    (("",), ["header"]),
-])
+@pytest.mark.parametrize(
+    "lines, words",
+    [
+        ((f"{MASS},payload.weight,{MASS}", "kg,kg,kg"), ["payload.weight", "twice"]),
+        ((f"{MASS},{AXIAL}", "m,deg"), [MASS, "'m'"]),
+        (("",), ["header"]),
+    ],
+)
 def test_a_bad_header_is_refused_at_once(tmp_path, lines, words):
     with pytest.raises(SceneError) as refused:
         table(tmp_path, *lines)

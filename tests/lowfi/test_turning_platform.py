@@ -1,8 +1,10 @@
-"""X18: the platform turns three full turns while it ejects. What it sees must not hang on inertial axes, nor jump at a full turn.
+"""X18: the platform turns three full turns while it ejects. What it sees must not hang on inertial
+axes, nor jump at a full turn.
 
-Really 38 s at 0.5 rad/s, so the payload creeps: 0.1 m/s along a rail of 3 m. A thrust across the rail holds it in a corner, since
-in the clearance centrifugal force would make any rounding error grow by exp(0.5 * 38) = 1e8; the axis lies 0.4 deg off the rail's,
-so that Coriolis force presses too.
+Really 38 s at 0.5 rad/s, so the payload creeps: 0.1 m/s along a rail of 3 m. A thrust across the
+rail holds it in a corner, since in the clearance centrifugal force would make any rounding error
+grow by exp(0.5 * 38) = 1e8; the axis lies 0.4 deg off the rail's, so that Coriolis force presses
+too.
 """
 
 import numpy as np
@@ -17,15 +19,32 @@ from tests.lowfi.support import corners, scene, turned_state
 RATE, OFFSET, ARM = (0.5, 0.003, -0.002), 1.2e-4, (0.1, 1.2e-4, 1.2e-4)
 ISOTROPIC = {"xx": 4.9, "yy": 4.9, "zz": 4.9}
 TURNING = scene(
-    39.0, 0.02, mass=9.9, inertia={"xx": 0.066, "yy": 0.134, "zz": 0.128}, pads=corners(0.08),
-    rail={"start": -0.1, "end": 3.2, "material": {"density": 2810.0, "youngs_modulus": 72e9, "poisson_ratio": 0.33}},
+    39.0,
+    0.02,
+    mass=9.9,
+    inertia={"xx": 0.066, "yy": 0.134, "zz": 0.128},
+    pads=corners(0.08),
+    rail={
+        "start": -0.1,
+        "end": 3.2,
+        "material": {"density": 2810.0, "youngs_modulus": 72e9, "poisson_ratio": 0.33},
+    },
     platform={"mass": 81.2, "inertia": ISOTROPIC, "mass_centre": {"x": -0.1}},
-    # A damping that starts at nothing: one that jumps where a pad touches would show how exactly that instant is found.
-    contact={"law": "impact", "clearance": 1e-4, "exponent": 1.0, "stiffness": 1e3, "damping": 60.0, "damping_depth": 1e-4},
+    # A damping that starts at nothing: one that jumps where a pad touches would show how exactly
+    # that instant is found.
+    contact={
+        "law": "impact",
+        "clearance": 1e-4,
+        "exponent": 1.0,
+        "stiffness": 1e3,
+        "damping": 60.0,
+        "damping_depth": 1e-4,
+    },
     friction={"static": 0.02, "dynamic": 0.02, "static_speed": 1e-3, "dynamic_speed": 2e-3},
     thrust={"kind": "gaussian", "peak": 1.0, "width": 7.0, "centre": 15.0, "arm": 1e-6},
     thrust_offset={"misalignment": {"axial": np.pi / 2, "radial": np.pi / 4}},
-    initial=turning.carried(RATE, ARM, 0.12) | {"position": {"y": OFFSET, "z": OFFSET}})
+    initial=turning.carried(RATE, ARM, 0.12) | {"position": {"y": OFFSET, "z": OFFSET}},
+)
 NUDGE = rotation.exponential((1e-9, 0.0, 0.0))
 TWO_TOLERANCES = pytest.mark.parametrize("tolerance", [7e-13, 2e-13])
 
@@ -34,8 +53,11 @@ def ejected(tolerance: float, turn=None, bodies=(state.PAYLOAD, state.PLATFORM))
     """The run, its bodies turned beforehand about the scene's origin by the quaternion ``turn``."""
     run = Run(TURNING, Numerics(relative_tolerance=tolerance))
     if turn:
-        run.loop = march.ready(run.system, turned_state(state.initial(run.model), turn, bodies), run.interval)
-    run.marks = run.marks._replace(settled_thrust=0.0)  # what is left of the thrust does not keep the payload from settling
+        run.loop = march.ready(
+            run.system, turned_state(state.initial(run.model), turn, bodies), run.interval
+        )
+    # what is left of the thrust does not keep the payload from settling
+    run.marks = run.marks._replace(settled_thrust=0.0)
     run.begin()
     run.march(None)
     return run.trajectory()
@@ -53,14 +75,18 @@ def test_three_turns_seen_from_the_platform(tolerance):
     assert other.outcome.exit_time == pytest.approx(run.outcome.exit_time, rel=1e-9)
     assert other.outcome.rate == pytest.approx(run.outcome.rate, abs=1e-9)
     assert turning.turned(run.outcome.velocity) == pytest.approx(other.outcome.velocity, abs=1e-9)
-    # Control: it would see that only the payload starts turned, by as much as moves its pads by a tenth of a nanometre.
-    assert max(turning.differences(run, ejected(tolerance, NUDGE, (state.PAYLOAD,))).values()) > 1e-9
+    # Control: it would see that only the payload starts turned, by as much as moves its pads by a
+    # tenth of a nanometre.
+    assert (
+        max(turning.differences(run, ejected(tolerance, NUDGE, (state.PAYLOAD,))).values()) > 1e-9
+    )
 
 
 @pytest.mark.case("X18")
 def test_no_output_jumps_at_a_full_turn():
-    """Nothing moves by more in one sample than its rate allows. Controls: angles that wrap jump by a whole turn, and a relative
-    velocity without the frame's turning is nowhere near what the payload does on the rail."""
+    """Nothing moves by more in one sample than its rate allows. Controls: angles that wrap jump by
+    a whole turn, and a relative velocity without the frame's turning is nowhere near what the
+    payload does on the rail."""
     run = ejected(7e-13)
     turning.assert_smooth(run, 0.02, np.linalg.norm(RATE))
     assert turning.largest_jump(turning.principal(run.quaternion)) > 5.0

@@ -1,4 +1,5 @@
-"""Walls that are warm and give way: one potential behind all forces, and displacement that starts from where they stand."""
+"""Walls that are warm and give way: one potential behind all forces, and displacement that starts
+from where they stand."""
 
 import numpy as np
 import pytest
@@ -14,7 +15,12 @@ from tests.lowfi.giving import REFERENCE, SMOOTH, flexibility_at, pressed, refer
 from tests.lowfi.test_walls import BASES, POSES, derivative, energy, generalised, pose_of, solved
 
 # Steep enough that what the walls' slope pushes is far above the rounding of the differences.
-FIELD = {"thermal.mean": 20.0, "thermal.gradient.x": 100.0, "thermal.gradient.y": 500.0, "thermal.gradient.z": -300.0}
+FIELD = {
+    "thermal.mean": 20.0,
+    "thermal.gradient.x": 100.0,
+    "thermal.gradient.y": 500.0,
+    "thermal.gradient.z": -300.0,
+}
 PRESSED = ("all faces of a rail, tilted", "rear pads over the end")
 
 
@@ -32,15 +38,31 @@ def test_forces_are_the_gradient_of_the_energy(heated, name):
     twists = np.eye(12)
     out = [derivative(system, model, pose, twist) for twist in twists]
     forces, released = generalised(pose, out[0]), np.array([each[slot.RELEASED] for each in out])
-    slopes = np.array([(energy(system, model, pose.moved(twist, h)) - energy(system, model, pose.moved(twist, -h))) / (2.0 * h)
-                       for twist in twists])
+    slopes = np.array(
+        [
+            (
+                energy(system, model, pose.moved(twist, h))
+                - energy(system, model, pose.moved(twist, -h))
+            )
+            / (2.0 * h)
+            for twist in twists
+        ]
+    )
     size = np.abs(forces).max()
     assert size > 20.0 and slopes == pytest.approx(-forces - released, abs=1e-7 * size, rel=0.0)
-    # Control: what the slope of the warm walls pushes along the rail is far above that; over the end the place on the wall stops.
+    # Control: what the slope of the warm walls pushes along the rail is far above that; over the
+    # end the place on the wall stops.
     pushed = 0.0
     for rail in range(len(system.walls.members)):
-        faces = system.walls.room.order[:solved(system, model, pose, rail)]
-        pushed = max(pushed, *(abs(warm.pull(system.walls.warm, face, system.walls.room.force[face])) for face in faces), 0.0)
+        faces = system.walls.room.order[: solved(system, model, pose, rail)]
+        pushed = max(
+            pushed,
+            *(
+                abs(warm.pull(system.walls.warm, face, system.walls.room.force[face]))
+                for face in faces
+            ),
+            0.0,
+        )
     assert (pushed > 1e-5 * size) == ("over" not in name)
 
 
@@ -51,8 +73,10 @@ def test_displacement_starts_where_the_walls_stand(heated, name):
     travel, pose, room = POSES[name][0], pose_of(model, name), system.walls.room
     standing = warm_at(walls, model, travel)
     for rail in range(len(system.walls.members)):
-        faces = room.order[:solved(system, model, pose, rail)].copy()
-        between = flexibility_at(walls, travel)[np.ix_(faces, range(PATTERNS), faces, range(PATTERNS))]
+        faces = room.order[: solved(system, model, pose, rail)].copy()
+        between = flexibility_at(walls, travel)[
+            np.ix_(faces, range(PATTERNS), faces, range(PATTERNS))
+        ]
         expected = standing[faces] + np.einsum("iajb,jb->ia", between, room.force[faces])
         assert room.displacement[faces] == pytest.approx(expected, rel=1e-9, abs=1e-15)
     assert np.abs(standing).max() > 1e-6
@@ -67,10 +91,16 @@ def warm_at(walls, model, travel):
 @pytest.mark.parametrize("condition", ["phi35", "h9"])
 def test_ledgers_and_momentum(condition):
     asked, walls = REFERENCE.condition(condition).replace(FIELD), reference_walls()
-    coarse, fine = (lowfi.run(asked, numerics=Numerics(relative_tolerance=tolerance), walls=walls) for tolerance in (2e-7, 1e-10))
+    coarse, fine = (
+        lowfi.run(asked, numerics=Numerics(relative_tolerance=tolerance), walls=walls)
+        for tolerance in (2e-7, 1e-10)
+    )
     for run in (coarse, fine):
         assert run.status == "exited" and run.checks["friction_power_max"] <= 0.0
-        assert run.checks["linear_momentum_error"] <= 1e-12 and run.checks["angular_momentum_error"] <= 1e-11
+        assert (
+            run.checks["linear_momentum_error"] <= 1e-12
+            and run.checks["angular_momentum_error"] <= 1e-11
+        )
         assert run.checks["energy_error"] <= 1e-6 and run.checks["transverse_energy_error"] <= 1e-4
     assert fine.checks["transverse_energy_error"] < 0.1 * coarse.checks["transverse_energy_error"]
     assert np.degrees(fine.outcome.rate) == pytest.approx(np.degrees(coarse.outcome.rate), abs=0.01)
@@ -78,12 +108,22 @@ def test_ledgers_and_momentum(condition):
 
 @pytest.mark.slow
 def test_nothing_warm_is_the_same_as_no_temperature():
-    """Zero by every field; and the fields the other way round move the rates the other way, to first order."""
+    """Zero by every field; and the fields the other way round move the rates the other way, to
+    first order."""
     cold = REFERENCE.condition("phi35")
     small = {key: 0.02 * value for key, value in FIELD.items()}
     tight = Numerics(relative_tolerance=1e-10)
-    rates = [np.degrees(lowfi.run(cold.replace(change), walls=reference_walls(), numerics=tight).outcome.rate)
-             for change in ({}, {"thermal.mean": 0.0}, small, {key: -value for key, value in small.items()})]
+    rates = [
+        np.degrees(
+            lowfi.run(cold.replace(change), walls=reference_walls(), numerics=tight).outcome.rate
+        )
+        for change in (
+            {},
+            {"thermal.mean": 0.0},
+            small,
+            {key: -value for key, value in small.items()},
+        )
+    ]
     assert rates[1] == pytest.approx(rates[0], abs=1e-9)
     there, back = rates[2] - rates[0], rates[3] - rates[0]
     assert np.abs(there + back).max() < 0.2 * np.abs(there).max() and np.abs(there).max() > 1e-4
@@ -91,11 +131,22 @@ def test_nothing_warm_is_the_same_as_no_temperature():
 
 @pytest.mark.slow
 def test_both_fidelities_agree_on_warm_rails():
-    """Elements of 4 mm in both, 20 K with the sun on one side: within what agreement may be claimed for, where the temperature is
-    worth ten times as much. Control: the other way round, or forgotten, it is missed."""
-    cold, sun = REFERENCE.condition("phi35"), {"thermal.mean": 20.0, "thermal.gradient.y": 100.0, "thermal.gradient.z": -50.0}
-    wanted = np.degrees(highfi.run(cold.replace(sun), highfi.Numerics(element_size=4e-3)).outcome.rate)
+    """Elements of 4 mm in both, 20 K with the sun on one side: within what agreement may be claimed
+    for, where the temperature is worth ten times as much. Control: the other way round, or
+    forgotten, it is missed."""
+    cold, sun = (
+        REFERENCE.condition("phi35"),
+        {"thermal.mean": 20.0, "thermal.gradient.y": 100.0, "thermal.gradient.z": -50.0},
+    )
+    wanted = np.degrees(
+        highfi.run(cold.replace(sun), highfi.Numerics(element_size=4e-3)).outcome.rate
+    )
     shade = {key: -value for key, value in sun.items()}
-    errors = [np.abs(np.degrees(lowfi.run(cold.replace(change), walls=reference_walls()).outcome.rate) - wanted).max()
-              for change in (sun, shade, {})]
+    errors = [
+        np.abs(
+            np.degrees(lowfi.run(cold.replace(change), walls=reference_walls()).outcome.rate)
+            - wanted
+        ).max()
+        for change in (sun, shade, {})
+    ]
     assert errors[0] < 0.1 and min(errors[1:]) > 0.9

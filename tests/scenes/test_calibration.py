@@ -12,16 +12,28 @@ from scenes import Calibration, SceneError, load
 from scenes.calibration import _toml
 
 CALIBRATION = Calibration(
-    constants={"contact.stiffness": 0.1 + 0.2, "friction.static": 0.25}, parameters=["log force at 0.02 mm", "mu"],
-    values=[1 / 3, 1e-300], units=["1", "1"], lower=[-1e16, 0.0], upper=[float("inf"), 1.0],
-    justification=['quoted "text"', "two\nlines, a \\ and a µ\x7f"], information=np.array([[1.0, 2e-17], [2e-17, 3.0]]),
-    weak_directions=[], residuals={"phi15": {"l2": 0.01, "settled": -0.0}, "a \"b\".c": {}}, conditions=["phi15"], objective=5e-324,
+    constants={"contact.stiffness": 0.1 + 0.2, "friction.static": 0.25},
+    parameters=["log force at 0.02 mm", "mu"],
+    values=[1 / 3, 1e-300],
+    units=["1", "1"],
+    lower=[-1e16, 0.0],
+    upper=[float("inf"), 1.0],
+    justification=['quoted "text"', "two\nlines, a \\ and a µ\x7f"],
+    information=np.array([[1.0, 2e-17], [2e-17, 3.0]]),
+    weak_directions=[],
+    residuals={"phi15": {"l2": 0.01, "settled": -0.0}, 'a "b".c': {}},
+    conditions=["phi15"],
+    objective=5e-324,
     provenance={"code": "0"},
-    intervals=[[0.25, 0.5], [float("-inf"), float("inf")]])
+    intervals=[[0.25, 0.5], [float("-inf"), float("inf")]],
+)
 
 
 def _as_lists(calibration):
-    return {name: np.asarray(value).tolist() if name == "information" else value for name, value in vars(calibration).items()}
+    return {
+        name: np.asarray(value).tolist() if name == "information" else value
+        for name, value in vars(calibration).items()
+    }
 
 
 def test_round_trip(tmp_path):
@@ -29,14 +41,22 @@ def test_round_trip(tmp_path):
     assert _as_lists(Calibration.load(tmp_path / "c.toml")) == _as_lists(CALIBRATION)
 
 
-@given(st.one_of(st.text(alphabet=st.characters(exclude_categories=["Cs"])), st.floats(allow_nan=False),
-                 st.integers(-2**63, 2**63 - 1), st.booleans()))
+@given(
+    st.one_of(
+        st.text(alphabet=st.characters(exclude_categories=["Cs"])),
+        st.floats(allow_nan=False),
+        st.integers(-(2**63), 2**63 - 1),
+        st.booleans(),
+    )
+)
 def test_any_value_survives_toml(value):
     assert tomllib.loads(f"x = {_toml(value)}")["x"] == value
 
 
 def test_numpy_scalars_are_written(tmp_path):
-    replace(CALIBRATION, objective=np.float32(0.5), values=[np.int64(3), np.float64(0.1)]).save(tmp_path / "c.toml")
+    replace(CALIBRATION, objective=np.float32(0.5), values=[np.int64(3), np.float64(0.1)]).save(
+        tmp_path / "c.toml"
+    )
     assert Calibration.load(tmp_path / "c.toml").values == [3, 0.1]
 
 
@@ -46,7 +66,9 @@ def test_no_nan_is_written(tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize("text", ["", "constants = 3\n", "objective = [", "colour = 1\ninformation = []\n"])
+@pytest.mark.parametrize(
+    "text", ["", "constants = 3\n", "objective = [", "colour = 1\ninformation = []\n"]
+)
 def test_a_damaged_file_is_refused(tmp_path, text):
     (tmp_path / "c.toml").write_text(text)
     with pytest.raises(ValueError, match="c.toml: not a calibration file"):

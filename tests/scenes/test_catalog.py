@@ -1,4 +1,5 @@
-"""The catalogue holds what DESIGN.md prints, in SI, and every condition means what its table says."""
+"""The catalogue holds what DESIGN.md prints, in SI, and every condition means what its table
+says."""
 
 import math
 
@@ -26,7 +27,14 @@ def test_catalogue_names():
 DESIGN = {
     "duration": 58e-3,
     "payload.mass": 9.9,
-    "payload.inertia": {"xx": 0.066, "yy": 0.134, "zz": 0.128, "xy": 0.004, "xz": -0.002, "yz": 0.0},
+    "payload.inertia": {
+        "xx": 0.066,
+        "yy": 0.134,
+        "zz": 0.128,
+        "xy": 0.004,
+        "xz": -0.002,
+        "yz": 0.0,
+    },
     "payload.size": (0.35, 0.20, 0.20),
     "platform.mass": 81.2,
     "platform.inertia": {"xx": 4.9, "yy": 4.9, "zz": 4.9, "xy": 0.0, "xz": 0.0, "yz": 0.0},
@@ -63,10 +71,16 @@ DESIGN = {
 
 def _same(found, expected) -> bool:
     if isinstance(expected, dict):
-        return set(found) == set(expected) and all(_same(found[key], expected[key]) for key in expected)
+        return set(found) == set(expected) and all(
+            _same(found[key], expected[key]) for key in expected
+        )
     if isinstance(expected, tuple):
         return len(found) == len(expected) and all(map(_same, found, expected))
-    return found == expected if isinstance(expected, str) else found == pytest.approx(expected, rel=1e-14, abs=0.0)
+    return (
+        found == expected
+        if isinstance(expected, str)
+        else found == pytest.approx(expected, rel=1e-14, abs=0.0)
+    )
 
 
 @pytest.mark.parametrize("key", DESIGN)
@@ -78,7 +92,13 @@ def test_reference_is_the_design(key):
 
 
 def test_reference_has_no_other_effects():
-    assert load("reference").absent_effects() == ["mass_offset", "initial", "gravity", "thermal", "rail.damping"]
+    assert load("reference").absent_effects() == [
+        "mass_offset",
+        "initial",
+        "gravity",
+        "thermal",
+        "rail.damping",
+    ]
 
 
 def test_reference_pads():
@@ -87,14 +107,22 @@ def test_reference_pads():
     assert len(pads) == 8
     assert places == {(x, y, z) for x in (-0.08, 0.08) for y in (-0.1, 0.1) for z in (-0.1, 0.1)}
     for pad in pads:
-        outward = {("+" if pad.position[1] > 0 else "-") + "y", ("+" if pad.position[2] > 0 else "-") + "z"}
+        outward = {
+            ("+" if pad.position[1] > 0 else "-") + "y",
+            ("+" if pad.position[2] > 0 else "-") + "z",
+        }
         assert set(pad.normals) == outward
-        assert (pad.length, pad.width, pad.inset, pad.relief) == pytest.approx((16e-3, 16e-3, 9e-3, 20e-6), rel=1e-14)
+        assert (pad.length, pad.width, pad.inset, pad.relief) == pytest.approx(
+            (16e-3, 16e-3, 9e-3, 20e-6), rel=1e-14
+        )
 
 
 def test_reference_mounts_are_multiples_of_four_millimetres():
     spans = [(span.start, span.end) for span in load("reference").rail.mounts]
-    assert spans == [pytest.approx(pair, rel=1e-14) for pair in ((8e-3, 28e-3), (100e-3, 120e-3), (192e-3, 212e-3))]
+    assert spans == [
+        pytest.approx(pair, rel=1e-14)
+        for pair in ((8e-3, 28e-3), (100e-3, 120e-3), (192e-3, 212e-3))
+    ]
 
 
 def test_thrust_gives_sixty_newton_seconds_and_six_metres_per_second():
@@ -111,20 +139,36 @@ def test_sensitive_is_the_reference_but_for_two_values():
 
 def test_tiny_is_short_and_its_rail_is_even():
     tiny, reference = load("tiny"), load("reference")
-    assert (tiny.pads, tiny.payload, tiny.rail.material) == (reference.pads, reference.payload, reference.rail.material)
-    places = [tiny.rail.end, *(place for span in tiny.rail.mounts for place in (span.start, span.end))]
+    assert (tiny.pads, tiny.payload, tiny.rail.material) == (
+        reference.pads,
+        reference.payload,
+        reference.rail.material,
+    )
+    places = [
+        tiny.rail.end,
+        *(place for span in tiny.rail.mounts for place in (span.start, span.end)),
+    ]
     assert [round((place - tiny.rail.start) / 0.008, 9) % 1.0 for place in places] == [0.0] * 7
     assert tiny.duration < reference.duration
     assert set(tiny.agreement.fitted) == {"phi15", "phi60"}
 
 
-# condition: misalignment (deg, deg), thrust eccentricity (mm, deg), mass eccentricity (mm, deg); None where absent
+# condition: misalignment (deg, deg), thrust eccentricity (mm, deg), mass eccentricity (mm, deg);
+# None where absent
 CONDITIONS = {
-    "phi0": ((0.1, 0), None, None), "phi15": ((0.1, 15), None, None), "phi35": ((0.1, 35), None, None),
-    "phi60": ((0.1, 60), None, None), "phi90": ((0.1, 90), None, None),
-    "h1": ((0.1, 25), None, None), "h2": ((0.1, 45), None, None), "h3": ((0.1, 75), None, None),
-    "h4": ((0.3, 30), None, None), "h5": (None, (0.3, 40), None), "h6": (None, None, (0.2, 120)),
-    "h7": ((1.0, 200), None, None), "h8": (None, (1.0, 250), None),
+    "phi0": ((0.1, 0), None, None),
+    "phi15": ((0.1, 15), None, None),
+    "phi35": ((0.1, 35), None, None),
+    "phi60": ((0.1, 60), None, None),
+    "phi90": ((0.1, 90), None, None),
+    "h1": ((0.1, 25), None, None),
+    "h2": ((0.1, 45), None, None),
+    "h3": ((0.1, 75), None, None),
+    "h4": ((0.3, 30), None, None),
+    "h5": (None, (0.3, 40), None),
+    "h6": (None, None, (0.2, 120)),
+    "h7": ((1.0, 200), None, None),
+    "h8": (None, (1.0, 250), None),
     # Two thirds of the three-sigma ranges in the paper's Table 3: 0.4 deg, 0.6 mm, 0.4 mm.
     "h9": ((0.4 * 2 / 3, 70), (0.6 * 2 / 3, 160), (0.4 * 2 / 3, 310)),
     "h10": ((0.1, 35), None, None),
@@ -143,11 +187,19 @@ def test_condition_values(name):
     scene = load("reference").condition(name)
     misalignment, eccentricity, mass = CONDITIONS[name]
     offset = scene.thrust_offset
-    found = [(offset.misalignment.axial, offset.misalignment.radial) if offset else (0.0, 0.0),
-             (offset.eccentricity.axial, offset.eccentricity.radial) if offset else (0.0, 0.0),
-             (scene.mass_offset.eccentricity.axial, scene.mass_offset.eccentricity.radial) if scene.mass_offset else (0.0, 0.0)]
-    wanted = [(a * scale, b * DEGREE) for (a, b), scale in
-              zip([misalignment or (0, 0), eccentricity or (0, 0), mass or (0, 0)], (DEGREE, 1e-3, 1e-3))]
+    found = [
+        (offset.misalignment.axial, offset.misalignment.radial) if offset else (0.0, 0.0),
+        (offset.eccentricity.axial, offset.eccentricity.radial) if offset else (0.0, 0.0),
+        (scene.mass_offset.eccentricity.axial, scene.mass_offset.eccentricity.radial)
+        if scene.mass_offset
+        else (0.0, 0.0),
+    ]
+    wanted = [
+        (a * scale, b * DEGREE)
+        for (a, b), scale in zip(
+            [misalignment or (0, 0), eccentricity or (0, 0), mass or (0, 0)], (DEGREE, 1e-3, 1e-3)
+        )
+    ]
     assert found == [pytest.approx(pair, rel=1e-13, abs=0.0) for pair in wanted]
     assert (scene.mass_offset is None) == (mass is None)
     assert (scene.thrust_offset is None) == (misalignment is None and eccentricity is None)
@@ -167,9 +219,12 @@ def test_provenance_tells_paper_from_assumption():
 
 
 def test_another_material_tells_all_of_itself_and_where_from():
-    """Titanium expands a third as much as the aluminium it replaces. Control: another thickness keeps the material."""
+    """Titanium expands a third as much as the aluminium it replaces. Control: another thickness
+    keeps the material."""
     other, own = load("titanium"), load("reference")
-    assert other.rail.material.expansion == pytest.approx(8.6e-6) and own.rail.material.expansion == pytest.approx(23.6e-6)
+    assert other.rail.material.expansion == pytest.approx(
+        8.6e-6
+    ) and own.rail.material.expansion == pytest.approx(23.6e-6)
     keys = [f"rail.material.{name}" for name in own.rail.material.model_dump()]
     known = [key for key in keys if key in own.provenance]
     assert len(known) == 5 and all("Ti-6Al-4V" in other.provenance[key] for key in known)

@@ -8,7 +8,12 @@ from scenes import parse
 from scenes.effects import contact
 from tests.scenes.support import CONTACT, small
 
-HUNT = {"law": "hunt-crossley", "clearance": "0.1 mm", "stiffness": "70000 N/mm**1.5", "dissipation": "0.2 s/m"}
+HUNT = {
+    "law": "hunt-crossley",
+    "clearance": "0.1 mm",
+    "stiffness": "70000 N/mm**1.5",
+    "dissipation": "0.2 s/m",
+}
 LINEAR = {"law": "linear", "clearance": "0.1 mm", "stiffness": "1e4 N/mm", "damping": "60 N*s/m"}
 TABLES = [CONTACT, CONTACT | {"exponent": 2.2, "stiffness": "5e5 N/mm**2.2"}, HUNT, LINEAR]
 
@@ -21,20 +26,24 @@ def laws(table):
 def test_stored_energy_is_the_integral_of_the_elastic_force(table):
     law = laws(table)
     for depth in (1e-6, 2e-5, 1e-3):
-        integral, _ = quad(lambda p: contact.parts(*law, p, 0.0)[0], 0.0, depth, epsabs=0.0, epsrel=1e-12)
+        integral, _ = quad(
+            lambda p: contact.parts(*law, p, 0.0)[0], 0.0, depth, epsabs=0.0, epsrel=1e-12
+        )
         assert contact.stored_energy(*law, depth) == pytest.approx(integral, rel=1e-10)
 
 
 @pytest.mark.parametrize("table", TABLES)
 def test_damping_resists(table):
-    """It pushes while closing, pulls back while opening, by the same amount, and is absent at rest."""
+    """It pushes while closing, pulls back while opening, by the same amount, and is absent at
+    rest."""
     law = laws(table)
     closing, opening, rest = (contact.parts(*law, 1e-4, speed)[1] for speed in (0.1, -0.1, 0.0))
     assert closing == -opening > 0.0 == rest
 
 
 def test_impact_values():
-    """70000 N/mm^1.5 at 0.04 mm is 70000 x 0.008 = 560 N; at half of d the step is half done, 30 N s/mm at 2 mm/s is 60 N."""
+    """70000 N/mm^1.5 at 0.04 mm is 70000 x 0.008 = 560 N; at half of d the step is half done, 30 N
+    s/mm at 2 mm/s is 60 N."""
     law = laws(CONTACT)
     assert contact.parts(*law, 4e-5, 0.0)[0] == pytest.approx(560.0, rel=1e-12)
     assert contact.parts(*law, 1.5e-4, 2e-3)[1] == pytest.approx(60.0, rel=1e-12)
@@ -56,5 +65,7 @@ def test_the_shortcut_for_hertz_is_the_power():
 
 def test_only_one_law_is_compiled_in():
     for table in TABLES:
-        assert [name for name, law in laws(table)._asdict().items() if law is not None] == [table["law"].replace("-", "_")]
+        assert [name for name, law in laws(table)._asdict().items() if law is not None] == [
+            table["law"].replace("-", "_")
+        ]
     assert contact.laws(None) is None

@@ -1,4 +1,5 @@
-"""A file that is read back and does not fit its digest is refused, wherever the damage is: one flipped bit, or an edit."""
+"""A file that is read back and does not fit its digest is refused, wherever the damage is: one
+flipped bit, or an edit."""
 
 import hashlib
 import json
@@ -21,8 +22,15 @@ PLACES = 150  # bits that are flipped in a file, evenly spread
 def walls() -> Walls:
     """Two stations of eight faces, any numbers."""
     scene, random = scenes.load("tiny"), np.random.default_rng(4)
-    return Walls(np.array([0.0, 0.2]), random.random((2, 8, PATTERNS, 8, PATTERNS)), np.arange(8) // 2, random.random((8, 2)),
-                 2e4 * np.ones((4, 2)), random.random((2, 8, PATTERNS, 2)), digest(scene))
+    return Walls(
+        np.array([0.0, 0.2]),
+        random.random((2, 8, PATTERNS, 8, PATTERNS)),
+        np.arange(8) // 2,
+        random.random((8, 2)),
+        2e4 * np.ones((4, 2)),
+        random.random((2, 8, PATTERNS, 2)),
+        digest(scene),
+    )
 
 
 def calibration() -> Calibration:
@@ -30,8 +38,11 @@ def calibration() -> Calibration:
     return replace(CALIBRATION, information=np.random.default_rng(5).random((6, 6)))
 
 
-KINDS = {"trajectory.nc": (random_trajectory, Trajectory.load, OSError), "walls.npz": (walls, Walls.load, ValueError),
-         "calibration.toml": (calibration, Calibration.load, ValueError)}
+KINDS = {
+    "trajectory.nc": (random_trajectory, Trajectory.load, OSError),
+    "walls.npz": (walls, Walls.load, ValueError),
+    "calibration.toml": (calibration, Calibration.load, ValueError),
+}
 
 
 def same(one, other) -> bool:
@@ -49,19 +60,26 @@ def flipped(content: bytes, place: int) -> bytes:
 
 
 def targets(path, content: bytes) -> list[int]:
-    """Bytes all over a file, and inside what it tells: numbers of an array, and text of an attribute."""
+    """Bytes all over a file, and inside what it tells: numbers of an array, and text of an
+    attribute."""
     places = np.linspace(0, len(content) - 1, PLACES).astype(int).tolist()
     if path.suffix == ".nc":
         with h5py.File(path) as file:
             begin = file["rate"].id.get_offset()
         places += [begin + 8 * k + 6 for k in range(5)]  # mantissa and exponent of the first rates
-        places += [content.find(b'"direction_error"') + 20, content.find(b"exited"), content.find(b"rad/s")]
-    return places + list(range(len(content) - 80, len(content)))  # the digest itself, and the end of what stands before it
+        places += [
+            content.find(b'"direction_error"') + 20,
+            content.find(b"exited"),
+            content.find(b"rad/s"),
+        ]
+    # the digest itself, and the end of what stands before it
+    return places + list(range(len(content) - 80, len(content)))
 
 
 @pytest.mark.parametrize("name", KINDS)
 def test_one_flipped_bit_anywhere_is_refused_or_changed_nothing(tmp_path, name):
-    """Only a file of which a user may leave the digest out has bits that change nothing: those that say that there is one."""
+    """Only a file of which a user may leave the digest out has bits that change nothing: those that
+    say that there is one."""
     make, load, error = KINDS[name]
     path, saved = tmp_path / name, make()
     saved.save(path)
@@ -83,8 +101,16 @@ def test_one_flipped_bit_anywhere_is_refused_or_changed_nothing(tmp_path, name):
 
 
 @pytest.mark.parametrize("name", KINDS)
-@pytest.mark.parametrize("change", [lambda content: content[:-1], lambda content: content + b"\n", lambda content: content[:-100],
-                                    lambda content: content[:100] + content[101:]], ids=["cut", "longer", "halved", "a byte less"])
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda content: content[:-1],
+        lambda content: content + b"\n",
+        lambda content: content[:-100],
+        lambda content: content[:100] + content[101:],
+    ],
+    ids=["cut", "longer", "halved", "a byte less"],
+)
 def test_a_file_of_another_length_is_refused(tmp_path, name, change):
     make, load, error = KINDS[name]
     make().save(tmp_path / name)
@@ -99,7 +125,10 @@ def test_an_outcome_edited_by_another_program_is_refused(tmp_path):
     with h5py.File(path, "r+") as file:
         told = json.loads(file.attrs["outcome"])
         file.attrs["outcome"] = json.dumps(told | {"rate": [99.0, 0.0, 0.0]})
-    with pytest.raises(OSError, match="run.nc: not a whole trajectory file: it carries no digest|does not fit the digest"):
+    with pytest.raises(
+        OSError,
+        match="run.nc: not a whole trajectory file: it carries no digest|does not fit the digest",
+    ):
         Trajectory.load(path)
 
 
@@ -116,16 +145,25 @@ def test_other_programs_read_what_carries_a_digest(tmp_path):
         assert np.array_equal(file["rate"], run.rate)
     with np.load(tmp_path / "walls.npz") as found:
         assert np.array_equal(found["flexibility"], rail.flexibility)
-    assert tomllib.loads((tmp_path / "calibration.toml").read_text(encoding="utf-8"))["objective"] == CALIBRATION.objective
+    assert (
+        tomllib.loads((tmp_path / "calibration.toml").read_text(encoding="utf-8"))["objective"]
+        == CALIBRATION.objective
+    )
 
 
 def test_a_calibration_edited_on_purpose_needs_no_digest(tmp_path):
-    """With the digest it is refused, and told what to do; without, or with no digest at all, it is taken."""
+    """With the digest it is refused, and told what to do; without, or with no digest at all, it is
+    taken."""
     path = tmp_path / "calibration.toml"
     calibration().save(path)
-    edited = path.read_text(encoding="utf-8").replace('"friction.static" = 0.25', '"friction.static" = 0.3')
+    edited = path.read_text(encoding="utf-8").replace(
+        '"friction.static" = 0.25', '"friction.static" = 0.3'
+    )
     path.write_text(edited, encoding="utf-8")
-    with pytest.raises(ValueError, match="calibration.toml does not fit the digest it carries.*remove the line '# sha-256"):
+    with pytest.raises(
+        ValueError,
+        match="calibration.toml does not fit the digest it carries.*remove the line '# sha-256",
+    ):
         Calibration.load(path)
     for more in ("\n# a remark\n", "\r\n"):
         path.write_text(edited + more, encoding="utf-8")
@@ -135,7 +173,11 @@ def test_a_calibration_edited_on_purpose_needs_no_digest(tmp_path):
     assert Calibration.load(path).constants["friction.static"] == 0.3
 
 
-DOCUMENT = {"key": "k", "rows": [{"rate": 0.1 + 0.2, "name": "µ", "none": None, 3: [1, 2.5e-300]}], "b": {"z": 1, "a": True}}
+DOCUMENT = {
+    "key": "k",
+    "rows": [{"rate": 0.1 + 0.2, "name": "µ", "none": None, 3: [1, 2.5e-300]}],
+    "b": {"z": 1, "a": True},
+}
 
 
 def test_json_carries_its_digest_and_stays_plain(tmp_path):
@@ -150,13 +192,23 @@ def test_json_carries_its_digest_and_stays_plain(tmp_path):
     for place in range(len(content)):
         path.write_bytes(flipped(content, place))
         try:
-            assert read_json(path) == plain, place  # a blank of the layout, or a digit that no double can tell
+            # a blank of the layout, or a digit that no double can tell
+            assert read_json(path) == plain, place
         except DamageError as fault:
             assert str(path) in str(fault) and fault.reason
-    path.write_text(json.dumps(plain, indent=8, sort_keys=True))  # another layout of the same content
+    # another layout of the same content
+    path.write_text(json.dumps(plain, indent=8, sort_keys=True))
     assert read_json(path) == plain
-    for other in ({**plain, "key": "x"}, {name: item for name, item in plain.items() if name != "sha256"}, [plain], 3):
+    for other in (
+        {**plain, "key": "x"},
+        {name: item for name, item in plain.items() if name != "sha256"},
+        [plain],
+        3,
+    ):
         path.write_text(json.dumps(other))
         with pytest.raises(DamageError):
             read_json(path)
-    assert write_json(path, written | {"key": "x"})["sha256"] != written["sha256"] and read_json(path)["key"] == "x"
+    assert (
+        write_json(path, written | {"key": "x"})["sha256"] != written["sha256"]
+        and read_json(path)["key"] == "x"
+    )

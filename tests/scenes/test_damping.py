@@ -1,4 +1,5 @@
-"""Structural damping of the rail as a scene states it: ratios at two frequencies, and which pairs no alpha M + beta K can meet."""
+"""Structural damping of the rail as a scene states it: ratios at two frequencies, and which pairs
+no alpha M + beta K can meet."""
 
 import math
 
@@ -29,7 +30,8 @@ def test_ratios_are_met_at_their_frequencies(ratios):
 
 
 def test_ratio_between_and_outside():
-    """Equal ratios z at f and 10 f: least at their geometric mean, z 2 sqrt(10) / 11, and (a + b) / 2 outside."""
+    """Equal ratios z at f and 10 f: least at their geometric mean, z 2 sqrt(10) / 11, and (a + b) /
+    2 outside."""
     damping = parse(damped([0.01, 0.01])).rail.damping.record()
     least = 2.0 * math.pi * math.sqrt(500.0 * 5000.0)
     assert ratio(damping, least) == pytest.approx(0.02 * math.sqrt(10.0) / 11.0, rel=1e-12)
@@ -37,7 +39,9 @@ def test_ratio_between_and_outside():
     assert ratio(None, least) == 0.0
 
 
-@pytest.mark.parametrize("second, sound", [(0.1, True), (0.100001, False), (0.001, True), (0.000999, False)])
+@pytest.mark.parametrize(
+    "second, sound", [(0.1, True), (0.100001, False), (0.001, True), (0.000999, False)]
+)
 def test_no_mode_may_gain_energy(second, sound):
     """On both sides of z / 10 and 10 z, where K or M alone damp."""
     raw = damped([0.01, second])
@@ -45,34 +49,56 @@ def test_no_mode_may_gain_energy(second, sound):
         assert min(parse(raw).rail.damping.record()) >= 0.0
     else:
         expected = refused(raw)
-        assert list(expected) == ["rail.damping.ratios"] and "from 0.001 to 0.1" in expected["rail.damping.ratios"]
+        assert (
+            list(expected) == ["rail.damping.ratios"]
+            and "from 0.001 to 0.1" in expected["rail.damping.ratios"]
+        )
 
 
 def test_damping_by_one_of_the_matrices_alone():
-    assert parse(damped([0.01, 0.1])).rail.damping.record() == pytest.approx(Damping(0.0, 0.01 / (math.pi * 500.0)), rel=1e-12)
-    assert parse(damped([0.1, 0.01])).rail.damping.record() == pytest.approx(Damping(2.0 * math.pi * 100.0, 0.0), rel=1e-12)
+    assert parse(damped([0.01, 0.1])).rail.damping.record() == pytest.approx(
+        Damping(0.0, 0.01 / (math.pi * 500.0)), rel=1e-12
+    )
+    assert parse(damped([0.1, 0.01])).rail.damping.record() == pytest.approx(
+        Damping(2.0 * math.pi * 100.0, 0.0), rel=1e-12
+    )
 
 
-@pytest.mark.parametrize("ratios, frequencies, keys", [
-    ([0.01, 0.01], ["5 kHz", "500 Hz"], {"rail.damping.frequencies"}),
-    ([0.01, 0.01], ["0 Hz", "500 Hz"], {"rail.damping.frequencies.0"}),
-    ([0.01, 0.01], ["5 rad/s", "500 Hz"], {"rail.damping.frequencies.0"}),
-    ([-0.01, 1.0], ["-1 Hz", "5 kg"], {f"rail.damping.{key}.{i}" for key in ("ratios", "frequencies") for i in (0, 1)}),
-    ([0.0, 0.01], FREQUENCIES, {"rail.damping.ratios"}),
-    ([0.01], FREQUENCIES, {"rail.damping.ratios.1"}),
-    ([0.01, 0.5], ["500 Hz", "500 Hz"], {"rail.damping.frequencies"})])
+@pytest.mark.parametrize(
+    "ratios, frequencies, keys",
+    [
+        ([0.01, 0.01], ["5 kHz", "500 Hz"], {"rail.damping.frequencies"}),
+        ([0.01, 0.01], ["0 Hz", "500 Hz"], {"rail.damping.frequencies.0"}),
+        ([0.01, 0.01], ["5 rad/s", "500 Hz"], {"rail.damping.frequencies.0"}),
+        (
+            [-0.01, 1.0],
+            ["-1 Hz", "5 kg"],
+            {f"rail.damping.{key}.{i}" for key in ("ratios", "frequencies") for i in (0, 1)},
+        ),
+        ([0.0, 0.01], FREQUENCIES, {"rail.damping.ratios"}),
+        ([0.01], FREQUENCIES, {"rail.damping.ratios.1"}),
+        ([0.01, 0.5], ["500 Hz", "500 Hz"], {"rail.damping.frequencies"}),
+    ],
+)
 def test_every_fault_is_named(ratios, frequencies, keys):
     assert set(refused(damped(ratios, frequencies))) == keys
 
 
 def test_both_keys_or_no_table():
-    assert set(refused(small(rail__damping={}))) == {"rail.damping.frequencies", "rail.damping.ratios"}
-    assert refused(small(rail__damping={"ratios": [0.01, 0.01]})) == {"rail.damping.frequencies": "this key"}
+    assert set(refused(small(rail__damping={}))) == {
+        "rail.damping.frequencies",
+        "rail.damping.ratios",
+    }
+    assert refused(small(rail__damping={"ratios": [0.01, 0.01]})) == {
+        "rail.damping.frequencies": "this key"
+    }
 
 
 def test_dotted_keys_set_vary_and_drop_it():
     plain = parse(small())
-    scene = plain.replace({"rail.damping.ratios": [0.01, 0.02], "rail.damping.frequencies": [500.0, 5000.0]})
+    scene = plain.replace(
+        {"rail.damping.ratios": [0.01, 0.02], "rail.damping.frequencies": [500.0, 5000.0]}
+    )
     assert scene.rail.damping.ratios == (0.01, 0.02) and scene.hash != plain.hash
     assert scene.replace({"rail.damping.ratios.1": 0.03}).rail.damping.ratios == (0.01, 0.03)
     assert scene.replace({"rail.damping": None}).hash == plain.hash
@@ -86,7 +112,12 @@ def test_a_rail_given_by_a_file_takes_it_too(tmp_path, key):
     file.write_bytes(b"")
     box = [{"low": ["0 m"] * 3, "high": ["1 m"] * 3}]
     surfaces = {"surfaces": {"contact_y": box, "mount": box}} if key == "geometry" else {}
-    rail = {"start": "-0.1 m", "end": "0.1 m", "material": SMALL["rail"]["material"], key: str(file)} | surfaces
+    rail = {
+        "start": "-0.1 m",
+        "end": "0.1 m",
+        "material": SMALL["rail"]["material"],
+        key: str(file),
+    } | surfaces
     raw = small(rail=rail | {"damping": {"ratios": [0.01, 0.01], "frequencies": FREQUENCIES}})
     assert parse(raw).rail.damping.frequencies == (500.0, 5000.0)
     assert load("reference").rail.damping is None

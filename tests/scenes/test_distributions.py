@@ -1,4 +1,5 @@
-"""Distributions of uncertain numbers: moments against closed forms, the rules of truncation apart, files that are wrong."""
+"""Distributions of uncertain numbers: moments against closed forms, the rules of truncation apart,
+files that are wrong."""
 
 import numpy as np
 import pytest
@@ -13,17 +14,31 @@ MIDDLES = (np.arange(1_000_000) + 0.5) / 1_000_000  # quadrature of any function
 
 
 def table(name: str, **values):
-    return BY_NAME[name].model_validate({"distribution": name, **values}, context={"unit": "kg", "bare_numbers_are_si": True})
+    return BY_NAME[name].model_validate(
+        {"distribution": name, **values}, context={"unit": "kg", "bare_numbers_are_si": True}
+    )
 
 
-@pytest.mark.parametrize("drawn, exact", [
-    (table("uniform", low=-1.0, high=3.0), stats.uniform(-1.0, 4.0)),
-    (table("normal", mean=2.0, sd=0.5), stats.norm(2.0, 0.5)),
-    (table("truncated-normal", mean=2.0, sd=0.5, low=1.5, high=4.0, rule="redraw"), stats.truncnorm(-1.0, 4.0, 2.0, 0.5)),
-    (table("truncated-normal", mean=0.0, sd=1.0, low=7.0, high=9.0, rule="redraw"), stats.truncnorm(7.0, 9.0)),
-    (table("truncated-normal", mean=0.0, sd=1.0, low=-9.0, high=-7.0, rule="redraw"), stats.truncnorm(-9.0, -7.0)),
-    (table("rayleigh", scale=0.3), stats.rayleigh(0.0, 0.3)),
-])
+@pytest.mark.parametrize(
+    "drawn, exact",
+    [
+        (table("uniform", low=-1.0, high=3.0), stats.uniform(-1.0, 4.0)),
+        (table("normal", mean=2.0, sd=0.5), stats.norm(2.0, 0.5)),
+        (
+            table("truncated-normal", mean=2.0, sd=0.5, low=1.5, high=4.0, rule="redraw"),
+            stats.truncnorm(-1.0, 4.0, 2.0, 0.5),
+        ),
+        (
+            table("truncated-normal", mean=0.0, sd=1.0, low=7.0, high=9.0, rule="redraw"),
+            stats.truncnorm(7.0, 9.0),
+        ),
+        (
+            table("truncated-normal", mean=0.0, sd=1.0, low=-9.0, high=-7.0, rule="redraw"),
+            stats.truncnorm(-9.0, -7.0),
+        ),
+        (table("rayleigh", scale=0.3), stats.rayleigh(0.0, 0.3)),
+    ],
+)
 def test_quantiles_are_those_of_scipy(drawn, exact):
     u = np.concatenate([[2.0**-53, 1e-9], np.linspace(0.001, 0.999, 999), [1.0 - 1e-9]])
     assert np.allclose(drawn.ppf(u), exact.ppf(u), rtol=1e-9, atol=1e-12)
@@ -34,10 +49,12 @@ def test_fixed_is_the_value():
 
 
 @pytest.mark.case("O48")
-@pytest.mark.parametrize("rule, variance, fourth", [("redraw", 0.9733369, 2.6795), ("clip", 0.9950073, 2.9)])
+@pytest.mark.parametrize(
+    "rule, variance, fourth", [("redraw", 0.9733369, 2.6795), ("clip", 0.9950073, 2.9)]
+)
 def test_variance_of_a_normal_limited_at_three_sigma(rule, variance, fourth):
-    """By quadrature to the digits that are printed, and for draws within 3 standard errors. ``fourth``, at most, is the fourth
-    moment."""
+    """By quadrature to the digits that are printed, and for draws within 3 standard errors.
+    ``fourth``, at most, is the fourth moment."""
     limited = table("truncated-normal", mean=0.0, sd=1.0, low=-3.0, high=3.0, rule=rule)
     assert abs(limited.ppf(MIDDLES).var() - variance) < 2e-7
     count = 400_000
@@ -51,10 +68,14 @@ def test_variance_of_a_normal_limited_at_three_sigma(rule, variance, fourth):
 def test_every_number_depends_on_its_own_probability_alone():
     """Whatever stands beside it in the array: vector code treats ends of arrays in its own way."""
     u = np.random.default_rng(1).random(1001)
-    for drawn in (table("normal", mean=0.1, sd=0.3), table("rayleigh", scale=0.3), table("uniform", low=0.1, high=0.7),
-                  table("truncated-normal", mean=0.1, sd=0.3, low=0.0, high=0.5, rule="redraw")):
+    for drawn in (
+        table("normal", mean=0.1, sd=0.3),
+        table("rayleigh", scale=0.3),
+        table("uniform", low=0.1, high=0.7),
+        table("truncated-normal", mean=0.1, sd=0.3, low=0.0, high=0.5, rule="redraw"),
+    ):
         whole = drawn.ppf(u)
-        assert all(drawn.ppf(u[n:n + 1])[0] == whole[n] for n in range(len(u)))
+        assert all(drawn.ppf(u[n : n + 1])[0] == whole[n] for n in range(len(u)))
         assert np.array_equal(drawn.ppf(np.asfortranarray(np.stack([u, u], axis=1)).T[1]), whole)
 
 
@@ -64,30 +85,58 @@ def raw(**tables) -> dict:
 
 def test_units_are_those_of_the_scene():
     found = uncertainty.parse(
-        raw(**{"thrust_offset.misalignment.axial": {"distribution": "normal", "mean": "180 deg", "sd": "1 deg"}}),
-        load("reference"))
+        raw(
+            **{
+                "thrust_offset.misalignment.axial": {
+                    "distribution": "normal",
+                    "mean": "180 deg",
+                    "sd": "1 deg",
+                }
+            }
+        ),
+        load("reference"),
+    )
     assert found.vary["thrust_offset.misalignment.axial"].mean == pytest.approx(np.pi)
-    nested = uncertainty.parse(raw(contact={"clearance": {"distribution": "fixed", "value": "0.2 mm"}}), load("reference"))
+    nested = uncertainty.parse(
+        raw(contact={"clearance": {"distribution": "fixed", "value": "0.2 mm"}}), load("reference")
+    )
     assert nested.vary["contact.clearance"].value == pytest.approx(2e-4)
 
 
 def test_every_fault_is_listed_at_once():
-    tables = {"payload.mass": {"distribution": "normal", "mean": "9.9 m", "sd": "-1 kg"},
-              "payload.weight": {"distribution": "fixed"}, "contact.clearance": {"distribution": "gauss"},
-              "friction.static": {"distribution": "uniform", "low": 0.3, "high": 0.2},
-              "thrust.arm": {"distribution": "fixed", "value": 0.1}, "contact.law": {"distribution": "fixed", "value": 1.0}}
+    tables = {
+        "payload.mass": {"distribution": "normal", "mean": "9.9 m", "sd": "-1 kg"},
+        "payload.weight": {"distribution": "fixed"},
+        "contact.clearance": {"distribution": "gauss"},
+        "friction.static": {"distribution": "uniform", "low": 0.3, "high": 0.2},
+        "thrust.arm": {"distribution": "fixed", "value": 0.1},
+        "contact.law": {"distribution": "fixed", "value": 1.0},
+    }
     with pytest.raises(SceneError) as refused:
-        uncertainty.parse({"cases": 0, "sampling": "halton", "vary": tables}, load("reference"), "errors.toml")
+        uncertainty.parse(
+            {"cases": 0, "sampling": "halton", "vary": tables}, load("reference"), "errors.toml"
+        )
     text = str(refused.value)
-    for words in ("errors.toml: cases", "sampling", "vary.payload.mass.mean",
-                  "vary.payload.mass.sd: given '-1 kg', expected greater than 0", "vary.payload.weight", "no such key",
-                  "vary.contact.clearance.distribution", "vary.friction.static.high",
-                  "vary.thrust.arm.value", "vary.contact.law", "a key that holds a number"):
+    for words in (
+        "errors.toml: cases",
+        "sampling",
+        "vary.payload.mass.mean",
+        "vary.payload.mass.sd: given '-1 kg', expected greater than 0",
+        "vary.payload.weight",
+        "no such key",
+        "vary.contact.clearance.distribution",
+        "vary.friction.static.high",
+        "vary.thrust.arm.value",
+        "vary.contact.law",
+        "a key that holds a number",
+    ):
         assert words in text, words
 
 
 def test_a_place_the_scene_does_not_have_is_found_before_any_run():
     with pytest.raises(SceneError, match="pads.8"):
-        uncertainty.parse(raw(**{"pads.8.relief": {"distribution": "fixed", "value": "1 um"}}), load("reference"))
+        uncertainty.parse(
+            raw(**{"pads.8.relief": {"distribution": "fixed", "value": "1 um"}}), load("reference")
+        )
     with pytest.raises(SceneError, match="paper"):
         uncertainty.load("no_such_file", load("reference"))

@@ -29,12 +29,19 @@ def test_a_chain_beside_the_file_wherever_it_is_read_from(scene, tmp_path, monke
 
 
 def test_a_table_is_dropped(scene):
-    assert scene('extends = "reference"\nfriction = "absent"\n').hash == load("reference").replace({"friction": None}).hash
+    assert (
+        scene('extends = "reference"\nfriction = "absent"\n').hash
+        == load("reference").replace({"friction": None}).hash
+    )
 
 
 def test_another_kind_of_thrust_replaces_the_inherited_table(scene):
-    """Mixed, the peak and width of the Gaussian would be keys that a constant push does not have."""
-    found = scene('extends = "reference"\n[thrust]\nkind = "constant"\nforce = "1 kN"\nduration = "20 ms"\narm = "0.1 m"\n')
+    """Mixed, the peak and width of the Gaussian would be keys that a constant push does not
+    have."""
+    found = scene(
+        'extends = "reference"\n[thrust]\nkind = "constant"\nforce = "1 kN"\nduration = "20 '
+        'ms"\narm = "0.1 m"\n'
+    )
     assert (found.thrust.kind, found.thrust.force) == ("constant", 1000.0)
     law = '[contact]\nlaw = "linear"\nclearance = "0.1 mm"\nstiffness = "1e4 N/mm"\n'
     assert scene(f'extends = "reference"\n{law}').contact.exponent == 1.0
@@ -46,15 +53,21 @@ def test_the_same_kind_is_merged(scene):
 
 
 def test_conditions_are_added_and_replaced_whole(scene):
-    """A condition is one variation: keys of an inherited one with the same name must not leak into it."""
-    found = scene('extends = "reference"\n[conditions.h9]\nthrust_offset = "absent"\n[conditions.own]\nduration = "50 ms"\n')
+    """A condition is one variation: keys of an inherited one with the same name must not leak into
+    it."""
+    found = scene(
+        'extends = "reference"\n[conditions.h9]\nthrust_offset = '
+        '"absent"\n[conditions.own]\nduration = "50 ms"\n'
+    )
     assert found.conditions["h9"] == {"thrust_offset": "absent"}
     assert found.condition("own").duration == 0.05
     assert "phi15" in found.conditions
 
 
 def test_a_curve_lies_beside_the_file_that_names_it(scene, tmp_path, monkeypatch):
-    (tmp_path / "curve.csv").write_text("time_s,force_N\n0,0\n0.005,3000\n0.01,6000\n0.015,3000\n0.02,0\n")
+    (tmp_path / "curve.csv").write_text(
+        "time_s,force_N\n0,0\n0.005,3000\n0.01,6000\n0.015,3000\n0.02,0\n"
+    )
     text = 'extends = "reference"\n[thrust]\nkind = "measured"\nfile = "curve.csv"\n'
     scene(text, "base.toml")
     monkeypatch.chdir("/")
@@ -63,7 +76,9 @@ def test_a_curve_lies_beside_the_file_that_names_it(scene, tmp_path, monkeypatch
 
 
 def test_a_misspelt_key_in_a_child_is_found(scene):
-    with pytest.raises(SceneError, match="child.toml: contact.clearence: given '1 mm', expected no such key"):
+    with pytest.raises(
+        SceneError, match="child.toml: contact.clearence: given '1 mm', expected no such key"
+    ):
         scene('extends = "reference"\n[contact]\nclearence = "1 mm"\n')
 
 

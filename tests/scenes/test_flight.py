@@ -1,4 +1,5 @@
-"""The table of a flight: orbits everyone knows, what it refuses, and that no ejection depends on it."""
+"""The table of a flight: orbits everyone knows, what it refuses, and that no ejection depends on
+it."""
 
 import math
 
@@ -17,21 +18,31 @@ def test_no_ejection_depends_on_a_flight():
     assert SCENE.hash != SCENE.replace({"payload.mass": "9.8 kg"}).hash  # control
 
 
-@pytest.mark.parametrize("altitude, period", [("35786 km", 86164.1), ("20182 km", 43077.0), ("400 km", 5553.6)])
+@pytest.mark.parametrize(
+    "altitude, period", [("35786 km", 86164.1), ("20182 km", 43077.0), ("400 km", 5553.6)]
+)
 def test_periods(altitude, period):
-    """Geostationary, navigation satellites (half a sidereal day), a space station without the flattening of the Earth."""
+    """Geostationary, navigation satellites (half a sidereal day), a space station without the
+    flattening of the Earth."""
     flight = SCENE.replace({"flight.altitude": altitude}).flight.record()
     assert 2.0 * math.pi / flight.mean_motion == pytest.approx(period, rel=1e-4)
     assert flight.duration == pytest.approx(2.0 * math.pi / flight.mean_motion)
     assert SCENE.replace({"flight.duration": "2 hour"}).flight.record().duration == 7200.0
 
 
-@pytest.mark.parametrize("changed, words", [
-    ({"flight.altitude": None}, "one of altitude and mean_motion"),
-    ({"flight.mean_motion": "1e-3 rad/s"}, "one of altitude and mean_motion"),
-    ({"flight.range": None}, "flight.range"), ({"flight.range": "0 m"}, "flight.range"), ({"flight.height": "1 m"}, "no such key"),
-    ({"flight.pointing_limit": "200 deg"}, "flight.pointing_limit"), ({"flight.body": ["1 m", "1 m"]}, "flight.body"),
-    ({"flight.envelope.0.low.0": "9 m"}, "a corner nowhere")])
+@pytest.mark.parametrize(
+    "changed, words",
+    [
+        ({"flight.altitude": None}, "one of altitude and mean_motion"),
+        ({"flight.mean_motion": "1e-3 rad/s"}, "one of altitude and mean_motion"),
+        ({"flight.range": None}, "flight.range"),
+        ({"flight.range": "0 m"}, "flight.range"),
+        ({"flight.height": "1 m"}, "no such key"),
+        ({"flight.pointing_limit": "200 deg"}, "flight.pointing_limit"),
+        ({"flight.body": ["1 m", "1 m"]}, "flight.body"),
+        ({"flight.envelope.0.low.0": "9 m"}, "a corner nowhere"),
+    ],
+)
 def test_what_is_refused(changed, words):
     with pytest.raises(SceneError, match=words):
         SCENE.replace(changed)

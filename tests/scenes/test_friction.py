@@ -1,4 +1,5 @@
-"""The two-step law of friction: its values, its continuity on both sides of each transition, its sign."""
+"""The two-step law of friction: its values, its continuity on both sides of each transition, its
+sign."""
 
 import numpy as np
 import pytest
@@ -20,11 +21,17 @@ def coefficient(law, speed):
 @st.composite
 def laws(draw):
     static_speed = draw(SPEED)
-    return Friction(draw(COEFFICIENT), draw(COEFFICIENT), static_speed, static_speed * draw(st.floats(1.01, 10.0)))
+    return Friction(
+        draw(COEFFICIENT),
+        draw(COEFFICIENT),
+        static_speed,
+        static_speed * draw(st.floats(1.01, 10.0)),
+    )
 
 
 def test_values():
-    """At half the static speed the cubic (3 r - r^3) / 2 is 11/16; half-way between the speeds the step is half done."""
+    """At half the static speed the cubic (3 r - r^3) / 2 is 11/16; half-way between the speeds the
+    step is half done."""
     assert coefficient(LAW, 0.005) == pytest.approx(0.3 * 11 / 16, rel=1e-14)
     assert coefficient(LAW, 0.01) == pytest.approx(0.3, rel=1e-14)
     assert coefficient(LAW, 0.015) == pytest.approx(0.2, rel=1e-14)
@@ -33,7 +40,8 @@ def test_values():
 
 
 def test_the_first_branch_is_the_odd_cubic_step():
-    """The step of ADAMS from -mu at -v to mu at v, written independently: -mu + 2 mu x^2 (3 - 2 x), x = (s + v)/(2 v)."""
+    """The step of ADAMS from -mu at -v to mu at v, written independently: -mu + 2 mu x^2 (3 - 2 x),
+    x = (s + v)/(2 v)."""
     speed = np.linspace(1e-9, LAW.static_speed, 101)
     x = (speed + LAW.static_speed) / (2.0 * LAW.static_speed)
     step = -LAW.static + 2.0 * LAW.static * x * x * (3.0 - 2.0 * x)
@@ -65,7 +73,10 @@ def test_never_negative_never_above_the_larger_coefficient(law, speed):
 def test_steepest_slope_bounds_the_law(law):
     speed = np.linspace(0.0, 1.2 * law.dynamic_speed, 400)
     values = np.array([coefficient(law, s) for s in speed])
-    assert np.abs(np.diff(values)).max() / np.diff(speed)[0] <= steepest_slope(law) * (1.0 + 1e-9) + 1e-12
+    assert (
+        np.abs(np.diff(values)).max() / np.diff(speed)[0]
+        <= steepest_slope(law) * (1.0 + 1e-9) + 1e-12
+    )
 
 
 def test_a_plain_sign_law_jumps():

@@ -15,7 +15,8 @@ def entries(**columns) -> np.ndarray:
     return table
 
 
-# 500 J of axial motion; beside it 1 mJ goes to and fro between bouncing and contact, a tenth of it lost on the way.
+# 500 J of axial motion; beside it 1 mJ goes to and fro between bouncing and contact, a tenth of it
+# lost on the way.
 BOUNCE = 1e-3
 LOST = 0.1 * BOUNCE * TIME
 STORED = (BOUNCE - LOST) * np.sin(8.0 * TIME) ** 2
@@ -24,13 +25,26 @@ PUSH = 500.0 * TIME
 
 
 def total(stored):
-    return entries(thrust=PUSH, kinetic=PUSH + ACROSS, contact_stored=stored, contact_damping=0.5 * LOST, friction=0.3 * LOST,
-                   structural_damping=0.1 * LOST, released=0.1 * LOST)
+    return entries(
+        thrust=PUSH,
+        kinetic=PUSH + ACROSS,
+        contact_stored=stored,
+        contact_damping=0.5 * LOST,
+        friction=0.3 * LOST,
+        structural_damping=0.1 * LOST,
+        released=0.1 * LOST,
+    )
 
 
 def transverse(stored):
-    return entries(kinetic=ACROSS, contact_stored=stored, contact_damping=0.5 * LOST, friction=0.3 * LOST,
-                   structural_damping=0.1 * LOST, released=0.1 * LOST)
+    return entries(
+        kinetic=ACROSS,
+        contact_stored=stored,
+        contact_damping=0.5 * LOST,
+        friction=0.3 * LOST,
+        structural_damping=0.1 * LOST,
+        released=0.1 * LOST,
+    )
 
 
 def test_consistent_ledgers_close():
@@ -39,7 +53,8 @@ def test_consistent_ledgers_close():
 
 
 def test_one_per_cent_of_spurious_contact_energy_is_seen_only_across():
-    """Total: 1e-5 J in 500 J is 2e-8, below its promise of 1e-6. Transverse: 1e-2, a hundred times its promise of 1e-4."""
+    """Total: 1e-5 J in 500 J is 2e-8, below its promise of 1e-6. Transverse: 1e-2, a hundred times
+    its promise of 1e-4."""
     false = 1.01 * STORED
     assert ledger.total_error(total(false)) < 1e-6
     assert 5e-3 < ledger.transverse_error(transverse(false)) < 1.1e-2
@@ -53,7 +68,8 @@ def test_every_entry_counts():
 
 
 def test_signs():
-    """Work done on the bodies raises the residual, what they hold or lose lowers it; the start counts as given."""
+    """Work done on the bodies raises the residual, what they hold or lose lowers it; the start
+    counts as given."""
     for name in ledger.ENTRIES:
         table = entries()
         table[1:, COLUMN[name]] = 1.0

@@ -8,11 +8,26 @@ from scenes.effects import gravity
 from scenes.effects.initial import Initial
 from tests.scenes.support import CONTACT, FRICTION, small
 
-PLATFORM = {"mass": "80 kg", "inertia": {"xx": "4 kg*m**2", "yy": "5 kg*m**2", "zz": "6 kg*m**2"}, "mass_centre": {"x": "-0.1 m"}}
-WHOLE = dict(contact=CONTACT, friction=FRICTION, platform=PLATFORM, gravity={"z": "-9.81 m/s**2"},
-             initial={"position": {"y": "20 um"}}, thrust_offset={"misalignment": {"axial": "1 deg"}},
-             mass_offset={"eccentricity": {"axial": "1 mm", "radial": "90 deg"}})
-RECORDS = {"contact": ("contact", "penalty"), "friction": ("friction",), "platform": ("platform",), "gravity": ("gravity",)}
+PLATFORM = {
+    "mass": "80 kg",
+    "inertia": {"xx": "4 kg*m**2", "yy": "5 kg*m**2", "zz": "6 kg*m**2"},
+    "mass_centre": {"x": "-0.1 m"},
+}
+WHOLE = dict(
+    contact=CONTACT,
+    friction=FRICTION,
+    platform=PLATFORM,
+    gravity={"z": "-9.81 m/s**2"},
+    initial={"position": {"y": "20 um"}},
+    thrust_offset={"misalignment": {"axial": "1 deg"}},
+    mass_offset={"eccentricity": {"axial": "1 mm", "radial": "90 deg"}},
+)
+RECORDS = {
+    "contact": ("contact", "penalty"),
+    "friction": ("friction",),
+    "platform": ("platform",),
+    "gravity": ("gravity",),
+}
 
 
 def test_every_effect_absent_is_none():
@@ -25,7 +40,14 @@ def test_every_effect_absent_is_none():
 
 def test_every_effect_present_is_a_record():
     found = model.build(parse(small(**WHOLE)))
-    assert None not in (found.thrust_offset, found.contact, found.penalty, found.friction, found.platform, found.gravity)
+    assert None not in (
+        found.thrust_offset,
+        found.contact,
+        found.penalty,
+        found.friction,
+        found.platform,
+        found.gravity,
+    )
 
 
 @pytest.mark.parametrize("effect", RECORDS)
@@ -38,7 +60,10 @@ def test_thrust_is_offset_by_either_table():
     scene = parse(small(**WHOLE))
     assert model.build(scene.replace({"thrust_offset": None})).thrust_offset is not None
     assert model.build(scene.replace({"mass_offset": None})).thrust_offset is not None
-    assert model.build(scene.replace({"mass_offset": None, "thrust_offset": None})).thrust_offset is None
+    assert (
+        model.build(scene.replace({"mass_offset": None, "thrust_offset": None})).thrust_offset
+        is None
+    )
 
 
 def test_friction_needs_contact():
@@ -51,17 +76,32 @@ def test_absent_gravity_pulls_nothing():
 
 
 def test_line_of_action():
-    """Misalignment from +X, clock angle from +Y to +Z; l_y = r sin, l_z = r cos; arms about the actual mass centre."""
-    offset = {"misalignment": {"axial": "30 deg", "radial": "90 deg"}, "eccentricity": {"axial": "3 mm", "radial": "90 deg"}}
-    found = model.build(parse(small(thrust_offset=offset,
-                                    mass_offset={"eccentricity": {"axial": "1 mm", "radial": "0 deg"}}))).thrust_offset
+    """Misalignment from +X, clock angle from +Y to +Z; l_y = r sin, l_z = r cos; arms about the
+    actual mass centre."""
+    offset = {
+        "misalignment": {"axial": "30 deg", "radial": "90 deg"},
+        "eccentricity": {"axial": "3 mm", "radial": "90 deg"},
+    }
+    found = model.build(
+        parse(
+            small(
+                thrust_offset=offset,
+                mass_offset={"eccentricity": {"axial": "1 mm", "radial": "0 deg"}},
+            )
+        )
+    ).thrust_offset
     assert found.direction == pytest.approx((np.sqrt(0.75), 0.0, 0.5), abs=1e-15)
     assert found.arm == pytest.approx((-0.1, 3e-3, -1e-3), abs=1e-15)
 
 
 def test_faces_and_walls():
-    """A corner at (y, z) = (0.1, 0.1): the y face lies inset towards the axis along z, its wall a clearance outside."""
-    raw = small(contact=CONTACT, platform=PLATFORM, mass_offset={"eccentricity": {"axial": "1 mm", "radial": "90 deg"}})
+    """A corner at (y, z) = (0.1, 0.1): the y face lies inset towards the axis along z, its wall a
+    clearance outside."""
+    raw = small(
+        contact=CONTACT,
+        platform=PLATFORM,
+        mass_offset={"eccentricity": {"axial": "1 mm", "radial": "90 deg"}},
+    )
     raw["pads"][0]["inset"] = "9 mm"
     found = model.build(parse(raw))
     assert found.faces.centre == pytest.approx(np.array([[0.0, 0.099, 0.091], [0.0, 0.090, 0.1]]))
@@ -75,7 +115,9 @@ def test_faces_and_walls():
 def test_the_gap_is_the_clearance_on_every_face_of_the_reference():
     found = model.build(load("reference"))
     faces = found.faces
-    gap = faces.sign * (faces.wall + found.platform.mass_centre[1] - faces.centre[np.arange(16), faces.axis])
+    gap = faces.sign * (
+        faces.wall + found.platform.mass_centre[1] - faces.centre[np.arange(16), faces.axis]
+    )
     assert gap == pytest.approx(np.full(16, 0.25e-3), rel=1e-12)
     assert np.bincount(faces.pad).tolist() == [2] * 8
 

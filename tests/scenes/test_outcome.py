@@ -1,5 +1,5 @@
-"""Relative motion, milestones, and the book of exit, settled window and jam by itself; runs that fill it are tested with the
-solvers."""
+"""Relative motion, milestones, and the book of exit, settled window and jam by itself; runs that
+fill it are tested with the solvers."""
 
 import itertools
 import math
@@ -33,8 +33,8 @@ def test_an_empty_book_is_a_time_limit():
 @pytest.mark.parametrize("settled, start", [(0.0, 0.041), (0.0409, 0.041), (0.0437, 0.0437)])
 @pytest.mark.parametrize("rows", [1, 7])
 def test_means_over_the_window(settled, start, rows):
-    """Steps that begin before the window and end after it count with the part inside. Each part's length is off by the rounding of
-    the instants, 7e-18 s, of 2 ms."""
+    """Steps that begin before the window and end after it count with the part inside. Each part's
+    length is off by the rounding of the instants, 7e-18 s, of 2 ms."""
     made, time = book(), np.linspace(0.039, 0.047, 8 * rows + 1)
     ending.leave(made, 0.04, marks(settled))
     for began, ended in itertools.pairwise(time):
@@ -42,8 +42,8 @@ def test_means_over_the_window(settled, start, rows):
         if high > low:
             middle = 0.5 * (low + high)  # of linear motion the mean is the value there
             row = np.zeros(ending.ROW_SIZE)
-            row[ending.SPEED:ending.SPEED + 3] = [5.0, 0.3 * middle, -0.4 * middle]
-            row[ending.SPIN:ending.SPIN + 3] = [1.0, 2.0, middle]
+            row[ending.SPEED : ending.SPEED + 3] = [5.0, 0.3 * middle, -0.4 * middle]
+            row[ending.SPIN : ending.SPIN + 3] = [1.0, 2.0, middle]
             ending.count(made, row, high - low)
         assert ending.found(made)[0] == "time_limit" and ending.found(made)[1].exit_time == 0.04
         ending.close(made, ended)
@@ -52,7 +52,9 @@ def test_means_over_the_window(settled, start, rows):
     made[[ending.AT_EXIT + ending.ATTITUDE, ending.AT_EXIT + ending.BODY + ending.ATTITUDE]] = 1.0
     status, found = ending.found(made)
     assert status == "exited" and found.window_start == start and made[ending.DONE] == start + 2e-3
-    assert found.velocity == pytest.approx([5.0, 0.3 * (start + 1e-3), -0.4 * (start + 1e-3)], abs=3e-13)
+    assert found.velocity == pytest.approx(
+        [5.0, 0.3 * (start + 1e-3), -0.4 * (start + 1e-3)], abs=3e-13
+    )
     assert found.rate == pytest.approx([1.0, 2.0, start + 1e-3], abs=3e-13)
     assert found.lateral_velocity == pytest.approx(0.5 * (start + 1e-3), abs=3e-13)
     assert found.direction_error == pytest.approx(math.atan2(0.5 * (start + 1e-3), 5.0), abs=3e-13)
@@ -64,11 +66,16 @@ def test_a_window_that_ends_with_the_scene_is_whole():
         made = book()
         ending.leave(made, 0.04, marks())
         ending.close(made, 0.043 - short)
-        made[[ending.AT_EXIT + ending.ATTITUDE, ending.AT_EXIT + ending.BODY + ending.ATTITUDE]] = 1.0
+        made[[ending.AT_EXIT + ending.ATTITUDE, ending.AT_EXIT + ending.BODY + ending.ATTITUDE]] = (
+            1.0
+        )
         assert ending.found(made)[0] == status
 
 
-@pytest.mark.parametrize("vector", [[0.0, 0.0, 0.0], [1e-9, 0.0, 0.0], [0.02, -0.03, 0.01], [0.0, 3.0, 0.0], [2.0, -2.0, 1.0]])
+@pytest.mark.parametrize(
+    "vector",
+    [[0.0, 0.0, 0.0], [1e-9, 0.0, 0.0], [0.02, -0.03, 0.01], [0.0, 3.0, 0.0], [2.0, -2.0, 1.0]],
+)
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_exit_attitude(vector, sign):
     """Both signs of a quaternion are the same attitude."""
@@ -77,13 +84,14 @@ def test_exit_attitude(vector, sign):
     ending.close(made, 1.0)
     for body in (0, ending.BODY):
         first = ending.AT_EXIT + body + ending.ATTITUDE
-        made[first:first + 4] = sign * quaternions(Rotation.from_rotvec(vector))
+        made[first : first + 4] = sign * quaternions(Rotation.from_rotvec(vector))
     found = ending.found(made)[1]
     assert found.exit_attitude == found.exit_platform_attitude == pytest.approx(vector, abs=1e-12)
 
 
 def looked_at(*looks) -> np.ndarray:
-    """The book after looks, each an excess of the speed (m/s), its time (s) and when it was zero since the look before (s)."""
+    """The book after looks, each an excess of the speed (m/s), its time (s) and when it was zero
+    since the look before (s)."""
     made = book()
     for look in looks:
         if made[ending.DONE] == np.inf:
@@ -91,16 +99,25 @@ def looked_at(*looks) -> np.ndarray:
     return made
 
 
-@pytest.mark.parametrize("looks, jammed_at", [
-    ([(-1e-9, 0.01, 0.01), (-1e-9, 0.01501, 0.01501)], 0.015), ([(-1e-9, 0.01, 0.01), (-1e-9, 0.01499, 0.01499)], None),
-    ([(1e-9, 0.01, 0.01), (1e-9, 0.02, 0.02)], None), ([(1.0, 0.01, 0.01), (-1.0, 0.02, 0.0151)], None),
-    ([(1.0, 0.01, 0.01), (-1.0, 0.02, 0.0149)], 0.0199), ([(-1.0, 0.01, 0.01), (1.0, 0.02, 0.0151)], 0.015),
-    ([(-1.0, 0.01, 0.01), (1.0, 0.02, 0.0149)], None),
-    ([(-1.0, 0.01, 0.01), (1.0, 0.014, 0.013), (-1.0, 0.016, 0.015), (-1.0, 0.0199, 0.0199)], None),
-])
+@pytest.mark.parametrize(
+    "looks, jammed_at",
+    [
+        ([(-1e-9, 0.01, 0.01), (-1e-9, 0.01501, 0.01501)], 0.015),
+        ([(-1e-9, 0.01, 0.01), (-1e-9, 0.01499, 0.01499)], None),
+        ([(1e-9, 0.01, 0.01), (1e-9, 0.02, 0.02)], None),
+        ([(1.0, 0.01, 0.01), (-1.0, 0.02, 0.0151)], None),
+        ([(1.0, 0.01, 0.01), (-1.0, 0.02, 0.0149)], 0.0199),
+        ([(-1.0, 0.01, 0.01), (1.0, 0.02, 0.0151)], 0.015),
+        ([(-1.0, 0.01, 0.01), (1.0, 0.02, 0.0149)], None),
+        (
+            [(-1.0, 0.01, 0.01), (1.0, 0.014, 0.013), (-1.0, 0.016, 0.015), (-1.0, 0.0199, 0.0199)],
+            None,
+        ),
+    ],
+)
 def test_a_jam_lasts_five_milliseconds(looks, jammed_at):
-    """On both sides of the duration, from its first moment or from a crossing, to the next crossing or without one; a faster moment
-    in between begins it anew."""
+    """On both sides of the duration, from its first moment or from a crossing, to the next crossing
+    or without one; a faster moment in between begins it anew."""
     made = looked_at(*looks)
     assert ending.found(made)[0] == ("time_limit" if jammed_at is None else "jammed")
     assert jammed_at is None or made[ending.DONE] == pytest.approx(jammed_at, abs=1e-15)
@@ -112,16 +129,24 @@ def test_a_jam_counts_from_the_end_of_the_thrust_or_under_a_constant_one():
 
 
 def test_relative_motion_with_a_turning_platform():
-    """Built the other way round: choose the motion in the platform's axes, carry it into the inertial frame."""
+    """Built the other way round: choose the motion in the platform's axes, carry it into the
+    inertial frame."""
     rng = np.random.default_rng(4)
     n = 200
     frame, body = Rotation.random(n, rng=rng), Rotation.random(n, rng=rng)
     origin, drift, place, speed, spin, turning = (rng.normal(size=(n, 3)) for _ in range(6))
     inertial_spin = frame.apply(spin)
     moved = motion(
-        origin + frame.apply(place), drift + frame.apply(speed) + np.cross(inertial_spin, frame.apply(place)), quaternions(body),
-        body.inv().apply(inertial_spin) + turning, time=np.arange(n) * 1e-3, platform_position=origin, platform_velocity=drift,
-        platform_quaternion=quaternions(frame), platform_rate=spin)
+        origin + frame.apply(place),
+        drift + frame.apply(speed) + np.cross(inertial_spin, frame.apply(place)),
+        quaternions(body),
+        body.inv().apply(inertial_spin) + turning,
+        time=np.arange(n) * 1e-3,
+        platform_position=origin,
+        platform_velocity=drift,
+        platform_quaternion=quaternions(frame),
+        platform_rate=spin,
+    )
     found = outcome.relative_motion(moved)
     assert np.allclose(found["relative_position"], place, atol=1e-13)
     assert np.allclose(found["relative_velocity"], speed, atol=1e-13)
@@ -131,7 +156,11 @@ def test_relative_motion_with_a_turning_platform():
 def test_milestones_of_the_reference():
     scene = load("reference")
     found = outcome.milestones(scene, model.build(scene))
-    assert found.settled_thrust == pytest.approx(0.012 + 0.004 * math.sqrt(2.0 * math.log(1e3)), abs=5e-6)
-    assert found.spent_thrust == pytest.approx(0.012 + 0.004 * math.sqrt(2.0 * math.log(1e2)), abs=5e-6)
+    assert found.settled_thrust == pytest.approx(
+        0.012 + 0.004 * math.sqrt(2.0 * math.log(1e3)), abs=5e-6
+    )
+    assert found.spent_thrust == pytest.approx(
+        0.012 + 0.004 * math.sqrt(2.0 * math.log(1e2)), abs=5e-6
+    )
     assert found.jam_speed == 0.01
     assert not found.constant_thrust

@@ -10,15 +10,21 @@ from tests.scenes.support import CONTACT, small
 DENSITY = 2810.0
 
 
-@pytest.mark.parametrize("speed, warned", [(99.0, True), (101.0, False), (9_990.0, False), (10_010.0, True)])
+@pytest.mark.parametrize(
+    "speed, warned", [(99.0, True), (101.0, False), (9_990.0, False), (10_010.0, True)]
+)
 def test_wave_speed(speed, warned):
     scene = parse(small(rail__material__youngs_modulus=f"{DENSITY * speed**2!r} Pa"))
     found = [text for text in scene.warnings if "wave speed" in text]
     assert len(found) == warned
-    assert all("rail.material.youngs_modulus" in text and "rail.material.density" in text for text in found)
+    assert all(
+        "rail.material.youngs_modulus" in text and "rail.material.density" in text for text in found
+    )
 
 
-@pytest.mark.parametrize("mass, warned", [(0.9, False), (0.07, True), (0.09, False), (159.0, False), (161.0, True)])
+@pytest.mark.parametrize(
+    "mass, warned", [(0.9, False), (0.07, True), (0.09, False), (159.0, False), (161.0, True)]
+)
 def test_payload_density(mass, warned):
     scene = parse(small(payload__mass=f"{mass} kg", payload__size=["0.2 m", "0.2 m", "0.2 m"]))
     found = [text for text in scene.warnings if "mean density" in text]
@@ -28,7 +34,10 @@ def test_payload_density(mass, warned):
 
 def test_slips_of_units_are_seen():
     """72 MPa for GPa, and 2.81 kg/m3 for g/cm3: both leave a valid scene."""
-    for slip in ({"rail__material__youngs_modulus": "0.72 MPa"}, {"rail__material__density": "2.81 kg/m**3"}):
+    for slip in (
+        {"rail__material__youngs_modulus": "0.72 MPa"},
+        {"rail__material__density": "2.81 kg/m**3"},
+    ):
         assert any("wave speed" in text for text in parse(small(**slip)).warnings)
 
 
@@ -36,13 +45,16 @@ def test_without_a_size_nothing_is_said_of_density():
     assert not any("density" in text for text in parse(small(payload__mass="1e6 kg")).warnings)
 
 
-@pytest.mark.parametrize("key, slip, right, meant", [
-    ("contact.stiffness", "70000 N/m**1.5", "70000 N/mm**1.5", "in mm instead of m"),
-    ("contact.stiffness", "70 N/mm**1.5", "70 kN/mm**1.5", "in kN instead of N"),
-    ("contact.stiffness", "70 N/m**1.5", "70 kN/mm**1.5", "in kN and mm instead of N and m"),
-    ("contact.penalty", "1800 N/m**3", "1800 N/mm**3", "in mm instead of m"),
-    ("contact.penalty", "1.8 N/mm**3", "1.8 kN/mm**3", "in kN instead of N"),
-])
+@pytest.mark.parametrize(
+    "key, slip, right, meant",
+    [
+        ("contact.stiffness", "70000 N/m**1.5", "70000 N/mm**1.5", "in mm instead of m"),
+        ("contact.stiffness", "70 N/mm**1.5", "70 kN/mm**1.5", "in kN instead of N"),
+        ("contact.stiffness", "70 N/m**1.5", "70 kN/mm**1.5", "in kN and mm instead of N and m"),
+        ("contact.penalty", "1800 N/m**3", "1800 N/mm**3", "in mm instead of m"),
+        ("contact.penalty", "1.8 N/mm**3", "1.8 kN/mm**3", "in kN instead of N"),
+    ],
+)
 def test_a_stiffness_in_another_unit_sinks_too_far(key, slip, right, meant):
     scene = load("reference")
     (text,) = scene.replace({key: slip}).warnings
@@ -52,11 +64,15 @@ def test_a_stiffness_in_another_unit_sinks_too_far(key, slip, right, meant):
 
 
 def test_sink_is_that_of_the_law_under_the_load_of_the_scene():
-    """0.1 deg of 6 kN across the axis, and its moment on an arm of 0.1 m borne 0.16 m apart; then weight alone; then no load."""
+    """0.1 deg of 6 kN across the axis, and its moment on an arm of 0.1 m borne 0.16 m apart; then
+    weight alone; then no load."""
     scene = load("reference").replace({"contact.stiffness": "70000 N/m**1.5"})
     force = 6000.0 * math.sin(math.radians(0.1)) * (1.0 + 0.1 / 0.16)
     assert sinking.load(scene) == pytest.approx(force, rel=1e-12)
-    assert f"sinks {1e3 * (force / 70000.0) ** (1.0 / 1.5):.3g} mm at a static load of {force:.3g} N" in scene.warnings[0]
+    assert (
+        f"sinks {1e3 * (force / 70000.0) ** (1.0 / 1.5):.3g} mm at a static load of {force:.3g} N"
+        in scene.warnings[0]
+    )
     heavy = scene.replace({"thrust_offset": None, "gravity": {"z": -9.81}})
     assert sinking.load(heavy) == pytest.approx(9.9 * 9.81, rel=1e-12)
     assert scene.replace({"thrust_offset": None}).warnings == []
@@ -65,58 +81,94 @@ def test_sink_is_that_of_the_law_under_the_load_of_the_scene():
 @pytest.mark.parametrize("side, warned", [(0.99, True), (1.01, False)])
 def test_a_sink_is_judged_by_the_clearance(side, warned):
     """Both sides of the bound; a linear spring sinks by load over stiffness."""
-    scene = load("reference").replace({"contact": {"law": "linear", "clearance": "0.25 mm", "stiffness": "1 N/m"}})
+    scene = load("reference").replace(
+        {"contact": {"law": "linear", "clearance": "0.25 mm", "stiffness": "1 N/m"}}
+    )
     stiffness = side * sinking.load(scene) / 0.25e-3
-    assert any("contact.stiffness" in text for text in scene.replace({"contact.stiffness": stiffness}).warnings) == warned
+    assert (
+        any(
+            "contact.stiffness" in text
+            for text in scene.replace({"contact.stiffness": stiffness}).warnings
+        )
+        == warned
+    )
 
 
 def test_a_small_clearance_is_no_slip_of_units():
     """Springs that give way by 4 um beside a play of 1 um, or none, are a tight fit."""
     scene = load("reference")
-    assert scene.replace({"contact.clearance": "1 um"}).warnings == scene.replace({"contact.clearance": 0.0}).warnings == []
+    assert (
+        scene.replace({"contact.clearance": "1 um"}).warnings
+        == scene.replace({"contact.clearance": 0.0}).warnings
+        == []
+    )
 
 
-@pytest.mark.parametrize("mass, warned", [("50 kg", True), ("12 kg", False), ("9 kg", False), ("2 kg", True)])
+@pytest.mark.parametrize(
+    "mass, warned", [("50 kg", True), ("12 kg", False), ("9 kg", False), ("2 kg", True)]
+)
 def test_an_inherited_inertia_that_does_not_fit_the_mass(mass, warned):
     """A box of even density, 0.35 x 0.20 x 0.20 m, of 9.9 kg has 0.066 kg m2 about X."""
     texts = load("reference").replace({"payload.mass": mass}).warnings
-    assert bool(texts) == warned and all("payload.inertia.xx" in text and "payload.size" in text for text in texts)
+    assert bool(texts) == warned and all(
+        "payload.inertia.xx" in text and "payload.size" in text for text in texts
+    )
 
 
 @pytest.mark.parametrize("factor, warned", [(0.99, False), (1.01, True)])
 def test_no_body_in_a_box_has_more_inertia_than_mass_at_its_corners(factor, warned):
-    """Eight points at the corners: m (b^2 + c^2) / 4, the bound itself, for a body of any mass and box."""
+    """Eight points at the corners: m (b^2 + c^2) / 4, the bound itself, for a body of any mass and
+    box."""
     mass, sides = 5.0, (0.3, 0.2, 0.4)
-    largest = [mass * sum(side**2 for other, side in enumerate(sides) if other != axis) / 4.0 for axis in range(3)]
-    inertia = {name: f"{factor * value!r} kg*m**2" for name, value in zip(("xx", "yy", "zz"), largest)}
-    scene = parse(small(payload={"mass": "5 kg", "size": [f"{side} m" for side in sides], "inertia": inertia}))
+    largest = [
+        mass * sum(side**2 for other, side in enumerate(sides) if other != axis) / 4.0
+        for axis in range(3)
+    ]
+    inertia = {
+        name: f"{factor * value!r} kg*m**2" for name, value in zip(("xx", "yy", "zz"), largest)
+    }
+    scene = parse(
+        small(payload={"mass": "5 kg", "size": [f"{side} m" for side in sides], "inertia": inertia})
+    )
     assert bool(scene.warnings) == warned
 
 
 def test_without_a_size_pads_say_how_wide_the_payload_is():
     scene = load("reference").replace({"payload.size": None})
     assert scene.warnings == []
-    (text,) = scene.replace({"payload.inertia.xx": 0.25}).warnings  # 9.9 kg at most 0.1 m off the axis in y and z: 0.198
+    # 9.9 kg at most 0.1 m off the axis in y and z: 0.198
+    (text,) = scene.replace({"payload.inertia.xx": 0.25}).warnings
     assert "payload.inertia.xx" in text and "pads" in text
-    assert scene.replace({"payload.inertia.yy": 0.9, "payload.inertia.zz": 0.9}).warnings == []  # it may be long
+    # it may be long
+    assert scene.replace({"payload.inertia.yy": 0.9, "payload.inertia.zz": 0.9}).warnings == []
 
 
 @pytest.mark.parametrize("end, warned", [("159 mm", False), ("161 mm", True), ("0.5 m", True)])
 def test_inherited_mounts_that_leave_the_end_of_a_longer_rail_free(end, warned):
-    """The widest gap is 72 mm: 36 mm beyond the last mount, which ends at 124 mm, are eight times as soft as its middle."""
+    """The widest gap is 72 mm: 36 mm beyond the last mount, which ends at 124 mm, are eight times
+    as soft as its middle."""
     texts = load("reference").replace({"rail.end": end}).warnings
-    assert bool(texts) == warned and all("rail.mounts" in text and "open end" in text for text in texts)
+    assert bool(texts) == warned and all(
+        "rail.mounts" in text and "open end" in text for text in texts
+    )
 
 
 def test_a_free_rear_end_and_a_single_mount():
-    texts = load("reference").replace({"rail.mounts": [{"start": "100 mm", "end": "120 mm"}]}).warnings
-    assert [end for text in texts for end in ("rear end", "open end") if end in text] == ["rear end", "open end"]
+    texts = (
+        load("reference").replace({"rail.mounts": [{"start": "100 mm", "end": "120 mm"}]}).warnings
+    )
+    assert [end for text in texts for end in ("rear end", "open end") if end in text] == [
+        "rear end",
+        "open end",
+    ]
     joined = [{"start": 0.0, "end": "110 mm"}, {"start": "110 mm", "end": "220 mm"}]
     assert load("reference").replace({"rail.mounts": joined}).warnings == []
 
 
 def test_inherited_mounts_off_a_shorter_rail_are_refused():
-    with pytest.raises(SceneError, match="rail.mounts: .*spans that lie on the rail, which is 0.188 m long"):
+    with pytest.raises(
+        SceneError, match="rail.mounts: .*spans that lie on the rail, which is 0.188 m long"
+    ):
         load("reference").replace({"rail.end": "100 mm"})
 
 
@@ -129,9 +181,14 @@ def test_no_condition_of_the_catalogue_is_implausible(name):
 
 def test_what_is_implausible_in_a_condition_alone_is_said_once():
     """Load comes with the conditions here: without them nothing presses a pad."""
-    slip = small(contact=CONTACT | {"stiffness": "70000 N/m**1.5"}, payload__inertia={"xx": 0.1, "yy": 0.1, "zz": 0.1},
-                 conditions={"a": {"thrust_offset.misalignment.axial": "0.002 rad"},
-                             "b": {"thrust_offset.misalignment.axial": "0.010 rad"}})
+    slip = small(
+        contact=CONTACT | {"stiffness": "70000 N/m**1.5"},
+        payload__inertia={"xx": 0.1, "yy": 0.1, "zz": 0.1},
+        conditions={
+            "a": {"thrust_offset.misalignment.axial": "0.002 rad"},
+            "b": {"thrust_offset.misalignment.axial": "0.010 rad"},
+        },
+    )
     scene = parse(slip, bare_numbers_are_si=True)
     assert scene.warnings == []
     (text,) = plausibility.of_all_conditions(scene)

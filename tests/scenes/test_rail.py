@@ -1,4 +1,5 @@
-"""A rail given as a file: how it is chosen, that it counts by what it holds, and that every wrong key is named."""
+"""A rail given as a file: how it is chosen, that it counts by what it holds, and that every wrong
+key is named."""
 
 import pytest
 
@@ -19,7 +20,9 @@ def file(tmp_path):
 
 def meshed(file, **keys) -> dict:
     """The small scene with a rail given as a file."""
-    return small(rail={"start": "-0.1 m", "end": "0.1 m", "material": MATERIAL, "mesh": str(file)} | keys)
+    return small(
+        rail={"start": "-0.1 m", "end": "0.1 m", "material": MATERIAL, "mesh": str(file)} | keys
+    )
 
 
 def scene_file(folder, text, name="scene.toml"):
@@ -65,7 +68,8 @@ def test_results_write_it_and_read_it_back(file):
 
 
 def test_the_file_lies_beside_the_scene_that_names_it(file, tmp_path, monkeypatch):
-    """And it replaces an inherited section whole: mixed, the leg of the section would pass for that of the file."""
+    """And it replaces an inherited section whole: mixed, the leg of the section would pass for that
+    of the file."""
     scene_file(tmp_path, f'extends = "reference"\n{RAIL}', "base.toml")
     monkeypatch.chdir("/")
     found = load(scene_file(tmp_path, 'extends = "base.toml"\n[rail]\nend = "0.2 m"\n'))
@@ -74,23 +78,36 @@ def test_the_file_lies_beside_the_scene_that_names_it(file, tmp_path, monkeypatc
 
 def test_back_to_the_section(file, tmp_path):
     scene_file(tmp_path, f'extends = "reference"\n{RAIL}', "base.toml")
-    found = load(scene_file(tmp_path, 'extends = "base.toml"\n[rail]\nmesh = "absent"\nleg = "30 mm"\n'))
+    found = load(
+        scene_file(tmp_path, 'extends = "base.toml"\n[rail]\nmesh = "absent"\nleg = "30 mm"\n')
+    )
     assert isinstance(found.rail, SectionTable) and found.rail.leg == 0.03
 
 
 def test_every_key_that_does_not_go_with_a_file_is_named(file):
-    given = meshed(file, geometry="rail.step", mounts=[], mount_width="4 mm", wall="1 mm", end="-0.2 m")
+    given = meshed(
+        file, geometry="rail.step", mounts=[], mount_width="4 mm", wall="1 mm", end="-0.2 m"
+    )
     with pytest.raises(SceneError) as caught:
         parse(given)
     faults = {fault.key: fault.expected for fault in caught.value.faults}
-    assert set(faults) == {"rail.geometry", "rail.mounts", "rail.mount_width", "rail.wall", "rail.end"}
+    assert set(faults) == {
+        "rail.geometry",
+        "rail.mounts",
+        "rail.mount_width",
+        "rail.wall",
+        "rail.end",
+    }
     assert faults["rail.geometry"] == "no such key beside mesh"
     assert faults["rail.end"] == "an end beyond start"
 
 
 @pytest.mark.parametrize("name", ["none.msh", "."])
 def test_a_file_that_cannot_be_read(tmp_path, name):
-    with pytest.raises(SceneError, match=r"rail\.mesh: given .*, expected a readable file \((No such file|Is a directory)"):
+    with pytest.raises(
+        SceneError,
+        match=r"rail\.mesh: given .*, expected a readable file \((No such file|Is a directory)",
+    ):
         parse(meshed(tmp_path / name))
 
 
@@ -107,7 +124,10 @@ def test_walls_of_a_file_stay_and_pads_meet_them_at_the_clearance(file, clearanc
     """Drawn for 0.2 mm; in the built-in rail the pads stay and the walls move."""
     contact = {"contact": CONTACT | {"clearance": clearance}}
     own, built = (parse(raw | contact) for raw in (meshed(file, clearance="0.2 mm"), small()))
-    for scene, wall, pad in ((own, 0.1002, 0.1002 - own.contact.clearance), (built, 0.1 + own.contact.clearance, 0.1)):
+    for scene, wall, pad in (
+        (own, 0.1002, 0.1002 - own.contact.clearance),
+        (built, 0.1 + own.contact.clearance, 0.1),
+    ):
         faces = model.build(scene).faces
         assert faces.wall == pytest.approx(wall, rel=1e-12)
         assert faces.centre[[0, 1], faces.axis] == pytest.approx(pad, rel=1e-12)

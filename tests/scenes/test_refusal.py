@@ -13,15 +13,27 @@ PLATFORM = {"mass": "80 kg", "inertia": {"xx": "5 kg*m**2", "yy": "5 kg*m**2", "
 # key of the fault: (where it is put, what is given, a word of what is expected)
 BAD = {
     "payload.mass": ("payload__mass", "9.9 m", "quantity in kg"),
-    "payload.inertia": ("payload__inertia", {"xx": "1 kg*m**2", "yy": "1 kg*m**2", "zz": "3 kg*m**2"}, "triangle inequality"),
+    "payload.inertia": (
+        "payload__inertia",
+        {"xx": "1 kg*m**2", "yy": "1 kg*m**2", "zz": "3 kg*m**2"},
+        "triangle inequality",
+    ),
     "payload.size.1": ("payload__size", ["1 m", "0 m", "1 m"], "greater than 0"),
     "payload.colour": ("payload__colour", "red", "no such key"),
     "pads.0.position.2": ("pads", [{"position": ["0 m", "0 m"], "normals": ["+y"]}], "this key"),
     "rail.material.density": ("rail__material__density", "-1 kg/m**3", "greater than 0"),
     "rail.material.youngs_modulus": ("rail__material__youngs_modulus", "inf Pa", "quantity in Pa"),
     "rail.material.poisson_ratio": ("rail__material__poisson_ratio", 0.5, "less than 0.5"),
-    "rail.mounts": ("rail__mounts", [{"start": "10 mm", "end": "30 mm"}, {"start": "20 mm", "end": "40 mm"}], "do not overlap"),
-    "rail.damping.frequencies": ("rail__damping__frequencies", ["5 kHz", "5 kHz"], "the lower one first"),
+    "rail.mounts": (
+        "rail__mounts",
+        [{"start": "10 mm", "end": "30 mm"}, {"start": "20 mm", "end": "40 mm"}],
+        "do not overlap",
+    ),
+    "rail.damping.frequencies": (
+        "rail__damping__frequencies",
+        ["5 kHz", "5 kHz"],
+        "the lower one first",
+    ),
     "rail.damping.ratios.1": ("rail__damping__ratios", [0.01, 1.0], "less than 1"),
     "thrust.peak": ("thrust__peak", float("nan"), "quantity in N"),
     "thrust.width": ("thrust__width", "0 ms", "greater than 0"),
@@ -32,19 +44,38 @@ BAD = {
     "platform.mass": ("platform__mass", "0 kg", "greater than 0"),
     "gravity": ("gravity", {}, "at least one key"),
     "initial": ("initial", 3, "a table"),
-    "mass_offset.eccentricity.axial": ("mass_offset__eccentricity__axial", "-1 mm", "greater than or equal to 0"),
+    "mass_offset.eccentricity.axial": (
+        "mass_offset__eccentricity__axial",
+        "-1 mm",
+        "greater than or equal to 0",
+    ),
     "output.interval": ("output__interval", 5e-5, "text with a unit"),
-    "thrust_offset.misalignment.axial": ("thrust_offset__misalignment__axial", "0.1", "quantity in rad"),
+    "thrust_offset.misalignment.axial": (
+        "thrust_offset__misalignment__axial",
+        "0.1",
+        "quantity in rad",
+    ),
     "duration": ("duration", True, "quantity in s"),
 }
 # Duration and sampling interval together: what is given, and what the fault says.
 BAD_SAMPLING = [
     ({"output__interval": "31 ms"}, "output.interval", "0.031 s", "3e-08 s to 0.03 s"),
-    ({"output__interval": "29 ns"}, "output.interval", "2.9e-08 s", "at most 1,000,000 samples in the duration of 0.03 s"),
-    ({"output__interval": "5e-324 s"}, "output.interval", "4.94066e-324 s", "at most 1,000,000 samples"),
+    (
+        {"output__interval": "29 ns"},
+        "output.interval",
+        "2.9e-08 s",
+        "at most 1,000,000 samples in the duration of 0.03 s",
+    ),
+    (
+        {"output__interval": "5e-324 s"},
+        "output.interval",
+        "4.94066e-324 s",
+        "at most 1,000,000 samples",
+    ),
     ({"output__interval": "0 s"}, "output.interval", "'0 s'", "greater than 0"),
     ({"output__interval": "-1 ms"}, "output.interval", "'-1 ms'", "greater than 0"),
-    ({"duration": "40 us"}, "output.interval", "5e-05 s", "1"),  # the interval of a scene that names none
+    # the interval of a scene that names none
+    ({"duration": "40 us"}, "output.interval", "5e-05 s", "1"),
     ({"duration": "3601 s", "output__interval": "1 s"}, "duration", "'3601 s'", "3600"),
 ]
 
@@ -56,8 +87,15 @@ def refused(raw) -> list:
 
 
 def whole(**tables) -> dict:
-    return small(**{"contact": dict(CONTACT), "friction": dict(FRICTION), "platform": dict(PLATFORM),
-                    "rail__damping": {"frequencies": ["500 Hz", "5 kHz"], "ratios": [0.01, 0.01]}} | tables)
+    return small(
+        **{
+            "contact": dict(CONTACT),
+            "friction": dict(FRICTION),
+            "platform": dict(PLATFORM),
+            "rail__damping": {"frequencies": ["500 Hz", "5 kHz"], "ratios": [0.01, 0.01]},
+        }
+        | tables
+    )
 
 
 def test_the_sound_scene_passes():
@@ -89,18 +127,27 @@ def test_each_bad_field_alone(key):
 
 @pytest.mark.parametrize("tables, key, given, expected", BAD_SAMPLING)
 def test_bad_sampling(tables, key, given, expected):
-    """In a file, by an override and in a row of an ensemble, beside another fault of the same file."""
+    """In a file, by an override and in a row of an ensemble, beside another fault of the same
+    file."""
     (fault,) = refused(whole(**tables))
     assert (fault.key, fault.given) == (key, given) and expected in fault.expected
-    assert {fault.key for fault in refused(whole(payload__mass="0 kg", **tables))} == {key, "payload.mass"}
-    row, scene = {place.replace("__", "."): value for place, value in tables.items()}, parse(whole())
+    assert {fault.key for fault in refused(whole(payload__mass="0 kg", **tables))} == {
+        key,
+        "payload.mass",
+    }
+    row, scene = (
+        {place.replace("__", "."): value for place, value in tables.items()},
+        parse(whole()),
+    )
     for change in (scene.replace, Variations(scene).of):
         with pytest.raises(SceneError) as caught:
             change(row)
         assert [fault.key for fault in caught.value.faults] == [key]
 
 
-@pytest.mark.parametrize("interval, samples", [("30 ms", 1), ("29 ms", 1), ("0.1 ms", 300), ("30 ns", 1_000_000)])
+@pytest.mark.parametrize(
+    "interval, samples", [("30 ms", 1), ("29 ms", 1), ("0.1 ms", 300), ("30 ns", 1_000_000)]
+)
 def test_sound_sampling(interval, samples):
     """Both ends of what is allowed, and an interval that does not divide the duration."""
     scene = parse(whole(output__interval=interval))
@@ -110,20 +157,37 @@ def test_sound_sampling(interval, samples):
 def test_a_row_is_refused_after_rows_of_the_same_keys():
     """Later rows are checked number by number; the row after a bad one is sound again."""
     variations = Variations(parse(whole()))
-    assert [variations.of({"output.interval": value}).output.interval for value in (1e-4, 2e-4)] == [1e-4, 2e-4]
+    assert [
+        variations.of({"output.interval": value}).output.interval for value in (1e-4, 2e-4)
+    ] == [1e-4, 2e-4]
     for bad in (1.0, 1e-9):
         with pytest.raises(SceneError, match="output.interval"):
             variations.of({"output.interval": bad})
     assert variations.of({"output.interval": 3e-4}).output.interval == 3e-4
 
 
-POSITIVE = ["payload__mass kg", "payload__inertia__xx kg*m**2", "rail__material__density kg/m**3",
-            "rail__material__youngs_modulus Pa",
-            "contact__stiffness N/m**1.5", "contact__penalty N/m**3", "thrust__width s", "friction__static_speed m/s", "duration s"]
-NOT_NEGATIVE = ["contact__clearance m", "contact__damping N*s/m", "friction__static dimensionless", "pads__0__relief m"]
+POSITIVE = [
+    "payload__mass kg",
+    "payload__inertia__xx kg*m**2",
+    "rail__material__density kg/m**3",
+    "rail__material__youngs_modulus Pa",
+    "contact__stiffness N/m**1.5",
+    "contact__penalty N/m**3",
+    "thrust__width s",
+    "friction__static_speed m/s",
+    "duration s",
+]
+NOT_NEGATIVE = [
+    "contact__clearance m",
+    "contact__damping N*s/m",
+    "friction__static dimensionless",
+    "pads__0__relief m",
+]
 
 
-NO_SIZE = [(place, number) for place in POSITIVE + NOT_NEGATIVE for number in ("nan", "inf", "-inf", "-1")]
+NO_SIZE = [
+    (place, number) for place in POSITIVE + NOT_NEGATIVE for number in ("nan", "inf", "-inf", "-1")
+]
 
 
 @pytest.mark.parametrize("place, number", NO_SIZE + [(place, "0") for place in POSITIVE])
@@ -143,10 +207,17 @@ def test_a_naive_reader_lets_nan_and_a_wrong_unit_through():
     assert float(["9.9", "m"][0]) == 9.9
 
 
-@pytest.mark.parametrize("ratio, sound", [(0.5, False), (0.7, False), (-1.0, False), (0.499, True), (-0.999, True), (0.0, True)])
+@pytest.mark.parametrize(
+    "ratio, sound",
+    [(0.5, False), (0.7, False), (-1.0, False), (0.499, True), (-0.999, True), (0.0, True)],
+)
 def test_poisson_ratio_on_both_sides_of_its_bounds(ratio, sound):
     raw = small(rail__material__poisson_ratio=ratio)
-    assert parse(raw).rail.material.poisson_ratio == ratio if sound else refused(raw)[0].key == "rail.material.poisson_ratio"
+    assert (
+        parse(raw).rail.material.poisson_ratio == ratio
+        if sound
+        else refused(raw)[0].key == "rail.material.poisson_ratio"
+    )
 
 
 @pytest.mark.parametrize("zz, sound", [(2.0, True), (2.0 + 1e-9, False)])
@@ -157,12 +228,28 @@ def test_triangle_inequality_on_both_sides(zz, sound):
 
 def test_products_of_inertia_count():
     """The diagonal alone satisfies the inequality; the principal moments 0.1, 1, 1.9 do not."""
-    raw = small(payload__inertia={"xx": "1 kg*m**2", "yy": "1 kg*m**2", "zz": "1 kg*m**2", "xy": "0.9 kg*m**2"})
+    raw = small(
+        payload__inertia={
+            "xx": "1 kg*m**2",
+            "yy": "1 kg*m**2",
+            "zz": "1 kg*m**2",
+            "xy": "0.9 kg*m**2",
+        }
+    )
     assert "triangle" in refused(raw)[0].expected
 
 
-@pytest.mark.parametrize("table, missing", [("payload", {"mass", "inertia"}), ("friction", set(FRICTION)), ("contact", {"law"}),
-                                            ("thrust", {"kind"}), ("rail", {"start", "end", "material"}), ("pads", None)])
+@pytest.mark.parametrize(
+    "table, missing",
+    [
+        ("payload", {"mass", "inertia"}),
+        ("friction", set(FRICTION)),
+        ("contact", {"law"}),
+        ("thrust", {"kind"}),
+        ("rail", {"start", "end", "material"}),
+        ("pads", None),
+    ],
+)
 def test_empty_tables(table, missing):
     faults = refused(small(**{table: [] if table == "pads" else {}}))
     expected = {"pads"} if missing is None else {f"{table}.{key}" for key in missing}
@@ -182,25 +269,39 @@ def test_missing_tables(table):
     assert (fault.key, fault.given) == (table, "nothing")
 
 
-@pytest.mark.parametrize("change, key", [
-    ({"thrust__kind": "gauss"}, "thrust.kind"), ({"thrust__impulse": "1 N*s"}, "thrust"),
-    ({"thrust__rescale": True}, "thrust.rescale"), ({"rail__end": "-0.2 m"}, "rail.end"),
-    ({"rail__thickness": "24 mm"}, "rail.thickness"), ({"rail__mount_width": "25 mm"}, "rail.mount_width"),
-    ({"rail__mounts": [{"start": "0 m", "end": "0.3 m"}]}, "rail.mounts"),
-    ({"rail__mounts": [{"start": "2 m", "end": "1 m"}]}, "rail.mounts.0.end"), ({"rail__mounts": "all"}, "rail.mounts"),
-    ({"pads": [{"position": ["0 m"] * 4, "normals": ["+y"]}]}, "pads.0.position"),
-    ({"pads": [{"position": ["0 m"] * 3, "normals": ["+y", "+y"]}]}, "pads.0.normals"),
-    ({"pads": [{"position": ["0 m"] * 3, "normals": ["+x"]}]}, "pads.0.normals.0"),
-    ({"contact": CONTACT | {"law": "hertz"}}, "contact.law"), ({"contact": CONTACT | {"exponent": 2.0}}, "contact.stiffness"),
-    ({"contact": CONTACT | {"exponent": "x"}}, "contact.exponent"), ({"friction": FRICTION | {"law": "sticky"}}, "friction.law"),
-    ({"friction": STICKING | {"dynamic": 0.5}}, "friction.dynamic"),
-    ({"friction": STICKING | {"static_speed": "1 mm/s"}}, "friction.static_speed"),
-    ({"friction": STICKING | {"stiffness": "1 N/mm**2"}}, "friction.stiffness"),
-    ({"friction": STICKING | {"capture_speed": "0.1 nm/s"}}, "friction.capture_speed"),
-    ({"gravity": {"w": "1 m/s**2"}}, "gravity.w"), ({"frictoin": FRICTION}, "frictoin"),
-    ({"provenance": {"payload.mas": "paper"}}, "provenance.payload.mas"), ({"agreement": {"fitted": ["a"]}}, "agreement.fitted"),
-    ({"conditions": {"a": {}}, "agreement": {"fitted": ["a"], "held_out": ["a"]}}, "agreement.held_out"),
-])
+@pytest.mark.parametrize(
+    "change, key",
+    [
+        ({"thrust__kind": "gauss"}, "thrust.kind"),
+        ({"thrust__impulse": "1 N*s"}, "thrust"),
+        ({"thrust__rescale": True}, "thrust.rescale"),
+        ({"rail__end": "-0.2 m"}, "rail.end"),
+        ({"rail__thickness": "24 mm"}, "rail.thickness"),
+        ({"rail__mount_width": "25 mm"}, "rail.mount_width"),
+        ({"rail__mounts": [{"start": "0 m", "end": "0.3 m"}]}, "rail.mounts"),
+        ({"rail__mounts": [{"start": "2 m", "end": "1 m"}]}, "rail.mounts.0.end"),
+        ({"rail__mounts": "all"}, "rail.mounts"),
+        ({"pads": [{"position": ["0 m"] * 4, "normals": ["+y"]}]}, "pads.0.position"),
+        ({"pads": [{"position": ["0 m"] * 3, "normals": ["+y", "+y"]}]}, "pads.0.normals"),
+        ({"pads": [{"position": ["0 m"] * 3, "normals": ["+x"]}]}, "pads.0.normals.0"),
+        ({"contact": CONTACT | {"law": "hertz"}}, "contact.law"),
+        ({"contact": CONTACT | {"exponent": 2.0}}, "contact.stiffness"),
+        ({"contact": CONTACT | {"exponent": "x"}}, "contact.exponent"),
+        ({"friction": FRICTION | {"law": "sticky"}}, "friction.law"),
+        ({"friction": STICKING | {"dynamic": 0.5}}, "friction.dynamic"),
+        ({"friction": STICKING | {"static_speed": "1 mm/s"}}, "friction.static_speed"),
+        ({"friction": STICKING | {"stiffness": "1 N/mm**2"}}, "friction.stiffness"),
+        ({"friction": STICKING | {"capture_speed": "0.1 nm/s"}}, "friction.capture_speed"),
+        ({"gravity": {"w": "1 m/s**2"}}, "gravity.w"),
+        ({"frictoin": FRICTION}, "frictoin"),
+        ({"provenance": {"payload.mas": "paper"}}, "provenance.payload.mas"),
+        ({"agreement": {"fitted": ["a"]}}, "agreement.fitted"),
+        (
+            {"conditions": {"a": {}}, "agreement": {"fitted": ["a"], "held_out": ["a"]}},
+            "agreement.held_out",
+        ),
+    ],
+)
 def test_other_faults_name_their_key(change, key):
     (fault,) = refused(small(**change))
     assert fault.key == key
@@ -210,16 +311,31 @@ def test_not_a_mapping():
     assert [fault.expected for fault in refused([1, 2])] == ["a table"]
 
 
-CONDITION_FAULTS = {"output.interval": 1e-4, "payload.mass": "1 m", "friction.static": 0.1, "thrust.pek": "1 N",
-                    "pads.7.relief": "1 um", "gravty": "absent"}
+CONDITION_FAULTS = {
+    "output.interval": 1e-4,
+    "payload.mass": "1 m",
+    "friction.static": 0.1,
+    "thrust.pek": "1 N",
+    "pads.7.relief": "1 um",
+    "gravty": "absent",
+}
 
 
 def test_conditions_are_checked_when_the_scene_is_read():
-    """A bare number is refused in a file's conditions as anywhere else in it, and so is a key that does not exist."""
-    raw = small(payload__inertia__xx="1 kg", conditions={"a": CONDITION_FAULTS, "b": {"payload.mass": "11 kg"}})
+    """A bare number is refused in a file's conditions as anywhere else in it, and so is a key that
+    does not exist."""
+    raw = small(
+        payload__inertia__xx="1 kg",
+        conditions={"a": CONDITION_FAULTS, "b": {"payload.mass": "11 kg"}},
+    )
     keys = {fault.key for fault in refused(raw)}
-    assert keys == {"payload.inertia.xx", *(f"conditions.a.{key}" for key in CONDITION_FAULTS if key != "friction.static"),
-                    "conditions.a.friction.dynamic", "conditions.a.friction.static_speed", "conditions.a.friction.dynamic_speed"}
+    assert keys == {
+        "payload.inertia.xx",
+        *(f"conditions.a.{key}" for key in CONDITION_FAULTS if key != "friction.static"),
+        "conditions.a.friction.dynamic",
+        "conditions.a.friction.static_speed",
+        "conditions.a.friction.dynamic_speed",
+    }
 
 
 def test_conditions_given_by_a_program_may_be_numbers():
@@ -241,14 +357,21 @@ def test_faults_of_files_name_the_file_that_was_asked_for(tmp_path):
     with pytest.raises(SceneError) as caught:
         load(child)
     assert {(fault.source, fault.key) for fault in caught.value.faults} == {
-        (str(child), "payload.mass"), (str(child), "contact.clearance")}
+        (str(child), "payload.mass"),
+        (str(child), "contact.clearance"),
+    }
 
 
-@pytest.mark.parametrize("text, key, given", [
-    ('extends = "nowhere"\n', "extends", "nowhere"), ("extends = 3\n", "extends", "3"),
-    ('extends = "self.toml"\n', "extends", "self.toml"),
-    ("payload = [\n", "file", "Invalid value"), ('extends = "broken.toml"\n', "extends", "broken.toml"),
-])
+@pytest.mark.parametrize(
+    "text, key, given",
+    [
+        ('extends = "nowhere"\n', "extends", "nowhere"),
+        ("extends = 3\n", "extends", "3"),
+        ('extends = "self.toml"\n', "extends", "self.toml"),
+        ("payload = [\n", "file", "Invalid value"),
+        ('extends = "broken.toml"\n', "extends", "broken.toml"),
+    ],
+)
 def test_files_that_cannot_be_read(tmp_path, text, key, given):
     write(tmp_path, "broken.toml", "= 1")
     path = write(tmp_path, "self.toml", text)
@@ -271,12 +394,19 @@ def test_unknown_names_and_paths(tmp_path):
 
 CURVES = {
     "unsorted": ("time_s,force_N\n0,0\n2,5\n1,0\n", "increasing order"),
-    "repeated": ("time_s,force_N\n0,0\n0,5\n", "increasing order"), "one row": ("time_s,force_N\n0,0\n", "at least two rows"),
-    "no rows": ("time_s,force_N\n", "at least two rows"), "negative times": ("time_s,force_N\n-1,0\n1,5\n", "not negative"),
-    "nan": ("time_s,force_N\n0,nan\n1,5\n", "finite"), "nan time": ("time_s,force_N\n0,1\nnan,5\n2,1\n", "finite"),
-    "text": ("time_s,force_N\n0,a\n1,5\n", "two numbers"), "one column": ("time_s,force_N\n0\n1\n", "two numbers"),
-    "three columns": ("time_s,force_N\n0,1,2\n1,5,2\n", "two numbers"), "no header": ("0,1\n1,5\n", "header"),
-    "empty": ("", "header"), "wrong units": ("time_ms,force_N\n0,1\n1,5\n", "header"), }
+    "repeated": ("time_s,force_N\n0,0\n0,5\n", "increasing order"),
+    "one row": ("time_s,force_N\n0,0\n", "at least two rows"),
+    "no rows": ("time_s,force_N\n", "at least two rows"),
+    "negative times": ("time_s,force_N\n-1,0\n1,5\n", "not negative"),
+    "nan": ("time_s,force_N\n0,nan\n1,5\n", "finite"),
+    "nan time": ("time_s,force_N\n0,1\nnan,5\n2,1\n", "finite"),
+    "text": ("time_s,force_N\n0,a\n1,5\n", "two numbers"),
+    "one column": ("time_s,force_N\n0\n1\n", "two numbers"),
+    "three columns": ("time_s,force_N\n0,1,2\n1,5,2\n", "two numbers"),
+    "no header": ("0,1\n1,5\n", "header"),
+    "empty": ("", "header"),
+    "wrong units": ("time_ms,force_N\n0,1\n1,5\n", "header"),
+}
 
 
 @pytest.mark.parametrize("name", CURVES)

@@ -44,7 +44,8 @@ def test_step_is_a_turn_about_inertial_axes(start, rate, dt):
 
 
 def test_many_steps_are_one_turn_and_stay_of_unit_norm():
-    """Exact at any step: 10,000 steps or one give the same attitude, to the rounding of 10,000 products."""
+    """Exact at any step: 10,000 steps or one give the same attitude, to the rounding of 10,000
+    products."""
     rate, q = (1.0, -2.0, 0.5), (1.0, 0.0, 0.0, 0.0)
     for _ in range(10_000):
         q = rotation.step(q, rate, 1e-3)
@@ -58,20 +59,30 @@ def test_a_first_order_step_would_not():
     """Control: q + dt/2 w q, even normalised, turns by atan(dt w / 2) instead of dt w / 2."""
     q, dt = np.array([1.0, 0.0, 0.0, 0.0]), 1e-2
     for _ in range(1000):
-        q = np.array(rotation.normalised(tuple(q + 0.5 * dt * np.array(rotation.product((0.0, 0.0, 0.0, 2.0), tuple(q))))))
+        q = np.array(
+            rotation.normalised(
+                tuple(q + 0.5 * dt * np.array(rotation.product((0.0, 0.0, 0.0, 2.0), tuple(q))))
+            )
+        )
     assert not np.allclose(np.abs(q), np.abs(rotation.exponential((0.0, 0.0, 20.0))), atol=1e-4)
 
 
 @pytest.mark.parametrize("angle", [0.0, 1e-300, 1e-12, 0.99e-4, 1.01e-4, 1e-3])
 def test_small_angles(angle):
     """On both sides of the switch to the series."""
-    assert rotation.exponential((angle, 0.0, 0.0))[1] == pytest.approx(np.sin(0.5 * angle), rel=1e-15, abs=0.0)
+    assert rotation.exponential((angle, 0.0, 0.0))[1] == pytest.approx(
+        np.sin(0.5 * angle), rel=1e-15, abs=0.0
+    )
 
 
 def test_angular_velocity():
     rng = np.random.default_rng(5)
     root = rng.normal(size=(3, 3))
-    inertia, q, rate = root @ root.T + np.eye(3), rotation.exponential((0.3, -1.0, 2.0)), np.array([1.0, 2.0, 3.0])
+    inertia, q, rate = (
+        root @ root.T + np.eye(3),
+        rotation.exponential((0.3, -1.0, 2.0)),
+        np.array([1.0, 2.0, 3.0]),
+    )
     body = scipy(q).as_matrix()
     momentum = body @ inertia @ body.T @ rate
     found = rotation.angular_velocity(rotation.matrix(q), np.linalg.inv(inertia), tuple(momentum))
@@ -80,10 +91,14 @@ def test_angular_velocity():
 
 def test_arrays_of_matrices():
     turns = Rotation.random(50, rng=np.random.default_rng(6))
-    assert np.allclose(rotation.matrices(turns.as_quat(scalar_first=True)), turns.as_matrix(), atol=1e-15)
+    assert np.allclose(
+        rotation.matrices(turns.as_quat(scalar_first=True)), turns.as_matrix(), atol=1e-15
+    )
 
 
-@pytest.mark.parametrize("turn", [(0.0, 0.0, 0.0), (1e-14, -2e-14, 0.0), (0.3, -0.4, 1.2), (0.0, 0.0, -3.1)])
+@pytest.mark.parametrize(
+    "turn", [(0.0, 0.0, 0.0), (1e-14, -2e-14, 0.0), (0.3, -0.4, 1.2), (0.0, 0.0, -3.1)]
+)
 def test_rotation_vector_is_the_inverse_of_the_exponential(turn):
     q = np.array(rotation.exponential(turn))
     assert rotation.vector(q) == pytest.approx(turn, rel=1e-13, abs=1e-300)

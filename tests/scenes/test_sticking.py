@@ -1,4 +1,5 @@
-"""The table of the law that sticks, beside the two-step law that is meant where a table names none."""
+"""The table of the law that sticks, beside the two-step law that is meant where a table names
+none."""
 
 import pytest
 
@@ -16,7 +17,10 @@ def test_record():
 
 def test_a_table_without_a_law_is_two_step():
     """Named or not, it is one scene: same records, same hash, same file."""
-    silent, named = (parse(small(contact=CONTACT, friction=table)) for table in (FRICTION, FRICTION | {"law": "two-step"}))
+    silent, named = (
+        parse(small(contact=CONTACT, friction=table))
+        for table in (FRICTION, FRICTION | {"law": "two-step"})
+    )
     assert silent.hash == named.hash and silent.resolved() == named.resolved()
     assert isinstance(model.build(named).friction, Friction)
     assert "law" not in silent.resolved()["friction"]
@@ -30,6 +34,13 @@ def test_resolved_scene_reads_back():
 
 
 def test_one_law_becomes_the_other_by_its_keys():
-    scene = load("reference").replace({"friction.law": "sticking", "friction.stiffness": 1e7, "friction.damping": 0.0,
-                                       "friction.static_speed": "absent", "friction.dynamic_speed": "absent"})
+    scene = load("reference").replace(
+        {
+            "friction.law": "sticking",
+            "friction.stiffness": 1e7,
+            "friction.damping": 0.0,
+            "friction.static_speed": "absent",
+            "friction.dynamic_speed": "absent",
+        }
+    )
     assert scene.friction.static == 0.2 and scene.friction.capture_speed == 1e-6

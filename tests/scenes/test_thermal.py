@@ -1,5 +1,5 @@
-"""Temperature of the rails as a scene states it: units of differences, what it needs beside it, its fields, and that it costs
-nobody else their hash."""
+"""Temperature of the rails as a scene states it: units of differences, what it needs beside it, its
+fields, and that it costs nobody else their hash."""
 
 import numpy as np
 import pytest
@@ -37,15 +37,23 @@ def test_a_gradient(text):
     assert parse(warm(gradient={"y": text})).thermal.gradient.y == pytest.approx(2000.0, rel=1e-14)
 
 
-@pytest.mark.parametrize("table, key, words", [
-    ({"mean": "20 degC"}, "thermal.mean", "'degC' has its zero elsewhere: a difference is in K or delta_degC"),
-    ({"mean": "68 degF"}, "thermal.mean", "has its zero elsewhere"),
-    ({"mean": "20 m"}, "thermal.mean", "a quantity in K"),
-    ({"mean": 20.0}, "thermal.mean", "text with a unit"),
-    ({"mean": "nan K"}, "thermal.mean", "neither NaN nor infinite"),
-    ({"gradient": {"z": "20 K"}}, "thermal.gradient.z", "a quantity in K/m"),
-    ({"gradient": {"w": "20 K/m"}}, "thermal.gradient.w", "no such key"),
-    ({"platform_strain": "1 mm"}, "thermal.platform_strain", "a number")])
+@pytest.mark.parametrize(
+    "table, key, words",
+    [
+        (
+            {"mean": "20 degC"},
+            "thermal.mean",
+            "'degC' has its zero elsewhere: a difference is in K or delta_degC",
+        ),
+        ({"mean": "68 degF"}, "thermal.mean", "has its zero elsewhere"),
+        ({"mean": "20 m"}, "thermal.mean", "a quantity in K"),
+        ({"mean": 20.0}, "thermal.mean", "text with a unit"),
+        ({"mean": "nan K"}, "thermal.mean", "neither NaN nor infinite"),
+        ({"gradient": {"z": "20 K"}}, "thermal.gradient.z", "a quantity in K/m"),
+        ({"gradient": {"w": "20 K/m"}}, "thermal.gradient.w", "no such key"),
+        ({"platform_strain": "1 mm"}, "thermal.platform_strain", "a number"),
+    ],
+)
 def test_what_is_refused(table, key, words):
     found = refused(warm(**table))
     assert list(found) == [key] and words in found[key]
@@ -53,7 +61,12 @@ def test_what_is_refused(table, key, words):
 
 def test_every_fault_at_once():
     raw = warm(mean="20 degC", gradient={"x": "1 K"}, platform_strain="1 kg") | {"duration": "1 m"}
-    assert set(refused(raw)) == {"duration", "thermal.mean", "thermal.gradient.x", "thermal.platform_strain"}
+    assert set(refused(raw)) == {
+        "duration",
+        "thermal.mean",
+        "thermal.gradient.x",
+        "thermal.platform_strain",
+    }
 
 
 def test_rails_must_be_known_to_expand():
@@ -68,30 +81,48 @@ def test_rails_must_be_known_to_expand():
 
 
 def test_fields():
-    """Free strain at the ends of the rail and on its sides, amounts times fields: alpha (mean + gradient . (X - X_m))."""
-    scene = parse(warm(mean="20 K", gradient={"x": "0.1 K/mm", "y": "-0.2 K/mm"}, platform_strain=1e-4))
+    """Free strain at the ends of the rail and on its sides, amounts times fields: alpha (mean +
+    gradient . (X - X_m))."""
+    scene = parse(
+        warm(mean="20 K", gradient={"x": "0.1 K/mm", "y": "-0.2 K/mm"}, platform_strain=1e-4)
+    )
     amounts, middle = scene.thermal.record(scene.rail)
     assert middle == 0.0 and amounts[4] == 1e-4
-    strain = fields(np.array([[0.1, 0.0, 0.0], [0.0, 0.1, 0.5], [0.0, -0.1, 0.0]]), middle) @ amounts[:4]
+    strain = (
+        fields(np.array([[0.1, 0.0, 0.0], [0.0, 0.1, 0.5], [0.0, -0.1, 0.0]]), middle) @ amounts[:4]
+    )
     assert strain == pytest.approx(23.6e-6 * np.array([30.0, 0.0, 40.0]), abs=1e-18)
     assert fields(np.array([[0.3, 0.0, 0.0]]), 0.1)[0] == pytest.approx([1.0, 0.2, 0.0, 0.0])
 
 
 def test_absent_table_is_no_effect():
     cold = parse(small())
-    assert cold.thermal is None and "thermal" in cold.absent_effects() and model.build(cold).thermal is None
+    assert (
+        cold.thermal is None
+        and "thermal" in cold.absent_effects()
+        and model.build(cold).thermal is None
+    )
     assert "thermal" not in cold.resolved() and "thermal" not in parse(warm()).absent_effects()
 
 
 def test_hashes():
-    """Without [thermal] an expansion changes no result, and walls are found for one of each field; with it every number counts."""
+    """Without [thermal] an expansion changes no result, and walls are found for one of each field;
+    with it every number counts."""
     expanding = small()
     expanding["rail"]["material"]["expansion"] = EXPANSION
     cold, other, found = parse(small()), parse(expanding), parse(warm())
     assert cold.hash == other.hash != found.hash
     assert digest(cold) == digest(other) == digest(found)
-    changed = {"thermal.mean": 21.0, "thermal.gradient.x": 1.0, "thermal.platform_strain": 1e-5, "rail.material.expansion": 2e-5}
-    assert len({found.hash, *(found.replace({key: value}).hash for key, value in changed.items())}) == 5
+    changed = {
+        "thermal.mean": 21.0,
+        "thermal.gradient.x": 1.0,
+        "thermal.platform_strain": 1e-5,
+        "rail.material.expansion": 2e-5,
+    }
+    assert (
+        len({found.hash, *(found.replace({key: value}).hash for key, value in changed.items())})
+        == 5
+    )
 
 
 def test_what_was_written_is_read_back():
@@ -101,8 +132,13 @@ def test_what_was_written_is_read_back():
 
 def test_slips_of_units_are_warned_about():
     assert not any("expan" in words for words in parse(warm(mean="60 K")).warnings)
-    assert any("rail.material.expansion" in words for words in parse(warm(expansion="23.6e-3 1/K", mean="1 mK")).warnings)
-    assert any(words.startswith("thermal") for words in parse(warm(gradient={"x": "20 K/mm"})).warnings)
+    assert any(
+        "rail.material.expansion" in words
+        for words in parse(warm(expansion="23.6e-3 1/K", mean="1 mK")).warnings
+    )
+    assert any(
+        words.startswith("thermal") for words in parse(warm(gradient={"x": "20 K/mm"})).warnings
+    )
 
 
 def test_reference_rails_can_be_warmed():

@@ -30,18 +30,24 @@ def test_peak_from_impulse():
 
 
 @pytest.mark.case("O41")
-@pytest.mark.parametrize("rescale, speed, words", [(False, 4.986501, "not rescaled"), (True, 5.0, "rescaled")])
+@pytest.mark.parametrize(
+    "rescale, speed, words", [(False, 4.986501, "not rescaled"), (True, 5.0, "rescaled")]
+)
 def test_cut_at_three_sigma(rescale, speed, words):
-    """A point mass of 20 kg, stepped through the compiled law, has the speed the description promises."""
+    """A point mass of 20 kg, stepped through the compiled law, has the speed the description
+    promises."""
     cut = table(**O41, cutoff=3.0, rescale=rescale)
     said = cut.describe(DURATION)
     time = np.linspace(8e-3, 32e-3, 24001)
     stepped = np.trapezoid(thrust.sample(cut.record(), time), time) / 20.0
-    # The trapezium of a cut Gaussian errs by h^2/12 times the jump of its slope, 3e-11 of the speed here.
+    # The trapezium of a cut Gaussian errs by h^2/12 times the jump of its slope, 3e-11 of the speed
+    # here.
     assert stepped == pytest.approx(speed, rel=1e-6)
     assert said["impulse_delivered_Ns"] / 20.0 == pytest.approx(stepped, rel=1e-9)
     assert said["impulse_requested_Ns"] == pytest.approx(100.0, rel=1e-14)
-    assert said["impulse_delivered_Ns"] / 100.0 == pytest.approx(1.0 if rescale else 0.9973002, rel=1e-7)
+    assert said["impulse_delivered_Ns"] / 100.0 == pytest.approx(
+        1.0 if rescale else 0.9973002, rel=1e-7
+    )
     assert said["rescaled"] == ("yes" if rescale else "no")
     assert said["cutoff_widths"] == 3.0
     assert f"cut at 3 widths and {words}" in said["text"]
@@ -62,22 +68,34 @@ def test_nothing_cut_is_said():
 
 def test_the_part_before_ignition_is_not_delivered():
     said = table(**O41 | {"centre": "4 ms"}).describe(DURATION)
-    assert said["impulse_delivered_Ns"] == pytest.approx(50.0 * (1.0 + math.erf(1.0 / math.sqrt(2.0))), rel=1e-12)
+    assert said["impulse_delivered_Ns"] == pytest.approx(
+        50.0 * (1.0 + math.erf(1.0 / math.sqrt(2.0))), rel=1e-12
+    )
 
 
 @pytest.mark.parametrize("cutoff", [1.0, 2.0, 3.0])
 def test_rescaling_restores_the_impulse_of_unequal_pulses(cutoff):
     """One window serves all pulses, so each loses another share of itself."""
-    pulses = [{"impulse": 60.0, "width": 1e-3, "centre": 0.015}, {"impulse": 40.0, "width": 4e-3, "centre": 0.025}]
-    said = table(kind="gaussians", components=pulses, cutoff=cutoff, rescale=True).describe(DURATION)
+    pulses = [
+        {"impulse": 60.0, "width": 1e-3, "centre": 0.015},
+        {"impulse": 40.0, "width": 4e-3, "centre": 0.025},
+    ]
+    said = table(kind="gaussians", components=pulses, cutoff=cutoff, rescale=True).describe(
+        DURATION
+    )
     assert said["impulse_delivered_Ns"] == pytest.approx(100.0, rel=1e-12)
 
 
 def test_the_law_is_the_sum_of_its_pulses():
-    pulses = [{"peak": 4e3, "width": 2e-3, "centre": 0.01}, {"peak": -1e3, "width": 5e-3, "centre": 0.02}]
+    pulses = [
+        {"peak": 4e3, "width": 2e-3, "centre": 0.01},
+        {"peak": -1e3, "width": 5e-3, "centre": 0.02},
+    ]
     record = table(kind="gaussians", components=pulses).record()
     time = np.random.default_rng(1).uniform(0.0, DURATION, 5000)
-    expected = sum(p["peak"] * np.exp(-0.5 * ((time - p["centre"]) / p["width"]) ** 2) for p in pulses)
+    expected = sum(
+        p["peak"] * np.exp(-0.5 * ((time - p["centre"]) / p["width"]) ** 2) for p in pulses
+    )
     assert np.allclose(thrust.sample(record, time), expected, rtol=1e-13, atol=1e-9)
     assert thrust.shortest_feature(record) == 2e-3
 
@@ -101,7 +119,12 @@ def test_measured_points_are_interpolated(tmp_path):
     time, force = np.sort(rng.uniform(0.001, 0.04, 40)), rng.normal(3e3, 1e3, 40)
     record = table(kind="measured", file=curve_file(tmp_path, time, force)).record()
     asked = rng.uniform(0.0, DURATION, 5000)
-    assert np.allclose(thrust.sample(record, asked), np.interp(asked, time, force, left=0.0, right=0.0), rtol=1e-12, atol=1e-9)
+    assert np.allclose(
+        thrust.sample(record, asked),
+        np.interp(asked, time, force, left=0.0, right=0.0),
+        rtol=1e-12,
+        atol=1e-9,
+    )
     assert thrust.impulse(record, DURATION) == pytest.approx(np.trapezoid(force, time), rel=1e-13)
     assert np.array_equal(thrust.corners(record, DURATION), time)
     assert thrust.shortest_feature(record) == pytest.approx(np.diff(time).min(), rel=1e-12)
@@ -113,7 +136,9 @@ def test_the_fit_recovers_a_gaussian(tmp_path, use):
     force = 6e3 * np.exp(-0.5 * ((time - 0.012) / 2e-3) ** 2)
     measured = table(kind="measured", file=curve_file(tmp_path, time, force), use=use)
     said = measured.describe(DURATION)
-    assert (said["fit_peak_N"], said["fit_centre_s"], said["fit_width_s"]) == pytest.approx((6e3, 0.012, 2e-3), rel=1e-8)
+    assert (said["fit_peak_N"], said["fit_centre_s"], said["fit_width_s"]) == pytest.approx(
+        (6e3, 0.012, 2e-3), rel=1e-8
+    )
     assert said["fit_relative_residual"] < 1e-8
     assert said["fit_impulse_Ns"] == pytest.approx(said["curve_impulse_Ns"], rel=1e-6)
     assert said["use"] == use
@@ -153,24 +178,42 @@ def test_a_measured_curve_counts_by_its_points(tmp_path):
     hashes = []
     for name, scale in (("a", 1.0), ("b", 1.0), ("c", 1.001)):
         (tmp_path / name).mkdir()
-        hashes.append(parse(small(thrust={"kind": "measured", "file": curve_file(tmp_path / name, time, force * scale)})).hash)
+        hashes.append(
+            parse(
+                small(
+                    thrust={
+                        "kind": "measured",
+                        "file": curve_file(tmp_path / name, time, force * scale),
+                    }
+                )
+            ).hash
+        )
     assert hashes[0] == hashes[1] != hashes[2]
 
 
 def test_a_push_jumps_on_and_off():
     record = table(kind="constant", force=500.0, start=0.01, duration=0.02).record()
-    assert thrust.sample(record, np.array([0.0, 0.00999, 0.01, 0.02, 0.02999, 0.03, 0.04])).tolist() == [0, 0, 500, 500, 500, 0, 0]
+    assert thrust.sample(
+        record, np.array([0.0, 0.00999, 0.01, 0.02, 0.02999, 0.03, 0.04])
+    ).tolist() == [0, 0, 500, 500, 500, 0, 0]
     assert np.allclose(thrust.corners(record, DURATION), [0.01, 0.03])
     assert thrust.shortest_feature(record) == pytest.approx(0.02)
-    assert table(kind="constant", force=500.0, duration=0.02).describe(DURATION)["impulse_requested_Ns"] == pytest.approx(10.0)
+    assert table(kind="constant", force=500.0, duration=0.02).describe(DURATION)[
+        "impulse_requested_Ns"
+    ] == pytest.approx(10.0)
 
 
 @settings(deadline=None)
 @given(st.floats(0.001, 0.05))
 def test_impulse_of_a_curve_that_outlasts_the_scene(duration):
-    """The scene may end inside a segment: impulse is then the integral up to there, not up to the last whole segment."""
-    record = thrust.Thrust(None, thrust.Curve(np.array([0.0, 0.02, 0.04]), np.array([0.0, 100.0, 0.0])))
-    exact = 2500.0 * duration**2 if duration < 0.02 else 2.0 - 2500.0 * max(0.04 - duration, 0.0) ** 2
+    """The scene may end inside a segment: impulse is then the integral up to there, not up to the
+    last whole segment."""
+    record = thrust.Thrust(
+        None, thrust.Curve(np.array([0.0, 0.02, 0.04]), np.array([0.0, 100.0, 0.0]))
+    )
+    exact = (
+        2500.0 * duration**2 if duration < 0.02 else 2.0 - 2500.0 * max(0.04 - duration, 0.0) ** 2
+    )
     assert thrust.impulse(record, duration) == pytest.approx(exact, rel=1e-12)
 
 
@@ -195,4 +238,7 @@ def test_a_pulse_shorter_than_the_grid_is_not_missed():
 
 
 def test_no_thrust_is_burnt_out_at_once():
-    assert thrust.burnout(table(kind="constant", force=0.0, duration=0.01).record(), 1e-3, DURATION) == 0.0
+    assert (
+        thrust.burnout(table(kind="constant", force=0.0, duration=0.01).record(), 1e-3, DURATION)
+        == 0.0
+    )

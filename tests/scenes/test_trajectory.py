@@ -14,21 +14,49 @@ from scenes.files import content_hash, replacing, write_json, write_text
 from scenes.outcome import Outcome
 from tests.scenes.support import motion
 
-ARRAYS = ("time", "position", "velocity", "quaternion", "rate", "platform_position", "platform_velocity", "platform_quaternion",
-          "platform_rate", "pad_force", "energy", "transverse_energy")
+ARRAYS = (
+    "time",
+    "position",
+    "velocity",
+    "quaternion",
+    "rate",
+    "platform_position",
+    "platform_velocity",
+    "platform_quaternion",
+    "platform_rate",
+    "pad_force",
+    "energy",
+    "transverse_energy",
+)
 
 
 def random_trajectory(**parts) -> Trajectory:
     rng = np.random.default_rng(3)
     n, entries = 7, len(ledger.ENTRIES)
-    arrays = {name: rng.normal(size=(n, 4 if "quaternion" in name else 3)) for name in ARRAYS if name not in ("time", "pad_force")}
-    arrays |= {"energy": rng.normal(size=(n, entries)), "transverse_energy": rng.normal(size=(n, entries)),
-               "pad_force": rng.normal(size=(n, 5, 3)), "time": np.sort(rng.uniform(size=n))}
+    arrays = {
+        name: rng.normal(size=(n, 4 if "quaternion" in name else 3))
+        for name in ARRAYS
+        if name not in ("time", "pad_force")
+    }
+    arrays |= {
+        "energy": rng.normal(size=(n, entries)),
+        "transverse_energy": rng.normal(size=(n, entries)),
+        "pad_force": rng.normal(size=(n, 5, 3)),
+        "time": np.sort(rng.uniform(size=n)),
+    }
     arrays["position"][0] = [-0.0, 5e-324, 1.7976931348623157e150]
-    result = Outcome(0.1 + 0.2, 1 / 3, [1.0, -2e-17, 3.0], [0.1, 0.2, 0.3], 1e-9, 2e-9, [0.0, 1e-3, -1e-3])
-    given = dict(status="exited", outcome=result, checks={"energy_error": 1.2345678901234567e-7},
-                 cost={"wall_s": 0.1, "steps": 10**12},
-                 scene=load("tiny").resolved(), message='µm "quoted"\nand a second line', numerics={"step": None, "order": 2})
+    result = Outcome(
+        0.1 + 0.2, 1 / 3, [1.0, -2e-17, 3.0], [0.1, 0.2, 0.3], 1e-9, 2e-9, [0.0, 1e-3, -1e-3]
+    )
+    given = dict(
+        status="exited",
+        outcome=result,
+        checks={"energy_error": 1.2345678901234567e-7},
+        cost={"wall_s": 0.1, "steps": 10**12},
+        scene=load("tiny").resolved(),
+        message='µm "quoted"\nand a second line',
+        numerics={"step": None, "order": 2},
+    )
     return motion(**arrays | given | parts)
 
 
@@ -39,7 +67,17 @@ def test_round_trip_is_bit_for_bit(tmp_path):
     for name in ARRAYS:
         assert getattr(found, name).tobytes() == getattr(saved, name).tobytes()
         assert getattr(found, name).dtype == getattr(saved, name).dtype
-    for name in ("outcome", "checks", "cost", "scene", "status", "model", "message", "numerics", "versions"):
+    for name in (
+        "outcome",
+        "checks",
+        "cost",
+        "scene",
+        "status",
+        "model",
+        "message",
+        "numerics",
+        "versions",
+    ):
         assert getattr(found, name) == getattr(saved, name)
     assert isinstance(found.cost["steps"], int)
 
@@ -51,7 +89,11 @@ def test_a_run_without_outcome_round_trips(tmp_path):
 
 def test_a_scene_with_many_conditions_fits_the_file(tmp_path):
     """HDF5 attributes are limited to 64 KiB unless they are stored apart from the object header."""
-    scene = load("reference").replace({f"conditions.c{i}": {"duration": "50 ms"} for i in range(4000)}).resolved()
+    scene = (
+        load("reference")
+        .replace({f"conditions.c{i}": {"duration": "50 ms"} for i in range(4000)})
+        .resolved()
+    )
     random_trajectory(scene=scene).save(tmp_path / "a.nc")
     assert Trajectory.load(tmp_path / "a.nc").scene == scene
 
@@ -72,17 +114,31 @@ def test_no_nan_in_arrays(name, bad):
         random_trajectory(**{name: values})
 
 
-@pytest.mark.parametrize("parts, place", [
-    ({"checks": {"energy_error": float("nan")}}, "checks.energy_error"), ({"cost": {"dt_s": float("inf")}}, "cost.dt_s"),
-    ({"outcome": Outcome(rate=[0.0, float("nan"), 0.0])}, "outcome.rate.1"),
-    ({"numerics": {"a": {"b": np.float64("nan")}}}, "numerics.a.b"), ])
+@pytest.mark.parametrize(
+    "parts, place",
+    [
+        ({"checks": {"energy_error": float("nan")}}, "checks.energy_error"),
+        ({"cost": {"dt_s": float("inf")}}, "cost.dt_s"),
+        ({"outcome": Outcome(rate=[0.0, float("nan"), 0.0])}, "outcome.rate.1"),
+        ({"numerics": {"a": {"b": np.float64("nan")}}}, "numerics.a.b"),
+    ],
+)
 def test_no_nan_in_what_is_said_beside(parts, place):
     with pytest.raises(ValueError, match=f"^{place}: NaN"):
         random_trajectory(**parts)
 
 
-@pytest.mark.parametrize("name, shape", [("position", (7, 2)), ("quaternion", (7, 3)), ("rate", (6, 3)),
-                                         ("energy", (7, 9)), ("time", (8,)), ("pad_force", (7, 3))])
+@pytest.mark.parametrize(
+    "name, shape",
+    [
+        ("position", (7, 2)),
+        ("quaternion", (7, 3)),
+        ("rate", (6, 3)),
+        ("energy", (7, 9)),
+        ("time", (8,)),
+        ("pad_force", (7, 3)),
+    ],
+)
 def test_arrays_that_do_not_fit(name, shape):
     with pytest.raises(ValueError, match="has shape"):
         random_trajectory(**{name: np.zeros(shape)})
@@ -101,8 +157,14 @@ def test_a_damaged_file_is_refused(tmp_path, damage):
     if damage == "foreign":
         random_trajectory().to_xarray().drop_vars("rate").to_netcdf(path, engine="h5netcdf")
     else:
-        path.write_bytes({"cut": whole[: len(whole) // 2], "text": b"hello", "empty": b"",
-                          "flipped header": b"\0" * 64 + whole[64:]}[damage])
+        path.write_bytes(
+            {
+                "cut": whole[: len(whole) // 2],
+                "text": b"hello",
+                "empty": b"",
+                "flipped header": b"\0" * 64 + whole[64:],
+            }[damage]
+        )
     with pytest.raises(OSError, match="a.nc: not a whole trajectory file"):
         Trajectory.load(path)
 
@@ -142,7 +204,9 @@ with replacing(sys.argv[1]) as temporary:
         print("writing", flush=True)
         time.sleep(60)
 """
-NAIVE = KILLED.replace("from scenes.files import replacing", "from contextlib import nullcontext as replacing")
+NAIVE = KILLED.replace(
+    "from scenes.files import replacing", "from contextlib import nullcontext as replacing"
+)
 
 
 @pytest.mark.parametrize("program, survives", [(KILLED, True), (NAIVE, False)])
@@ -151,7 +215,9 @@ def test_a_killed_process_leaves_no_half_written_file(tmp_path, program, survive
     path = tmp_path / "a.txt"
     path.write_text("old")
     root = Path(__file__).resolve().parents[2]
-    process = subprocess.Popen([sys.executable, "-c", program, str(path)], stdout=subprocess.PIPE, text=True, cwd=root)
+    process = subprocess.Popen(
+        [sys.executable, "-c", program, str(path)], stdout=subprocess.PIPE, text=True, cwd=root
+    )
     assert process.stdout.readline() == "writing\n"
     os.kill(process.pid, signal.SIGKILL)
     process.wait()
@@ -166,4 +232,8 @@ def test_json_is_strict(tmp_path):
 
 
 def test_content_hash_is_of_the_content():
-    assert content_hash({"a": 1.0, "b": [2]}) == content_hash({"b": [2], "a": 1.0}) != content_hash({"a": 1.0, "b": [3]})
+    assert (
+        content_hash({"a": 1.0, "b": [2]})
+        == content_hash({"b": [2], "a": 1.0})
+        != content_hash({"a": 1.0, "b": [3]})
+    )

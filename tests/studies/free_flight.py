@@ -2,8 +2,8 @@
 
     w_y = (J/I) (l sin t sin a + (r cos b - m cos c) cos t)        w_z = -(J/I) (l sin t cos a + (r sin b - m sin c) cos t)
 
-with impulse J, arm l, one moment of inertia I about every axis; misalignment t at a, thrust eccentricity r at b, mass eccentricity
-m at c.
+with impulse J, arm l, one moment of inertia I about every axis; misalignment t at a, thrust
+eccentricity r at b, mass eccentricity m at c.
 """
 
 import math
@@ -11,15 +11,28 @@ import math
 import scenes
 
 IMPULSE, ARM, INERTIA, WIDTH = 100.0, 0.15, 0.55, 1e-3  # N s, m, kg m2, s
-RATE_PER_RADIAN = math.degrees(IMPULSE * ARM / INERTIA)  # deg/s of the total rate per radian of misalignment
+# deg/s of the total rate per radian of misalignment
+RATE_PER_RADIAN = math.degrees(IMPULSE * ARM / INERTIA)
 RATE_PER_METRE = math.degrees(IMPULSE / INERTIA)  # and per metre of an eccentricity
 
 
 def scene() -> scenes.Scene:
     """The reference scene without contact, friction and platform; its own misalignment is zero."""
-    return scenes.load("reference").replace({
-        "contact": None, "friction": None, "platform": None, "payload.mass": 10.0, "payload.inertia.xx": INERTIA,
-        "payload.inertia.yy": INERTIA,
-        "payload.inertia.zz": INERTIA, "payload.inertia.xy": None, "payload.inertia.xz": None, "thrust.width": WIDTH,
-        "thrust.centre": 8.0 * WIDTH,
-        "thrust.peak": IMPULSE / (WIDTH * math.sqrt(2.0 * math.pi)), "thrust.arm": ARM, "thrust_offset.misalignment.axial": 0.0})
+    return scenes.load("reference").replace(
+        {
+            "contact": None,
+            "friction": None,
+            "platform": None,
+            "payload.mass": 10.0,
+            "payload.inertia.xx": INERTIA,
+            "payload.inertia.yy": INERTIA,
+            "payload.inertia.zz": INERTIA,
+            "payload.inertia.xy": None,
+            "payload.inertia.xz": None,
+            "thrust.width": WIDTH,
+            "thrust.centre": 8.0 * WIDTH,
+            "thrust.peak": IMPULSE / (WIDTH * math.sqrt(2.0 * math.pi)),
+            "thrust.arm": ARM,
+            "thrust_offset.misalignment.axial": 0.0,
+        }
+    )

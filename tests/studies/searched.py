@@ -15,13 +15,24 @@ SMALL = paper.Asked(1, solutions.Plan(points=6, descents=1, pool=1, hops=1, kept
 
 
 def stub(admissible: tuple[int, ...] = (2, 0)):
-    """In place of ``solutions.run``: an end at once, each search another, with ``admissible`` points by stress."""
+    """In place of ``solutions.run``: an end at once, each search another, with ``admissible``
+    points by stress."""
+
     def run(launcher_of, stress, seed, plan, progress):
         table = published.sensitivity()
-        rates = np.vstack([[0.1, 0.2, 0.4 + seed], table.baseline + 0.01 * (1 + stress), [0.1, 0.1, 0.1]])
+        rates = np.vstack(
+            [[0.1, 0.2, 0.4 + seed], table.baseline + 0.01 * (1 + stress), [0.1, 0.1, 0.1]]
+        )
         points = np.linspace(0.4, 0.6, admissible[int(stress)])[:, None] * np.ones(COUNT)
-        return solutions.Search(stress, seed, np.full(COUNT, 0.5 + 0.01 * stress), rates, table.changed + 0.0204 * (1 + stress),
-                                points, np.array([[0.005, 0.5], [0.02, 0.3]]))
+        return solutions.Search(
+            stress,
+            seed,
+            np.full(COUNT, 0.5 + 0.01 * stress),
+            rates,
+            table.changed + 0.0204 * (1 + stress),
+            points,
+            np.array([[0.005, 0.5], [0.02, 0.3]]),
+        )
 
     return run
 

@@ -7,19 +7,55 @@ from scenes.outcome import Outcome
 from scenes.trajectory import Trajectory
 
 
-def flight(rate=None, velocity_x=None, duration=0.03, samples=601, model="finite-elements", status="exited", **parts) -> Trajectory:
-    """A payload that settles in the last 2 ms: ``rate(t)`` -> (n,3) rad/s and ``velocity_x(t)`` -> (n,) m/s."""
+def flight(
+    rate=None,
+    velocity_x=None,
+    duration=0.03,
+    samples=601,
+    model="finite-elements",
+    status="exited",
+    **parts,
+) -> Trajectory:
+    """A payload that settles in the last 2 ms: ``rate(t)`` -> (n,3) rad/s and ``velocity_x(t)`` ->
+    (n,) m/s."""
     time = np.linspace(0.0, duration, samples)
     rates = np.zeros((samples, 3)) if rate is None else rate(time)
     velocity = np.zeros((samples, 3))
     velocity[:, 0] = 6.0 * time / duration if velocity_x is None else velocity_x(time)
     turn = np.tile([1.0, 0.0, 0.0, 0.0], (samples, 1))
     zeros = np.zeros((samples, 3))
-    settled = Outcome(duration - 3e-3, duration - 2e-3, velocity[-40:].mean(axis=0).tolist(), rates[-40:].mean(axis=0).tolist(),
-                      0.0, 0.0, [0.0, 0.0, 0.0]) if status == "exited" else Outcome()
+    settled = (
+        Outcome(
+            duration - 3e-3,
+            duration - 2e-3,
+            velocity[-40:].mean(axis=0).tolist(),
+            rates[-40:].mean(axis=0).tolist(),
+            0.0,
+            0.0,
+            [0.0, 0.0, 0.0],
+        )
+        if status == "exited"
+        else Outcome()
+    )
     energy = np.zeros((samples, len(ledger.ENTRIES)))
-    entries = dict(model=model, status=status, time=time, position=zeros, velocity=velocity, quaternion=turn, rate=rates,
-                   platform_position=zeros, platform_velocity=zeros, platform_quaternion=turn, platform_rate=zeros,
-                   pad_force=np.zeros((samples, 16, 3)), energy=energy, transverse_energy=energy, outcome=settled,
-                   checks={}, cost={"wall_s": 1.0, "compile_s": 0.0, "steps": 100, "dt_s": 1e-4}, scene={})
+    entries = dict(
+        model=model,
+        status=status,
+        time=time,
+        position=zeros,
+        velocity=velocity,
+        quaternion=turn,
+        rate=rates,
+        platform_position=zeros,
+        platform_velocity=zeros,
+        platform_quaternion=turn,
+        platform_rate=zeros,
+        pad_force=np.zeros((samples, 16, 3)),
+        energy=energy,
+        transverse_energy=energy,
+        outcome=settled,
+        checks={},
+        cost={"wall_s": 1.0, "compile_s": 0.0, "steps": 100, "dt_s": 1e-4},
+        scene={},
+    )
     return Trajectory(**entries | parts)

@@ -21,9 +21,15 @@ def constant(*rate, **parts):
     return flight(lambda t: np.tile(np.radians(rate), (t.size, 1)), **parts)
 
 
-CONVERGED = [Spread("phi15", "reference", "mesh", 0.001, 0.02), Spread("phi15", "reference", "penalty", 0.002, 0.05)]
-FLOORS = [Spread("phi15", "reference", "clearance", 0.004, 0.01), Spread("phi15", "surrogate", "clearance", 0.003, 0.03),
-          Spread("phi60", "reference", "clearance", 0.006, 0.02)]
+CONVERGED = [
+    Spread("phi15", "reference", "mesh", 0.001, 0.02),
+    Spread("phi15", "reference", "penalty", 0.002, 0.05),
+]
+FLOORS = [
+    Spread("phi15", "reference", "clearance", 0.004, 0.01),
+    Spread("phi15", "surrogate", "clearance", 0.003, 0.03),
+    Spread("phi60", "reference", "clearance", 0.006, 0.02),
+]
 GATES = verdicts.gates(load("reference"))
 
 
@@ -33,8 +39,17 @@ def row(other, refinements=CONVERGED, condition="phi15"):
 
 
 def test_row_holds_every_key_other_tools_read():
-    keys = {"condition", "velocity_relative_l2", "rate_relative_l2", "iso18571", "settled_rate_error_deg_s",
-            "settled_rate_error_xyz_deg_s", "floor_deg_s", "floor_l2", "reference_uncertainty_deg_s"}
+    keys = {
+        "condition",
+        "velocity_relative_l2",
+        "rate_relative_l2",
+        "iso18571",
+        "settled_rate_error_deg_s",
+        "settled_rate_error_xyz_deg_s",
+        "floor_deg_s",
+        "floor_l2",
+        "reference_uncertainty_deg_s",
+    }
     assert keys <= set(row(constant(3.0, 0.0, 4.0)))
 
 
@@ -46,7 +61,13 @@ def test_agreement_within_all_gates():
 
 
 def test_agreement_in_free_flight_says_that_nothing_was_tested():
-    found = verdicts.row("phi15", "fitted", constant(3.0, 0.0, 4.0), constant(3.0, 0.0, 4.0), Context(FLOORS, CONVERGED, GATES))
+    found = verdicts.row(
+        "phi15",
+        "fitted",
+        constant(3.0, 0.0, 4.0),
+        constant(3.0, 0.0, 4.0),
+        Context(FLOORS, CONVERGED, GATES),
+    )
     assert not found["touches"] and found["verdict"] == "agrees (no pad touches)"
 
 
@@ -58,11 +79,19 @@ def test_missed_gate_says_by_how_much():
 
 
 def test_gates_are_those_of_the_scene_or_twice_the_floor():
-    assert GATES == pytest.approx({"rate_relative_l2": 0.05, "velocity_relative_l2": 0.001, "settled_rate_error_deg_s": 0.1})
+    assert GATES == pytest.approx(
+        {"rate_relative_l2": 0.05, "velocity_relative_l2": 0.001, "settled_rate_error_deg_s": 0.1}
+    )
     harder = verdicts.gates(load("sensitive"))
-    assert (harder["rate_relative_l2"], harder["settled_rate_error_deg_s"]) == pytest.approx((0.1, 0.2))
-    limits = [Context([], [], GATES).limits(floor)["settled_rate_error_deg_s"] for floor in (None, 0.03, 0.08, 3.0)]
-    assert limits == pytest.approx([0.1, 0.1, 0.16, 0.2])  # a chaotic condition does not forgive everything
+    assert (harder["rate_relative_l2"], harder["settled_rate_error_deg_s"]) == pytest.approx(
+        (0.1, 0.2)
+    )
+    limits = [
+        Context([], [], GATES).limits(floor)["settled_rate_error_deg_s"]
+        for floor in (None, 0.03, 0.08, 3.0)
+    ]
+    # a chaotic condition does not forgive everything
+    assert limits == pytest.approx([0.1, 0.1, 0.16, 0.2])
 
 
 def test_reference_that_is_not_converged_forbids_any_claim():
@@ -75,29 +104,52 @@ def test_reference_that_is_not_converged_forbids_any_claim():
 def test_floor_is_the_own_one_where_measured_else_the_largest():
     own, other = row(constant(3.0, 0.0, 4.0)), row(constant(3.0, 0.0, 4.0), condition="h1")
     assert (own["floor_deg_s"], own["floor_l2"], own["floor_measured_here"]) == (0.03, 0.004, True)
-    assert (other["floor_deg_s"], other["floor_l2"], other["floor_measured_here"]) == (0.03, 0.006, False)
+    assert (other["floor_deg_s"], other["floor_l2"], other["floor_measured_here"]) == (
+        0.03,
+        0.006,
+        False,
+    )
     assert own["reference_uncertainty_by_cause_deg_s"] == {"mesh": 0.02, "penalty": 0.05}
 
 
 def test_run_that_did_not_settle_never_passes():
-    found = verdicts.row("phi15", "fitted", constant(3.0, 0.0, 4.0), flight(status="jammed"), Context(FLOORS, CONVERGED, GATES))
+    found = verdicts.row(
+        "phi15",
+        "fitted",
+        constant(3.0, 0.0, 4.0),
+        flight(status="jammed"),
+        Context(FLOORS, CONVERGED, GATES),
+    )
     assert not found["passes"]
     assert "settled rate unknown" in found["verdict"]
 
 
 def test_spread_takes_the_larger_side():
-    found = verdicts.spread("phi15", "reference", "clearance", constant(1.0, 0.0, 0.0),
-                             [constant(1.02, 0.0, 0.0), constant(0.99, 0.0, 0.0)])
+    found = verdicts.spread(
+        "phi15",
+        "reference",
+        "clearance",
+        constant(1.0, 0.0, 0.0),
+        [constant(1.02, 0.0, 0.0), constant(0.99, 0.0, 0.0)],
+    )
     assert found.settled_rate_change_deg_s == pytest.approx(0.02, rel=1e-9)
     assert found.rate_relative_l2 == pytest.approx(0.02, rel=1e-9)
 
 
 def test_every_condition_of_the_reference_has_an_uncertainty_of_its_own(monkeypatch):
-    """By mesh, step and penalty. Control: where a scene refines one only, the others borrow, and say so."""
+    """By mesh, step and penalty. Control: where a scene refines one only, the others borrow, and
+    say so."""
     scene = load("reference")
-    for refined, expected in ((scene.agreement.refined, set(scene.conditions)), (["phi35"], {"phi35"})):
-        study = Study(scene.replace({"agreement.refined": list(refined)}), Path("nowhere"), Settings())
-        monkeypatch.setattr(type(study.store), "fill", lambda store, title, runs: [flight() for _ in runs])
+    for refined, expected in (
+        (scene.agreement.refined, set(scene.conditions)),
+        (["phi35"], {"phi35"}),
+    ):
+        study = Study(
+            scene.replace({"agreement.refined": list(refined)}), Path("nowhere"), Settings()
+        )
+        monkeypatch.setattr(
+            type(study.store), "fill", lambda store, title, runs: [flight() for _ in runs]
+        )
         context = Context([], compare.refinements(study), GATES)
         assert {name for name in study.conditions if context.uncertainty(name)[2]} == expected
         assert list(context.uncertainty("h4")[1]) == ["mesh", "step", "penalty"]
@@ -111,8 +163,9 @@ def coarse_walls():
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["phi35", "h2"])
 def test_compliant_walls_agree_with_finite_elements_on_the_same_mesh(coarse_walls, name):
-    """Nothing is fitted: well inside the gates of the scene, 5 % and 0.1 deg/s, where pads touch. Both stand on elements of 4 mm,
-    so the mesh is no part of the difference. Control: on rigid springs with the scene's own constants the gates are missed."""
+    """Nothing is fitted: well inside the gates of the scene, 5 % and 0.1 deg/s, where pads touch.
+    Both stand on elements of 4 mm, so the mesh is no part of the difference. Control: on rigid
+    springs with the scene's own constants the gates are missed."""
     scene = load("reference").condition(name)
     reference = highfi.run(scene, highfi.Numerics(element_size=4e-3))
     assert reference.status == "exited" and reference.pad_force.any()

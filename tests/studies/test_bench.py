@@ -1,4 +1,5 @@
-"""The benchmark: the yardstick does the same work as the solver, and what is written is what was measured."""
+"""The benchmark: the yardstick does the same work as the solver, and what is written is what was
+measured."""
 
 import json
 
@@ -21,33 +22,61 @@ def test_yardstick_is_central_differences_on_the_assembled_matrix():
     mesh = highfi.prepare(scene, Numerics(element_size=0.016))
     loop = CsrLoop(mesh, scene.rail.material, 1e-8, most=10**6)
     material = scene.rail.material
-    operator = assembly.build(mesh, material.density, material.youngs_modulus, material.poisson_ratio, fixed=())
+    operator = assembly.build(
+        mesh, material.density, material.youngs_modulus, material.poisson_ratio, fixed=()
+    )
     displacement, velocity = loop.displacement.copy(), loop.velocity.copy()
     for _ in range(3):
-        velocity = velocity - 1e-8 * (assembly.sparse(operator) @ displacement) / np.repeat(operator.mass, 3)
+        velocity = velocity - 1e-8 * (assembly.sparse(operator) @ displacement) / np.repeat(
+            operator.mass, 3
+        )
         displacement = displacement + 1e-8 * velocity
     loop.advance(3)
-    assert loop.elements == len(mesh.cells) and loop.displacement == pytest.approx(displacement, rel=1e-12)
+    assert loop.elements == len(mesh.cells) and loop.displacement == pytest.approx(
+        displacement, rel=1e-12
+    )
 
 
 def test_bench_writes_one_row_per_size(tmp_path):
-    arguments = ["bench", "--element-size", "8", "--repeats", "1", "--steps", "50", "--cases", "40", "--out", str(tmp_path)]
+    arguments = [
+        "bench",
+        "--element-size",
+        "8",
+        "--repeats",
+        "1",
+        "--steps",
+        "50",
+        "--cases",
+        "40",
+        "--out",
+        str(tmp_path),
+    ]
     said = CliRunner().invoke(app, arguments, catch_exceptions=False)
     assert said.exit_code == 0
-    row, = json.loads((tmp_path / "bench" / "highfi.json").read_text())["rows"]
+    (row,) = json.loads((tmp_path / "bench" / "highfi.json").read_text())["rows"]
     assert row["elements"] > 500 and row["faces_in_contact"] >= 4
-    assert row["ratio"] == pytest.approx(row["baseline_ns_per_element_step"] / row["ns_per_element_step"])
+    assert row["ratio"] == pytest.approx(
+        row["baseline_ns_per_element_step"] / row["ns_per_element_step"]
+    )
     assert row["bytes_per_element"] > 24 * 8 and row["dt_s"] > row["dt_element_s"] * 0.9
     assert f"{row['elements']:,} elements" in reference.line(row)
-    page = Page(load("tiny"), tmp_path, {"bench": reference.stored(tmp_path)}, Runs({}, {}, {}), {}).render()
+    page = Page(
+        load("tiny"), tmp_path, {"bench": reference.stored(tmp_path)}, Runs({}, {}, {}), {}
+    ).render()
     assert 'id="bench"' in page and f"{row['elements']:,}" in page
     assert reference.stored(tmp_path / "elsewhere") is None
     surrogate = json.loads((tmp_path / "bench" / "lowfi.json").read_text())
     for single in surrogate["single"]:
         assert {"error_percent", "cpu_ms", "baseline_cpu_ms", "ratio"} <= single.keys()
-        assert max(single["measured_percent"], single["baseline_measured_percent"]) <= single["error_percent"]
+        assert (
+            max(single["measured_percent"], single["baseline_measured_percent"])
+            <= single["error_percent"]
+        )
         assert single["ratio"] == pytest.approx(single["baseline_cpu_ms"] / single["cpu_ms"])
         assert f"{single['cpu_ms']:.3f}" in page
     ensemble = surrogate["ensemble"]
-    assert ensemble["cases"] == ensemble["ok"] == 40 and ensemble["cpu_ms_per_case"] > 0.0 < ensemble["wall_s"]
+    assert (
+        ensemble["cases"] == ensemble["ok"] == 40
+        and ensemble["cpu_ms_per_case"] > 0.0 < ensemble["wall_s"]
+    )
     assert ensemble["peak_memory_bytes"] > 10**7

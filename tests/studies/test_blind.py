@@ -21,7 +21,9 @@ def study_of(name: str = "reference") -> Study:
 
 def test_seed_is_that_of_code_and_scene(monkeypatch):
     own = blind.seed_of(study_of(), Asked())
-    assert own == blind.seed_of(study_of(), Asked()) != blind.seed_of(study_of("sensitive"), Asked())
+    assert (
+        own == blind.seed_of(study_of(), Asked()) != blind.seed_of(study_of("sensitive"), Asked())
+    )
     assert blind.seed_of(study_of(), Asked(seed=3)) == 3
     monkeypatch.setattr(blind, "source_hash", lambda *names: "another line of code")
     assert blind.seed_of(study_of(), Asked()) != own
@@ -29,19 +31,33 @@ def test_seed_is_that_of_code_and_scene(monkeypatch):
 
 def test_drawn_conditions_are_all_held_out():
     drawn = blind.draw(study_of(), Asked(cases=3, seed=1))
-    assert list(drawn.conditions) == ["blind1", "blind2", "blind3"] == list(drawn.scene.agreement.held_out)
-    assert drawn.scene.agreement.fitted == () and drawn.scene.agreement.floor == drawn.scene.agreement.held_out
+    assert (
+        list(drawn.conditions)
+        == ["blind1", "blind2", "blind3"]
+        == list(drawn.scene.agreement.held_out)
+    )
+    assert (
+        drawn.scene.agreement.fitted == ()
+        and drawn.scene.agreement.floor == drawn.scene.agreement.held_out
+    )
     hashes = {scene.hash for scene in drawn.conditions.values()}
-    assert len(hashes) == 3 and hashes.isdisjoint(scene.hash for scene in study_of().conditions.values())
+    assert len(hashes) == 3 and hashes.isdisjoint(
+        scene.hash for scene in study_of().conditions.values()
+    )
     again = blind.draw(study_of(), Asked(cases=2, seed=1))
-    assert [scene.hash for scene in again.conditions.values()] == [drawn.condition(name).hash for name in ("blind1", "blind2")]
+    assert [scene.hash for scene in again.conditions.values()] == [
+        drawn.condition(name).hash for name in ("blind1", "blind2")
+    ]
 
 
 def test_no_drawn_condition_borrows_its_uncertainty(monkeypatch):
-    """Mesh, step and penalty on each. Control: a scene that refines one only has the others borrow, and says so."""
+    """Mesh, step and penalty on each. Control: a scene that refines one only has the others borrow,
+    and says so."""
     drawn = blind.draw(study_of(), Asked(cases=3, seed=1))
     alone = replace(drawn, scene=drawn.scene.replace({"agreement.refined": ["blind2"]}))
-    monkeypatch.setattr(type(drawn.store), "fill", lambda store, title, runs: [flight() for _ in runs])
+    monkeypatch.setattr(
+        type(drawn.store), "fill", lambda store, title, runs: [flight() for _ in runs]
+    )
     for study, measured in ((drawn, [True, True, True]), (alone, [False, True, False])):
         context = Context([], compare.refinements(study), {})
         assert [context.uncertainty(name)[2] for name in drawn.conditions] == measured

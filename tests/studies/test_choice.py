@@ -11,28 +11,65 @@ from studies.settings import Settings
 from studies.study import Study, StudyError
 
 # name, error (deg/s), wall (s); None is the yardstick, which is trusted to the band of 0.02.
-POINTS = [("rigid", 0.9, 0.002), ("rigid fine", 0.85, 0.004), ("compliant", 0.05, 0.003), ("compliant fine", 0.004, 0.006),
-          ("4 mm", 0.03, 5.0), ("2 mm", None, 30.0), ("lost", 0.0, 0.001)]
+POINTS = [
+    ("rigid", 0.9, 0.002),
+    ("rigid fine", 0.85, 0.004),
+    ("compliant", 0.05, 0.003),
+    ("compliant fine", 0.004, 0.006),
+    ("4 mm", 0.03, 5.0),
+    ("2 mm", None, 30.0),
+    ("lost", 0.0, 0.001),
+]
 
 
-COST = {"condition": "phi15", "band_deg_s": 0.02, "points": [
-    {"model": name, "rung": "highfi" if "mm" in name else name.split()[0], "numerics": "-",
-     "setting": 1e-3 * int(name[0]) if "mm" in name else 1e-6, "modes": None,
-     "error_deg_s": error, "wall_s": wall, "status": "diverged" if name == "lost" else "exited"} for name, error, wall in POINTS]}
+COST = {
+    "condition": "phi15",
+    "band_deg_s": 0.02,
+    "points": [
+        {
+            "model": name,
+            "rung": "highfi" if "mm" in name else name.split()[0],
+            "numerics": "-",
+            "setting": 1e-3 * int(name[0]) if "mm" in name else 1e-6,
+            "modes": None,
+            "error_deg_s": error,
+            "wall_s": wall,
+            "status": "diverged" if name == "lost" else "exited",
+        }
+        for name, error, wall in POINTS
+    ],
+}
 
 
-@pytest.mark.parametrize("accuracy, budget, expected", [
-    (1.0, None, "rigid"), (0.1, None, "compliant"), (0.03, None, "compliant fine"), (0.02, None, "compliant fine"),
-    (None, 0.003, "compliant"), (None, 0.0025, "rigid"), (None, 60.0, "compliant fine"), (0.1, 4.0, "compliant"),
-    (0.86, 0.0025, None), (0.01, None, None), (None, 0.0015, None)])
+@pytest.mark.parametrize(
+    "accuracy, budget, expected",
+    [
+        (1.0, None, "rigid"),
+        (0.1, None, "compliant"),
+        (0.03, None, "compliant fine"),
+        (0.02, None, "compliant fine"),
+        (None, 0.003, "compliant"),
+        (None, 0.0025, "rigid"),
+        (None, 60.0, "compliant fine"),
+        (0.1, 4.0, "compliant"),
+        (0.86, 0.0025, None),
+        (0.01, None, None),
+        (None, 0.0015, None),
+    ],
+)
 def test_cheapest_or_most_exact(accuracy, budget, expected):
-    """An error below the band counts as the band: 0.004 deg/s cannot be told from 0.02. A model that diverged never counts."""
+    """An error below the band counts as the band: 0.004 deg/s cannot be told from 0.02. A model
+    that diverged never counts."""
     if expected is None:
         with pytest.raises(StudyError, match="no model fits"):
             choose(COST, "phi15", None, accuracy, budget)
     else:
         found = choose(COST, "phi15", None, accuracy, budget)
-        assert found["model"] == expected and expected in found["why"] and found["why"].endswith("on phi15")
+        assert (
+            found["model"] == expected
+            and expected in found["why"]
+            and found["why"].endswith("on phi15")
+        )
 
 
 def test_refusal_names_the_nearest():
@@ -51,20 +88,40 @@ def test_refusal_of_one_limit_names_the_best_there_is():
 
 def agreement(error, unsure):
     """Rows of two conditions: small errors on phi60, these on h8."""
-    rows = [{"condition": "phi60", "settled_rate_error_deg_s": 0.01, "reference_uncertainty_deg_s": 0.01},
-            {"condition": "h8", "settled_rate_error_deg_s": error, "reference_uncertainty_deg_s": unsure}]
+    rows = [
+        {
+            "condition": "phi60",
+            "settled_rate_error_deg_s": 0.01,
+            "reference_uncertainty_deg_s": 0.01,
+        },
+        {
+            "condition": "h8",
+            "settled_rate_error_deg_s": error,
+            "reference_uncertainty_deg_s": unsure,
+        },
+    ]
     simpler = [row | {"patterns": 1, "coupled": False} for row in rows]
-    return {"uncalibrated": rows, "fitted": rows[:1], "held_out": rows[1:], "compliant": rows, "modal": rows,
-            "simpler": simpler, "element_size_m": 2e-3}
+    return {
+        "uncalibrated": rows,
+        "fitted": rows[:1],
+        "held_out": rows[1:],
+        "compliant": rows,
+        "modal": rows,
+        "simpler": simpler,
+        "element_size_m": 2e-3,
+    }
 
 
 def test_what_holds_on_one_condition_is_not_promised_of_another():
     """Control: without the agreement study the errors of phi15 are taken, and that is said."""
     found = choose(COST, "phi60", agreement(13.0, 9.0), 0.03)
-    assert found["trusted_deg_s"] == 0.02 and found["why"].endswith("errors on phi60 as make compare found them")
+    assert found["trusted_deg_s"] == 0.02 and found["why"].endswith(
+        "errors on phi60 as make compare found them"
+    )
     with pytest.raises(StudyError, match="(?s)no model fits.*errors on h8 as make compare"):
         choose(COST, "h8", agreement(13.0, 9.0), 0.03)
-    nearest = choose(COST, "h8", agreement(13.0, 9.0), budget=0.01)  # a rung that is not judged there never counts
+    # a rung that is not judged there never counts
+    nearest = choose(COST, "h8", agreement(13.0, 9.0), budget=0.01)
     assert (nearest["model"], nearest["trusted_deg_s"]) == ("compliant", 13.0)
     with pytest.raises(StudyError, match="no model fits"):
         choose(COST, "h8", agreement(0.01, None), 0.03)
@@ -73,19 +130,39 @@ def test_what_holds_on_one_condition_is_not_promised_of_another():
 
 
 def test_other_modes_are_chosen_only_where_they_were_measured():
-    fewer = {"model": "fewer", "rung": "modal", "numerics": "1 mode", "setting": 1.0, "modes": 1, "error_deg_s": 0.03,
-             "wall_s": 0.0001, "status": "exited"}
+    fewer = {
+        "model": "fewer",
+        "rung": "modal",
+        "numerics": "1 mode",
+        "setting": 1.0,
+        "modes": 1,
+        "error_deg_s": 0.03,
+        "wall_s": 0.0001,
+        "status": "exited",
+    }
     cost = COST | {"points": [*COST["points"], fewer]}
     assert choose(cost, "phi15", agreement(13.0, 9.0), 0.05)["model"] == "fewer"
-    assert choose(cost, "nominal", agreement(13.0, 9.0), 0.05)["model"] == "fewer"  # where no model is known any better
+    # where no model is known any better
+    assert choose(cost, "nominal", agreement(13.0, 9.0), 0.05)["model"] == "fewer"
     assert choose(cost, "phi60", agreement(13.0, 9.0), 0.05)["model"] == "compliant"
 
 
 def test_what_is_not_known_elsewhere_is_never_chosen():
-    """A mesh coarser than any of the agreement study, and everything where a refinement did not settle. Control: a mesh it has."""
-    coarse = {"model": "8 mm", "rung": "highfi", "numerics": "-", "setting": 8e-3, "modes": None, "error_deg_s": 0.03,
-              "wall_s": 3.0, "status": "exited"}
-    meshes = COST | {"points": [coarse, *(point for point in COST["points"] if point["rung"] == "highfi")]}
+    """A mesh coarser than any of the agreement study, and everything where a refinement did not
+    settle. Control: a mesh it has."""
+    coarse = {
+        "model": "8 mm",
+        "rung": "highfi",
+        "numerics": "-",
+        "setting": 8e-3,
+        "modes": None,
+        "error_deg_s": 0.03,
+        "wall_s": 3.0,
+        "status": "exited",
+    }
+    meshes = COST | {
+        "points": [coarse, *(point for point in COST["points"] if point["rung"] == "highfi")]
+    }
     assert choose(meshes, "phi15", None, 0.05)["model"] == "8 mm"
     for limit in ({"accuracy": 9.5}, {"budget": 60.0}):
         assert choose(meshes, "h8", agreement(13.0, 9.0), **limit)["model"] == "4 mm"
@@ -95,8 +172,15 @@ def test_what_is_not_known_elsewhere_is_never_chosen():
 
 def test_every_rung_is_known_elsewhere():
     found = elsewhere(agreement(13.0, 9.0), "h8")
-    assert found == {"uncalibrated": 13.0, "calibrated": 13.0, "compliant": 13.0, "modal": 13.0, "along": 13.0, "highfi": 9.0,
-                     "coarsest_m": 4e-3}
+    assert found == {
+        "uncalibrated": 13.0,
+        "calibrated": 13.0,
+        "compliant": 13.0,
+        "modal": 13.0,
+        "along": 13.0,
+        "highfi": 9.0,
+        "coarsest_m": 4e-3,
+    }
 
 
 def test_nothing_is_chosen_without_measured_cost(tmp_path):
@@ -105,20 +189,34 @@ def test_nothing_is_chosen_without_measured_cost(tmp_path):
         single.chosen(study, "phi15", 0.1, None)
 
 
-@pytest.mark.parametrize("option", [["--model", "compliant"], ["--modes", "2"], ["--calibration", "a.toml"]])
+@pytest.mark.parametrize(
+    "option", [["--model", "compliant"], ["--modes", "2"], ["--calibration", "a.toml"]]
+)
 def test_a_model_is_not_both_given_and_chosen(tmp_path, option):
-    result = CliRunner().invoke(app, ["run", "--scene", "tiny", "--out", str(tmp_path), "--budget", "2 s", *option])
-    assert result.exit_code == 2 and option[0] in result.stderr and "choose the model" in result.stderr
+    result = CliRunner().invoke(
+        app, ["run", "--scene", "tiny", "--out", str(tmp_path), "--budget", "2 s", *option]
+    )
+    assert (
+        result.exit_code == 2 and option[0] in result.stderr and "choose the model" in result.stderr
+    )
 
 
-@pytest.mark.parametrize("options, words", [
-    (["--accuracy", "0.1"], "deg/s"), (["--accuracy", "0.1 m"], "deg/s"), (["--budget", "2 mm"], "a quantity"),
-    (["--budget", "-1 s"], "zero or more")])
+@pytest.mark.parametrize(
+    "options, words",
+    [
+        (["--accuracy", "0.1"], "deg/s"),
+        (["--accuracy", "0.1 m"], "deg/s"),
+        (["--budget", "2 mm"], "a quantity"),
+        (["--budget", "-1 s"], "zero or more"),
+    ],
+)
 def test_bad_limits_are_refused(tmp_path, options, words):
     result = CliRunner().invoke(app, ["run", "--scene", "tiny", "--out", str(tmp_path), *options])
     assert result.exit_code == 2 and options[0] in result.stderr and words in result.stderr
 
 
 def test_refusal_of_both_limits_names_the_fastest_of_the_most_exact():
-    with pytest.raises(StudyError, match="(?s)most exact of all: compliant fine, - .*fastest of all: rigid, - "):
+    with pytest.raises(
+        StudyError, match="(?s)most exact of all: compliant fine, - .*fastest of all: rigid, - "
+    ):
         choose(COST, "phi15", None, accuracy=0.001, budget=0.001)

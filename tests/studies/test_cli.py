@@ -1,4 +1,5 @@
-"""The command line: exit codes and what it says about bad input. Nothing is written when the input is bad."""
+"""The command line: exit codes and what it says about bad input. Nothing is written when the input
+is bad."""
 
 import json
 import subprocess
@@ -17,22 +18,51 @@ from studies.helptext import flowed
 from tests.studies.synthetic import flight
 
 ROOT = Path(__file__).resolve().parent.parent.parent
-STAGES = ("mesh", "highfi", "lowfi", "calibrate", "compare", "cost", "stability", "ablation", "convergence", "report",
-          "view", "ensemble", "blind", "sensitivity", "sweeps", "montecarlo", "limits", "flight", "droptest", "paper")
+STAGES = (
+    "mesh",
+    "highfi",
+    "lowfi",
+    "calibrate",
+    "compare",
+    "cost",
+    "stability",
+    "ablation",
+    "convergence",
+    "report",
+    "view",
+    "ensemble",
+    "blind",
+    "sensitivity",
+    "sweeps",
+    "montecarlo",
+    "limits",
+    "flight",
+    "droptest",
+    "paper",
+)
 
 
 def call(*arguments):
     return CliRunner().invoke(app, [str(argument) for argument in arguments])
 
 
-@pytest.mark.parametrize("overrides, words", [
-    (["payload.mass=9.9 m"], ["payload.mass", "9.9 m", "kg"]),
-    (["payload.weight=9.9 kg"], ["payload.weight", "no such key"]),
-    (["payload.mass=-1 kg", "rail.material.density=0 kg/m**3", "rail.material.poisson_ratio=0.5"],
-     ["payload.mass", "rail.material.density", "rail.material.poisson_ratio", "3 faults"]),
-    (["payload.mass"], ["--set", "KEY=VALUE"]),
-    (["contact.clearance=-0.1 mm"], ["contact.clearance"]),
-])
+@pytest.mark.parametrize(
+    "overrides, words",
+    [
+        (["payload.mass=9.9 m"], ["payload.mass", "9.9 m", "kg"]),
+        (["payload.weight=9.9 kg"], ["payload.weight", "no such key"]),
+        (
+            [
+                "payload.mass=-1 kg",
+                "rail.material.density=0 kg/m**3",
+                "rail.material.poisson_ratio=0.5",
+            ],
+            ["payload.mass", "rail.material.density", "rail.material.poisson_ratio", "3 faults"],
+        ),
+        (["payload.mass"], ["--set", "KEY=VALUE"]),
+        (["contact.clearance=-0.1 mm"], ["contact.clearance"]),
+    ],
+)
 def test_bad_override_lists_every_fault_and_writes_nothing(tmp_path, overrides, words):
     options = [part for item in overrides for part in ("--set", item)]
     result = call("highfi", "--scene", "tiny", "--out", tmp_path / "out", *options)
@@ -51,15 +81,24 @@ def test_every_stage_refuses_an_unknown_scene(tmp_path, stage):
 
 
 def test_unknown_condition_and_bad_options(tmp_path):
-    assert call("highfi", "--scene", "tiny", "--condition", "phi99", "--out", tmp_path).exit_code == 2
+    assert (
+        call("highfi", "--scene", "tiny", "--condition", "phi99", "--out", tmp_path).exit_code == 2
+    )
     assert call("run", "--scene", "tiny", "--model", "both").exit_code == 2
     assert call("mesh", "--element-size", "-4").exit_code == 2
-    assert call("run", "--scene", "tiny", "--calibration", tmp_path / "missing.toml", "--out", tmp_path).exit_code == 2
+    assert (
+        call(
+            "run", "--scene", "tiny", "--calibration", tmp_path / "missing.toml", "--out", tmp_path
+        ).exit_code
+        == 2
+    )
     assert not list(tmp_path.iterdir())
 
 
 def test_scene_without_fitted_conditions_cannot_be_calibrated(tmp_path):
-    result = call("calibrate", "--scene", "tiny", "--set", "agreement=absent", "--out", tmp_path / "out")
+    result = call(
+        "calibrate", "--scene", "tiny", "--set", "agreement=absent", "--out", tmp_path / "out"
+    )
     assert result.exit_code == 2
     assert "agreement.fitted" in result.stderr
     assert not (tmp_path / "out").exists()
@@ -67,9 +106,22 @@ def test_scene_without_fitted_conditions_cannot_be_calibrated(tmp_path):
 
 def _stub(monkeypatch, **parts):
     monkeypatch.setattr(store_module, "prepare", lambda run: None)
-    monkeypatch.setattr(store_module, "execute", lambda run, progress=None, threads=None, **kept: flight(
-        model=run.model, cost={"wall_s": 1.0, "compile_s": 0.0, "steps": 10, "dt_s": 1e-4, "elements": 1,
-                                     "ns_per_element_step": 1.0}, **parts))
+    monkeypatch.setattr(
+        store_module,
+        "execute",
+        lambda run, progress=None, threads=None, **kept: flight(
+            model=run.model,
+            cost={
+                "wall_s": 1.0,
+                "compile_s": 0.0,
+                "steps": 10,
+                "dt_s": 1e-4,
+                "elements": 1,
+                "ns_per_element_step": 1.0,
+            },
+            **parts,
+        ),
+    )
 
 
 def test_failed_run_is_exit_code_1_with_its_status(tmp_path, monkeypatch):
@@ -77,26 +129,67 @@ def test_failed_run_is_exit_code_1_with_its_status(tmp_path, monkeypatch):
     result = call("highfi", "--scene", "tiny", "--condition", "phi15", "--out", tmp_path)
     assert result.exit_code == 1
     assert "phi15: diverged: energy grew" in result.stderr
-    assert json.loads((tmp_path / "tiny" / "highfi.json").read_text())["conditions"][0]["settled"] is None
+    assert (
+        json.loads((tmp_path / "tiny" / "highfi.json").read_text())["conditions"][0]["settled"]
+        is None
+    )
 
 
 def test_json_is_the_stage_file_on_standard_output(tmp_path, monkeypatch):
     _stub(monkeypatch)
-    result = call("highfi", "--scene", "tiny", "--condition", "phi15", "--condition", "h1", "--json", "--out", tmp_path)
+    result = call(
+        "highfi",
+        "--scene",
+        "tiny",
+        "--condition",
+        "phi15",
+        "--condition",
+        "h1",
+        "--json",
+        "--out",
+        tmp_path,
+    )
     assert result.exit_code == 0
     printed = json.loads(result.stdout)
     assert printed == json.loads((tmp_path / "tiny" / "highfi.json").read_text())
     assert [row["condition"] for row in printed["conditions"]] == ["phi15", "h1"]
-    keys = {"condition", "status", "wall_s", "compile_s", "steps", "dt_s", "energy_error", "transverse_energy_error",
-            "linear_momentum_error", "angular_momentum_error", "settled", "trajectory", "elements", "ns_per_element_step"}
+    keys = {
+        "condition",
+        "status",
+        "wall_s",
+        "compile_s",
+        "steps",
+        "dt_s",
+        "energy_error",
+        "transverse_energy_error",
+        "linear_momentum_error",
+        "angular_momentum_error",
+        "settled",
+        "trajectory",
+        "elements",
+        "ns_per_element_step",
+    }
     assert all(keys <= set(row) for row in printed["conditions"])
     assert set(printed["conditions"][0]["settled"]) >= {"velocity_m_s", "rate_deg_s"}
-    assert Trajectory.load(tmp_path / "tiny" / printed["conditions"][0]["trajectory"]).status == "exited"
+    assert (
+        Trajectory.load(tmp_path / "tiny" / printed["conditions"][0]["trajectory"]).status
+        == "exited"
+    )
 
 
 def test_run_prints_the_outcome_with_units(tmp_path, monkeypatch):
     _stub(monkeypatch)
-    result = call("run", "--scene", "tiny", "--condition", "phi15", "--model", "finite-elements", "--out", tmp_path)
+    result = call(
+        "run",
+        "--scene",
+        "tiny",
+        "--condition",
+        "phi15",
+        "--model",
+        "finite-elements",
+        "--out",
+        tmp_path,
+    )
     assert result.exit_code == 0
     assert "tiny / phi15, model finite-elements, 8 mm: exited" in result.stdout
     assert "m/s (x, y, z)" in result.stdout and "deg/s (x, y, z)" in result.stdout
@@ -104,8 +197,19 @@ def test_run_prints_the_outcome_with_units(tmp_path, monkeypatch):
 
 def test_implausible_value_is_warned_about_and_still_runs(tmp_path, monkeypatch):
     _stub(monkeypatch)
-    result = call("run", "--scene", "tiny", "--condition", "phi15", "--model", "finite-elements",
-                  "--set", "rail.material.density=2.8 kg/m**3", "--out", tmp_path)
+    result = call(
+        "run",
+        "--scene",
+        "tiny",
+        "--condition",
+        "phi15",
+        "--model",
+        "finite-elements",
+        "--set",
+        "rail.material.density=2.8 kg/m**3",
+        "--out",
+        tmp_path,
+    )
     assert result.exit_code == 0
     assert "rail.material.density" in result.stderr
 
@@ -117,28 +221,56 @@ def test_catalogue_is_listed():
 
 
 def test_real_process_has_no_traceback_and_answers_help_at_once(tmp_path):
-    bad = subprocess.run([sys.executable, "-m", "studies.cli", "mesh", "--set", "payload.mass=nan kg",
-                          "--out", str(tmp_path / "out")],
-                         cwd=ROOT, capture_output=True, text=True, timeout=60)
+    bad = subprocess.run(
+        [
+            sys.executable,
+            "-m",
+            "studies.cli",
+            "mesh",
+            "--set",
+            "payload.mass=nan kg",
+            "--out",
+            str(tmp_path / "out"),
+        ],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        timeout=60,
+    )
     assert bad.returncode == 2
     assert "payload.mass" in bad.stderr and "Traceback" not in bad.stderr
     assert not (tmp_path / "out").exists()
     started = time.monotonic()
-    answer = subprocess.run([sys.executable, "-m", "studies.cli", "--help"], cwd=ROOT, capture_output=True, text=True, timeout=60)
+    answer = subprocess.run(
+        [sys.executable, "-m", "studies.cli", "--help"],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        timeout=60,
+    )
     assert answer.returncode == 0
     assert all(stage in answer.stdout for stage in STAGES)
-    # The heavy libraries alone take more than a second to import, so this fails as soon as one of them creeps in.
+    # The heavy libraries alone take more than a second to import, so this fails as soon as one of
+    # them creeps in.
     assert time.monotonic() - started < 1.0
 
 
 def test_help_flows_but_examples_keep_their_lines():
     assert flowed("First line.\n\nSome prose\nthat goes on.\n\n  [table]\n  key = 1\n") == (
-        "First line.\n\nSome prose that goes on.\n\n  [table]\n  key = 1")
-    shown = CliRunner().invoke(app, ["ensemble", "--help"], env={"COLUMNS": "100", "TERM": "dumb"}).stdout
+        "First line.\n\nSome prose that goes on.\n\n  [table]\n  key = 1"
+    )
+    shown = (
+        CliRunner()
+        .invoke(app, ["ensemble", "--help"], env={"COLUMNS": "100", "TERM": "dumb"})
+        .stdout
+    )
     assert 'mean = "9.9 kg"' in shown and "# that case alone" in shown
 
 
 def test_a_scene_of_the_catalogue_is_shown_as_it_is_written():
-    assert CliRunner().invoke(app, ["scenes", "--show", "tiny"]).stdout == (CATALOG / "tiny.toml").read_text()
+    assert (
+        CliRunner().invoke(app, ["scenes", "--show", "tiny"]).stdout
+        == (CATALOG / "tiny.toml").read_text()
+    )
     refused = CliRunner().invoke(app, ["scenes", "--show", "nowhere"])
     assert refused.exit_code == 2 and "reference" in refused.stderr

@@ -24,7 +24,9 @@ def test_impulse_of_a_half_sine():
     duration = 4e-3
     run = pressed(lambda t: 50.0 * np.sin(np.pi * t / duration) * (t < duration))
     found = contact_loads.impulses(SCENE, run)
-    assert found[1] == pytest.approx(2.0 * 50.0 * duration / math.pi, rel=2.0 * (math.pi / 80) ** 2 / 12)
+    assert found[1] == pytest.approx(
+        2.0 * 50.0 * duration / math.pi, rel=2.0 * (math.pi / 80) ** 2 / 12
+    )
     assert np.flatnonzero(found).tolist() == [1]
 
 
@@ -38,8 +40,13 @@ def test_faces_of_one_pad_add_up_as_vectors():
 @pytest.mark.parametrize("frequency, kept", [(20.0, 1.0), (1000.0, 0.5), (9000.0, 0.0)])
 def test_filter_halves_the_amplitude_at_its_cut_off_and_shifts_nothing(frequency, kept):
     """100 N with a ripple of 10 N; looked at where the ends of the record, which ring, are far."""
+
     def ripple(t):
-        return 10.0 * np.cos(2.0 * np.pi * frequency * (t - 0.015)) * np.exp(-((t - 0.015) / 4e-3) ** 2)
+        return (
+            10.0
+            * np.cos(2.0 * np.pi * frequency * (t - 0.015))
+            * np.exp(-(((t - 0.015) / 4e-3) ** 2))
+        )
 
     run = pressed(lambda t: 100.0 + ripple(t))
     assert contact_loads.cutoff(SCENE) == 1000.0

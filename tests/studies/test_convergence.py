@@ -1,4 +1,5 @@
-"""Observed order and grid convergence index, against a published check and series that are known exactly."""
+"""Observed order and grid convergence index, against a published check and series that are known
+exactly."""
 
 import math
 
@@ -8,15 +9,17 @@ from hypothesis import strategies as st
 
 from studies.refinement import extrapolation
 
-# Pressure recovery of a supersonic inlet on three grids, coarsest first: NASA Glenn, NPARC Alliance CFD verification tutorial,
-# "Examining spatial (grid) convergence".
+# Pressure recovery of a supersonic inlet on three grids, coarsest first: NASA Glenn, NPARC Alliance
+# CFD verification tutorial, "Examining spatial (grid) convergence".
 SIZES, RECOVERY = (4.0, 2.0, 1.0), (0.96178, 0.96854, 0.97050)
 
 
 def test_published_check():
     order = extrapolation.observed_order(SIZES, RECOVERY)
     assert order == pytest.approx(1.786170, abs=5e-7)
-    assert 100.0 * extrapolation.grid_convergence_index(SIZES, RECOVERY, order) == pytest.approx(0.103083, abs=5e-7)
+    assert 100.0 * extrapolation.grid_convergence_index(SIZES, RECOVERY, order) == pytest.approx(
+        0.103083, abs=5e-7
+    )
     assert extrapolation.extrapolated(SIZES, RECOVERY, order) == pytest.approx(0.97130, abs=5e-6)
     found = extrapolation.estimate(SIZES, RECOVERY)
     assert (found.order, found.method) == (order, "GCI")
@@ -24,9 +27,16 @@ def test_published_check():
     assert found.uncertainty == pytest.approx(0.00103083 * 0.97050, rel=1e-5)
 
 
-@given(limit=st.floats(-5.0, 5.0), slope=st.sampled_from([-3.0, -0.2, 0.2, 3.0]), order=st.floats(0.6, 3.0),
-       coarser=st.floats(1.3, 4.0), finer=st.floats(1.3, 4.0))
-def test_manufactured_series_gives_back_its_order_and_its_limit(limit, slope, order, coarser, finer):
+@given(
+    limit=st.floats(-5.0, 5.0),
+    slope=st.sampled_from([-3.0, -0.2, 0.2, 3.0]),
+    order=st.floats(0.6, 3.0),
+    coarser=st.floats(1.3, 4.0),
+    finer=st.floats(1.3, 4.0),
+)
+def test_manufactured_series_gives_back_its_order_and_its_limit(
+    limit, slope, order, coarser, finer
+):
     """f_0 + a h^p on grids whose two ratios differ."""
     sizes = (coarser * finer, finer, 1.0)
     values = [limit + slope * size**order for size in sizes]
@@ -44,15 +54,18 @@ def test_second_order_series_is_bounded_by_five_quarters_of_its_error(limit, slo
     assert found.gci_percent == pytest.approx(125.0 * slope / values[2], rel=1e-6)
 
 
-@pytest.mark.parametrize("values, order, uncertainty, words", [
-    ((1.0, 3.0, 2.0), None, 3.0, "not monotone: three times half the range"),
-    ((1.0, 2.0, 2.0), None, 1.5, "not monotone: three times half the range"),
-    ((0.0, 1.0, 5.0), -2.0, 7.5, "order below 0.5: three times half the range"),
-    ((0.0, 1.0, 2.0), 0.0, 3.0, "order below 0.5: three times half the range"),
-    ((0.0, 8.0, 9.0), 3.0, 1.25 / 3.0, "GCI, order limited to 2"),
-    ((7.0, 7.0, 7.0), None, 0.0, "no change at all"),
-    ((None, 3.0, 2.0), None, None, "a run did not settle"),
-])
+@pytest.mark.parametrize(
+    "values, order, uncertainty, words",
+    [
+        ((1.0, 3.0, 2.0), None, 3.0, "not monotone: three times half the range"),
+        ((1.0, 2.0, 2.0), None, 1.5, "not monotone: three times half the range"),
+        ((0.0, 1.0, 5.0), -2.0, 7.5, "order below 0.5: three times half the range"),
+        ((0.0, 1.0, 2.0), 0.0, 3.0, "order below 0.5: three times half the range"),
+        ((0.0, 8.0, 9.0), 3.0, 1.25 / 3.0, "GCI, order limited to 2"),
+        ((7.0, 7.0, 7.0), None, 0.0, "no change at all"),
+        ((None, 3.0, 2.0), None, None, "a run did not settle"),
+    ],
+)
 def test_values_that_show_no_order_say_so(values, order, uncertainty, words):
     found = extrapolation.estimate(SIZES, values)
     assert (found.uncertainty, found.method) == (pytest.approx(uncertainty), words)
@@ -60,7 +73,9 @@ def test_values_that_show_no_order_say_so(values, order, uncertainty, words):
 
 
 def test_only_the_three_finest_grids_count():
-    assert extrapolation.estimate((8.0, *SIZES), (0.0, *RECOVERY)) == extrapolation.estimate(SIZES, RECOVERY)
+    assert extrapolation.estimate((8.0, *SIZES), (0.0, *RECOVERY)) == extrapolation.estimate(
+        SIZES, RECOVERY
+    )
 
 
 def test_value_of_zero_has_an_uncertainty_but_no_percentage():

@@ -1,4 +1,5 @@
-"""The stage ``convergence`` on stubbed runs whose rates follow a law: what it asks for, what it finds, and what it says."""
+"""The stage ``convergence`` on stubbed runs whose rates follow a law: what it asks for, what it
+finds, and what it says."""
 
 import json
 import math
@@ -27,13 +28,17 @@ NOMINAL_PENALTY = scenes.load("tiny").contact.penalty
 
 
 def settled(run):
-    """Rates (deg/s): x errs with the square of the element size (mm) and of the step, y jumps to and fro, z never changes; the
-    surrogate is off by ``SURROGATE_ERROR`` from the finest mesh."""
+    """Rates (deg/s): x errs with the square of the element size (mm) and of the step, y jumps to
+    and fro, z never changes; the surrogate is off by ``SURROGATE_ERROR`` from the finest mesh."""
     if run.fidelity == "lowfi":
         return 3.0 + 1e-3 * 16.0 + 0.1 * 0.9**2 + SURROGATE_ERROR, 1.0, 2.0
     size, dt = 1e3 * run.numerics.element_size, step(run)
     penalty = run.scene.contact.penalty / NOMINAL_PENALTY if run.scene.contact else 1.0
-    return 3.0 + 1e-3 * size**2 + 0.1 * dt**2 + 0.01 * math.log2(penalty), {8.0: 1.3}.get(size, 1.0), 2.0
+    return (
+        3.0 + 1e-3 * size**2 + 0.1 * dt**2 + 0.01 * math.log2(penalty),
+        {8.0: 1.3}.get(size, 1.0),
+        2.0,
+    )
 
 
 def step(run):
@@ -45,8 +50,20 @@ def motion(run, **parts):
     force = np.zeros((601, 16, 3))
     if run.scene.contact:
         force[:, 2, 1] = 20.0
-    cost = {"wall_s": 1.0, "compile_s": 0.0, "steps": 10, "dt_s": step(run), "elements": 8, "ns_per_element_step": 1.0}
-    return flight(lambda t: np.tile(np.radians(settled(run)), (t.size, 1)), pad_force=force, cost=cost, **parts)
+    cost = {
+        "wall_s": 1.0,
+        "compile_s": 0.0,
+        "steps": 10,
+        "dt_s": step(run),
+        "elements": 8,
+        "ns_per_element_step": 1.0,
+    }
+    return flight(
+        lambda t: np.tile(np.radians(settled(run)), (t.size, 1)),
+        pad_force=force,
+        cost=cost,
+        **parts,
+    )
 
 
 def rippling(scene, numerics):
@@ -56,7 +73,9 @@ def rippling(scene, numerics):
 
 @pytest.fixture
 def asked(monkeypatch):
-    """Labels of the runs that were made, in order; ``asked.failing`` maps a label to what became of it instead."""
+    """Labels of the runs that were made, in order; ``asked.failing`` maps a label to what became of
+    it instead."""
+
     class Labels(list):
         failing: ClassVar[dict[str, str]] = {}
 
@@ -81,7 +100,11 @@ def study(tmp_path, asked):
 
 
 def row(found, parameter, quantity):
-    matching, = [item for item in found["quantities"] if (item["parameter"], item["quantity"]) == (parameter, quantity)]
+    (matching,) = [
+        item
+        for item in found["quantities"]
+        if (item["parameter"], item["quantity"]) == (parameter, quantity)
+    ]
     return matching
 
 
@@ -92,7 +115,8 @@ def test_order_and_uncertainty_of_a_law_of_second_order(study):
     assert x["order"] == pytest.approx(2.0, abs=1e-9)
     assert x["uncertainty"] == pytest.approx(1.25 * 0.016)
     assert x["gci_percent"] == pytest.approx(125.0 * 0.016 / x["values"][-1])
-    # At 8 mm, as other stages run, the error is 0.064: what lies between the values, and the uncertainty of the finest.
+    # At 8 mm, as other stages run, the error is 0.064: what lies between the values, and the
+    # uncertainty of the finest.
     assert x["nominal_uncertainty"] == pytest.approx(0.064 - 0.016 + 1.25 * 0.016)
     in_time = row(found, "time step", "settled rate x")
     assert in_time["sizes"] == [0.9, 0.45, 0.225]
@@ -106,29 +130,47 @@ def test_values_without_order_are_told_apart(study):
     assert y["order"] is None and "not monotone" in y["method"]
     assert y["uncertainty"] == pytest.approx(1.5 * 0.3)
     assert row(found, "element size", "settled rate z")["method"] == "no change at all"
-    assert found["summary"][0] == ("element size on phi15: settled rates within 0.75 deg/s at the default 8 mm, "
-                                   "within 0.45 deg/s at 4 mm")
+    assert found["summary"][0] == (
+        "element size on phi15: settled rates within 0.75 deg/s at the default 8 mm, "
+        "within 0.45 deg/s at 4 mm"
+    )
 
 
 def test_loads_of_the_one_pad_that_touches(study):
     found = convergence.run(study)
-    names = [item["quantity"] for item in found["quantities"] if item["parameter"] == "element size"]
-    assert names == ["settled rate x", "settled rate y", "settled rate z", "settled axial velocity", "contact impulse, pad 2",
-                     "peak contact force below 1 kHz"]
-    assert row(found, "element size", "contact impulse, pad 2")["values"] == pytest.approx([0.6] * 3)
-    assert row(found, "time step", "peak contact force below 1 kHz")["values"] == pytest.approx([20.0] * 3)
+    names = [
+        item["quantity"] for item in found["quantities"] if item["parameter"] == "element size"
+    ]
+    assert names == [
+        "settled rate x",
+        "settled rate y",
+        "settled rate z",
+        "settled axial velocity",
+        "contact impulse, pad 2",
+        "peak contact force below 1 kHz",
+    ]
+    assert row(found, "element size", "contact impulse, pad 2")["values"] == pytest.approx(
+        [0.6] * 3
+    )
+    assert row(found, "time step", "peak contact force below 1 kHz")["values"] == pytest.approx(
+        [20.0] * 3
+    )
     assert found["force_cutoff_hz"] == 1000.0
 
 
 def test_stress_is_judged_on_patches_and_never_at_its_peak(tmp_path, monkeypatch, asked):
-    """A patch errs with the square of the element size; the peak grows by a third with every halving, as at a sharp corner."""
+    """A patch errs with the square of the element size; the peak grows by a third with every
+    halving, as at a sharp corner."""
+
     def execute(run, progress=None, threads=None, **kept):
         if run.fidelity == "lowfi":
             return motion(run)
         size = 1e3 * run.numerics.element_size
         gauge = np.zeros((601, 2, 6))
         gauge[:, 1, 0] = 1e6 * (5.0 + 1e-3 * size**2)
-        return motion(run, wall_stress=gauge, stress={"peak_stress_pa": 1e7 * 0.75 ** math.log2(size)})
+        return motion(
+            run, wall_stress=gauge, stress={"peak_stress_pa": 1e7 * 0.75 ** math.log2(size)}
+        )
 
     monkeypatch.setattr(store_module, "execute", execute)
     study = Study(scenes.load("tiny"), tmp_path / "tiny", defaults("tiny"))
@@ -137,34 +179,55 @@ def test_stress_is_judged_on_patches_and_never_at_its_peak(tmp_path, monkeypatch
     assert (patch["unit"], patch["order"]) == ("MPa", pytest.approx(2.0, abs=1e-6))
     assert patch["uncertainty"] == pytest.approx(1.25 * 0.016, rel=1e-6)
     peak = row(found, "element size", "peak stress of the rail")
-    assert (peak["uncertainty"], peak["nominal_uncertainty"], peak["gci_percent"]) == (None, None, None)
+    assert (peak["uncertainty"], peak["nominal_uncertainty"], peak["gci_percent"]) == (
+        None,
+        None,
+        None,
+    )
     assert peak["order"] < 0.0 and "mesh-dependent" in peak["method"]
-    shown = Page(study.scene, study.folder, {"convergence": found}, Runs({}, {}, {}), {})._convergence()
+    shown = Page(
+        study.scene, study.folder, {"convergence": found}, Runs({}, {}, {}), {}
+    )._convergence()
     assert "patch stress below 1 kHz" in shown and "mesh-dependent" in shown
 
 
 def test_penalty_and_quadrature_are_compared_with_the_nominal_run(study):
     found = convergence.run(study)
     assert [item["factor"] for item in found["penalty"]] == [0.25, 1.0, 4.0, 16.0]
-    assert [item["settled_rate_change_deg_s"] for item in found["penalty"]] == pytest.approx([0.02, 0.0, 0.02, 0.04])
+    assert [item["settled_rate_change_deg_s"] for item in found["penalty"]] == pytest.approx(
+        [0.02, 0.0, 0.02, 0.04]
+    )
     assert found["penalty"][3]["penalty_n_m3"] == 16.0 * NOMINAL_PENALTY
-    changes = {item["points_per_edge"]: item["settled_rate_change_deg_s"] for item in found["quadrature"]}
+    changes = {
+        item["points_per_edge"]: item["settled_rate_change_deg_s"] for item in found["quadrature"]
+    }
     assert changes == {2: 0.0, 4: 0.0, 8: 0.0}
-    assert found["summary"][2:4] == ["penalty stiffness, times 0.25 to 16: a settled rate changes by up to 0.04 deg/s",
-                                    "Gauss points per facet edge, 2 to 8: a settled rate changes by up to 0 deg/s"]
+    assert found["summary"][2:4] == [
+        "penalty stiffness, times 0.25 to 16: a settled rate changes by up to 0.04 deg/s",
+        "Gauss points per facet edge, 2 to 8: a settled rate changes by up to 0 deg/s",
+    ]
 
 
 def test_ripple_of_both_meshes_beside_that_of_a_single_point(study):
     found = convergence.run(study)
-    assert [(row["element_size_m"], row["points_per_edge"], row["ripple"]) for row in found["ripple"]] == [
-        (0.016, 1, 0.04), (0.016, 8, 0.005), (0.008, 8, 0.005)]
-    assert found["summary"][-2] == "ripple of a constant contact force at 750 Hz, at which facets of 8 mm are crossed: 0.5 %"
-    shown = Page(study.scene, study.folder, {"convergence": found}, Runs({}, {}, {}), {})._convergence()
+    assert [
+        (row["element_size_m"], row["points_per_edge"], row["ripple"]) for row in found["ripple"]
+    ] == [(0.016, 1, 0.04), (0.016, 8, 0.005), (0.008, 8, 0.005)]
+    assert (
+        found["summary"][-2]
+        == "ripple of a constant contact force at 750 Hz, at which facets of 8 mm are crossed: 0.5 "
+        "%"
+    )
+    shown = Page(
+        study.scene, study.folder, {"convergence": found}, Runs({}, {}, {}), {}
+    )._convergence()
     assert "ripple of a constant contact force where facets are crossed" in shown
 
 
 @pytest.mark.parametrize("error, size, surer", [(0.5, 16e-3, True), (0.4, 4e-3, False)])
-def test_speed_is_measured_on_the_coarsest_mesh_that_is_surer(study, monkeypatch, error, size, surer):
+def test_speed_is_measured_on_the_coarsest_mesh_that_is_surer(
+    study, monkeypatch, error, size, surer
+):
     """y jumps by 0.3 deg/s, which leaves 0.45 open at 4 mm, and as much at 16 mm."""
     monkeypatch.setattr(sys.modules[__name__], "SURROGATE_ERROR", error)
     found = convergence.run(study)
@@ -172,16 +235,35 @@ def test_speed_is_measured_on_the_coarsest_mesh_that_is_surer(study, monkeypatch
     assert (equal["element_size_m"], equal["surer"]) == (size, surer)
     assert equal["error_deg_s"] == pytest.approx(error)
     assert equal["ratio"] > 0.0 and equal["highfi_repeats"] == study.settings.highfi_repeats
-    assert "speed at equal accuracy on phi15" in found["summary"][-1] and ("at least" in found["summary"][-1]) is not surer
+    assert (
+        "speed at equal accuracy on phi15" in found["summary"][-1]
+        and ("at least" in found["summary"][-1]) is not surer
+    )
 
 
 def test_no_run_is_made_twice_and_none_again(study, asked):
-    """The run on the coarse mesh serves all four tables: it is one mesh, one step, one penalty, and eight points are its own
-    rule."""
+    """The run on the coarse mesh serves all four tables: it is one mesh, one step, one penalty, and
+    eight points are its own rule."""
     convergence.run(study)
-    assert sorted(asked) == sorted(["phi15" + tag for tag in (
-        "", "-coarse", "-4mm", "-step-coarse", "-safety-0.225-coarse", "-penalty-0.25-coarse", "-penalty-coarse",
-        "-penalty-16-coarse", "-quadrature-2-coarse", "-quadrature-4-coarse")] + ["phi15"])  # the last is the surrogate
+    assert sorted(asked) == sorted(
+        [
+            "phi15" + tag
+            for tag in (
+                "",
+                "-coarse",
+                "-4mm",
+                "-step-coarse",
+                "-safety-0.225-coarse",
+                "-penalty-0.25-coarse",
+                "-penalty-coarse",
+                # the last is the surrogate
+                "-penalty-16-coarse",
+                "-quadrature-2-coarse",
+                "-quadrature-4-coarse",
+            )
+        ]
+        + ["phi15"]
+    )
     del asked[:]
     convergence.run(study)
     assert asked == []
@@ -197,7 +279,11 @@ def test_run_that_did_not_settle_leaves_its_error_unknown(study, asked):
     asked.failing = {"phi15-4mm": "jammed", "phi15-penalty-16-coarse": "diverged"}
     found = convergence.run(study)
     x = row(found, "element size", "settled rate x")
-    assert (x["uncertainty"], x["nominal_uncertainty"], x["method"]) == (None, None, "a run did not settle")
+    assert (x["uncertainty"], x["nominal_uncertainty"], x["method"]) == (
+        None,
+        None,
+        "a run did not settle",
+    )
     assert "nothing is known of its error" in found["summary"][0]
     assert row(found, "element size", "contact impulse, pad 2")["uncertainty"] == 0.0
     assert found["penalty"][3]["settled_rate_deg_s"] == [None] * 3
@@ -214,7 +300,11 @@ def test_mesh_that_diverges_stops_the_stage(study, asked):
 def test_scene_without_contact_has_no_loads_and_no_penalty(tmp_path, asked):
     scene = scenes.load("tiny").replace({"contact": None, "friction": None})
     found = convergence.run(Study(scene, tmp_path, defaults("tiny")))
-    assert found["penalty"] == found["quadrature"] == [] and found["equal_accuracy"] is None and len(found["summary"]) == 2
+    assert (
+        found["penalty"] == found["quadrature"] == []
+        and found["equal_accuracy"] is None
+        and len(found["summary"]) == 2
+    )
     assert {item["unit"] for item in found["quantities"]} == {"deg/s", "m/s"}
 
 
@@ -243,12 +333,24 @@ def test_page_shows_the_study_only_where_there_is_one(study):
 
 def test_page_without_a_settled_run_has_no_figure(study, asked):
     asked.failing = {"phi15-4mm": "jammed"}
-    page = Page(study.scene, study.folder, {"convergence": convergence.run(study)}, Runs({}, {}, {}), {})
+    page = Page(
+        study.scene, study.folder, {"convergence": convergence.run(study)}, Runs({}, {}, {}), {}
+    )
     assert "chart-convergence" not in page._convergence() and page.pictures == []
 
 
 def test_command_prints_the_summary_or_the_result(tmp_path, asked):
-    arguments = ["convergence", "--scene", "tiny", "--condition", "phi60", "--workers", "1", "--out", str(tmp_path)]
+    arguments = [
+        "convergence",
+        "--scene",
+        "tiny",
+        "--condition",
+        "phi60",
+        "--workers",
+        "1",
+        "--out",
+        str(tmp_path),
+    ]
     said = CliRunner().invoke(app, arguments, catch_exceptions=False)
     written = json.loads((tmp_path / "tiny" / "convergence.json").read_text())
     assert said.exit_code == 0 and said.stdout.splitlines() == written["summary"]
@@ -257,7 +359,9 @@ def test_command_prints_the_summary_or_the_result(tmp_path, asked):
 
 
 def test_command_refuses_an_unknown_condition(tmp_path, asked):
-    refused = CliRunner().invoke(app, ["convergence", "--scene", "tiny", "--condition", "phi99", "--out", str(tmp_path)])
+    refused = CliRunner().invoke(
+        app, ["convergence", "--scene", "tiny", "--condition", "phi99", "--out", str(tmp_path)]
+    )
     assert refused.exit_code == 2 and "phi99" in refused.stderr
     assert not list(tmp_path.iterdir())
 

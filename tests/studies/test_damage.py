@@ -1,5 +1,5 @@
-"""Damage to a stored result never reaches a result made of it: it is said, and what was damaged is made again, with the same
-numbers."""
+"""Damage to a stored result never reaches a result made of it: it is said, and what was damaged is
+made again, with the same numbers."""
 
 import json
 import math
@@ -30,7 +30,8 @@ RATE = 0.125  # rad/s, of which means are exact
 
 @pytest.fixture
 def engine(monkeypatch):
-    """A reference that needs no time: counts its calls, and tells the time a run took by their number."""
+    """A reference that needs no time: counts its calls, and tells the time a run took by their
+    number."""
     calls = []
 
     def execute(run, progress=None, threads=None, **kept):
@@ -62,16 +63,21 @@ def rates(document: dict) -> list:
 
 
 def test_a_stage_is_never_made_again_from_a_damaged_trajectory(engine, study, capsys):
-    """One bit in the digits of a rate, and 99 rad/s written by another program: the run is made again, and the stage of that."""
+    """One bit in the digits of a rate, and 99 rad/s written by another program: the run is made
+    again, and the stage of that."""
     first = runs.run(study, "highfi")
     assert rates(first) == [[math.degrees(RATE)] * 3] * 2
     path = study.path(first["conditions"][0]["trajectory"])
 
     def edit(path):
         with h5py.File(path, "r+") as file:
-            file.attrs["outcome"] = json.dumps(json.loads(file.attrs["outcome"]) | {"rate": [99.0, 0.0, 0.0]})
+            file.attrs["outcome"] = json.dumps(
+                json.loads(file.attrs["outcome"]) | {"rate": [99.0, 0.0, 0.0]}
+            )
 
-    for number, damage in enumerate((edit, lambda path: flip(path, path.read_bytes().find(b'"rate": [0.1') + 11))):
+    for number, damage in enumerate(
+        (edit, lambda path: flip(path, path.read_bytes().find(b'"rate": [0.1') + 11))
+    ):
         capsys.readouterr()
         damage(path)
         again = runs.run(study, "highfi")
@@ -89,14 +95,25 @@ def test_a_flipped_bit_anywhere_in_a_stored_run_has_it_made_again(engine, study,
     first, path = study.store.get(run), study.store.path(run)
     flip(path, round(share * (path.stat().st_size - 1)))
     again = study.store.get(run)
-    assert engine == ["phi15", "phi15"] and again.outcome == first.outcome and np.array_equal(again.rate, first.rate)
+    assert (
+        engine == ["phi15", "phi15"]
+        and again.outcome == first.outcome
+        and np.array_equal(again.rate, first.rate)
+    )
     assert f"{path} is damaged" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("change", [
-    lambda text: text.replace(f"{math.degrees(RATE)}", "99.0", 1), lambda text: text.replace('"exited"', '"jammed"', 1),
-    lambda text: text.replace('"failed": []', '"failed": [ "phi15: diverged" ]'), lambda text: text[:-20], lambda text: "[]",
-    lambda text: text.replace('"sha256"', '"sha255"')])
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda text: text.replace(f"{math.degrees(RATE)}", "99.0", 1),
+        lambda text: text.replace('"exited"', '"jammed"', 1),
+        lambda text: text.replace('"failed": []', '"failed": [ "phi15: diverged" ]'),
+        lambda text: text[:-20],
+        lambda text: "[]",
+        lambda text: text.replace('"sha256"', '"sha255"'),
+    ],
+)
 def test_an_edited_result_file_is_made_again(engine, study, capsys, change):
     first, path = runs.run(study, "highfi"), study.path("highfi.json")
     text = path.read_text()
@@ -137,29 +154,48 @@ def test_damaged_walls_are_found_again(study, monkeypatch, capsys):
     """Stiffer or softer by one bit, they would change every rate of the surrogate on them."""
     scene, calls, random = study.scene, [], np.random.default_rng(1)
     faces = sum(len(pad.normals) for pad in scene.pads)
-    known = Walls(np.array([0.0, 0.1]), random.random((2, faces, PATTERNS, faces, PATTERNS)), np.zeros(faces, int),
-                  random.random((faces, 2)), np.ones((1, 1)), random.random((2, faces, PATTERNS, 1)), digest(scene))
+    known = Walls(
+        np.array([0.0, 0.1]),
+        random.random((2, faces, PATTERNS, faces, PATTERNS)),
+        np.zeros(faces, int),
+        random.random((faces, 2)),
+        np.ones((1, 1)),
+        random.random((2, faces, PATTERNS, 1)),
+        digest(scene),
+    )
 
     def found(scene, size):
         calls.append(size)
         return known
 
     monkeypatch.setattr(calibrate, "compliance", found)
-    assert compliance.load(study, scene).hash == compliance.load(study, scene).hash == known.hash and len(calls) == 1
-    path, = study.folder.glob("compliance-*.npz")
+    assert (
+        compliance.load(study, scene).hash == compliance.load(study, scene).hash == known.hash
+        and len(calls) == 1
+    )
+    (path,) = study.folder.glob("compliance-*.npz")
     for number, place in enumerate(np.linspace(0, path.stat().st_size - 1, 40).astype(int)):
         flip(path, int(min(place, path.stat().st_size - 1)))
         assert compliance.load(study, scene).hash == known.hash and len(calls) == number + 2
-        assert f"{path}: not a file of walls" in (told := capsys.readouterr().err) and "found again" in told
+        assert (
+            f"{path}: not a file of walls" in (told := capsys.readouterr().err)
+            and "found again" in told
+        )
 
 
 def test_damaged_cases_of_a_search_are_run_again(tmp_path, capsys):
     """The values of every set of tolerances that was tried: None asks for them anew."""
-    path, values = tmp_path / "limits" / "a.nc", np.random.default_rng(2).random((50, len(answers.ALL)))
+    path, values = (
+        tmp_path / "limits" / "a.nc",
+        np.random.default_rng(2).random((50, len(answers.ALL))),
+    )
     results.save(path, values, 0.5, {"misalignment": 0.1})
     content = path.read_bytes()
     assert np.array_equal(results.load(path), values)
-    for place in [content.find(values[7].tobytes()) + 6, *np.linspace(0, len(content) - 1, 60).astype(int)]:
+    for place in [
+        content.find(values[7].tobytes()) + 6,
+        *np.linspace(0, len(content) - 1, 60).astype(int),
+    ]:
         path.write_bytes(content)
         flip(path, int(place))
         assert results.load(path) is None, place
@@ -177,16 +213,32 @@ def test_edited_times_of_a_benchmark_are_not_shown(tmp_path, capsys):
 def test_an_edited_calibration_is_bad_input_until_its_digest_is_removed(tmp_path):
     path = tmp_path / "calibration.toml"
     CALIBRATION.save(path)
-    edited = path.read_text(encoding="utf-8").replace('"friction.static" = 0.25', '"friction.static" = 0.26')
+    edited = path.read_text(encoding="utf-8").replace(
+        '"friction.static" = 0.25', '"friction.static" = 0.26'
+    )
     path.write_text(edited, encoding="utf-8")
-    asked = ["run", "--scene", "tiny", "--model", "springs", "--calibration", str(path), "--out", str(tmp_path / "out")]
+    asked = [
+        "run",
+        "--scene",
+        "tiny",
+        "--model",
+        "springs",
+        "--calibration",
+        str(path),
+        "--out",
+        str(tmp_path / "out"),
+    ]
     told = CliRunner().invoke(app, asked)
     assert told.exit_code == 2 and f"{path} does not fit the digest it carries" in told.stderr
-    assert "remove the line '# sha-256 ...' if you edited the file on purpose" in told.stderr and not (tmp_path / "out").exists()
+    assert (
+        "remove the line '# sha-256 ...' if you edited the file on purpose" in told.stderr
+        and not (tmp_path / "out").exists()
+    )
 
 
 def test_every_netcdf_result_carries_a_digest(tmp_path):
-    """Those that only users read, too: the stages keep the digests of whole files, and who copies one file can check it."""
+    """Those that only users read, too: the stages keep the digests of whole files, and who copies
+    one file can check it."""
     from scenes.files import require_whole
     from studies.droptest import analysis, shipped, signals
 

@@ -1,4 +1,5 @@
-"""The ``tipoff ensemble`` command: counts that close, a case alone, what it refuses, and what it says when the disk is full."""
+"""The ``tipoff ensemble`` command: counts that close, a case alone, what it refuses, and what it
+says when the disk is full."""
 
 import errno
 import json
@@ -13,14 +14,19 @@ pytest.importorskip("zarr")
 
 
 def call(*arguments, model="springs"):
-    return CliRunner().invoke(app, ["ensemble", "--model", model, *(str(argument) for argument in arguments)])
+    return CliRunner().invoke(
+        app, ["ensemble", "--model", model, *(str(argument) for argument in arguments)]
+    )
 
 
 def test_compliant_contact_answers_unless_another_model_is_named(tmp_path):
     asked = ("--scene", "tiny", "--cases", 40, "--out", tmp_path)
     default = CliRunner().invoke(app, ["ensemble", *map(str, asked)])
     assert default.exit_code == 0, default.output
-    assert "tiny, model compliant: 40 cases" in default.stdout and "agreement     not measured for this scene" in default.stdout
+    assert (
+        "tiny, model compliant: 40 cases" in default.stdout
+        and "agreement     not measured for this scene" in default.stdout
+    )
     assert default.stderr.count("rail compliance, once per rail and pads") == 1
     named = call(*asked, model="compliant")
     assert "rail compliance" not in named.stderr and "all of them stored before" in named.stderr
@@ -31,16 +37,26 @@ def test_default_errors_run_and_are_kept(tmp_path):
     first = call("--cases", 300, "--out", tmp_path)
     assert first.exit_code == 0, first.output
     assert "300 cases = 300 ok + 0 refused + 0 failed" in first.stdout
-    assert "truncated-normal, rule redraw" in first.stdout and "order statistics of independent draws" in first.stdout
+    assert (
+        "truncated-normal, rule redraw" in first.stdout
+        and "order statistics of independent draws" in first.stdout
+    )
     found = json.loads((tmp_path / "reference" / "ensemble.json").read_text())
-    assert found["run"]["cases"] == found["settled"] == 300 and found["run"]["cpu_ms_per_case"] > 0.0
+    assert (
+        found["run"]["cases"] == found["settled"] == 300 and found["run"]["cpu_ms_per_case"] > 0.0
+    )
     median = found["quantiles"]["rate_deg_s"][1]
     assert median["low"] < median["value"] < median["high"]
     assert found["quantiles"]["rate_deg_s"][-1]["high"] is None  # 300 runs hold no bound of 99.73 %
-    assert found["provenance"]["mass_offset.eccentricity.axial"].startswith("three sigma from the paper")
+    assert found["provenance"]["mass_offset.eccentricity.axial"].startswith(
+        "three sigma from the paper"
+    )
 
     again = call("--cases", 300, "--out", tmp_path, "--json")
-    assert json.loads(again.stdout)["run"]["cases"] == 0 and json.loads(again.stdout)["digest"] == found["digest"]
+    assert (
+        json.loads(again.stdout)["run"]["cases"] == 0
+        and json.loads(again.stdout)["digest"] == found["digest"]
+    )
 
     alone = call("--cases", 300, "--out", tmp_path, "--case", 123)
     assert alone.exit_code == 0 and "the stored result has the same bits" in alone.stdout
@@ -49,22 +65,35 @@ def test_default_errors_run_and_are_kept(tmp_path):
 
 def test_bad_rows_are_refused_alone(tmp_path):
     table = tmp_path / "cases.csv"
-    table.write_text("thrust_offset.misalignment.axial,payload.mass\ndeg,kg\n0.1,9.9\n0.2,-1\nx,9.9\n0.3,\n")
+    table.write_text(
+        "thrust_offset.misalignment.axial,payload.mass\ndeg,kg\n0.1,9.9\n0.2,-1\nx,9.9\n0.3,\n"
+    )
     found = json.loads(call("--table", table, "--out", tmp_path / "out", "--json").stdout)
     assert found["counts"] == {"asked": 4, "ok": 2, "refused": 2, "failed": 0}
     assert [item["case"] for item in found["failures"]] == [1, 2]
-    assert ("payload.mass" in found["failures"][0]["reason"]
-            and found["failures"][1]["inputs"]["thrust_offset.misalignment.axial"] == "x")
-    assert all(row["low"] is None for row in found["quantiles"]["rate_deg_s"]) and found["bounds"].startswith("none")
+    assert (
+        "payload.mass" in found["failures"][0]["reason"]
+        and found["failures"][1]["inputs"]["thrust_offset.misalignment.axial"] == "x"
+    )
+    assert all(row["low"] is None for row in found["quantiles"]["rate_deg_s"]) and found[
+        "bounds"
+    ].startswith("none")
     table.write_text("payload.mass\nkg\n-1\n")
     hopeless = call("--table", table, "--out", tmp_path / "out")
     assert hopeless.exit_code == 1 and "case 0: refused" in hopeless.stderr
 
 
-@pytest.mark.parametrize("arguments, words", [
-    (["--vary", "no_such_file"], "paper"), (["--table", "missing.csv"], "missing.csv"),
-    (["--tolerance", "0.5"], "relative_tolerance"), (["--table", "missing.csv", "--seed", "2"], "the table lists its cases"),
-    (["--sampling", "latin-hypercube", "--cases", "10000000"], "at most"), (["--set", "payload.mass=-1 kg"], "payload.mass")])
+@pytest.mark.parametrize(
+    "arguments, words",
+    [
+        (["--vary", "no_such_file"], "paper"),
+        (["--table", "missing.csv"], "missing.csv"),
+        (["--tolerance", "0.5"], "relative_tolerance"),
+        (["--table", "missing.csv", "--seed", "2"], "the table lists its cases"),
+        (["--sampling", "latin-hypercube", "--cases", "10000000"], "at most"),
+        (["--set", "payload.mass=-1 kg"], "payload.mass"),
+    ],
+)
 def test_bad_input_is_refused_and_nothing_written(tmp_path, arguments, words):
     result = call("--out", tmp_path / "out", *arguments)
     assert result.exit_code == 2
@@ -73,7 +102,9 @@ def test_bad_input_is_refused_and_nothing_written(tmp_path, arguments, words):
 
 
 def test_bounds_are_not_claimed_for_points_that_depend_on_each_other(tmp_path):
-    found = json.loads(call("--cases", 16, "--sampling", "sobol", "--out", tmp_path, "--json").stdout)
+    found = json.loads(
+        call("--cases", 16, "--sampling", "sobol", "--out", tmp_path, "--json").stdout
+    )
     assert "sobol" in found["bounds"] and found["quantiles"]["rate_deg_s"][1]["low"] is None
 
 
@@ -84,14 +115,20 @@ def test_a_full_disk_is_exit_code_1_and_a_message(tmp_path, monkeypatch):
     monkeypatch.setattr(stores, "write_json", full)
     result = call("--cases", 20, "--out", tmp_path)
     assert result.exit_code == 1
-    assert "No space left on device" in result.stderr and "the same command goes on from there" in result.stderr
+    assert (
+        "No space left on device" in result.stderr
+        and "the same command goes on from there" in result.stderr
+    )
     assert "Traceback" not in result.output
     monkeypatch.undo()
     assert call("--cases", 20, "--out", tmp_path).exit_code == 0
-    store, = (tmp_path / "reference").glob("ensemble-*")
+    (store,) = (tmp_path / "reference").glob("ensemble-*")
     (store / "cases.zarr" / "zarr.json").write_text("{")
     told = call("--cases", 20, "--out", tmp_path)
-    assert told.exit_code == 0 and "zarr.json is damaged or was edited: it is written again" in told.stderr
+    assert (
+        told.exit_code == 0
+        and "zarr.json is damaged or was edited: it is written again" in told.stderr
+    )
     (store / "cases.zarr" / "zarr.json").write_text("{")
     (store / "done" / "000000.json").unlink()  # now nothing says whose store this is
     assert call("--cases", 20, "--out", tmp_path).exit_code == 1

@@ -1,4 +1,5 @@
-"""``tipoff flight``: what it writes, what it takes from options, what it refuses, and its section of the page."""
+"""``tipoff flight``: what it writes, what it takes from options, what it refuses, and its section
+of the page."""
 
 import json
 
@@ -25,6 +26,7 @@ xarray = pytest.importorskip("xarray")
 @pytest.fixture
 def uncalibrated(monkeypatch):
     """The surrogate with the constants of the scene, which no reference has to be run for."""
+
     def surrogate(study, model=None, condition=None):
         return Surrogate(study.condition(condition) if condition else study.scene, None, None)
 
@@ -39,7 +41,10 @@ def test_conditions_and_cases_are_flown_and_kept(tmp_path, uncalibrated, monkeyp
     asked = ("--condition", "phi35", "--condition", "phi60", "--cases", 60, "--out", tmp_path)
     first = call(*asked)
     assert first.exit_code == 0, first.output
-    assert "60 cases = 60 ok + 0 refused + 0 failed" in first.stdout and "of it by errors" in first.stdout
+    assert (
+        "60 cases = 60 ok + 0 refused + 0 failed" in first.stdout
+        and "of it by errors" in first.stdout
+    )
     folder = tmp_path / "reference"
     found = json.loads((folder / "flight.json").read_text())
     assert [item["condition"] for item in found["conditions"]] == ["phi35", "phi60"]
@@ -48,7 +53,9 @@ def test_conditions_and_cases_are_flown_and_kept(tmp_path, uncalibrated, monkeyp
     assert row["miss_m"] == pytest.approx(np.hypot(row["miss_y_m"], row["miss_z_m"]))
     assert row["miss_m"] > 10.0 * row["tip_off_miss_m"] > 0.0  # the orbit bends the way of all
     assert curve["pointing_deg"][-1] == pytest.approx(row["pointing_deg"], rel=1e-5)
-    assert curve["to_target_m"][-1] == pytest.approx([100.0, row["miss_y_m"], row["miss_z_m"]], rel=1e-4)
+    assert curve["to_target_m"][-1] == pytest.approx(
+        [100.0, row["miss_y_m"], row["miss_z_m"]], rel=1e-4
+    )
     assert min(curve["clearance_m"]) == pytest.approx(1e-3 * row["clearance_mm"], abs=1e-5)
     median = found["cases"]["quantiles"]["miss_m"][summary.SHARES.index(0.5)]
     assert median["low"] < median["value"] < median["high"]
@@ -58,56 +65,107 @@ def test_conditions_and_cases_are_flown_and_kept(tmp_path, uncalibrated, monkeyp
         assert np.median(data.miss_m) == pytest.approx(median["value"], rel=0.02)
         assert float(data.condition_miss_m[0]) == pytest.approx(row["miss_m"])
     assert sorted(path.name for path in (folder / "figures").glob("flight-*.svg")) == [
-        "flight-axis.svg", "flight-clearance.svg", "flight-miss.svg", "flight-path.svg"]
+        "flight-axis.svg",
+        "flight-clearance.svg",
+        "flight-miss.svg",
+        "flight-path.svg",
+    ]
 
     with xarray.open_dataset(folder / found["data"], engine="h5netcdf") as data:
-        for item in answers.ALL:  # what the payload left its rail with stands beside its flight, by the same name everywhere
+        # what the payload left its rail with stands beside its flight, by the same name everywhere
+        for item in answers.ALL:
             kept = data[item.name].values
-            assert np.median(kept) == pytest.approx(found["cases"]["quantiles"][item.name][summary.SHARES.index(0.5)]["value"],
-                                                    abs=0.1 * np.ptp(kept))
+            assert np.median(kept) == pytest.approx(
+                found["cases"]["quantiles"][item.name][summary.SHARES.index(0.5)]["value"],
+                abs=0.1 * np.ptp(kept),
+            )
             assert float(data[f"condition_{item.name}"][0]) == row[item.name]
-    assert row["rate_deg_s"] == pytest.approx(np.linalg.norm([row[f"rate_{axis}_deg_s"] for axis in "xyz"]))
-    assert row["rate_deg_s"] > 0.1 and row["lateral_velocity_mm_s"] > 0.1 and row["direction_error_deg"] > 0.0
+    assert row["rate_deg_s"] == pytest.approx(
+        np.linalg.norm([row[f"rate_{axis}_deg_s"] for axis in "xyz"])
+    )
+    assert (
+        row["rate_deg_s"] > 0.1
+        and row["lateral_velocity_mm_s"] > 0.1
+        and row["direction_error_deg"] > 0.0
+    )
 
     stamp = (folder / "flight.json").stat().st_mtime_ns
-    assert call(*asked).exit_code == 0 and (folder / "flight.json").stat().st_mtime_ns == stamp  # nothing changed
+    # nothing changed
+    assert call(*asked).exit_code == 0 and (folder / "flight.json").stat().st_mtime_ns == stamp
     monkeypatch.setattr(chart, "to_files", lambda *_: [])  # drawn once is enough
     further = json.loads(call(*asked, "--range", "1 km", "--json").stdout)
-    assert further["flight"]["range_m"] == 1000.0 and further["conditions"][0]["flown"]["miss_m"] > 50.0 * row["miss_m"]
-    assert further["cases"]["store"] == found["cases"]["store"]  # another flight of the same ejections
+    assert (
+        further["flight"]["range_m"] == 1000.0
+        and further["conditions"][0]["flown"]["miss_m"] > 50.0 * row["miss_m"]
+    )
+    # another flight of the same ejections
+    assert further["cases"]["store"] == found["cases"]["store"]
 
-    study = Study(load("reference").replace({"flight.range": "1 km"}), folder, Settings(), ("phi35", "phi60"))
+    study = Study(
+        load("reference").replace({"flight.range": "1 km"}), folder, Settings(), ("phi35", "phi60")
+    )
     assert flight.stored(study)["key"] == further["key"]
     assert flight.stored(Study(load("reference"), folder, Settings(), ("phi35", "phi60"))) is None
-    assert flight.stored(Study(load("reference").replace({"flight": None}), folder, Settings())) is None
-    write_json(folder / "flight.json", further | {"asked": further["asked"] | {"vary": "gone.toml"}})
+    assert (
+        flight.stored(Study(load("reference").replace({"flight": None}), folder, Settings()))
+        is None
+    )
+    write_json(
+        folder / "flight.json", further | {"asked": further["asked"] | {"vary": "gone.toml"}}
+    )
     assert flight.stored(study) is None
     drawn = section.draw(found, lambda drawing, words: chart.to_html(drawing) + words)
-    assert 'id="chart-flight-miss"' in drawn and "misses by" not in drawn and "touch the platform again" in drawn
-    assert all(drawn.count(f"{item.label} ({item.unit})") == 2 for item in answers.ALL)  # conditions, and quantiles of cases
+    assert (
+        'id="chart-flight-miss"' in drawn
+        and "misses by" not in drawn
+        and "touch the platform again" in drawn
+    )
+    # conditions, and quantiles of cases
+    assert all(drawn.count(f"{item.label} ({item.unit})") == 2 for item in answers.ALL)
     assert all(f"{item.label} ({item.unit})" in first.stdout for item in answers.ALL)
 
 
 def test_without_an_exit_there_is_no_flight(tmp_path, uncalibrated):
-    result = call("--condition", "phi35", "--cases", 4, "--set", "duration=20 ms", "--out", tmp_path)
+    result = call(
+        "--condition", "phi35", "--cases", 4, "--set", "duration=20 ms", "--out", tmp_path
+    )
     assert result.exit_code == 1 and "none of 4 cases left the rail" in result.stderr
     assert not (tmp_path / "reference" / "flight.json").exists()
 
 
 def test_what_is_to_be_doubted():
     orbit = summary.orbit(load("channel"))
-    assert "given by a file" in summary.doubts({"flight": orbit, "cases": {"limit_open": 0}, "conditions": []})
-    assert "3 cases" in summary.doubts({"flight": summary.orbit(load("reference")), "cases": {"limit_open": 3}, "conditions": []})
-    assert summary.doubts({"flight": summary.orbit(load("reference")), "cases": {"limit_open": 0}, "conditions": []}) == ""
+    assert "given by a file" in summary.doubts(
+        {"flight": orbit, "cases": {"limit_open": 0}, "conditions": []}
+    )
+    assert "3 cases" in summary.doubts(
+        {"flight": summary.orbit(load("reference")), "cases": {"limit_open": 3}, "conditions": []}
+    )
+    assert (
+        summary.doubts(
+            {
+                "flight": summary.orbit(load("reference")),
+                "cases": {"limit_open": 0},
+                "conditions": [],
+            }
+        )
+        == ""
+    )
 
 
-@pytest.mark.parametrize("arguments, words", [
-    (["--set", "flight=absent"], '--set flight.altitude="500 km" --set flight.range="100 m"'),
-    (["--range", "-5 m"], "flight.range"), (["--range", "5 kg"], "flight.range"),
-    (["--altitude", "absent"], "one of altitude and mean_motion"),
-    (["--set", "flight.mean_motion=1e-3 rad/s"], "one of altitude and mean_motion"),
-    (["--set", "gravity.z=-9.81 m/s**2"], "fall freely"),
-    (["--set", "flight.envelope.0.high.0=-2 m"], "a corner nowhere below low"), (["--vary", "nothing"], "paper")])
+@pytest.mark.parametrize(
+    "arguments, words",
+    [
+        (["--set", "flight=absent"], '--set flight.altitude="500 km" --set flight.range="100 m"'),
+        (["--range", "-5 m"], "flight.range"),
+        (["--range", "5 kg"], "flight.range"),
+        (["--altitude", "absent"], "one of altitude and mean_motion"),
+        (["--set", "flight.mean_motion=1e-3 rad/s"], "one of altitude and mean_motion"),
+        (["--set", "gravity.z=-9.81 m/s**2"], "fall freely"),
+        (["--set", "flight.envelope.0.high.0=-2 m"], "a corner nowhere below low"),
+        (["--vary", "nothing"], "paper"),
+    ],
+)
 def test_bad_input_is_refused_and_nothing_written(tmp_path, arguments, words):
     result = call("--out", tmp_path / "out", *arguments)
     assert result.exit_code == 2, result.output
@@ -117,6 +175,13 @@ def test_bad_input_is_refused_and_nothing_written(tmp_path, arguments, words):
 
 def test_the_flight_itself_does_not_vary(tmp_path):
     errors = tmp_path / "errors.toml"
-    errors.write_text('cases = 8\n[vary."flight.azimuth"]\ndistribution = "uniform"\nlow = "0 deg"\nhigh = "1 deg"\n')
+    errors.write_text(
+        'cases = 8\n[vary."flight.azimuth"]\ndistribution = "uniform"\nlow = "0 deg"\nhigh = "1 '
+        'deg"\n'
+    )
     result = call("--out", tmp_path / "out", "--vary", errors)
-    assert result.exit_code == 2 and "vary.flight.azimuth" in result.stderr and not (tmp_path / "out").exists()
+    assert (
+        result.exit_code == 2
+        and "vary.flight.azimuth" in result.stderr
+        and not (tmp_path / "out").exists()
+    )

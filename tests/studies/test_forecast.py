@@ -1,4 +1,5 @@
-"""How long a calibration takes, said beforehand: from costs that are made up, and never at the price of a second."""
+"""How long a calibration takes, said beforehand: from costs that are made up, and never at the
+price of a second."""
 
 import json
 import time
@@ -17,7 +18,11 @@ from studies.study import Study
 
 
 def study(folder, **settings) -> Study:
-    return Study(scenes.load("reference"), folder / "reference", replace(defaults("reference"), workers=2, **settings))
+    return Study(
+        scenes.load("reference"),
+        folder / "reference",
+        replace(defaults("reference"), workers=2, **settings),
+    )
 
 
 def asked(of: Study) -> list:
@@ -27,11 +32,24 @@ def asked(of: Study) -> list:
 def stored(path, **cost):
     """A run's file as the forecast sees it."""
     with sealed(path) as temporary, h5py.File(temporary, "w") as file:
-        file.attrs["cost"], file.attrs["numerics"] = json.dumps(cost), json.dumps({"element_size": 0.002})
+        file.attrs["cost"], file.attrs["numerics"] = (
+            json.dumps(cost),
+            json.dumps({"element_size": 0.002}),
+        )
 
 
-@pytest.mark.parametrize("seconds, said", [(0.2, "1 s"), (7.4, "7 s"), (23.0, "25 s"), (96.0, "1 min 40 s"), (121.0, "2 min"),
-                                           (1900.0, "32 min"), (9000.0, "2.5 h")])
+@pytest.mark.parametrize(
+    "seconds, said",
+    [
+        (0.2, "1 s"),
+        (7.4, "7 s"),
+        (23.0, "25 s"),
+        (96.0, "1 min 40 s"),
+        (121.0, "2 min"),
+        (1900.0, "32 min"),
+        (9000.0, "2.5 h"),
+    ],
+)
 def test_times_are_said_to_a_tenth(seconds, said):
     assert forecast.span(seconds) == said
 
@@ -39,17 +57,27 @@ def test_times_are_said_to_a_tenth(seconds, said):
 def test_the_line_counts_waves_of_runs():
     """Five runs of 33 s, two at a time, are three waves."""
     after = forecast.work("the search", 20.0)
-    assert forecast.words(5, 2, (99.0, ""), after).startswith("5 reference runs to make, 2 at a time: about 1 min 40 s")
+    assert forecast.words(5, 2, (99.0, ""), after).startswith(
+        "5 reference runs to make, 2 at a time: about 1 min 40 s"
+    )
     assert forecast.words(5, 2, (99.0, ""), after).endswith("; then the search, about 20 s")
     assert forecast.words(1, 1, (33.0, ""), after).startswith("1 reference run to make: about 35 s")
     assert forecast.words(0, 0, None, after) == "no reference run to make; the search, about 20 s"
-    assert forecast.words(2, 2, None, forecast.work("the search", None)).endswith("was run; then the search")
+    assert forecast.words(2, 2, None, forecast.work("the search", None)).endswith(
+        "was run; then the search"
+    )
 
 
 def test_time_follows_elements_steps_and_speed(tmp_path):
-    """170,000 steps at 10 ns on the 19,360 elements of 2 mm take 32.9 s; 1 mm is eight times the elements, twice the steps."""
+    """170,000 steps at 10 ns on the 19,360 elements of 2 mm take 32.9 s; 1 mm is eight times the
+    elements, twice the steps."""
     of = study(tmp_path)
-    stored(of.folder / "highfi" / "phi0-coarse.nc", ns_per_element_step=10.0, elements=19360, steps=170_000)
+    stored(
+        of.folder / "highfi" / "phi0-coarse.nc",
+        ns_per_element_step=10.0,
+        elements=19360,
+        steps=170_000,
+    )
     for name, seconds in (("first", 2.0), ("second", 0.01), ("second-compliant-1", 0.001)):
         stored(of.folder / "lowfi" / f"{name}.nc", wall_s=seconds)
     known = forecast.pace(of)
@@ -59,10 +87,15 @@ def test_time_follows_elements_steps_and_speed(tmp_path):
     finer, _ = forecast._reference(asked(study(tmp_path, element_size=0.001))[0], known)
     assert finer == pytest.approx(16.0 * each)
     line = forecast.calibration(of, asked(of))
-    assert "5 reference runs to make, 2 at a time: about 1 min 40 s" in line and "the search, about 30 s" in line
+    assert (
+        "5 reference runs to make, 2 at a time: about 1 min 40 s" in line
+        and "the search, about 30 s" in line
+    )
     made = asked(of)[1]
     stored(of.store.path(made), ns_per_element_step=10.0, elements=19360, steps=170_000)
-    assert "4 reference runs to make, 2 at a time: about 1 min 10 s" in forecast.calibration(of, asked(of))
+    assert "4 reference runs to make, 2 at a time: about 1 min 10 s" in forecast.calibration(
+        of, asked(of)
+    )
 
 
 def test_a_calibration_on_curves_says_its_own(tmp_path):
@@ -70,7 +103,10 @@ def test_a_calibration_on_curves_says_its_own(tmp_path):
     of = study(tmp_path)
     stored(of.folder / "lowfi" / "one.nc", wall_s=0.01)
     free = parameters.free(of.scene)
-    assert forecast.search(of, 2) == f"the search, about {forecast.span(0.02 * search.evaluations(len(free)))}"
+    assert (
+        forecast.search(of, 2)
+        == f"the search, about {forecast.span(0.02 * search.evaluations(len(free)))}"
+    )
 
 
 def test_curves_are_fitted_after_the_time_was_said(tmp_path, capsys, monkeypatch):
@@ -78,7 +114,11 @@ def test_curves_are_fitted_after_the_time_was_said(tmp_path, capsys, monkeypatch
     monkeypatch.setattr(stage, "_fitted", lambda *asked: ({}, []))
     path = tmp_path / "phi15.csv"
     lines = [f"{0.5 * n},{0.1 * n},1,2,3" for n in range(120)]
-    path.write_text("\n".join(["time [ms],velocity_x [m/s],rate_x [deg/s],rate_y [deg/s],rate_z [deg/s]", *lines]))
+    path.write_text(
+        "\n".join(
+            ["time [ms],velocity_x [m/s],rate_x [deg/s],rate_y [deg/s],rate_z [deg/s]", *lines]
+        )
+    )
     stage.from_files(study(tmp_path), [("phi15", str(path))])
     assert "the search, about" in capsys.readouterr().err
     stage.from_files(study(tmp_path), [("phi15", str(path))])
@@ -88,11 +128,22 @@ def test_curves_are_fitted_after_the_time_was_said(tmp_path, capsys, monkeypatch
 def test_speed_comes_from_the_nearest_measurement(tmp_path):
     of = study(tmp_path)
     assert "typical" in forecast.pace(of).source
-    write_json(tmp_path / "bench" / "highfi.json", {"rows": [{"element_size_m": 0.002, "ns_one_thread": 9.0},
-                                                             {"element_size_m": 0.0005, "ns_one_thread": 30.0}]})
+    write_json(
+        tmp_path / "bench" / "highfi.json",
+        {
+            "rows": [
+                {"element_size_m": 0.002, "ns_one_thread": 9.0},
+                {"element_size_m": 0.0005, "ns_one_thread": 30.0},
+            ]
+        },
+    )
     assert forecast.pace(of).ns == 9.0 and "benchmark" in forecast.pace(of).source
     stored(tmp_path / "other" / "highfi" / "a.nc", ns_per_element_step=20.0, elements=5, steps=7)
-    assert forecast.pace(of).ns == 20.0 and forecast.pace(of).steps is None and "other" in forecast.pace(of).source
+    assert (
+        forecast.pace(of).ns == 20.0
+        and forecast.pace(of).steps is None
+        and "other" in forecast.pace(of).source
+    )
     (of.folder / "highfi").mkdir(parents=True)
     (of.folder / "highfi" / "broken.nc").write_text("no file of this kind")
     assert forecast.pace(of).ns == 20.0

@@ -1,4 +1,5 @@
-"""Where growth ends: laws made on purpose are told from each other, and a bend is found where it was put."""
+"""Where growth ends: laws made on purpose are told from each other, and a bend is found where it
+was put."""
 
 import numpy as np
 import pytest
@@ -7,15 +8,21 @@ from studies.sweeps.knee import growth
 
 SIZES = np.arange(1, 11) / 10.0
 KNEE = 0.43
-LAWS = {"in proportion": lambda s: 12.0 * s, "straight": lambda s: 3.0 + 12.0 * s, "plateau": lambda s: 12.0 * np.minimum(s, KNEE),
-        "slower": lambda s: 12.0 * np.minimum(s, KNEE) + 5.0 * np.maximum(s - KNEE, 0.0),
-        "faster": lambda s: 5.0 * s + 20.0 * np.maximum(s - KNEE, 0.0),
-        "falls": lambda s: 12.0 * np.minimum(s, KNEE) - 4.0 * np.maximum(s - KNEE, 0.0),
-        "levels off": lambda s: 6.0 * -np.expm1(-s / 0.3), "ever slower": lambda s: 6.0 * -np.expm1(-s / 0.8)}
+LAWS = {
+    "in proportion": lambda s: 12.0 * s,
+    "straight": lambda s: 3.0 + 12.0 * s,
+    "plateau": lambda s: 12.0 * np.minimum(s, KNEE),
+    "slower": lambda s: 12.0 * np.minimum(s, KNEE) + 5.0 * np.maximum(s - KNEE, 0.0),
+    "faster": lambda s: 5.0 * s + 20.0 * np.maximum(s - KNEE, 0.0),
+    "falls": lambda s: 12.0 * np.minimum(s, KNEE) - 4.0 * np.maximum(s - KNEE, 0.0),
+    "levels off": lambda s: 6.0 * -np.expm1(-s / 0.3),
+    "ever slower": lambda s: 6.0 * -np.expm1(-s / 0.8),
+}
 
 
 def rates(law, noise: float = 0.03, seed: int = 1) -> np.ndarray:
-    """Rates (s,a) that follow ``law`` along the worst of 120 directions, with a scatter from case to case."""
+    """Rates (s,a) that follow ``law`` along the worst of 120 directions, with a scatter from case
+    to case."""
     angles = np.arange(120) * (2.0 * np.pi / 120)
     scatter = np.random.default_rng(seed).standard_normal((len(SIZES), len(angles)))
     return abs(law(SIZES)[:, None] * np.cos(angles) * (1.0 + noise * scatter))
@@ -32,8 +39,8 @@ def test_a_plateau_is_found_where_it_begins(seed):
 @pytest.mark.parametrize("name", [name for name in LAWS if name != "plateau"])
 @pytest.mark.parametrize("noise", [0.0, 0.01])
 def test_no_other_law_passes_for_a_plateau(name, noise):
-    """With a scatter of 3 % "slower" is told by fewer constants as levelling off, so less is put on here than on the plateau
-    above."""
+    """With a scatter of 3 % "slower" is told by fewer constants as levelling off, so less is put on
+    here than on the plateau above."""
     found = growth(SIZES, rates(LAWS[name], noise))
     assert name in found.verdict and found.plateau_share < 0.5
     if name in ("slower", "faster", "falls"):
@@ -44,8 +51,12 @@ def test_no_other_law_passes_for_a_plateau(name, noise):
 
 def test_slopes_of_lines_without_scatter():
     found = growth(SIZES, rates(LAWS["straight"], 0.0))
-    assert (found.slope_before, found.slope_after) == pytest.approx((12.0, 12.0)) and found.misfit < 1e-12
-    bent = growth(SIZES, rates(lambda s: 12.0 * np.minimum(s, 0.4) + 5.0 * np.maximum(s - 0.4, 0.0), 0.0))
+    assert (found.slope_before, found.slope_after) == pytest.approx(
+        (12.0, 12.0)
+    ) and found.misfit < 1e-12
+    bent = growth(
+        SIZES, rates(lambda s: 12.0 * np.minimum(s, 0.4) + 5.0 * np.maximum(s - 0.4, 0.0), 0.0)
+    )
     assert (bent.slope_before, bent.slope_after) == pytest.approx((12.0, 5.0), rel=0.02)
 
 
@@ -55,7 +66,8 @@ def test_what_no_law_tells_is_said():
 
 
 def test_cases_that_did_not_settle():
-    """A few missing cases change little; sizes without any are left out; where too few are left nothing is said."""
+    """A few missing cases change little; sizes without any are left out; where too few are left
+    nothing is said."""
     values = rates(LAWS["plateau"])
     values[3, 5:9] = values[8] = np.nan
     assert growth(SIZES, values).verdict == "plateau"

@@ -1,4 +1,5 @@
-"""Tolerances that keep limits, on a launch without contact, where the total rate is proportional to the one error that varies."""
+"""Tolerances that keep limits, on a launch without contact, where the total rate is proportional to
+the one error that varies."""
 
 import json
 
@@ -27,8 +28,11 @@ pytest.importorskip("zarr")
 LIMIT, PROBABILITY = 6.0, 0.9
 QUICK = Asked(limits=("6 deg/s",), probability=PROBABILITY, cases=120)
 FITTED = Calibration({}, [], [], [], [], [], [], np.zeros((0, 0)), [], {}, [], 0.0)
-PER_UNIT = {"misalignment": np.radians(free_flight.RATE_PER_RADIAN), "thrust_eccentricity": 1e-3 * free_flight.RATE_PER_METRE,
-            "mass_eccentricity": 1e-3 * free_flight.RATE_PER_METRE}  # deg/s per deg, mm, mm
+PER_UNIT = {
+    "misalignment": np.radians(free_flight.RATE_PER_RADIAN),
+    "thrust_eccentricity": 1e-3 * free_flight.RATE_PER_METRE,
+    "mass_eccentricity": 1e-3 * free_flight.RATE_PER_METRE,
+}  # deg/s per deg, mm, mm
 
 
 @pytest.fixture(scope="module")
@@ -38,13 +42,25 @@ def study(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def found(study):
-    """Two draws of the constants make the arm 10 % longer and shorter, and the model is off by 1 deg/s."""
+    """Two draws of the constants make the arm 10 % longer and shorter, and the model is off by 1
+    deg/s."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(limits.population, "surrogate", lambda study, *_: Surrogate(study.scene, FITTED, None))
-        patch.setattr(limits.constants, "draws",
-                      lambda *_: ([{"thrust.arm": factor * free_flight.ARM} for factor in (0.9, 1.1)], ["arm"]))
-        patch.setattr(limits.constants, "margin",
-                      lambda *_: constants.Margin(dict.fromkeys(("x", "y", "z", "total"), 1.0), "by decree"))
+        patch.setattr(
+            limits.population, "surrogate", lambda study, *_: Surrogate(study.scene, FITTED, None)
+        )
+        patch.setattr(
+            limits.constants,
+            "draws",
+            lambda *_: (
+                [{"thrust.arm": factor * free_flight.ARM} for factor in (0.9, 1.1)],
+                ["arm"],
+            ),
+        )
+        patch.setattr(
+            limits.constants,
+            "margin",
+            lambda *_: constants.Margin(dict.fromkeys(("x", "y", "z", "total"), 1.0), "by decree"),
+        )
         return limits.run(study, QUICK)
 
 
@@ -53,10 +69,15 @@ def row_of(found, name):
 
 
 def certified(study, name, cases, limit=LIMIT):
-    """Largest tolerance in closed form: the first draw that may not be above the limit lies on it."""
+    """Largest tolerance in closed form: the first draw that may not be above the limit lies on
+    it."""
     allowed = exceedance.allowed(cases, PROBABILITY, 0.95)
     source = within.source(study.scene, {name: 1.0}, cases, 1)
-    sizes = np.sort(numbers(source.keys, source.rows(0, cases))[:, source.keys.index(f"{within.ERRORS[name].key}.axial")])
+    sizes = np.sort(
+        numbers(source.keys, source.rows(0, cases))[
+            :, source.keys.index(f"{within.ERRORS[name].key}.axial")
+        ]
+    )
     return limit / (PER_UNIT[name] * sizes[cases - 1 - allowed])
 
 
@@ -64,77 +85,131 @@ def combined(study, tolerances, cases):
     """Total rates (n,), deg/s, of all errors within ``tolerances`` (SI), none of the others."""
     source = within.source(study.scene, dict.fromkeys(ADVISED, 0.0) | tolerances, cases, 1)
     drawn = dict(zip(source.keys, numbers(source.keys, source.rows(0, cases)).T))
-    (t, a), (r, b), (m, c) = ((drawn[f"{error.key}.axial"], drawn[f"{error.key}.radial"])
-                              for error in within.ERRORS.values())
-    y = free_flight.RATE_PER_RADIAN * t * np.sin(a) + free_flight.RATE_PER_METRE * (r * np.cos(b) - m * np.cos(c))
-    z = free_flight.RATE_PER_RADIAN * t * np.cos(a) + free_flight.RATE_PER_METRE * (r * np.sin(b) - m * np.sin(c))
+    (t, a), (r, b), (m, c) = (
+        (drawn[f"{error.key}.axial"], drawn[f"{error.key}.radial"])
+        for error in within.ERRORS.values()
+    )
+    y = free_flight.RATE_PER_RADIAN * t * np.sin(a) + free_flight.RATE_PER_METRE * (
+        r * np.cos(b) - m * np.cos(c)
+    )
+    z = free_flight.RATE_PER_RADIAN * t * np.cos(a) + free_flight.RATE_PER_METRE * (
+        r * np.sin(b) - m * np.sin(c)
+    )
     return np.hypot(y, z)
 
 
 @pytest.mark.parametrize("name", sorted(PER_UNIT))
 def test_one_factor_alone_is_the_closed_form(study, found, name):
     row, exact = row_of(found, name)["nominal"], certified(study, name, found["cases"])
-    # The search stops within 1.1 %; the rates themselves carry the step error of 1e-2 settings, a thousandth.
+    # The search stops within 1.1 %; the rates themselves carry the step error of 1e-2 settings, a
+    # thousandth.
     assert 1.0 / 1.013 < row["tolerance"] / exact < 1.002 and not row["falls"] and not row["again"]
     beside = {item["name"]: item for item in row_of(found, name)["beside"]}
     assert beside["rate_deg_s"]["value"] < LIMIT
-    # The law itself: the share that is truly above at the certified size is no more than allowed, and no less than the rank of the
-    # draw that lies on the limit lets it be, beta distributed (one chance in a thousand).
+    # The law itself: the share that is truly above at the certified size is no more than allowed,
+    # and no less than the rank of the draw that lies on the limit lets it be, beta distributed (one
+    # chance in a thousand).
     above = stats.truncnorm(0.0, 3.0).sf(3.0 * LIMIT / (PER_UNIT[name] * row["tolerance"]))
-    assert stats.beta(found["allowed"] + 1, found["cases"] - found["allowed"]).ppf(1e-3) < above < 1.0 - PROBABILITY
+    assert (
+        stats.beta(found["allowed"] + 1, found["cases"] - found["allowed"]).ppf(1e-3)
+        < above
+        < 1.0 - PROBABILITY
+    )
 
 
 def test_constants_and_the_model_s_error_scale_the_answer_as_the_equation_says(study, found):
-    """Rate = J l t / I: a tenth more of the arm takes a tenth of the tolerance; a margin of 1 of 6 deg/s a sixth. Near searches:
-    2.8 %."""
+    """Rate = J l t / I: a tenth more of the arm takes a tenth of the tolerance; a margin of 1 of 6
+    deg/s a sixth. Near searches: 2.8 %."""
     row = row_of(found, "misalignment")
     nominal = certified(study, "misalignment", found["cases"])
-    for told, expected in ((row["constants"][0], nominal / 0.9), (row["constants"][1], nominal / 1.1),
-                           (row["model"], nominal * 5.0 / 6.0),
-                           (row["both"], nominal / 1.1 * 5.0 / 6.0)):
+    for told, expected in (
+        (row["constants"][0], nominal / 0.9),
+        (row["constants"][1], nominal / 1.1),
+        (row["model"], nominal * 5.0 / 6.0),
+        (row["both"], nominal / 1.1 * 5.0 / 6.0),
+    ):
         assert 1.0 / 1.03 < told["tolerance"] / expected < 1.002
     straight = row_of(found, "mass_eccentricity")  # which no arm touches
     assert len({item["tolerance"] for item in straight["constants"]}) == 1
 
 
 def test_a_set_is_certified_where_its_rates_say_so(study, found):
-    """Together: recomputed from the draws by one line for each case, at the certified multiple and just beyond it."""
+    """Together: recomputed from the draws by one line for each case, at the certified multiple and
+    just beyond it."""
     row, cases = row_of(found, "together"), found["cases"]
     rates = combined(study, ADVISED, cases)
-    assert 1.0 / 1.013 < row["nominal"]["tolerance"] / (LIMIT / np.sort(rates)[cases - 1 - found["allowed"]]) < 1.002
-    assert row["advised"]["above"] == int((rates > LIMIT).sum()) and row["advised"]["tolerance"] == 1.0
+    assert (
+        1.0 / 1.013
+        < row["nominal"]["tolerance"] / (LIMIT / np.sort(rates)[cases - 1 - found["allowed"]])
+        < 1.002
+    )
+    assert (
+        row["advised"]["above"] == int((rates > LIMIT).sum()) and row["advised"]["tolerance"] == 1.0
+    )
 
 
 def test_map_lies_where_the_rates_of_its_pairs_say_so(study, found):
-    """Each pair by one line for each draw: certified there, and no longer 2.8 % farther out; on the axes it is one error alone."""
+    """Each pair by one line for each draw: certified there, and no longer 2.8 % farther out; on the
+    axes it is one error alone."""
     for x, y in (point["tolerances"] for point in found["map"]["points"]):
-        exact = LIMIT / np.sort(combined(study, {"misalignment": np.radians(x), "mass_eccentricity": 1e-3 * y}, found["cases"]))[
-            found["cases"] - 1 - found["allowed"]]
+        exact = (
+            LIMIT
+            / np.sort(
+                combined(
+                    study,
+                    {"misalignment": np.radians(x), "mass_eccentricity": 1e-3 * y},
+                    found["cases"],
+                )
+            )[found["cases"] - 1 - found["allowed"]]
+        )
         assert 0.998 < exact < 1.03
     points = np.array([point["tolerances"] for point in found["map"]["points"]])
-    assert points[0, 1] == points[-1, 0] == 0.0 and found["map"]["advised"] == pytest.approx([0.2, 0.2])
+    assert points[0, 1] == points[-1, 0] == 0.0 and found["map"]["advised"] == pytest.approx(
+        [0.2, 0.2]
+    )
     assert (np.diff(points[:, 0]) < 0.0).all() and (np.diff(points[:, 1]) > 0.0).all()
 
 
 def test_limits_that_none_or_every_tolerance_keeps_are_said(study, monkeypatch):
-    """0.3 mm of thrust eccentricity alone are 3.1 deg/s: no misalignment brings that below 2, unless it is taken away."""
+    """0.3 mm of thrust eccentricity alone are 3.1 deg/s: no misalignment brings that below 2,
+    unless it is taken away."""
     monkeypatch.setattr(limits, "_RAYS", 1)
     monkeypatch.setattr("studies.report.chart.to_files", lambda *_: [])  # drawn in another test
-    offset = Study(study.scene.replace({"thrust_offset.eccentricity.axial": 0.3e-3}), study.folder, study.settings)
+    offset = Study(
+        study.scene.replace({"thrust_offset.eccentricity.axial": 0.3e-3}),
+        study.folder,
+        study.settings,
+    )
     for others, state in (("scene", "none"), ("zero", "found")):
-        found = limits.run(offset, Asked(limits=("2 deg/s",), probability=PROBABILITY, cases=30, others=others))
-        assert row_of(found, "misalignment")["nominal"]["state"] == state and (found["map"] is None) == (state == "none")
+        found = limits.run(
+            offset, Asked(limits=("2 deg/s",), probability=PROBABILITY, cases=30, others=others)
+        )
+        assert row_of(found, "misalignment")["nominal"]["state"] == state and (
+            found["map"] is None
+        ) == (state == "none")
         assert row_of(found, "thrust_eccentricity")["nominal"]["state"] == "found"
-        assert any("what is not varied is above a limit" in line for line in found["summary"]) == (state == "none")
-    monkeypatch.setattr(limits.constants, "margin", lambda *_: constants.Margin(dict.fromkeys(("x", "y", "z", "total"), 1.0), ""))
+        assert any("what is not varied is above a limit" in line for line in found["summary"]) == (
+            state == "none"
+        )
+    monkeypatch.setattr(
+        limits.constants,
+        "margin",
+        lambda *_: constants.Margin(dict.fromkeys(("x", "y", "z", "total"), 1.0), ""),
+    )
     far = limits.run(offset, Asked(limits=("x=1 deg/s",), probability=PROBABILITY, cases=30))
-    assert row_of(far, "misalignment")["nominal"]["state"] == "all" and "every one searched" in " ".join(far["summary"])
-    assert row_of(far, "misalignment")["model"]["state"] == "lost" and "leaves nothing of a limit" in " ".join(far["summary"])
+    assert row_of(far, "misalignment")["nominal"][
+        "state"
+    ] == "all" and "every one searched" in " ".join(far["summary"])
+    assert row_of(far, "misalignment")["model"][
+        "state"
+    ] == "lost" and "leaves nothing of a limit" in " ".join(far["summary"])
 
 
 def test_values_are_kept_with_names_units_and_scale(study, found, monkeypatch):
     """A whole file is only read; a damaged one is made again, to the same values."""
-    cases = within.Cases(study, limits.NAME, Surrogate(study.scene, None, None), {"misalignment": 0.01}, 20, 3)
+    cases = within.Cases(
+        study, limits.NAME, Surrogate(study.scene, None, None), {"misalignment": 0.01}, 20, 3
+    )
     values, before = cases.values(0.5), set((study.folder / "limits").glob("*.nc"))
     assert not list((study.folder / "limits").glob("*.npy")) and len(before) > 20
     files = {path: xarray.load_dataset(path, engine="h5netcdf") for path in before}
@@ -145,10 +220,14 @@ def test_values_are_kept_with_names_units_and_scale(study, found, monkeypatch):
     assert json.loads(kept.attrs["tolerances_si"]) == {"misalignment": 0.005}
     assert np.array_equal(kept["value"], values, equal_nan=True)
     path.write_bytes(path.read_bytes()[:600])
-    again = within.Cases(study, limits.NAME, Surrogate(study.scene, None, None), {"misalignment": 0.01}, 20, 3)
+    again = within.Cases(
+        study, limits.NAME, Surrogate(study.scene, None, None), {"misalignment": 0.01}, 20, 3
+    )
     assert np.array_equal(again.values(0.5), values, equal_nan=True)
     monkeypatch.setattr(within, "completed", lambda *_: pytest.fail("ran again"))
-    third = within.Cases(study, limits.NAME, Surrogate(study.scene, None, None), {"misalignment": 0.01}, 20, 3)
+    third = within.Cases(
+        study, limits.NAME, Surrogate(study.scene, None, None), {"misalignment": 0.01}, 20, 3
+    )
     assert np.array_equal(third.values(0.5), values, equal_nan=True)
     for row in found["rows"]:
         assert [item["name"] for item in row["beside"]] == [item.name for item in answers.ALL]
@@ -157,8 +236,15 @@ def test_values_are_kept_with_names_units_and_scale(study, found, monkeypatch):
 @pytest.mark.parametrize("tolerances, advised", [("advised", 1.0), ("table3", None)])
 def test_the_paper_advises_one_set_alone(study, monkeypatch, tolerances, advised):
     asked = Asked(limits=("6 deg/s",), probability=PROBABILITY, cases=30, tolerances=tolerances)
-    answering = limits._Answers(study, asked, exceedance.limits(asked.limits), 30, Surrogate(study.scene, None, None),
-                                constants.Margin(None, ""), lambda _: None)
+    answering = limits._Answers(
+        study,
+        asked,
+        exceedance.limits(asked.limits),
+        30,
+        Surrogate(study.scene, None, None),
+        constants.Margin(None, ""),
+        lambda _: None,
+    )
     monkeypatch.setattr(within.Cases, "values", lambda *_: np.zeros((30, len(answers.ALL))))
     monkeypatch.setattr(limits._Answers, "_map", lambda *_: None)
     row = row_of(found := answering.all(), "together")
@@ -169,21 +255,34 @@ def test_the_paper_advises_one_set_alone(study, monkeypatch, tolerances, advised
 
 def test_section_of_the_page(found):
     shown = pictures.draw(found, lambda chart, words: f"<figure>{chart.name}</figure>")
-    assert "limits-curves" in shown and "limits-map" in shown and "by decree" in shown and "thrust misalignment" in shown
-    assert {f"figures/limits-{name}.{kind}" for name in ("curves", "map") for kind in ("png", "svg")} == set(found["files"])
+    assert (
+        "limits-curves" in shown
+        and "limits-map" in shown
+        and "by decree" in shown
+        and "thrust misalignment" in shown
+    )
+    assert {
+        f"figures/limits-{name}.{kind}" for name in ("curves", "map") for kind in ("png", "svg")
+    } == set(found["files"])
 
 
 @pytest.mark.case("O49")
 def test_too_few_cases_and_nonsense_are_refused_with_every_fault(tmp_path):
     arguments = ["limits", "--out", str(tmp_path / "out")]
-    for more, words in ((["--probability", "0.99", "--cases", "100"], ("--cases", "299 or more")),
-                        (["--probability", "0.9973", "--cases", "1108"], ("1,109 or more",)),
-                        (["--probability", "1.5", "--confidence", "0", "--limit", "q=1 deg/s", "--draws", "-1"],
-                         ("--probability", "--confidence", "--limit", "--draws", "4 faults")),
-                        (["--limit", "x=1 deg/s", "--limit", "x=2 deg/s"], ("two limits",)),
-                        (["--condition", "phi99"], ("phi99",)),
-                        (["--condition", "phi99", "--draws", "-1", "--limit", "q=1 deg/s"],
-                         ("phi99", "--draws", "--limit", "3 faults"))):
+    for more, words in (
+        (["--probability", "0.99", "--cases", "100"], ("--cases", "299 or more")),
+        (["--probability", "0.9973", "--cases", "1108"], ("1,109 or more",)),
+        (
+            ["--probability", "1.5", "--confidence", "0", "--limit", "q=1 deg/s", "--draws", "-1"],
+            ("--probability", "--confidence", "--limit", "--draws", "4 faults"),
+        ),
+        (["--limit", "x=1 deg/s", "--limit", "x=2 deg/s"], ("two limits",)),
+        (["--condition", "phi99"], ("phi99",)),
+        (
+            ["--condition", "phi99", "--draws", "-1", "--limit", "q=1 deg/s"],
+            ("phi99", "--draws", "--limit", "3 faults"),
+        ),
+    ):
         result = CliRunner().invoke(app, arguments + more)
         assert result.exit_code == 2 and all(word in result.stderr for word in words), result.output
         assert "Traceback" not in result.output
@@ -194,40 +293,90 @@ def test_clearance_and_friction_vary_about_their_nominal_values():
     scene = load("reference")
     assert list(within.factors(scene)) == [*ADVISED, "clearance", "friction"]
     assert list(within.factors(free_flight.scene())) == list(ADVISED)
-    source = within.source(scene.replace({"friction.static": 0.3}), {"clearance": 0.1e-3, "friction": 0.05}, 2000, 1)
+    source = within.source(
+        scene.replace({"friction.static": 0.3}), {"clearance": 0.1e-3, "friction": 0.05}, 2000, 1
+    )
     drawn = dict(zip(source.keys, numbers(source.keys, source.rows(0, 2000)).T))
     gaps = drawn["contact.clearance"]
-    assert np.abs(gaps - 0.25e-3).max() <= 0.1e-3 and gaps.mean() == pytest.approx(0.25e-3, rel=0.01)
-    assert drawn["friction.dynamic"].std() == pytest.approx(0.05 / 3.0 * np.sqrt(0.9733369), rel=0.05)
+    assert np.abs(gaps - 0.25e-3).max() <= 0.1e-3 and gaps.mean() == pytest.approx(
+        0.25e-3, rel=0.01
+    )
+    assert drawn["friction.dynamic"].std() == pytest.approx(
+        0.05 / 3.0 * np.sqrt(0.9733369), rel=0.05
+    )
     assert np.allclose(drawn["friction.static"], 1.5 * drawn["friction.dynamic"])
-    more = within.source(scene, {"clearance": 0.2e-3}, 2000, 1).rows(0, 2000)  # the same draws, whatever else varies
+    # the same draws, whatever else varies
+    more = within.source(scene, {"clearance": 0.2e-3}, 2000, 1).rows(0, 2000)
     assert np.allclose([row["contact.clearance"] - 0.25e-3 for row in more], 2.0 * (gaps - 0.25e-3))
 
 
 def test_constants_are_drawn_inside_their_intervals_and_untold_ones_stay():
     scene, endless = load("reference"), float("inf")
-    fitted = Calibration({}, ["contact.force", "contact.exponent", "contact.damping", "friction.dynamic"], [600.0, 1.0, 0.0, 0.2],
-                         ["N", "1", "N*s/m", "1"], [20.0, 1.0, 0.0, 0.05], [6720.0, 2.2, 7000.0, 0.5], [], np.zeros((0, 0)), [], {},
-                         [], 0.0,
-                         intervals=[[500.0, 700.0], [-endless, endless], [-endless, endless], [0.19, 0.21]])
+    fitted = Calibration(
+        {},
+        ["contact.force", "contact.exponent", "contact.damping", "friction.dynamic"],
+        [600.0, 1.0, 0.0, 0.2],
+        ["N", "1", "N*s/m", "1"],
+        [20.0, 1.0, 0.0, 0.05],
+        [6720.0, 2.2, 7000.0, 0.5],
+        [],
+        np.zeros((0, 0)),
+        [],
+        {},
+        [],
+        0.0,
+        intervals=[[500.0, 700.0], [-endless, endless], [-endless, endless], [0.19, 0.21]],
+    )
     found, names = constants.draws(scene, fitted, 400, 1)
     assert names == ["contact.force", "friction.dynamic"] and len(found) == 400
     friction = np.array([item["friction.dynamic"] for item in found])
-    assert 0.19 <= friction.min() < friction.max() <= 0.21 and friction.std() == pytest.approx(0.01 / 1.96, rel=0.15)
+    assert 0.19 <= friction.min() < friction.max() <= 0.21 and friction.std() == pytest.approx(
+        0.01 / 1.96, rel=0.15
+    )
     force = np.array([item["contact.stiffness"] * 2e-5 for item in found])
-    assert 500.0 <= force.min() < force.max() <= 700.0 and abs(np.corrcoef(force, friction)[0, 1]) < 0.2
-    assert {item["contact.exponent"] for item in found} == {1.0} and all(item["friction.static"] == item["friction.dynamic"]
-                                                                         for item in found)
+    assert (
+        500.0 <= force.min() < force.max() <= 700.0
+        and abs(np.corrcoef(force, friction)[0, 1]) < 0.2
+    )
+    assert {item["contact.exponent"] for item in found} == {1.0} and all(
+        item["friction.static"] == item["friction.dynamic"] for item in found
+    )
     assert constants.draws(scene, fitted, 0, 1) == ([], [])
 
 
 def test_the_model_s_error_is_the_largest_measured_on_held_out_conditions(tmp_path, monkeypatch):
     study = Study(load("reference"), tmp_path, Settings())
-    assert constants.margin(study, "springs").deg_s is None and "make compare" in constants.margin(study, "springs").said
-    rows = [{"role": "held_out", "reference_converged": converged, "settled_rate_error_xyz_deg_s": errors} for converged, errors in
-            ((True, [0.3, -0.4, 0.0]), (True, None), (True, [-0.1, 0.1, 0.2]), (False, [8.0, 8.0, 8.0]))]
-    fitted = {"role": "fitted", "reference_converged": True, "settled_rate_error_xyz_deg_s": [9.0, 9.0, 9.0]}
-    monkeypatch.setattr(constants.compare, "stored", lambda _: {"held_out": rows, "compliant": [fitted, *rows[2:]]})
-    assert constants.margin(study, "springs").deg_s == pytest.approx({"x": 0.3, "y": 0.4, "z": 0.2, "total": 0.5})
-    assert constants.margin(study, "compliant").deg_s == pytest.approx({"x": 0.1, "y": 0.1, "z": 0.2, "total": 0.06**0.5})
-    assert set(constants.margin(Study(free_flight.scene(), tmp_path, Settings()), "springs").deg_s.values()) == {0.0}
+    assert (
+        constants.margin(study, "springs").deg_s is None
+        and "make compare" in constants.margin(study, "springs").said
+    )
+    rows = [
+        {
+            "role": "held_out",
+            "reference_converged": converged,
+            "settled_rate_error_xyz_deg_s": errors,
+        }
+        for converged, errors in (
+            (True, [0.3, -0.4, 0.0]),
+            (True, None),
+            (True, [-0.1, 0.1, 0.2]),
+            (False, [8.0, 8.0, 8.0]),
+        )
+    ]
+    fitted = {
+        "role": "fitted",
+        "reference_converged": True,
+        "settled_rate_error_xyz_deg_s": [9.0, 9.0, 9.0],
+    }
+    monkeypatch.setattr(
+        constants.compare, "stored", lambda _: {"held_out": rows, "compliant": [fitted, *rows[2:]]}
+    )
+    assert constants.margin(study, "springs").deg_s == pytest.approx(
+        {"x": 0.3, "y": 0.4, "z": 0.2, "total": 0.5}
+    )
+    assert constants.margin(study, "compliant").deg_s == pytest.approx(
+        {"x": 0.1, "y": 0.1, "z": 0.2, "total": 0.06**0.5}
+    )
+    assert set(
+        constants.margin(Study(free_flight.scene(), tmp_path, Settings()), "springs").deg_s.values()
+    ) == {0.0}

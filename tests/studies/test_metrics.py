@@ -20,7 +20,9 @@ def ramps(*final):
 def test_identical_curves_are_perfect():
     assert iso18571.rate(WAVE, WAVE) == (1.0, 1.0, 1.0, 1.0, 1.0)
     same = metrics.compare(flight(ramps(0.1, 0.2, 0.3)), flight(ramps(0.1, 0.2, 0.3)))
-    assert same.rate_relative_l2 == same.velocity_relative_l2 == same.settled_rate_error_deg_s == 0.0
+    assert (
+        same.rate_relative_l2 == same.velocity_relative_l2 == same.settled_rate_error_deg_s == 0.0
+    )
     assert same.iso18571 == 1.0
     assert same.sprague_geers_magnitude == 0.0
     assert same.sprague_geers_phase == pytest.approx(0.0, abs=1e-7)
@@ -55,7 +57,9 @@ def test_sprague_geers_of_a_scaled_curve():
 def test_sprague_geers_of_a_shifted_sine_is_shift_over_pi():
     shift = 0.3
     whole_periods = 2.0 * np.pi * 5.0 * TIME
-    magnitude, phase = metrics.sprague_geers(TIME, np.sin(whole_periods)[:, None], np.sin(whole_periods - shift)[:, None])
+    magnitude, phase = metrics.sprague_geers(
+        TIME, np.sin(whole_periods)[:, None], np.sin(whole_periods - shift)[:, None]
+    )
     assert magnitude == pytest.approx(0.0, abs=1e-9)
     assert phase == pytest.approx(shift / math.pi, rel=1e-9)
 
@@ -68,13 +72,16 @@ def test_zero_reference_has_no_relative_error():
 
 
 def test_unsettled_run_has_no_settled_error():
-    difference = metrics.compare(flight(ramps(0.1, 0.0, 0.0)), flight(ramps(0.1, 0.0, 0.0), status="jammed"))
+    difference = metrics.compare(
+        flight(ramps(0.1, 0.0, 0.0)), flight(ramps(0.1, 0.0, 0.0), status="jammed")
+    )
     assert difference.settled_rate_error_deg_s is None
     assert difference.rate_relative_l2 == 0.0
 
 
 def test_iso_phase_of_a_shifted_pulse():
-    """A shift of 2 % of the length costs 0.02 / 0.2 of the phase score and nothing of magnitude and slope."""
+    """A shift of 2 % of the length costs 0.02 / 0.2 of the phase score and nothing of magnitude and
+    slope."""
     reference = np.exp(-0.5 * ((TIME - 0.5) / 0.05) ** 2)
     late = np.exp(-0.5 * ((TIME - 0.52) / 0.05) ** 2)
     rating = iso18571.rate(reference, late)
@@ -88,14 +95,18 @@ def test_iso_phase_of_a_shifted_pulse():
 def test_iso_corridor_of_a_constant_offset():
     """25 % off: ((0.5 - 0.25) / (0.5 - 0.05))^2."""
     reference = np.ones(200)
-    assert iso18571.rate(reference, reference + 0.25).corridor == pytest.approx((0.25 / 0.45) ** 2, rel=1e-12)
+    assert iso18571.rate(reference, reference + 0.25).corridor == pytest.approx(
+        (0.25 / 0.45) ** 2, rel=1e-12
+    )
     assert iso18571.rate(reference, reference + 0.04).corridor == 1.0
     assert iso18571.rate(reference, reference + 0.6).corridor == 0.0
 
 
 def test_iso_magnitude_and_slope_of_a_scaled_line():
     """Warping cannot help a constant; slopes of a line differ by the scale error everywhere."""
-    assert iso18571.rate(np.ones(200), np.full(200, 1.1)).magnitude == pytest.approx(1.0 - 0.1 / 0.5, rel=1e-9)
+    assert iso18571.rate(np.ones(200), np.full(200, 1.1)).magnitude == pytest.approx(
+        1.0 - 0.1 / 0.5, rel=1e-9
+    )
     line = np.linspace(1.0, 2.0, 200)
     assert iso18571.rate(line, 1.5 * line).slope == pytest.approx(1.0 - 0.5 / 2.0, rel=1e-9)
 

@@ -1,4 +1,5 @@
-"""Models by name: the default, options that belong to another model, and what an answer says of its model."""
+"""Models by name: the default, options that belong to another model, and what an answer says of its
+model."""
 
 import json
 from dataclasses import replace
@@ -15,10 +16,23 @@ from studies.cli import app
 from studies.settings import defaults
 from studies.study import Study, StudyError
 
-ROW = {"condition": "phi15", "reference_converged": True, "passes": True, "touches": True, "verdict": "agrees",
-       "settled_rate_error_deg_s": 0.012, "rate_relative_l2": 0.0033}
-TABLE = {"compliant": [ROW, ROW | {"condition": "h8", "reference_converged": False, "passes": False}], "modal": [],
-         "rail_modes": 4, "fitted": [ROW | {"settled_rate_error_deg_s": 0.14}], "held_out": [], "uncalibrated": []}
+ROW = {
+    "condition": "phi15",
+    "reference_converged": True,
+    "passes": True,
+    "touches": True,
+    "verdict": "agrees",
+    "settled_rate_error_deg_s": 0.012,
+    "rate_relative_l2": 0.0033,
+}
+TABLE = {
+    "compliant": [ROW, ROW | {"condition": "h8", "reference_converged": False, "passes": False}],
+    "modal": [],
+    "rail_modes": 4,
+    "fitted": [ROW | {"settled_rate_error_deg_s": 0.14}],
+    "held_out": [],
+    "uncalibrated": [],
+}
 
 
 def call(*arguments):
@@ -35,15 +49,28 @@ def test_the_command_line_has_the_names_of_the_models():
     assert tuple(item.value for item in options.SurrogateName) == SURROGATES
 
 
-@pytest.mark.parametrize("given, fault", [
-    (["--calibration", "c.toml"], "--calibration: given c.toml, expected none with --model compliant: it belongs to springs"),
-    (["--model", "finite-elements", "--modes", "4"], "--modes: given 4, expected none with --model finite-elements"),
-    (["--model", "springs", "--modes", "4"], "belongs to compliant"),
-    (["--checkpoint-every", "5 s"], "belongs to finite-elements"),
-    (["--modes", "21"], "a whole number from 0 to 20")])
+@pytest.mark.parametrize(
+    "given, fault",
+    [
+        (
+            ["--calibration", "c.toml"],
+            "--calibration: given c.toml, expected none with --model compliant: it belongs to "
+            "springs",
+        ),
+        (
+            ["--model", "finite-elements", "--modes", "4"],
+            "--modes: given 4, expected none with --model finite-elements",
+        ),
+        (["--model", "springs", "--modes", "4"], "belongs to compliant"),
+        (["--checkpoint-every", "5 s"], "belongs to finite-elements"),
+        (["--modes", "21"], "a whole number from 0 to 20"),
+    ],
+)
 def test_options_of_another_model_are_bad_input(tmp_path, given, fault):
     result = call("run", "--scene", "tiny", *given, "--out", tmp_path / "out")
-    assert result.exit_code == 2 and fault in result.stderr.replace("option: given", "given").replace("  ", " "), result.stderr
+    assert result.exit_code == 2 and fault in result.stderr.replace(
+        "option: given", "given"
+    ).replace("  ", " "), result.stderr
     assert not (tmp_path / "out").exists()
 
 
@@ -54,17 +81,24 @@ def test_every_fault_of_the_options_is_listed():
 
 
 def test_an_answer_names_its_model_and_its_error(tmp_path):
-    """Compliant contact without a word; the second run finds the compliance where the first one kept it."""
+    """Compliant contact without a word; the second run finds the compliance where the first one
+    kept it."""
     asked = ("run", "--scene", "tiny", "--condition", "phi15", "--out", tmp_path)
     first = call(*asked)
     assert first.exit_code == 0, first.output
     assert "tiny / phi15, model compliant: exited" in first.stdout
-    assert "agreement     not measured for this scene with this code (tipoff compare measures it)" in first.stdout
+    assert (
+        "agreement     not measured for this scene with this code (tipoff compare measures it)"
+        in first.stdout
+    )
     assert first.stderr.count("rail compliance, once per rail and pads") == 1
     again = json.loads(call(*asked, "--json").stdout)
     assert again["model"] == COMPLIANT
     vibrating = call(*asked, "--modes", "1")
-    assert "model compliant, 1 modes of each rail" in vibrating.stdout and "rail compliance" not in vibrating.stderr
+    assert (
+        "model compliant, 1 modes of each rail" in vibrating.stdout
+        and "rail compliance" not in vibrating.stderr
+    )
     springs = json.loads(call(*asked, "--model", "springs", "--json").stdout)
     assert springs["model"] == SPRINGS and springs["settled"] != again["settled"]
 
@@ -72,10 +106,13 @@ def test_an_answer_names_its_model_and_its_error(tmp_path):
 def test_the_error_comes_from_the_agreement_table(study, monkeypatch):
     monkeypatch.setattr("studies.stages.compare.stored", lambda _: TABLE)
     assert kept.words(study, COMPLIANT, "phi15") == (
-        "settled rates within 0.012 deg/s of the reference, curves within 0.33 %")
+        "settled rates within 0.012 deg/s of the reference, curves within 0.33 %"
+    )
     assert kept.words(study, COMPLIANT, "h8").endswith("but the reference is not converged there")
     assert kept.words(study, COMPLIANT) == (
-        "at most 0.012 deg/s from the reference on the 1 conditions where that is converged and pads touch")
+        "at most 0.012 deg/s from the reference on the 1 conditions where that is converged and "
+        "pads touch"
+    )
     assert "0.14 deg/s" in kept.words(study, SPRINGS, "phi15", calibrated=True)
     assert kept.words(study, SPRINGS, "phi15").startswith("not measured")
     assert kept.words(study, COMPLIANT, "phi15", modes=2).startswith("not measured")
@@ -84,7 +121,12 @@ def test_the_error_comes_from_the_agreement_table(study, monkeypatch):
 
 def test_a_run_is_not_answered_by_a_model_that_its_agreement_rejects(study, monkeypatch):
     """Controls: the same condition by name; one whose reference is not converged."""
-    missed = TABLE | {"compliant": [ROW | {"passes": False, "verdict": "misses: rate L2 2 x limit"}, TABLE["compliant"][1]]}
+    missed = TABLE | {
+        "compliant": [
+            ROW | {"passes": False, "verdict": "misses: rate L2 2 x limit"},
+            TABLE["compliant"][1],
+        ]
+    }
     monkeypatch.setattr("studies.stages.compare.stored", lambda _: missed)
     monkeypatch.setattr(single, "_made", lambda *_: {"made": True})
     monkeypatch.setattr(single.compliance, "load", lambda *_, **__: None)

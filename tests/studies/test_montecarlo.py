@@ -1,4 +1,5 @@
-"""The study of random errors as a whole, on a launch without contact, where the distribution of the rates is known."""
+"""The study of random errors as a whole, on a launch without contact, where the distribution of the
+rates is known."""
 
 import json
 
@@ -37,11 +38,19 @@ def test_what_is_written_is_whole_and_not_made_again(study, found, monkeypatch):
     assert found["counts"] == {"asked": 1500, "ok": 1500, "refused": 0, "failed": 0}
     assert found["model"] == "compliant, without contact"
     assert [item["name"] for item in found["quantities"]] == [item.name for item in answers.ALL]
-    assert {f"figures/montecarlo-{name}.{kind}" for name in ("histograms", "convergence")
-            for kind in ("png", "svg")} == set(found["files"])
-    assert found["models"] is None and len(found["readings"]) == 7  # no springs and no clearance without contact
+    assert {
+        f"figures/montecarlo-{name}.{kind}"
+        for name in ("histograms", "convergence")
+        for kind in ("png", "svg")
+    } == set(found["files"])
+    # no springs and no clearance without contact
+    assert found["models"] is None and len(found["readings"]) == 7
     monkeypatch.setattr("studies.populations.population.run", lambda *_: pytest.fail("made again"))
-    assert montecarlo.run(study, Asked(cases=1500, limits=("y=6 deg/s", "8 deg/s"))) == found == montecarlo.stored(study)
+    assert (
+        montecarlo.run(study, Asked(cases=1500, limits=("y=6 deg/s", "8 deg/s")))
+        == found
+        == montecarlo.stored(study)
+    )
     assert json.loads(study.path("montecarlo.json").read_text()) == found
 
 
@@ -49,21 +58,34 @@ def test_the_first_thousand_are_the_paper_s_and_bounds_shrink_with_the_root_of_t
     item = found["quantities"][1]
     first, whole = item["first"][2], item["quantiles"][2]
     assert first["low"] < first["value"] < first["high"] and first != whole
-    assert {row["name"] for row in found["convergence"]} == {"rate_x_deg_s", "rate_y_deg_s", "rate_z_deg_s", "rate_deg_s"}
-    for name in ("rate_y_deg_s", "rate_z_deg_s", "rate_deg_s"):  # nothing turns this payload about x
+    assert {row["name"] for row in found["convergence"]} == {
+        "rate_x_deg_s",
+        "rate_y_deg_s",
+        "rate_z_deg_s",
+        "rate_deg_s",
+    }
+    # nothing turns this payload about x
+    for name in ("rate_y_deg_s", "rate_z_deg_s", "rate_deg_s"):
         rows = [row for row in found["convergence"] if row["share"] == 0.5 and row["name"] == name]
         assert [row["cases"] for row in rows] == [100, 200, 500, 1000, 1500]
         halves = [0.5 * (row["high"] - row["low"]) for row in rows]
-        # The slope is -1/2; ranks are whole numbers and densities estimated, so single widths scatter by some 20 %.
-        assert np.polyfit(np.log([row["cases"] for row in rows]), np.log(halves), 1)[0] == pytest.approx(-0.5, abs=0.15)
+        # The slope is -1/2; ranks are whole numbers and densities estimated, so single widths
+        # scatter by some 20 %.
+        assert np.polyfit(np.log([row["cases"] for row in rows]), np.log(halves), 1)[
+            0
+        ] == pytest.approx(-0.5, abs=0.15)
 
 
 def counted(cases, lost):
     """Case n has every number n, and those of ``lost`` did not settle."""
     number = np.arange(float(cases))
     number[lost] = np.nan
-    each = columns.Columns(*[np.radians(np.column_stack([number] * 3)) if name in columns.VECTORS else number
-                             for name in columns.Columns._fields])
+    each = columns.Columns(
+        *[
+            np.radians(np.column_stack([number] * 3)) if name in columns.VECTORS else number
+            for name in columns.Columns._fields
+        ]
+    )
     return Population({}, each, "store", {"refused": 0})
 
 
@@ -71,15 +93,22 @@ def test_a_part_of_the_cases_is_their_first_whether_they_settled_or_not():
     """Case 1,000 is not among the first thousand because an earlier one did not settle."""
     found = counted(1200, slice(0, 300))
     item = montecarlo._quantity(answers.RATES[0], found)
-    assert item["first"][2]["value"] == pytest.approx(649.5) and item["quantiles"][2]["value"] == pytest.approx(749.5)
+    assert item["first"][2]["value"] == pytest.approx(649.5) and item["quantiles"][2][
+        "value"
+    ] == pytest.approx(749.5)
     assert sum(item["histogram"]["first"]) > 0.0
     assert montecarlo._quantity(answers.RATES[0], counted(1200, slice(0, 1000)))["first"] is None
     rows = spread.convergence(answers.RATES[0].of(found.results), (0.5,))
-    assert [(row["cases"], round(row["value"], 6)) for row in rows] == [(500, 399.5), (1000, 649.5), (1200, 749.5)]
+    assert [(row["cases"], round(row["value"], 6)) for row in rows] == [
+        (500, 399.5),
+        (1000, 649.5),
+        (1200, 749.5),
+    ]
 
 
 def test_what_does_not_settle_elsewhere_is_said_and_stops_nothing(study, monkeypatch):
-    """Neither another reading nor the other surrogate; with none settled of the cases asked for there is nothing to say."""
+    """Neither another reading nor the other surrogate; with none settled of the cases asked for
+    there is nothing to say."""
     run, seen = population.run, []
 
     def spoilt(*arguments):
@@ -91,42 +120,66 @@ def test_what_does_not_settle_elsewhere_is_said_and_stops_nothing(study, monkeyp
     monkeypatch.setattr(population, "run", spoilt)
     found = montecarlo.run(study, Asked(cases=120, limits=("8 deg/s",)))
     row = found["readings"][2]
-    assert row["settled"] == 1 and row["rates"] is row["distance"] is None and found["readings"][0]["distance"] is not None
-    assert any(line == f"too few cases settled to compare: {row['reading']}" for line in found["findings"])
+    assert (
+        row["settled"] == 1
+        and row["rates"] is row["distance"] is None
+        and found["readings"][0]["distance"] is not None
+    )
+    assert any(
+        line == f"too few cases settled to compare: {row['reading']}" for line in found["findings"]
+    )
     assert "1 settled" in pictures.draw(found, lambda *_: "")
     monkeypatch.setattr(population, "run", lambda *_: counted(120, slice(None)))
     with pytest.raises(StudyError, match="no case settled"):
         montecarlo.run(study, Asked(cases=120, seed=2, limits=("8 deg/s",)))
     monkeypatch.setattr(population, "surrogate", lambda *_: None)
     touching = Study(load("reference"), study.folder, study.settings)
-    assert montecarlo._models(touching, Asked(cases=120), "compliant", counted(120, slice(0, 9))) is None  # no springs calibrated
+    # no springs calibrated
+    assert (
+        montecarlo._models(touching, Asked(cases=120), "compliant", counted(120, slice(0, 9)))
+        is None
+    )
     monkeypatch.setattr(montecarlo.calibrate, "stored", lambda _: {"key": "k"})
     models = montecarlo._models(touching, Asked(cases=120), "compliant", counted(120, slice(0, 9)))
     assert models["both_settled"] == 0 and models["quantities"] == []
     both = found | {"models": models}
-    assert "No case of 120 settled in both models" in pictures.draw(both, lambda *_: "") and len(pictures.charts(both)) == 2
+    assert (
+        "No case of 120 settled in both models" in pictures.draw(both, lambda *_: "")
+        and len(pictures.charts(both)) == 2
+    )
     assert "none settled on both" in montecarlo._findings(both)[-1]
 
 
 def test_tails_hold_the_probability_by_independent_quadrature(found):
-    """w_y is a sum of (normal cut at 3 sigma) times (cosine of a uniform angle): its tail from characteristic functions, on a
-    grid."""
+    """w_y is a sum of (normal cut at 3 sigma) times (cosine of a uniform angle): its tail from
+    characteristic functions, on a grid."""
     grid = np.linspace(-3.0, 3.0, 601)
-    weights, frequency = stats.truncnorm(-3.0, 3.0).pdf(grid) * (grid[1] - grid[0]), np.linspace(1e-6, 12.0, 6000)
+    weights, frequency = (
+        stats.truncnorm(-3.0, 3.0).pdf(grid) * (grid[1] - grid[0]),
+        np.linspace(1e-6, 12.0, 6000),
+    )
     weights /= weights.sum()
     transform = np.ones_like(frequency)
-    for sd in (free_flight.RATE_PER_RADIAN * np.radians(0.4) / 3.0, free_flight.RATE_PER_METRE * 0.2e-3,
-               free_flight.RATE_PER_METRE * 0.4e-3 / 3.0):
+    for sd in (
+        free_flight.RATE_PER_RADIAN * np.radians(0.4) / 3.0,
+        free_flight.RATE_PER_METRE * 0.2e-3,
+        free_flight.RATE_PER_METRE * 0.4e-3 / 3.0,
+    ):
         transform = transform * (weights[:, None] * j0(np.outer(grid, frequency) * sd)).sum(axis=0)
-    above = 1.0 - 2.0 / np.pi * np.trapezoid(transform * np.sin(6.0 * frequency) / frequency, frequency)
+    above = 1.0 - 2.0 / np.pi * np.trapezoid(
+        transform * np.sin(6.0 * frequency) / frequency, frequency
+    )
     tail = found["tails"][0]
     assert tail["limit"] == "rate about y 6 deg/s" and tail["low"] < above < tail["high"]
-    assert not tail["low"] < 1.5 * above < tail["high"]  # the bounds are narrow enough to say something
+    # the bounds are narrow enough to say something
+    assert not tail["low"] < 1.5 * above < tail["high"]
 
 
 def test_readings_that_are_one_law_cannot_be_told_apart_and_others_can(found):
     rows = {row["reading"]: row for row in found["readings"]}
-    same, half = (rows[f"{kind} normal, three angles, redrawn beyond 3 sigma"] for kind in ("signed", "half"))
+    same, half = (
+        rows[f"{kind} normal, three angles, redrawn beyond 3 sigma"] for kind in ("signed", "half")
+    )
     assert same["same"] and not half["same"] and min(same["chance"], half["chance"]) > 0.01
     assert rows["two normal components, redrawn beyond 3 sigma"]["chance"] < 1e-6
     assert rows["half normal, one angle, redrawn beyond 3 sigma"]["chance"] < 0.01
@@ -135,21 +188,41 @@ def test_readings_that_are_one_law_cannot_be_told_apart_and_others_can(found):
 def test_distance_of_two_samples_is_told_from_chance():
     random = np.random.default_rng(1)
     one, two = random.normal(size=(2, 2000))
-    assert spread.apart([one, one], [two, two])[1] > 0.05 and spread.apart([one], [two + 0.3])[1] < 1e-6
+    assert (
+        spread.apart([one, one], [two, two])[1] > 0.05
+        and spread.apart([one], [two + 0.3])[1] < 1e-6
+    )
     # Kolmogorov and Smirnov: two samples of three, one wholly above the other.
     assert spread.apart([np.arange(3.0)], [np.arange(3.0) + 5.0])[0] == 1.0
 
 
 def test_section_of_the_page(found):
     shown = pictures.draw(found, lambda chart, words: f"<figure>{chart.name}</figure>")
-    assert all(words in shown for words in ("montecarlo-histograms", "two normal components", "prints no number", "rate about y 6"))
+    assert all(
+        words in shown
+        for words in (
+            "montecarlo-histograms",
+            "two normal components",
+            "prints no number",
+            "rate about y 6",
+        )
+    )
 
 
 def test_bad_input_is_refused_and_nothing_written(tmp_path):
     arguments = ["montecarlo", "--out", str(tmp_path / "out"), "--cases", "100"]
-    for more, words in ((["--limit", "w=1 deg/s", "--limit", "x=1 mm"], ("--limit", "w=1", "1 mm", "2 faults")),
-                        (["--reading", "components", "--angles", "shared", "--limit", "5 K"], ("--angles", "--limit", "2 faults")),
-                        (["--reading", "both"], ("components",))):
+    for more, words in (
+        (["--limit", "w=1 deg/s", "--limit", "x=1 mm"], ("--limit", "w=1", "1 mm", "2 faults")),
+        (
+            ["--reading", "components", "--angles", "shared", "--limit", "5 K"],
+            ("--angles", "--limit", "2 faults"),
+        ),
+        (["--reading", "both"], ("components",)),
+    ):
         result = CliRunner().invoke(app, arguments + more)
-        assert result.exit_code == 2 and all(word in result.stderr for word in words) and "Traceback" not in result.output
+        assert (
+            result.exit_code == 2
+            and all(word in result.stderr for word in words)
+            and "Traceback" not in result.output
+        )
     assert not (tmp_path / "out").exists()

@@ -8,15 +8,23 @@ from studies.populations.order_statistics import bounds, runs_needed
 
 
 @pytest.mark.case("O49")
-@pytest.mark.parametrize("share, sides, runs", [(0.95, 1, 59), (0.95, 2, 93), (0.99, 1, 299), (0.9973, 1, 1109)])
+@pytest.mark.parametrize(
+    "share, sides, runs", [(0.95, 1, 59), (0.95, 2, 93), (0.99, 1, 299), (0.9973, 1, 1109)]
+)
 def test_runs_needed(share, sides, runs):
-    """Both sides of the threshold, from the law of the share that the extreme draws hold: beta(n, 1) and beta(n - 1, 2)."""
+    """Both sides of the threshold, from the law of the share that the extreme draws hold: beta(n,
+    1) and beta(n - 1, 2)."""
     assert runs_needed(share, 0.95, sides) == runs
-    assert stats.beta(runs + 1 - sides, sides).sf(share) >= 0.95 > stats.beta(runs - sides, sides).sf(share)
+    assert (
+        stats.beta(runs + 1 - sides, sides).sf(share)
+        >= 0.95
+        > stats.beta(runs - sides, sides).sf(share)
+    )
 
 
 def test_bounds_exist_from_the_needed_number_of_runs_on():
-    """Two-sided bounds leave 2.5 % on each side, so the largest draw is an upper bound from 0.95^n <= 0.025 on: 72."""
+    """Two-sided bounds leave 2.5 % on each side, so the largest draw is an upper bound from 0.95^n
+    <= 0.025 on: 72."""
     assert bounds(np.arange(71.0), 0.95)[1] is None
     assert bounds(np.arange(72.0), 0.95)[1] == 71.0
     assert bounds(np.arange(3.0), 0.05)[0] is None
@@ -27,6 +35,7 @@ def test_bounds_hold_as_often_as_they_say():
     for _ in range(tries):
         low, high = bounds(random.exponential(size=200), 0.9)
         held += low <= -np.log(0.1) <= high
-    # Ranks are whole numbers, so the confidence is a little more than asked: at least 95 %, less 3 standard errors of the count.
+    # Ranks are whole numbers, so the confidence is a little more than asked: at least 95 %, less 3
+    # standard errors of the count.
     assert held >= 950 - 3.0 * np.sqrt(tries * 0.95 * 0.05)
     assert held < tries

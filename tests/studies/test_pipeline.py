@@ -1,4 +1,5 @@
-"""The whole pipeline on the scene made for it: one command, every result file, one page; and a second call that does nothing."""
+"""The whole pipeline on the scene made for it: one command, every result file, one page; and a
+second call that does nothing."""
 
 import json
 import time
@@ -14,14 +15,54 @@ from studies.report.answers import ANSWERS
 from studies.stages import ablation
 from studies.stages.report import STAGES
 
-pytestmark = pytest.mark.timeout(1500)  # nearly all of it compiles kernels, side by side with other test files
+# nearly all of it compiles kernels, side by side with other test files
+pytestmark = pytest.mark.timeout(1500)
 
-ROW = {"condition", "velocity_relative_l2", "rate_relative_l2", "iso18571", "settled_rate_error_deg_s",
-       "settled_rate_error_xyz_deg_s", "floor_deg_s", "floor_l2", "reference_uncertainty_deg_s"}
-RUN = {"condition", "status", "wall_s", "compile_s", "steps", "dt_s", "energy_error", "transverse_energy_error",
-       "linear_momentum_error", "angular_momentum_error", "settled", "trajectory"}
-SECTIONS = ("answer", "scene", "mesh", "compliance", "thrust", "figure6", "contact-forces", "energy", "stress", "calibration",
-            "agreement", "growth-section", "speedup", "cost", "stability", "ablation", "promises", "colophon")
+ROW = {
+    "condition",
+    "velocity_relative_l2",
+    "rate_relative_l2",
+    "iso18571",
+    "settled_rate_error_deg_s",
+    "settled_rate_error_xyz_deg_s",
+    "floor_deg_s",
+    "floor_l2",
+    "reference_uncertainty_deg_s",
+}
+RUN = {
+    "condition",
+    "status",
+    "wall_s",
+    "compile_s",
+    "steps",
+    "dt_s",
+    "energy_error",
+    "transverse_energy_error",
+    "linear_momentum_error",
+    "angular_momentum_error",
+    "settled",
+    "trajectory",
+}
+SECTIONS = (
+    "answer",
+    "scene",
+    "mesh",
+    "compliance",
+    "thrust",
+    "figure6",
+    "contact-forces",
+    "energy",
+    "stress",
+    "calibration",
+    "agreement",
+    "growth-section",
+    "speedup",
+    "cost",
+    "stability",
+    "ablation",
+    "promises",
+    "colophon",
+)
 
 
 @pytest.fixture(scope="module")
@@ -30,7 +71,8 @@ def pipeline(tmp_path_factory):
     out = tmp_path_factory.mktemp("out")
     arguments = ["report", "--scene", "tiny", "--out", str(out)]
     with pytest.MonkeyPatch.context() as patch:
-        # Each effect taken away is one more kernel to compile; one of them shows that the stage works.
+        # Each effect taken away is one more kernel to compile; one of them shows that the stage
+        # works.
         patch.setattr(ablation, "EFFECTS", ("friction",))
         first = CliRunner().invoke(app, arguments, catch_exceptions=False)
         started = time.monotonic()
@@ -67,7 +109,10 @@ def test_runs_hold_the_keys_other_tools_read(pipeline, fidelity):
         expected = "finite-elements" if fidelity == "highfi" else "compliant"
         assert row["model"] == Trajectory.load(pipeline[0] / row["trajectory"]).model == expected
         if fidelity == "highfi":
-            assert 0.0 < row["peak_stress_pa"] < row["yield_strength_pa"] and len(row["peak_stress_place_m"]) == 3
+            assert (
+                0.0 < row["peak_stress_pa"] < row["yield_strength_pa"]
+                and len(row["peak_stress_place_m"]) == 3
+            )
 
 
 def test_agreement_holds_the_keys_other_tools_read(pipeline):
@@ -75,7 +120,11 @@ def test_agreement_holds_the_keys_other_tools_read(pipeline):
     assert [row["condition"] for row in found["fitted"]] == ["phi15", "phi60"]
     assert [row["condition"] for row in found["held_out"]] == ["h1", "h2"]
     assert len(found["uncalibrated"]) == len(found["compliant"]) == len(found["modal"]) == 4
-    assert all(ROW <= set(row) for group in ("uncalibrated", "fitted", "held_out", "compliant", "modal") for row in found[group])
+    assert all(
+        ROW <= set(row)
+        for group in ("uncalibrated", "fitted", "held_out", "compliant", "modal")
+        for row in found[group]
+    )
     for speed in (found["speedup"], found["speedup_compliant"]):
         assert {"ratio", "low", "high", "highfi_wall_s", "lowfi_wall_s", "elements"} <= set(speed)
         assert speed["low"] <= speed["ratio"] <= speed["high"]
@@ -83,12 +132,22 @@ def test_agreement_holds_the_keys_other_tools_read(pipeline):
 
 
 def test_compliant_contact_needs_no_fit(pipeline):
-    """Closer than the fit even on what that was fitted to; control: a compliance known by mean pressures alone is farther off."""
+    """Closer than the fit even on what that was fitted to; control: a compliance known by mean
+    pressures alone is farther off."""
     found = result(pipeline[0], "agreement")
     fitted = {row["condition"]: row["rate_relative_l2"] for row in found["fitted"]}
     compliant = {row["condition"]: row["rate_relative_l2"] for row in found["compliant"]}
-    simpler = {row["condition"]: row["rate_relative_l2"] for row in found["simpler"] if row["walls"] == "mean pressure"}
-    assert all(compliant[name] < 0.02 and compliant[name] < fitted[name] and compliant[name] < simpler[name] for name in fitted)
+    simpler = {
+        row["condition"]: row["rate_relative_l2"]
+        for row in found["simpler"]
+        if row["walls"] == "mean pressure"
+    }
+    assert all(
+        compliant[name] < 0.02
+        and compliant[name] < fitted[name]
+        and compliant[name] < simpler[name]
+        for name in fitted
+    )
     assert result(pipeline[0], "compliance")["stations"] >= 2
 
 
@@ -103,7 +162,8 @@ def test_both_models_move_alike_with_the_penalty_they_share(pipeline):
 
 
 def test_calibration_brings_the_fitted_conditions_closer(pipeline):
-    """Fitted on these, so anything else would be a fault of the search; the held-out ones promise nothing on so coarse a mesh."""
+    """Fitted on these, so anything else would be a fault of the search; the held-out ones promise
+    nothing on so coarse a mesh."""
     found = result(pipeline[0], "agreement")
     before = {row["condition"]: row["rate_relative_l2"] for row in found["uncalibrated"]}
     after = {row["condition"]: row["rate_relative_l2"] for row in found["fitted"]}
@@ -126,12 +186,26 @@ def test_hard_cases_hold_and_their_controls_fail(pipeline):
 def test_cost_has_three_meshes_and_three_tolerances(pipeline):
     points = result(pipeline[0], "cost")
     assert points == result(pipeline[0], "cost_study")["points"]
-    assert all({"model", "numerics", "error_deg_s", "wall_s", "pareto"} <= set(point) for point in points)
-    counts = [sum(point["model"] == model for point in points)
-              for model in ("finite-elements", "springs, uncalibrated", "springs, calibrated",
-                            "compliant, mean pressure of each face by itself", "compliant", "compliant, 4 modes")]
+    assert all(
+        {"model", "numerics", "error_deg_s", "wall_s", "pareto"} <= set(point) for point in points
+    )
+    counts = [
+        sum(point["model"] == model for point in points)
+        for model in (
+            "finite-elements",
+            "springs, uncalibrated",
+            "springs, calibrated",
+            "compliant, mean pressure of each face by itself",
+            "compliant",
+            "compliant, 4 modes",
+        )
+    ]
     assert all(count >= 3 for count in counts)
-    assert [point["numerics"] for point in points if point["modes"]] == ["1 mode", "2 modes", "8 modes"]
+    assert [point["numerics"] for point in points if point["modes"]] == [
+        "1 mode",
+        "2 modes",
+        "8 modes",
+    ]
     assert len(result(pipeline[0], "cost_study")["matched"]) == 5
     assert any(point["pareto"] for point in points)
 
@@ -139,7 +213,9 @@ def test_cost_has_three_meshes_and_three_tolerances(pipeline):
 def test_cost_grows_with_elements_and_hardly_with_pads(pipeline):
     """Elements are the work of the reference on any mesh; pads only where they touch."""
     found = result(pipeline[0], "cost_study")["scaling"]
-    assert [point["n"] for point in found["elements"]["points"]] == sorted(point["n"] for point in found["elements"]["points"])
+    assert [point["n"] for point in found["elements"]["points"]] == sorted(
+        point["n"] for point in found["elements"]["points"]
+    )
     assert found["elements"]["run"]["exponent"] > 0.0
     assert [law["model"] for law in found["pads"]] == ["finite-elements", "springs", "compliant"]
     assert all([point["n"] for point in law["points"]] == [1, 2, 4, 8, 16] for law in found["pads"])
@@ -152,15 +228,24 @@ def test_growth_of_a_micrometre_in_both_models(pipeline):
     """Both on the condition of the floor at least, whose figure it must repeat."""
     found = result(pipeline[0], "agreement")
     models = {(item["condition"], item["model"]): item for item in found["growth"]}
-    floor = {item["model"]: item["settled_rate_change_deg_s"] for item in found["floor"] if item["condition"] == "phi15"}
+    floor = {
+        item["model"]: item["settled_rate_change_deg_s"]
+        for item in found["floor"]
+        if item["condition"] == "phi15"
+    }
     for model, named in (("finite-elements", "reference"), ("compliant", "compliant")):
         item = models["phi15", model]
         assert item["settled_separation_deg_s"] == floor[named] and item["contacts"]
-        assert len(item["time_s"]) == len(item["separation_deg_s"]) and max(item["separation_deg_s"]) > 0.0
+        assert (
+            len(item["time_s"]) == len(item["separation_deg_s"])
+            and max(item["separation_deg_s"]) > 0.0
+        )
 
 
 def test_ablation_changes_rates_and_kernel(pipeline):
-    rows = {(row["fidelity"], row["variant"]): row for row in result(pipeline[0], "ablation")["rows"]}
+    rows = {
+        (row["fidelity"], row["variant"]): row for row in result(pipeline[0], "ablation")["rows"]
+    }
     for fidelity in ("highfi", "lowfi"):
         assert max(map(abs, rows[fidelity, "without friction"]["settled_rate_change_deg_s"])) > 0.01
     assert "friction" in rows["highfi", "all effects"]["compiled"]
@@ -170,23 +255,40 @@ def test_ablation_changes_rates_and_kernel(pipeline):
 def test_page_is_whole_and_self_contained(pipeline):
     page = (pipeline[0] / "report.html").read_text()
     assert [name for name in SECTIONS if f'id="{name}"' not in page] == []
-    assert page.count("Not made yet") == len(ANSWERS) and "BROKEN" not in page  # studies with targets of their own
+    # studies with targets of their own
+    assert page.count("Not made yet") == len(ANSWERS) and "BROKEN" not in page
     assert page.count("/*! For license information") <= 1 and 'src="http' not in page
     figures = {path.name for path in (pipeline[0] / "figures").glob("*.png")}
-    assert {"mesh.png", "compliance.png", "thrust.png", "figure6.png", "contact-forces.png", "energy-ledgers.png", "cost.png",
-            "growth.png", "scaling.png"} <= figures
+    assert {
+        "mesh.png",
+        "compliance.png",
+        "thrust.png",
+        "figure6.png",
+        "contact-forces.png",
+        "energy-ledgers.png",
+        "cost.png",
+        "growth.png",
+        "scaling.png",
+    } <= figures
 
 
 def test_blind_conditions_are_judged_beside_what_was_made(pipeline):
-    """Two conditions drawn afterwards, on the calibration and the compliance of the pipeline, which are not made again."""
+    """Two conditions drawn afterwards, on the calibration and the compliance of the pipeline, which
+    are not made again."""
     out = str(pipeline[0].parent)
     fitted = (pipeline[0] / "calibration.toml").stat().st_mtime_ns
-    found = CliRunner().invoke(app, ["blind", "--scene", "tiny", "--out", out, "--cases", "2", "--seed", "5"],
-                               catch_exceptions=False)
+    found = CliRunner().invoke(
+        app,
+        ["blind", "--scene", "tiny", "--out", out, "--cases", "2", "--seed", "5"],
+        catch_exceptions=False,
+    )
     assert found.exit_code == 0 and "2 conditions drawn with seed 5" in found.stdout
     kept = result(pipeline[0], "blind")
-    assert ([row["condition"] for row in kept["compliant"]] == ["blind1", "blind2"]
-            == [row["condition"] for row in kept["calibrated"]])
+    assert (
+        [row["condition"] for row in kept["compliant"]]
+        == ["blind1", "blind2"]
+        == [row["condition"] for row in kept["calibrated"]]
+    )
     assert all(ROW <= set(row) and row["role"] == "held_out" for row in kept["compliant"])
     assert (pipeline[0] / "calibration.toml").stat().st_mtime_ns == fitted
     from studies.report import blind
@@ -199,12 +301,25 @@ def test_a_model_is_chosen_from_what_the_pipeline_measured(pipeline, condition):
     """Nothing is fitted again, and the model runs as it was measured: compliant, where it was."""
     folder = pipeline[0]
     before = (folder / "calibration.json").read_bytes()
-    asked = ["run", "--scene", "tiny", "--condition", condition, "--budget", "1 h", "--json", "--out", str(folder.parent)]
+    asked = [
+        "run",
+        "--scene",
+        "tiny",
+        "--condition",
+        condition,
+        "--budget",
+        "1 h",
+        "--json",
+        "--out",
+        str(folder.parent),
+    ]
     told = CliRunner().invoke(app, asked, catch_exceptions=False)
     assert told.exit_code == 0, told.stderr
     found = json.loads(told.stdout)
     assert found["condition"] == condition
-    assert ("-compliant" in found["trajectory"]) == (found["chosen"]["rung"] in ("along", "compliant", "modal"))
+    assert ("-compliant" in found["trajectory"]) == (
+        found["chosen"]["rung"] in ("along", "compliant", "modal")
+    )
     assert ("errors on h1 as make compare" in found["chosen"]["why"]) == (condition == "h1")
     assert ("nothing is known of nominal" in found["chosen"]["why"]) == (condition == "nominal")
     assert (folder / "calibration.json").read_bytes() == before

@@ -1,4 +1,5 @@
-"""Many cases on the surrogate of a study: the store, the model that answers, and the quantities that are reported."""
+"""Many cases on the surrogate of a study: the store, the model that answers, and the quantities
+that are reported."""
 
 from types import SimpleNamespace
 
@@ -29,38 +30,77 @@ def test_compliant_contact_answers_and_needs_no_calibration(tmp_path, monkeypatc
 
 
 def test_springs_answer_where_they_are_named(tmp_path, monkeypatch):
-    monkeypatch.setattr(population.compliance, "load", lambda *_, **__: pytest.fail("found a compliance"))
-    monkeypatch.setattr(population.calibrate, "load", lambda _: SimpleNamespace(apply=lambda scene: scene))
+    monkeypatch.setattr(
+        population.compliance, "load", lambda *_, **__: pytest.fail("found a compliance")
+    )
+    monkeypatch.setattr(
+        population.calibrate, "load", lambda _: SimpleNamespace(apply=lambda scene: scene)
+    )
     found = population.surrogate(Study(SCENE, tmp_path, Settings()), SPRINGS)
     assert found.name == SPRINGS and found.words == "springs, calibrated"
 
 
 def test_a_model_that_the_agreement_table_rejects_answers_by_name_only(tmp_path, monkeypatch):
-    """Control: where the reference is not converged nothing is rejected, and another condition says nothing of this one."""
-    rows = [{"condition": "h1", "reference_converged": True, "passes": False, "verdict": "misses: settled rate 3 x limit"},
-            {"condition": "h8", "reference_converged": False, "passes": False, "verdict": "reference not converged"}]
+    """Control: where the reference is not converged nothing is rejected, and another condition says
+    nothing of this one."""
+    rows = [
+        {
+            "condition": "h1",
+            "reference_converged": True,
+            "passes": False,
+            "verdict": "misses: settled rate 3 x limit",
+        },
+        {
+            "condition": "h8",
+            "reference_converged": False,
+            "passes": False,
+            "verdict": "reference not converged",
+        },
+    ]
     monkeypatch.setattr(kept, "rows", lambda *_, **__: rows)
     monkeypatch.setattr(population.compliance, "load", lambda *_, **__: FLEXIBLE)
     study = Study(SCENE, tmp_path, Settings())
     for condition in (None, "h1"):
-        with pytest.raises(StudyError, match="h1: misses: settled rate 3 x limit\n.*--model finite-elements"):
+        with pytest.raises(
+            StudyError, match="h1: misses: settled rate 3 x limit\n.*--model finite-elements"
+        ):
             population.surrogate(study, None, condition)
         assert population.surrogate(study, COMPLIANT, condition).name == COMPLIANT
-    assert population.surrogate(study, None, "h8").name == population.surrogate(study, None, "h2").name == COMPLIANT
+    assert (
+        population.surrogate(study, None, "h8").name
+        == population.surrogate(study, None, "h2").name
+        == COMPLIANT
+    )
 
 
 def test_cases_are_kept_and_not_run_again(tmp_path, monkeypatch):
     study = Study(SCENE, tmp_path, Settings(workers=1))
-    rows = ([{"thrust_offset.misalignment.radial": angle} for angle in (0.3, 0.6)]
-            + [{"thrust_offset.misalignment.radial": float("nan")}])
+    rows = [{"thrust_offset.misalignment.radial": angle} for angle in (0.3, 0.6)] + [
+        {"thrust_offset.misalignment.radial": float("nan")}
+    ]
     found = population.run(study, "trial", Surrogate(SCENE, None, None), Listed(rows))
-    alone = lowfi.run(SCENE.replace(rows[1]), "springs", numerics=Numerics(relative_tolerance=population.TOLERANCE)).outcome
-    assert found.counts == {"asked": 3, "ok": 2, "refused": 1, "failed": 0} and found.settled.tolist() == [True, True, False]
+    alone = lowfi.run(
+        SCENE.replace(rows[1]),
+        "springs",
+        numerics=Numerics(relative_tolerance=population.TOLERANCE),
+    ).outcome
+    assert found.counts == {
+        "asked": 3,
+        "ok": 2,
+        "refused": 1,
+        "failed": 0,
+    } and found.settled.tolist() == [True, True, False]
     values = {item.name: item.of(found.results)[1] for item in answers.ALL}
     assert [values[f"rate_{axis}_deg_s"] for axis in "xyz"] == np.degrees(alone.rate).tolist()
-    assert (values["lateral_velocity_mm_s"] == 1e3 * alone.lateral_velocity
-            and values["direction_error_deg"] == np.degrees(alone.direction_error))
-    assert [values[f"attitude_{axis}_deg"] for axis in "xyz"] == np.degrees(alone.exit_attitude).tolist()
+    assert values["lateral_velocity_mm_s"] == 1e3 * alone.lateral_velocity and values[
+        "direction_error_deg"
+    ] == np.degrees(alone.direction_error)
+    assert [values[f"attitude_{axis}_deg"] for axis in "xyz"] == np.degrees(
+        alone.exit_attitude
+    ).tolist()
     monkeypatch.setattr("lowfi.fill.completed", lambda *_: pytest.fail("ran a stored case again"))
     again = population.run(study, "trial", Surrogate(SCENE, None, None), Listed(rows))
-    assert np.array_equal(again.results.rate, found.results.rate, equal_nan=True) and (tmp_path / again.store).is_dir()
+    assert (
+        np.array_equal(again.results.rate, found.results.rate, equal_nan=True)
+        and (tmp_path / again.store).is_dir()
+    )

@@ -1,4 +1,5 @@
-"""The paper's random factors: each reading against its closed form, and the linear tip-off through the whole path."""
+"""The paper's random factors: each reading against its closed form, and the linear tip-off through
+the whole path."""
 
 import numpy as np
 import pytest
@@ -25,14 +26,23 @@ def drawn(reading, cases=COUNT, seed=3):
 def plane(columns, name):
     """Signed parts (n,2) of an error, in units of its standard deviation."""
     error = ERRORS[name]
-    size, angle = columns[f"{error.key}.axial"] / (error.three_sigma / 3.0), columns[f"{error.key}.radial"]
+    size, angle = (
+        columns[f"{error.key}.axial"] / (error.three_sigma / 3.0),
+        columns[f"{error.key}.radial"],
+    )
     return size * np.cos(angle), size * np.sin(angle)
 
 
-@pytest.mark.parametrize("reading, law", [
-    (Reading(rule="none"), stats.halfnorm()), (Reading("half", rule="none"), stats.halfnorm()),
-    (Reading("components", rule="none"), stats.rayleigh()),
-    (Reading(), stats.truncnorm(0.0, 3.0)), (Reading(angles="shared", rule="none"), stats.halfnorm())])
+@pytest.mark.parametrize(
+    "reading, law",
+    [
+        (Reading(rule="none"), stats.halfnorm()),
+        (Reading("half", rule="none"), stats.halfnorm()),
+        (Reading("components", rule="none"), stats.rayleigh()),
+        (Reading(), stats.truncnorm(0.0, 3.0)),
+        (Reading(angles="shared", rule="none"), stats.halfnorm()),
+    ],
+)
 def test_sizes_follow_the_law_of_their_reading(reading, law):
     """Control: the law of another reading is refused by the same test."""
     for error in ERRORS.values():
@@ -43,22 +53,45 @@ def test_sizes_follow_the_law_of_their_reading(reading, law):
 
 
 @pytest.mark.case("O48")
-@pytest.mark.parametrize("rule, variance, fourth", [("redraw", 0.9733369, 2.6795), ("clip", 0.9950073, 2.9), ("none", 1.0, 3.0)])
+@pytest.mark.parametrize(
+    "rule, variance, fourth",
+    [("redraw", 0.9733369, 2.6795), ("clip", 0.9950073, 2.9), ("none", 1.0, 3.0)],
+)
 def test_variance_by_rule_of_truncation(rule, variance, fourth):
-    """In units of sigma^2; the error of a variance is sqrt((m4 - m2^2)/n), ``fourth`` being m4 at most."""
-    sizes = [drawn(Reading(rule=rule), 50_000)[f"{error.key}.axial"] / (error.three_sigma / 3.0) for error in ERRORS.values()]
-    assert abs(np.mean(np.square(sizes)) - variance) < 3.0 * np.sqrt((fourth - variance**2) / (3 * 50_000))
+    """In units of sigma^2; the error of a variance is sqrt((m4 - m2^2)/n), ``fourth`` being m4 at
+    most."""
+    sizes = [
+        drawn(Reading(rule=rule), 50_000)[f"{error.key}.axial"] / (error.three_sigma / 3.0)
+        for error in ERRORS.values()
+    ]
+    assert abs(np.mean(np.square(sizes)) - variance) < 3.0 * np.sqrt(
+        (fourth - variance**2) / (3 * 50_000)
+    )
 
 
 def test_one_angle_puts_both_eccentricities_on_one_line():
     """Signed ones add up as often as they cancel; half-normal ones always point the same way."""
-    for reading, signs in ((Reading(angles="shared"), {-1.0, 1.0}), (Reading("half", "shared"), {1.0})):
+    for reading, signs in (
+        (Reading(angles="shared"), {-1.0, 1.0}),
+        (Reading("half", "shared"), {1.0}),
+    ):
         columns = drawn(reading, 500)
-        (y, z), (other_y, other_z) = plane(columns, "thrust_eccentricity"), plane(columns, "mass_eccentricity")
+        (y, z), (other_y, other_z) = (
+            plane(columns, "thrust_eccentricity"),
+            plane(columns, "mass_eccentricity"),
+        )
         cosine = (y * other_y + z * other_z) / np.hypot(y, z) / np.hypot(other_y, other_z)
         assert np.allclose(np.abs(cosine), 1.0) and set(np.sign(cosine)) == signs
     apart = drawn(Reading(), 500)
-    assert np.ptp(np.cos(apart["mass_offset.eccentricity.radial"] - apart["thrust_offset.eccentricity.radial"])) > 1.9
+    assert (
+        np.ptp(
+            np.cos(
+                apart["mass_offset.eccentricity.radial"]
+                - apart["thrust_offset.eccentricity.radial"]
+            )
+        )
+        > 1.9
+    )
 
 
 def test_a_case_has_the_same_bits_however_cases_are_cut_and_the_reading_is_part_of_the_identity():
@@ -66,34 +99,61 @@ def test_a_case_has_the_same_bits_however_cases_are_cut_and_the_reading_is_part_
     for reading in READINGS:
         source = random_factors.source(SCENE, reading, 300, 5)
         whole[reading] = source.rows(0, 300)
-        assert [row for begin in range(0, 300, 7) for row in source.rows(begin, min(begin + 7, 300))] == whole[reading]
-        assert all(row[f"{error.key}.axial"] >= 0.0 for row in whole[reading] for error in ERRORS.values())
-    identities = [str(random_factors.source(SCENE, reading, 300, 5).identity) for reading in READINGS]
+        assert [
+            row for begin in range(0, 300, 7) for row in source.rows(begin, min(begin + 7, 300))
+        ] == whole[reading]
+        assert all(
+            row[f"{error.key}.axial"] >= 0.0 for row in whole[reading] for error in ERRORS.values()
+        )
+    identities = [
+        str(random_factors.source(SCENE, reading, 300, 5).identity) for reading in READINGS
+    ]
     assert len(set(identities)) == len(READINGS)
-    inside = np.array([[row["initial.position.y"], row["initial.position.z"]] for row in whole[Reading(initial=True)]])
+    inside = np.array(
+        [
+            [row["initial.position.y"], row["initial.position.z"]]
+            for row in whole[Reading(initial=True)]
+        ]
+    )
     assert 0.9 * SCENE.contact.clearance < np.abs(inside).max() <= SCENE.contact.clearance
 
 
 def test_what_has_no_meaning_is_refused_with_every_fault():
     with pytest.raises(SceneError) as refused:
-        random_factors.source(free_flight.scene(), Reading("components", "shared", initial=True), 100, 1)
+        random_factors.source(
+            free_flight.scene(), Reading("components", "shared", initial=True), 100, 1
+        )
     assert "--angles" in str(refused.value) and "--initial" in str(refused.value)
 
 
 @pytest.mark.case("O47")
 def test_linear_tip_off_on_a_launch_without_contact(tmp_path):
-    """sd of w_y: the half variances add up to 3.121965 deg/s. Control: components have twice the variance of one signed value."""
+    """sd of w_y: the half variances add up to 3.121965 deg/s. Control: components have twice the
+    variance of one signed value."""
     scene = free_flight.scene()
     study, exact = Study(scene, tmp_path, Settings(workers=1)), 3.121965
-    sds = [size / 3.0 for size in (free_flight.RATE_PER_RADIAN * ERRORS["misalignment"].three_sigma,
-                                   free_flight.RATE_PER_METRE * 0.6e-3,
-                                   free_flight.RATE_PER_METRE * 0.4e-3)]
+    sds = [
+        size / 3.0
+        for size in (
+            free_flight.RATE_PER_RADIAN * ERRORS["misalignment"].three_sigma,
+            free_flight.RATE_PER_METRE * 0.6e-3,
+            free_flight.RATE_PER_METRE * 0.4e-3,
+        )
+    ]
     assert np.sqrt(0.5 * np.square(sds).sum()) == pytest.approx(exact, abs=1e-6)
     model = population.surrogate(study)
     assert model.calibration is None and model.walls is None
-    for reading, expected in ((Reading(rule="none"), exact), (Reading("components", rule="none"), np.sqrt(2.0) * exact)):
-        found = population.run(study, "linear", model, random_factors.source(scene, reading, 8000, 1))
+    for reading, expected in (
+        (Reading(rule="none"), exact),
+        (Reading("components", rule="none"), np.sqrt(2.0) * exact),
+    ):
+        found = population.run(
+            study, "linear", model, random_factors.source(scene, reading, 8000, 1)
+        )
         assert found.settled.all()
         for quantity in answers.RATES[1:]:
             told = spread.moments(quantity.of(found.results))
-            assert abs(told["sd"] - expected) < 3.0 * told["sd_error"] < 0.2 and abs(told["mean"]) < 3.0 * told["mean_error"]
+            assert (
+                abs(told["sd"] - expected) < 3.0 * told["sd_error"] < 0.2
+                and abs(told["mean"]) < 3.0 * told["mean_error"]
+            )

@@ -1,4 +1,5 @@
-"""The parts of the report: provenance of every value, honest notices, charts drawn twice, nothing that needs a network."""
+"""The parts of the report: provenance of every value, honest notices, charts drawn twice, nothing
+that needs a network."""
 
 import re
 
@@ -19,9 +20,18 @@ from studies.study import Study
 from tests.studies.synthetic import flight
 
 
-@pytest.mark.parametrize("value, unit, shown", [
-    (2.5e-4, "m", "250 µm"), (7.2e10, "Pa", "72 GPa"), (np.pi / 180, "rad", "1 deg"), (0.0, "m", "0 m"),
-    (0.33, "dimensionless", "0.33"), (9.9, "kg", "9.9 kg"), ((0.35, 0.2), "m", "350 mm, 200 mm")])
+@pytest.mark.parametrize(
+    "value, unit, shown",
+    [
+        (2.5e-4, "m", "250 µm"),
+        (7.2e10, "Pa", "72 GPa"),
+        (np.pi / 180, "rad", "1 deg"),
+        (0.0, "m", "0 m"),
+        (0.33, "dimensionless", "0.33"),
+        (9.9, "kg", "9.9 kg"),
+        ((0.35, 0.2), "m", "350 mm, 200 mm"),
+    ],
+)
 def test_values_are_shown_in_readable_units(value, unit, shown):
     assert inputs.readable(value, unit) == shown
 
@@ -37,8 +47,11 @@ def test_every_number_of_the_scene_is_listed_with_unit_and_provenance():
     assert inputs.provenance(scene, "payload.inertia.xy", True).startswith("assumed: box")
     assert inputs.provenance(scene, "rail.material.density", True) == "paper"
     assert inputs.provenance(scene, "output.interval", False) == "default"
-    assert "not stated" not in {inputs.provenance(scene, key, stated) for key, _, _, stated in inputs.values(scene)
-                                if key.split(".")[0] in ("payload", "platform", "rail", "friction", "thrust_offset")}
+    assert "not stated" not in {
+        inputs.provenance(scene, key, stated)
+        for key, _, _, stated in inputs.values(scene)
+        if key.split(".")[0] in ("payload", "platform", "rail", "friction", "thrust_offset")
+    }
 
 
 def test_text_from_a_scene_is_escaped():
@@ -61,9 +74,21 @@ def test_a_star_leaves_powers_of_ten_as_they_are():
 
 def test_chart_is_drawn_twice(tmp_path):
     x = np.linspace(0.0, 1.0, 5000)
-    chart = Chart("twice", [Panel("left", "x", "y", [Line(x, x**2, "square")]),
-                            Panel("right", "x", "y", [Line([1.0, 10.0], [1e-3, 1e-2], "points", marker="o", labels=("a", "b"))],
-                                  True, (2e-3, "band"))], columns=2)
+    chart = Chart(
+        "twice",
+        [
+            Panel("left", "x", "y", [Line(x, x**2, "square")]),
+            Panel(
+                "right",
+                "x",
+                "y",
+                [Line([1.0, 10.0], [1e-3, 1e-2], "points", marker="o", labels=("a", "b"))],
+                True,
+                (2e-3, "band"),
+            ),
+        ],
+        columns=2,
+    )
     html = to_html(chart)
     assert 'id="chart-twice"' in html and "square" in html and len(html) < 60_000
     png, svg = to_files(chart, tmp_path)
@@ -74,26 +99,58 @@ def test_chart_is_drawn_twice(tmp_path):
 
 def test_page_of_a_reference_alone_names_the_targets_that_make_the_rest(tmp_path):
     scene = scenes.load("tiny")
-    runs = {name: flight(lambda t: np.outer(np.sin(100.0 * t), [0.1, 0.2, 0.3])) for name in ("phi15", "phi60")}
-    rows = [row(name, run, f"highfi/{name}.nc") for name, run in runs.items()
-            if run.cost.update(elements=1, ns_per_element_step=1.0) is None]
-    other = {"name": "thin", "element_size_m": 4e-3, "constants": {}, "agreement": {"fitted": [], "held_out": [], "compliant": []}}
-    page = Page(scene, tmp_path, {"highfi": {"key": "k", "conditions": rows}, "rails": [other]}, Runs(runs, {}, {}),
-                {"calibration": "phi15 diverged"}).render()
+    runs = {
+        name: flight(lambda t: np.outer(np.sin(100.0 * t), [0.1, 0.2, 0.3]))
+        for name in ("phi15", "phi60")
+    }
+    rows = [
+        row(name, run, f"highfi/{name}.nc")
+        for name, run in runs.items()
+        if run.cost.update(elements=1, ns_per_element_step=1.0) is None
+    ]
+    other = {
+        "name": "thin",
+        "element_size_m": 4e-3,
+        "constants": {},
+        "agreement": {"fitted": [], "held_out": [], "compliant": []},
+    }
+    page = Page(
+        scene,
+        tmp_path,
+        {"highfi": {"key": "k", "conditions": rows}, "rails": [other]},
+        Runs(runs, {}, {}),
+        {"calibration": "phi15 diverged"},
+    ).render()
     assert 'id="rails"' in page and "0 of 0" in page
     for target in ("mesh", "compare", "cost", "stability", "ablation"):
         assert f"make {target} SCENE=tiny" in page
     assert "phi15 diverged" in page
     assert (tmp_path / "figures" / "figure6.png").is_file()
-    # One page, no network: nothing is fetched from anywhere. The library itself mentions addresses, so only tags count.
+    # One page, no network: nothing is fetched from anywhere. The library itself mentions addresses,
+    # so only tags count.
     assert not re.findall(r"<(?:script|link|img)[^>]+(?:src|href)=[\"']?(?:https?:)?//", page)
 
 
 def test_broken_promise_is_called_broken():
-    run = flight(checks={"linear_momentum_error": 1e-9, "angular_momentum_error": 1e-13, "friction_power_max": 0.0},
-                 cost={"wall_s": 1.0, "compile_s": 0.0, "steps": 1, "dt_s": 1e-6, "dt_limit_s": 2e-6, "elements": 1,
-                       "ns_per_element_step": 1.0})
-    found = {item.text: item for item in promises({"highfi": [row("phi15", run, "")], "lowfi": []}, {})}
+    run = flight(
+        checks={
+            "linear_momentum_error": 1e-9,
+            "angular_momentum_error": 1e-13,
+            "friction_power_max": 0.0,
+        },
+        cost={
+            "wall_s": 1.0,
+            "compile_s": 0.0,
+            "steps": 1,
+            "dt_s": 1e-6,
+            "dt_limit_s": 2e-6,
+            "elements": 1,
+            "ns_per_element_step": 1.0,
+        },
+    )
+    found = {
+        item.text: item for item in promises({"highfi": [row("phi15", run, "")], "lowfi": []}, {})
+    }
     assert found["linear momentum of the free system, finite elements"].kept is False
     assert found["angular momentum, finite elements"].kept is True
     assert found["no step above the critical one, finite elements"].kept is True
@@ -105,58 +162,129 @@ def test_figures_of_one_condition():
     force = np.zeros((601, 16, 3))
     force[100:200, 2, 1] = 50.0
     runs = Runs({"phi15": flight(pad_force=force)}, {}, {"phi15": flight()})
-    assert [panel.title for panel in figures.contact_forces(scene, runs, "phi15").panels] == ["pad 2 (rear, -y +z)"]
+    assert [panel.title for panel in figures.contact_forces(scene, runs, "phi15").panels] == [
+        "pad 2 (rear, -y +z)"
+    ]
     assert len(figures.figure6(runs, ["phi15"]).panels) == 2
 
 
 def judged(condition, l2, settled, touches=True, converged=True, passes=True):
-    return {"condition": condition, "rate_relative_l2": l2, "settled_rate_error_deg_s": settled, "touches": touches,
-            "reference_converged": converged, "passes": passes}
+    return {
+        "condition": condition,
+        "rate_relative_l2": l2,
+        "settled_rate_error_deg_s": settled,
+        "touches": touches,
+        "reference_converged": converged,
+        "passes": passes,
+    }
 
 
 def test_other_rails_are_judged_where_a_pad_touches_and_the_reference_is_converged():
-    agreement = {"fitted": [judged("phi15", 0.05, 0.2)], "held_out": [judged("h1", 0.12, 0.3, passes=False)],
-                 "compliant": [judged("phi15", 0.003, 0.01), judged("h1", 0.005, 0.02), judged("h5", 0.9, 9.0, touches=False),
-                               judged("h8", 0.8, 8.0, converged=False, passes=False), judged("h9", None, None, passes=False)]}
-    springs, walls = rails.rows([{"name": "thin", "element_size_m": 4e-3, "agreement": agreement, "constants": {}}])
+    agreement = {
+        "fitted": [judged("phi15", 0.05, 0.2)],
+        "held_out": [judged("h1", 0.12, 0.3, passes=False)],
+        "compliant": [
+            judged("phi15", 0.003, 0.01),
+            judged("h1", 0.005, 0.02),
+            judged("h5", 0.9, 9.0, touches=False),
+            judged("h8", 0.8, 8.0, converged=False, passes=False),
+            judged("h9", None, None, passes=False),
+        ],
+    }
+    springs, walls = rails.rows(
+        [{"name": "thin", "element_size_m": 4e-3, "agreement": agreement, "constants": {}}]
+    )
     assert springs == ("thin", "4 mm", "springs, calibrated", "2 of 2", "1", "12", "0.3", "")
     assert walls == ("thin", "4 mm", "compliant", "3 of 4", "2", "0.5", "0.02", "h8")
-    shown = rails.table([{"name": "thin", "element_size_m": 4e-3, "agreement": agreement, "constants": {"contact.stiffness": 2e7}}])
+    shown = rails.table(
+        [
+            {
+                "name": "thin",
+                "element_size_m": 4e-3,
+                "agreement": agreement,
+                "constants": {"contact.stiffness": 2e7},
+            }
+        ]
+    )
     assert "stiffness 2e+07" in shown
 
 
 def test_front_of_the_best_counts_errors_below_the_band_as_the_band():
     def point(model, error, wall, pareto):
-        return {"model": model, "rung": model, "numerics": "-", "modes": None, "error_deg_s": error,
-                "curve_error": error and 0.1 * error, "integration_error_deg_s": None, "wall_s": wall,
-                "status": "exited", "pareto": pareto}
+        return {
+            "model": model,
+            "rung": model,
+            "numerics": "-",
+            "modes": None,
+            "error_deg_s": error,
+            "curve_error": error and 0.1 * error,
+            "integration_error_deg_s": None,
+            "wall_s": wall,
+            "status": "exited",
+            "pareto": pareto,
+        }
 
-    chart = figures.cost_picture({"band_deg_s": 0.04, "points": [point("rough", 0.3, 1e-3, True), point("fine", 0.01, 5e-3, True),
-                                                                 point("mesh", None, 9.0, False)]})
+    chart = figures.cost_picture(
+        {
+            "band_deg_s": 0.04,
+            "points": [
+                point("rough", 0.3, 1e-3, True),
+                point("fine", 0.01, 5e-3, True),
+                point("mesh", None, 9.0, False),
+            ],
+        }
+    )
     settled, curves = chart.panels
     assert [line.name for line in settled.lines] == ["front of the best", "rough", "fine", "mesh"]
-    assert (settled.lines[0].x, settled.lines[0].y) == ([1e-3, 5e-3, 5e-3, 9.0], [0.3, 0.3, 0.04, 0.04])
-    assert settled.lines[3].y == [0.04] and [line.name for line in curves.lines] == ["rough", "fine"]
+    assert (settled.lines[0].x, settled.lines[0].y) == (
+        [1e-3, 5e-3, 5e-3, 9.0],
+        [0.3, 0.3, 0.04, 0.04],
+    )
+    assert settled.lines[3].y == [0.04] and [line.name for line in curves.lines] == [
+        "rough",
+        "fine",
+    ]
     assert curves.lines[0].y == pytest.approx([3.0])
 
 
 def test_a_study_the_scene_gives_no_occasion_for_stops_nothing(tmp_path, monkeypatch):
-    """A scene that says nothing of a flight. Control: without being asked for, it is a target that is named."""
+    """A scene that says nothing of a flight. Control: without being asked for, it is a target that
+    is named."""
     monkeypatch.setattr(stage, "STAGES", {name: lambda _: None for name in stage.STAGES})
     monkeypatch.setattr(stage, "OPTIONAL", ("flight",))
-    study = Study(scenes.load("tiny").replace({"flight": None}), tmp_path / "tiny", defaults("tiny"))
+    study = Study(
+        scenes.load("tiny").replace({"flight": None}), tmp_path / "tiny", defaults("tiny")
+    )
     page = study.path("report.html")
     stage.run(study)
     assert "make flight SCENE=tiny" in page.read_text()
     found = stage.run(study, every=True)
-    assert found["failed"] == [] and "make flight SCENE=tiny" not in page.read_text() and "[flight]" in page.read_text()
+    assert (
+        found["failed"] == []
+        and "make flight SCENE=tiny" not in page.read_text()
+        and "[flight]" in page.read_text()
+    )
 
 
 def test_calibration_shows_intervals_and_what_is_not_told():
-    document = {"parameters": ["contact.force", "contact.damping"], "values": [400.0, 0.0],
-                "intervals": [[350.0, 450.0], [None, None]], "units": ["N", "N*s/m"], "lower": [20.0, 0.0],
-                "upper": [6720.0, 7000.0], "justification": ["a", "b"], "weak_directions": [], "residuals": {},
-                "information": [[1.0, 0.0], [0.0, 0.0]], "constants": {}, "valid": {},
-                "provenance": {}, "conditions": ["phi15"], "objective": 1.0}
+    document = {
+        "parameters": ["contact.force", "contact.damping"],
+        "values": [400.0, 0.0],
+        "intervals": [[350.0, 450.0], [None, None]],
+        "units": ["N", "N*s/m"],
+        "lower": [20.0, 0.0],
+        "upper": [6720.0, 7000.0],
+        "justification": ["a", "b"],
+        "weak_directions": [],
+        "residuals": {},
+        "information": [[1.0, 0.0], [0.0, 0.0]],
+        "constants": {},
+        "valid": {},
+        "provenance": {},
+        "conditions": ["phi15"],
+        "objective": 1.0,
+    }
     shown = tables.calibration(document)
-    assert ">350 to 450<" in shown and ">not told<" in shown and "Model error is not in them" in shown
+    assert (
+        ">350 to 450<" in shown and ">not told<" in shown and "Model error is not in them" in shown
+    )

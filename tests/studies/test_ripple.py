@@ -1,4 +1,5 @@
-"""Ripple of a constant contact force: what the measure finds in a force that is known, and on the reference's own rails."""
+"""Ripple of a constant contact force: what the measure finds in a force that is known, and on the
+reference's own rails."""
 
 import numpy as np
 import pytest
@@ -12,10 +13,14 @@ FREQUENCY, FACETS, SAMPLES = 1500.0, 11, 367  # 44 mm at 6 m/s, every 0.02 ms
 
 
 def force(size: float, multiple: float) -> np.ndarray:
-    """150 N on one face, swelling slowly by a fifth, with a ripple of ``size`` at a multiple of the frequency; 1 N on another."""
+    """150 N on one face, swelling slowly by a fifth, with a ripple of ``size`` at a multiple of the
+    frequency; 1 N on another."""
     time = 2e-5 * np.arange(SAMPLES)
     found = np.zeros((SAMPLES, 3, 3))
-    swell, ripples = np.sin(2.0 * np.pi * 90.0 * time), np.cos(2.0 * np.pi * multiple * FREQUENCY * time)
+    swell, ripples = (
+        np.sin(2.0 * np.pi * 90.0 * time),
+        np.cos(2.0 * np.pi * multiple * FREQUENCY * time),
+    )
     found[:, 1, 2] = -150.0 * (1.0 + 0.2 * swell + size * ripples)
     found[:, 2, 1] = np.sin(2.0 * np.pi * FREQUENCY * time)
     return found
@@ -23,7 +28,8 @@ def force(size: float, multiple: float) -> np.ndarray:
 
 @pytest.mark.parametrize("multiple", [1, 2, 3])
 def test_ripple_of_a_known_force(multiple):
-    """A slow swell of twenty times its size does not hide it, and a face that hardly touches does not count."""
+    """A slow swell of twenty times its size does not hide it, and a face that hardly touches does
+    not count."""
     found = ripple.judge(force(0.01, multiple), FREQUENCY, FACETS)
     assert found.ripple == pytest.approx(0.01, rel=0.1)
     assert found.background < 1e-3 and found.load == pytest.approx(150.0, rel=0.2)
@@ -34,9 +40,12 @@ def test_oscillation_at_another_frequency_is_background():
     assert found.ripple < 1e-3 and found.background == pytest.approx(0.01, rel=0.1)
 
 
-@pytest.mark.parametrize("size, bound", [(0.004, 0.01), pytest.param(0.002, 0.005, marks=pytest.mark.slow)])
+@pytest.mark.parametrize(
+    "size, bound", [(0.004, 0.01), pytest.param(0.002, 0.005, marks=pytest.mark.slow)]
+)
 def test_facet_boundaries_leave_no_ripple(size, bound):
-    """Measured: 0.5 % at 4 mm, 0.3 % at 2 mm. Control: with one Gauss point a facet, 2.6 and 1.5 %."""
+    """Measured: 0.5 % at 4 mm, 0.3 % at 2 mm. Control: with one Gauss point a facet, 2.6 and 1.5
+    %."""
     scene = scenes.load("reference")
     found = ripple.measure(scene, Numerics(element_size=size))
     single = ripple.measure(scene, Numerics(element_size=size, quadrature=1))
@@ -50,7 +59,9 @@ def test_nothing_is_told_where_there_is_nothing_to_tell(monkeypatch):
     """Without contact, on a rail of too few facets, and where facets differ in length."""
     scene = scenes.load("tiny")
     assert ripple.measure(scene.replace({"contact": None, "friction": None}), Numerics()) is None
-    assert ripple.facet_length(highfi.prepare(scene, Numerics(element_size=0.008))) == pytest.approx(0.008)
+    assert ripple.facet_length(
+        highfi.prepare(scene, Numerics(element_size=0.008))
+    ) == pytest.approx(0.008)
     assert ripple.facet_length(highfi.prepare(scene, Numerics(element_size=0.016))) is None
     assert ripple.measure(scene, Numerics(element_size=0.016)) is None
     monkeypatch.setattr(ripple, "_LEAST", 7)  # the pads cross six

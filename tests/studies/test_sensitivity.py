@@ -1,4 +1,5 @@
-"""The ``tipoff sensitivity`` command: tables, indices, figures, what bad input it refuses, and its section of the page."""
+"""The ``tipoff sensitivity`` command: tables, indices, figures, what bad input it refuses, and its
+section of the page."""
 
 import json
 from types import SimpleNamespace
@@ -47,10 +48,23 @@ high = "1.1"
 @pytest.fixture
 def tiny(tmp_path, monkeypatch):
     """Arguments of the command; the scene's own constants stand for a fit."""
-    monkeypatch.setattr(population, "surrogate", lambda study, *_: Surrogate(study.scene, None, None))
+    monkeypatch.setattr(
+        population, "surrogate", lambda study, *_: Surrogate(study.scene, None, None)
+    )
     (tmp_path / "mine.toml").write_text(TOLERANCES)
-    return ["sensitivity", "--scene", "tiny", "--points", "64", "--workers", "1", "--vary", str(tmp_path / "mine.toml"),
-            "--out", str(tmp_path / "out")]
+    return [
+        "sensitivity",
+        "--scene",
+        "tiny",
+        "--points",
+        "64",
+        "--workers",
+        "1",
+        "--vary",
+        str(tmp_path / "mine.toml"),
+        "--out",
+        str(tmp_path / "out"),
+    ]
 
 
 def call(arguments):
@@ -61,47 +75,78 @@ def test_the_command(tiny, tmp_path, monkeypatch):
     result = call(tiny)
     assert result.exit_code == 0 and "320 cases of 3 inputs, 0 did not settle" in result.stdout
     found = read(tmp_path / "out" / "tiny" / "sensitivity.json")
-    table, = found["tables"]  # nothing was calibrated, so no second one
-    assert [row["condition"] for row in table["rows"][::8]] == ["phi15", "phi35", "phi60"] and len(table["rows"]) == 24
-    assert max(table["largest"]["absolute_deg_s"]) > 0.0 and max(table["largest_clearance"]["absolute_deg_s"]) > 0.0
+    (table,) = found["tables"]  # nothing was calibrated, so no second one
+    assert [row["condition"] for row in table["rows"][::8]] == ["phi15", "phi35", "phi60"] and len(
+        table["rows"]
+    ) == 24
+    assert (
+        max(table["largest"]["absolute_deg_s"]) > 0.0
+        and max(table["largest_clearance"]["absolute_deg_s"]) > 0.0
+    )
     for row in table["rows"]:
         assert list(row["values"]) == list(row["moved"]) == [item.name for item in answers.ALL]
         assert [row["values"][f"rate_{axis}_deg_s"] for axis in "xyz"] == row["rate_deg_s"]
-    attitude = [row["values"]["attitude_y_deg"] for row in table["rows"][:7]]  # the first condition, without the clearance
-    assert table["most_moved"]["attitude_y_deg"] >= max(abs(value - attitude[0]) for value in attitude) > 0.0
-    assert "lateral velocity" in next(line for line in result.stdout.splitlines() if "every quantity moves" in line)
+    # the first condition, without the clearance
+    attitude = [row["values"]["attitude_y_deg"] for row in table["rows"][:7]]
+    assert (
+        table["most_moved"]["attitude_y_deg"]
+        >= max(abs(value - attitude[0]) for value in attitude)
+        > 0.0
+    )
+    assert "lateral velocity" in next(
+        line for line in result.stdout.splitlines() if "every quantity moves" in line
+    )
     sobol = found["sobol"]
     assert [item["name"] for item in sobol["quantities"]] == [item.name for item in answers.ALL]
-    assert [item["key"] for item in sobol["inputs"]] == ["thrust_offset.misalignment.y", "thrust_offset.misalignment.z",
-                                                         "friction.dynamic"]
-    assert sobol["inputs"][0]["provenance"] == "a guess" and "zero" in sobol["left_out"]["payload.inertia.yz"]
+    assert [item["key"] for item in sobol["inputs"]] == [
+        "thrust_offset.misalignment.y",
+        "thrust_offset.misalignment.z",
+        "friction.dynamic",
+    ]
+    assert (
+        sobol["inputs"][0]["provenance"] == "a guess"
+        and "zero" in sobol["left_out"]["payload.inertia.yz"]
+    )
     about_z = next(item for item in sobol["quantities"] if item["name"] == "rate_z_deg_s")
     assert np.argmax(about_z["indices"]["total"]) == 0 and about_z["indices"]["total"][1] < 0.1
     assert [step["base_points"] for step in about_z["convergence"]] == [8, 16, 32, 64]
     assert about_z["convergence"][-1]["total"] == about_z["indices"]["total"]
-    assert {f"sensitivity-{name}.{kind}" for name in ("indices", "map", "convergence") for kind in ("png", "svg")} == {
-        path.name for path in (tmp_path / "out" / "tiny" / "figures").iterdir()}
+    assert {
+        f"sensitivity-{name}.{kind}"
+        for name in ("indices", "map", "convergence")
+        for kind in ("png", "svg")
+    } == {path.name for path in (tmp_path / "out" / "tiny" / "figures").iterdir()}
     drawn = section.draw(found, lambda chart, words: Html(chart.name))
     assert "misalignment y" in drawn and "-2.355, -2.554, 2.502" in drawn and "0.71 %" in drawn
-    assert sensitivity.stored(Study(load("tiny"), tmp_path / "out" / "tiny", defaults("tiny"))) == found
+    assert (
+        sensitivity.stored(Study(load("tiny"), tmp_path / "out" / "tiny", defaults("tiny")))
+        == found
+    )
     monkeypatch.setattr(population, "surrogate", lambda *_: pytest.fail("made again"))
     assert json.loads(call([*tiny, "--json"]).stdout) == found
     (tmp_path / "mine.toml").unlink()
-    assert sensitivity.stored(Study(load("tiny"), tmp_path / "out" / "tiny", defaults("tiny"))) is None
+    assert (
+        sensitivity.stored(Study(load("tiny"), tmp_path / "out" / "tiny", defaults("tiny"))) is None
+    )
 
 
 def test_tables_of_warm_rails_stand_on_the_walls_of_the_model(tmp_path, monkeypatch):
-    """Both the calibrated constants and the scene's own; constants of the law are moved, not the penalty of compliant contact."""
+    """Both the calibrated constants and the scene's own; constants of the law are moved, not the
+    penalty of compliant contact."""
     asked = []
 
     def run(_study, _name, model, source, _tolerance):
         asked.append(model)
         rates = np.zeros((source.asked, 3))
-        found = columns.Columns(*[rates if name in columns.VECTORS else rates[:, 0] for name in columns.Columns._fields])
+        found = columns.Columns(
+            *[rates if name in columns.VECTORS else rates[:, 0] for name in columns.Columns._fields]
+        )
         return Population({}, found, "store", {})
 
     monkeypatch.setattr(population, "run", run)
-    study = Study(load("reference").replace({"thermal.mean": "15 K"}), tmp_path, defaults("reference"))
+    study = Study(
+        load("reference").replace({"thermal.mean": "15 K"}), tmp_path, defaults("reference")
+    )
     rigid = SimpleNamespace(flexibility=None)
     model = Surrogate(study.scene.replace({"contact.stiffness": 1e9}), None, rigid)
     tables = sensitivity._tables(study, model, sensitivity.Asked())
@@ -109,22 +154,32 @@ def test_tables_of_warm_rails_stand_on_the_walls_of_the_model(tmp_path, monkeypa
     assert asked[1].scene.contact == study.scene.contact
     for table in tables:
         assert {row["symbol"] for row in table["rows"]} == {"baseline", "k", "c", "d", "clearance"}
-    compliant, = sensitivity._tables(study, model._replace(walls=SimpleNamespace(flexibility=1.0)), sensitivity.Asked())
+    (compliant,) = sensitivity._tables(
+        study, model._replace(walls=SimpleNamespace(flexibility=1.0)), sensitivity.Asked()
+    )
     assert {row["symbol"] for row in compliant["rows"]} == {"baseline", "penalty", "clearance"}
 
 
 def test_cases_that_do_not_settle(tiny, tmp_path, monkeypatch):
-    """Few of them are counted and left out with their base points; with too many nothing is said."""
+    """Few of them are counted and left out with their base points; with too many nothing is
+    said."""
     run = population.run
 
     def spoilt(cases):
         def one(*arguments):
             found = run(*arguments)
             if found.counts["asked"] == 320:
-                for name in ("exit_time", "rate", "lateral_velocity", "direction_error", "exit_attitude"):
+                for name in (
+                    "exit_time",
+                    "rate",
+                    "lateral_velocity",
+                    "direction_error",
+                    "exit_attitude",
+                ):
                     getattr(found.results, name)[cases] = np.nan
                 found.results.status[cases] = STATUSES.index("jammed")
             return found
+
         return one
 
     monkeypatch.setattr(population, "run", spoilt([0, 1, 7]))
@@ -139,14 +194,32 @@ def test_cases_that_do_not_settle(tiny, tmp_path, monkeypatch):
 
 def test_bad_input_is_listed_whole_and_nothing_written(tiny, tmp_path):
     wrong = TOLERANCES
-    for right, slip in (('low = "0.9"', 'low = "0.9 mm"'), ("misalignment.z", "misalignment.q"), ('"normal"', '"gauss"')):
+    for right, slip in (
+        ('low = "0.9"', 'low = "0.9 mm"'),
+        ("misalignment.z", "misalignment.q"),
+        ('"normal"', '"gauss"'),
+    ):
         wrong = wrong.replace(right, slip)
     (tmp_path / "mine.toml").write_text(wrong + "\n[shift]\na = 1\n")
     result = call([*tiny, "--points", "100", "--seed", "0"])
     assert result.exit_code == 2 and not (tmp_path / "out").exists()
-    for words in ("--points", "--seed", "factor.friction.dynamic.low", "factor.payload.inertia.yz.low",
-                  "vary.thrust_offset.misalignment.q", "'gauss'", "shift"):
+    for words in (
+        "--points",
+        "--seed",
+        "factor.friction.dynamic.low",
+        "factor.payload.inertia.yz.low",
+        "vary.thrust_offset.misalignment.q",
+        "'gauss'",
+        "shift",
+    ):
         assert words in result.stderr
-    (tmp_path / "mine.toml").write_text('[factor."payload.inertia.yz"]\ndistribution = "uniform"\nlow = "1"\nhigh = "2"\n')
+    (tmp_path / "mine.toml").write_text(
+        '[factor."payload.inertia.yz"]\ndistribution = "uniform"\nlow = "1"\nhigh = "2"\n'
+    )
     assert "at least one number that varies" in call(tiny).stderr
-    assert call([*tiny[:-4], "--vary", str(tmp_path / "nowhere.toml"), "--out", str(tmp_path / "out")]).exit_code == 2
+    assert (
+        call(
+            [*tiny[:-4], "--vary", str(tmp_path / "nowhere.toml"), "--out", str(tmp_path / "out")]
+        ).exit_code
+        == 2
+    )

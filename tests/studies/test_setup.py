@@ -1,4 +1,5 @@
-"""A machine without the graphics libraries that gmsh is linked against: only a solid calls for them, and says so in one line."""
+"""A machine without the graphics libraries that gmsh is linked against: only a solid calls for
+them, and says so in one line."""
 
 import os
 import re
@@ -40,10 +41,17 @@ def bare(tmp_path):
     (hidden / "libGL.so.1").touch()
 
     def call(*arguments):
-        return subprocess.run([sys.executable, *map(str, arguments)], cwd=ROOT, capture_output=True, text=True, timeout=300,
-                              env=os.environ | {"LD_LIBRARY_PATH": str(hidden)})
+        return subprocess.run(
+            [sys.executable, *map(str, arguments)],
+            cwd=ROOT,
+            capture_output=True,
+            text=True,
+            timeout=300,
+            env=os.environ | {"LD_LIBRARY_PATH": str(hidden)},
+        )
 
-    # Control: it does not load there. Which library the loader misses first is another one where none is installed.
+    # Control: it does not load there. Which library the loader misses first is another one where
+    # none is installed.
     assert re.search(r"OSError: \S*lib\w+\.so", call("-c", "import gmsh").stderr)
     return call
 
@@ -60,12 +68,21 @@ def test_a_solid_says_what_is_missing_and_a_built_in_rail_is_meshed(bare, tmp_pa
     said = bare("-m", "studies.cli", "mesh", "--scene", scene, "--out", tmp_path / "out")
     assert said.returncode == 1 and "Traceback" not in said.stderr
     (line,) = [line for line in said.stderr.splitlines() if line.startswith("tipoff: ")]
-    assert re.search(r"lacks the system library \S*lib\w+\.so", line) and line.endswith(generator.SYSTEM_INSTALL)
-    built = bare("-m", "studies.cli", "mesh", "--scene", CATALOG / "tiny.toml", "--out", tmp_path / "out")
+    assert re.search(r"lacks the system library \S*lib\w+\.so", line) and line.endswith(
+        generator.SYSTEM_INSTALL
+    )
+    built = bare(
+        "-m", "studies.cli", "mesh", "--scene", CATALOG / "tiny.toml", "--out", tmp_path / "out"
+    )
     assert built.returncode == 0 and (tmp_path / "out" / "tiny" / "mesh.json").is_file()
 
 
 def test_readme_asks_for_system_libraries_where_a_solid_is_given_and_nowhere_else():
-    sections = {part.splitlines()[0]: part for part in (ROOT / "README.md").read_text(encoding="utf-8").split("\n## ")}
-    assert [name for name, text in sections.items() if generator.SYSTEM_INSTALL in text] == ["A rail of your own"]
+    sections = {
+        part.splitlines()[0]: part
+        for part in (ROOT / "README.md").read_text(encoding="utf-8").split("\n## ")
+    }
+    assert [name for name, text in sections.items() if generator.SYSTEM_INSTALL in text] == [
+        "A rail of your own"
+    ]
     assert "apt-get" not in sections["Two commands"]

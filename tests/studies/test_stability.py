@@ -1,4 +1,5 @@
-"""The table of hard cases of the surrogate: every line holds, its control fails, and its step and drift are real figures."""
+"""The table of hard cases of the surrogate: every line holds, its control fails, and its step and
+drift are real figures."""
 
 import pytest
 
@@ -6,7 +7,8 @@ from studies.report.tables import stability
 from studies.stability import contacts, guides, thrusts
 
 CASES = {**contacts.CASES, **guides.CASES, **thrusts.CASES}
-CHEAP = [name for name in CASES if name != "turning_platform"]  # which takes seconds, and is run with the pipeline
+# which takes seconds, and is run with the pipeline
+CHEAP = [name for name in CASES if name != "turning_platform"]
 
 
 @pytest.fixture(scope="module")
@@ -35,4 +37,8 @@ def test_a_case_that_does_not_hold_is_marked(verdicts):
     missed = verdicts["stiff_pad"]._replace(held=False)
     useless = verdicts["stiff_pad"]._replace(control_failed=False)
     page = stability({"cases": [missed._asdict(), useless._asdict()]})
-    assert page.count('class="bad"') == 2 and "not held" in page and "the simpler one holds too" in page
+    assert (
+        page.count('class="bad"') == 2
+        and "not held" in page
+        and "the simpler one holds too" in page
+    )

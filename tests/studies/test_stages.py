@@ -20,13 +20,17 @@ from studies.study import Study
 
 
 def test_area_of_quadrilaterals():
-    points = np.array([[0, 0, 0], [2, 0, 0], [2, 3, 0], [0, 3, 0], [0, 0, 5], [2, 0, 5]], dtype=float)
+    points = np.array(
+        [[0, 0, 0], [2, 0, 0], [2, 3, 0], [0, 3, 0], [0, 0, 5], [2, 0, 5]], dtype=float
+    )
     assert area(points, np.array([[0, 1, 2, 3], [0, 1, 5, 4]])) == pytest.approx(6.0 + 10.0)
 
 
 def test_area_of_curved_triangles():
     """A half disc of six-node triangles is short of the disc by no more than their edges are."""
-    points = np.array([[0, 0, 0], [2, 0, 0], [0, 2, 0], [1, 0, 0], [2**0.5, 2**0.5, 0], [0, 1, 0]], dtype=float)
+    points = np.array(
+        [[0, 0, 0], [2, 0, 0], [0, 2, 0], [1, 0, 0], [2**0.5, 2**0.5, 0], [0, 1, 0]], dtype=float
+    )
     assert area(points, np.array([[0, 1, 2, 3, 4, 5]])) == pytest.approx(np.pi, rel=0.02)
 
 
@@ -40,10 +44,17 @@ def test_ablation_takes_every_effect_away_once():
     assert scene.replace(lines["as the scene asks"]).hash == scene.hash
     assert len(scene.replace(lines["no effect"]).absent_effects()) == len(EFFECTS) == 9
     assert "without friction" not in ablation.variants(scene.replace({"friction": None}))
-    assert "without thermal" not in ablation.variants(scene.replace({"rail.material.expansion": None}))
-    # Every effect with code of its own is looked for in the compiled kernels of both models; sticking is a second law of friction,
-    # and the reference feels temperature before its kernels run.
-    assert (set(lowfi_laws) - {"sticking", "walls", "modes"}) | {"mass_offset", "initial", "rail.damping"} == set(EFFECTS)
+    assert "without thermal" not in ablation.variants(
+        scene.replace({"rail.material.expansion": None})
+    )
+    # Every effect with code of its own is looked for in the compiled kernels of both models;
+    # sticking is a second law of friction, and the reference feels temperature before its kernels
+    # run.
+    assert (set(lowfi_laws) - {"sticking", "walls", "modes"}) | {
+        "mass_offset",
+        "initial",
+        "rail.damping",
+    } == set(EFFECTS)
     assert set(highfi_laws) | {"mass_offset", "initial", "thermal"} == set(EFFECTS)
 
 
@@ -66,29 +77,85 @@ def test_surrogate_is_timed_by_turns(monkeypatch, tmp_path):
 
 
 def test_pareto_front():
-    """Two that cannot be told from the yardstick, whose error is its band, are as good as each other: the faster one is best."""
-    points = [{"model": "a", "rung": "a", "setting": setting, "numerics": f"{setting}", "modes": None, "error_deg_s": error,
-               "wall_s": wall, "status": "exited"}
-              for setting, (error, wall) in enumerate(((1.0, 1.0), (0.5, 2.0), (0.6, 3.0), (None, 9.0), (0.1, 6.0), (0.05, 7.0)))]
-    assert [point["pareto"] for point in cost.marked(points, 0.2)] == [True, True, False, False, True, False]
-    assert [point["pareto"] for point in cost.marked(points, None)] == [True, True, False, False, True, True]
+    """Two that cannot be told from the yardstick, whose error is its band, are as good as each
+    other: the faster one is best."""
+    points = [
+        {
+            "model": "a",
+            "rung": "a",
+            "setting": setting,
+            "numerics": f"{setting}",
+            "modes": None,
+            "error_deg_s": error,
+            "wall_s": wall,
+            "status": "exited",
+        }
+        for setting, (error, wall) in enumerate(
+            ((1.0, 1.0), (0.5, 2.0), (0.6, 3.0), (None, 9.0), (0.1, 6.0), (0.05, 7.0))
+        )
+    ]
+    assert [point["pareto"] for point in cost.marked(points, 0.2)] == [
+        True,
+        True,
+        False,
+        False,
+        True,
+        False,
+    ]
+    assert [point["pareto"] for point in cost.marked(points, None)] == [
+        True,
+        True,
+        False,
+        False,
+        True,
+        True,
+    ]
 
 
 def test_matched_meshes():
-    """An error that a loose tolerance hides by luck does not count, nor the time of one that spoils the model, nor what another
-    number of modes reached."""
-    def point(model, setting, error, integration, wall):
-        return {"model": model, "setting": setting, "numerics": f"{setting:g}", "modes": None, "error_deg_s": error,
-                "integration_error_deg_s": integration, "wall_s": wall}
+    """An error that a loose tolerance hides by luck does not count, nor the time of one that spoils
+    the model, nor what another number of modes reached."""
 
-    meshes = [point(cost.FINITE_ELEMENTS, *rest)
-              for rest in ((8.0, 0.07, None, 3.0), (4.0, 0.02, None, 6.0), (2.0, None, None, 40.0))]
-    lucky = [point("lucky", *rest) for rest in ((1e-2, 0.001, 0.04, 0.001), (1e-4, 0.031, 0.001, 0.002), (1e-8, 0.03, None, 0.004))]
-    exact = [point("exact", *rest) for rest in ((1e-4, 0.011, 0.001, 0.002), (1e-8, 0.01, None, 0.004))]
+    def point(model, setting, error, integration, wall):
+        return {
+            "model": model,
+            "setting": setting,
+            "numerics": f"{setting:g}",
+            "modes": None,
+            "error_deg_s": error,
+            "integration_error_deg_s": integration,
+            "wall_s": wall,
+        }
+
+    meshes = [
+        point(cost.FINITE_ELEMENTS, *rest)
+        for rest in ((8.0, 0.07, None, 3.0), (4.0, 0.02, None, 6.0), (2.0, None, None, 40.0))
+    ]
+    lucky = [
+        point("lucky", *rest)
+        for rest in (
+            (1e-2, 0.001, 0.04, 0.001),
+            (1e-4, 0.031, 0.001, 0.002),
+            (1e-8, 0.03, None, 0.004),
+        )
+    ]
+    exact = [
+        point("exact", *rest) for rest in ((1e-4, 0.011, 0.001, 0.002), (1e-8, 0.01, None, 0.004))
+    ]
     modes = point("exact", 2e-7, 0.001, None, 1e-4) | {"modes": 8}
     first, second = cost.matched([*meshes, *lucky, *exact, modes])
-    assert (first["error_deg_s"], first["numerics"], first["mesh"], first["ratio"]) == (0.03, "0.0001", "4", 3000.0)
-    assert (second["error_deg_s"], second["numerics"], second["mesh"], second["mesh_error_deg_s"]) == (0.01, "0.0001", "2", None)
+    assert (first["error_deg_s"], first["numerics"], first["mesh"], first["ratio"]) == (
+        0.03,
+        "0.0001",
+        "4",
+        3000.0,
+    )
+    assert (
+        second["error_deg_s"],
+        second["numerics"],
+        second["mesh"],
+        second["mesh_error_deg_s"],
+    ) == (0.01, "0.0001", "2", None)
 
 
 def test_closed_gap_is_only_opened(tmp_path):
@@ -98,7 +165,11 @@ def test_closed_gap_is_only_opened(tmp_path):
 
 def test_refinements_change_one_thing_each(tmp_path):
     study = Study(scenes.load("tiny"), tmp_path, defaults("tiny"))
-    runs, coarse, nominal = compare.refined(study, "phi15"), study.coarse("phi15"), study.highfi("phi15")
+    runs, coarse, nominal = (
+        compare.refined(study, "phi15"),
+        study.coarse("phi15"),
+        study.highfi("phi15"),
+    )
     assert coarse.numerics.element_size == 2.0 * nominal.numerics.element_size
     assert runs["step"].numerics == replace(coarse.numerics, safety=0.5 * coarse.numerics.safety)
     assert runs["penalty"].scene.contact.penalty == 4.0 * coarse.scene.contact.penalty
@@ -111,10 +182,18 @@ def test_machine_is_described():
     assert found["cores"] >= 1 and found["processor"]
 
 
-@pytest.mark.parametrize("method, order", [(weaker_methods.runge_kutta, 4), (weaker_methods.semi_implicit_euler, 1),
-                                           (weaker_methods.explicit_euler, 1)])
+@pytest.mark.parametrize(
+    "method, order",
+    [
+        (weaker_methods.runge_kutta, 4),
+        (weaker_methods.semi_implicit_euler, 1),
+        (weaker_methods.explicit_euler, 1),
+    ],
+)
 def test_weaker_methods_have_their_order(method, order):
-    """x'' = -x from rest at 1 to t = 1: a control that fails because it is wrong would prove nothing."""
+    """x'' = -x from rest at 1 to t = 1: a control that fails because it is wrong would prove
+    nothing."""
+
     def error(count):
         x, v = method(lambda _, x, __: -x, 1.0, 0.0, 1.0 / count, count)
         return np.hypot(x - np.cos(1.0), v + np.sin(1.0))
@@ -123,11 +202,20 @@ def test_weaker_methods_have_their_order(method, order):
 
 
 def test_a_stored_result_is_one_of_the_present_settings_and_code(tmp_path):
-    """Other code may have called its settings something else: that is no result, and no error either."""
+    """Other code may have called its settings something else: that is no result, and no error
+    either."""
     study = Study(scenes.load("tiny"), tmp_path, Settings())
     asked = sweeps.Asked()._asdict()
-    for found, known in (({"asked": asked, "key": "of another scene"}, False), ({"asked": asked | {"turns": 3}, "key": "x"}, False),
-                         ({"key": "x"}, False), ({"asked": [], "key": "x"}, False), ({"asked": asked, "key": "right"}, True)):
+    for found, known in (
+        ({"asked": asked, "key": "of another scene"}, False),
+        ({"asked": asked | {"turns": 3}, "key": "x"}, False),
+        ({"key": "x"}, False),
+        ({"asked": [], "key": "x"}, False),
+        ({"asked": asked, "key": "right"}, True),
+    ):
         write_json(tmp_path / "sweeps.json", found)
-        assert (study.stored("sweeps", lambda result: sweeps.Asked(**result["asked"]) and "right") is not None) == known
+        assert (
+            study.stored("sweeps", lambda result: sweeps.Asked(**result["asked"]) and "right")
+            is not None
+        ) == known
     assert study.stored("limits", lambda result: "right") is None

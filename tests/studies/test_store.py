@@ -1,4 +1,5 @@
-"""Results are kept by content: nothing unchanged is run again, nothing changed or damaged is reused, nothing is half written."""
+"""Results are kept by content: nothing unchanged is run again, nothing changed or damaged is
+reused, nothing is half written."""
 
 import os
 import signal
@@ -49,12 +50,15 @@ def test_second_call_runs_nothing(engine, study):
     assert all(np.array_equal(a.rate, b.rate) for a, b in zip(first, second))
 
 
-@pytest.mark.parametrize("change", [
-    lambda study: study.highfi("phi15", {"contact.clearance": 6e-5}),
-    lambda study: study.highfi("phi15", element_size=0.003),
-    lambda study: study.highfi("phi15", safety=0.5),
-    lambda study: study.highfi("phi60"),
-])
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda study: study.highfi("phi15", {"contact.clearance": 6e-5}),
+        lambda study: study.highfi("phi15", element_size=0.003),
+        lambda study: study.highfi("phi15", safety=0.5),
+        lambda study: study.highfi("phi60"),
+    ],
+)
 def test_every_input_is_part_of_the_key(study, change):
     assert change(study).key != study.highfi("phi15").key
 
@@ -69,8 +73,14 @@ def test_label_is_no_part_of_the_key(study):
     assert study.highfi("phi15", tag="-again").key == study.highfi("phi15").key
 
 
-@pytest.mark.parametrize("damage", [lambda path: path.write_bytes(b"no netCDF"),
-                                    lambda path: path.write_bytes(path.read_bytes()[:2000]), lambda path: path.write_bytes(b"")])
+@pytest.mark.parametrize(
+    "damage",
+    [
+        lambda path: path.write_bytes(b"no netCDF"),
+        lambda path: path.write_bytes(path.read_bytes()[:2000]),
+        lambda path: path.write_bytes(b""),
+    ],
+)
 def test_damaged_file_is_named_and_made_again(engine, study, capsys, damage):
     run = study.highfi("phi15")
     study.store.get(run)
@@ -98,7 +108,8 @@ def test_one_failing_run_stops_the_rest_and_keeps_what_is_finished(study, monkey
 
 
 def test_ctrl_c_ends_running_kernels(study, monkeypatch):
-    """The callback of a running kernel raises, so that no run goes on for minutes after the user has stopped."""
+    """The callback of a running kernel raises, so that no run goes on for minutes after the user
+    has stopped."""
     ended = []
 
     def execute(run, progress=None, threads=None, **kept):
@@ -149,7 +160,9 @@ def test_stage_is_skipped_when_unchanged_and_made_again_when_a_file_was_altered(
 
 def test_settings_and_roles_change_a_stage_key_and_workers_do_not(study):
     def key(**change):
-        return Study(**{"scene": study.scene, "folder": study.folder, "settings": study.settings} | change).key(("scenes",))
+        return Study(
+            **{"scene": study.scene, "folder": study.folder, "settings": study.settings} | change
+        ).key(("scenes",))
 
     assert key(settings=Settings(workers=7)) == key()
     assert key(settings=Settings(element_size=0.001)) != key()
@@ -168,10 +181,13 @@ while True:
 
 
 def test_kill_while_writing_leaves_no_half_file(tmp_path):
-    """SIGKILL at several moments of a loop that only writes: the file under its final name can always be read."""
+    """SIGKILL at several moments of a loop that only writes: the file under its final name can
+    always be read."""
     for delay in (0.0, 0.017, 0.043):
         path = tmp_path / f"{delay}" / "victim.nc"
-        writer = subprocess.Popen([sys.executable, "-c", KILLED, str(path)], cwd=ROOT, stdout=subprocess.PIPE, text=True)
+        writer = subprocess.Popen(
+            [sys.executable, "-c", KILLED, str(path)], cwd=ROOT, stdout=subprocess.PIPE, text=True
+        )
         try:
             assert writer.stdout.readline().strip() == "saved"
             time.sleep(delay)

@@ -1,35 +1,68 @@
-"""Which mesh a speed-up is measured against: uncertainties of a series that is known, and the choice among them."""
+"""Which mesh a speed-up is measured against: uncertainties of a series that is known, and the
+choice among them."""
 
 import pytest
 
 from studies.cost import sureness
 
 SIZES = (8e-3, 4e-3, 2e-3, 1e-3)
-RATES = [{"values": [1.4, 1.1, 1.02, 1.0], "uncertainty": 0.01}, {"values": [-2.0, -2.3, -2.31, -2.3], "uncertainty": 0.02}]
+RATES = [
+    {"values": [1.4, 1.1, 1.02, 1.0], "uncertainty": 0.01},
+    {"values": [-2.0, -2.3, -2.31, -2.3], "uncertainty": 0.02},
+]
 
 
 def test_mesh_is_as_uncertain_as_the_finest_and_its_way_from_it_on_the_worst_axis():
     assert sureness.uncertainties(RATES) == pytest.approx([0.41, 0.11, 0.03, 0.02])
 
 
-@pytest.mark.parametrize("axis", [{"values": [1.0, None, 1.0, 1.0], "uncertainty": 0.1},
-                                  {"values": [1.0] * 4, "uncertainty": None}])
+@pytest.mark.parametrize(
+    "axis",
+    [
+        {"values": [1.0, None, 1.0, 1.0], "uncertainty": 0.1},
+        {"values": [1.0] * 4, "uncertainty": None},
+    ],
+)
 def test_axis_that_did_not_settle_leaves_all_unknown(axis):
     assert sureness.uncertainties([*RATES, axis]) is None
 
 
-@pytest.mark.parametrize("error, size, surer", [(0.5, 8e-3, True), (0.41, 4e-3, True), (0.1, 2e-3, True), (0.025, 1e-3, True),
-                                                (0.02, 1e-3, False), (0.0, 1e-3, False)])
+@pytest.mark.parametrize(
+    "error, size, surer",
+    [
+        (0.5, 8e-3, True),
+        (0.41, 4e-3, True),
+        (0.1, 2e-3, True),
+        (0.025, 1e-3, True),
+        (0.02, 1e-3, False),
+        (0.0, 1e-3, False),
+    ],
+)
 def test_coarsest_mesh_that_is_surer_or_the_finest(error, size, surer):
     mesh = sureness.coarsest(SIZES, [0.41, 0.11, 0.03, 0.02], error)
     assert (mesh.element_size, mesh.surer) == (size, surer)
 
 
 def test_speedup_over_a_mesh_that_is_not_surer_is_the_least_it_can_be():
-    found = {"condition": "phi35", "error_deg_s": 0.01, "element_size_m": 1e-3, "mesh_uncertainty_deg_s": 0.012, "ratio": 5e4,
-             "low": 4e4, "high": 6e4, "highfi_wall_s": 250.0, "lowfi_wall_s": 5e-3}
-    least, surer = sureness.sentence(found | {"surer": False}), sureness.sentence(found | {"surer": True})
+    found = {
+        "condition": "phi35",
+        "error_deg_s": 0.01,
+        "element_size_m": 1e-3,
+        "mesh_uncertainty_deg_s": 0.012,
+        "ratio": 5e4,
+        "low": 4e4,
+        "high": 6e4,
+        "highfi_wall_s": 250.0,
+        "lowfi_wall_s": 5e-3,
+    }
+    least, surer = (
+        sureness.sentence(found | {"surer": False}),
+        sureness.sentence(found | {"surer": True}),
+    )
     assert "no mesh down to 1 mm has a smaller discretisation error (0.012 by all meshes" in least
     assert "counted); at least 50,000 times (40,000 to 60,000), 250 s against 5 ms" in least
-    assert "1 mm is the coarsest mesh whose discretisation error is smaller (0.012 by all meshes" in surer
+    assert (
+        "1 mm is the coarsest mesh whose discretisation error is smaller (0.012 by all meshes"
+        in surer
+    )
     assert "counted); 50,000 times" in surer and "at least" not in surer

@@ -1,5 +1,5 @@
-"""The search for the largest certified scale: steps with a known place, every way to have no answer, and counts that do not
-grow."""
+"""The search for the largest certified scale: steps with a known place, every way to have no
+answer, and counts that do not grow."""
 
 import pytest
 
@@ -12,12 +12,21 @@ def step(place, below=0, beyond=10):
 
 @pytest.mark.parametrize("place", [0.009, 0.1234, 0.5, 0.77])
 def test_a_step_is_found_from_below(place):
-    for found, finest in ((largest(step(place), 3), 2.0 ** (1 / 64)), (near(step(place), 3, 0.3), 1.25 ** (1 / 8))):
-        assert found.state == FOUND and found.scale <= place < found.fails and found.fails / found.scale <= finest * (1.0 + 1e-12)
+    for found, finest in (
+        (largest(step(place), 3), 2.0 ** (1 / 64)),
+        (near(step(place), 3, 0.3), 1.25 ** (1 / 8)),
+    ):
+        assert (
+            found.state == FOUND
+            and found.scale <= place < found.fails
+            and found.fails / found.scale <= finest * (1.0 + 1e-12)
+        )
         assert not found.falls and not found.again
 
 
-@pytest.mark.parametrize("search", [lambda above: largest(above, 3), lambda above: near(above, 3, 0.2)])
+@pytest.mark.parametrize(
+    "search", [lambda above: largest(above, 3), lambda above: near(above, 3, 0.2)]
+)
 def test_no_answer_is_told_apart(search):
     assert search(step(2.0)).state == ALL and search(step(2.0)).scale == 1.0
     assert search(step(1e-4)).state == SMALL and search(step(1e-4)).scale is None
@@ -25,7 +34,8 @@ def test_no_answer_is_told_apart(search):
 
 
 def test_what_passes_again_beyond_a_failure_is_told_and_not_used():
-    """A window of failures between 0.1 and 0.3: the scales 0.5 and 1 pass, and the answer stays below the window."""
+    """A window of failures between 0.1 and 0.3: the scales 0.5 and 1 pass, and the answer stays
+    below the window."""
     found = largest(lambda scale: 9 if 0.1 < scale <= 0.3 else 2, 3)
     assert found.state == FOUND and found.scale <= 0.1 < found.fails
     assert found.again == [0.5, 1.0] and [pair[1] for pair in found.falls] == [0.5]

@@ -1,4 +1,5 @@
-"""A run to look at: VTK files that hold what the run had, the list of them, pictures where there is pyvista, and the page."""
+"""A run to look at: VTK files that hold what the run had, the list of them, pictures where there is
+pyvista, and the page."""
 
 import json
 from pathlib import Path
@@ -34,7 +35,9 @@ def viewed(tmp_path_factory):
     """(study, result) of the stage on ``tiny``, as if pyvista were not there."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(view, "pyvista_version", lambda: None)
-        study = Study(scenes.load("tiny"), tmp_path_factory.mktemp("out") / "tiny", defaults("tiny"))
+        study = Study(
+            scenes.load("tiny"), tmp_path_factory.mktemp("out") / "tiny", defaults("tiny")
+        )
         yield study, view.run(study, "phi15", 7)
 
 
@@ -58,9 +61,14 @@ def test_the_list_names_every_file_at_its_time(viewed):
     listed = ElementTree.parse(study.path(found["collection"])).getroot()
     assert (listed.tag, listed.get("type")) == ("VTKFile", "Collection")
     sets = listed.findall("./Collection/DataSet")
-    expected = [(frame["time_s"], part, frame[name]) for frame in found["frames"] for part, name in enumerate(("rails", "bodies"))]
-    assert [(float(item.get("timestep")), int(item.get("part")), item.get("file")) for item in sets] == [
-        (pytest.approx(time), part, file) for time, part, file in expected]
+    expected = [
+        (frame["time_s"], part, frame[name])
+        for frame in found["frames"]
+        for part, name in enumerate(("rails", "bodies"))
+    ]
+    assert [
+        (float(item.get("timestep")), int(item.get("part")), item.get("file")) for item in sets
+    ] == [(pytest.approx(time), part, file) for time, part, file in expected]
     assert all((study.path(found["folder"]) / file).is_file() for _, _, file in expected)
 
 
@@ -84,8 +92,12 @@ def test_files_hold_what_the_loop_had(touching, tmp_path):
     paths = vtk_files.write_frame(tmp_path, 3, frame, loop.system.mesh, boxes, pads)
     rails, bodies = (meshio.read(path) for path in paths)
     assert [path.name for path in paths] == ["rails-0003.vtu", "bodies-0003.vtu"]
-    np.testing.assert_allclose(rails.point_data[vtk_files.DISPLACEMENT], loop.state.displacement[loop.system.number],
-                               rtol=1e-6, atol=1e-15)
+    np.testing.assert_allclose(
+        rails.point_data[vtk_files.DISPLACEMENT],
+        loop.state.displacement[loop.system.number],
+        rtol=1e-6,
+        atol=1e-15,
+    )
     np.testing.assert_array_equal(rails.points, loop.system.mesh.points)
     assert len(bodies.cells_dict["hexahedron"]) == 1 + 16
     assert np.bincount(bodies.cell_data[vtk_files.PAD][0]).tolist() == [1] + [2] * 8
@@ -100,17 +112,29 @@ def test_contact_pressure_comes_to_the_force_on_the_pads(size, off):
     """Pressure at nodes times their share of the wall, as the nodes under a pad grow in number."""
     numerics = Numerics(element_size=size)
     loop = begun(tiny(), numerics)
-    # Pressed 30 um into one wall, long before the payload would get there: faces that wait must look.
+    # Pressed 30 um into one wall, long before the payload would get there: faces that wait must
+    # look.
     loop.active.wait[:] = 0
     loop.state.payload.position[1] += loop.scene.contact.clearance + 30e-6
-    evaluate(*loop.arguments()[:3], loop.system.model.payload, loop.system.frame, loop.system.model.penalty,
-             loop.system.model.friction, loop.state, loop.active, loop.team, loop.stepping.dt_s)
+    evaluate(
+        *loop.arguments()[:3],
+        loop.system.model.payload,
+        loop.system.frame,
+        loop.system.model.penalty,
+        loop.system.model.friction,
+        loop.state,
+        loop.active,
+        loop.team,
+        loop.stepping.dt_s,
+    )
     mesh, frame = loop.system.mesh, frames.Camera(loop).take(loop)
     share = np.zeros(len(mesh.points))
     for name, facets in mesh.surfaces.items():
         if name.startswith("contact"):
             corners = mesh.points[facets]
-            areas = 0.5 * np.linalg.norm(np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1]), axis=1)
+            areas = 0.5 * np.linalg.norm(
+                np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1]), axis=1
+            )
             np.add.at(share, facets, 0.25 * areas[:, None])
     normal = np.abs(loop.state.face_force[np.arange(16), loop.system.faces.axis]).sum()
     assert normal > 1000.0
@@ -122,7 +146,9 @@ def test_camera_sees_the_stress_that_the_run_is_watched_for(touching):
     loop, frame = touching
     worst = nothing()
     watch.look(loop.watch, loop.state.displacement, 0.0, worst, loop.pool)
-    assert frame.worst.max() == pytest.approx(loop.watch.shear_modulus * np.sqrt(worst.square[STRESS]), rel=1e-12)
+    assert frame.worst.max() == pytest.approx(
+        loop.watch.shear_modulus * np.sqrt(worst.square[STRESS]), rel=1e-12
+    )
     assert frame.worst.argmax() == worst.place[STRESS, 0]
     still = frames.Camera(first := begun()).take(first)
     assert not still.displacement.any() and not still.worst.any() and not still.pressure.any()
@@ -148,39 +174,80 @@ def test_scales_end_at_round_numbers(value, end):
 def test_command_writes_prints_and_refuses(viewed, monkeypatch):
     study, found = viewed
     monkeypatch.setattr(view, "pyvista_version", lambda: None)
-    arguments = ["view", "--scene", "tiny", "--condition", "phi15", "--frames", "7", "--out", str(study.folder.parent)]
+    arguments = [
+        "view",
+        "--scene",
+        "tiny",
+        "--condition",
+        "phi15",
+        "--frames",
+        "7",
+        "--out",
+        str(study.folder.parent),
+    ]
     told = CliRunner().invoke(app, [*arguments, "--json"], catch_exceptions=False)
     assert told.exit_code == 0 and json.loads(told.stdout) == found
     said = CliRunner().invoke(app, arguments, catch_exceptions=False)
     assert said.stdout.split() == [str(study.path(found["collection"]))]
     assert CliRunner().invoke(app, [*arguments, "--frames", "1"]).exit_code == 2
-    refused = CliRunner().invoke(app, ["view", "--scene", "tiny", "--condition", "phi99", "--out", str(study.folder.parent)])
+    refused = CliRunner().invoke(
+        app, ["view", "--scene", "tiny", "--condition", "phi99", "--out", str(study.folder.parent)]
+    )
     assert refused.exit_code == 2 and "phi99" in refused.stderr
 
 
 def known(**parts):
-    stress = {"peak_stress_pa": 2e7, "peak_stress_place_m": [0.01, 0.1, 0.1], "peak_stress_rail": "+y +z",
-              "peak_stress_time_s": 0.0113, "yield_strength_pa": 503e6, "largest_strain": 3e-4,
-              "largest_rotation_rad": 1e-3, "warnings": []}
-    cost = {"wall_s": 1.0, "compile_s": 0.0, "steps": 1, "dt_s": 1e-6, "elements": 1, "ns_per_element_step": 1.0}
+    stress = {
+        "peak_stress_pa": 2e7,
+        "peak_stress_place_m": [0.01, 0.1, 0.1],
+        "peak_stress_rail": "+y +z",
+        "peak_stress_time_s": 0.0113,
+        "yield_strength_pa": 503e6,
+        "largest_strain": 3e-4,
+        "largest_rotation_rad": 1e-3,
+        "warnings": [],
+    }
+    cost = {
+        "wall_s": 1.0,
+        "compile_s": 0.0,
+        "steps": 1,
+        "dt_s": 1e-6,
+        "elements": 1,
+        "ns_per_element_step": 1.0,
+    }
     return row("phi15", flight(stress=stress | parts, cost=cost), "")
 
 
 def test_page_shows_peaks_and_says_what_would_show_more(viewed):
     study, found = viewed
-    page = Page(study.scene, study.folder, {"highfi": {"key": "k", "conditions": [known()]}}, Runs({}, {}, {}), {})
+    page = Page(
+        study.scene,
+        study.folder,
+        {"highfi": {"key": "k", "conditions": [known()]}},
+        Runs({}, {}, {}),
+        {},
+    )
     shown = page._stress()
     assert 'id="stress"' in shown and "+y +z" in shown and "503 MPa" in shown and ">3.98<" in shown
     assert "make view SCENE=tiny" in shown and "notice" not in shown
     page.documents["view"] = [found]
-    assert "make view" not in page._stress() and "make pictures" in page._stress() and found["collection"] in page._stress()
-    assert "make highfi SCENE=tiny" in Page(study.scene, study.folder, {}, Runs({}, {}, {}), {})._stress()
+    assert (
+        "make view" not in page._stress()
+        and "make pictures" in page._stress()
+        and found["collection"] in page._stress()
+    )
+    assert (
+        "make highfi SCENE=tiny"
+        in Page(study.scene, study.folder, {}, Runs({}, {}, {}), {})._stress()
+    )
 
 
 def test_page_warns_and_escapes():
     warned = section.shown([known(warnings=["stress <above> yield"])], [], Path("."), "tiny")
     assert 'class="notice"' in warned and "stress &lt;above&gt; yield" in warned
-    assert "of the reference says" in section.shown([known() | {"peak_stress_pa": None}], [], Path("."), "tiny")
+    assert "of the reference says" in section.shown(
+        [known() | {"peak_stress_pa": None}], [], Path("."), "tiny"
+    )
 
 
 def test_pictures_are_drawn_and_embedded(viewed, monkeypatch):
@@ -190,12 +257,26 @@ def test_pictures_are_drawn_and_embedded(viewed, monkeypatch):
     monkeypatch.setattr(view, "pyvista_version", lambda: "there")
     study, found = viewed
     folder = study.path(found["folder"])
-    drawn, why = view._draw(found | {"frames": found["frames"][:4], "peak": found["peak"] | {"frame": 3}}, folder)
+    drawn, why = view._draw(
+        found | {"frames": found["frames"][:4], "peak": found["peak"] | {"frame": 3}}, folder
+    )
     assert (drawn, why) == (["peak.png", "ejection.webp"], "")
     with Image.open(folder / "peak.png") as still, Image.open(folder / "ejection.webp") as moving:
         assert still.width > 1000 and len(still.convert("RGB").getcolors(1 << 24)) > 100
         assert moving.n_frames >= 2
     assert (folder / "ejection.webp").stat().st_size < 3_000_000
-    shown = section.shown([known()], [found | {"pictures": {"peak": f"{found['folder']}/peak.png",
-                                                           "ejection": f"{found['folder']}/ejection.webp"}}], study.folder, "tiny")
+    shown = section.shown(
+        [known()],
+        [
+            found
+            | {
+                "pictures": {
+                    "peak": f"{found['folder']}/peak.png",
+                    "ejection": f"{found['folder']}/ejection.webp",
+                }
+            }
+        ],
+        study.folder,
+        "tiny",
+    )
     assert shown.count("data:image/") == 2 and "times their deformation" in shown

@@ -1,4 +1,5 @@
-"""Release and ignition in closed-form drops across levels of noise, with knocks that a plain threshold falls for."""
+"""Release and ignition in closed-form drops across levels of noise, with knocks that a plain
+threshold falls for."""
 
 import numpy as np
 import pytest
@@ -20,13 +21,16 @@ from tests.studies.droptest.synthetic import (
 
 
 def knocked(noise, seed):
-    """A hoist that jerks (10 ms of almost no load), a latch that knocks along X harder than thrust begins, and noise (m/s2)."""
+    """A hoist that jerks (10 ms of almost no load), a latch that knocks along X harder than thrust
+    begins, and noise (m/s2)."""
     time, rate, force = motion([0.0] * 3, [0.1, 0.0, 0.0])
     jerk = (time > 0.4) & (time < 0.41)
     force[jerk, 2] = 1.0
     latch = (time >= RELEASE + 0.1) & (time < RELEASE + 0.103)
     force[latch, 0] += 40.0
-    return Calibrated(time, rate, force + noise * np.random.default_rng(seed).standard_normal(force.shape), None)
+    return Calibrated(
+        time, rate, force + noise * np.random.default_rng(seed).standard_normal(force.shape), None
+    )
 
 
 def naive(found):
@@ -37,7 +41,8 @@ def naive(found):
 
 @pytest.mark.parametrize("noise, close", [(0.0, 1), (0.05, 1), (0.5, 1), (2.0, 2)])
 def test_release_and_ignition_are_found_to_the_sample(noise, close):
-    """The thrust rises as a half sine, so that six standard deviations are felt asin(6 noise / 300) / pi of it late."""
+    """The thrust rises as a half sine, so that six standard deviations are felt asin(6 noise / 300)
+    / pi of it late."""
     late = BURN / np.pi * np.arcsin(max(6.0 * noise, 1.0) / 300.0)
     for seed in range(10):
         found = knocked(noise, seed)
@@ -45,25 +50,28 @@ def test_release_and_ignition_are_found_to_the_sample(noise, close):
         assert abs(seen.release - RELEASE) <= (close + 0.5) * INTERVAL
         assert -1.5 * INTERVAL <= seen.ignition - IGNITION <= late + 2.5 * INTERVAL
         release, ignition = naive(found)
-        assert release < RELEASE - 0.1 and ignition < IGNITION - 0.1  # the control falls for the jerk and the latch, or for noise
+        # the control falls for the jerk and the latch, or for noise
+        assert release < RELEASE - 0.1 and ignition < IGNITION - 0.1
 
 
 def with_catch(noise, seed):
     """A drop that ends in a net, with noise (m/s2)."""
     time, rate, force = caught(*motion([0.0] * 3, [0.1, 0.0, 0.0]))
-    return Calibrated(time, rate, force + noise * np.random.default_rng(seed).standard_normal(force.shape), None)
+    return Calibrated(
+        time, rate, force + noise * np.random.default_rng(seed).standard_normal(force.shape), None
+    )
 
 
 def largest_push(found):
     """Where the push along +X of the largest impulse after release begins."""
     stretches = [run for run in runs(found.force[:, 0] > 3.0) if found.time[run[0]] > RELEASE]
-    return found.time[max(stretches, key=lambda run: found.force[run[0]:run[1], 0].sum())[0]]
+    return found.time[max(stretches, key=lambda run: found.force[run[0] : run[1], 0].sum())[0]]
 
 
 @pytest.mark.parametrize("noise", [0.0, 0.05, 0.4])
 def test_a_catch_is_not_taken_for_ignition(noise):
-    """Its impulse along +X is twice that of the burn. Control: by the largest impulse it would be ignition, and the window of free
-    fall would hold the burn."""
+    """Its impulse along +X is twice that of the burn. Control: by the largest impulse it would be
+    ignition, and the window of free fall would hold the burn."""
     found = with_catch(noise, 1)
     seen = events.find(sheet(), found, "test")
     assert seen.release == pytest.approx(RELEASE, abs=1.5 * INTERVAL)
@@ -94,5 +102,13 @@ def _log(time, rate, force):
 def test_windows_keep_clear_of_what_stirs():
     ask = sheet()
     spans = events.spans(ask, knocked(0.0, 0), events.Events(RELEASE, IGNITION, True), "test")
-    assert spans.rest[1] < RELEASE < spans.reference[0] < spans.reference[1] < IGNITION < spans.settled[0] < spans.settled[1]
+    assert (
+        spans.rest[1]
+        < RELEASE
+        < spans.reference[0]
+        < spans.reference[1]
+        < IGNITION
+        < spans.settled[0]
+        < spans.settled[1]
+    )
     assert spans.instant == pytest.approx(IGNITION + ask.windows.exit + 2e-3)

@@ -1,4 +1,5 @@
-"""Standing of a test among simulated cases: uniform under the right model, and small where it should be."""
+"""Standing of a test among simulated cases: uniform under the right model, and small where it
+should be."""
 
 import numpy as np
 import pytest
@@ -21,8 +22,8 @@ def share_of_small(values, level):
 
 
 def test_p_by_rank_is_uniform_under_the_right_model_whatever_its_shape():
-    """39 cases and a test of the same law: p takes the values k/40, each with probability 1/40. Control: Hotelling's test, which
-    takes the law for normal, is not uniform."""
+    """39 cases and a test of the same law: p takes the values k/40, each with probability 1/40.
+    Control: Hotelling's test, which takes the law for normal, is not uniform."""
     rng, found, single, hotelling = np.random.default_rng(1), [], [], []
     for _ in range(2000):
         draws = heavy(rng, 40)
@@ -35,18 +36,24 @@ def test_p_by_rank_is_uniform_under_the_right_model_whatever_its_shape():
         error = 3.3 * np.sqrt(level * (1.0 - level) / 2000)
         assert share_of_small(found, level) == pytest.approx(level, abs=error)
         assert share_of_small(np.array(single)[:, 0], level) == pytest.approx(level, abs=error)
-    assert any(abs(share_of_small(hotelling, level) - level) > 5.0 * np.sqrt(level * (1.0 - level) / 2000) for level in LEVELS)
+    assert any(
+        abs(share_of_small(hotelling, level) - level) > 5.0 * np.sqrt(level * (1.0 - level) / 2000)
+        for level in LEVELS
+    )
 
 
 def test_smallest_p_and_percentiles_by_hand():
     cases = np.array([[1.0], [2.0], [3.0], [4.0]])
     assert judgement.ranked(cases, np.array([2.5])) == (pytest.approx([0.5]), pytest.approx([1.0]))
     assert judgement.ranked(cases, np.array([9.0])) == (pytest.approx([0.9]), pytest.approx([0.4]))
-    assert judgement.p_distance(np.random.default_rng(0).standard_normal((99, 3)), np.full(3, 50.0)) == pytest.approx(0.01)
+    assert judgement.p_distance(
+        np.random.default_rng(0).standard_normal((99, 3)), np.full(3, 50.0)
+    ) == pytest.approx(0.01)
 
 
 def test_errors_of_measurement_belong_to_the_comparison():
-    """A narrow model and a poor sensor: with its errors laid on the cases p stays uniform. Control: not so without."""
+    """A narrow model and a poor sensor: with its errors laid on the cases p stays uniform. Control:
+    not so without."""
     rng, sure, fair, unfair = np.random.default_rng(2), np.full(3, 2.0), [], []
     for number in range(400):
         cases = rng.standard_normal((60, 3))
@@ -61,7 +68,9 @@ def test_magnitudes_do_not_know_the_angle_about_x():
     """Control: the components do."""
     rng = np.random.default_rng(3)
     cases, test, angle = heavy(rng, 200), np.array([2.0, 5.0, -1.0]), 0.7
-    turn = np.array([[1.0, 0.0, 0.0], [0.0, np.cos(angle), -np.sin(angle)], [0.0, np.sin(angle), np.cos(angle)]])
+    turn = np.array(
+        [[1.0, 0.0, 0.0], [0.0, np.cos(angle), -np.sin(angle)], [0.0, np.sin(angle), np.cos(angle)]]
+    )
     one, other = (judgement.standing(cases, value, np.zeros(3)) for value in (test, turn @ test))
     np.testing.assert_array_equal(one.magnitude_percentile, other.magnitude_percentile)
     assert (one.percentile[1:] != other.percentile[1:]).all()
@@ -71,8 +80,12 @@ def test_magnitudes_do_not_know_the_angle_about_x():
 def test_spread_is_uniform_under_the_right_model_and_small_under_wrong_ones():
     rng = np.random.default_rng(4)
     cases = heavy(rng, 1500)
-    p = {factor: [judgement.p_spread(factor * cases, heavy(rng, 3), np.zeros((3, 3))) for _ in range(60)]
-         for factor in (1.0, 5.0, 0.2)}
+    p = {
+        factor: [
+            judgement.p_spread(factor * cases, heavy(rng, 3), np.zeros((3, 3))) for _ in range(60)
+        ]
+        for factor in (1.0, 5.0, 0.2)
+    }
     assert share_of_small(p[1.0], 0.2) == pytest.approx(0.2, abs=3.3 * np.sqrt(0.16 / 60))
     assert share_of_small(p[5.0], 0.05) > 0.6 and share_of_small(p[0.2], 0.05) > 0.6
 
@@ -84,10 +97,13 @@ def test_region_holds_the_next_draw():
         centre, covariance, radius = judgement.region(draws[:-1], 0.8)
         away = draws[-1] - centre
         held.append(away @ np.linalg.solve(covariance, away) <= radius)
-    # The place is 48 of 60; mean and covariance are found without the next draw, which costs some 2 % with so few.
+    # The place is 48 of 60; mean and covariance are found without the next draw, which costs some 2
+    # % with so few.
     assert np.mean(held) == pytest.approx(0.8, abs=0.03 + 3.3 * np.sqrt(0.16 / 800))
     edge = judgement.outline(centre, covariance, radius)
-    np.testing.assert_allclose(np.einsum("ni,ij,nj->n", edge - centre, np.linalg.inv(covariance), edge - centre), radius)
+    np.testing.assert_allclose(
+        np.einsum("ni,ij,nj->n", edge - centre, np.linalg.inv(covariance), edge - centre), radius
+    )
     assert judgement.region(draws[:5], 0.95)[2] == np.inf
 
 

@@ -1,4 +1,5 @@
-"""Reading logs: what is repaired is said, what cannot be is refused with every fault, and nothing passes silently."""
+"""Reading logs: what is repaired is said, what cannot be is refused with every fault, and nothing
+passes silently."""
 
 import numpy as np
 import pytest
@@ -7,7 +8,9 @@ from scenes.faults import SceneError
 from studies.droptest import analysis, shipped
 from studies.droptest.log import read, runs
 
-SHEET, TABLE = (path.read_text() for path in (shipped.sheets()[0], shipped.sheets()[0].with_suffix(".csv")))
+SHEET, TABLE = (
+    path.read_text() for path in (shipped.sheets()[0], shipped.sheets()[0].with_suffix(".csv"))
+)
 IN_REFERENCE, IN_SETTLED, IN_BURN = 1400, 1720, 1665  # samples
 
 
@@ -22,14 +25,15 @@ def written(folder, sheet=SHEET, rows=None):
 
 
 def without(first, count):
-    return lambda cells: cells[:first] + cells[first + count:]
+    return lambda cells: cells[:first] + cells[first + count :]
 
 
 def changed(first, count, column, text):
     def change(cells):
-        for row in cells[first:first + count]:
+        for row in cells[first : first + count]:
             row[column] = text
         return cells
+
     return change
 
 
@@ -40,12 +44,17 @@ def refused(path):
 
 
 def test_runs_of_true():
-    assert runs(np.array([True, False, True, True])) == [(0, 1), (2, 4)] and runs(np.zeros(3, dtype=bool)) == []
+    assert (
+        runs(np.array([True, False, True, True])) == [(0, 1), (2, 4)]
+        and runs(np.zeros(3, dtype=bool)) == []
+    )
 
 
 def test_units_are_converted_and_a_whole_log_leaves_no_note(tmp_path):
     sheet, log = read(written(tmp_path))
-    assert np.degrees(log.rate[0]).tolist() == pytest.approx([float(cell) for cell in TABLE.splitlines()[2].split(",")[1:4]])
+    assert np.degrees(log.rate[0]).tolist() == pytest.approx(
+        [float(cell) for cell in TABLE.splitlines()[2].split(",")[1:4]]
+    )
     assert log.temperature[0] == pytest.approx(273.15 + float(TABLE.splitlines()[2].split(",")[-1]))
     assert log.interval == pytest.approx(1e-3)
     assert sheet.gyro.reference_temperature == pytest.approx(298.15) and not log.doubtful.any()
@@ -55,57 +64,100 @@ def test_units_are_converted_and_a_whole_log_leaves_no_note(tmp_path):
         read(written(tmp_path, in_other_units))
 
 
-@pytest.mark.parametrize("rows", [without(IN_REFERENCE, 2), changed(IN_REFERENCE, 2, 2, ""), changed(IN_SETTLED, 1, 3, "nan"),
-                                  changed(IN_BURN, 2, 1, "inf")])
+@pytest.mark.parametrize(
+    "rows",
+    [
+        without(IN_REFERENCE, 2),
+        changed(IN_REFERENCE, 2, 2, ""),
+        changed(IN_SETTLED, 1, 3, "nan"),
+        changed(IN_BURN, 2, 1, "inf"),
+    ],
+)
 def test_gaps_of_one_or_two_samples_are_bridged_and_said(tmp_path, rows):
     """The rate changes by less than its noise does to two samples of a hundred."""
-    whole, found = analysis.analyse(shipped.sheets()[0]), analysis.analyse(written(tmp_path, rows=rows))
-    assert any("bridged by a straight line" in note for note in found.notes) and not any("bridged" in note for note in whole.notes)
+    whole, found = (
+        analysis.analyse(shipped.sheets()[0]),
+        analysis.analyse(written(tmp_path, rows=rows)),
+    )
+    assert any("bridged by a straight line" in note for note in found.notes) and not any(
+        "bridged" in note for note in whole.notes
+    )
     assert found.samples.time.size == whole.samples.time.size
-    assert np.abs(found.reduced.change - whole.reduced.change).max() < 0.5 * whole.reduced.combined.max()
+    assert (
+        np.abs(found.reduced.change - whole.reduced.change).max()
+        < 0.5 * whole.reduced.combined.max()
+    )
 
 
-@pytest.mark.parametrize("first, window", [(IN_REFERENCE, "reference"), (IN_SETTLED, "settled"), (700, "rest")])
+@pytest.mark.parametrize(
+    "first, window", [(IN_REFERENCE, "reference"), (IN_SETTLED, "settled"), (700, "rest")]
+)
 def test_a_longer_gap_inside_a_window_is_refused(tmp_path, first, window):
     assert f"{window} window: given 8 of" in refused(written(tmp_path, rows=without(first, 8)))
-    assert f"{window} window: given 3 of" in refused(written(tmp_path, rows=changed(first, 3, 2, "")))
-    assert f"{window} window: given 4 of" in refused(written(tmp_path, rows=changed(first, 4, 3, "-250.00")))
+    assert f"{window} window: given 3 of" in refused(
+        written(tmp_path, rows=changed(first, 3, 2, ""))
+    )
+    assert f"{window} window: given 4 of" in refused(
+        written(tmp_path, rows=changed(first, 4, 3, "-250.00"))
+    )
 
 
-@pytest.mark.parametrize("rows, words", [(without(IN_BURN, 8), "8 samples missing from 1.665 s"),
-                                         (changed(IN_BURN, 3, 2, "250.00"), "3 samples clipped at the range of 250 deg/s")])
+@pytest.mark.parametrize(
+    "rows, words",
+    [
+        (without(IN_BURN, 8), "8 samples missing from 1.665 s"),
+        (changed(IN_BURN, 3, 2, "250.00"), "3 samples clipped at the range of 250 deg/s"),
+    ],
+)
 def test_a_longer_gap_or_clipping_elsewhere_is_left_out_and_said(tmp_path, rows, words):
     found = analysis.analyse(written(tmp_path, rows=rows))
     assert any(words in note for note in found.notes)
-    np.testing.assert_allclose(found.reduced.change, analysis.analyse(shipped.sheets()[0]).reduced.change, atol=1e-12)
+    np.testing.assert_allclose(
+        found.reduced.change, analysis.analyse(shipped.sheets()[0]).reduced.change, atol=1e-12
+    )
 
 
 def slowly(every, column):
     """A column that has a value in one of ``every`` samples."""
+
     def change(cells):
         for number, row in enumerate(cells):
             row[column] = row[column] if number % every == 0 else ""
         return cells
+
     return change
 
 
 def test_a_temperature_that_is_sampled_slowly_is_interpolated_and_said(tmp_path):
-    """Its ramp of 0.05 K/s is rounded to 0.1 K. Control: a rate that is sampled so is refused in every window."""
-    whole, found = analysis.analyse(shipped.sheets()[0]), analysis.analyse(written(tmp_path, rows=slowly(100, 7)))
+    """Its ramp of 0.05 K/s is rounded to 0.1 K. Control: a rate that is sampled so is refused in
+    every window."""
+    whole, found = (
+        analysis.analyse(shipped.sheets()[0]),
+        analysis.analyse(written(tmp_path, rows=slowly(100, 7))),
+    )
     assert np.abs(found.samples.temperature - whole.samples.temperature).max() < 0.11
-    np.testing.assert_allclose(found.reduced.change, whole.reduced.change, atol=0.01 * whole.reduced.combined.min())
-    assert any("temperature: given in 19 of 1850 samples" in note and "over 0.1 s at most" in note for note in found.notes)
+    np.testing.assert_allclose(
+        found.reduced.change, whole.reduced.change, atol=0.01 * whole.reduced.combined.min()
+    )
+    assert any(
+        "temperature: given in 19 of 1850 samples" in note and "over 0.1 s at most" in note
+        for note in found.notes
+    )
     assert not any("temperature" in note for note in whole.notes)
     message = refused(written(tmp_path, rows=slowly(100, 2)))
     assert all(f"{window} window" in message for window in ("rest", "reference", "settled"))
-    assert "temperature: given no number" in refused(written(tmp_path, rows=changed(0, 5000, 7, "")))
+    assert "temperature: given no number" in refused(
+        written(tmp_path, rows=changed(0, 5000, 7, ""))
+    )
 
 
 def test_small_jitter_is_interpolated_and_said_and_large_is_refused(tmp_path):
     def jittered(share):
         shift = share * 1e-3 * np.random.default_rng(1).uniform(-1.0, 1.0, 5000)
         shift[0] = 0.0
-        return lambda cells: [[f"{float(row[0]) + late:.6f}", *row[1:]] for row, late in zip(cells, shift)]
+        return lambda cells: [
+            [f"{float(row[0]) + late:.6f}", *row[1:]] for row, late in zip(cells, shift)
+        ]
 
     found = analysis.analyse(written(tmp_path, rows=jittered(0.2)))
     assert any("jitters by up to" in note and "even grid" in note for note in found.notes)
@@ -118,31 +170,54 @@ def test_what_is_wrong_with_a_table_is_listed(tmp_path):
     assert "increasing order" in refused(written(tmp_path, rows=changed(100, 1, 0, "0.050")))
     assert "without a time" in refused(written(tmp_path, rows=changed(100, 1, 0, "")))
     assert "at least 100" in refused(written(tmp_path, rows=lambda cells: cells[:50]))
-    message = refused(written(tmp_path, rows=lambda cells: changed(100, 1, 2, "x")(changed(7, 1, 3, "1.0.0")(cells))))
+    message = refused(
+        written(
+            tmp_path, rows=lambda cells: changed(100, 1, 2, "x")(changed(7, 1, 3, "1.0.0")(cells))
+        )
+    )
     assert "2 faults" in message and "sample 8" in message and "sample 101" in message
     assert "one column of this name" in refused(written(tmp_path, SHEET.replace('"gx"', '"wx"')))
     assert "no_such" in refused(written(tmp_path, SHEET.replace("simulated0.csv", "no_such.csv")))
 
 
-@pytest.mark.parametrize("old, new, words", [
-    ("channel_class = 60", "channel_class = 180", "at least 1800 Hz for CFC 180"),
-    ("channel_class = 60", "channel_class = 100", "60, 180, 600 or 1000"),
-    ('rate = "deg/s"', 'rate = "m/s"', "units.rate"), ('rate = "deg/s"', 'rate = "Hz"', "units.rate"),
-    ('acceleration = "m/s**2"', 'acceleration = "g_0"', "9.807 m/s2 within 5 %"),
-    ("[[0, 1, 0], [-1, 0, 0], [0, 0, 1]]", "[[0, 1, 0], [1, 0, 0], [0, 0, 1]]", "right-handed"),
-    ("[[0, 1, 0], [-1, 0, 0], [0, 0, 1]]", "[[0, 1, 0], [-1, 0.1, 0], [0, 0, 1]]", "perpendicular"),
-    ("[[0, 1, 0], [-1, 0, 0], [0, 0, 1]]", "[[0, -1, 0], [1, 0, 0], [0, 0, 1]]", "do the axes point so"),
-    ('range = "250 deg/s"', "", "gyro.range"), ('scale = 0.0005', "scale = -1", "gyro.uncertainty.scale"),
-    ('[windows]', '[windows]\nrst = "1 s"', "windows.rst"), ('exit = "44.4 ms"', 'exit = "120 ms"', "settled window"),
-    ('exit = "44.4 ms"', 'exit = "25 ms"', "deg/s of scatter"), ('rest = "1 s"', 'rest = "2 s"', "rest window"),
-    ("[units]\n", '[units]\npressure = "Pa"\n', "units.pressure"), ('temperature = "degC"\n', "", "temperature both in")])
+@pytest.mark.parametrize(
+    "old, new, words",
+    [
+        ("channel_class = 60", "channel_class = 180", "at least 1800 Hz for CFC 180"),
+        ("channel_class = 60", "channel_class = 100", "60, 180, 600 or 1000"),
+        ('rate = "deg/s"', 'rate = "m/s"', "units.rate"),
+        ('rate = "deg/s"', 'rate = "Hz"', "units.rate"),
+        ('acceleration = "m/s**2"', 'acceleration = "g_0"', "9.807 m/s2 within 5 %"),
+        ("[[0, 1, 0], [-1, 0, 0], [0, 0, 1]]", "[[0, 1, 0], [1, 0, 0], [0, 0, 1]]", "right-handed"),
+        (
+            "[[0, 1, 0], [-1, 0, 0], [0, 0, 1]]",
+            "[[0, 1, 0], [-1, 0.1, 0], [0, 0, 1]]",
+            "perpendicular",
+        ),
+        (
+            "[[0, 1, 0], [-1, 0, 0], [0, 0, 1]]",
+            "[[0, -1, 0], [1, 0, 0], [0, 0, 1]]",
+            "do the axes point so",
+        ),
+        ('range = "250 deg/s"', "", "gyro.range"),
+        ("scale = 0.0005", "scale = -1", "gyro.uncertainty.scale"),
+        ("[windows]", '[windows]\nrst = "1 s"', "windows.rst"),
+        ('exit = "44.4 ms"', 'exit = "120 ms"', "settled window"),
+        ('exit = "44.4 ms"', 'exit = "25 ms"', "deg/s of scatter"),
+        ('rest = "1 s"', 'rest = "2 s"', "rest window"),
+        ("[units]\n", '[units]\npressure = "Pa"\n', "units.pressure"),
+        ('temperature = "degC"\n', "", "temperature both in"),
+    ],
+)
 def test_sheets_that_cannot_be_are_refused(tmp_path, old, new, words):
     assert old in SHEET
     assert words in refused(written(tmp_path, SHEET.replace(old, new, 1)))
 
 
 def test_every_fault_of_a_sheet_is_listed(tmp_path):
-    sheet = SHEET.replace('rate = "deg/s"', 'rate = "m"').replace('settled = "100 ms"', 'settled = "-1 ms"')
+    sheet = SHEET.replace('rate = "deg/s"', 'rate = "m"').replace(
+        'settled = "100 ms"', 'settled = "-1 ms"'
+    )
     message = refused(written(tmp_path, sheet))
     assert "2 faults" in message and "units.rate" in message and "windows.settled" in message
 
@@ -157,16 +232,27 @@ def test_without_accelerations_the_sheet_must_say_when(tmp_path):
     without_columns = ("acceleration =", 'temperature = "d', 'temperature = "t')
     lines = [line for line in SHEET.splitlines() if not line.startswith(without_columns)]
     start = lines.index("[accelerometer]")
-    bare = "\n".join(lines[:start] + lines[start + 4:])
+    bare = "\n".join(lines[:start] + lines[start + 4 :])
     assert "[events] that says when" in refused(written(tmp_path, bare))
-    found = analysis.analyse(written(tmp_path, bare + '\n[events]\nrelease = "1.25 s"\nignition = "1.65 s"\n'))
-    for words in ("as the sheet gives them", "g-sensitivity not compensated", "temperature not compensated", "in both windows"):
+    found = analysis.analyse(
+        written(tmp_path, bare + '\n[events]\nrelease = "1.25 s"\nignition = "1.65 s"\n')
+    )
+    for words in (
+        "as the sheet gives them",
+        "g-sensitivity not compensated",
+        "temperature not compensated",
+        "in both windows",
+    ):
         assert any(words in note for note in found.notes)
     whole = analysis.analyse(shipped.sheets()[0])
     assert np.abs(found.reduced.change - whole.reduced.change).max() < whole.reduced.combined.max()
 
 
 def test_a_broken_settling_rule_is_said(tmp_path):
-    found = analysis.analyse(written(tmp_path, SHEET.replace('rest_rate = "0.5 deg/s"', 'rest_rate = "0.1 deg/s"')))
-    assert any("settling rule broken" in note and "0.1 deg/s allowed" in note for note in found.notes)
+    found = analysis.analyse(
+        written(tmp_path, SHEET.replace('rest_rate = "0.5 deg/s"', 'rest_rate = "0.1 deg/s"'))
+    )
+    assert any(
+        "settling rule broken" in note and "0.1 deg/s allowed" in note for note in found.notes
+    )
     assert not any("settling rule" in note for note in analysis.analyse(shipped.sheets()[0]).notes)

@@ -1,4 +1,5 @@
-"""The logs that come with the package: made again bit for bit, labelled as simulated, and analysed to what was put in."""
+"""The logs that come with the package: made again bit for bit, labelled as simulated, and analysed
+to what was put in."""
 
 import numpy as np
 import pytest
@@ -24,11 +25,16 @@ def test_a_log_is_made_again_bit_for_bit(number):
 @pytest.mark.parametrize("number", range(shipped.COUNT))
 def test_a_log_says_that_it_is_simulated_and_gives_its_truth_back(number):
     path = shipped.sheets()[number]
-    assert all(file.read_text().startswith("# SIMULATED, not measured") for file in (path, path.with_suffix(".csv")))
+    assert all(
+        file.read_text().startswith("# SIMULATED, not measured")
+        for file in (path, path.with_suffix(".csv"))
+    )
     assert path.with_suffix(".csv").stat().st_size < 100_000
     found = analyse(path)
     assert found.sheet.simulated and "SIMULATED" in found.sheet.description
-    assert found.events.release == pytest.approx(RELEASE, abs=2e-3) and found.events.ignition == pytest.approx(IGNITION, abs=2e-3)
+    assert found.events.release == pytest.approx(
+        RELEASE, abs=2e-3
+    ) and found.events.ignition == pytest.approx(IGNITION, abs=2e-3)
     error = np.abs(np.degrees(found.reduced.change) - TRUE[number])
     assert (error < np.degrees(found.reduced.factor * found.reduced.combined)).all()
     assert np.degrees(found.reduced.combined).max() < 0.05
@@ -39,4 +45,6 @@ def test_truth_is_kept_from_the_analysis():
     """No number of the truth stands in a sheet or in the code that reads it."""
     folder = shipped.FOLDER.parent
     texts = [path.read_text() for path in (*shipped.sheets(), *folder.glob("*.py"))]
-    assert not any(f"{abs(value):.3f}" in text for text in texts for values in TRUE for value in values)
+    assert not any(
+        f"{abs(value):.3f}" in text for text in texts for values in TRUE for value in values
+    )
