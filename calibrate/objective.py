@@ -2,7 +2,8 @@
 
     J = 1/n sum_conditions [ L2(rate)^2 + (50 L2(v_x))^2 + (|dw_s| / |w_s,ref|)^2 ]
 
-    L2(rate)^2 = sum_axes int |w - w_ref|^2 dt / sum_axes int |w_ref|^2 dt,      L2(v_x) likewise,      w_s: settled rates
+    L2(rate)^2 = sum_axes int |w - w_ref|^2 dt / sum_axes int |w_ref|^2 dt,  L2(v_x) likewise
+    w_s: settled rates
 
 Every term is relative to the condition's own amplitude, so a condition with small rates counts as
 much as one with large ones, and roll counts by its size instead of by its noise. Rates and v_x are

@@ -3,12 +3,14 @@
 Contact adds G k G' to the stiffness, where a column of G is the gap of one Gauss point. In the mass
 metric
 
-    lambda_max(rail + contact) <= lambda_max(rail) + k_p [max over nodes (area_a / m_a) + sum over faces A (1/m + r'I^-1 r)]
+    lambda_max(rail + contact) <= lambda_max(rail) + k_p max over nodes (area_a / m_a)
+                                  + k_p sum over faces A (1/m + r'I^-1 r)
 
 because the largest eigenvalue of a sum is at most the sum, and that of G k G' on the nodes alone is
 at most the largest sum of magnitudes in a row of M^-1 G k G' (Gershgorin):
 
-    sum over b of |sum over points of A N_a N_b| / m_a <= area_a / m_a,    area_a = sum over points of A |N_a| sum over b of |N_b|
+    sum over b of |sum over points of A N_a N_b| / m_a <= area_a / m_a
+    area_a = sum over points of A |N_a| sum over b of |N_b|
 
 On bilinear facets no N is negative and their sum is one, so area_a is the node's own share of the
 area; on quadratic triangles the corners' N may be negative and the last sum reaches 5/3.

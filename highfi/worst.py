@@ -4,8 +4,10 @@ displacement gradient.
 With G the displacement gradient at a node of an element, e its symmetric and w its antisymmetric
 part, and g the shear modulus, Hooke's law leaves of the equivalent stress::
 
-    s^2 = g^2 (2 [(exx-eyy)^2 + (eyy-ezz)^2 + (ezz-exx)^2] + 3 [gxy^2 + gyz^2 + gzx^2])        shear strains in engineering measure
-    strain^2 = sum e_ij^2  (no principal strain is larger),        rotation^2 = wyz^2 + wzx^2 + wxy^2  (rad^2)
+    s^2 = g^2 (2 [(exx-eyy)^2 + (eyy-ezz)^2 + (ezz-exx)^2] + 3 [gxy^2 + gyz^2 + gzx^2])
+          (shear strains in engineering measure)
+    strain^2 = sum e_ij^2  (no principal strain is larger)
+    rotation^2 = wyz^2 + wzx^2 + wxy^2  (rad^2)
 
 Stresses of the elements that meet at a node are not averaged: the worst one counts, as it does
 where strength is judged.

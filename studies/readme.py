@@ -21,8 +21,9 @@ from studies.study import read
 _ROOT = Path(__file__).resolve().parent.parent
 _TITLE = """# Further results on the reference scene
 
-Written by `python -m studies.readme` from the files of `make full-report` and `make bench`; times of different tables may be those
-of different days and are not to be divided by each other. Terms are those of README."""
+Written by `python -m studies.readme` from the files of `make full-report` and `make bench`; times
+of different tables may be those of different days and are not to be divided by each other. Terms
+are those of README."""
 _BEGIN, _END = "<!-- results: python -m studies.readme -->", "<!-- end of results -->"
 
 

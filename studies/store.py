@@ -1,6 +1,7 @@
 """Results of runs, kept by content: ``out/<scene>/<fidelity>/<label>-<key>.nc``.
 
-    key = SHA-256(physical inputs of the scene, numerics, calibrated constants, walls, sources of every package below the fidelity)
+    key = SHA-256(physical inputs of the scene, numerics, calibrated constants, walls,
+                  sources of every package below the fidelity)
 
 A run whose file is there and fits the digest it carries is loaded, any other is made and written
 atomically; so what was interrupted goes on where it stopped, and neither a changed input or source

@@ -1,6 +1,7 @@
 """How a disturbance of one micrometre grows, and how long two curves can be compared before it has.
 
-    s(t) = largest of |w'(t) - w(t)| over the axes and over the twins w', which start with every wall 1 um farther off or nearer
+    s(t) = largest of |w'(t) - w(t)| over the axes and over the twins w', which start with every
+           wall 1 um farther off or nearer
     d_k  = mean of s over the free flight after contact k
     factor d_k / d_(k-1),   exponent ln(d_k / d_(k-1)) / (t_k - t_(k-1)),   t_k the end of contact k
 

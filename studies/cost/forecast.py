@@ -1,6 +1,7 @@
 """How long a calibration will take, said before it begins.
 
-    time = ceil(runs / at a time) * elements * steps * ns per element and step + evaluations * conditions * time of the surrogate
+    time = ceil(runs / at a time) * elements * steps * ns per element and step
+           + evaluations * conditions * time of the surrogate
 
 Elements are counted without a mesh where the rail is the built-in section. Steps and nanoseconds
 come from runs of the reference that are stored, of this scene, else of one beside it, else from a

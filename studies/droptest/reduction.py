@@ -1,7 +1,10 @@
 """The change of rate by ejection, with a budget of its uncertainty in the manner of the GUM.
 
-    d = w_1 - w_0,   w_0 mean over the reference window,   w_1 line through the settled window, at the instant of simulations
-    u_c^2 = sum of squares of the standard uncertainties below,   U = k u_c,   k = t(95 %, nu_eff) (Welch, Satterthwaite)
+    d = w_1 - w_0
+    w_0   mean over the reference window
+    w_1   line through the settled window, at the instant of simulations
+    u_c^2 = sum of squares of the standard uncertainties below
+    U = k u_c,   k = t(95 %, nu_eff)   (Welch, Satterthwaite)
 
 | part | standard uncertainty of component i | kind |
 |---|---|---|
@@ -11,7 +14,7 @@
 | misalignment, mounting | u(E) sqrt(sum over j != i of d_j^2) | B |
 | g-sensitivity | u(G) times the change of specific force between the windows | B |
 | temperature | u(c) times the change of temperature between the windows | B |
-| quantisation | q sqrt(tau sum w^2 / 12), beside the noise it shows in; q sqrt(2/12) where noise is too low to spread it | B |
+| quantisation | q sqrt(tau sum w^2 / 12); q sqrt(2/12) where noise does not spread it | B |
 | bent line | a free tumble bends: w'' = 2 w'^2 / w for equations quadratic in w; rectangular | B |
 | instant | slope times u(exit) | B |
 

@@ -1,7 +1,8 @@
 """A documented model of an inertial unit, for logs that are simulated and for tests of what reads
 them.
 
-    gyro    raw = Q[(1 + diag s)(1 + E) R'w + b + G R'f + c (T - T0) + white + flicker]     see studies.droptest.calibrated
+    gyro    raw = Q[(1 + diag s)(1 + E) R'w + b + G R'f + c (T - T0) + white + flicker]
+            (see studies.droptest.calibrated)
     force   raw = Q[(1 + diag s_a) R'f + b_a + white]
 
 White noise of density N (rad/s/sqrt(Hz), the angle random walk of IEEE 952) has the standard

@@ -3,10 +3,11 @@ sure the sensor is::
 
     file = "drop1.csv"
     channel_class = 60                         # CFC of SAE J211 and ISO 6487
-    axes = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]   # columns: the sensor's axes in payload body axes, right-handed
+    axes = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]   # columns: the sensor's axes in payload body axes
 
     [columns]  [units]                         # names in the CSV and their units
-    [gyro]                                     # raw = (1 + scale_error) (1 + misalignment) w + bias + g_sensitivity f + temperature
+    [gyro]                                     # raw = (1 + scale_error) (1 + misalignment) w + bias
+                                               #       + g_sensitivity f + temperature
     [gyro.uncertainty]                         # standard uncertainties of these (GUM)
     [accelerometer]  [events]  [windows]
 

@@ -1,9 +1,10 @@
 """The paper's random factors (its Table 3), and what "normal axial value, uniform radial angle" can
 mean.
 
-    signed       x normal about zero, three sigma as printed, at the angle a; a negative one points to the other side, a + pi
+    signed       x normal about zero, three sigma as printed, at the angle a; a negative one
+                 points to the other side, a + pi
     half         |x| at the angle a
-    components   one such x along y, another along z: the size follows Rayleigh's law, the angle is theirs
+    components   one such x along y, another along z: the size follows Rayleigh's law
 
 Where every error has an angle of its own, signed and half are one law, since a + pi is as uniform
 as a; components are larger. Where all share one angle, thrust and mass eccentricity lie on one

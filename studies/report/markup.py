@@ -59,7 +59,8 @@ def table(
     name = f' id="{identity}"' if identity else ""
     look = ' class="dense"' if dense else ""
     return Html(
-        f'<div class="wide"><table{name}{look}><thead><tr>{head}</tr></thead><tbody>{"".join(body)}</tbody></table></div>'
+        f'<div class="wide"><table{name}{look}><thead><tr>{head}</tr></thead>'
+        f"<tbody>{''.join(body)}</tbody></table></div>"
     )
 
 

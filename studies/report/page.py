@@ -123,7 +123,8 @@ class Page:
             f'<meta name="viewport" content="width=device-width, '
             f'initial-scale=1"><style>{CSS}</style>'
             f"<script>{get_plotlyjs()}</script></head><body><header><h1>{title}</h1>"
-            f'<p class="lead">{escape(self.scene.description)}</p><nav>{links}</nav></header><main>{body}</main></body></html>'
+            f'<p class="lead">{escape(self.scene.description)}</p><nav>{links}</nav></header>'
+            f"<main>{body}</main></body></html>"
         )
 
     def _of(self, stage: str, identity: str, title: str, draw, target: str) -> Html:

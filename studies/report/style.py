@@ -20,7 +20,10 @@ code { font: 0.9em/1.4 ui-monospace, "SF Mono", Menlo, Consolas, monospace; \
 background: var(--tint); padding: 1px 4px; border-radius: 3px; }
 .wide { overflow-x: auto; margin: 12px 0; }
 table { border-collapse: collapse; font-size: 14px; line-height: 1.4; }
-th { text-align: left; vertical-align: bottom; font-weight: 600; border-bottom: 1.5px solid var(--ink); padding: 5px 12px 5px 6px; }
+th {
+  text-align: left; vertical-align: bottom; font-weight: 600; border-bottom: 1.5px solid var(--ink);
+  padding: 5px 12px 5px 6px;
+}
 td { vertical-align: top; border-bottom: 1px solid var(--rule); padding: 4px 12px 4px 6px; }
 td.number { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
 table.dense { font-size: 13px; } .dense td:last-child { min-width: 190px; } \

@@ -5,7 +5,8 @@ Each key has a distribution of ``scenes.distributions``. Under ``[vary]`` it is 
 itself, under ``[factor]`` that of a factor of the number the surrogate has. An offset that a scene
 holds as size r and angle a may be given by its components::
 
-    misalignment  y = r cos a, z = r sin a        eccentricity  y = r sin a, z = r cos a        (angles as in ``scenes.effects``)
+    misalignment  y = r cos a, z = r sin a
+    eccentricity  y = r sin a, z = r cos a    (angles as in ``scenes.effects``)
 
 so that independent normal components stand for a direction about which nothing is known. Where the
 exponent of a contact law varies, the force at the reference penetration p_r of the calibration

@@ -5,7 +5,8 @@ The axes are those of the platform, which coincide with scene axes at ignition: 
 stand still but for their deformation, and the payload moves out of them. Contact pressure is the
 penalty law at the nodes of the walls::
 
-    p = k_p max(0, -h - relief (xi^4 + eta^4))      for |xi|, |eta| <= 1, with h the height of the node over the pad face
+    p = k_p max(0, -h - relief (xi^4 + eta^4))    for |xi|, |eta| <= 1
+    h: height of the node over the pad face
 
 which is what the run integrates at the Gauss points of the facets between them
 (``highfi.contact``).

@@ -35,15 +35,16 @@ from scenes.effects.friction import coefficient_over_speed
 @numba.njit
 def call(records, felt, begin, out):
     equations.derivative(records, felt, None, 0.0, begin, out)
-    limits.fastest_rate(records.contact, records.friction, None, records.faces, records.platform, records.payload, felt, None,
-                        begin, 0.0)
+    limits.fastest_rate(records.contact, records.friction, None, records.faces, records.platform,
+                        records.payload, felt, None, begin, 0.0)
 def evaluate(scene):
     built = model.build(scene)
     records, begin = system.build(built), state.initial(built)
     call(records, np.ones(16, dtype=np.bool_), begin, np.empty_like(begin))
     return len(coefficient_over_speed.signatures)
 reference = load("reference")
-print(evaluate(reference.replace({"friction": None, "platform": None})), evaluate(reference.replace({"platform": None})))
+print(evaluate(reference.replace({"friction": None, "platform": None})),
+      evaluate(reference.replace({"platform": None})))
 """
 
 

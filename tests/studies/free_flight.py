@@ -1,6 +1,7 @@
 """A launch on which no pad can touch, so that rates follow from the errors by one line::
 
-    w_y = (J/I) (l sin t sin a + (r cos b - m cos c) cos t)        w_z = -(J/I) (l sin t cos a + (r sin b - m sin c) cos t)
+    w_y = (J/I) (l sin t sin a + (r cos b - m cos c) cos t)
+    w_z = -(J/I) (l sin t cos a + (r sin b - m sin c) cos t)
 
 with impulse J, arm l, one moment of inertia I about every axis; misalignment t at a, thrust
 eccentricity r at b, mass eccentricity m at c.
