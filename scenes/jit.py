@@ -8,18 +8,36 @@ by a digest of all kernel sources, so any edit starts an empty cache.
 import functools
 import hashlib
 import os
+from collections.abc import Callable
 from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeVar, overload
 
 import numba
 
+if TYPE_CHECKING:
+    from numba.core.dispatcher import Dispatcher
+
 _KERNEL_PACKAGES = ("scenes", "highfi", "lowfi")
+# Numba names its settings while it loads, where no type checker sees them.
+_settings: Any = numba.config
+_Function = TypeVar("_Function", bound=Callable[..., object])
+
+
+class Compiler(Protocol):
+    """A decorator that makes a kernel of a function, bare or with options. A kernel is called as
+    the function is, and tells of its compilation besides."""
+
+    @overload
+    def __call__(self, function: _Function, /) -> "Dispatcher[_Function]": ...
+    @overload
+    def __call__(self, /, *, inline: Literal["never", "always"]) -> "Compiler": ...
 
 
 def kernel_digest() -> str:
     """Hexadecimal digest (16 digits) of every source file that may hold a kernel,
     of the Numba version and its optimisation level."""
     root = Path(__file__).resolve().parent.parent
-    digest = hashlib.sha256(f"{numba.__version__} {numba.config.OPT!r}".encode())
+    digest = hashlib.sha256(f"{numba.__version__} {_settings.OPT!r}".encode())
     for package in _KERNEL_PACKAGES:
         for path in sorted((root / package).rglob("*.py")):
             digest.update(str(path.relative_to(root)).encode())
@@ -37,20 +55,25 @@ def _cache_directory() -> Path:
 # before. At level 3 the first pass turns vectors of states into scalars, which the next one does
 # not mend: the surrogate then takes half as long again.
 if "NUMBA_OPT" not in os.environ:
-    numba.config.OPT = type(numba.config.OPT)("max")
+    _settings.OPT = type(_settings.OPT)("max")
 
-numba.config.CACHE_DIR = str(_cache_directory())
+_settings.CACHE_DIR = str(_cache_directory())
 
-# error_model="numpy": division by zero gives inf, which reaches the status check, instead of an
-# exception inside a kernel.
-njit = functools.partial(numba.njit, cache=True, error_model="numpy", nogil=True)
-# For kernels that neither make nor return arrays: without reference counts, which cost more than
-# the arithmetic where records of arrays are handed from function to function, and half the time to
-# compile.
-kernel = functools.partial(njit, _nrt=False)
-# The same for what innermost loops call with whole records: each call would copy some hundred words
-# of array headers.
-inlined = functools.partial(kernel, forceinline=True)
+if TYPE_CHECKING:
+    njit: Compiler
+    kernel: Compiler
+    inlined: Compiler
+else:
+    # error_model="numpy": division by zero gives inf, which reaches the status check, instead of an
+    # exception inside a kernel.
+    njit = functools.partial(numba.njit, cache=True, error_model="numpy", nogil=True)
+    # For kernels that neither make nor return arrays: without reference counts, which cost more
+    # than the arithmetic where records of arrays are handed from function to function, and half the
+    # time to compile.
+    kernel = functools.partial(njit, _nrt=False)
+    # The same for what innermost loops call with whole records: each call would copy some hundred
+    # words of array headers.
+    inlined = functools.partial(kernel, forceinline=True)
 
 
 def machine_code(kernel, arguments: tuple) -> bytes:
