@@ -1,23 +1,26 @@
 """Numba settings shared by every kernel, and a disk cache that cannot go stale.
 
-Numba keys its cache by the file of the compiled function only: a kernel whose *callee* in another
-file changed is loaded from disk with the old callee inside. The cache directory is therefore named
-by a digest of all kernel sources, so any edit starts an empty cache.
+Numba keys its cache by the file of the compiled function: a kernel whose *callee* in another file
+changed is loaded from disk with the old callee inside, and an edited docstring compiles all kernels
+of its file again. Here the compiled kernels of a module lie in a folder that is named by the digest
+of the code that the module depends on (``scenes.sources``).
 """
 
 import functools
 import hashlib
 import os
 from collections.abc import Callable
-from pathlib import Path
+from types import CodeType, FunctionType
 from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeVar, overload
 
 import numba
+from numba.core.caching import _CacheLocator
+
+from scenes import sources
 
 if TYPE_CHECKING:
     from numba.core.dispatcher import Dispatcher
 
-_KERNEL_PACKAGES = ("scenes", "highfi", "lowfi")
 # Numba names its settings while it loads, where no type checker sees them.
 _settings: Any = numba.config
 _Function = TypeVar("_Function", bound=Callable[..., object])
@@ -33,22 +36,51 @@ class Compiler(Protocol):
     def __call__(self, /, *, inline: Literal["never", "always"]) -> "Compiler": ...
 
 
-def kernel_digest() -> str:
-    """Hexadecimal digest (16 digits) of every source file that may hold a kernel,
-    of the Numba version and its optimisation level."""
-    root = Path(__file__).resolve().parent.parent
-    digest = hashlib.sha256(f"{numba.__version__} {_settings.OPT!r}".encode())
-    for package in _KERNEL_PACKAGES:
-        for path in sorted((root / package).rglob("*.py")):
-            digest.update(str(path.relative_to(root)).encode())
-            digest.update(path.read_bytes())
-    return digest.hexdigest()[:16]
+def kernel_digest(module: str) -> str:
+    """Hexadecimal digest (16 digits) of the code that the kernels of a ``module`` (dotted name)
+    depend on, of the Numba version and its optimisation level."""
+    settings = f"{numba.__version__} {_settings.OPT!r} {sources.digest(module)}"
+    return hashlib.sha256(settings.encode()).hexdigest()[:16]
 
 
-def _cache_directory() -> Path:
-    chosen = os.environ.get("NUMBA_CACHE_DIR")
-    default = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache")) / "tipoff" / "kernels"
-    return (Path(chosen) if chosen else default) / kernel_digest()
+class KernelCacheLocator(_CacheLocator):
+    """Where Numba keeps the compiled kernels of a module, and by what it tells them apart."""
+
+    def __init__(self, function: FunctionType):
+        self._digest = kernel_digest(function.__module__)
+        self._place = sources.cache_folder() / "kernels" / f"{function.__module__}-{self._digest}"
+        self._code = _digest_of_code(function.__code__)
+
+    @classmethod
+    def from_function(cls, py_func: FunctionType, py_file: str) -> "KernelCacheLocator | None":
+        """The place of a kernel of this project, None for any other function."""
+        if sources.path(py_func.__module__) is None:
+            return None
+        locator = cls(py_func)
+        locator.ensure_cache_path()
+        return locator
+
+    def get_cache_path(self) -> str:
+        """Folder of the module's kernels."""
+        return str(self._place)
+
+    def get_source_stamp(self) -> str:
+        """What a stored kernel must have been compiled from."""
+        return self._digest
+
+    def get_disambiguator(self) -> str:
+        """Tells functions of one name in one module apart."""
+        return self._code
+
+
+def _digest_of_code(code: CodeType) -> str:
+    """Hexadecimal digest (8 digits) of ``code`` without its line numbers and docstring."""
+    constants = [
+        _digest_of_code(item) if isinstance(item, CodeType) else repr(item)
+        for item in code.co_consts[1:]  # the first one is the docstring, or None
+    ]
+    parts = (code.co_code, code.co_names, code.co_varnames, code.co_freevars, constants)
+    return hashlib.sha256(repr(parts).encode()).hexdigest()[:8]
 
 
 # Kernels are compiled as parts of those that call them, each time from code that was optimised
@@ -57,7 +89,8 @@ def _cache_directory() -> Path:
 if "NUMBA_OPT" not in os.environ:
     _settings.OPT = type(_settings.OPT)("max")
 
-_settings.CACHE_DIR = str(_cache_directory())
+_settings.CACHE_LOCATOR_CLASSES = "scenes.jit.KernelCacheLocator,UserProvidedCacheLocator"
+_settings.CACHE_DIR = str(sources.cache_folder() / "kernels")
 
 if TYPE_CHECKING:
     njit: Compiler

@@ -1,0 +1,110 @@
+"""What code a module depends on: an edit of words changes nothing, an edit of code all that rests
+on it."""
+
+import shutil
+from pathlib import Path
+
+import pytest
+
+from scenes import sources
+
+ROOT = Path(__file__).resolve().parents[2]
+SOLVERS = ("highfi", "lowfi", "lowfi.march", "highfi.step")
+
+
+@pytest.fixture
+def project(tmp_path, monkeypatch):
+    """A copy of the project whose files may be edited, and a fresh memory of it."""
+    for package in sources.PACKAGES:
+        shutil.copytree(
+            ROOT / package, tmp_path / package, ignore=lambda _, names: set(names) - _code(names)
+        )
+    monkeypatch.setattr(sources, "ROOT", tmp_path)
+    forget()
+    yield tmp_path
+    forget()
+
+
+def _code(names):
+    return {name for name in names if name.endswith(".py") or "." not in name} - {"__pycache__"}
+
+
+def forget():
+    """Let digests be taken anew, as another process would."""
+    sources.digest.cache_clear()
+    sources._source.cache_clear()
+
+
+def edit(file: Path, old: str, new: str) -> None:
+    text = file.read_text()
+    assert old in text
+    file.write_text(text.replace(old, new, 1))
+    forget()
+
+
+def digests(*modules: str) -> list[str]:
+    return [sources.digest(module) for module in modules]
+
+
+def test_docstrings_comments_and_layout_do_not_count(project):
+    law, before = project / "scenes" / "effects" / "friction.py", digests(*SOLVERS)
+    edit(law, '"""', '"""Other words. ')
+    edit(law, "\n\n\n", "\n\n\n# a remark\n\n\n")
+    assert digests(*SOLVERS) == before
+
+
+def test_a_constant_of_the_friction_law_counts_wherever_the_law_is_used(project):
+    law, before = (
+        project / "scenes" / "effects" / "friction.py",
+        digests(*SOLVERS, "scenes.rotation"),
+    )
+    edit(law, "3.0", "3.0000001")
+    after = digests(*SOLVERS, "scenes.rotation")
+    assert all(a != b for a, b in zip(before[:-1], after[:-1]))
+    assert before[-1] == after[-1]
+
+
+def test_one_solver_does_not_depend_on_the_other(project):
+    before = digests(*SOLVERS)
+    edit(
+        project / "lowfi" / "march.py",
+        "_SAFETY, _SHRINK, _GROW = 0.9",
+        "_SAFETY, _SHRINK, _GROW = 0.8",
+    )
+    after = digests(*SOLVERS)
+    assert [a == b for a, b in zip(before, after)] == [True, False, False, True]
+
+
+@pytest.mark.parametrize(
+    "line, depends",
+    [
+        ("import lowfi.march", {"lowfi", "lowfi.march"}),
+        ("from lowfi import march", {"lowfi.march"}),
+        ("from lowfi.march import Plan", {"lowfi.march"}),
+        ("def late():\n    from lowfi import march", {"lowfi.march"}),
+        ("import numpy.random", set()),
+        ("if TYPE_CHECKING:\n    from lowfi import march", set()),
+    ],
+)
+def test_forms_of_imports(project, line, depends):
+    (project / "scenes" / "other.py").write_text("from typing import TYPE_CHECKING\n" + line + "\n")
+    for module in ("march", "__init__"):
+        (project / "lowfi" / f"{module}.py").write_text("Plan = 1\n")
+    forget()
+    assert set(sources.closure("scenes.other")) == {"scenes.other", *depends}
+
+
+def test_a_module_that_is_not_there(project):
+    with pytest.raises(ModuleNotFoundError, match=r"no module scenes\.nothing"):
+        sources.digest("scenes.nothing")
+
+
+def test_a_damaged_memory_is_read_anew(project, tmp_path, monkeypatch):
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "cache"))
+    before = sources.digest("scenes.rotation")
+    kept = list((tmp_path / "cache" / "sources").glob("*.json"))
+    assert kept
+    for file in kept:
+        file.write_text("[")
+    forget()
+    assert sources.digest("scenes.rotation") == before
