@@ -77,6 +77,12 @@ def outcome(seen_from: Frame, found: Outcome) -> Outcome:
     """``found`` in the scene's axes."""
     if found.velocity is None or not (any(seen_from.origin) or any(seen_from.velocity)):
         return found
+    assert (
+        found.exit_time is not None
+        and found.exit_position is not None
+        and found.exit_platform_position is not None
+        and found.exit_platform_velocity is not None
+    )  # as the velocity
     way = np.add(seen_from.origin, found.exit_time * np.array(seen_from.velocity))
     velocity = np.add(found.velocity, seen_from.velocity)
     lateral = float(np.hypot(velocity[1], velocity[2]))
