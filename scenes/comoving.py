@@ -49,7 +49,7 @@ def start(model) -> Start:
     first, zero = model.initial, np.zeros(3)
     # The difference first: a large displacement leaves no trace in a small one.
     place = np.add(model.payload.mass_centre, np.subtract(first.position, origin))
-    carried = (
+    platform_place, platform_velocity = (
         (zero, zero)
         if model.platform is None
         else (
@@ -57,7 +57,12 @@ def start(model) -> Start:
             np.subtract(first.platform_velocity, velocity),
         )
     )
-    return Start(place, np.subtract(first.velocity, velocity), *carried)
+    return Start(
+        place=place,
+        velocity=np.subtract(first.velocity, velocity),
+        platform_place=platform_place,
+        platform_velocity=platform_velocity,
+    )
 
 
 def motion(seen_from: Frame, moved: Motion) -> Motion:
