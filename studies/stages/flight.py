@@ -9,6 +9,7 @@ import numpy as np
 from lowfi.columns import Columns
 from lowfi.rows import Drawn
 from scenes import uncertainty
+from scenes.effects.flight import FlightTable
 from scenes.faults import Fault, SceneError
 from scenes.files import sealed
 from scenes.outcome import Outcome
@@ -96,10 +97,15 @@ def _key(study: Study, asked: Asked) -> str:
         for name, scene in study.conditions.items()
     }
     varied = uncertainty.load(asked.vary, study.scene).resolved()
-    own = study.scene.flight.model_dump(mode="json")
+    own = _flight(study.scene).model_dump(mode="json")
     return study.key(
         SOURCES["calibrated"], NAME, own, tables, asdict(asked), varied, study.settings.element_size
     )
+
+
+def _flight(scene: Scene) -> FlightTable:
+    assert scene.flight is not None  # which is required of every scene
+    return scene.flight
 
 
 def _require(scenes: dict[str, Scene]) -> None:
@@ -132,7 +138,7 @@ def _conditions(
     exits = {name: bodies.of_outcomes([ended[name].outcome]) for name in settled}
     pairs = {
         name: flown.pair(
-            study.conditions[name].flight.record(),
+            _flight(study.conditions[name]).record(),
             bodies.bodies([study.conditions[name]]),
             bodies.start(exits[name]),
         )
@@ -181,7 +187,7 @@ def _cases(study: Study, asked: Asked, drawn: Drawn) -> tuple[dict, flown.Flown,
         label = f"{len(which):,} flights"
         left = Columns(*(part[which] for part in cases.results))
         many = flown.fly(
-            study.scene.flight.record(), parted, bodies.start(left), board.callback(label)
+            _flight(study.scene).record(), parted, bodies.start(left), board.callback(label)
         )
         board.finished(label, "flown")
     return summary.cases(many, cases, drawn.uncertainty), many, left
