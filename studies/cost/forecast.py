@@ -143,8 +143,9 @@ def in_time(work: Callable):
 def _references(missing: Sequence[Run], together: int, known: Pace) -> tuple[float, str] | None:
     """Seconds of all ``missing`` runs, so many ``together``, those of one mesh after those of
     another; None as for one of them."""
-    each = Counter(_reference(run, known) for run in missing)
-    if not each or None in each:
+    found = [_reference(run, known) for run in missing]
+    each = Counter(one for one in found if one is not None)
+    if not each or None in found:
         return None
     return sum(
         math.ceil(count / together) * seconds for (seconds, _), count in each.items()
@@ -158,7 +159,7 @@ def _reference(run: Run, known: Pace) -> tuple[float, str] | None:
     elements = _elements(run.scene, size, known)
     if elements is None:
         return None
-    if known.steps is not None:
+    if known.steps is not None and known.element_size is not None:
         steps = known.steps * known.element_size / size
     else:
         material = run.scene.rail.material
@@ -174,7 +175,9 @@ def _elements(scene: Scene, size: float, known: Pace) -> float | None:
         from meshes import l_rail
 
         return l_rail.elements(geometry(scene), size)
-    return None if known.elements is None else known.elements * (known.element_size / size) ** 3
+    if known.elements is None or known.element_size is None:
+        return None
+    return known.elements * (known.element_size / size) ** 3
 
 
 def _stored(path: Path) -> Pace | None:

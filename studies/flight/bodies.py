@@ -13,6 +13,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from scenes.body import tensor
+from scenes.effects.flight import FlightTable
 from scenes.outcome import Outcome
 from scenes.rail import SectionTable
 from scenes.scene import Scene
@@ -96,8 +97,14 @@ def unknown_rails(scene: Scene) -> bool:
     return not isinstance(scene.rail, SectionTable)
 
 
-def _size(scene: Scene) -> tuple | None:
-    return scene.flight.body or scene.payload.size
+def table_of(scene: Scene) -> FlightTable:
+    """What the scene says of its flight; a scene that says nothing is refused beforehand."""
+    assert scene.flight is not None
+    return scene.flight
+
+
+def _size(scene: Scene) -> tuple[float, float, float] | None:
+    return table_of(scene).body or scene.payload.size
 
 
 def _bodies(scene: Scene) -> tuple:
@@ -134,9 +141,9 @@ def _origin(scene: Scene, offset: np.ndarray, place: np.ndarray) -> np.ndarray:
 
 def _boxes(scene: Scene) -> list[tuple]:
     """Corners (low, high) of the platform's boxes in scene axes at ignition."""
-    listed = [(box.low, box.high) for box in scene.flight.envelope]
+    listed: list[tuple] = [(box.low, box.high) for box in table_of(scene).envelope]
     rail = scene.rail
-    if unknown_rails(scene):
+    if not isinstance(rail, SectionTable):
         return listed
     gap = rail.gap(scene.contact.clearance if scene.contact else 0.0)
     for corner in dict.fromkeys(pad.position[1:] for pad in scene.pads):

@@ -93,7 +93,7 @@ _JUDGED = (
 def orbit(scene: Scene) -> dict:
     """The flight asked for, resolved; ``no_clearance`` says why none can be told, empty where it
     can; ``rails_listed`` whether the rails are among the boxes only if the scene lists them."""
-    flight = scene.flight.record()
+    flight = bodies.table_of(scene).record()
     return {
         "mean_motion_rad_s": flight.mean_motion,
         "period_s": 2.0 * np.pi / flight.mean_motion,
@@ -202,7 +202,7 @@ def dataset(
     variables = {item.name: ("case", item.of(left)) for item in answers.ALL}
     variables |= {item.name: ("case", item.of(many)) for item in QUANTITIES}
     variables |= {name: ("case", of(many)) for name, of in _SIDES.items()}
-    if single is not None:
+    if single is not None and exits is not None:
         variables |= {
             f"condition_{item.name}": ("condition", item.of(exits)) for item in answers.ALL
         }
