@@ -17,7 +17,7 @@ import threading
 from collections import Counter
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numba
 
@@ -28,6 +28,8 @@ from studies.store import Run
 from studies.study import Study
 
 PATIENCE = 1.0  # s
+# Numba names its settings while it loads, where no type checker sees them.
+_numba_settings: Any = numba.config
 # per element and step, the 2 mm mesh of the reference scene on one thread of an AMD EPYC
 _TYPICAL_NS = 11.0
 _TYPICAL_RUN = 3e-3  # s, the surrogate there
@@ -174,7 +176,9 @@ def _elements(scene: Scene, size: float, known: Pace) -> float | None:
         from highfi.rail import geometry
         from meshes import l_rail
 
-        return l_rail.elements(geometry(scene), size)
+        section = geometry(scene)
+        assert isinstance(section, l_rail.LRailGeometry)
+        return l_rail.elements(section, size)
     if known.elements is None or known.element_size is None:
         return None
     return known.elements * (known.element_size / size) ** 3
@@ -208,7 +212,7 @@ def _search(study: Study, conditions: int) -> float:
 
 def _is_cold() -> bool:
     """Whether kernels have yet to be compiled."""
-    return not any(Path(numba.config.CACHE_DIR).rglob("*.nbc"))
+    return not any(Path(_numba_settings.CACHE_DIR).rglob("*.nbc"))
 
 
 def _surrogate(folder: Path) -> float:

@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from lowfi.columns import Columns
 from scenes.body import tensor
 from scenes.effects.flight import FlightTable
 from scenes.outcome import Outcome
@@ -50,15 +51,31 @@ class Start(NamedTuple):
     platform_rate: np.ndarray
 
 
+class Exits(NamedTuple):
+    """Outcomes of n payloads that settled, as arrays, cases first."""
+
+    exit_time: np.ndarray
+    window_start: np.ndarray
+    velocity: np.ndarray
+    rate: np.ndarray
+    lateral_velocity: np.ndarray
+    direction_error: np.ndarray
+    exit_attitude: np.ndarray
+    exit_position: np.ndarray
+    exit_platform_position: np.ndarray
+    exit_platform_velocity: np.ndarray
+    exit_platform_attitude: np.ndarray
+    exit_platform_rate: np.ndarray
+
+
 def bodies(scenes: Iterable[Scene]) -> Bodies:
     """Bodies of every scene, all of them with as many boxes. Without boxes where a size is
     unknown."""
     return Bodies(*map(np.array, zip(*map(_bodies, scenes))))
 
 
-def start(found) -> Start:
-    """State of settled cases from columns of results, or from anything with the same names
-    (``of_outcomes``)."""
+def start(found: Columns | Exits) -> Start:
+    """State of settled cases from columns of results, or from outcomes (``of_outcomes``)."""
     attitude, platform = (
         Rotation.from_rotvec(part).as_matrix()
         for part in (found.exit_attitude, found.exit_platform_attitude)
@@ -75,9 +92,11 @@ def start(found) -> Start:
     )
 
 
-def of_outcomes(outcomes: Sequence[Outcome]) -> Outcome:
-    """Settled outcomes as one of arrays, cases first."""
-    return Outcome(*map(np.array, zip(*outcomes)))
+def of_outcomes(outcomes: Sequence[Outcome]) -> Exits:
+    """Settled outcomes as arrays."""
+    return Exits(
+        **{name: np.array([getattr(each, name) for each in outcomes]) for name in Exits._fields}
+    )
 
 
 def unknown_size(scene: Scene) -> str:

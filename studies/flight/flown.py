@@ -162,7 +162,7 @@ def _passed(flight: Flight, apart: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         middle = 0.5 * (low + high)
         past = short(middle[:, None])[:, 0] >= 0.0
         low, high = np.where(past, low, middle), np.where(past, middle, high)
-    reached = beyond.any(axis=1)
+    reached = beyond[rows, first]
     beside = orbit.places(flight.mean_motion, apart, high[:, None])[:, 0] @ across
     return np.where(reached, high, np.nan), np.where(reached[:, None], beside, np.nan)
 
