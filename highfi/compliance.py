@@ -93,7 +93,7 @@ def walls(
 def along(
     scene: Scene,
     element_size: float,
-    travel: Sequence[float],
+    travel: Sequence[float] | np.ndarray,
     patterns: int = PATTERNS,
     modes: int = 0,
 ) -> Compliance:
@@ -123,7 +123,7 @@ def of_mesh(
     material: MaterialTable,
     faces: scene_model.Faces,
     reach: tuple[float, float],
-    travel: Sequence[float],
+    travel: Sequence[float] | np.ndarray,
     patterns: int = PATTERNS,
     modes: int = 0,
 ) -> Compliance:
@@ -135,24 +135,22 @@ def of_mesh(
     """
     if not 1 <= patterns <= PATTERNS:
         raise ValueError(f"patterns: given {patterns!r}, expected 1 to {PATTERNS}")
-    travel, count, pattern = np.asarray(travel, dtype=float), faces.axis.size, np.arange(patterns)
+    stations = np.asarray(travel, dtype=float)
+    count, pattern = faces.axis.size, np.arange(patterns)
     across = faces.centre[np.arange(count), 3 - faces.axis]
     half = np.column_stack(
         [faces.half_length, np.where(across >= 0.0, 1.0, -1.0) * faces.half_width]
     )
     matrix, gram = (
-        np.zeros((travel.size, count, patterns, count, patterns)),
-        np.zeros((travel.size, count, patterns, patterns)),
+        np.zeros((stations.size, count, patterns, count, patterns)),
+        np.zeros((stations.size, count, patterns, patterns)),
     )
-    rail_of, frequencies, shape = (
-        np.full(count, -1),
-        [],
-        np.zeros((travel.size, count, patterns, modes)),
-    )
-    warm = np.zeros((travel.size, count, patterns, FIELDS))
+    rail_of, shape = np.full(count, -1), np.zeros((stations.size, count, patterns, modes))
+    frequencies: list[np.ndarray] = []
+    warm = np.zeros((stations.size, count, patterns, FIELDS))
     for rail, images in pieces.distinct(mesh):
         patches = _Patches(rail, patterns)
-        places = [patches.under(faces, half, signs, reach, travel) for signs in images]
+        places = [patches.under(faces, half, signs, reach, stations) for signs in images]
         if not patches.found:
             continue
         # One more that answers nothing is what a face without a wall, number -1, points at.
@@ -178,7 +176,7 @@ def of_mesh(
                 rail_of[here] = len(frequencies)
                 frequencies.append(frequency)
     return Compliance(
-        travel,
+        stations,
         matrix,
         gram,
         rail_of,

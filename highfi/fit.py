@@ -11,7 +11,7 @@ from highfi import surface
 from highfi.mesh import RailMesh
 from scenes import model as scene_model
 from scenes.faults import Fault, SceneError
-from scenes.rail import SectionTable
+from scenes.rail import GeometryTable, MeshTable, SectionTable
 from scenes.scene import Scene
 
 _SAME = 1e-6  # m: below what a rail is made to, above the rounding of any mesh format
@@ -26,31 +26,34 @@ def check_fit(scene: Scene, mesh: RailMesh) -> None:
         [quads for name, quads in mesh.surfaces.items() if name.startswith("contact")]
     )
     corners = mesh.points[facets]
-    faults = _end_faults(scene, corners) + _wall_faults(scene, corners)
+    rail, clearance = scene.rail, scene.contact.clearance
+    faults = _end_faults(rail, corners) + _wall_faults(scene, rail, clearance, corners)
     if faults:
         raise SceneError([Fault(scene.name, *fault) for fault in faults])
 
 
-def _end_faults(scene: Scene, corners: np.ndarray) -> list[tuple[str, str, str]]:
+def _end_faults(rail: MeshTable | GeometryTable, corners: np.ndarray) -> list[tuple[str, str, str]]:
     ends = {
-        "rail.start": (scene.rail.start, corners[..., 0].min()),
-        "rail.end": (scene.rail.end, corners[..., 0].max()),
+        "rail.start": (rail.start, corners[..., 0].min()),
+        "rail.end": (rail.end, corners[..., 0].max()),
     }
     return [
         (
             key,
             f"{said:.9g} m",
-            f"{found:.9g} m, where the contact surfaces of {scene.rail.path().name} end",
+            f"{found:.9g} m, where the contact surfaces of {rail.path().name} end",
         )
         for key, (said, found) in ends.items()
         if abs(said - found) > _SAME
     ]
 
 
-def _wall_faults(scene: Scene, corners: np.ndarray) -> list[tuple[str, str, str]]:
+def _wall_faults(
+    scene: Scene, rail: MeshTable | GeometryTable, clearance: float, corners: np.ndarray
+) -> list[tuple[str, str, str]]:
     """Pad faces over no wall, and walls that do not stand one clearance off them."""
-    model, drawn = scene_model.build(scene), scene.rail.gap(scene.contact.clearance)
-    faces, file = model.faces, scene.rail.path().name
+    model, drawn = scene_model.build(scene), rail.gap(clearance)
+    faces, file = model.faces, rail.path().name
     seen = corners - np.array(model.platform.mass_centre if model.platform else (0.0, 0.0, 0.0))
     faults, gaps = [], []
     for face in range(faces.axis.size):
@@ -74,9 +77,7 @@ def _wall_faults(scene: Scene, corners: np.ndarray) -> list[tuple[str, str, str]
         faults.append(
             (
                 "rail.clearance",
-                "nothing, hence that of contact"
-                if scene.rail.clearance is None
-                else f"{drawn:.9g} m",
+                "nothing, hence that of contact" if rail.clearance is None else f"{drawn:.9g} m",
                 f"{found} m, at which the walls of {file} stand off the pads",
             )
         )

@@ -107,27 +107,29 @@ def fold(
         np.array([kind.members for kind in KINDS]),
         np.array([len(kind.numbers) for kind in KINDS]),
     )
-    starts = [
+    first_member, first_number = (
         np.concatenate([[0], np.cumsum(counts @ each)[:-1]]).astype(np.int64) for each in size
-    ]
+    )
     flat = [group for kinds in found for groups in kinds for group in groups]
     pattern = [
         PATTERNS.index(own) if (own := tuple(each)) in PATTERNS else len(PATTERNS)
         for each in counts.tolist()
     ]
     return Groups(
-        np.array(pattern),
-        counts,
-        neighbour[np.concatenate([members for members, _ in flat])].astype(np.int64),
-        np.concatenate([values for _, values in flat]),
-        *starts,
+        pattern=np.array(pattern),
+        counts=counts,
+        members=neighbour[np.concatenate([members for members, _ in flat])].astype(np.int64),
+        numbers=np.concatenate([values for _, values in flat]),
+        first_member=first_member,
+        first_number=first_number,
     )
 
 
 def _groups(at: dict, numbers: np.ndarray, limit: float) -> list[list]:
     """For each kind the groups (members, numbers) of one pencil, ``at`` being its neighbours by
     offset."""
-    left, found = dict(at), [[] for _ in KINDS]
+    left = dict(at)
+    found: list[list] = [[] for _ in KINDS]
     for number, kind in enumerate(KINDS):
         for offset in at:
             places = [tuple(sign * d for sign, d in zip(signs, offset)) for signs in _mirrors(kind)]

@@ -59,8 +59,10 @@ def _of_classes(corners: np.ndarray, law: np.ndarray) -> tuple[np.ndarray, np.nd
     amplitude = np.zeros((len(corners), 24, _LANES))
     by_component = recovery.amplitudes(corners, law).reshape(-1, 3, 3, 24).transpose(0, 3, 2, 1)
     amplitude[:, :, :9] = by_component.reshape(-1, 24, 9)
-    flat = (np.moveaxis(part, 1, 3).reshape(-1, 72) for part in recovery.corner_gradients(corners))
-    return amplitude.reshape(-1, 24 * _LANES), *flat
+    slope, bubble = (
+        np.moveaxis(part, 1, 3).reshape(-1, 72) for part in recovery.corner_gradients(corners)
+    )
+    return amplitude.reshape(-1, 24 * _LANES), slope, bubble
 
 
 @kernel

@@ -157,8 +157,8 @@ def _blocks(operator, point, layer, layers) -> dict | None:
     )
 
 
-def _layer(operator, point, layer, elements) -> dict:
-    blocks = {}
+def _layer(operator, point, layer, elements) -> dict[tuple[int, int], np.ndarray]:
+    blocks: dict[tuple[int, int], np.ndarray] = {}
     for element in elements:
         nodes = operator.cells[element]
         stiffness = operator.stiffness[operator.shape_class[element]].reshape(8, 3, 8, 3)

@@ -24,7 +24,7 @@ def geometry(scene: Scene) -> l_rail.LRailGeometry | str:
     Raises SceneError where pads do not fit the built-in section or nothing holds it.
     """
     if isinstance(scene.rail, SectionTable):
-        return _l_section(scene)
+        return _l_section(scene, scene.rail)
     return content_hash(
         scene.rail.model_dump(mode="json", exclude={"damping"}) | scene.rail.contents()
     )
@@ -34,7 +34,7 @@ def make_mesh(scene: Scene, element_size: float) -> RailMesh:
     """Rails of ``scene`` in scene axes, their elements about ``element_size`` (m). Raises
     SceneError, MeshError or, for a solid, GmshUnavailable."""
     if isinstance(scene.rail, SectionTable):
-        return read(l_rail.build(_l_section(scene), element_size))
+        return read(l_rail.build(_l_section(scene, scene.rail), element_size))
     if not scene.rail.is_as_found():
         raise MeshError(f"{scene.rail.path()} has changed since the scene was read")
     if isinstance(scene.rail, GeometryTable):
@@ -103,7 +103,7 @@ def with_steps(mesh: RailMesh, material) -> RailMesh:
     return replace(mesh, warnings=(*mesh.warnings, words))
 
 
-def _l_section(scene: Scene) -> l_rail.LRailGeometry:
+def _l_section(scene: Scene, rail: SectionTable) -> l_rail.LRailGeometry:
     """Inner corners one clearance off the pads. Raises SceneError where pads do not fit it or
     nothing holds it."""
     places = {(abs(pad.position[1]), abs(pad.position[2])) for pad in scene.pads}
@@ -117,7 +117,7 @@ def _l_section(scene: Scene) -> l_rail.LRailGeometry:
                 "pads at four corners (+-y, +-z) of one size, as the built-in L rails need",
             )
         )
-    if not scene.rail.mounts:
+    if not rail.mounts:
         faults.append(
             Fault(
                 scene.name,
@@ -128,7 +128,7 @@ def _l_section(scene: Scene) -> l_rail.LRailGeometry:
         )
     if faults:
         raise SceneError(faults)
-    (y, z), rail = places.pop(), scene.rail
+    y, z = places.pop()
     clearance = scene.contact.clearance if scene.contact else 0.0
     return l_rail.LRailGeometry(
         rail.leg,

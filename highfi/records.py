@@ -166,7 +166,7 @@ class Active(NamedTuple):
     touch; side (f,): whether a face was over its wall when last looked at, see OVER; struck (f,3):
     penetration (m) and X (m) of a face that struck an edge of its wall, and steps since then."""
 
-    count: np.ndarray
+    count: np.ndarray  # type: ignore[assignment]  # a tuple's own count() is not wanted
     point: np.ndarray
     face: np.ndarray
     energy: np.ndarray

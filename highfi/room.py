@@ -20,6 +20,7 @@ def check_before(scene: Scene, element_size: float) -> None:
     if left is None or not isinstance(scene.rail, SectionTable):
         return
     section = geometry(scene)
+    assert isinstance(section, l_rail.LRailGeometry)
 
     def needed(size: float) -> float:
         return footprint.of_section(l_rail.elements(section, size))

@@ -95,7 +95,7 @@ def run(
     kept = (
         Checkpoint(checkpoint, checkpoint_every, loop, numerics) if checkpoint is not None else None
     )
-    saved = kept.read() if resume else None
+    saved = kept.read() if kept is not None and resume else None
     compiling, set_up_cpu = clock.perf_counter(), clock.thread_time() - cpu
     loop.begin()
     compiled = clock.perf_counter()
@@ -137,7 +137,10 @@ class Loop:
         self.exit, self.ending = ending.build(system)
         self.wall, self.cpu, self.looks = 0.0, 0.0, 0
         self.steps, self.damping, self.scale, self.other_cpu, self.message = 0, 0.0, 0.0, 0.0, ""
-        self.rows, self.work, self.forces, self.gauges = [], [], [], []
+        self.rows: list[np.ndarray] = []
+        self.work: list[np.ndarray] = []
+        self.forces: list[np.ndarray] = []
+        self.gauges: list[np.ndarray] = []
         self.watch, self.worst = (
             watch.build(system, scene.rail.material, stepping.steps_per_sample, threads),
             worst.nothing(),
@@ -346,9 +349,11 @@ class Loop:
 
     def _strike(self) -> str:
         """What met an edge of a wall first, where and when."""
-        face = max(
-            np.flatnonzero(self.active.struck[:, 0]),
-            key=lambda struck: self.active.struck[struck, 2],
+        face = int(
+            max(
+                np.flatnonzero(self.active.struck[:, 0]),
+                key=lambda struck: self.active.struck[struck, 2],
+            )
         )
         depth, x, since = self.active.struck[face]
         time = (self.steps - since) * self.stepping.dt_s

@@ -70,10 +70,11 @@ def ledgers(samples: np.ndarray, work: np.ndarray) -> tuple[np.ndarray, np.ndarr
         "friction": w["FRICTION"] - w["FRICTION_AXIAL"],
         "contact_axial": w["CONTACT_AXIAL"],
     }
-    return tuple(
-        np.stack([entries.get(name, zero) for name in ledger.ENTRIES], axis=1)
-        for entries in (total, across)
-    )
+
+    def table(entries: dict[str, np.ndarray]) -> np.ndarray:
+        return np.stack([entries.get(name, zero) for name in ledger.ENTRIES], axis=1)
+
+    return table(total), table(across)
 
 
 def momentum_errors(

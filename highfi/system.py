@@ -247,5 +247,9 @@ def _history(rail: records.Rail, nodes: tuple[int, ...], parts: int) -> records.
     if rail.damping is None:
         return None
     return records.History(
-        *(zeros(nodes, order="F") for _ in range(3)), np.zeros((parts, 6)), np.zeros(parts)
+        elastic=zeros(nodes, order="F"),
+        displacement=zeros(nodes, order="F"),
+        force=zeros(nodes, order="F"),
+        drag=np.zeros((parts, 6)),
+        loss=np.zeros(parts),
     )

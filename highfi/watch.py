@@ -18,7 +18,7 @@ from highfi import element, patch, peaks
 from highfi.mesh import RailMesh
 from highfi.system import System
 from highfi.worst import ROTATION, STRAIN, STRESS, Worst
-from scenes.effects.thermal import fields
+from scenes.effects.thermal import Thermal, fields
 from scenes.rail import MaterialTable
 
 _SHARE = 0.05  # of the run that looks may cost
@@ -51,8 +51,8 @@ def build(system: System, material: MaterialTable, steps_per_sample: int, thread
     gauges = patch.find(system.mesh, system.faces, points, law, system.number)
     every = peaks.samples_between(recovery, steps_per_sample, _SHARE)
     free = (
-        _free_stress(system, gauges, law)
-        if system.warm is not None and gauges is not None
+        _free_stress(system.model.thermal, system.origin, gauges, law)
+        if system.model.thermal is not None and gauges is not None
         else None
     )
     return Watch(
@@ -66,15 +66,17 @@ def build(system: System, material: MaterialTable, steps_per_sample: int, thread
     )
 
 
-def _free_stress(system: System, gauges: patch.Patch, law: np.ndarray) -> np.ndarray:
+def _free_stress(
+    thermal: Thermal, origin: np.ndarray, gauges: patch.Patch, law: np.ndarray
+) -> np.ndarray:
     """D m e (w,6) Pa of the free strain e in the middle of each patch, which is its mean there."""
-    thermal = system.model.thermal
-    strain = fields(gauges.centre + system.origin, thermal.middle) @ thermal.amounts[:-1]
+    strain = fields(gauges.centre + origin, thermal.middle) @ thermal.amounts[:-1]
     return np.outer(strain, law[:, :3].sum(axis=1))
 
 
 def gauge(watch: Watch, displacement: np.ndarray) -> np.ndarray:
-    """Mean stress (w,6) Pa of each patch."""
+    """Mean stress (w,6) Pa of each patch, where there are any."""
+    assert watch.patch is not None
     found = patch.stress(watch.patch, displacement)
     return found if watch.free is None else found - watch.free
 

@@ -1,6 +1,8 @@
 """Bricks of a grid: cells between planes across the three axes, of which only those that are metal
 become elements."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 # VTK order
@@ -25,8 +27,11 @@ def filled(lines: list[np.ndarray], metal: np.ndarray) -> tuple[np.ndarray, np.n
     return points[used], number.reshape(-1, 8)
 
 
-def divided(line: np.ndarray, divisions: np.ndarray) -> np.ndarray:
+def divided(line: np.ndarray, divisions: Sequence[int] | np.ndarray) -> np.ndarray:
     """All planes along an axis: ``line`` (b,) m, borders in order, with ``divisions`` (b-1,) equal
     cells between two of them."""
-    pieces = [np.linspace(*ends, count + 1)[:-1] for *ends, count in zip(line, line[1:], divisions)]
+    pieces = [
+        np.linspace(begin, end, count + 1)[:-1]
+        for begin, end, count in zip(line, line[1:], divisions)
+    ]
     return np.append(np.concatenate(pieces), line[-1])

@@ -49,7 +49,7 @@ def start(model) -> Start:
     first, zero = model.initial, np.zeros(3)
     # The difference first: a large displacement leaves no trace in a small one.
     place = np.add(model.payload.mass_centre, np.subtract(first.position, origin))
-    carried = (
+    platform_place, platform_velocity = (
         (zero, zero)
         if model.platform is None
         else (
@@ -57,7 +57,12 @@ def start(model) -> Start:
             np.subtract(first.platform_velocity, velocity),
         )
     )
-    return Start(place, np.subtract(first.velocity, velocity), *carried)
+    return Start(
+        place=place,
+        velocity=np.subtract(first.velocity, velocity),
+        platform_place=platform_place,
+        platform_velocity=platform_velocity,
+    )
 
 
 def motion(seen_from: Frame, moved: Motion) -> Motion:
@@ -77,6 +82,12 @@ def outcome(seen_from: Frame, found: Outcome) -> Outcome:
     """``found`` in the scene's axes."""
     if found.velocity is None or not (any(seen_from.origin) or any(seen_from.velocity)):
         return found
+    assert (
+        found.exit_time is not None
+        and found.exit_position is not None
+        and found.exit_platform_position is not None
+        and found.exit_platform_velocity is not None
+    )  # as the velocity
     way = np.add(seen_from.origin, found.exit_time * np.array(seen_from.velocity))
     velocity = np.add(found.velocity, seen_from.velocity)
     lateral = float(np.hypot(velocity[1], velocity[2]))

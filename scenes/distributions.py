@@ -21,7 +21,7 @@ from scenes.table import Table
 from scenes.units import parse
 
 
-def _in_unit_of_key(value: Any, info: ValidationInfo) -> float:
+def _in_unit_of_key(value: Any, info: ValidationInfo[dict[str, Any]]) -> float:
     unit = info.context["unit"]
     # A number whose unit depends on other keys of the scene can only be given in SI.
     return parse(

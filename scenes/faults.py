@@ -4,7 +4,7 @@ expected."""
 from typing import Any, NamedTuple
 
 from pydantic import ValidationError
-from pydantic_core import PydanticCustomError
+from pydantic_core import ErrorDetails, PydanticCustomError
 
 
 class Fault(NamedTuple):
@@ -54,7 +54,7 @@ _WORDS = {
 }
 
 
-def _key(error: dict) -> str:
+def _key(error: ErrorDetails) -> str:
     location = list(error["loc"])
     if location and location[0] in _VARIANTS and len(location) > 1:
         del location[1]
@@ -71,7 +71,7 @@ def _shown(value: Any) -> str:
     return repr(value) if len(repr(value)) < 200 else f"{repr(value)[:200]} ..."
 
 
-def _given(error: dict) -> str:
+def _given(error: ErrorDetails) -> str:
     if error["type"] in ("missing", "union_tag_not_found"):
         return "nothing"
     if error["type"] == "union_tag_invalid":
@@ -81,7 +81,7 @@ def _given(error: dict) -> str:
     return _shown(error["input"])
 
 
-def _expected(error: dict) -> str:
+def _expected(error: ErrorDetails) -> str:
     kind, message = error["type"], error["msg"]
     if kind == "extra_forbidden" and error["loc"][:2] in _FILED:
         return f"no such key beside {error['loc'][1]}"

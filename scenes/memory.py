@@ -1,11 +1,13 @@
 """Arrays that start on a cache line: a vector of eight numbers then never straddles two."""
 
+from typing import Literal
+
 import numpy as np
 
 _CACHE_LINE = 64  # bytes
 
 
-def zeros(shape: tuple[int, ...], order: str = "C") -> np.ndarray:
+def zeros(shape: tuple[int, ...], order: Literal["C", "F"] = "C") -> np.ndarray:
     """Zeros (float64) of ``shape``."""
     size = 8 * int(np.prod(shape))
     room = np.zeros(size + _CACHE_LINE, dtype=np.uint8)

@@ -117,60 +117,59 @@ def built(scene: Scene, known: Built | None = None) -> Built:
         else set()
     )
 
-    def kept(*names: str) -> bool:
-        return same.issuperset(names)
+    def kept(*names: str) -> Built | None:
+        """What is known, where it comes from these very tables."""
+        return known if same.issuperset(names) else None
 
     offset = scene.mass_offset.eccentricity.offset() if scene.mass_offset else (0.0, 0.0, 0.0)
     platform = (
-        known.model.platform
-        if kept("platform")
+        old.model.platform
+        if (old := kept("platform"))
         else scene.platform.record()
         if scene.platform
         else None
     )
-    touching = scene.contact is not None
     origin = platform.mass_centre[0] if platform else 0.0
-    nominal = (
-        known.nominal if kept("pads", "rail", "contact", "platform") else _faces(scene, platform)
-    )
+    standing = kept("pads", "rail", "contact", "platform")
+    nominal = standing.nominal if standing else _faces(scene, platform)
     return Built(
         scene,
         Model(
-            payload=_payload(scene, offset, known.model.payload if kept("payload") else None),
+            payload=_payload(
+                scene, offset, old.model.payload if (old := kept("payload")) else None
+            ),
             faces=nominal._replace(centre=nominal.centre - np.array(offset)),
-            plate=known.model.plate
-            if kept("pads", "rail", "contact", "platform")
-            else _plate(scene, nominal, platform),
+            plate=standing.model.plate if standing else _plate(scene, nominal, platform),
             rail_start=scene.rail.start - origin,
             rail_end=scene.rail.end - origin,
-            thrust=known.model.thrust if kept("thrust") else scene.thrust.record(),
+            thrust=old.model.thrust if (old := kept("thrust")) else scene.thrust.record(),
             reacts_on_platform=scene.thrust.reaction == "platform",
             thrust_offset=thrust_offset.record(
                 scene.thrust_offset, scene.mass_offset, scene.thrust.arm
             ),
-            contact=known.model.contact
-            if kept("contact")
+            contact=old.model.contact
+            if (old := kept("contact"))
             else contact.laws(scene.contact.record())
-            if touching
+            if scene.contact
             else None,
-            penalty=scene.contact.penalty if touching else None,
+            penalty=scene.contact.penalty if scene.contact else None,
             # Friction without contact has no normal force to act on, so it is absent too.
             friction=(
-                known.model.friction
-                if kept("friction", "contact")
+                old.model.friction
+                if (old := kept("friction", "contact"))
                 else scene.friction.record()
-                if scene.friction and touching
+                if scene.friction and scene.contact
                 else None
             ),
             platform=platform,
             gravity=scene.gravity.record() if scene.gravity else None,
-            thermal=known.model.thermal
-            if kept("rail", "thermal")
+            thermal=old.model.thermal
+            if (old := kept("rail", "thermal"))
             else scene.thermal.record(scene.rail)
             if scene.thermal
             else None,
-            initial=known.model.initial
-            if kept("initial")
+            initial=old.model.initial
+            if (old := kept("initial"))
             else scene.initial.record()
             if scene.initial
             else Initial(),
@@ -219,8 +218,12 @@ def _faces(scene: Scene, platform: Platform | None) -> Faces:
             )
     columns = list(zip(*rows))
     return Faces(
-        np.array(columns[0]),
-        np.array(columns[1], dtype=np.int64),
-        *map(np.array, columns[2:7]),
-        np.array(columns[7], dtype=np.int64),
+        centre=np.array(columns[0]),
+        axis=np.array(columns[1], dtype=np.int64),
+        sign=np.array(columns[2]),
+        half_length=np.array(columns[3]),
+        half_width=np.array(columns[4]),
+        relief=np.array(columns[5]),
+        wall=np.array(columns[6]),
+        pad=np.array(columns[7], dtype=np.int64),
     )

@@ -21,7 +21,8 @@ def of_scene(name: str) -> str:
 def faults(conditions: Iterable[Any]) -> list[tuple[str, str, str]]:
     """Faults (key, given, expected) of the names of ``conditions``: each must be a name, and not
     that of another one on a disk that does not tell upper from lower case."""
-    found, known = [], {}
+    found: list[tuple[str, str, str]] = []
+    known: dict[str, str] = {}
     for name in conditions:
         if not (isinstance(name, str) and _NAME.fullmatch(name)):
             found.append(("conditions", repr(name), EXPECTED))

@@ -71,10 +71,12 @@ class Milestones(NamedTuple):
 
 def milestones(scene: Scene, model) -> Milestones:
     """Instants and speed that decide what becomes of a run of ``scene``."""
+    settled, spent = thrust.burnouts(model.thrust, (1e-3, 1e-2), scene.duration)
     return Milestones(
-        *thrust.burnouts(model.thrust, (1e-3, 1e-2), scene.duration),
-        jam_speed(model),
-        scene.thrust.kind == "constant",
+        settled_thrust=settled,
+        spent_thrust=spent,
+        jam_speed=jam_speed(model),
+        constant_thrust=scene.thrust.kind == "constant",
     )
 
 

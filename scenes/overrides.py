@@ -113,6 +113,7 @@ def apply(raw: dict, key: str, value: Any) -> tuple[str, str, str] | None:
 def _apply_inside(
     table: Any, head: str, rest: str, key: str, value: Any
 ) -> tuple[str, str, str] | None:
+    place: int | str
     if isinstance(table, list):
         if not (head.isdigit() and int(head) < len(table)):
             return key, repr(head), f"an index below {len(table)}"

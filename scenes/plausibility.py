@@ -4,6 +4,8 @@ another scene: warned about by field name, never changed."""
 import itertools
 import math
 
+import numpy as np
+
 from scenes import sinking
 from scenes.effects.thermal import fields
 from scenes.rail import SectionTable
@@ -48,7 +50,7 @@ def warnings(scene) -> list[str]:
 def of_all_conditions(scene) -> list[str]:
     """Messages on a scene, and on its conditions where they name keys that no message before
     does."""
-    found = {}
+    found: dict[str, str] = {}
     for name in (None, *scene.conditions):
         for words in scene.warnings if name is None else scene.condition(name).warnings:
             found.setdefault(
@@ -125,11 +127,13 @@ def _of_temperature(scene) -> list[str]:
             f"rail.material.expansion: {expansion:.4g} 1/K, plausible 0 to {_EXPANSION:g} 1/K"
         )
     thermal = scene.thermal.record(scene.rail)
-    ends = [
-        (x, y, z)
-        for x in (scene.rail.start, scene.rail.end)
-        for y, z in {pad.position[1:] for pad in scene.pads}
-    ]
+    ends = np.array(
+        [
+            (x, y, z)
+            for x in (scene.rail.start, scene.rail.end)
+            for y, z in {pad.position[1:] for pad in scene.pads}
+        ]
+    )
     largest = float(abs(fields(ends, thermal.middle) @ thermal.amounts[:-1]).max())
     if largest > _FREE_STRAIN:
         found.append(

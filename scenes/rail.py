@@ -33,9 +33,9 @@ from scenes.units import (
     Expansion,
     Length,
     NonNegativeLength,
+    PoissonRatio,
     PositiveLength,
     Pressure,
-    quantity,
 )
 
 FILES = ("mesh", "geometry")  # keys that give the rail as a file
@@ -63,7 +63,7 @@ class MaterialTable(Table):
 
     density: Density
     youngs_modulus: Pressure
-    poisson_ratio: quantity("dimensionless", gt=-1.0, lt=0.5)
+    poisson_ratio: PoissonRatio
     yield_strength: Pressure | None = None
     expansion: Expansion | None = Field(None, exclude_if=is_absent)
 

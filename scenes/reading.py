@@ -114,7 +114,7 @@ def _changes(base: dict, extra: dict, prefix: str = "") -> Iterator[tuple[str, b
     """Dotted keys that ``_merged`` sets or, marked True, drops."""
     for key, value in extra.items():
         if isinstance(value, dict) and value:
-            inherited = base.get(key) if isinstance(base.get(key), dict) else {}
+            inherited = known if isinstance(known := base.get(key), dict) else {}
             if inherited and _other_choice(key, inherited, value):
                 yield f"{prefix}{key}", True
                 inherited = {}

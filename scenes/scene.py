@@ -30,7 +30,7 @@ from scenes.effects.initial import InitialTable
 from scenes.effects.mass_offset import MassOffsetTable
 from scenes.effects.platform import PlatformTable
 from scenes.effects.thermal import ThermalTable
-from scenes.effects.thrust import ThrustTable
+from scenes.effects.thrust import MeasuredTable, ThrustTable
 from scenes.effects.thrust_offset import ThrustOffsetTable
 from scenes.faults import Fault, SceneError, faults_of, within
 from scenes.files import content_hash
@@ -124,7 +124,7 @@ class Scene(Table):
         # else they stay as they were found sound
         if any(key.split(".")[0] in _BESIDE for key in overrides):
             faults = faults + _beside_faults(raw, True, faults)
-        if lost or faults:
+        if scene is None or lost or faults:
             raise SceneError(
                 [Fault(f"override of {self._source}", *fault) for fault in lost + faults]
             )
@@ -167,10 +167,11 @@ class Scene(Table):
         points, not by where it lies."""
         physics = self.physics()
         physics["rail"] |= self.rail.contents()
-        measured = self.thrust.kind == "measured"
-        if measured:
+        points: list[list[float]] = []
+        if isinstance(self.thrust, MeasuredTable):
             physics["thrust"].pop("file")
-        return content_hash(physics, self.thrust.points() if measured else [])
+            points = self.thrust.points()
+        return content_hash(physics, points)
 
     @cached_property
     def warnings(self) -> list[str]:
@@ -196,13 +197,13 @@ def parse(
 
     Raises SceneError listing every fault with file, key, given and expected.
     """
-    raw = keys.plain(raw)
-    scene, faults = _validated(raw, bare_numbers_are_si)
-    if isinstance(raw, dict):
-        faults = faults + _beside_faults(raw, bare_numbers_are_si, faults)
-    if faults:
+    tables = keys.plain(raw)
+    scene, faults = _validated(tables, bare_numbers_are_si)
+    if isinstance(tables, dict):
+        faults = faults + _beside_faults(tables, bare_numbers_are_si, faults)
+    if scene is None or faults:
         raise SceneError([Fault(source, *fault) for fault in faults])
-    scene._raw, scene._source = raw, source
+    scene._raw, scene._source = tables, source
     return scene
 
 
@@ -268,9 +269,9 @@ def _beside_faults(raw: dict, bare_numbers_are_si: bool, known: _Faults) -> _Fau
         varied = keys.plain({key: item for key, item in raw.items() if key not in _BESIDE})
         faults = keys.apply_all(varied, table, Scene) + _validated(varied, bare_numbers_are_si)[1]
         found += [
-            (f"conditions.{name}.{key}", *rest)
-            for key, *rest in faults
-            if (key, *rest) not in known
+            (f"conditions.{name}.{key}", given, expected)
+            for key, given, expected in faults
+            if (key, given, expected) not in known
         ]
     # A misspelt key that was set is known by its own name, and need not be told by that of its
     # provenance too.

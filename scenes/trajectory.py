@@ -13,7 +13,7 @@ import math
 from dataclasses import dataclass, field, fields
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -173,6 +173,7 @@ class Trajectory:
             "component": ["w", "x", "y", "z"],
             "entry": list(ledger.ENTRIES),
         }
+        assert self.wall_stress is not None  # since __post_init__
         if self.wall_stress.size:
             coordinates["stress_component"] = list(_STRESS)
         else:
@@ -208,7 +209,7 @@ class Trajectory:
         try:
             require_whole(path)
             with xarray.open_dataset(path, engine="h5netcdf", decode_timedelta=False) as data:
-                arrays = {
+                arrays: dict[str, Any] = {
                     name: data[name].values
                     for name in _DIMENSIONS
                     if name in data or name != "wall_stress"

@@ -88,18 +88,19 @@ def parse(
 ) -> Uncertainty:
     """Validate a mapping as a file holds it. Raises SceneError listing every fault with file, key,
     given and expected."""
-    faults = []
+    faults: list[Fault] = []
     try:
         file = _File.model_validate(raw, context={})
     except ValidationError as error:
         faults = faults_of(error, source)
     tables = _tables(raw.get("vary"))
-    varied = {
+    found = {
         key: _distribution(source, key, table, bare_numbers_are_si, faults)
         for key, table in tables.items()
     }
     if faults:
         raise SceneError(faults)
+    varied = {key: item for key, item in found.items() if item is not None}
     try:
         # One draw as a trial: it finds what no single key shows, such as a pad that the scene does
         # not have.

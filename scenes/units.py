@@ -10,7 +10,7 @@ import re
 from collections.abc import Iterable
 from functools import lru_cache
 from numbers import Real
-from typing import Annotated, Any
+from typing import Annotated, Any, TypedDict, Unpack
 
 import pint
 from pydantic import BeforeValidator, Field, ValidationInfo
@@ -61,7 +61,8 @@ def to_si(text: str, unit: str, absolute: bool = False) -> float:
     return value
 
 
-def _radians(quantity: pint.Quantity) -> float:
+def _radians(quantity: pint.Quantity) -> object:
+    """Power of the radian in the unit of ``quantity``, of whatever type pint has it in."""
     return dict(quantity.to_root_units().unit_items()).get("radian", 0)
 
 
@@ -89,7 +90,16 @@ def parse(value: Any, unit: str, bare_numbers_are_si: bool) -> float:
     return float(value)
 
 
-def quantity(unit: str, **bounds: float) -> Any:
+class Bounds(TypedDict, total=False):
+    """Limits of a quantity in its unit, named as in ``pydantic.Field``."""
+
+    gt: float
+    ge: float
+    lt: float
+    le: float
+
+
+def quantity(unit: str, **bounds: Unpack[Bounds]) -> Any:
     """Pydantic type of a quantity held in ``unit``, with bounds as in ``pydantic.Field`` (gt, ge,
     lt, le) in that unit."""
 
@@ -122,12 +132,17 @@ Velocity = quantity("m/s")
 PositiveVelocity = quantity("m/s", gt=0.0)
 Rate = quantity("rad/s")
 PositiveRate = quantity("rad/s", gt=0.0)
+PointingLimit = quantity("rad", gt=0.0, lt=math.pi)
+# at lower speeds, which in a launch are rounding, no face would ever be found at rest
+CaptureSpeed = quantity("m/s", ge=1e-9)
 Acceleration = quantity("m/s**2")
 Inertia = quantity("kg*m**2")
 PositiveInertia = quantity("kg*m**2", gt=0.0)
 Frequency = quantity("Hz", gt=0.0)
+PoissonRatio = quantity("dimensionless", gt=-1.0, lt=0.5)
 DampingRatio = quantity("dimensionless", ge=0.0, lt=1.0)
 Stiffness = quantity("N/m", gt=0.0)
+Dissipation = quantity("s/m", ge=0.0)
 ContactDamping = quantity("N*s/m", ge=0.0)
 TemperatureChange = quantity("K")
 TemperatureGradient = quantity("K/m")

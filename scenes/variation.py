@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from typing import Annotated, Any, NamedTuple
 
 from pydantic import TypeAdapter, ValidationError
+from pydantic.fields import FieldInfo
 
 from scenes import overrides as keys
 from scenes.scene import EFFECTS, Scene
@@ -89,13 +90,14 @@ class Variations:
             return field.get_default()
         return self._adapter((Scene, name), field).validate_python(raw[name], context=_CONTEXT)
 
-    def _adapter(self, key: tuple, field) -> TypeAdapter:
+    def _adapter(self, key: tuple, field: FieldInfo) -> TypeAdapter:
         if key not in self._adapters:
-            self._adapters[key] = TypeAdapter(
+            kind: Any = (
                 Annotated[(field.annotation, *field.metadata)]
                 if field.metadata
                 else field.annotation
             )
+            self._adapters[key] = TypeAdapter(kind)
         return self._adapters[key]
 
     def _leaves(self, names: tuple[str, ...], scene: Scene) -> tuple[Scene, list[_Leaf]] | None:

@@ -90,15 +90,16 @@ class Walls:
         """Flexibility (s,f,p,f,p) m/N without the part of the first ``modes`` of each rail. Raises
         ValueError where this is no longer positive semidefinite: the modes are not those of the
         rail the flexibility belongs to."""
+        flexibility = self._flexibility()
         if modes == 0:
-            return self.flexibility
+            return flexibility
         part = self.shape[..., :modes] / self.frequency[self.rail, None, :modes]
         together = (self.rail[:, None] == self.rail)[:, None, :, None]
-        rest = self.flexibility - together * np.einsum("siam,sjbm->siajb", part, part)
+        rest = flexibility - together * np.einsum("siam,sjbm->siajb", part, part)
         size = rest.shape[1] * PATTERNS
         lowest, largest = (
             np.linalg.eigvalsh(table.reshape(-1, size, size))[:, end]
-            for table, end in ((rest, 0), (self.flexibility, -1))
+            for table, end in ((rest, 0), (flexibility, -1))
         )
         if not (lowest >= -_ROUNDING * largest).all():
             raise ValueError(
@@ -106,6 +107,11 @@ class Walls:
                 f"the same rail"
             )
         return rest
+
+    def _flexibility(self) -> np.ndarray:
+        """The flexibility of walls that are not rigid."""
+        assert self.flexibility is not None
+        return self.flexibility
 
     def __getstate__(self) -> dict:
         """What goes to another process: not what it can make by itself."""
@@ -131,7 +137,7 @@ class Walls:
     def compliance(self) -> np.ndarray:
         """Mean displacement (s,f,f) in m/N of each face under a unit force spread evenly over
         each."""
-        return (GRAM @ self.flexibility.transpose(0, 1, 3, 2, 4) @ GRAM)[..., 0, 0]
+        return (GRAM @ self._flexibility().transpose(0, 1, 3, 2, 4) @ GRAM)[..., 0, 0]
 
     def rigid(self) -> "Walls":
         """The same walls for a contact law to stand on: where they are when they are warm, and
@@ -140,6 +146,7 @@ class Walls:
 
     def moved(self, amounts: np.ndarray) -> np.ndarray:
         """W (s,f,p) m by ``amounts`` (t,) of the fields of temperature."""
+        assert self.warm is not None
         return np.tensordot(amounts, self.warm, 1)
 
     def restricted(self, patterns: int = PATTERNS, coupled: bool = True) -> "Walls":
@@ -147,9 +154,10 @@ class Walls:
         and, unless ``coupled``, each face by itself, without modes then, which faces have in
         common: what a simpler model knows of them."""
         kept = np.arange(PATTERNS) < patterns
-        blocks = (GRAM @ self.flexibility.transpose(0, 1, 3, 2, 4) @ GRAM)[..., kept, :][..., kept]
+        known = self._flexibility()
+        blocks = (GRAM @ known.transpose(0, 1, 3, 2, 4) @ GRAM)[..., kept, :][..., kept]
         inverse = np.linalg.inv(GRAM[np.ix_(kept, kept)])
-        flexibility = np.zeros_like(self.flexibility)
+        flexibility = np.zeros_like(known)
         flexibility[:, :, :patterns, :, :patterns] = (inverse @ blocks @ inverse).transpose(
             0, 1, 3, 2, 4
         )

@@ -20,12 +20,12 @@ from scenes.jit import njit
 from scenes.table import Table
 from scenes.units import (
     ContactDamping,
+    Dissipation,
     NonNegativeLength,
     PenaltyStiffness,
     PositiveLength,
     PositiveNumber,
     parse,
-    quantity,
 )
 
 
@@ -63,7 +63,7 @@ class HuntCrossleyTable(_ContactTable):
     """``[contact] law = "hunt-crossley"``: k (N/m^e), e, dissipation a (s/m)."""
 
     law: Literal["hunt-crossley"]
-    dissipation: quantity("s/m", ge=0.0)
+    dissipation: Dissipation
 
     def record(self) -> "HuntCrossley":
         """Kernel record."""
@@ -74,7 +74,7 @@ class LinearTable(_ContactTable):
     """``[contact] law = "linear"``: spring k (N/m) and damper c (N s/m) that never pull."""
 
     law: Literal["linear"]
-    exponent: Literal[1.0] = 1.0
+    exponent: Literal[1.0] = 1.0  # type: ignore[valid-type]  # pydantic has literal fractions
     damping: ContactDamping = 0.0
 
     def record(self) -> "Linear":
@@ -118,12 +118,14 @@ class Laws(NamedTuple):
     linear: Linear | None
 
 
-def laws(record) -> Laws | None:
+def laws(record: Impact | HuntCrossley | Linear | None) -> Laws | None:
     """Kernel record of the contact law, or None for no contact."""
     if record is None:
         return None
     return Laws(
-        *(record if isinstance(record, kind) else None for kind in (Impact, HuntCrossley, Linear))
+        impact=record if isinstance(record, Impact) else None,
+        hunt_crossley=record if isinstance(record, HuntCrossley) else None,
+        linear=record if isinstance(record, Linear) else None,
     )
 
 

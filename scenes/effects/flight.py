@@ -20,7 +20,7 @@ from pydantic import model_validator
 
 from scenes.rail import BoxTable
 from scenes.table import Table
-from scenes.units import Angle, PositiveLength, PositiveTime, quantity
+from scenes.units import Angle, PointingLimit, PositiveLength, PositiveRate, PositiveTime
 
 GRAVITATION = 3.986004418e14  # m3/s2, of the Earth
 EARTH_RADIUS = 6378137.0  # m
@@ -36,13 +36,13 @@ class FlightTable(Table):
     platform lies in, in scene axes at ignition, to which built-in rails are added."""
 
     altitude: PositiveLength | None = None
-    mean_motion: quantity("rad/s", gt=0.0) | None = None
+    mean_motion: PositiveRate | None = None
     azimuth: Angle = 0.0
     elevation: Angle = 0.0
     roll: Angle = 0.0
     range: PositiveLength
     duration: PositiveTime | None = None
-    pointing_limit: quantity("rad", gt=0.0, lt=math.pi) | None = None
+    pointing_limit: PointingLimit | None = None
     body: tuple[PositiveLength, PositiveLength, PositiveLength] | None = None
     envelope: tuple[BoxTable, ...] = ()
 
@@ -54,7 +54,10 @@ class FlightTable(Table):
 
     def record(self) -> "Flight":
         """Plain record."""
-        motion = self.mean_motion or math.sqrt(GRAVITATION / (EARTH_RADIUS + self.altitude) ** 3)
+        motion = self.mean_motion
+        if motion is None:
+            assert self.altitude is not None  # one of the two is there
+            motion = math.sqrt(GRAVITATION / (EARTH_RADIUS + self.altitude) ** 3)
         return Flight(
             motion,
             _ORBIT_FROM_LEVEL @ _turned(self.azimuth, self.elevation, self.roll),

@@ -56,18 +56,17 @@ class InitialTable(Table):
     def record(self) -> "Initial":
         """Kernel record."""
         return Initial(
-            *(
-                tuple(part.model_dump().values())
-                for part in (
-                    self.position,
-                    self.attitude,
-                    self.velocity,
-                    self.rate,
-                    self.platform_velocity,
-                    self.platform_rate,
-                )
-            )
+            position=_triple(self.position),
+            attitude=_triple(self.attitude),
+            velocity=_triple(self.velocity),
+            rate=_triple(self.rate),
+            platform_velocity=_triple(self.platform_velocity),
+            platform_rate=_triple(self.platform_rate),
         )
+
+
+def _triple(part: Table) -> tuple:
+    return tuple(part.model_dump().values())
 
 
 class Initial(NamedTuple):

@@ -16,10 +16,7 @@ from typing import Literal, NamedTuple
 from pydantic import ValidationInfo, field_validator
 
 from scenes.table import Table
-from scenes.units import ContactDamping, NonNegativeNumber, Stiffness, quantity
-
-# Slower than this the velocities of a launch are rounding, and no face would ever be found at rest.
-_SLOWEST = 1e-9
+from scenes.units import CaptureSpeed, ContactDamping, NonNegativeNumber, Stiffness
 
 
 class StickingTable(Table):
@@ -31,7 +28,7 @@ class StickingTable(Table):
     dynamic: NonNegativeNumber
     stiffness: Stiffness
     damping: ContactDamping
-    capture_speed: quantity("m/s", ge=_SLOWEST) = 1e-6
+    capture_speed: CaptureSpeed = 1e-6
 
     @field_validator("dynamic")
     @classmethod

@@ -9,7 +9,7 @@ names are also found here.
 """
 
 import math
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import numpy as np
 from pydantic import (
@@ -94,6 +94,16 @@ class _ThrustTable(Table):
 
     arm: PositiveLength = 0.1
     reaction: Literal["platform", "exhaust"] = "platform"
+    if TYPE_CHECKING:
+        kind: str  # a literal in each kind, whose place among the keys is theirs
+
+    def record(self) -> Thrust:
+        """Kernel record."""
+        raise NotImplementedError
+
+    def requested(self) -> float:
+        """Impulse (N s) that the scene asks for."""
+        raise NotImplementedError
 
     def describe(self, duration: float) -> dict[str, float | str]:
         """What pushes, for results and report: numbers in SI by name, and ``text`` that says it in
@@ -144,6 +154,10 @@ class _PulsedTable(_ThrustTable):
             raise ValueError("a cutoff beside it: without one there is nothing to restore")
         return rescale
 
+    def pulses(self) -> tuple[Pulse, ...]:
+        """The Gaussians, one at least."""
+        raise NotImplementedError
+
     def record(self) -> Thrust:
         """Kernel record."""
         pulses = self.pulses()
@@ -157,8 +171,10 @@ class _PulsedTable(_ThrustTable):
         rows = np.array(
             [(p.height() * factor, p.centre, p.width) for p, factor in zip(pulses, factors)]
         )
+        peaks, centres, widths = (np.ascontiguousarray(column) for column in rows.T)
         return Thrust(
-            Pulses(*(np.ascontiguousarray(column) for column in rows.T), begin, end), None
+            pulses=Pulses(peaks=peaks, centres=centres, widths=widths, begin=begin, end=end),
+            curve=None,
         )
 
     def requested(self) -> float:
@@ -252,8 +268,14 @@ class MeasuredTable(_ThrustTable):
         """Kernel record: the curve, or one pulse."""
         if self.use == "fit":
             fit = self.fit()
-            one = (np.array([value]) for value in (fit.peak, fit.centre, fit.width))
-            return Thrust(Pulses(*one, -math.inf, math.inf), None)
+            pulses = Pulses(
+                peaks=np.array([fit.peak]),
+                centres=np.array([fit.centre]),
+                widths=np.array([fit.width]),
+                begin=-math.inf,
+                end=math.inf,
+            )
+            return Thrust(pulses=pulses, curve=None)
         return Thrust(None, Curve(self._curve.time, self._curve.force))
 
     def requested(self) -> float:
@@ -276,7 +298,7 @@ class MeasuredTable(_ThrustTable):
 
     def details(self) -> dict[str, float | str]:
         """Which of curve and fit is used, and the fit."""
-        used = {"use": self.use}
+        used: dict[str, float | str] = {"use": self.use}
         try:
             fit = self.fit()
         except ValueError:

@@ -38,6 +38,12 @@ class Thrust(NamedTuple):
     curve: Curve | None
 
 
+def _curve(thrust: Thrust) -> Curve:
+    """The curve of a thrust without pulses."""
+    assert thrust.curve is not None
+    return thrust.curve
+
+
 @njit
 def _pulsed(pulses, time):
     if not pulses.begin <= time <= pulses.end:
@@ -88,9 +94,9 @@ def corners(thrust: Thrust, duration: float) -> np.ndarray:
     """Sorted times (s) inside (0, duration) where F or its slope jumps: an integrator must stop
     there."""
     times = (
-        thrust.curve.times
-        if thrust.curve is not None
-        else np.array([thrust.pulses.begin, thrust.pulses.end])
+        np.array([thrust.pulses.begin, thrust.pulses.end])
+        if thrust.pulses is not None
+        else _curve(thrust).times
     )
     return np.unique(times[(times > 0.0) & (times < duration)])
 
@@ -100,7 +106,7 @@ def shortest_feature(thrust: Thrust) -> float:
     curve."""
     if thrust.pulses is not None:
         return float(thrust.pulses.widths.min())
-    return float(np.diff(np.unique(thrust.curve.times)).min())
+    return float(np.diff(np.unique(_curve(thrust).times)).min())
 
 
 @njit
@@ -126,7 +132,7 @@ def _grid(thrust: Thrust, duration: float) -> tuple[np.ndarray, np.ndarray]:
             + np.linspace(-8.0, 8.0, 801) * thrust.pulses.widths[:, None]
         )
     else:
-        near = thrust.curve.times
+        near = _curve(thrust).times
     time = np.union1d(np.linspace(0.0, duration, 1001), near[(near > 0.0) & (near < duration)])
     return time, np.abs(sample(thrust, time))
 
@@ -184,7 +190,7 @@ def impulse(thrust: Thrust, duration: float) -> float:
                 p * s * ROOT_TWO_PI * kept(*window, t, s) for p, t, s in zip(peaks, centres, widths)
             )
         )
-    times, forces = thrust.curve
+    times, forces = _curve(thrust)
     inside = times <= duration
     total = np.trapezoid(forces[inside], times[inside])
     if inside.any() and not inside.all():
