@@ -12,7 +12,6 @@ from scenes import uncertainty
 from scenes.effects.flight import FlightTable
 from scenes.faults import Fault, SceneError
 from scenes.files import sealed
-from scenes.outcome import Outcome
 from scenes.scene import Scene
 from scenes.variation import Variations
 from studies.flight import bodies, curves, flown, summary
@@ -126,7 +125,7 @@ def _require(scenes: dict[str, Scene]) -> None:
 
 def _conditions(
     study: Study, asked: Asked
-) -> tuple[list[dict], list[dict], flown.Flown | None, Outcome | None]:
+) -> tuple[list[dict], list[dict], flown.Flown | None, bodies.Exits | None]:
     """A row for every condition, curves of the first that settled, what was found for all that did,
     and their outcomes as arrays."""
     runs = []
