@@ -67,7 +67,7 @@ def read(
 def _places(
     source: str, header: list[str], wanted: dict[str, str]
 ) -> tuple[dict[str, _Column], list[Fault]]:
-    heads = [_HEAD.fullmatch(cell).groups() for cell in header]
+    heads = [_head(cell) for cell in header]
     names = [name for name, _ in heads]
     shown = ", ".join(filter(None, names)) or "nothing"
     faults = [
@@ -84,6 +84,13 @@ def _places(
     return {
         name: _Column(place, unit) for place, (name, unit) in enumerate(heads) if name in once
     }, faults
+
+
+def _head(cell: str) -> tuple[str, str | None]:
+    """Name and unit of a column."""
+    found = _HEAD.fullmatch(cell)
+    assert found is not None  # as for every text without line breaks
+    return found[1], found[2]
 
 
 def _cell(row: list[str], place: int) -> str:
@@ -111,7 +118,8 @@ def _values(
     place: int, lines: list[tuple[int, list[str]]]
 ) -> tuple[np.ndarray, dict[str, list[int]]]:
     """The column as written, and the lines that hold no finite number by what they hold."""
-    values, wrong = np.empty(len(lines)), {}
+    values = np.empty(len(lines))
+    wrong: dict[str, list[int]] = {}
     for index, (number, row) in enumerate(lines):
         text = _cell(row, place)
         try:

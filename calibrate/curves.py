@@ -45,6 +45,7 @@ class Curves(NamedTuple):
     def from_trajectory(cls, run: Trajectory) -> "Curves":
         """Curves of a run that exited and settled."""
         start = run.outcome.window_start
+        assert start is not None  # as of every run that settled
         keep = _until(run.time, start)
         return cls(
             run.time[keep],

@@ -103,6 +103,7 @@ def provenance(
     count: float,
 ) -> dict[str, str]:
     """Where the constants come from, in words and hashes."""
+    assert scene.contact is not None  # or there was nothing to fit
     exponent = constants.get("contact.exponent", 1.0)
     ends = "; ".join(
         f"{value:.6g} at " + ", ".join(f"{share:.4f}" for share in shares)

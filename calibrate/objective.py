@@ -59,9 +59,9 @@ def target(scene: Scene, reference: Curves) -> Target:
     weights = np.gradient(time)
     weights[[0, -1]] *= 0.5  # the trapezoidal rule
     amplitudes = (
-        np.sqrt(weights @ velocity**2),
-        np.sqrt(weights @ (rate**2).sum(axis=1)),
-        np.linalg.norm(settled),
+        float(np.sqrt(weights @ velocity**2)),
+        float(np.sqrt(weights @ (rate**2).sum(axis=1))),
+        float(np.linalg.norm(settled)),
     )
     return Target(scene, time, velocity, rate, settled, weights, amplitudes)
 

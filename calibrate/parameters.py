@@ -17,6 +17,8 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from scenes.effects.contact import ContactTable, HuntCrossleyTable, ImpactTable, LinearTable
+from scenes.effects.friction import FrictionTable
 from scenes.faults import Fault, SceneError
 from scenes.scene import Scene
 
@@ -63,7 +65,7 @@ def free(scene: Scene) -> list[Parameter]:
         "impact": [_force, _exponent, _damping],
         "hunt-crossley": [_force, _exponent, _dissipation],
         "linear": [_force, _damping],
-    }[scene.contact.law]
+    }[_contact(scene).law]
     if scene.friction is not None:
         found = [*found, _friction]
     return [make(scene) for make in found]
@@ -72,23 +74,24 @@ def free(scene: Scene) -> list[Parameter]:
 def held(scene: Scene) -> list[Parameter]:
     """What the fit leaves at the scene's value because it acts almost only together with a free
     one."""
-    return [_depth(scene)] if scene.contact.law == "impact" else []
+    return [_depth(scene)] if isinstance(scene.contact, ImpactTable) else []
 
 
 def overrides(scene: Scene, values: dict[str, float]) -> dict[str, float]:
     """Dotted overrides (SI) of ``scene`` for values of parameters by name; k is set together with
     e, whose unit it carries."""
     found = {}
-    exponent = values.get("contact.exponent", scene.contact.exponent)
-    if scene.contact.law != "linear":
+    contact = _contact(scene)
+    exponent = values.get("contact.exponent", contact.exponent)
+    if contact.law != "linear":
         found["contact.exponent"] = exponent
     found["contact.stiffness"] = values["contact.force"] / REFERENCE_PENETRATION**exponent
     if "contact.dissipation" in values:
         found["contact.dissipation"] = values["contact.dissipation"]
     if "contact.damping" in values:
         found["contact.damping"] = values["contact.damping"]
-        if scene.contact.law == "impact":
-            depth = values.get("contact.damping_depth", scene.contact.damping_depth)
+        if isinstance(contact, ImpactTable):
+            depth = values.get("contact.damping_depth", contact.damping_depth)
             found |= {
                 "contact.damping": values["contact.damping"] / share_of_damping(depth),
                 "contact.damping_depth": depth,
@@ -108,20 +111,36 @@ def share_of_damping(depth: float) -> float:
 
 
 def _stiffness_bounds(scene: Scene) -> tuple[float, float]:
-    rail = scene.rail
-    if missing := [f"rail.{key}" for key in ("leg", "thickness") if getattr(rail, key) is None]:
+    leg, thickness = scene.rail.leg, scene.rail.thickness
+    if leg is None or thickness is None:
         raise SceneError(
             [
                 Fault(scene.name, key, "nothing", "a length, with which the bounds of a fit scale")
-                for key in missing
+                for key, length in (("rail.leg", leg), ("rail.thickness", thickness))
+                if length is None
             ]
         )
-    scale = rail.material.youngs_modulus * rail.thickness**3 / rail.leg**2
+    scale = scene.rail.material.youngs_modulus * thickness**3 / leg**2
     return _SOFT * scale / _MARGIN, _STIFF * scale * _MARGIN
+
+
+def _contact(scene: Scene) -> ContactTable:
+    assert scene.contact is not None  # a fit has something to fit
+    return scene.contact
+
+
+def _friction_of(scene: Scene) -> FrictionTable:
+    assert scene.friction is not None
+    return scene.friction
 
 
 def _force(scene: Scene) -> Parameter:
     low, high = _stiffness_bounds(scene)
+
+    def read(scene: Scene) -> float:
+        contact = _contact(scene)
+        return contact.stiffness * REFERENCE_PENETRATION**contact.exponent
+
     return Parameter(
         "contact.force",
         "N",
@@ -132,7 +151,7 @@ def _force(scene: Scene) -> Parameter:
         f"stiffness ({low:.3g} N/m) and "
         f"ten times its stiffest ({high:.3g} N/m), estimated from E t^3/a^2; the rail is the "
         f"spring",
-        lambda s: s.contact.stiffness * REFERENCE_PENETRATION**s.contact.exponent,
+        read,
     )
 
 
@@ -146,18 +165,25 @@ def _exponent(scene: Scene) -> Parameter:
         "1 for a linear elastic rail, 1.5 for Hertz, up to 2.2 for crowned pads that gain area; "
         "below 1 a contact would be "
         "infinitely stiff at first touch",
-        lambda s: s.contact.exponent,
+        lambda s: _contact(s).exponent,
     )
 
 
 def _damping(scene: Scene) -> Parameter:
     critical = 2.0 * math.sqrt(_stiffness_bounds(scene)[1] / _MARGIN * scene.payload.mass)
-    impact = scene.contact.law == "impact"
     where = (
         "damping coefficient at 0.02 mm (c s(0.02 mm/d), d held)"
-        if impact
+        if isinstance(scene.contact, ImpactTable)
         else "damping coefficient"
     )
+
+    def read(scene: Scene) -> float:
+        contact = scene.contact
+        if isinstance(contact, ImpactTable):
+            return contact.damping * share_of_damping(contact.damping_depth)
+        assert isinstance(contact, LinearTable)
+        return contact.damping
+
     return Parameter(
         "contact.damping",
         "N*s/m",
@@ -168,13 +194,15 @@ def _damping(scene: Scene) -> Parameter:
         f"payload on the rail's stiffest "
         "place, where restitution is 0.5: metal does not lose more in one touch at millimetres per "
         "second",
-        lambda s: (
-            s.contact.damping * (share_of_damping(s.contact.damping_depth) if impact else 1.0)
-        ),
+        read,
     )
 
 
 def _dissipation(scene: Scene) -> Parameter:
+    def read(scene: Scene) -> float:
+        assert isinstance(scene.contact, HuntCrossleyTable)
+        return scene.contact.dissipation
+
     return Parameter(
         "contact.dissipation",
         "s/m",
@@ -184,7 +212,7 @@ def _dissipation(scene: Scene) -> Parameter:
         "restitution between 0.999 and 0.4 at an approach of 20 mm/s, the speed a clearance lets a "
         "pad gain "
         "(1 - 2 a v/3 at low speed)",
-        lambda s: s.contact.dissipation,
+        read,
     )
 
 
@@ -198,11 +226,15 @@ def _friction(scene: Scene) -> Parameter:
         "coated or lubricated (0.05) to clean dry aluminium under light load (0.5); static moves "
         "with dynamic in the scene's "
         "ratio, because a pad at metres per second never sticks",
-        lambda s: s.friction.dynamic,
+        lambda s: _friction_of(s).dynamic,
     )
 
 
 def _depth(scene: Scene) -> Parameter:
+    def read(scene: Scene) -> float:
+        assert isinstance(scene.contact, ImpactTable)
+        return scene.contact.damping_depth
+
     return Parameter(
         "contact.damping_depth",
         "m",
@@ -210,9 +242,10 @@ def _depth(scene: Scene) -> Parameter:
         3e-3,
         True,
         "from just above the penetrations that occur to ten times the deepest depth in use",
-        lambda s: s.contact.damping_depth,
+        read,
     )
 
 
 def _static_over_dynamic(scene: Scene) -> float:
-    return scene.friction.static / scene.friction.dynamic if scene.friction.dynamic > 0.0 else 1.0
+    friction = _friction_of(scene)
+    return friction.static / friction.dynamic if friction.dynamic > 0.0 else 1.0

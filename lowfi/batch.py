@@ -3,6 +3,7 @@ and groups of cases that one kernel call runs."""
 
 import time as clock
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -38,8 +39,8 @@ class _Group(NamedTuple):
     built: Built
     marks: outcome.Milestones
     plan: march.Plan
-    rows: list
-    cases: list
+    rows: list[tuple[int, Mapping[str, Any]]]
+    cases: list[models.Model]
 
 
 class Family:
@@ -67,10 +68,12 @@ class Family:
         self.base = models.built(self.calibrated)
         self.marks = outcome.milestones(self.calibrated, self.base.model)
 
-    def jobs(self, table: Sequence[Mapping[str, Any]]) -> list[Callable[[], list]]:
+    def jobs(
+        self, table: Sequence[Mapping[str, Any]]
+    ) -> list[Callable[[], list[tuple[int, Case]]]]:
         """Calls that run ``table``: each returns pairs of a row's number and its Case."""
         groups: dict[tuple, _Group] = {}
-        alone = []
+        alone: list[tuple[int, Mapping[str, Any] | Case]] = []
         for number, row in enumerate(table):
             if self.touched.intersection(key.partition(".")[0] for key in row):
                 # A calibration is laid over what a row says of the same table, so the order counts.
@@ -85,12 +88,9 @@ class Family:
             group = self._group(groups, built)
             group.rows.append((number, row))
             group.cases.append(built.model)
-        found = [lambda group=group: self._settled(group) for group in groups.values()]
-        return found + [
-            lambda pair=pair: [
-                (pair[0], pair[1] if isinstance(pair[1], Case) else self._whole(pair[1]))
-            ]
-            for pair in alone
+        return [
+            *(partial(self._settled, group) for group in groups.values()),
+            *(partial(self._alone, number, item) for number, item in alone),
         ]
 
     def _require_walls(self, built: Built) -> None:
@@ -131,10 +131,13 @@ class Family:
         what is the scene's own record."""
 
         def parts(of: Built) -> tuple:
-            shared = of.model._replace(
-                payload=None, faces=None, initial=None, thrust_offset=of.model.thrust_offset is None
-            )
-            return *shared, of.nominal
+            shared = of.model._asdict() | {
+                "payload": None,
+                "faces": None,
+                "initial": None,
+                "thrust_offset": of.model.thrust_offset is None,
+            }
+            return *shared.values(), of.nominal
 
         return tuple(
             None if part is own else (_content(part),)
@@ -181,6 +184,9 @@ class Family:
             for (number, row), case, result in zip(group.rows, group.cases, results)
         ]
 
+    def _alone(self, number: int, item: Mapping[str, Any] | Case) -> list[tuple[int, Case]]:
+        return [(number, item if isinstance(item, Case) else self._whole(item))]
+
     def _case(
         self, group: _Group, model, row: Mapping[str, Any], result: np.ndarray, share: float
     ) -> Case:
@@ -203,7 +209,11 @@ class Family:
         except SceneError as error:
             return Case("refused", str(error), outcome.Outcome(), 0, 0.0)
         return Case(
-            found.status, found.message, found.outcome, found.cost["steps"], found.cost["wall_s"]
+            found.status,
+            found.message,
+            found.outcome,
+            int(found.cost["steps"]),
+            found.cost["wall_s"],
         )
 
 
@@ -225,13 +235,14 @@ def _stacked(common: system.System, group: _Group) -> settle.Cases:
     centre = np.stack([model.faces.centre for model in models_])
     faces = np.repeat(common.faces[None], len(models_), axis=0)
     faces[:, :, system.CENTRE : system.CENTRE + 3] = centre
-    offset = common.thrust_offset is not None
+    # all cases of a group have one, or none has
+    offsets = [model.thrust_offset for model in models_ if model.thrust_offset is not None]
     return settle.Cases(
         np.array([model.payload.mass for model in models_]),
         np.stack([model.payload.inverse_inertia for model in models_]),
         faces,
-        np.array([model.thrust_offset.direction for model in models_]) if offset else None,
-        np.array([model.thrust_offset.arm for model in models_]) if offset else None,
+        np.array([offset.direction for offset in offsets]) if offsets else None,
+        np.array([offset.arm for offset in offsets]) if offsets else None,
         np.stack([state.initial(model) for model in models_]),
         np.sqrt((centre**2).sum(axis=2).max(axis=1)),
     )

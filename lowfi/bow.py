@@ -35,7 +35,10 @@ def under_pads(scene: Scene, model: Model, walls: Walls | None) -> Bow | None:
     """Record for the kernels; None where nothing is warm, nothing touches, or walls that give way
     know it themselves. Raises SceneError as ``require`` does."""
     require(scene, walls)
-    if model.thermal is None or model.contact is None or walls.flexibility is not None:
+    if model.thermal is None or model.contact is None:
+        return None
+    assert walls is not None  # which was required
+    if walls.flexibility is not None:
         return None
     mean = walls.moved(model.thermal.amounts) @ GRAM[0]
     platform = model.platform.mass_centre[0] if model.platform is not None else 0.0

@@ -64,7 +64,9 @@ def of(cases: Sequence[Case]) -> Columns:
 
     status = np.array([STATUSES.index(case.status) for case in cases], dtype=np.int8)
     return Columns(
-        status, *map(settled, UNITS), np.array([case.steps for case in cases], dtype=np.int64)
+        status=status,
+        **{name: settled(name) for name in UNITS},
+        steps=np.array([case.steps for case in cases], dtype=np.int64),
     )
 
 

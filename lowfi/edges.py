@@ -151,7 +151,9 @@ def strike(model, number: int, face: np.ndarray, row: np.ndarray, time: float) -
         "the back": face[BACK] - depth,
     }
     edge = (
-        "strikes " + min(away, key=away.get) if depth < face[BACK] else "is pressed through a wall"
+        "strikes " + min(away, key=away.__getitem__)
+        if depth < face[BACK]
+        else "is pressed through a wall"
     )
     origin = model.platform.mass_centre[0] if model.platform is not None else 0.0
     return outcome.strike(model.faces, number, edge, depth, x + origin, time)

@@ -4,7 +4,7 @@ so the worker count changes no bit."""
 import os
 from collections import deque
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor
 from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -87,7 +87,8 @@ def completed(
 ) -> Iterator[list[Case]]:
     """Cases of each of ``pieces`` of rows, in their order; a piece is taken when a thread is free
     for it soon."""
-    count, waiting = _workers(workers), deque()
+    count = _workers(workers)
+    waiting: deque[list[Future[list[tuple[int, Case]]]]] = deque()
     with ThreadPoolExecutor(count) as pool:
         for rows in pieces:
             # Setting up holds the interpreter lock, stepping does not: one thread prepares what the

@@ -91,7 +91,7 @@ class Loop(NamedTuple):
     active: np.ndarray
     grip: np.ndarray | None
     clock: np.ndarray
-    count: np.ndarray
+    count: np.ndarray  # type: ignore[assignment]  # tuple.count, which nobody calls
     work: np.ndarray
     book: np.ndarray
     audit: np.ndarray

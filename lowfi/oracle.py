@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from lowfi import bow
-from lowfi.system import BACK, NUMBER, SIDE_MIDDLE, SIDE_REACH, build
+from lowfi.system import BACK, NUMBER, SIDE_MIDDLE, SIDE_REACH, System, build
 from scenes import model as models
 from scenes import rotation
 from scenes.effects import contact as law
@@ -66,7 +66,7 @@ def solve(
 
 def prepared(
     scene: Scene, steps_per_sample: int, samples: int, interval: float, walls: Walls | None = None
-) -> tuple[tuple, np.ndarray]:
+) -> tuple[tuple[System, np.ndarray, np.ndarray, float, int], np.ndarray]:
     """Arguments of ``integrate`` but the last, and the last: rows (samples + 1, 26) of which only
     the first is filled.
 
@@ -74,15 +74,13 @@ def prepared(
     """
     require_two_step(scene)
     model = models.build(scene)
-    inertias = (
-        model.payload.inertia,
-        model.platform.inertia if model.platform is not None else np.eye(3),
-    )
+    platform_inertia = model.platform.inertia if model.platform is not None else np.eye(3)
     rows = np.zeros((samples + 1, _SIZE))
     rows[0] = _start(model)
     return (
         build(model, bow=bow.under_pads(scene, model, walls)),
-        *inertias,
+        model.payload.inertia,
+        platform_inertia,
         interval / steps_per_sample,
         steps_per_sample,
     ), rows

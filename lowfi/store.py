@@ -355,8 +355,8 @@ def _alike(there: bytes, new: bytes) -> bool:
 def _digest(results: Columns, inputs: np.ndarray) -> str:
     digest = hashlib.sha256()
     for name, values in zip(Columns._fields, results):
-        digest.update(np.ascontiguousarray(values, dtype=_type(name)))
-    digest.update(np.ascontiguousarray(inputs))
+        digest.update(np.ascontiguousarray(values, dtype=_type(name)).data)
+    digest.update(np.ascontiguousarray(inputs).data)
     return digest.hexdigest()
 
 

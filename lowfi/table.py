@@ -4,7 +4,7 @@ import csv
 import hashlib
 import json
 from array import array
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import partial
 from itertools import chain, repeat
 from pathlib import Path
@@ -33,11 +33,12 @@ class TableFile:
         self._odd: dict[int, dict[str, str]] = {}
         try:
             with open(path, newline="", encoding="utf-8-sig") as stream:
-                lines = filter(None, csv.reader(stream, strict=True))
+                lines: Iterator[list[str]] = filter(None, csv.reader(stream, strict=True))
                 self.keys = _header(str(path), next(lines, []))
                 self._columns = [array("d") for _ in self.keys]
                 wanted = [keys.unit(Scene, key) for key in self.keys]
                 second = next(lines, [])
+                readers: list[Callable[[str], float]]
                 if units.are_units(second):
                     readers = [
                         partial(_number, factor)

@@ -6,6 +6,7 @@ import sys
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import NoReturn
 
 import typer
 
@@ -37,10 +38,9 @@ def study_of(
         settings = replace(settings, element_size=1e-3 * element_size)
     if workers is not None:
         settings = replace(settings, workers=workers)
-    if checkpoint_every is not None:
-        settings = replace(
-            settings, checkpoint_every=quantity("--checkpoint-every", checkpoint_every, "s")
-        )
+    every = quantity("--checkpoint-every", checkpoint_every, "s")
+    if every is not None:
+        settings = replace(settings, checkpoint_every=every)
     study = Study(found, Path(out) / found.name, settings, tuple(conditions or ()))
     # a bad override or an unknown condition is a fault of the input, found before anything runs
     _ = study.conditions
@@ -97,7 +97,7 @@ def guarded(work: Callable[[], dict], as_json: bool = False) -> dict:
     return result
 
 
-def stop(message: str, code: int) -> None:
+def stop(message: str, code: int) -> NoReturn:
     """End the command with a message on standard error."""
     print(f"tipoff: {message}", file=sys.stderr)
     raise typer.Exit(code)

@@ -31,7 +31,7 @@ def require(asked: Asked, **others: object) -> None:
     where they were not given."""
     if asked.model not in MODELS:
         raise SceneError([Fault("--model", "name", asked.model, f"one of {', '.join(MODELS)}")])
-    given = {"--calibration": asked.calibration, "--modes": asked.modes}
+    given: dict[str, object] = {"--calibration": asked.calibration, "--modes": asked.modes}
     given |= {f"--{name.replace('_', '-')}": value for name, value in others.items()}
     faults = [
         Fault(

@@ -1,16 +1,27 @@
 """Options that many commands share, each with its words of help."""
 
-from enum import Enum, StrEnum
+from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+
 # Written out as in ``scenes.fidelity``, which loads too much for ``--help`` to answer at once.
-ModelName = Enum(
-    "ModelName", {name: name for name in ("compliant", "springs", "finite-elements")}, type=str
-)
-SurrogateName = Enum("SurrogateName", {name: name for name in ("compliant", "springs")}, type=str)
+class ModelName(StrEnum):
+    """All models."""
+
+    compliant = "compliant"
+    springs = "springs"
+    finite_elements = "finite-elements"
+
+
+class SurrogateName(StrEnum):
+    """All models but the reference."""
+
+    compliant = "compliant"
+    springs = "springs"
+
 
 SceneName = Annotated[
     str,

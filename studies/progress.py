@@ -8,7 +8,14 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+from rich.progress import (
+    BarColumn,
+    Progress,
+    TaskID,
+    TextColumn,
+    TimeElapsedColumn,
+    TimeRemainingColumn,
+)
 
 console = Console(stderr=True, highlight=False)
 _SHOWN_AFTER = 2.0  # s; what is over sooner needs no bar
@@ -26,8 +33,8 @@ class Board:
         self._title, self._total, self._done = title, total, 0
         self._stop, self._lock = threading.Event(), threading.Lock()
         self._fractions: dict[str, float] = {}
-        self._bars = None
-        self._tasks: dict[str, int] = {}
+        self._bars: Progress | None = None
+        self._tasks: dict[str, TaskID] = {}
         self._started = time.monotonic()
 
     def __enter__(self) -> "Board":

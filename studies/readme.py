@@ -52,7 +52,7 @@ def section(folder: Path) -> str:
         *_equal(refined, cost),
     ]
     parts += [_rails(found)] if (found := beside(folder)) else []
-    parts += [_blind(found)] if (found := read(folder / "blind.json")) is not None else []
+    parts += [_blind(blind)] if (blind := read(folder / "blind.json")) is not None else []
     parts += [_ladder(cost)] if cost is not None else []
     return "\n\n".join(parts)
 

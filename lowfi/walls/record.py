@@ -100,9 +100,8 @@ def under_pads(
     found.require(scene)
     require_two_step(scene)
     data.require_modes(scene.name, found, modes)
-    return build(
-        found, model, modes=modes, damping=scene.rail.damping and scene.rail.damping.record()
-    )
+    damping = scene.rail.damping.record() if scene.rail.damping is not None else None
+    return build(found, model, modes=modes, damping=damping)
 
 
 def build(
@@ -112,8 +111,9 @@ def build(
     modes: int = 0,
     damping: Damping | None = None,
 ) -> Walls:
-    """Record of ``found`` for the faces of ``model``; ``modes`` of each rail vibrate, under the
-    ``damping`` of the rails."""
+    """Record of ``found`` for the faces of ``model``, which has contact; ``modes`` of each rail
+    vibrate, under the ``damping`` of the rails."""
+    assert model.penalty is not None
     faces, platform = (
         model.faces,
         model.platform.mass_centre if model.platform is not None else (0.0, 0.0, 0.0),

@@ -156,11 +156,10 @@ def _after(time: np.ndarray, apart: np.ndarray, spans: list[tuple[int, int]]) ->
     for (first, after), following in zip(spans, [*(first for first, _ in spans[1:]), time.size]):
         free = apart[after:following] if following > after else apart[-1:]
         contact = Contact(float(time[first]), float(time[after - 1]), float(free.mean()))
-        found.append(
-            replace(contact, **dict(zip(("factor", "exponent_per_s"), _rate(found[-1], contact))))
-            if found
-            else contact
-        )
+        if found:
+            factor, exponent = _rate(found[-1], contact)
+            contact = replace(contact, factor=factor, exponent_per_s=exponent)
+        found.append(contact)
     return found
 
 

@@ -31,6 +31,7 @@ _PRESSED = 1e-4  # s that the payload certainly stays pressed
 
 def pressed(scene: Scene) -> Scene:
     """``scene`` with the payload set 1 um deep into its +y and +z walls."""
+    assert scene.contact is not None
     depth = scene.contact.clearance + 1e-6
     return scene.replace({"initial.position.y": depth, "initial.position.z": depth})
 
@@ -104,9 +105,11 @@ def _measured(scene: Scene, size: float, repeats: int, steps: int | None) -> dic
     baseline = CsrLoop(mesh, scene.rail.material, stepping.dt_s, _BASELINE_MOST)
     elements = len(mesh.cells)
     count = steps or max(20, min(round(_WORK / elements), int(_PRESSED / stepping.dt_s)))
-    pieces = {name: (_Again(loop), count, elements) for name, loop in loops.items()}
+    pieces: dict[str, tuple[Callable[[int], None], int, int]] = {
+        name: (_Again(loop), count, elements) for name, loop in loops.items()
+    }
     pieces["baseline"] = (baseline.advance, max(3, count // 50), baseline.elements)
-    times = {name: [] for name in pieces}
+    times: dict[str, list[float]] = {name: [] for name in pieces}
     for _ in range(repeats):
         for name, (advance, number, size_of_it) in pieces.items():
             times[name].append(1e9 * _timed(advance, number) / size_of_it)

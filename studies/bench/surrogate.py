@@ -19,7 +19,7 @@ from scipy.interpolate import CubicSpline
 
 from scenes import model, outcome
 from scenes.files import write_json
-from scenes.scene import load
+from scenes.scene import Scene, load
 from studies import machine
 from studies.progress import say
 
@@ -193,16 +193,18 @@ def _loops(yardstick: _Yardstick, dt: float):
     jobs = [
         _plain_job(scene, dt, start) for scene, start in zip(yardstick.scenes, yardstick.starts)
     ]
-    return lambda: [oracle.integrate(*arguments, rows) for arguments, rows, _ in jobs]
+    return lambda: [oracle.integrate(*arguments) for arguments, _, _ in jobs]
 
 
-def _plain_job(scene, dt: float, start: float):
+def _plain_job(scene: Scene, dt: float, start: float) -> tuple[tuple, np.ndarray, float]:
+    """Arguments of the integration, the rows among them that it fills, and their interval (s)."""
     from lowfi import oracle
 
     count = max(1, round(scene.output.interval / dt))
     interval = dt * count
     samples = int(np.ceil((start + outcome.SETTLE_WINDOW) / interval)) + _AROUND
-    return *oracle.prepared(scene, count, samples, interval), interval
+    arguments, rows = oracle.prepared(scene, count, samples, interval)
+    return (*arguments, rows), rows, interval
 
 
 def _plain(yardstick: _Yardstick, dt: float) -> np.ndarray:
@@ -211,7 +213,7 @@ def _plain(yardstick: _Yardstick, dt: float) -> np.ndarray:
     found = []
     for scene, start in zip(yardstick.scenes, yardstick.starts):
         arguments, rows, interval = _plain_job(scene, dt, start)
-        oracle.integrate(*arguments, rows)
+        oracle.integrate(*arguments)
         found.append(
             _mean(np.arange(len(rows)) * interval, rows[:, 10:13], start)
             if np.isfinite(rows).all()

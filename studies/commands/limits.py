@@ -1,6 +1,6 @@
 """``tipoff limits``: the tolerances that keep rates below limits."""
 
-from enum import Enum
+from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
 
@@ -9,8 +9,20 @@ import typer
 from studies.asked import guarded, study_of
 from studies.options import Json, Out, SceneName, Set, Surrogate, Workers
 
-Tolerances = Enum("Tolerances", {name: name for name in ("advised", "table3")}, type=str)
-Others = Enum("Others", {name: name for name in ("scene", "zero")}, type=str)
+
+class Tolerances(StrEnum):
+    """Sets of tolerances that are scaled together."""
+
+    advised = "advised"
+    table3 = "table3"
+
+
+class Others(StrEnum):
+    """What errors are that do not vary."""
+
+    scene = "scene"
+    zero = "zero"
+
 
 Limit = Annotated[
     list[str] | None,

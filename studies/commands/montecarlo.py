@@ -1,6 +1,6 @@
 """``tipoff montecarlo``: the paper's random errors."""
 
-from enum import Enum
+from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
 
@@ -9,9 +9,29 @@ import typer
 from studies.asked import guarded, study_of
 from studies.options import Json, Out, SceneName, Set, Surrogate, Workers
 
-Values = Enum("Values", {name: name for name in ("signed", "half", "components")}, type=str)
-Angles = Enum("Angles", {name: name for name in ("independent", "shared")}, type=str)
-Rules = Enum("Rules", {name: name for name in ("redraw", "clip", "none")}, type=str)
+
+class Values(StrEnum):
+    """What a normal axial value may be."""
+
+    signed = "signed"
+    half = "half"
+    components = "components"
+
+
+class Angles(StrEnum):
+    """Whose the radial angles are."""
+
+    independent = "independent"
+    shared = "shared"
+
+
+class Rules(StrEnum):
+    """What may become of a draw beyond three sigma."""
+
+    redraw = "redraw"
+    clip = "clip"
+    none = "none"
+
 
 Cases = Annotated[int, typer.Option("--cases", metavar="N", min=100, help="Number of cases.")]
 Seed = Annotated[int, typer.Option("--seed", metavar="N", min=0, help="Seed of all draws.")]

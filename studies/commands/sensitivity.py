@@ -65,9 +65,8 @@ def sensitivity(
         from studies.stages import sensitivity as stage
 
         study = study_of(scene, out, set_, element_size=element_size, workers=workers)
-        return stage.run(
-            study, stage.Asked(vary and str(vary), points, seed, model and model.value)
-        )
+        tolerances = None if vary is None else str(vary)
+        return stage.run(study, stage.Asked(tolerances, points, seed, model and model.value))
 
     found = guarded(work, json_)
     if not json_:

@@ -61,16 +61,14 @@ def elsewhere(agreement: dict | None, condition: str) -> dict[str, float]:
     """What each rung can be trusted to (deg/s) on a condition of the ``agreement`` study, infinite
     where that is not known; empty without one, or for a condition that it does not have. Of the
     meshes, ``coarsest_m`` is the coarsest whose error is known."""
-    rungs = (
-        {}
-        if agreement is None
-        else {
-            "uncalibrated": agreement["uncalibrated"],
-            "calibrated": agreement["fitted"] + agreement["held_out"],
-            "compliant": agreement["compliant"],
-            "modal": agreement["modal"],
-        }
-    )
+    if agreement is None:
+        return {}
+    rungs = {
+        "uncalibrated": agreement["uncalibrated"],
+        "calibrated": agreement["fitted"] + agreement["held_out"],
+        "compliant": agreement["compliant"],
+        "modal": agreement["modal"],
+    }
     found = {
         rung: row for rung, rows in rungs.items() for row in rows if row["condition"] == condition
     }
@@ -151,8 +149,8 @@ def _refusal(points: list[dict], accuracy: float | None, budget: float | None) -
         filter(
             None,
             [
-                accuracy is not None and f"{accuracy:g} deg/s",
-                budget is not None and f"{budget:g} s",
+                None if accuracy is None else f"{accuracy:g} deg/s",
+                None if budget is None else f"{budget:g} s",
             ],
         )
     )

@@ -18,7 +18,7 @@ import threading
 from collections import Counter
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numba
 
@@ -29,6 +29,8 @@ from studies.store import Run
 from studies.study import Study
 
 PATIENCE = 1.0  # s
+# Numba names its settings while it loads, where no type checker sees them.
+_numba_settings: Any = numba.config
 # per element and step, the 2 mm mesh of the reference scene on one thread of an AMD EPYC
 _TYPICAL_NS = 11.0
 _TYPICAL_RUN = 3e-3  # s, the surrogate there
@@ -144,8 +146,9 @@ def in_time(work: Callable):
 def _references(missing: Sequence[Run], together: int, known: Pace) -> tuple[float, str] | None:
     """Seconds of all ``missing`` runs, so many ``together``, those of one mesh after those of
     another; None as for one of them."""
-    each = Counter(_reference(run, known) for run in missing)
-    if not each or None in each:
+    found = [_reference(run, known) for run in missing]
+    each = Counter(one for one in found if one is not None)
+    if not each or None in found:
         return None
     return sum(
         math.ceil(count / together) * seconds for (seconds, _), count in each.items()
@@ -159,7 +162,7 @@ def _reference(run: Run, known: Pace) -> tuple[float, str] | None:
     elements = _elements(run.scene, size, known)
     if elements is None:
         return None
-    if known.steps is not None:
+    if known.steps is not None and known.element_size is not None:
         steps = known.steps * known.element_size / size
     else:
         material = run.scene.rail.material
@@ -174,8 +177,12 @@ def _elements(scene: Scene, size: float, known: Pace) -> float | None:
         from highfi.rail import geometry
         from meshes import l_rail
 
-        return l_rail.elements(geometry(scene), size)
-    return None if known.elements is None else known.elements * (known.element_size / size) ** 3
+        section = geometry(scene)
+        assert isinstance(section, l_rail.LRailGeometry)
+        return l_rail.elements(section, size)
+    if known.elements is None or known.element_size is None:
+        return None
+    return known.elements * (known.element_size / size) ** 3
 
 
 def _stored(path: Path) -> Pace | None:
@@ -206,7 +213,7 @@ def _search(study: Study, conditions: int) -> float:
 
 def _is_cold() -> bool:
     """Whether kernels have yet to be compiled."""
-    return not any(Path(numba.config.CACHE_DIR).rglob("*.nbc"))
+    return not any(Path(_numba_settings.CACHE_DIR).rglob("*.nbc"))
 
 
 def _surrogate(folder: Path) -> float:

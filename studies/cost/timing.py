@@ -52,13 +52,12 @@ def speedups(
         warm_up(run)
     slow: list = []
     fast: dict[str, list] = {name: [] for name in surrogates}
+
+    def part(repeat: int) -> Callable[[float], None]:
+        return lambda fraction: progress((repeat + fraction) / highfi_repeats)
+
     for repeat in range(highfi_repeats):
-        slow.append(
-            timed(
-                highfi,
-                lambda fraction, repeat=repeat: progress((repeat + fraction) / highfi_repeats),
-            )
-        )
+        slow.append(timed(highfi, part(repeat)))
         for name, run in surrogates.items():
             fast[name] += [timed(run) for _ in range(lowfi_repeats)]
     return {name: _speedup(highfi.label, slow, found) for name, found in fast.items()}

@@ -36,6 +36,7 @@ def calibrated(sheet: Sheet, log: Log) -> Calibrated:
     gyro, turn = sheet.gyro, sheet.mounting
     felt, force = log.rate - np.array(gyro.bias), None
     if log.acceleration is not None:
+        assert sheet.accelerometer is not None  # as a sheet with accelerations has to have it
         force = (log.acceleration - np.array(sheet.accelerometer.bias)) / (
             1.0 + np.array(sheet.accelerometer.scale_error)
         )

@@ -60,7 +60,7 @@ def find(sheet: Sheet, found: Calibrated, source: str) -> Events:
         return Events(sheet.events.release, sheet.events.ignition, True)
     interval = found.time[1] - found.time[0]
     release = _release(sheet, found, interval, source)
-    hanging = found.force[: max(1, release - int(_NOISE_FROM / interval))]
+    hanging = _force(found)[: max(1, release - int(_NOISE_FROM / interval))]
     felt = float(np.linalg.norm(hanging.mean(axis=0)))
     if abs(felt / GRAVITY - 1.0) > _AT_REST:
         raise SceneError(
@@ -85,8 +85,15 @@ def find(sheet: Sheet, found: Calibrated, source: str) -> Events:
     )
 
 
+def _force(found: Calibrated) -> np.ndarray:
+    """The specific force (n,3), which every log has whose sheet does not give the events."""
+    assert found.force is not None
+    return found.force
+
+
 def _release(sheet: Sheet, found: Calibrated, interval: float, source: str) -> int:
-    smooth = np.linalg.norm(filtered(found.force, sheet.channel_class, interval), axis=1)
+    force = _force(found)
+    smooth = np.linalg.norm(filtered(force, sheet.channel_class, interval), axis=1)
     falls = [run for run in runs(smooth < 0.5 * GRAVITY) if run[1] - run[0] >= _FALL / interval]
     if not falls or falls[0][0] == 0:
         given = "a log that begins in free fall" if falls else "no free fall"
@@ -95,8 +102,8 @@ def _release(sheet: Sheet, found: Calibrated, interval: float, source: str) -> i
     crossing = falls[0][0]
     span = max(3, int(np.ceil(reach(sheet.channel_class) / interval)))
     low, high = max(crossing - span, 1), min(crossing + span, found.time.size - 1)
-    before = found.force[max(0, low - 5 * span) : low].mean(axis=0)
-    felt = found.force[low:high] @ before / (before @ before)  # 1 while hanging, 0 in free fall
+    before = force[max(0, low - 5 * span) : low].mean(axis=0)
+    felt = force[low:high] @ before / (before @ before)  # 1 while hanging, 0 in free fall
     # Sum of squares that a step after k samples leaves, but for a constant.
     wrong = np.concatenate([[0.0], np.cumsum((felt - 1.0) ** 2 - felt**2)])
     return low + int(np.argmin(wrong))
@@ -105,7 +112,7 @@ def _release(sheet: Sheet, found: Calibrated, interval: float, source: str) -> i
 def _pushes(found: Calibrated, interval: float, release: int, source: str) -> list[int]:
     """Where pushes along +X with the impulse of an ejection begin, in order. Raises SceneError
     where there is none."""
-    ahead = found.force[:, 0]
+    ahead = _force(found)[:, 0]
     begin, end = (release + int(after / interval) for after in (_NOISE_FROM, _NOISE_TO))
     calm = ahead[begin:end]
     level = np.median(calm)

@@ -229,12 +229,13 @@ def _marked(sheet: Sheet, filled: dict, doubtful: np.ndarray, notes: list[str]) 
             "every window"
         )
     if force is not None:
-        clipped = (np.abs(force) >= sheet.accelerometer.range * (1.0 - 1e-9)).any(axis=1)
-    if clipped.any():
-        notes.append(
-            f"acceleration: {clipped.sum()} samples clipped at the range of "
-            f"{sheet.accelerometer.range:.4g} m/s2"
-        )
+        assert sheet.accelerometer is not None  # as a sheet with accelerations has to have it
+        largest = sheet.accelerometer.range
+        clipped = (np.abs(force) >= largest * (1.0 - 1e-9)).any(axis=1)
+        if clipped.any():
+            notes.append(
+                f"acceleration: {clipped.sum()} samples clipped at the range of {largest:.4g} m/s2"
+            )
     return Log(filled["time"], rate, force, temperature, doubtful | at_end, clipped, notes)
 
 

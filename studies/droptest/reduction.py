@@ -115,7 +115,7 @@ def _systematic(
         "scale": sure.scale * np.abs(change),
         "misalignment": sure.misalignment * across,
         "g-sensitivity": np.full(3, sure.g_sensitivity * np.linalg.norm(moved(found.force))),
-        "temperature": np.full(3, sure.temperature * abs(moved(found.temperature))),
+        "temperature": np.full(3, sure.temperature * np.abs(moved(found.temperature))),
     }
 
 

@@ -16,7 +16,7 @@ fault.
 """
 
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, TypeVar
 
 import numpy as np
 from pydantic import (
@@ -38,32 +38,38 @@ from scenes.units import (
     Number,
     PositiveTime,
     Rate,
+    Time,
     parse,
     quantity,
     to_si,
 )
 
-NonNegativeRate, PositiveRate = quantity("rad/s", ge=0.0), quantity("rad/s", gt=0.0)
-PositiveAcceleration = quantity("m/s**2", gt=0.0)
-GSensitivity, GSensitivityError = quantity("rad*s/m"), quantity("rad*s/m", ge=0.0)
-Drift, DriftError = quantity("rad/s/K"), quantity("rad/s/K", ge=0.0)
+_Kind = TypeVar("_Kind")
+_Triple = tuple[_Kind, _Kind, _Kind]
+_Matrix = tuple[_Triple[_Kind], _Triple[_Kind], _Triple[_Kind]]
 _SKEW = 1e-3  # how far typed direction cosines may be from orthonormal
 
 
-def _triple(kind: Any) -> Any:
-    return tuple[kind, kind, kind]
+def _in(unit: str, **bounds: float) -> tuple:
+    """What ``quantity`` lays over a float."""
+    return quantity(unit, **bounds).__metadata__
 
 
-def _matrix(kind: Any) -> Any:
-    return tuple[_triple(kind), _triple(kind), _triple(kind)]
+NonNegativeRate = Annotated[float, *_in("rad/s", ge=0.0)]
+PositiveRate = Annotated[float, *_in("rad/s", gt=0.0)]
+PositiveAcceleration = Annotated[float, *_in("m/s**2", gt=0.0)]
+GSensitivity = Annotated[float, *_in("rad*s/m")]
+GSensitivityError = Annotated[float, *_in("rad*s/m", ge=0.0)]
+Drift = Annotated[float, *_in("rad/s/K")]
+DriftError = Annotated[float, *_in("rad/s/K", ge=0.0)]
 
 
-def _unit(si: str) -> Any:
+def _unit_of(si: str) -> AfterValidator:
     def check(text: str) -> str:
         to_si(f"1 {text}", si, absolute=True)
         return text
 
-    return Annotated[str, AfterValidator(check)]
+    return AfterValidator(check)
 
 
 def _temperature(value: Any, info: ValidationInfo) -> float:
@@ -76,18 +82,18 @@ class Columns(Table):
     """Names of columns in the CSV file."""
 
     time: str
-    rate: _triple(str)
-    acceleration: _triple(str) | None = None
+    rate: _Triple[str]
+    acceleration: _Triple[str] | None = None
     temperature: str | None = None
 
 
 class Units(Table):
     """Units of the columns."""
 
-    time: _unit("s")
-    rate: _unit("rad/s")
-    acceleration: _unit("m/s**2") | None = None
-    temperature: _unit("K") | None = None
+    time: Annotated[str, _unit_of("s")]
+    rate: Annotated[str, _unit_of("rad/s")]
+    acceleration: Annotated[str, _unit_of("m/s**2")] | None = None
+    temperature: Annotated[str, _unit_of("K")] | None = None
 
 
 class GyroUncertainty(Table):
@@ -97,7 +103,7 @@ class GyroUncertainty(Table):
 
     bias_instability: NonNegativeRate
     scale: NonNegativeNumber
-    misalignment: quantity("rad", ge=0.0)
+    misalignment: Annotated[float, *_in("rad", ge=0.0)]
     g_sensitivity: GSensitivityError
     temperature: DriftError = 0.0
 
@@ -109,11 +115,11 @@ class Gyro(Table):
     range: PositiveRate
     resolution: NonNegativeRate
     uncertainty: GyroUncertainty
-    bias: _triple(Rate) = (0.0,) * 3
-    scale_error: _triple(Number) = (0.0,) * 3
-    misalignment: _matrix(Angle) = ((0.0,) * 3,) * 3
-    g_sensitivity: _matrix(GSensitivity) = ((0.0,) * 3,) * 3
-    temperature: _triple(Drift) = (0.0,) * 3
+    bias: _Triple[Rate] = (0.0,) * 3
+    scale_error: _Triple[Number] = (0.0,) * 3
+    misalignment: _Matrix[Angle] = ((0.0,) * 3,) * 3
+    g_sensitivity: _Matrix[GSensitivity] = ((0.0,) * 3,) * 3
+    temperature: _Triple[Drift] = (0.0,) * 3
     reference_temperature: Annotated[float, BeforeValidator(_temperature)] = 293.15
 
 
@@ -121,16 +127,16 @@ class Accelerometer(Table):
     """Calibration of the accelerometers in sensor axes."""
 
     range: PositiveAcceleration
-    bias: _triple(Acceleration) = (0.0,) * 3
-    scale_error: _triple(Number) = (0.0,) * 3
+    bias: _Triple[Acceleration] = (0.0,) * 3
+    scale_error: _Triple[Number] = (0.0,) * 3
 
 
 class Triggers(Table):
     """Instants (s of the log) known from elsewhere, such as a trigger channel, in place of those
     found in the accelerations."""
 
-    release: quantity("s")
-    ignition: quantity("s")
+    release: Time
+    ignition: Time
 
 
 class Windows(Table):
@@ -151,7 +157,7 @@ class Sheet(Table):
 
     file: str
     channel_class: Literal[60, 180, 600, 1000]
-    axes: _matrix(Number)
+    axes: _Matrix[Number]
     columns: Columns
     units: Units
     gyro: Gyro

@@ -64,7 +64,7 @@ def drop(scene: Scene, tower: Tower, interval: float) -> Motion:
         for axis, value in zip("xyz", tower.rate)
     }
     run = lowfi.run(scene.replace(began), "springs")
-    if run.outcome.rate is None:
+    if run.outcome.rate is None or run.outcome.exit_time is None:
         raise ValueError(f"{scene.name}: {run.status} {run.message}: nothing to measure")
     ignition = tower.hang + tower.fall
     time = interval * np.arange(round((ignition + tower.flight) / interval))

@@ -12,7 +12,9 @@ from typing import NamedTuple
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from lowfi.columns import Columns
 from scenes.body import tensor
+from scenes.effects.flight import FlightTable
 from scenes.outcome import Outcome
 from scenes.rail import SectionTable
 from scenes.scene import Scene
@@ -49,15 +51,31 @@ class Start(NamedTuple):
     platform_rate: np.ndarray
 
 
+class Exits(NamedTuple):
+    """Outcomes of n payloads that settled, as arrays, cases first."""
+
+    exit_time: np.ndarray
+    window_start: np.ndarray
+    velocity: np.ndarray
+    rate: np.ndarray
+    lateral_velocity: np.ndarray
+    direction_error: np.ndarray
+    exit_attitude: np.ndarray
+    exit_position: np.ndarray
+    exit_platform_position: np.ndarray
+    exit_platform_velocity: np.ndarray
+    exit_platform_attitude: np.ndarray
+    exit_platform_rate: np.ndarray
+
+
 def bodies(scenes: Iterable[Scene]) -> Bodies:
     """Bodies of every scene, all of them with as many boxes. Without boxes where a size is
     unknown."""
     return Bodies(*map(np.array, zip(*map(_bodies, scenes))))
 
 
-def start(found) -> Start:
-    """State of settled cases from columns of results, or from anything with the same names
-    (``of_outcomes``)."""
+def start(found: Columns | Exits) -> Start:
+    """State of settled cases from columns of results, or from outcomes (``of_outcomes``)."""
     attitude, platform = (
         Rotation.from_rotvec(part).as_matrix()
         for part in (found.exit_attitude, found.exit_platform_attitude)
@@ -74,9 +92,11 @@ def start(found) -> Start:
     )
 
 
-def of_outcomes(outcomes: Sequence[Outcome]) -> Outcome:
-    """Settled outcomes as one of arrays, cases first."""
-    return Outcome(*map(np.array, zip(*outcomes)))
+def of_outcomes(outcomes: Sequence[Outcome]) -> Exits:
+    """Settled outcomes as arrays."""
+    return Exits(
+        **{name: np.array([getattr(each, name) for each in outcomes]) for name in Exits._fields}
+    )
 
 
 def unknown_size(scene: Scene) -> str:
@@ -96,8 +116,14 @@ def unknown_rails(scene: Scene) -> bool:
     return not isinstance(scene.rail, SectionTable)
 
 
-def _size(scene: Scene) -> tuple | None:
-    return scene.flight.body or scene.payload.size
+def table_of(scene: Scene) -> FlightTable:
+    """What the scene says of its flight; a scene that says nothing is refused beforehand."""
+    assert scene.flight is not None
+    return scene.flight
+
+
+def _size(scene: Scene) -> tuple[float, float, float] | None:
+    return table_of(scene).body or scene.payload.size
 
 
 def _bodies(scene: Scene) -> tuple:
@@ -134,9 +160,9 @@ def _origin(scene: Scene, offset: np.ndarray, place: np.ndarray) -> np.ndarray:
 
 def _boxes(scene: Scene) -> list[tuple]:
     """Corners (low, high) of the platform's boxes in scene axes at ignition."""
-    listed = [(box.low, box.high) for box in scene.flight.envelope]
+    listed: list[tuple] = [(box.low, box.high) for box in table_of(scene).envelope]
     rail = scene.rail
-    if unknown_rails(scene):
+    if not isinstance(rail, SectionTable):
         return listed
     gap = rail.gap(scene.contact.clearance if scene.contact else 0.0)
     for corner in dict.fromkeys(pad.position[1:] for pad in scene.pads):

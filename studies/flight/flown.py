@@ -162,7 +162,7 @@ def _passed(flight: Flight, apart: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         middle = 0.5 * (low + high)
         past = short(middle[:, None])[:, 0] >= 0.0
         low, high = np.where(past, low, middle), np.where(past, middle, high)
-    reached = beyond.any(axis=1)
+    reached = beyond[rows, first]
     beside = orbit.places(flight.mean_motion, apart, high[:, None])[:, 0] @ across
     return np.where(reached, high, np.nan), np.where(reached[:, None], beside, np.nan)
 
@@ -236,7 +236,7 @@ def gap(both: Pair, time: np.ndarray) -> np.ndarray:
         "nkji,nkj->nki", frame, apart + np.einsum("nkij,nj->nki", turn, bodies.centre)
     )
     seen = frame.transpose(0, 1, 3, 2) @ turn
-    apart = [
+    gaps = [
         boxes.separation(
             seen,
             middle - bodies.boxes[:, None, box],
@@ -245,7 +245,7 @@ def gap(both: Pair, time: np.ndarray) -> np.ndarray:
         )
         for box in range(bodies.boxes.shape[1])
     ]
-    return np.min(apart, axis=0)
+    return np.min(gaps, axis=0)
 
 
 def clear_after(both: Pair) -> np.ndarray:

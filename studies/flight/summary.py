@@ -12,12 +12,12 @@ import numpy as np
 from scipy.stats import binomtest
 
 from lowfi.columns import Columns
-from scenes.outcome import Outcome
 from scenes.scene import Scene
 from scenes.uncertainty import Uncertainty
 from studies.flight import bodies
 from studies.flight.flown import Flown
 from studies.populations import answers, order_statistics, population
+from studies.populations.answers import Left
 from studies.populations.population import Population
 
 if TYPE_CHECKING:
@@ -93,7 +93,7 @@ _JUDGED = (
 def orbit(scene: Scene) -> dict:
     """The flight asked for, resolved; ``no_clearance`` says why none can be told, empty where it
     can; ``rails_listed`` whether the rails are among the boxes only if the scene lists them."""
-    flight = scene.flight.record()
+    flight = bodies.table_of(scene).record()
     return {
         "mean_motion_rad_s": flight.mean_motion,
         "period_s": 2.0 * np.pi / flight.mean_motion,
@@ -106,7 +106,7 @@ def orbit(scene: Scene) -> dict:
     }
 
 
-def row(found: Flown, left: Columns | Outcome, case: int) -> dict:
+def row(found: Flown, left: Left, case: int) -> dict:
     """One case, and what it ``left`` its rail with; None for what has no value, or is never."""
     values = {item.name: float(item.of(left)[case]) for item in answers.ALL}
     values |= {item.name: float(item.of(found)[case]) for item in QUANTITIES}
@@ -193,7 +193,7 @@ def _share(flags: np.ndarray, independent: bool) -> dict | None:
 
 
 def dataset(
-    names: list[str], single: Flown | None, exits: Outcome | None, many: Flown, left: Columns
+    names: list[str], single: Flown | None, exits: bodies.Exits | None, many: Flown, left: Columns
 ) -> "xarray.Dataset":
     """Every quantity by condition, as it flew and with which ``exits``, and by case, with its unit
     in its name."""
@@ -202,7 +202,7 @@ def dataset(
     variables = {item.name: ("case", item.of(left)) for item in answers.ALL}
     variables |= {item.name: ("case", item.of(many)) for item in QUANTITIES}
     variables |= {name: ("case", of(many)) for name, of in _SIDES.items()}
-    if single is not None:
+    if single is not None and exits is not None:
         variables |= {
             f"condition_{item.name}": ("condition", item.of(exits)) for item in answers.ALL
         }

@@ -12,7 +12,7 @@ L / sqrt(12).
 """
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -135,7 +135,7 @@ def inertia(found: dict[str, float]) -> dict[str, float]:
     }
 
 
-def overrides(base: Scene, found: dict[str, float]) -> dict[str, float]:
+def overrides(base: Scene, found: dict[str, float]) -> dict[str, Any]:
     """Dotted overrides (SI) that turn ``base``, of eight pads at the corners, into the scene of
     these inputs."""
     clearance, width, exponent = found["clearance"], found["width"], found["exponent"]

@@ -86,10 +86,9 @@ def run(
 ) -> Search:
     """One search; the same seed gives the same bits. ``launcher_of`` makes the surrogate for a
     tolerance; ``progress`` takes 0 to 1."""
-    generator, walk = (
-        np.random.default_rng([seed, 7]),
-        _Walk(*map(launcher_of, plan.tolerances), stress, plan, progress),
-    )
+    generator = np.random.default_rng([seed, 7])
+    rough, middle, fine = map(launcher_of, plan.tolerances)
+    walk = _Walk(rough, middle, fine, stress, plan, progress)
     points = generator.random((plan.points, len(UNKNOWNS)))
     order = np.argsort([walk.first(point) for point in points], kind="stable")
     pool = sorted(
@@ -106,7 +105,6 @@ def run(
             pool[place] = end
             pool.sort(key=lambda item: item.misfit)
     best = min((walk.last(end) for end in pool), key=lambda end: end.misfit).shares
-    fine = walk.fine
     return Search(
         stress,
         seed,
@@ -137,7 +135,9 @@ class _Walk:
             stress,
             progress,
         )
-        self.errors, self.sizes, self._met = [], [], []
+        self.errors: list[float] = []
+        self.sizes: list[float] = []
+        self._met: list[np.ndarray] = []
         self._done = 0.0
         self._whole = sum(
             _WORK[kind] * count
@@ -246,8 +246,12 @@ def plain(found: Search) -> dict:
 
 def restored(document: dict) -> Search:
     """Inverse of ``plain``; keys that are none of a search's are passed over."""
-    values = {
-        name: np.array(document[name]) if isinstance(document[name], list) else document[name]
-        for name in Search._fields
-    }
-    return Search(**values)._replace(admissible=values["admissible"].reshape(-1, len(UNKNOWNS)))
+    return Search(
+        stress=document["stress"],
+        seed=document["seed"],
+        shares=np.array(document["shares"]),
+        rates=np.array(document["rates"]),
+        changed=np.array(document["changed"]),
+        admissible=np.array(document["admissible"]).reshape(-1, len(UNKNOWNS)),
+        front=np.array(document["front"]),
+    )

@@ -84,14 +84,16 @@ def source(scene: Scene, tolerances: dict[str, float], cases: int, seed: int) ->
 
 
 def _overrides(scene: Scene, tolerances: dict[str, float], drawn: Numbers) -> Numbers:
-    found = {}
+    found: Numbers = {}
     for name, size in tolerances.items():
         if name in ERRORS:
             value, angle = pointing(size * drawn[name], drawn[f"{name} angle"])
             found |= {f"{ERRORS[name].key}.axial": value, f"{ERRORS[name].key}.radial": angle}
         elif name == CLEARANCE:
+            assert scene.contact is not None
             found["contact.clearance"] = scene.contact.clearance + size * drawn[name]
         else:
+            assert scene.friction is not None
             found |= friction(scene, scene.friction.dynamic + size * drawn[name])
     return found
 

@@ -17,6 +17,7 @@ class _Given(misfit.Launcher):
 def errors(scene: Scene, tolerance: float) -> dict:
     """The name of ``scene``, its largest errors of the nine rates and of their deviations, and its
     largest rate on conditions 1 and 5, all in deg/s."""
+    assert scene.contact is not None
     launcher = _Given(scene, tolerance)
     shares = inputs.shares(
         inputs.values(np.full(len(inputs.UNKNOWNS), 0.5)) | {"exponent": scene.contact.exponent}

@@ -8,11 +8,23 @@ across, its direction, and attitude.
 """
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from lowfi.columns import Columns
+
+class Left(Protocol):
+    """What n payloads left their rails with, named as in ``lowfi.columns.Columns``: rate (n,3)
+    rad/s, lateral_velocity (n,) m/s, direction_error (n,) rad, exit_attitude (n,3) rad."""
+
+    @property
+    def rate(self) -> np.ndarray: ...
+    @property
+    def lateral_velocity(self) -> np.ndarray: ...
+    @property
+    def direction_error(self) -> np.ndarray: ...
+    @property
+    def exit_attitude(self) -> np.ndarray: ...
 
 
 class Quantity(NamedTuple):
@@ -22,14 +34,14 @@ class Quantity(NamedTuple):
     name: str
     label: str
     unit: str
-    of: Callable[[Columns], np.ndarray]
+    of: Callable[[Left], np.ndarray]
 
 
-def _rate(axis: int) -> Callable[[Columns], np.ndarray]:
+def _rate(axis: int) -> Callable[[Left], np.ndarray]:
     return lambda found: np.degrees(found.rate[:, axis])
 
 
-def _attitude(axis: int) -> Callable[[Columns], np.ndarray]:
+def _attitude(axis: int) -> Callable[[Left], np.ndarray]:
     return lambda found: np.degrees(found.exit_attitude[:, axis])
 
 

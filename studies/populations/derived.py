@@ -45,6 +45,7 @@ def friction(scene: Scene, dynamic: np.ndarray) -> Numbers:
     """Overrides of friction in ``scene``, which has some, by coefficients ``dynamic`` (n,): that of
     rest goes along in proportion, for it is the same pair of surfaces, and no draw may slide with
     more friction than it stands with."""
+    assert scene.friction is not None
     return {
         "friction.dynamic": dynamic,
         "friction.static": dynamic * (scene.friction.static / scene.friction.dynamic),

@@ -34,4 +34,5 @@ def bounds(
     """Two-sided bounds of the quantile ``share`` from independent draws (n,); None where n is too
     small for one."""
     found = quantile_test(values, q=0.0, p=share).confidence_interval(confidence)
-    return tuple(None if math.isnan(value) else float(value) for value in found)
+    low, high = (None if math.isnan(value) else float(value) for value in found)
+    return low, high

@@ -123,7 +123,8 @@ def source(scene: Scene, reading: Reading, cases: int, seed: int) -> Derived:
 
 def _laws(scene: Scene, reading: Reading) -> dict[str, Distribution]:
     """What is drawn, by name."""
-    whole_turn, found = law("uniform", low=0.0, high=2.0 * math.pi), {}
+    whole_turn = law("uniform", low=0.0, high=2.0 * math.pi)
+    found: dict[str, Distribution] = {}
     for name, error in ERRORS.items():
         normal = around_zero(error.three_sigma, reading.rule)
         found |= (
@@ -136,6 +137,7 @@ def _laws(scene: Scene, reading: Reading) -> dict[str, Distribution]:
     if reading.angles == "shared":
         found["angle"] = whole_turn
     if reading.initial:
+        assert scene.contact is not None  # or ``source`` has refused the reading
         gap = scene.contact.clearance
         found |= {f"initial.position.{axis}": law("uniform", low=-gap, high=gap) for axis in "yz"}
     return found

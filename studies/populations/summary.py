@@ -15,7 +15,7 @@ from studies.populations import order_statistics
 SHARES = (0.05, 0.5, 0.95, 0.99, 0.9973)
 CONFIDENCE = 0.95
 _SHOWN = 5  # failed cases that are printed; the store lists all
-_VALUES = {
+_VALUES: dict[str, tuple[str, Callable[[np.ndarray], np.ndarray]]] = {
     "rate_deg_s": ("rate", lambda rate: np.degrees(np.linalg.norm(rate, axis=1))),
     "lateral_velocity_mm_s": ("lateral_velocity", lambda speed: 1e3 * speed),
     "direction_error_deg": ("direction_error", np.degrees),

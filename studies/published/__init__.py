@@ -76,7 +76,11 @@ def table_2() -> list[Changed]:
             int(row["condition"]),
             row["parameter"],
             float(row["value"]) > BASELINE[row["parameter"]] if row["value"] else None,
-            tuple(float(row[f"omega_{axis}_deg_s"]) for axis in "xyz"),
+            (
+                float(row["omega_x_deg_s"]),
+                float(row["omega_y_deg_s"]),
+                float(row["omega_z_deg_s"]),
+            ),
         )
         for row in _rows("table2_sensitivity.csv")
     ]

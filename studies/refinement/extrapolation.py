@@ -66,28 +66,28 @@ def extrapolated(sizes: Sequence[float], values: Sequence[float], order: float) 
 def estimate(sizes: Sequence[float], values: Sequence[float | None]) -> Estimate:
     """Uncertainty of the last of the ``values``, from the three finest grids; one that is None was
     not reached."""
-    sizes, values = sizes[-3:], values[-3:]
-    if None in values:
+    sizes, finest = sizes[-3:], [value for value in values[-3:] if value is not None]
+    if len(finest) < len(values[-3:]):
         return Estimate(None, None, None, "a run did not settle")
-    if max(values) == min(values):
-        return _told(None, 0.0, values, "no change at all")
-    order = observed_order(sizes, values)
+    if max(finest) == min(finest):
+        return _told(None, 0.0, finest, "no change at all")
+    order = observed_order(sizes, finest)
     if order is None or order < _LEAST_ORDER:
         why = "not monotone" if order is None else f"order below {_LEAST_ORDER:g}"
         return _told(
             order,
-            _RANGE_FACTOR * 0.5 * (max(values) - min(values)),
-            values,
+            _RANGE_FACTOR * 0.5 * (max(finest) - min(finest)),
+            finest,
             f"{why}: three times half the range",
         )
     if order > METHOD_ORDER:
         return _told(
             order,
-            _uncertainty(sizes, values, METHOD_ORDER),
-            values,
+            _uncertainty(sizes, finest, METHOD_ORDER),
+            finest,
             f"GCI, order limited to {METHOD_ORDER:g}",
         )
-    return _told(order, _uncertainty(sizes, values, order), values, "GCI")
+    return _told(order, _uncertainty(sizes, finest, order), finest, "GCI")
 
 
 def _told(

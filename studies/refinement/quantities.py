@@ -14,7 +14,7 @@ RATE = "settled rate"
 
 def quantities(
     scene: Scene, runs: Sequence[Trajectory]
-) -> Iterator[tuple[str, str, list[float | None]]]:
+) -> Iterator[tuple[str, str, Sequence[float | None]]]:
     """(quantity, unit, value of each run, None where it did not settle); a pad that touches in no
     run is left out."""
     for index, axis in enumerate(AXES):
@@ -22,7 +22,7 @@ def quantities(
     yield (
         "settled axial velocity",
         "m/s",
-        [found.outcome.velocity and found.outcome.velocity[0] for found in runs],
+        [None if found.outcome.velocity is None else found.outcome.velocity[0] for found in runs],
     )
     impulses = [contact_loads.impulses(scene, found) for found in runs]
     for pad in range(len(scene.pads)):
@@ -35,15 +35,16 @@ def quantities(
     if any(found.any() for found in impulses):
         peaks = [contact_loads.filtered_peak(scene, found) for found in runs]
         yield f"peak contact force below {1e-3 * contact_loads.cutoff(scene):g} kHz", "N", peaks
-    patches = [stresses.patch_peak(scene, found) for found in runs]
-    if None not in patches:
+    patches = [peak for found in runs if (peak := stresses.patch_peak(scene, found)) is not None]
+    if len(patches) == len(runs):
         yield (
             f"patch stress below {1e-3 * contact_loads.cutoff(scene):g} kHz",
             "MPa",
             [1e-6 * stress for stress in patches],
         )
-    if all(found.stress for found in runs):
-        yield stresses.PEAK, "MPa", [1e-6 * found.stress["peak_stress_pa"] for found in runs]
+    known = [found.stress for found in runs if found.stress]
+    if len(known) == len(runs):
+        yield stresses.PEAK, "MPa", [1e-6 * stress["peak_stress_pa"] for stress in known]
 
 
 def settled_rate(run: Trajectory) -> list[float | None]:

@@ -57,7 +57,9 @@ def measure(scene: Scene, numerics: Numerics) -> Ripple | None:
     mesh = prepare(pressed, numerics)
     length = facet_length(mesh)
     system = build(pressed, numerics, mesh)
-    facets = int((pressed.rail.end - leading_edge(system.faces)) / length) if length else 0
+    if not length:
+        return None
+    facets = int((pressed.rail.end - leading_edge(system.faces)) / length)
     if facets < _LEAST:
         return None
     loop = Loop(pressed, system, choose(system, pressed, numerics), processors())
@@ -69,6 +71,7 @@ def pressing(scene: Scene) -> Scene:
     """``scene`` with a load into the +y and +z walls, which the pads just touch, and nothing else.
     Effects that are there stay, because a set of effects of its own would be another kernel to
     compile."""
+    assert scene.contact is not None  # or there is nothing to press on
     gap = scene.contact.clearance
     changes = {
         "thrust": {"kind": "gaussian", "peak": _LOAD, "width": 1e4, "centre": 0.0, "arm": 1e-6},

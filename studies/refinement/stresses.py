@@ -20,7 +20,7 @@ SINGULAR = "mesh-dependent: stress has no limit at a sharp corner or clamp"
 def patch_peak(scene: Scene, run: Trajectory) -> float | None:
     """Largest von Mises stress (Pa) of any patch below the cut-off frequency; None for a run
     without patches."""
-    if not run.wall_stress.size:
+    if run.wall_stress is None or not run.wall_stress.size:
         return None
     return float(von_mises(contact_loads.low_passed(scene, run.wall_stress)).max())
 

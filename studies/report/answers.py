@@ -5,7 +5,7 @@ from collections.abc import Callable
 from importlib import import_module
 from typing import NamedTuple
 
-from studies.report.chart import Chart
+from studies.report.chart import Chart, Picture
 from studies.report.markup import Html
 
 
@@ -17,7 +17,7 @@ class Answer(NamedTuple):
     title: str
     link: str
 
-    def draw(self, found: dict, figure: Callable[[Chart, str], Html]) -> Html:
+    def draw(self, found: dict, figure: Callable[[Chart | Picture, str], Html]) -> Html:
         """What stands in its section; ``figure`` puts a chart and its caption on the page."""
         return import_module(f"studies.report.{self.name}").draw(found, figure)
 

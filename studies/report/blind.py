@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable
 
 from studies.report import tables
-from studies.report.chart import Chart
+from studies.report.chart import Chart, Picture
 from studies.report.markup import Html, caption, fold, paragraph, table
 
 _WORDS = (
@@ -14,7 +14,7 @@ _WORDS = (
 )
 
 
-def draw(found: dict, figure: Callable[[Chart, str], Html]) -> Html:
+def draw(found: dict, figure: Callable[[Chart | Picture, str], Html]) -> Html:
     """The section."""
     origin = (
         ", which follows from the sources and the scene: a change of the code draws others"

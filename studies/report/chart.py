@@ -41,8 +41,8 @@ class Line:
     "v", "D", "x" or ""; ``labels`` are texts at the points, ``size`` that of a marker (px); about
     ``kept`` points are on the page."""
 
-    x: Sequence[float]
-    y: Sequence[float]
+    x: Sequence[float] | np.ndarray
+    y: Sequence[float] | np.ndarray
     name: str
     colour: str = NAVY
     width: float = 1.6
@@ -223,6 +223,7 @@ def to_files(chart: Chart | Picture, folder: Path) -> list[Path]:
     if isinstance(chart, Picture):
         return save(chart.figure, folder / chart.name)
     from matplotlib.figure import Figure
+    from matplotlib.lines import Line2D
 
     figure = Figure(
         figsize=(
@@ -232,7 +233,7 @@ def to_files(chart: Chart | Picture, folder: Path) -> list[Path]:
         dpi=130,
         layout="constrained",
     )
-    handles = {}
+    handles: dict[str, Line2D] = {}
     for index, panel in enumerate(chart.panels):
         axes = figure.add_subplot(chart.rows, chart.columns, index + 1)
         for line in panel.lines:

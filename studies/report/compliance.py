@@ -15,18 +15,17 @@ WORDS = (
     "the other wall comes towards the payload."
 )
 _DIRECT, _CROSS = (NAVY, VERMILION, TEAL), (AMBER, GREY)
+# The legs of a symmetric section give way alike: the first line is broad and pale, so that the next
+# shows on it.
+_LOOKS = ((5.0, "-", 0.35), (1.5, "-", 1.0), (1.5, ":", 1.0))  # width, dash, opacity
 
 
 def picture(found: dict) -> Chart:
     """Compliance over the place of the pad, mounts shaded; ``found`` is that part of mesh.json."""
     place = 1e3 * np.array(found["place_m"])
-    # The legs of a symmetric section give way alike: the first line is broad and pale, so that the
-    # next shows on it.
     lines = [
         Line(place, 1e9 * np.array(values), f"{name} wall, pressed itself", colour, *look)
-        for (name, values), colour, look in zip(
-            found["direct_m_per_n"].items(), _DIRECT, ((5.0, "-", 0.35), (1.5, "-"), (1.5, ":"))
-        )
+        for (name, values), colour, look in zip(found["direct_m_per_n"].items(), _DIRECT, _LOOKS)
     ]
     lines += [
         Line(

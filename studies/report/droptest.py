@@ -18,6 +18,7 @@ from studies.report.chart import (
     Chart,
     Line,
     Panel,
+    Picture,
 )
 from studies.report.markup import Html, caption, fold, number, paragraph, table
 
@@ -46,7 +47,7 @@ _SIMULATED = Html(
 )
 
 
-def draw(found: dict, figure: Callable[[Chart, str], Html]) -> str:
+def draw(found: dict, figure: Callable[[Chart | Picture, str], Html]) -> str:
     """Everything in the section."""
     rates, cloud = charts(found)
     notices = [_SIMULATED] if any(row["simulated"] for row in found["tests"]) else []
@@ -138,9 +139,8 @@ def _clouds(found: dict) -> list[Panel]:
                 np.array(region["covariance"]),
                 region["squared_radius"],
             )
-            lines.append(
-                Line(*edge.T, f"{100.0 * region['share']:g} % prediction region", NAVY, 1.8)
-            )
+            words = f"{100.0 * region['share']:g} % prediction region"
+            lines.append(Line(edge[:, 0], edge[:, 1], words, NAVY, 1.8))
         panels.append(
             Panel(
                 "",
@@ -171,7 +171,16 @@ def _clouds(found: dict) -> list[Panel]:
 
 
 def _dots(points: np.ndarray) -> Line:
-    return Line(*points.T, "simulated cases", GREY, dash="", marker="o", size=3.0, opacity=0.45)
+    return Line(
+        points[:, 0],
+        points[:, 1],
+        "simulated cases",
+        GREY,
+        dash="",
+        marker="o",
+        size=3.0,
+        opacity=0.45,
+    )
 
 
 def _tests(found: dict, of: Callable) -> list[Line]:

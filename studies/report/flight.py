@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from studies.flight.summary import WORDS, doubts
 from studies.populations import answers
-from studies.report.chart import AMBER, GREY, NAVY, TEAL, VERMILION, Chart, Line, Panel
+from studies.report.chart import AMBER, GREY, NAVY, TEAL, VERMILION, Chart, Line, Panel, Picture
 from studies.report.markup import Html, caption, number, paragraph, table
 
 _LOOKS = (
@@ -63,7 +63,7 @@ _BOXES = (
 )
 
 
-def draw(found: dict, figure: Callable[[Chart, str], Html]) -> Html:
+def draw(found: dict, figure: Callable[[Chart | Picture, str], Html]) -> Html:
     """The section; ``figure`` puts a chart and its caption on the page."""
     many, judged = found["cases"], found["cases"]["quantiles"]
     rows = [
@@ -304,7 +304,7 @@ def _touching(many: dict) -> str:
 
 
 def _cone(row: dict | None) -> str | None:
-    return row and f"{row['cone_least_deg']:.3g} to {row['cone_largest_deg']:.3g}"
+    return f"{row['cone_least_deg']:.3g} to {row['cone_largest_deg']:.3g}" if row else None
 
 
 def _quantile(row: dict) -> str:

@@ -53,7 +53,7 @@ def picture(found: list[dict]) -> Chart:
     return Chart("growth", panels, columns=min(3, max(1, len(panels))), height=270)
 
 
-def _lines(item: dict, look: tuple, marker: str) -> list[Line]:
+def _lines(item: dict, look: tuple[str, float, str, float], marker: str) -> list[Line]:
     """The curve of one model and its horizon; nothing where twins do not part."""
     known = [
         (1e3 * time, apart)
@@ -62,7 +62,8 @@ def _lines(item: dict, look: tuple, marker: str) -> list[Line]:
     ]
     if not known:
         return []
-    curve = Line(*zip(*known), item["model"], *look)
+    times, separations = zip(*known)
+    curve = Line(times, separations, item["model"], *look)
     if item["horizon_s"] is None:
         return [curve]
     return [

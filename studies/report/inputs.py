@@ -6,10 +6,12 @@ import typing
 from collections.abc import Iterator
 from typing import Any
 
+import numpy as np
 from pydantic import BaseModel
 
 from scenes import provenance as origin
 from scenes.effects import thrust_law
+from scenes.effects.thrust import GaussiansTable, GaussianTable
 from scenes.scene import Scene
 from scenes.units import registry
 from studies.report.markup import Html, code, fold, number, table, text
@@ -86,6 +88,7 @@ def scene_tables(scene: Scene) -> Html:
     rows = []
     for key, value, unit, stated in values(scene):
         if key == "contact.stiffness":
+            assert scene.contact is not None
             unit = f"N/m**{scene.contact.exponent:g}"
         rows.append(
             (
@@ -152,7 +155,7 @@ def thrust_facts(scene: Scene) -> Html:
     rows = [
         ("impulse delivered within the scene", f"{delivered:.6g} N s"),
         ("velocity it gives the payload alone", f"{delivered / scene.payload.mass:.5g} m/s"),
-        ("thrust at ignition", f"{thrust_law.sample(record, [0.0])[0]:.4g} N"),
+        ("thrust at ignition", f"{thrust_law.sample(record, np.zeros(1))[0]:.4g} N"),
     ]
     if record.pulses is not None:
         p = record.pulses
@@ -164,15 +167,11 @@ def thrust_facts(scene: Scene) -> Html:
                 "before ignition, after the end, or beyond the cutoff",
             )
         )
-        cutoff = getattr(scene.thrust, "cutoff", None)
-        rows.append(
-            (
-                "cutoff",
-                "none"
-                if not cutoff
-                else f"{cutoff:g} widths, {'rescaled' if scene.thrust.rescale else 'not rescaled'}",
-            )
-        )
+        cut = "none"
+        if isinstance(scene.thrust, (GaussianTable, GaussiansTable)) and scene.thrust.cutoff:
+            kept = "rescaled" if scene.thrust.rescale else "not rescaled"
+            cut = f"{scene.thrust.cutoff:g} widths, {kept}"
+        rows.append(("cutoff", cut))
     if scene.thrust.kind == "measured":
         fit = scene.thrust.fit()
         rows.append(

@@ -1,11 +1,12 @@
 """Certified tolerances on the page: a table beside the paper's advice, how often limits are missed
 by tolerance, a map of two."""
 
+from collections.abc import Callable
 from html import escape
 
 from studies.limits.search import ALL, FOUND, NONE, SMALL
 from studies.populations import exceedance, population
-from studies.report.chart import AMBER, GREY, NAVY, TEAL, VERMILION, Chart, Line, Panel
+from studies.report.chart import AMBER, GREY, NAVY, TEAL, VERMILION, Chart, Line, Panel, Picture
 from studies.report.markup import Html, caption, fold, number, paragraph, table
 from studies.report.montecarlo import bounded
 
@@ -43,7 +44,7 @@ def charts(found: dict) -> list[tuple[Chart, str]]:
     )
 
 
-def draw(found: dict, figure) -> Html:
+def draw(found: dict, figure: Callable[[Chart | Picture, str], Html]) -> Html:
     """What stands in the section."""
     others = "as the scene has them" if found["asked"]["others"] == "scene" else "zero"
     words = _TABLE.format(
@@ -273,7 +274,7 @@ def _map(found: dict) -> Chart:
             size=10.0,
         ),
     ]
-    labels = [
+    across, upwards = (
         f"tolerance of {words} ({unit})" for words, unit in zip(shown["words"], shown["units"])
-    ]
-    return Chart("limits-map", [Panel("", *labels, lines)], height=380)
+    )
+    return Chart("limits-map", [Panel("", across, upwards, lines)], height=380)

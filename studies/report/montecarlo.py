@@ -1,11 +1,12 @@
 """Random errors on the page: distributions, tails, convergence, what the reading of the table
 changes, and both surrogates."""
 
+from collections.abc import Callable
 from html import escape
 
 import numpy as np
 
-from studies.report.chart import AMBER, GREY, NAVY, TEAL, VERMILION, Chart, Line, Panel
+from studies.report.chart import AMBER, GREY, NAVY, TEAL, VERMILION, Chart, Line, Panel, Picture
 from studies.report.markup import Html, caption, fold, number, paragraph, table
 
 _RATES = ("rate_x_deg_s", "rate_y_deg_s", "rate_z_deg_s")
@@ -57,7 +58,7 @@ def charts(found: dict) -> list[tuple[Chart, str]]:
     return made
 
 
-def draw(found: dict, figure) -> Html:
+def draw(found: dict, figure: Callable[[Chart | Picture, str], Html]) -> Html:
     """What stands in the section."""
     said = "".join(f"<li>{escape(line[0].upper() + line[1:])}.</li>" for line in found["findings"])
     histograms, convergence, *models = [figure(chart, words) for chart, words in charts(found)]

@@ -22,7 +22,7 @@ from studies.report import (
     stress,
     tables,
 )
-from studies.report.chart import Chart, to_files, to_html
+from studies.report.chart import Chart, Picture, to_files, to_html
 from studies.report.figures import Runs
 from studies.report.markup import Html, caption, code, number, paragraph, section, table
 from studies.report.promises import promises, render
@@ -147,7 +147,7 @@ class Page:
             f"makes it.</div>"
         )
 
-    def _figure(self, chart: Chart, words: str) -> Html:
+    def _figure(self, chart: Chart | Picture, words: str) -> Html:
         self.pictures += to_files(chart, self.folder / "figures")
         return Html(to_html(chart) + caption(words))
 
@@ -179,7 +179,7 @@ class Page:
             )
         boxes = ""
         if speed := agreement.get("speedup_compliant"):
-            facts = (
+            facts: tuple[tuple[str, str], ...] = (
                 (f"{speed['highfi_wall_s']:.3g} s", "one reference run"),
                 (f"{1e3 * speed['lowfi_wall_s']:.3g} ms", "one surrogate run"),
                 (

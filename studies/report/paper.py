@@ -8,7 +8,7 @@ import numpy as np
 from studies import published
 from studies.paper import told
 from studies.populations import answers
-from studies.report.chart import AMBER, GREY, NAVY, TEAL, VERMILION, Chart, Line, Panel
+from studies.report.chart import AMBER, GREY, NAVY, TEAL, VERMILION, Chart, Line, Panel, Picture
 from studies.report.markup import Html, caption, code, fold, number, paragraph, table
 
 _AXES = tuple(zip("xyz", (NAVY, VERMILION, AMBER), ("o", "s", "^")))
@@ -27,7 +27,7 @@ _AT_EXIT = (
 )
 
 
-def draw(found: dict, figure: Callable[[Chart, str], Html]) -> Html:
+def draw(found: dict, figure: Callable[[Chart | Picture, str], Html]) -> Html:
     """The section."""
     trade, beside = charts(found)
     best = found["searches"][found["best"]]
@@ -180,9 +180,9 @@ def _traded(found: dict, title: str, across: tuple[str, str], upwards: tuple[str
             for item in found["searches"]
             if bool(item["stress"]) is asked
         ]
-        lines += (
-            [Line(*zip(*ends), f"ended, {name}", colour, dash="", marker=marker)] if ends else []
-        )
+        if ends:
+            x, y = zip(*ends)
+            lines.append(Line(x, y, f"ended, {name}", colour, dash="", marker=marker))
     return Panel(title, across[1], upwards[1], lines, log=True)
 
 
@@ -325,7 +325,7 @@ def _verdict(found: dict) -> str:
 def _headline(found: dict) -> Html:
     """Cost of one case in both fidelities, the paper's beside ours."""
     printed, ours = found["headline"], found["ours"]
-    rows = [
+    rows: list[tuple[str | None, ...]] = [
         (
             "the paper",
             "LS-DYNA, 4 million hexahedra",
@@ -389,7 +389,7 @@ def _inputs(found: dict) -> Html:
         "of the bounds, at least",
         "why these bounds",
     )
-    return table(heads, rows, dense=True) + paragraph(admissible(found))
+    return Html(table(heads, rows, dense=True) + paragraph(admissible(found)))
 
 
 def _searches(found: dict) -> Html:

@@ -43,7 +43,8 @@ _NOT_MEASURED = (
 
 def promises(rows: dict[str, list[dict]], documents: dict[str, dict | None]) -> list[Promise]:
     """All promises; ``rows`` are the condition rows of every run by fidelity."""
-    found = [
+    agreement, calibration = documents.get("agreement"), documents.get("calibration")
+    found: list[Promise | None] = [
         _check(name, rows[fidelity], limit, words)
         for name, fidelity, limit, words in _CHECKS
         if rows[fidelity]
@@ -54,9 +55,9 @@ def promises(rows: dict[str, list[dict]], documents: dict[str, dict | None]) -> 
         _friction([*rows["highfi"], *rows["lowfi"]]),
         _finite(rows),
     ]
-    if documents.get("agreement"):
-        found.append(_same_bits(documents["agreement"]["speedup"]))
-    found.append(_calibration(documents.get("calibration"), documents.get("agreement")))
+    if agreement:
+        found.append(_same_bits(agreement["speedup"]))
+    found.append(_calibration(calibration, agreement))
     return [item for item in found if item] + [
         Promise(words, "not measured by this report", "", None) for words in _NOT_MEASURED
     ]

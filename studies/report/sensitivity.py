@@ -83,7 +83,7 @@ def pictures(found: dict) -> list[tuple[Chart | Picture, str]]:
     ]
 
 
-def draw(found: dict, figure: Callable[[Chart, str], Html]) -> Html:
+def draw(found: dict, figure: Callable[[Chart | Picture, str], Html]) -> Html:
     """The section: tables of contact constants, then indices."""
     drawn = "".join(figure(*item) for item in pictures(found))
     # What a quantity depends on most is in the map; the words of the command line would only repeat

@@ -41,7 +41,7 @@ _MAP = (
 def pictures(found: dict) -> list[tuple[Chart | Picture, str]]:
     """Every figure of the study and its caption."""
     given = found["launches"][0]
-    drawn = [(_growth(found), _GROWTH)]
+    drawn: list[tuple[Chart | Picture, str]] = [(_growth(found), _GROWTH)]
     for factor in given["factors"]:
         angle = _ANGLE[factor["name"]]
         drawn.append(
@@ -73,7 +73,8 @@ def _jumping(jumps: list[float | None]) -> str:
 def _scatter(factor: dict) -> Chart:
     sizes, angles = np.array(factor["sizes"]), np.array(factor["angles_deg"])
     size, angle = np.meshgrid(sizes, angles, indexing="ij")
-    over_size, over_angle = [], []
+    over_size: list[Line] = []
+    over_angle: list[Line] = []
     for place, (name, (axis, marker, _)) in enumerate(_LOOKS.items()):
         rates = np.array(factor["values"][name], dtype=float).ravel()
         told = np.isfinite(rates)
@@ -159,6 +160,7 @@ def _grown(launch: dict, factor: dict) -> Panel:
 
 
 def _map(factor: dict, faces: list[str]) -> Picture:
+    from matplotlib.artist import Artist
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
@@ -179,7 +181,7 @@ def _map(factor: dict, faces: list[str]) -> Picture:
         place.set_rticks([0.5, 1.0])
         place.grid(linewidth=0.3)
     axes[1, 2].set_axis_off()
-    handles = [
+    handles: list[Artist] = [
         Patch(facecolor=colour, edgecolor=GREY, label=f"wall at {wall}")
         for wall, colour in _WALLS.items()
     ]

@@ -4,7 +4,7 @@ none, and the figures."""
 from collections.abc import Callable
 
 from studies.populations import answers
-from studies.report.chart import Chart
+from studies.report.chart import Chart, Picture
 from studies.report.markup import Html, caption, fold, number, paragraph, percent, table
 from studies.report.sweep_figures import pictures
 from studies.sweeps.knee import LEVEL, MISFIT
@@ -54,7 +54,7 @@ _REASON = (
 )
 
 
-def draw(found: dict, figure: Callable[[Chart, str], Html]) -> Html:
+def draw(found: dict, figure: Callable[[Chart | Picture, str], Html]) -> Html:
     """The section: what was run, verdicts, why, then figures."""
     parts = [_counts(found["launches"])]
     for launch in found["launches"]:
@@ -167,4 +167,4 @@ def _why(launches: list[dict]) -> Html:
 def _late_rise(values: list[float | None]) -> float | None:
     """Change over the upper half of the sizes."""
     first, last = values[len(values) // 2 - 1], values[-1]
-    return None if None in (first, last) else last - first
+    return None if first is None or last is None else last - first

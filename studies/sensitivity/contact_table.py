@@ -42,6 +42,7 @@ class Change(NamedTuple):
 def changes(scene: Scene, model: str) -> list[Change]:
     """What is moved in ``scene``, which has contact: nothing first, then each constant of the
     contact of ``model`` down and up, then the clearance."""
+    assert scene.contact is not None
     found = [Change("baseline", None, 0.0, {})]
     for name, (symbol, share) in (_COMPLIANT if model == COMPLIANT else _MOVED).items():
         if (value := getattr(scene.contact, name, None)) is not None:
@@ -88,10 +89,10 @@ def rows(
 ) -> list[dict]:
     """Rows of the table for one condition; ``rates`` (n,3) in deg/s, NaN where a case did not
     settle, and any ``others`` (n,) by name: their ``values``, and by how much each ``moved``."""
-    found = []
+    found, columns = [], others or {}
     for place, (change, rate) in enumerate(zip(changed, rates)):
         settled = bool(np.isfinite(rate).all() and np.isfinite(rates[0]).all())
-        values = {name: float(column[place]) for name, column in (others or {}).items()}
+        values = {name: float(column[place]) for name, column in columns.items()}
         found.append(
             {
                 "condition": condition,
@@ -106,7 +107,7 @@ def rows(
                     else {"absolute_deg_s": None, "relative": None}
                 ),
                 "values": values if settled else None,
-                "moved": {name: value - float(others[name][0]) for name, value in values.items()}
+                "moved": {name: value - float(columns[name][0]) for name, value in values.items()}
                 if settled
                 else None,
             }
@@ -117,9 +118,11 @@ def rows(
 def of_paper() -> list[dict]:
     """Table 2 of the paper with the deviations that follow from its rates."""
     names = {number: name for name, number in published.CONDITIONS.items()}
-    found, baseline = [], None
+    found = []
+    baseline: tuple[float, float, float] | None = None
     for row in published.table_2():
         baseline = row.rates if row.raised is None else baseline
+        assert baseline is not None  # the first row of each condition
         found.append(
             {
                 "condition": names[row.condition],

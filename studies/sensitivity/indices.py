@@ -47,7 +47,7 @@ def points(count: int, inputs: int, seed: int) -> np.ndarray:
 def whole_blocks(settled: np.ndarray, inputs: int) -> np.ndarray:
     """Which base points (n,) have a result in each of their d + 2 cases; ``settled`` (n (d +
     2),)."""
-    return settled.reshape(-1, inputs + 2).all(axis=1)
+    return np.all(settled.reshape(-1, inputs + 2), axis=1)
 
 
 def indices(
@@ -74,7 +74,11 @@ def indices(
         seed=seed,
     )
     return Indices(
-        *(np.asarray(found[name]) for name in ("S1", "S1_conf", "ST", "ST_conf")), len(blocks)
+        first=np.asarray(found["S1"]),
+        first_half_width=np.asarray(found["S1_conf"]),
+        total=np.asarray(found["ST"]),
+        total_half_width=np.asarray(found["ST_conf"]),
+        points=len(blocks),
     )
 
 

@@ -25,6 +25,7 @@ from calibrate.parameters import REFERENCE_PENETRATION
 from scenes import overrides as keys
 from scenes import reading
 from scenes.distributions import BY_NAME, Distribution
+from scenes.effects.contact import LinearTable
 from scenes.faults import Fault, SceneError, faults_of
 from scenes.fidelity import COMPLIANT, SPRINGS
 from scenes.files import content_hash
@@ -72,16 +73,15 @@ class Tolerances(NamedTuple):
         }
         if "contact.exponent" in found:
             contact = self.scene.contact
+            assert contact is not None  # without it the exponent is left out
             stiffness = found.get("contact.stiffness", contact.stiffness)
             found["contact.stiffness"] = stiffness * REFERENCE_PENETRATION ** (
                 contact.exponent - found["contact.exponent"]
             )
-        if (
-            "friction.dynamic" in found
-            and "friction.static" not in found
-            and self.scene.friction.dynamic > 0.0
-        ):
-            found |= friction(self.scene, found["friction.dynamic"])
+        if "friction.dynamic" in found and "friction.static" not in found:
+            assert self.scene.friction is not None  # without it the coefficient is left out
+            if self.scene.friction.dynamic > 0.0:
+                found |= friction(self.scene, found["friction.dynamic"])
         polar = _polar(found)
         return [
             dict(zip(polar, values))
@@ -97,15 +97,11 @@ def digest(path: str | Path) -> str:
 def load(path: str | Path, scene: Scene, model: str = COMPLIANT) -> Tolerances:
     """What a file says of ``scene``, for the surrogate of the name ``model``. Raises SceneError
     listing every fault."""
-    raw, source, faults, found, left_out = (
-        reading.toml(Path(path), str(path)),
-        str(path),
-        [],
-        [],
-        {},
-    )
+    raw, source = reading.toml(Path(path), str(path)), str(path)
+    found: list[Input] = []
+    left_out: dict[str, str] = {}
     known = ("description", *_KINDS)
-    faults += [
+    faults = [
         Fault(source, key, "no such key", f"one of {', '.join(known)}")
         for key in raw
         if key not in known
@@ -188,7 +184,7 @@ def _idle(item: Input, scene: Scene, model: str) -> str | None:
         return "compliant contact has no such constant"
     if model == SPRINGS and item.key == "contact.penalty":
         return "only compliant contact uses it"
-    if item.key == "contact.exponent" and scene.contact.law == "linear":
+    if item.key == "contact.exponent" and isinstance(scene.contact, LinearTable):
         return "the law is linear"
     if item.nominal is None and (item.is_factor or table in ("contact", "friction", "thrust")):
         return "the scene has no such number"
@@ -207,7 +203,8 @@ def _number(scene: Scene, key: str) -> float | None:
             return table[int(part)] if part.isdigit() and int(part) < len(table) else None
         return getattr(table, part, None)
 
-    return reduce(inside, key.split("."), scene)
+    whole: Any = scene
+    return reduce(inside, key.split("."), whole)
 
 
 def _component(key: str) -> tuple[str, str] | None:
@@ -228,7 +225,8 @@ def _stored(key: str) -> str:
 
 def _polar(columns: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     """The same with components of offsets turned into sizes and angles."""
-    found, offsets = {}, {}
+    found: dict[str, np.ndarray] = {}
+    offsets: dict[str, dict[str, np.ndarray]] = {}
     for key, column in columns.items():
         if component := _component(key):
             offsets.setdefault(component[0], {})[component[1]] = column

@@ -158,7 +158,8 @@ def _spinning() -> Scene:
     """A launcher that turns at 0.5 rad/s while the payload creeps along 3 m of rail, held in a
     corner by a thrust across it."""
     rate, arm = np.array([0.5, 0.003, -0.002]), np.array([0.1, 1.2e-4, 1.2e-4])
-    turning, carried = dict(zip("xyz", rate.tolist())), [*np.cross(rate, arm), 0.12, 0.0, 0.0]
+    turning = dict(zip("xyz", rate.tolist()))
+    carried = np.cross(rate, arm) + np.array([0.12, 0.0, 0.0])
     pads = [
         {
             "position": [0.08 * x, 0.1 * y, 0.1 * z],

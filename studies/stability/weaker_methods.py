@@ -6,13 +6,15 @@ nothing.
 """
 
 from collections.abc import Callable
+from typing import TypeVar
 
 import numpy as np
 
-Acceleration = Callable[[float, np.ndarray, np.ndarray], np.ndarray]
+X = TypeVar("X", float, np.ndarray)
+Acceleration = Callable[[float, X, X], X]
 
 
-def runge_kutta(acceleration: Acceleration, x, v, step: float, count: int):
+def runge_kutta(acceleration: Acceleration[X], x: X, v: X, step: float, count: int) -> tuple[X, X]:
     """Position and velocity after ``count`` steps of the classical Runge-Kutta method."""
     for n in range(count):
         t = n * step
@@ -28,7 +30,9 @@ def runge_kutta(acceleration: Acceleration, x, v, step: float, count: int):
     return x, v
 
 
-def semi_implicit_euler(acceleration: Acceleration, x, v, step: float, count: int):
+def semi_implicit_euler(
+    acceleration: Acceleration[X], x: X, v: X, step: float, count: int
+) -> tuple[X, X]:
     """Velocity first, then position with the new velocity."""
     for n in range(count):
         v = v + step * acceleration(n * step, x, v)
@@ -36,7 +40,9 @@ def semi_implicit_euler(acceleration: Acceleration, x, v, step: float, count: in
     return x, v
 
 
-def explicit_euler(acceleration: Acceleration, x, v, step: float, count: int):
+def explicit_euler(
+    acceleration: Acceleration[X], x: X, v: X, step: float, count: int
+) -> tuple[X, X]:
     """Both from the old state."""
     for n in range(count):
         x, v = x + step * v, v + step * acceleration(n * step, x, v)

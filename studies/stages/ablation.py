@@ -11,6 +11,7 @@ so that what else the machine does meets each alike.
 import importlib
 import statistics
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -22,7 +23,7 @@ from studies.stages import compliance
 from studies.store import SOURCES, Run
 from studies.study import Study
 
-ADDED = {
+ADDED: dict[str, dict[str, Any]] = {
     "thrust_offset": {
         "thrust_offset.misalignment.axial": "0.1 deg",
         "thrust_offset.misalignment.radial": "35 deg",

@@ -9,6 +9,7 @@ it.
 import math
 from collections.abc import Iterable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -48,7 +49,7 @@ def run(study: Study) -> dict:
 def of_models(study: Study, model: str | None = None) -> dict:
     """What the surrogate's ``model`` takes from the finite elements, or both models, None:
     ``compliance`` and ``springs`` as their result files hold them."""
-    found = {"scene": study.scene.name}
+    found: dict[str, Any] = {"scene": study.scene.name}
     if model != COMPLIANT:
         study.fitted()  # a scene without any is refused before the compliance is found
     if model != SPRINGS:

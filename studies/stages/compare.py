@@ -82,6 +82,7 @@ def run(study: Study) -> dict:
     compliant surrogate, ``simpler`` walls, ``stiffer`` penalty."""
     study.fitted()
     _, calibrated, on_walls, modal = ladder = rungs(study)
+    assert calibrated.calibration is not None
     gates = verdicts.gates(study.scene)
 
     def make() -> tuple[dict, list[Path]]:
@@ -259,7 +260,9 @@ def _twins(
 
 
 def clearances(study: Study) -> list[tuple[str, float]]:
-    """The perturbed clearances (m) that are physical: a closed gap is only opened."""
+    """The perturbed clearances (m) that are physical, of a scene with contact: a closed gap is only
+    opened."""
+    assert study.scene.contact is not None
     nominal, change = study.scene.contact.clearance, study.settings.clearance_change
     return [
         (sign, value)
@@ -308,6 +311,7 @@ def refined(study: Study, name: str) -> dict[str, Run]:
 
 
 def _more_penalty(study: Study) -> dict[str, float]:
+    assert study.scene.contact is not None  # or nobody asks for more
     return {"contact.penalty": 4.0 * study.scene.contact.penalty}
 
 

@@ -145,10 +145,10 @@ def _judged(
     other stage runs."""
     rows = []
     for quantity, its_unit, values in quantities(scene, runs):
-        found, at_nominal = estimate(sizes, values), values[sizes.index(nominal)]
+        found = estimate(sizes, values)
+        at_nominal, finest = values[sizes.index(nominal)], values[-1]
         if quantity == stresses.PEAK and parameter == "element size":
             found = Estimate(found.order, None, None, stresses.SINGULAR)
-        unknown = None in (found.uncertainty, at_nominal)
         rows.append(
             {
                 "quantity": quantity,
@@ -160,8 +160,8 @@ def _judged(
                 **asdict(found),
                 "nominal_size": nominal,
                 "nominal_uncertainty": None
-                if unknown
-                else found.uncertainty + abs(at_nominal - values[-1]),
+                if found.uncertainty is None or at_nominal is None or finest is None
+                else found.uncertainty + abs(at_nominal - finest),
             }
         )
     return rows

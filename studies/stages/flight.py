@@ -9,9 +9,9 @@ import numpy as np
 from lowfi.columns import Columns
 from lowfi.rows import Drawn
 from scenes import uncertainty
+from scenes.effects.flight import FlightTable
 from scenes.faults import Fault, SceneError
 from scenes.files import sealed
-from scenes.outcome import Outcome
 from scenes.scene import Scene
 from scenes.variation import Variations
 from studies.flight import bodies, curves, flown, summary
@@ -96,10 +96,15 @@ def _key(study: Study, asked: Asked) -> str:
         for name, scene in study.conditions.items()
     }
     varied = uncertainty.load(asked.vary, study.scene).resolved()
-    own = study.scene.flight.model_dump(mode="json")
+    own = _flight(study.scene).model_dump(mode="json")
     return study.key(
         SOURCES["calibrated"], NAME, own, tables, asdict(asked), varied, study.settings.element_size
     )
+
+
+def _flight(scene: Scene) -> FlightTable:
+    assert scene.flight is not None  # which is required of every scene
+    return scene.flight
 
 
 def _require(scenes: dict[str, Scene]) -> None:
@@ -120,7 +125,7 @@ def _require(scenes: dict[str, Scene]) -> None:
 
 def _conditions(
     study: Study, asked: Asked
-) -> tuple[list[dict], list[dict], flown.Flown | None, Outcome | None]:
+) -> tuple[list[dict], list[dict], flown.Flown | None, bodies.Exits | None]:
     """A row for every condition, curves of the first that settled, what was found for all that did,
     and their outcomes as arrays."""
     runs = []
@@ -132,7 +137,7 @@ def _conditions(
     exits = {name: bodies.of_outcomes([ended[name].outcome]) for name in settled}
     pairs = {
         name: flown.pair(
-            study.conditions[name].flight.record(),
+            _flight(study.conditions[name]).record(),
             bodies.bodies([study.conditions[name]]),
             bodies.start(exits[name]),
         )
@@ -181,7 +186,7 @@ def _cases(study: Study, asked: Asked, drawn: Drawn) -> tuple[dict, flown.Flown,
         label = f"{len(which):,} flights"
         left = Columns(*(part[which] for part in cases.results))
         many = flown.fly(
-            study.scene.flight.record(), parted, bodies.start(left), board.callback(label)
+            _flight(study.scene).record(), parted, bodies.start(left), board.callback(label)
         )
         board.finished(label, "flown")
     return summary.cases(many, cases, drawn.uncertainty), many, left

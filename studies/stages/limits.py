@@ -20,7 +20,7 @@ from studies.checked import together
 from studies.limits import constants, search, within
 from studies.limits.inputs import DRAWS, Asked, checked
 from studies.limits.search import Found
-from studies.limits.within import SETS, Cases, Factor
+from studies.limits.within import ADVISED, SETS, Cases, Factor
 from studies.populations import answers, exceedance, population, spread
 from studies.populations.exceedance import Limit
 from studies.populations.population import Surrogate
@@ -101,7 +101,9 @@ class _Answers:
         )
         self.model = model if asked.others == "scene" else within.without_errors(model)
         self.factors = within.factors(self.model.scene)
-        self.allowed = exceedance.allowed(cases, asked.probability, asked.confidence)
+        allowed = exceedance.allowed(cases, asked.probability, asked.confidence)
+        assert allowed is not None  # so many cases were asked for
+        self.allowed = allowed
         overrides, self.drawn = (
             ([], [])
             if model.calibration is None
@@ -271,7 +273,7 @@ class _Answers:
             "names": list(PAIR),
             "words": [factor.words for factor in pair],
             "units": [factor.unit for factor in pair],
-            "advised": [factor.advised / factor.scale for factor in pair],
+            "advised": [ADVISED[name] / factor.scale for name, factor in zip(PAIR, pair)],
             "points": points,
         }
 

@@ -8,6 +8,7 @@ says that three drop tests lie within them.
 
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -64,7 +65,7 @@ def run(study: Study, asked: Asked = Asked()) -> dict:
                 f"reasons are in "
                 f"{found.store}/done"
             )
-        made = {
+        made: dict[str, Any] = {
             "asked": _plain(asked),
             "reading": asked.reading.words,
             "store": found.store,

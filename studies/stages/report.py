@@ -51,7 +51,8 @@ def run(study: Study, every: bool = False) -> dict:
     """Runs what is missing and writes report.html; ``failed`` repeats what failed in any stage.
     With ``every``, each study that has no present result is made too; one that the scene gives no
     occasion for says so on the page."""
-    documents, problems = {}, {}
+    documents: dict[str, dict | None] = {}
+    problems: dict[str, str] = {}
     for name, stage in STAGES.items():
         try:
             documents[name] = stage(study)
@@ -125,6 +126,7 @@ def beside(folder: Path) -> list[dict]:
         other = Study(scenes.load(name), path.parent, replace(defaults(name), element_size=size))
         if agreement := compare.stored(other):
             calibration = read(other.path("calibration.json"))
+            assert calibration is not None  # with which the agreement was found
             found.append(
                 {
                     "name": name,

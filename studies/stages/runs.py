@@ -45,16 +45,15 @@ def run(study: Study, fidelity: str) -> dict:
 def row(name: str, run: Trajectory, path: str) -> dict:
     """One condition as result files hold it; a run that did not settle has ``settled`` null."""
     result, cost, checks = run.outcome, run.cost, run.checks
-    settled = (
-        None
-        if result.rate is None
-        else {
+    settled = None
+    if result.rate is not None:
+        assert result.direction_error is not None  # all of them are known, or none
+        settled = {
             "velocity_m_s": result.velocity,
             "rate_deg_s": [math.degrees(rate) for rate in result.rate],
             "lateral_velocity_m_s": result.lateral_velocity,
             "direction_error_deg": math.degrees(result.direction_error),
         }
-    )
     found = {
         "condition": name,
         "model": run.model,

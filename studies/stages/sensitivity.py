@@ -113,8 +113,10 @@ def _tables(study: Study, model: Surrogate, asked: Asked) -> list[dict]:
 
 
 def _table(study: Study, model: Surrogate) -> dict:
+    contact = model.scene.contact
+    assert contact is not None  # or there was no table
     changed = contact_table.changes(model.scene, model.name)
-    names = contact_table.conditions(study.scene) or [None]
+    names: list[str | None] = [*contact_table.conditions(study.scene)] or [None]
     rows = [
         (study.scene.conditions[name] if name else {}) | change.overrides
         for name in names
@@ -128,7 +130,6 @@ def _table(study: Study, model: Surrogate) -> dict:
         part = slice(place * count, (place + 1) * count)
         others = {key: column[part] for key, column in values.items()}
         table += contact_table.rows(name or study.scene.name, changed, rates[part], others)
-    contact = model.scene.contact
     return {
         "law": contact.law,
         "constants_si": contact.model_dump(mode="json", exclude={"law"}),

@@ -12,6 +12,7 @@ import subprocess
 import sys
 import tempfile
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -20,6 +21,9 @@ from scenes.trajectory import Trajectory
 from studies.progress import Board, say
 from studies.store import SOURCES, Run
 from studies.study import Study, read, require_success
+
+if TYPE_CHECKING:
+    from studies.view.frames import Camera
 
 FRAMES = 60
 _SHOWN = 8e-3  # m that the largest deformation may take up in a picture
@@ -99,6 +103,7 @@ def _folder(study: Study, name: str) -> Path:
 def chosen(frames: int, known: Trajectory) -> list[int]:
     """Samples to show: evenly spread over the run, one of them moved to the moment of the peak
     stress."""
+    assert known.stress is not None  # as of every run of the reference that went well
     last = known.time.size - 1
     samples = sorted({round(place) for place in np.linspace(0, last, min(frames, last + 1))})
     peak = int(np.abs(known.time - known.stress["peak_stress_time_s"]).argmin())
@@ -112,7 +117,7 @@ class _Observer:
 
     def __init__(self, folder: Path, samples: list[int]):
         self.folder, self.samples = folder, set(samples)
-        self.camera, self.boxes, self.pads = None, None, None
+        self.shared: tuple[Camera, np.ndarray, np.ndarray] | None = None
         self.frames: list[dict] = []
         self.low, self.high = np.full(3, np.inf), np.full(3, -np.inf)
 
@@ -122,15 +127,13 @@ class _Observer:
 
         if len(loop.rows) - 1 not in self.samples:
             return
-        if self.camera is None:
-            self.camera = views.Camera(loop)
-            self.boxes, self.pads = views.bodies(loop.scene, loop.system.model)
-        frame, mesh = self.camera.take(loop), loop.system.mesh
-        paths = vtk_files.write_frame(
-            self.folder, len(self.frames), frame, mesh, self.boxes, self.pads
-        )
+        if self.shared is None:
+            self.shared = views.Camera(loop), *views.bodies(loop.scene, loop.system.model)
+        camera, boxes, pads = self.shared
+        frame, mesh = camera.take(loop), loop.system.mesh
+        paths = vtk_files.write_frame(self.folder, len(self.frames), frame, mesh, boxes, pads)
         self._widen(mesh.points)
-        self._widen((self.boxes @ frame.turn.T + frame.centre).reshape(-1, 3))
+        self._widen((boxes @ frame.turn.T + frame.centre).reshape(-1, 3))
         self.frames.append(
             {
                 "time_s": frame.time,
@@ -187,6 +190,7 @@ def _document(
     )
     vtk_files.discard_others(folder, files)
     stress = known.stress
+    assert stress is not None  # by which the frames were chosen
     at_peak = min(
         range(len(taken.frames)),
         key=lambda index: abs(taken.frames[index]["time_s"] - stress["peak_stress_time_s"]),
@@ -258,6 +262,7 @@ def _draw(document: dict, folder: Path) -> tuple[list[str], str]:
             text=True,
             cwd=Path(__file__).resolve().parent.parent.parent,
         )
+        assert child.stdin is not None and child.stdout is not None  # both are pipes
         child.stdin.write(json.dumps(order))
         child.stdin.close()
         said = {}

@@ -90,7 +90,7 @@ def growth(
     bent = law in ("plateau", "knee")
     half = 0.5 * (sizes[-2] - sizes[1]) / (_SCANNED - 1)  # what the scan itself leaves open
     low, high = (
-        (*np.percentile(fit.scanned[1:], (2.5, 97.5)), -half, half)
+        np.percentile(fit.scanned[1:], (2.5, 97.5)) + np.array([-half, half])
         if bent and len(curves) > 1
         else (None, None)
     )

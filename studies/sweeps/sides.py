@@ -76,16 +76,17 @@ def jumps(walls: np.ndarray, rate: np.ndarray) -> tuple[float | None, float | No
     """Median change of the rates (rad/s) between neighbours in size or direction: where ``walls``
     (s,a), labels with the directions along the second axis, differ between them, and where they do
     not. ``rate`` (s,a,3); None where there is no such pair."""
-    changed, moved = [], []
+    differing, moves = [], []
     for one, other in (
         (np.s_[:-1], np.s_[1:]),
         (np.s_[:, :], (slice(None), np.arange(walls.shape[1]) - 1)),
     ):
-        changed.append((walls[one] != walls[other]).ravel())
-        moved.append(np.linalg.norm(rate[one] - rate[other], axis=2).ravel())
-    changed, moved = np.concatenate(changed), np.concatenate(moved)
+        differing.append((walls[one] != walls[other]).ravel())
+        moves.append(np.linalg.norm(rate[one] - rate[other], axis=2).ravel())
+    changed, moved = np.concatenate(differing), np.concatenate(moves)
     told = np.isfinite(moved)
-    return tuple(
+    there, elsewhere = (
         float(np.median(moved[chosen & told])) if (chosen & told).any() else None
         for chosen in (changed, ~changed)
     )
+    return there, elsewhere
