@@ -13,7 +13,7 @@ TURN = rotation.exponential((0.7, -1.1, 0.4))
 def carried(rate, arm, along: float) -> dict:
     """``[initial]`` of a payload that turns with a platform at ``rate`` (3,) rad/s, ``arm`` (3,) m
     from its mass centre, and slides along the rail at ``along`` (m/s)."""
-    velocity, turning = [*np.cross(rate, arm), along, 0.0, 0.0], dict(zip("xyz", rate))
+    velocity, turning = np.cross(rate, arm) + np.array([along, 0.0, 0.0]), dict(zip("xyz", rate))
     return {
         "velocity": dict(zip("xyz", velocity.tolist())),
         "rate": turning,

@@ -34,7 +34,7 @@ def solve(refinement: int, poisson_ratio: float, bubbles: bool = True) -> Soluti
     """Static answer on 4 by 6 elements (through the wall, round the quarter), each divided
     `refinement` times both ways."""
     flat = block((4 * refinement, 6 * refinement, 1), (OUTER - INNER, 0.5 * np.pi, 1.0))
-    radius, angle, z = ([*flat.points, INNER, 0.0, 0.0]).T
+    radius, angle, z = (flat.points + np.array([INNER, 0.0, 0.0])).T
     mesh = replace(
         flat, points=np.stack([radius * np.cos(angle), radius * np.sin(angle), z], axis=1)
     )

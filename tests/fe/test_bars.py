@@ -119,7 +119,7 @@ def two_rods(elements):
     """Two equal rods in a row that share no node."""
     rod = block((elements, 1, 1), (LENGTH, WIDTH, WIDTH))
     return RailMesh(
-        np.concatenate([rod.points, [*rod.points, LENGTH, 0.0, 0.0]]),
+        np.concatenate([rod.points, rod.points + np.array([LENGTH, 0.0, 0.0])]),
         np.concatenate([rod.cells, rod.cells + len(rod.points)]),
         {},
     )

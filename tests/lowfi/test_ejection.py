@@ -70,7 +70,7 @@ def test_a_hundredth_of_spurious_contact_energy_is_seen():
 def test_a_lost_reaction_is_seen():
     """A force of 1 N for 1 us that has no opposite breaks the momentum balance."""
     samples, upright = np.zeros((3, 3)), np.tile([1.0, 0.0, 0.0, 0.0], (3, 1))
-    moving = [*samples, 6.0, 0.0, 0.0]
+    moving = samples + np.array([6.0, 0.0, 0.0])
     moved = Motion(
         np.arange(3) * 1e-3, samples, moving, upright, samples, samples, samples, upright, samples
     )

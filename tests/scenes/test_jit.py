@@ -15,9 +15,9 @@ from scenes.jit import contains
 ROOT = Path(__file__).resolve().parents[2]
 CALLER = (
     "from highfi.callee import value\nfrom scenes.jit import njit\n\n\n@njit\ndef "
-    "doubled():\n    \"\"\"Twice the value.\"\"\"\n    return 2.0 * value()\n"
+    'doubled():\n    """Twice the value."""\n    return 2.0 * value()\n'
 )
-CALLEE = "from scenes.jit import njit\n\n\n@njit\ndef value():\n    \"\"\"A value.\"\"\"\n    return {}\n"
+CALLEE = 'from scenes.jit import njit\n\n\n@njit\ndef value():\n    """A value."""\n    return {}\n'
 ASK = (
     "from highfi.caller import doubled; print(doubled(), sum(doubled.stats.cache_misses.values()))"
 )
