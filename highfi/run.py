@@ -277,7 +277,7 @@ class Loop:
         total, transverse = samples.ledgers(rows, np.array(self.work))
         status, result = ending.found(self.system, self.ending.book)
         forces = np.array(self.forces)
-        linear, angular = samples.momentum_errors(rows, moved, self.system.model.payload.mass, forces)
+        linear, angular = samples.momentum_errors(rows, moved, self.system.model.payload.mass, forces, self.steps)
         friction = np.diff(total[:, ledger.ENTRIES.index("friction")], prepend=0.0) / self.scene.output.interval
         checks = {"energy_error": ledger.total_error(total, FINITE_ELEMENTS),
                   "transverse_energy_error": ledger.transverse_error(transverse, total, FINITE_ELEMENTS),

@@ -38,7 +38,7 @@ def ledgers(samples: np.ndarray, work: np.ndarray) -> tuple[np.ndarray, np.ndarr
     return tuple(np.stack([entries.get(name, zero) for name in ledger.ENTRIES], axis=1) for entries in (total, across))
 
 
-def momentum_errors(samples: np.ndarray, moved: Motion, mass: float, forces: np.ndarray) -> tuple[float, float]:
-    """Errors of linear and angular momentum (``scenes.momenta``) of samples with pad ``forces`` (n,f,3) N."""
+def momentum_errors(samples: np.ndarray, moved: Motion, mass: float, forces: np.ndarray, steps: int) -> tuple[float, float]:
+    """Errors of linear and angular momentum (``scenes.momenta``) of samples with pad ``forces`` (n,f,3) N, of ``steps``."""
     return momenta.errors(moved, mass, samples[:, observe.LINEAR:observe.LINEAR + 6],
-                          samples[:, observe.IMPULSE:observe.IMPULSE + 6], forces, FINITE_ELEMENTS)
+                          samples[:, observe.IMPULSE:observe.IMPULSE + 6], forces, FINITE_ELEMENTS, steps)
