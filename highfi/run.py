@@ -400,7 +400,7 @@ class Loop:
         status, result = ending.found(self.system, self.ending.book)
         forces = np.array(self.forces)
         linear, angular = samples.momentum_errors(
-            rows, moved, self.system.model.payload.mass, forces
+            rows, moved, self.system.model.payload.mass, forces, self.steps
         )
         friction = (
             np.diff(total[:, ledger.ENTRIES.index("friction")], prepend=0.0)

@@ -78,10 +78,10 @@ def ledgers(samples: np.ndarray, work: np.ndarray) -> tuple[np.ndarray, np.ndarr
 
 
 def momentum_errors(
-    samples: np.ndarray, moved: Motion, mass: float, forces: np.ndarray
+    samples: np.ndarray, moved: Motion, mass: float, forces: np.ndarray, steps: int
 ) -> tuple[float, float]:
     """Errors of linear and angular momentum (``scenes.momenta``) of samples with pad ``forces``
-    (n,f,3) N."""
+    (n,f,3) N, of ``steps``."""
     return momenta.errors(
         moved,
         mass,
@@ -89,4 +89,5 @@ def momentum_errors(
         samples[:, observe.IMPULSE : observe.IMPULSE + 6],
         forces,
         FINITE_ELEMENTS,
+        steps,
     )

@@ -82,6 +82,29 @@ def test_a_lost_reaction_is_seen():
     assert error == pytest.approx(1e-6 / 60.0, rel=1e-3)
 
 
+def test_a_sum_of_equal_impulses_may_round():
+    """The impulse of a constant force in a hundred thousand steps: all of their roundings have one
+    sign. The promise allows them, and no more."""
+    steps, impulse = 100_000, 9.80665 * 1e-6
+    summed = np.add.accumulate(np.full(steps, impulse))[steps // 4 - 1 :: steps // 4]
+    exact = np.arange(1, 5) * (steps // 4) * impulse
+    at_rest, upright = np.zeros((4, 3)), np.tile([1.0, 0.0, 0.0, 0.0], (4, 1))
+    moved = Motion(
+        np.arange(4) * 1e-3, at_rest, at_rest, upright, at_rest, at_rest, at_rest, upright, at_rest
+    )
+
+    def error(momentum, steps):
+        values, given = np.zeros((4, 6)), np.zeros((4, 6))
+        values[:, 2], given[:, 2] = momentum, exact
+        return momenta.errors(
+            moved, 1.0, values, given, np.zeros((4, 1, 3)), promises.FINITE_ELEMENTS, steps
+        )[0]
+
+    promised = promises.FINITE_ELEMENTS.linear_momentum_error
+    assert error(summed, steps) <= promised < error(summed, 0)
+    assert error(exact * (1.0 + 1e-10), steps) > promised  # control
+
+
 @pytest.mark.parametrize(
     "name, condition", [("reference", "phi15"), ("reference", "phi35"), ("sensitive", "phi60")]
 )
