@@ -10,9 +10,10 @@ PYTHON ?= python3
 TIPOFF = .venv/bin/tipoff
 ASKED = --scene $(SCENE) --out $(OUT)
 READY = .venv/.ready
+CHECKED = .venv/.checked
 
 .DEFAULT_GOAL := help
-.PHONY: help mesh highfi lowfi calibrate compare blind cost stability ablation ensemble sensitivity sweeps montecarlo limits flight droptest paper report view pictures convergence rails full-report bench test test-slow clean
+.PHONY: help mesh highfi lowfi calibrate compare blind cost stability ablation ensemble sensitivity sweeps montecarlo limits flight droptest paper report view pictures convergence rails full-report bench check coverage hooks test test-slow clean
 
 help: ## print this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## /{printf "  make %-12s %s\n", $$1, $$2}' Makefile
@@ -91,6 +92,18 @@ rails: $(READY) ## two more rails, calibrated and judged at 4 mm: they stand on 
 full-report: rails ## the report with every study on it, and with two more rails (an hour and a half)
 	$(TIPOFF) report --every $(ASKED)
 
+check: $(CHECKED) ## format, lint, types and the quick tests: within a minute where kernels are compiled
+	.venv/bin/ruff format --check --quiet .
+	.venv/bin/ruff check --quiet .
+	.venv/bin/mypy
+	.venv/bin/python -m pytest -m "not slow" --numprocesses=auto --dist=loadfile $(QUICK)
+
+coverage: $(CHECKED) ## the tests with the share of lines they run (kernels are compiled and not counted)
+	.venv/bin/python -m pytest -m "not slow" --numprocesses=auto --dist=loadfile --cov --cov-report=term:skip-covered
+
+hooks: $(CHECKED) ## format, lint and types before each commit
+	.venv/bin/pre-commit install
+
 test: $(READY) ## the tests, without the slow ones
 	.venv/bin/python -m pytest -m "not slow" --numprocesses=auto --dist=loadfile
 
@@ -100,6 +113,10 @@ test-slow: $(READY) ## every test
 clean: ## remove results and caches; the environment stays
 	rm -rf out build *.egg-info .pytest_cache .hypothesis
 	find . -name __pycache__ -not -path './.venv/*' -prune -exec rm -rf {} +
+
+$(CHECKED): requirements-check.lock $(READY)
+	.venv/bin/python -m pip install --quiet --disable-pip-version-check --no-deps -r requirements-check.lock
+	@touch $@
 
 # The environment. The stamp is written last, so an install that was cut short is taken up again.
 $(READY): requirements.lock pyproject.toml
