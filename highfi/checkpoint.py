@@ -23,7 +23,8 @@ from typing import Any
 
 import numpy as np
 
-from scenes.files import content_hash, replacing, source_hash
+from scenes import sources
+from scenes.files import content_hash, replacing
 from scenes.trajectory import versions
 
 FORMAT = 3
@@ -41,7 +42,6 @@ CONSTANT = (
     "walls",
     "watch",
 )
-_SOURCES = ("scenes", "meshes", "highfi")
 _LINE = re.compile(rb"tipoff checkpoint (\d+) ([0-9a-f]{64})")
 _OTHER = {
     "scene": "belongs to another scene",
@@ -75,7 +75,7 @@ class Checkpoint:
         self.header = {
             "scene": loop.scene.hash,
             "numerics": numerics.as_dict(),
-            "program": content_hash(source_hash(*_SOURCES), versions()),
+            "program": content_hash(sources.digest("highfi"), versions()),
             "system": digest(arrays(constant)),
         }
 

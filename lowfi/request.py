@@ -11,8 +11,9 @@ from lowfi import store as stores
 from lowfi.batch import Case, Family
 from lowfi.ensemble import completed
 from lowfi.numerics import Numerics
+from scenes import sources
 from scenes.calibration import Calibration
-from scenes.files import content_hash, source_hash
+from scenes.files import content_hash
 from scenes.scene import Scene
 from scenes.walls import Walls
 
@@ -75,6 +76,6 @@ class Ensemble(NamedTuple):
 def code() -> dict:
     """Digest of the sources and versions of the libraries that make the numbers."""
     return {
-        "code": source_hash("scenes", "lowfi"),
+        "code": sources.digest("lowfi"),
         "versions": {name: version(name) for name in _LIBRARIES},
     }

@@ -146,14 +146,3 @@ def tell(text: str) -> None:
 def content_hash(*parts: Any) -> str:
     """Hexadecimal SHA-256 of the canonical JSON of ``parts``."""
     return hashlib.sha256(json.dumps(parts, sort_keys=True, allow_nan=False).encode()).hexdigest()
-
-
-def source_hash(*packages: str) -> str:
-    """Hexadecimal SHA-256 of every Python source of the named top-level packages."""
-    root = Path(__file__).resolve().parent.parent
-    digest = hashlib.sha256()
-    for package in sorted(packages):
-        for path in sorted((root / package).rglob("*.py")):
-            digest.update(str(path.relative_to(root)).encode())
-            digest.update(path.read_bytes())
-    return digest.hexdigest()

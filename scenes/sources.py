@@ -64,6 +64,13 @@ def closure(*modules: str) -> list[str]:
     return sorted(found)
 
 
+def modules(package: str) -> list[str]:
+    """Dotted names of all modules of a ``package``."""
+    folder = ROOT.joinpath(*package.split("."))
+    places = [file.relative_to(ROOT).with_suffix("") for file in sorted(folder.rglob("*.py"))]
+    return [".".join(place.parts).removesuffix(".__init__") for place in places]
+
+
 def path(module: str) -> Path | None:
     """File of a ``module`` of the project, or None."""
     if module.split(".")[0] not in PACKAGES:

@@ -1,7 +1,7 @@
 """Results of runs, kept by content: ``out/<scene>/<fidelity>/<label>-<key>.nc``.
 
-    key = SHA-256(physical inputs of the scene, numerics, calibrated constants, walls,
-                  sources of every package below the fidelity)
+    key = SHA-256(physical inputs of the scene, numerics, calibrated constants, rail compliance,
+                  code that the fidelity depends on)
 
 A run whose file is there and fits the digest it carries is loaded, any other is made and written
 atomically; so what was interrupted goes on where it stopped, and neither a changed input or source
@@ -19,20 +19,14 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
+from scenes import sources
 from scenes.calibration import Calibration
 from scenes.fidelity import FINITE_ELEMENTS
-from scenes.files import content_hash, discard, source_hash
+from scenes.files import content_hash, discard
 from scenes.scene import Scene
 from scenes.trajectory import Trajectory
 from scenes.walls import Walls, model_of
 from studies.progress import Board, say, team
-
-SOURCES = {
-    "highfi": ("scenes", "meshes", "highfi"),
-    "lowfi": ("scenes", "lowfi"),
-    "calibrated": ("scenes", "meshes", "highfi", "lowfi", "calibrate"),
-}
-code_hash = functools.lru_cache(source_hash)  # the sources do not change while the program runs
 
 
 @dataclass(frozen=True)
@@ -62,7 +56,7 @@ class Run:
             asdict(self.numerics),
             used,
             self.walls.hash if self.walls else None,
-            code_hash(*SOURCES[self.fidelity]),
+            sources.digest(self.fidelity),
         )
 
 

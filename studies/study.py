@@ -8,12 +8,13 @@ reads is verified by the reader, so nothing is made again from a damaged file.
 """
 
 import hashlib
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+from scenes import sources
 from scenes.calibration import Calibration
 from scenes.faults import Fault, SceneError
 from scenes.files import DamageError, content_hash, read_json, write_json
@@ -22,7 +23,7 @@ from scenes.trajectory import Trajectory
 from scenes.walls import Walls
 from studies.progress import say
 from studies.settings import Settings
-from studies.store import Run, Store, code_hash
+from studies.store import Run, Store
 
 FAILED = ("diverged", "refused")
 # by name, for the libraries behind them are heavy
@@ -136,9 +137,9 @@ class Study:
         """A path as result files hold it: relative to the folder of this scene."""
         return path.relative_to(self.folder).as_posix()
 
-    def key(self, sources: Iterable[str], *inputs: Any) -> str:
-        """Digest of the scene with its conditions and roles, settings, sources (those of the
-        studies always), further inputs."""
+    def key(self, module: str, *inputs: Any) -> str:
+        """Digest of the scene with its conditions and roles, settings, the code that the stage's
+        ``module`` depends on, and further inputs."""
         described = self.scene.model_dump(
             mode="json", include={"name", "conditions", "agreement", "provenance"}
         )
@@ -147,7 +148,7 @@ class Study:
             described,
             self.settings.hash,
             list(self.only),
-            code_hash(*sorted({*sources, "studies"})),
+            sources.digest(module),
             inputs,
         )
 

@@ -20,7 +20,7 @@ from scenes.trajectory import Trajectory
 from studies import machine
 from studies.cost.timing import timed, warm_up
 from studies.stages import compliance
-from studies.store import SOURCES, Run
+from studies.store import Run
 from studies.study import Study
 
 ADDED: dict[str, dict[str, Any]] = {
@@ -77,7 +77,7 @@ def run(study: Study) -> dict:
             "hardware": machine.describe(),
         }, []
 
-    return study.stage("ablation", study.key(SOURCES["calibrated"], name, ADDED), make)
+    return study.stage("ablation", study.key(__name__, name, ADDED), make)
 
 
 def _reference(study: Study, name: str, lines: dict[str, dict]):

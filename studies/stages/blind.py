@@ -11,17 +11,16 @@ from functools import partial
 from pathlib import Path
 
 from lowfi.rows import Drawn
-from scenes import uncertainty
+from scenes import sources, uncertainty
 from scenes.fidelity import SPRINGS
-from scenes.files import content_hash, source_hash
+from scenes.files import content_hash
 from studies.agreement import verdicts
 from studies.agreement.verdicts import Context
 from studies.stages import calibrate, compare
-from studies.store import SOURCES
 from studies.study import Study, require_success
 
 NAME = "blind"
-_CODE = ("scenes", "highfi", "lowfi", "calibrate")
+_CODE = ("highfi", "lowfi", "calibrate")
 
 
 @dataclass(frozen=True)
@@ -107,7 +106,7 @@ def seed_of(study: Study, asked: Asked) -> int:
     return (
         asked.seed
         if asked.seed is not None
-        else int(content_hash(source_hash(*_CODE), study.scene.hash)[:12], 16)
+        else int(content_hash(sources.digest(*_CODE), study.scene.hash)[:12], 16)
     )
 
 
@@ -135,6 +134,4 @@ def _rate(value: float | None) -> str:
 
 
 def _key(study: Study, drawn: Study) -> str:
-    return study.key(
-        SOURCES["calibrated"], NAME, drawn.scene.conditions, verdicts.gates(study.scene)
-    )
+    return study.key(__name__, NAME, drawn.scene.conditions, verdicts.gates(study.scene))

@@ -21,7 +21,7 @@ from scenes.walls import Walls
 from studies.cost import forecast
 from studies.progress import Board, say
 from studies.stages import compliance
-from studies.store import SOURCES, Run
+from studies.store import Run
 from studies.study import Study, StudyError, require_success
 
 FILE = "calibration.toml"
@@ -67,7 +67,7 @@ def _asked(study: Study) -> list[Run]:
 
 
 def _key(study: Study) -> str:
-    return study.key(SOURCES["calibrated"], [item.key for item in _asked(study)])
+    return study.key(__name__, [item.key for item in _asked(study)])
 
 
 def named(
@@ -132,7 +132,7 @@ def from_files(
         return _fitted(study, references, study.path(f"curves/{FILE}"))
 
     sources = {name: item.source for name, item in references.items()}
-    return study.stage("curves/calibration", study.key(SOURCES["calibrated"], sources), make)
+    return study.stage("curves/calibration", study.key(__name__, sources), make)
 
 
 def _fitted(study: Study, references: dict, path: Path) -> tuple[dict, list[Path]]:

@@ -18,7 +18,7 @@ from studies.agreement.verdicts import Context, Spread, spread
 from studies.cost.timing import speedups
 from studies.progress import Board
 from studies.stages import calibrate, compliance
-from studies.store import SOURCES, Run
+from studies.store import Run
 from studies.study import Study, read, require_success
 
 _SIMPLER = {
@@ -131,7 +131,7 @@ def stored(study: Study) -> dict | None:
 
 
 def _key(study: Study, constants: dict) -> str:
-    return study.key(SOURCES["calibrated"], constants, verdicts.gates(study.scene))
+    return study.key(__name__, constants, verdicts.gates(study.scene))
 
 
 def rows(study: Study, rung: Rung, highfi: dict[str, Trajectory], context: Context) -> list[dict]:

@@ -8,12 +8,12 @@ compliance is within 1 % of that.
 import time
 from pathlib import Path
 
+from scenes import sources
 from scenes.files import content_hash
 from scenes.scene import Scene
 from scenes.walls import Walls, digest
 from studies.compliance import under_a_pad
 from studies.progress import say
-from studies.store import SOURCES, code_hash
 from studies.study import Study
 
 NAME = "compliance"
@@ -42,7 +42,7 @@ def run(study: Study) -> dict:
             "under_a_pad": under_a_pad(study.scene, found, mesh.points[mesh.surfaces["mount"]]),
         }, [path]
 
-    return study.stage(NAME, study.key(SOURCES["highfi"], study.settings.element_size), make)
+    return study.stage(NAME, study.key(__name__, study.settings.element_size), make)
 
 
 def load(study: Study, scene: Scene, judged: bool = True) -> Walls | None:
@@ -87,5 +87,5 @@ def under(study: Study, names) -> dict[str, Walls | None]:
 
 
 def _path(study: Study, scene: Scene, element_size: float) -> Path:
-    key = content_hash(digest(scene), element_size, code_hash(*SOURCES["highfi"]))
+    key = content_hash(digest(scene), element_size, sources.digest("calibrate.rail_compliance"))
     return study.path(f"{NAME}-{key[:8]}.npz")

@@ -24,7 +24,7 @@ from studies.refinement import contact_loads, ripple, stresses
 from studies.refinement.extrapolation import Estimate, estimate
 from studies.refinement.quantities import RATE, quantities, settled_rate
 from studies.stages.compare import compliant, refined
-from studies.store import SOURCES, Run
+from studies.store import Run
 from studies.study import Study, require_success
 
 NAME = "convergence"
@@ -99,7 +99,7 @@ def stored(study: Study) -> dict | None:
 
 
 def _key(study: Study, name: str) -> str:
-    return study.key(SOURCES["highfi"] + SOURCES["lowfi"], NAME, name)
+    return study.key(__name__, NAME, name)
 
 
 def _finished(study: Study, title: str, asked: list[Run]) -> list[Trajectory]:

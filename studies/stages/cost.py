@@ -28,7 +28,7 @@ from studies.cost.timing import timed, warm_up
 from studies.progress import Board
 from studies.stages import ablation
 from studies.stages.compare import Rung, refined, rungs
-from studies.store import SOURCES, Run
+from studies.store import Run
 from studies.study import Study, read
 
 BY_MODES = f"{COMPLIANT}, modes varied"
@@ -83,7 +83,7 @@ def stored(study: Study) -> dict | None:
 
 
 def _key(study: Study, constants: dict) -> str:
-    return study.key(SOURCES["calibrated"], _condition(study), constants)
+    return study.key(__name__, _condition(study), constants)
 
 
 def _condition(study: Study) -> str:

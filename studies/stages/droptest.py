@@ -22,7 +22,6 @@ from studies.droptest.analysis import Drop, analyse
 from studies.droptest.results import joint, quantiles, row_of, summary
 from studies.populations import population
 from studies.populations.population import Population
-from studies.store import SOURCES
 from studies.study import Study, StudyError
 
 NAME = "droptest"
@@ -90,9 +89,7 @@ def _key(study: Study, request: dict) -> str:
     for a file that is gone or broken."""
     digests = [_digest(Path(path)) for path in request["logs"] or shipped.sheets()]
     asked = Asked(**{name: value for name, value in request.items() if name != "logs"})
-    return study.key(
-        SOURCES["calibrated"], NAME, request, digests, _drawn(study, asked).uncertainty.resolved()
-    )
+    return study.key(__name__, NAME, request, digests, _drawn(study, asked).uncertainty.resolved())
 
 
 def _drawn(study: Study, asked: Asked) -> Drawn:

@@ -17,7 +17,6 @@ from scenes.variation import Variations
 from studies.flight import bodies, curves, flown, summary
 from studies.populations import population
 from studies.progress import Board
-from studies.store import SOURCES
 from studies.study import Study, StudyError
 
 NAME = "flight"
@@ -98,7 +97,7 @@ def _key(study: Study, asked: Asked) -> str:
     varied = uncertainty.load(asked.vary, study.scene).resolved()
     own = _flight(study.scene).model_dump(mode="json")
     return study.key(
-        SOURCES["calibrated"], NAME, own, tables, asdict(asked), varied, study.settings.element_size
+        __name__, NAME, own, tables, asdict(asked), varied, study.settings.element_size
     )
 
 

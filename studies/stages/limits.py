@@ -25,7 +25,6 @@ from studies.populations import answers, exceedance, population, spread
 from studies.populations.exceedance import Limit
 from studies.populations.population import Surrogate
 from studies.progress import Board
-from studies.store import SOURCES
 from studies.study import Study
 
 NAME = "limits"
@@ -68,7 +67,7 @@ def stored(study: Study) -> dict | None:
 
 def _key(study: Study, asked: dict) -> str:
     return study.key(
-        SOURCES["calibrated"],
+        __name__,
         NAME,
         _plain(asked),
         constants.margin(study, asked["model"] or COMPLIANT),

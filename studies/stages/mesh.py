@@ -7,7 +7,6 @@ import numpy as np
 
 from scenes.files import replacing
 from studies.progress import say
-from studies.store import SOURCES
 from studies.study import Study
 
 
@@ -48,7 +47,7 @@ def run(study: Study) -> dict:
             "picture": study.relative(picture),
         }, [path, picture]
 
-    return study.stage("mesh", study.key(SOURCES["highfi"], asked.key), make)
+    return study.stage("mesh", study.key(__name__, asked.key), make)
 
 
 def area(points: np.ndarray, facets: np.ndarray) -> float:

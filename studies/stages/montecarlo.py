@@ -18,7 +18,6 @@ from studies.populations import answers, exceedance, population, random_factors,
 from studies.populations.population import Population, Surrogate
 from studies.populations.random_factors import READINGS, Reading
 from studies.stages import calibrate
-from studies.store import SOURCES
 from studies.study import Study, StudyError
 
 NAME = "montecarlo"
@@ -101,7 +100,7 @@ def stored(study: Study) -> dict | None:
 
 def _key(study: Study, asked: dict) -> str:
     fitted = calibrate.stored(study)  # both models are compared where there is one
-    return study.key(SOURCES["calibrated"], NAME, asked, fitted and fitted["key"])
+    return study.key(__name__, NAME, asked, fitted and fitted["key"])
 
 
 def _plain(asked: Asked) -> dict:

@@ -13,8 +13,9 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
+from scenes import sources
 from scenes.faults import Fault, SceneError
-from scenes.files import content_hash, source_hash, write_json, write_text
+from scenes.files import content_hash, write_json, write_text
 from scenes.scene import Scene, load
 from studies import published
 from studies.inference import inputs, misfit, solutions, toml
@@ -23,7 +24,6 @@ from studies.progress import Board, team
 from studies.report import paper as drawn
 from studies.report.chart import to_files
 from studies.stages import compare
-from studies.store import SOURCES
 from studies.study import Study, StudyError, read
 
 NAME = "paper"
@@ -32,7 +32,6 @@ CATALOGUED = "paper_like"  # the best set of those who made the catalogue
 STRESSES = (0.0, 1.0)  # without and with the rates that the paper calls negligible
 _WRITTEN = 1e-5  # relative: a scene file has nine digits of most numbers, six of the mounts
 # a search outlives a change of anything else
-_SEARCHED = ("scenes", "lowfi", "studies/inference", "studies/published")
 
 
 @dataclass(frozen=True)
@@ -203,7 +202,13 @@ def _searches(study: Study, base: Scene, asked: Asked) -> list[solutions.Search]
 
         def one(stress: float, seed: int) -> solutions.Search:
             path = study.path(f"{NAME}/search-{stress:g}-{seed}.json")
-            key = content_hash(base.hash, source_hash(*_SEARCHED), _plain(asked.plan), stress, seed)
+            key = content_hash(
+                base.hash,
+                sources.digest("lowfi", *sources.modules("studies.inference")),
+                _plain(asked.plan),
+                stress,
+                seed,
+            )
             kept = read(path)
             if kept and kept.get("key") == key:
                 return solutions.restored(kept)
@@ -249,7 +254,7 @@ def _with_present(study: Study, found: dict) -> dict:
 
 
 def _key(study: Study, asked: Asked) -> str:
-    return study.key(SOURCES["lowfi"], NAME, asked.starts, _plain(asked.plan))
+    return study.key(__name__, NAME, asked.starts, _plain(asked.plan))
 
 
 def _asked(plain: dict) -> Asked:

@@ -8,6 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import scenes
+from scenes import sources
 from scenes.faults import SceneError
 from scenes.files import content_hash, write_text
 from scenes.walls import digest
@@ -90,7 +91,9 @@ def run(study: Study, every: bool = False) -> dict:
     made_at = {
         name: study.path(f"{name}.json").read_text() for name, found in documents.items() if found
     }
-    shown = study.key(("scenes", "studies"), study.scene.resolved().get("flight"))
+    # Sections are drawn by modules that are found by name.
+    drawn = sources.digest(*sources.modules("studies.report"))
+    shown = study.key(__name__, drawn, study.scene.resolved().get("flight"))
     key = content_hash(keys, content_hash(made_at), content_hash(there), problems | absent, shown)
     return study.stage("report", key, make)
 

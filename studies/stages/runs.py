@@ -8,7 +8,7 @@ from scenes.fidelity import FINITE_ELEMENTS
 from scenes.trajectory import Trajectory
 from studies.refinement import stresses
 from studies.stages import compliance
-from studies.store import SOURCES, Run
+from studies.store import Run
 from studies.study import FAILED, Study
 
 
@@ -38,8 +38,7 @@ def run(study: Study, fidelity: str) -> dict:
             study.store.path(item) for item in asked.values()
         ]
 
-    sources = SOURCES["highfi" if fidelity == "highfi" else "calibrated"]
-    return study.stage(fidelity, study.key(sources, [item.key for item in asked.values()]), make)
+    return study.stage(fidelity, study.key(__name__, [item.key for item in asked.values()]), make)
 
 
 def row(name: str, run: Trajectory, path: str) -> dict:

@@ -17,7 +17,6 @@ from studies.populations.population import Population, Surrogate
 from studies.report import sensitivity as drawing
 from studies.report.chart import to_files
 from studies.sensitivity import contact_table, indices, tolerances
-from studies.store import SOURCES
 from studies.study import Study, StudyError
 
 NAME = "sensitivity"
@@ -73,7 +72,7 @@ def stored(study: Study) -> dict | None:
 
 def _key(study: Study, asked: Asked) -> str:
     return study.key(
-        SOURCES["calibrated"],
+        __name__,
         NAME,
         asked._asdict(),
         tolerances.digest(asked.vary or tolerances.DEFAULT),

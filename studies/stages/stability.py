@@ -3,10 +3,9 @@ it."""
 
 from pathlib import Path
 
-from scenes.files import content_hash
+from scenes import sources
 from studies.progress import Board
 from studies.stability import cases
-from studies.store import SOURCES, code_hash
 from studies.study import Study
 
 
@@ -30,6 +29,4 @@ def run(study: Study) -> dict:
         return {"cases": [item._asdict() for item in found], "failed": failed}, []
 
     # The cases bring their own scenes, so the scene under study is not part of the key.
-    return study.stage(
-        "stability", content_hash("stability", code_hash(*SOURCES["calibrated"], "studies")), make
-    )
+    return study.stage("stability", sources.digest(__name__), make)

@@ -14,7 +14,6 @@ from studies.populations.population import Population, Surrogate
 from studies.progress import Board
 from studies.report import sweep_figures as drawing
 from studies.report.chart import to_files
-from studies.store import SOURCES
 from studies.study import Study
 from studies.sweeps import burnout, factors, knee, sides
 from studies.sweeps.factors import FACTORS, SIZES, Factor
@@ -78,7 +77,7 @@ def stored(study: Study) -> dict | None:
 
 
 def _key(study: Study, asked: Asked) -> str:
-    return study.key(SOURCES["calibrated"], NAME, asked._asdict())
+    return study.key(__name__, NAME, asked._asdict())
 
 
 def _launch(

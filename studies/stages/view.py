@@ -19,7 +19,7 @@ import numpy as np
 from scenes.faults import Fault, SceneError
 from scenes.trajectory import Trajectory
 from studies.progress import Board, say
-from studies.store import SOURCES, Run
+from studies.store import Run
 from studies.study import Study, read, require_success
 
 if TYPE_CHECKING:
@@ -85,7 +85,7 @@ def stored(study: Study) -> list[dict]:
 
 
 def _key(study: Study, asked: Run, frames: int, factor: float | None) -> str:
-    return study.key(SOURCES["highfi"], asked.key, frames, factor, pyvista_version())
+    return study.key(__name__, asked.key, frames, factor, pyvista_version())
 
 
 def pyvista_version() -> str | None:

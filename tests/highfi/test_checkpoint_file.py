@@ -77,7 +77,7 @@ def test_checkpoint_of_another_program_mesh_or_format_is_refused(kept, monkeypat
     loop.stepping = replace(loop.stepping, dt_s=np.nextafter(loop.stepping.dt_s, 0.0))
     with pytest.raises(CheckpointError, match="another mesh or with another step"):
         Checkpoint(kept.path, 0.0, loop, COARSE).read()
-    monkeypatch.setattr(checkpoint, "source_hash", lambda *packages: "another program")
+    monkeypatch.setattr(checkpoint.sources, "digest", lambda *modules: "another program")
     with pytest.raises(CheckpointError, match="another version of the program"):
         Checkpoint(kept.path, 0.0, begun(), COARSE).read()
     line = f"tipoff checkpoint {FORMAT} ".encode()

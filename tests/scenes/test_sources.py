@@ -108,3 +108,33 @@ def test_a_damaged_memory_is_read_anew(project, tmp_path, monkeypatch):
         file.write_text("[")
     forget()
     assert sources.digest("scenes.rotation") == before
+
+
+STAGES = [
+    f"studies.stages.{name}"
+    for name in ("runs", "compare", "cost", "montecarlo", "limits", "stability", "convergence")
+]
+
+
+def page() -> str:
+    return sources.digest("studies.stages.report", *sources.modules("studies.report"))
+
+
+def test_the_look_of_the_page_makes_only_the_page_again(project):
+    before, drawn = digests(*STAGES, *SOLVERS), page()
+    edit(project / "studies" / "report" / "style.py", "font-size: 11pt", "font-size: 12pt")
+    assert digests(*STAGES, *SOLVERS) == before
+    assert page() != drawn
+
+
+def test_a_law_makes_every_stage_again_that_rests_on_it(project):
+    before = digests(*STAGES)
+    edit(project / "scenes" / "effects" / "friction.py", "3.0", "3.0000001")
+    assert not set(digests(*STAGES)) & set(before)
+
+
+def test_one_study_does_not_make_another_again(project):
+    before = digests(*STAGES)
+    edit(project / "studies" / "stages" / "limits.py", "NAME = ", "OTHER, NAME = 1, ")
+    changed = [a != b for a, b in zip(before, digests(*STAGES))]
+    assert [name.split(".")[-1] for name, new in zip(STAGES, changed) if new] == ["limits"]

@@ -25,7 +25,7 @@ def test_seed_is_that_of_code_and_scene(monkeypatch):
         own == blind.seed_of(study_of(), Asked()) != blind.seed_of(study_of("sensitive"), Asked())
     )
     assert blind.seed_of(study_of(), Asked(seed=3)) == 3
-    monkeypatch.setattr(blind, "source_hash", lambda *names: "another line of code")
+    monkeypatch.setattr(blind.sources, "digest", lambda *modules: "another line of code")
     assert blind.seed_of(study_of(), Asked()) != own
 
 

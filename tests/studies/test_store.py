@@ -65,7 +65,7 @@ def test_every_input_is_part_of_the_key(study, change):
 
 def test_sources_are_part_of_the_key(study, monkeypatch):
     before = study.highfi("phi15").key
-    monkeypatch.setattr(store_module, "code_hash", lambda *packages: "another program")
+    monkeypatch.setattr(store_module.sources, "digest", lambda *modules: "another program")
     assert study.highfi("phi15").key != before
 
 
@@ -162,7 +162,7 @@ def test_settings_and_roles_change_a_stage_key_and_workers_do_not(study):
     def key(**change):
         return Study(
             **{"scene": study.scene, "folder": study.folder, "settings": study.settings} | change
-        ).key(("scenes",))
+        ).key("scenes.scene")
 
     assert key(settings=Settings(workers=7)) == key()
     assert key(settings=Settings(element_size=0.001)) != key()
