@@ -88,8 +88,8 @@ def _places(
 
 def _head(cell: str) -> tuple[str, str | None]:
     """Name and unit of a column."""
-    found = _HEAD.fullmatch(cell)
-    assert found is not None  # as for every text without line breaks
+    found = _HEAD.fullmatch(" ".join(cell.split()))  # a quoted cell may hold line breaks
+    assert found is not None
     return found[1], found[2]
 
 

@@ -87,6 +87,15 @@ def test_units_in_the_second_line_and_bare_si_agree(tmp_path):
     assert first.time[-1] == pytest.approx(4e-3) and first.window_start == pytest.approx(2e-3)
 
 
+def test_a_quoted_header_cell_may_hold_line_breaks(tmp_path):
+    one, two = tmp_path / "one.csv", tmp_path / "two.csv"
+    one.write_text("\n".join([HEAD, *LINES]))
+    broken = ",".join(f'"{cell.replace(" [", chr(10) + "[")}"' for cell in HEAD.split(","))
+    two.write_text("\n".join([broken, *LINES]))
+    first, second = Curves.read_csv(one), Curves.read_csv(two)
+    assert (first.rate == second.rate).all() and (first.time == second.time).all()
+
+
 def test_the_window_begins_where_it_is_told(tmp_path):
     """v_x rises by 0.2 m/s a ms: its mean over 1 to 3 ms is 0.4 m/s, and what comes after is left
     out."""
