@@ -11,6 +11,10 @@ TIPOFF = .venv/bin/tipoff
 ASKED = --scene $(SCENE) --out $(OUT)
 READY = .venv/.ready
 CHECKED = .venv/.checked
+# Tests that take a second or two each where kernels are compiled.
+QUICK = tests/test_layers.py tests/scenes tests/fe \
+  $(patsubst %,tests/lowfi/test_%.py,bow ejection extreme_contacts flying friction momentum numerics statuses tip_off) \
+  $(patsubst %,tests/studies/test_%.py,agreement choice growth knee metrics models names report)
 
 .DEFAULT_GOAL := help
 .PHONY: help mesh highfi lowfi calibrate compare blind cost stability ablation ensemble sensitivity sweeps montecarlo limits flight droptest paper report view pictures convergence rails full-report bench check coverage hooks test test-slow clean
