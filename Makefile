@@ -132,5 +132,5 @@ $(READY): requirements.lock pyproject.toml
 	  { echo "making .venv (about 1 GB, a minute or two)"; $(PYTHON) -m venv --clear .venv; }
 	.venv/bin/python -m pip install --quiet --disable-pip-version-check -r requirements.lock
 	.venv/bin/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation --editable .
-	@.venv/bin/python -m studies.doctor
+	@.venv/bin/python -m tipoff.studies.doctor
 	@touch $@

@@ -13,8 +13,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from scenes import units
-from scenes.faults import Fault
+from tipoff.scenes import units
+from tipoff.scenes.faults import Fault
 
 _HEAD = re.compile(r"\s*(.*?)\s*(?:[\[(]\s*(.*?)\s*[\])])?\s*")
 _SHOWN = 5  # lines of a column that are named before the rest is counted

@@ -3,7 +3,7 @@ from a run or from a CSV file.
 
 A file says nothing of positions, so its exit is not known. The settled window of 2 ms then ends
 with the record, or begins where the user says; settled values are means over it, as
-``scenes.outcome`` defines them.
+``mechanics.outcome`` defines them.
 """
 
 import hashlib
@@ -12,10 +12,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from calibrate import columns
-from scenes.faults import Fault, SceneError
-from scenes.outcome import SETTLE_WINDOW
-from scenes.trajectory import Trajectory
+from tipoff.calibration import columns
+from tipoff.mechanics.outcome import SETTLE_WINDOW
+from tipoff.mechanics.trajectory import Trajectory
+from tipoff.scenes.faults import Fault, SceneError
 
 COLUMNS = {
     "time": "s",

@@ -5,13 +5,13 @@ import math
 
 import numpy as np
 
-from calibrate import information
-from calibrate.curves import Curves
-from calibrate.intervals import half_widths, independent
-from calibrate.objective import Parts, Target
-from calibrate.parameters import Parameter
-from calibrate.search import Found, Plan
-from scenes.scene import Scene
+from tipoff.calibration import information
+from tipoff.calibration.curves import Curves
+from tipoff.calibration.intervals import half_widths, independent
+from tipoff.calibration.objective import Parts, Target
+from tipoff.calibration.parameters import Parameter
+from tipoff.calibration.search import Found, Plan
+from tipoff.scenes.scene import Scene
 
 _ON_BOUND = 1e-3  # share of the bounds within which a value counts as lying on one
 _NOTHING = 1e-12  # rounding of the information matrix, of its largest eigenvalue

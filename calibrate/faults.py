@@ -1,9 +1,9 @@
 """What makes a calibration impossible, said before any search."""
 
-from calibrate.curves import Curves
-from scenes.effects import thrust
-from scenes.scene import Scene
-from scenes.trajectory import Trajectory
+from tipoff.calibration.curves import Curves
+from tipoff.mechanics.trajectory import Trajectory
+from tipoff.scenes.effects import thrust
+from tipoff.scenes.scene import Scene
 
 
 class CalibrationError(ValueError):

@@ -6,7 +6,7 @@ fit leaves.
 This is the linear theory of least squares (Seber and Wild, Nonlinear Regression, 1989, section
 5.1). ``n`` counts independent residuals: a curve sampled twice as often is no second experiment. A
 curve of n samples counts as n / tau, tau the correlation time of its residuals in samples
-(``calibrate.correlation``).
+(``calibration.correlation``).
 
 A direction the data leave open has no interval, and none is made up: parameters with a part in it
 get an infinite one. What the model cannot do is taken for scatter here. It shifts the constants,
@@ -18,7 +18,7 @@ from collections.abc import Sequence
 import numpy as np
 import scipy  # its parts load when they are first used
 
-from calibrate.correlation import correlation_time
+from tipoff.calibration.correlation import correlation_time
 
 LEVEL = 0.95
 ROUNDING = 1e-10  # of the largest eigenvalue: what differences leave where there is nothing

@@ -13,8 +13,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import least_squares
 
-from calibrate.information import information, weak_directions
-from scenes.effects.contact import Impact, impact
+from tipoff.calibration.information import information, weak_directions
+from tipoff.scenes.effects.contact import Impact, impact
 
 NAMES = ["contact.stiffness", "contact.exponent", "contact.damping", "contact.damping_depth"]
 

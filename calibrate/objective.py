@@ -19,15 +19,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-import lowfi
-from calibrate.curves import Curves
-from calibrate.faults import CalibrationError
-from calibrate.parameters import Parameter, overrides
-from scenes.fidelity import SPRINGS
-from scenes.scene import Scene
-from scenes.trajectory import Trajectory
-from scenes.variation import Variations
-from scenes.walls import Walls
+from tipoff import lowfi
+from tipoff.calibration.curves import Curves
+from tipoff.calibration.faults import CalibrationError
+from tipoff.calibration.parameters import Parameter, overrides
+from tipoff.mechanics.models import SPRINGS
+from tipoff.mechanics.rail_compliance import Walls
+from tipoff.mechanics.trajectory import Trajectory
+from tipoff.scenes.scene import Scene
+from tipoff.scenes.variation import Variations
 
 VELOCITY_WEIGHT = 50.0
 SMALLEST_AMPLITUDE = 0.01

@@ -17,10 +17,10 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from scenes.effects.contact import ContactTable, HuntCrossleyTable, ImpactTable, LinearTable
-from scenes.effects.friction import FrictionTable
-from scenes.faults import Fault, SceneError
-from scenes.scene import Scene
+from tipoff.scenes.effects.contact import ContactTable, HuntCrossleyTable, ImpactTable, LinearTable
+from tipoff.scenes.effects.friction import FrictionTable
+from tipoff.scenes.faults import Fault, SceneError
+from tipoff.scenes.scene import Scene
 
 REFERENCE_PENETRATION = 2e-5  # m
 # Softest and stiffest static compliance of the reference rail (1e-7 m/N between mounts, 3e-8 at

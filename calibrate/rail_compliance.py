@@ -13,10 +13,10 @@ taken. Rails from a mesh file have one mesh at every size.
 
 import numpy as np
 
-from highfi import compliance as statics
-from scenes import model as scene_model
-from scenes.scene import Scene
-from scenes.walls import Walls
+from tipoff.highfi import compliance as statics
+from tipoff.mechanics import model as scene_model
+from tipoff.mechanics.rail_compliance import Walls
+from tipoff.scenes.scene import Scene
 
 ACCURACY = 0.01  # relative, of the mean displacement under a unit force on a pad face
 REFERENCE_SIZE = 2e-3  # m, elements of the reference where agreement is judged

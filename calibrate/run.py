@@ -5,15 +5,15 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
-from calibrate import evidence, faults, parameters
-from calibrate.curves import Curves
-from calibrate.information import information, jacobian
-from calibrate.objective import Objective, targets
-from calibrate.search import Plan, search
-from scenes.calibration import Calibration
-from scenes.scene import Scene
-from scenes.trajectory import Trajectory
-from scenes.walls import Walls
+from tipoff.calibration import evidence, faults, parameters
+from tipoff.calibration.curves import Curves
+from tipoff.calibration.information import information, jacobian
+from tipoff.calibration.objective import Objective, targets
+from tipoff.calibration.search import Plan, search
+from tipoff.mechanics.rail_compliance import Walls
+from tipoff.mechanics.trajectory import Trajectory
+from tipoff.scenes.calibration import Calibration
+from tipoff.scenes.scene import Scene
 
 WORKERS = 2  # threads
 

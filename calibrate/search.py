@@ -17,7 +17,7 @@ import numpy as np
 from scipy.optimize import least_squares
 from scipy.stats import qmc
 
-from calibrate.information import jacobian
+from tipoff.calibration.information import jacobian
 
 
 class Plan(NamedTuple):

@@ -1,19 +1,21 @@
 """Which effects the compiled time loop of a scene really contains, read from its machine code."""
 
-from highfi import damping, facet_contact, loads, nodes
-from highfi.numerics import Numerics
-from highfi.run import Loop, prepare
-from highfi.step import advance
-from highfi.stepping import choose
-from highfi.system import build
-from scenes.effects.friction import coefficient_over_speed
-from scenes.jit import contains, machine_code
-from scenes.scene import Scene
+from tipoff.highfi.contact import facet
+from tipoff.highfi.dynamics import damping, loads
+from tipoff.highfi.dynamics.step import advance
+from tipoff.highfi.dynamics.step_size import choose
+from tipoff.highfi.dynamics.system import build
+from tipoff.highfi.numerics import Numerics
+from tipoff.highfi.run import Loop, prepare
+from tipoff.highfi.state import nodes
+from tipoff.kernels.jit import contains, machine_code
+from tipoff.scenes.effects.friction import coefficient_over_speed
+from tipoff.scenes.scene import Scene
 
 # A function that only this effect calls. Mass offset, initial state and temperature are numbers
 # without code of their own.
 LAWS = {
-    "contact": facet_contact.press,
+    "contact": facet.press,
     "friction": coefficient_over_speed,
     "gravity": loads._add_weight,
     "platform": nodes._move_in_frame,

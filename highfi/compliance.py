@@ -6,13 +6,13 @@ reference.
 
 C is the displacement of the wall under pad face i, averaged with pattern a, caused by the pressure
 pattern b under face j: with the pattern 1 the mean displacement under a unit force. F is the
-flexibility of ``scenes.walls``: displacement and pressure are both taken for the polynomials phi
+flexibility of ``mechanics.rail_compliance``: displacement and pressure are both taken for the polynomials phi
 nearest to them. K is that of the whole rail, clamped at its mounts, so faces on one rail press each
 other's walls too. Inertia is left out. Both are symmetric (Maxwell and Betti). Beside them stands
-where uneven temperature brings the same walls (``highfi.thermal``), for one of each field of which
+where uneven temperature brings the same walls (``highfi.statics.thermal``), for one of each field of which
 [thermal] is a sum.
 
-The modes psi_m of the same rail (``highfi.vibration``) are seen under the faces in the same
+The modes psi_m of the same rail (``highfi.statics.vibration``) are seen under the faces in the same
 patterns, so that a full set of them makes up C::
 
     V_iam = 1/A_i integral over face i of phi_a n_i . psi_m,   W = G^-1 V,   C = sum_m V_m V_m' / omega_m^2
@@ -24,17 +24,19 @@ from typing import NamedTuple
 import numpy as np
 from scipy.sparse import coo_array, csc_array
 
-from highfi import assembly, pieces, surface, thermal, vibration
-from highfi.mesh import RailMesh
-from highfi.numerics import Numerics
-from highfi.pressure import Pressed, pressed
-from highfi.run import prepare
-from highfi.statics import Clamped
-from scenes import model as scene_model
-from scenes.effects.thermal import FIELDS
-from scenes.rail import MaterialTable
-from scenes.scene import Scene
-from scenes.walls import MODES, PATTERNS, Walls, digest
+from tipoff.highfi.contact import surface
+from tipoff.highfi.mesh import pieces
+from tipoff.highfi.mesh.rail_mesh import RailMesh
+from tipoff.highfi.numerics import Numerics
+from tipoff.highfi.run import prepare
+from tipoff.highfi.statics import assembly, thermal, vibration
+from tipoff.highfi.statics.pressure import Pressed, pressed
+from tipoff.highfi.statics.solve import Clamped
+from tipoff.mechanics import model as scene_model
+from tipoff.mechanics.rail_compliance import MODES, PATTERNS, Walls, digest
+from tipoff.scenes.effects.thermal import FIELDS
+from tipoff.scenes.rail import MaterialTable
+from tipoff.scenes.scene import Scene
 
 _BATCH = 64  # loads solved for at once; bounds the memory
 _DIGITS = 9  # of a place in m: faces whose places agree in them share one solution
@@ -100,7 +102,7 @@ def along(
     """Compliance of the rails of ``scene`` in elements of about ``element_size`` (m), the payload
     aligned and moved by each ``travel`` (m) from its place at ignition.
 
-    Faces are those of ``scenes.model.Faces``. Raises SceneError or MeshError, ValueError for a
+    Faces are those of ``mechanics.model.Faces``. Raises SceneError or MeshError, ValueError for a
     number of patterns or modes there is not.
     """
     nominal = scene_model.built(scene).nominal

@@ -8,28 +8,31 @@ from pathlib import Path
 
 import numpy as np
 
-from highfi import ending, observe, records, samples, watch, worst
-from highfi.checkpoint import Checkpoint, restore
-from highfi.contact import FASTEST_APPROACH
-from highfi.fit import check_fit
-from highfi.loads import pull_on_nodes, thrust_load
-from highfi.mesh import RailMesh
-from highfi.nodes import kick_nodes
-from highfi.numerics import Numerics
-from highfi.pose import seen_from_frame
-from highfi.rail import geometry, make_mesh
-from highfi.room import check_before, check_mesh
-from highfi.step import advance, evaluate, kick_bodies
-from highfi.stepping import Stepping, choose
-from highfi.surface import magnification
-from highfi.system import System, build, initial_state
-from highfi.team import gather, processors
-from scenes import comoving, fidelity, ledger, outcome, rotation
-from scenes.effects.friction import require_two_step
-from scenes.ending import DONE, WINDOW, is_left_out
-from scenes.promises import FINITE_ELEMENTS, broken
-from scenes.scene import Scene
-from scenes.trajectory import Trajectory
+from tipoff.highfi.contact.pads import FASTEST_APPROACH
+from tipoff.highfi.contact.surface import magnification
+from tipoff.highfi.dynamics import ending, observe, samples
+from tipoff.highfi.dynamics.checkpoint import Checkpoint, restore
+from tipoff.highfi.dynamics.loads import pull_on_nodes, thrust_load
+from tipoff.highfi.dynamics.step import advance, evaluate, kick_bodies
+from tipoff.highfi.dynamics.step_size import Stepping, choose
+from tipoff.highfi.dynamics.system import System, build, initial_state
+from tipoff.highfi.mesh.rail_mesh import RailMesh
+from tipoff.highfi.numerics import Numerics
+from tipoff.highfi.rail.fit import check_fit
+from tipoff.highfi.rail.memory_check import check_before, check_mesh
+from tipoff.highfi.rail.scene_mesh import geometry, make_mesh
+from tipoff.highfi.state import records
+from tipoff.highfi.state.nodes import kick_nodes
+from tipoff.highfi.state.pose import seen_from_frame
+from tipoff.highfi.state.threads import gather, processors
+from tipoff.highfi.stress import monitor, peak
+from tipoff.kernels import rotation
+from tipoff.mechanics import comoving, ledger, models, outcome
+from tipoff.mechanics.ending import DONE, WINDOW, is_left_out
+from tipoff.mechanics.promises import FINITE_ELEMENTS, broken
+from tipoff.mechanics.trajectory import Trajectory
+from tipoff.scenes.effects.friction import require_two_step
+from tipoff.scenes.scene import Scene
 
 _STOP_RATIO = 0.1  # of the transverse scale: a run that loses so much energy is not a result
 _ELEMENTS_PER_THREAD = 4000
@@ -142,8 +145,8 @@ class Loop:
         self.forces: list[np.ndarray] = []
         self.gauges: list[np.ndarray] = []
         self.watch, self.worst = (
-            watch.build(system, scene.rail.material, stepping.steps_per_sample, threads),
-            worst.nothing(),
+            monitor.build(system, scene.rail.material, stepping.steps_per_sample, threads),
+            peak.nothing(),
         )
 
     def arguments(self) -> tuple:
@@ -281,9 +284,9 @@ class Loop:
     def _watch(self) -> None:
         """Stresses at the sample just taken."""
         if self.watch.patch is not None:
-            self.gauges.append(watch.gauge(self.watch, self.deformed()))
+            self.gauges.append(monitor.gauge(self.watch, self.deformed()))
         if (len(self.rows) - 1) % self.watch.every == 0:
-            watch.look(
+            monitor.look(
                 self.watch, self.deformed(), self.steps * self.stepping.dt_s, self.worst, self.pool
             )
 
@@ -383,7 +386,7 @@ class Loop:
         )
 
     def _stress(self) -> dict:
-        return watch.record(
+        return monitor.record(
             self.watch, self.system, self.worst, self.scene.rail.material.yield_strength
         )
 
@@ -424,7 +427,7 @@ class Loop:
         message = "; ".join(filter(None, [self.message, broken, pressed]))
         seen_from = comoving.frame(self.system.model)
         return Trajectory(
-            model=fidelity.FINITE_ELEMENTS,
+            model=models.FINITE_ELEMENTS,
             status=status,
             message=message,
             **comoving.motion(seen_from, moved)._asdict(),

@@ -1,28 +1,29 @@
 """Which effects the compiled time loop of a scene really contains, read from its machine code."""
 
-from lowfi import bow, equations, grip, touch
-from lowfi.march import Sampling, march
-from lowfi.numerics import Numerics
-from lowfi.run import Run
-from lowfi.walls import modes, solution
-from scenes.effects.friction import coefficient_over_speed
-from scenes.jit import contains, machine_code
-from scenes.scene import Scene
-from scenes.walls import Walls
+from tipoff.kernels.jit import contains, machine_code
+from tipoff.lowfi.contact import springs, stick_slip, thermal_offset
+from tipoff.lowfi.contact.compliant import modes, solution
+from tipoff.lowfi.dynamics import equations
+from tipoff.lowfi.dynamics.integrate import Sampling, march
+from tipoff.lowfi.numerics import Numerics
+from tipoff.lowfi.run import Run
+from tipoff.mechanics.rail_compliance import Walls
+from tipoff.scenes.effects.friction import coefficient_over_speed
+from tipoff.scenes.scene import Scene
 
 # A function that only this effect calls. Mass offset and initial state are numbers without code,
 # and so is the damping of rails that vibrate; compliant contact has the temperature in its own
 # code.
 LAWS = {
-    "contact": touch.load,
+    "contact": springs.load,
     "walls": solution.solve,
     "modes": modes.swing,
     "friction": coefficient_over_speed,
-    "sticking": grip.traction,
+    "sticking": stick_slip.traction,
     "gravity": equations._weigh,
-    "platform": touch._relative_turn,
+    "platform": springs._relative_turn,
     "thrust_offset": equations._offset_line,
-    "thermal": bow.stand,
+    "thermal": thermal_offset.stand,
 }
 
 

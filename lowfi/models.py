@@ -1,12 +1,12 @@
 """The two models of the surrogate, ``compliant`` and ``springs``: whether what a run is given
 belongs to its model."""
 
-from lowfi.numerics import Numerics
-from scenes.calibration import Calibration
-from scenes.faults import Fault, SceneError
-from scenes.fidelity import COMPLIANT, SURROGATES
-from scenes.scene import Scene
-from scenes.walls import Walls, model_of
+from tipoff.lowfi.numerics import Numerics
+from tipoff.mechanics.models import COMPLIANT, SURROGATES
+from tipoff.mechanics.rail_compliance import Walls, model_of
+from tipoff.scenes.calibration import Calibration
+from tipoff.scenes.faults import Fault, SceneError
+from tipoff.scenes.scene import Scene
 
 
 def require(

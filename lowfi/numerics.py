@@ -3,8 +3,8 @@
 import math
 from dataclasses import asdict, dataclass, replace
 
-from scenes.promises import RIGID, Promises
-from scenes.walls import MODES
+from tipoff.mechanics.promises import RIGID, Promises
+from tipoff.mechanics.rail_compliance import MODES
 
 # A step of 0.1 % relative error is no longer a solution; below 1e-13 rounding decides.
 _COARSEST, _FINEST = 1e-2, 1e-13

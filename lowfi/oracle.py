@@ -3,7 +3,7 @@ and Euler's equations.
 
     m v' = F,    I w' = M - w x I w    (w and M in body axes, M about the body's own mass centre),    q' = q w / 2
 
-It shares only the laws in ``scenes.effects``, the table of warm walls (``lowfi.bow``) and the
+It shares only the laws in ``scenes.effects``, the table of warm walls (``lowfi.contact.thermal_offset``) and the
 rotations with the fast path: other state variables, another integrator, no events, no error
 control, and it goes on where a pad strikes an edge of a wall. Tests hold the fast path against it;
 benchmarks take it as the baseline.
@@ -13,17 +13,17 @@ from typing import NamedTuple
 
 import numpy as np
 
-from lowfi import bow
-from lowfi.system import BACK, NUMBER, SIDE_MIDDLE, SIDE_REACH, System, build
-from scenes import model as models
-from scenes import rotation
-from scenes.effects import contact as law
-from scenes.effects.friction import coefficient_over_speed, require_two_step
-from scenes.effects.gravity import acceleration
-from scenes.effects.thrust_law import magnitude
-from scenes.jit import inlined, njit
-from scenes.scene import Scene
-from scenes.walls import Walls
+from tipoff.kernels import rotation
+from tipoff.kernels.jit import inlined, njit
+from tipoff.lowfi.contact import thermal_offset
+from tipoff.lowfi.system import BACK, NUMBER, SIDE_MIDDLE, SIDE_REACH, System, build
+from tipoff.mechanics import model as models
+from tipoff.mechanics.rail_compliance import Walls
+from tipoff.scenes.effects import contact as law
+from tipoff.scenes.effects.friction import coefficient_over_speed, require_two_step
+from tipoff.scenes.effects.gravity import acceleration
+from tipoff.scenes.effects.thrust_law import magnitude
+from tipoff.scenes.scene import Scene
 
 _BODY = 13  # place, velocity, quaternion, body rate
 _SIZE = 2 * _BODY
@@ -78,7 +78,7 @@ def prepared(
     rows = np.zeros((samples + 1, _SIZE))
     rows[0] = _start(model)
     return (
-        build(model, bow=bow.under_pads(scene, model, walls)),
+        build(model, bow=thermal_offset.under_pads(scene, model, walls)),
         model.payload.inertia,
         platform_inertia,
         interval / steps_per_sample,
@@ -273,7 +273,7 @@ def touch(laws, friction, face, rail_start, rail_end, place, axes, payload, plat
 def _bowed(bow_, face, x):
     """How far (m) the wall stands away at ``x`` (m), and its slope."""
     if bow_ is not None:
-        return bow.stand(bow_, int(face[NUMBER]), x)
+        return thermal_offset.stand(bow_, int(face[NUMBER]), x)
     return 0.0, 0.0
 
 

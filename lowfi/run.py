@@ -5,8 +5,11 @@ from collections.abc import Callable
 
 import numpy as np
 
-from lowfi import accuracy, audit, balance, bow, edges, march, plan, state, system
-from lowfi.march import (
+from tipoff.lowfi import state, system
+from tipoff.lowfi.contact import thermal_offset, wall_ends
+from tipoff.lowfi.contact.compliant import record as wall_record
+from tipoff.lowfi.dynamics import audit, balance, integrate, local_error, plan
+from tipoff.lowfi.dynamics.integrate import (
     EVALUATIONS,
     EVENTS,
     LIMIT,
@@ -18,25 +21,24 @@ from lowfi.march import (
     TAKEN,
     Sampling,
 )
-from lowfi.models import require
-from lowfi.numerics import Numerics, promises_of
-from lowfi.sample import SAMPLE_SIZE
-from lowfi.walls import record as wall_record
-from scenes import comoving, ending, outcome, promises
-from scenes import model as models
-from scenes.calibration import Calibration
-from scenes.fidelity import COMPLIANT
-from scenes.scene import Scene
-from scenes.trajectory import Trajectory
-from scenes.walls import Walls, model_of
+from tipoff.lowfi.dynamics.sample import SAMPLE_SIZE
+from tipoff.lowfi.models import require
+from tipoff.lowfi.numerics import Numerics, promises_of
+from tipoff.mechanics import comoving, ending, outcome, promises
+from tipoff.mechanics import model as models
+from tipoff.mechanics.models import COMPLIANT
+from tipoff.mechanics.rail_compliance import Walls, model_of
+from tipoff.mechanics.trajectory import Trajectory
+from tipoff.scenes.calibration import Calibration
+from tipoff.scenes.scene import Scene
 
 _STRIDE = 5e-3  # s, from one report of progress to the next
 _REASONS = {
-    march.UNDERFLOW: "no step is short enough: the state is no longer finite or its equations too "
+    integrate.UNDERFLOW: "no step is short enough: the state is no longer finite or its equations too "
     "stiff",
-    march.NOT_FINITE: "a value became infinite",
-    march.OUT_OF_STEPS: "the step budget is spent (numerics.maximum_steps)",
-    march.LOST_ENERGY: "a tenth of the energy is lost or came from nothing",
+    integrate.NOT_FINITE: "a value became infinite",
+    integrate.OUT_OF_STEPS: "the step budget is spent (numerics.maximum_steps)",
+    integrate.LOST_ENERGY: "a tenth of the energy is lost or came from nothing",
 }
 # at a tenth of the tolerance each, while that makes the ledgers' errors smaller by half at least
 _RERUNS = 4
@@ -77,11 +79,11 @@ def solved(
     make."""
     began, cpu = clock.perf_counter(), clock.thread_time()
     scene = calibration.apply(scene) if calibration else scene
-    known = len(march.march.overloads)
+    known = len(integrate.march.overloads)
     setting_up = clock.perf_counter()
     run_ = Run(scene, numerics or Numerics(), walls)
     run_.begin()
-    compile_s = clock.perf_counter() - setting_up if len(march.march.overloads) > known else 0.0
+    compile_s = clock.perf_counter() - setting_up if len(integrate.march.overloads) > known else 0.0
     compile_cpu = clock.thread_time()
     marching = clock.perf_counter()
     run_.march(progress)
@@ -144,13 +146,13 @@ class Run:
         self.end = scene.output.last(scene.duration)
         self.plan = plan.make(model, scene.duration, used)
         reach = float(np.sqrt((model.faces.centre**2).sum(axis=1).max()))
-        self.tolerance = accuracy.tolerance(used, self.promised, reach)
+        self.tolerance = local_error.tolerance(used, self.promised, reach)
         self.system = system.build(
             model,
             walls=wall_record.under_pads(scene, model, walls, numerics.modes),
-            bow=bow.under_pads(scene, model, walls),
+            bow=thermal_offset.under_pads(scene, model, walls),
         )
-        self.loop = march.ready(self.system, state.initial(model), plan.first_step(self.plan))
+        self.loop = integrate.ready(self.system, state.initial(model), plan.first_step(self.plan))
         self.rows, self.forces = (
             np.zeros((self.end + 1, SAMPLE_SIZE)),
             np.zeros((self.end + 1, model.faces.axis.size, 3)),
@@ -172,7 +174,7 @@ class Run:
     def _advance(self, number: int) -> None:
         """Take samples up to ``number``, fewer where nothing is left to learn."""
         sampling = Sampling(self.interval, self.last, number, self.whole)
-        status = march.march(
+        status = integrate.march(
             self.system,
             self.plan,
             self.tolerance,
@@ -183,17 +185,17 @@ class Run:
             self.forces,
         )
         self.taken = int(self.loop.count[TAKEN])
-        if status == march.STRUCK:
+        if status == integrate.STRUCK:
             self.message = self._strike()
         elif status in _REASONS:
             self.message = f"{_REASONS[status]}, at {self.loop.clock[NOW]:.6g} s"
-        elif status == march.ENDED:
+        elif status == integrate.ENDED:
             self.end = self.taken - 1
 
     def _strike(self) -> str:
         """What met the edge of a wall, where and when."""
         face = int(self.loop.count[STRIKING])
-        return edges.strike(
+        return wall_ends.strike(
             self.model, face, self.system.faces[face], self.loop.after[face], self.loop.clock[NOW]
         )
 
@@ -212,7 +214,7 @@ class Run:
 
     def motion(self) -> outcome.Motion:
         """Motion of the samples taken so far, in the frame it is solved in
-        (``scenes.comoving``)."""
+        (``mechanics.comoving``)."""
         return balance.motion(self.rows[: self.taken], self.interval)
 
     def trajectory(self) -> Trajectory:

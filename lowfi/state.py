@@ -9,16 +9,17 @@ Explicit Runge-Kutta methods keep linear invariants to rounding. The sums of m v
 bodies, less the impulse and its moment from outside, are such invariants when every internal force
 acts as a pair at one common point; a wrong pair still shows. The work entries behind them are
 quadratures: the same method integrates them, so that both ledgers close to its accuracy. Behind all
-that stand the modes of the rails, where there are any (``lowfi.walls.modes``).
+that stand the modes of the rails, where there are any (``lowfi.contact.compliant.modes``).
 """
 
 from typing import NamedTuple
 
 import numpy as np
 
-from scenes import comoving, rotation
-from scenes.jit import inlined, kernel
-from scenes.model import Model
+from tipoff.kernels import rotation
+from tipoff.kernels.jit import inlined, kernel
+from tipoff.mechanics import comoving
+from tipoff.mechanics.model import Model
 
 # Offsets inside a body's slots.
 PLACE, VELOCITY, QUATERNION, MOMENT, BODY_SIZE = 0, 3, 6, 10, 13
@@ -136,7 +137,7 @@ def normalise(state):
 
 
 def initial(model: Model) -> np.ndarray:
-    """State (STATE_SIZE,) at ignition, in the frame of ``scenes.comoving``."""
+    """State (STATE_SIZE,) at ignition, in the frame of ``mechanics.comoving``."""
     state, first, payload, platform = (
         np.zeros(STATE_SIZE),
         model.initial,

@@ -9,21 +9,21 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from scenes.effects.contact import HuntCrossley, Impact, Linear
-from scenes.effects.friction import Friction
-from scenes.effects.gravity import Gravity
-from scenes.effects.sticking import Sticking
-from scenes.effects.thrust_law import Thrust
-from scenes.effects.thrust_offset import ThrustOffset
-from scenes.model import Model
+from tipoff.mechanics.model import Model
+from tipoff.scenes.effects.contact import HuntCrossley, Impact, Linear
+from tipoff.scenes.effects.friction import Friction
+from tipoff.scenes.effects.gravity import Gravity
+from tipoff.scenes.effects.sticking import Sticking
+from tipoff.scenes.effects.thrust_law import Thrust
+from tipoff.scenes.effects.thrust_offset import ThrustOffset
 
 if TYPE_CHECKING:
-    from lowfi.bow import Bow
-    from lowfi.walls.record import Walls
+    from tipoff.lowfi.contact.compliant.record import Walls
+    from tipoff.lowfi.contact.thermal_offset import Bow
 
 # Columns of the table of faces: centre in payload body axes (m); outward normal's y and z and the
 # wall's distance along it (m), in platform axes; half the length (m); its own number; and where the
-# wall ends (``lowfi.edges``): how far (m) the middle of the face may be beyond an end of the rail,
+# wall ends (``lowfi.contact.wall_ends``): how far (m) the middle of the face may be beyond an end of the rail,
 # where it stands across the rail when centred (m, platform axes), how far from there it may be (m),
 # the thickness of the wall (m), and how deep (m) its edge may come over that of the wall.
 (

@@ -14,7 +14,7 @@ import sys
 import meshio
 import numpy as np
 
-from meshes import msh
+from tipoff.meshes import msh
 
 _START = -0.088  # m, rear end
 _WEB, _FLANGE = 0.10025, 0.03025  # m, |y| and |z| of the inner walls

@@ -18,7 +18,7 @@ from typing import NamedTuple
 import meshio
 import numpy as np
 
-from meshes import bricks, msh
+from tipoff.meshes import bricks, msh
 
 SURFACES = ("contact_y", "contact_z", "mount")
 

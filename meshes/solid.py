@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from meshes import bricks, generator
+from tipoff.meshes import bricks, generator
 
 _SAME = 1e-9  # m: two planes closer than this are one
 _TIE = 1e-6  # divisions

@@ -1,7 +1,7 @@
 """Settings every test shares: pictures are drawn without a display, and property tests draw the
 same examples each time.
 
-The directory of compiled kernels is chosen by `scenes.jit`, for tests and runs alike. To look for
+The directory of compiled kernels is chosen by `kernels.jit`, for tests and runs alike. To look for
 new examples, run pytest with `--hypothesis-profile=explore`. Tests marked `gmsh` are skipped where
 gmsh does not load, which a rail drawn in CAD alone needs.
 """
@@ -12,7 +12,7 @@ import os
 import pytest
 from hypothesis import settings
 
-from meshes import generator
+from tipoff.meshes import generator
 
 os.environ.setdefault("MPLBACKEND", "Agg")
 settings.register_profile("repeatable", derandomize=True, deadline=None)

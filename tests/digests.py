@@ -19,14 +19,11 @@ from typing import Any
 
 import numpy as np
 
-import calibrate
-import highfi
-import lowfi
-import scenes
-from scenes.fidelity import COMPLIANT, SPRINGS
-from scenes.trajectory import Trajectory
-from scenes.walls import Walls
-from studies.bench.surrogate import varied
+from tipoff import calibration, highfi, lowfi, scenes
+from tipoff.mechanics.models import COMPLIANT, SPRINGS
+from tipoff.mechanics.rail_compliance import Walls
+from tipoff.mechanics.trajectory import Trajectory
+from tipoff.studies.bench.surrogate import varied
 
 CATALOG = ("channel", "paper_like", "reference", "sensitive", "thin", "tiny", "titanium")
 CASES = 1000  # of an ensemble
@@ -96,7 +93,7 @@ def trajectories(names: tuple[str, ...]) -> Iterator[str]:
     condition only."""
     for name in names:
         scene = scenes.load(name)
-        walls = calibrate.compliance(scene, COARSE)
+        walls = calibration.compliance(scene, COARSE)
         yield line(f"{name}/compliance", digest(*_arrays(walls)))
         for condition in scene.conditions:
             one = scene.condition(condition)
@@ -112,7 +109,7 @@ def trajectories(names: tuple[str, ...]) -> Iterator[str]:
 def ensembles() -> Iterator[str]:
     """A line for a thousand cases of each model of the surrogate."""
     scene, rows = scenes.load("reference"), varied(CASES)
-    for model, walls in ((COMPLIANT, calibrate.compliance(scene, COARSE)), (SPRINGS, None)):
+    for model, walls in ((COMPLIANT, calibration.compliance(scene, COARSE)), (SPRINGS, None)):
         found = lowfi.run_many(scene, rows, model, walls=walls)
         columns = {
             name: found[name].values.tolist()

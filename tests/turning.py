@@ -4,7 +4,8 @@ anyhow."""
 import numpy as np
 from scipy.integrate import cumulative_trapezoid
 
-from scenes import outcome, rotation
+from tipoff.kernels import rotation
+from tipoff.mechanics import outcome
 
 # of the other inertial axes, about no axis of the scene's
 TURN = rotation.exponential((0.7, -1.1, 0.4))

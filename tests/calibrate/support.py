@@ -5,9 +5,9 @@ from pathlib import Path
 
 import numpy as np
 
-import lowfi
-import scenes
-from calibrate.search import Plan
+from tipoff import lowfi, scenes
+from tipoff.calibration.search import Plan
+from tipoff.mechanics.trajectory import Trajectory
 
 CONDITIONS = ("phi15", "phi60")
 SMALL = Plan(points=32, starts=1, evaluations=80, polish=12)
@@ -35,16 +35,14 @@ def scene() -> scenes.Scene:
 
 
 @functools.cache
-def own_curves() -> dict[str, scenes.Trajectory]:
+def own_curves() -> dict[str, Trajectory]:
     """The surrogate's own runs with the true constants."""
     return {
         name: lowfi.run(scene().replace(TRUTH).condition(name), "springs") for name in CONDITIONS
     }
 
 
-def write_curves(
-    path: Path, run: scenes.Trajectory, keep: slice | np.ndarray = slice(None)
-) -> Path:
+def write_curves(path: Path, run: Trajectory, keep: slice | np.ndarray = slice(None)) -> Path:
     """A CSV file of samples of a run in units of a test stand, as another code would write it, with
     a column nobody asked for."""
     columns = np.column_stack(

@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-import calibrate
-from calibrate import Curves, parameters
-from calibrate.objective import Objective, targets
-from scenes import Calibration, SceneError
-from studies.cli import app
 from tests.calibrate.support import CONDITIONS, SMALL, TRUTH, own_curves, scene, write_curves
+from tipoff import calibration
+from tipoff.calibration import Curves, parameters
+from tipoff.calibration.objective import Objective, targets
+from tipoff.scenes import Calibration, SceneError
+from tipoff.studies.cli import app
 
 HEAD = "time [ms],velocity_x [m/s],rate_x [deg/s],rate_y [deg/s],rate_z [deg/s]"
 LINES = [f"{0.5 * n},{0.1 * n},1,2,3" for n in range(9)]  # 0 to 4 ms
@@ -52,7 +52,7 @@ def test_a_run_written_as_a_file_is_the_run(tmp_path):
 def test_constants_come_back_from_files(tmp_path):
     """The window of the settled rates differs by some samples, 1e-4 of the rates: that is all the
     objective keeps."""
-    found = calibrate.run(scene(), files(tmp_path), plan=SMALL)
+    found = calibration.run(scene(), files(tmp_path), plan=SMALL)
     for name, value in TRUTH.items():
         assert found.constants[name] == pytest.approx(value, rel=5e-3), name
     assert found.objective < 1e-6
@@ -167,21 +167,21 @@ def test_curves_that_end_under_thrust_or_outlast_the_scene_are_refused(tmp_path)
     read = files(tmp_path)
     early = {name: item._replace(window_start=0.02) for name, item in read.items()}
     with pytest.raises(
-        calibrate.CalibrationError, match="phi15 settles from 20 ms.*\n.*phi60 settles"
+        calibration.CalibrationError, match="phi15 settles from 20 ms.*\n.*phi60 settles"
     ):
-        calibrate.run(scene(), early)
+        calibration.run(scene(), early)
     with pytest.raises(
-        calibrate.CalibrationError,
+        calibration.CalibrationError,
         match="lasts .* ms, expected at most the scene's duration of 30 ms",
     ):
-        calibrate.run(scene().replace({"duration": "30 ms"}), {"phi60": read["phi60"]})
+        calibration.run(scene().replace({"duration": "30 ms"}), {"phi60": read["phi60"]})
 
 
 @pytest.fixture
 def quick(monkeypatch):
     """A search of a few runs: the command is under test, not the fit."""
     monkeypatch.setattr(
-        sys.modules["calibrate.run"],
+        sys.modules["tipoff.calibration.run"],
         "Plan",
         lambda: SMALL._replace(points=2, evaluations=6, polish=1),
     )

@@ -7,12 +7,12 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import least_squares
 from scipy.stats import norm
 
-from calibrate import information, intervals
-from calibrate.correlation import correlation_time
-from scenes.effects.contact import HuntCrossley, hunt_crossley
 from tests.calibrate.support import correlated
 from tests.exact.contact import hunt_crossley_restitution
 from tests.exact.friction import stopping
+from tipoff.calibration import information, intervals
+from tipoff.calibration.correlation import correlation_time
+from tipoff.scenes.effects.contact import HuntCrossley, hunt_crossley
 
 G = 9.80665
 PAD = HuntCrossley(70_000 * 1e3**1.5, 1.5, 2.0)

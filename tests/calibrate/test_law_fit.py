@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from calibrate import law_fit
-from scenes.effects.contact import Impact
+from tipoff.calibration import law_fit
+from tipoff.scenes.effects.contact import Impact
 
 # The paper pad: k 70 000 N/mm^1.5, c 60 N s/mm, d 0.30 mm (paper, Table 2), e 1.5; friction 0.2.
 PAD = Impact(70_000 * 1e3**1.5, 1.5, 60e3, 0.3e-3)

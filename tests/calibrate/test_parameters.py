@@ -2,11 +2,9 @@
 
 import pytest
 
-import calibrate
-import lowfi
-import scenes
-from calibrate import parameters
 from tests.calibrate.support import SMALL
+from tipoff import calibration, lowfi, scenes
+from tipoff.calibration import parameters
 
 REFERENCE = scenes.load("reference")
 IMPACT = dict(
@@ -77,7 +75,7 @@ def test_another_law_without_friction_fits_its_own_curves():
     wrong = {item.name: item.read(truth) for item in free}
     wrong["contact.force"] *= 1.4
     start = truth.replace(parameters.overrides(truth, wrong))
-    found = calibrate.run(
+    found = calibration.run(
         start, {"phi60": lowfi.run(truth.condition("phi60"), "springs")}, plan=SMALL
     )
     assert found.parameters == ["contact.force", "contact.exponent", "contact.dissipation"]

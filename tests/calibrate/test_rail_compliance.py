@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-import calibrate
-from calibrate import rail_compliance
-from scenes import load
+from tipoff import calibration
+from tipoff.calibration import rail_compliance
+from tipoff.scenes import load
 
 REFERENCE = 2e-3
 
@@ -38,4 +38,4 @@ def test_the_estimate_is_what_the_reference_s_own_mesh_shows():
 def test_a_size_that_is_asked_for_is_taken(monkeypatch):
     monkeypatch.setattr(rail_compliance, "fine_enough", lambda *_: pytest.fail("chose a mesh"))
     monkeypatch.setattr(rail_compliance.statics, "walls", lambda scene, size: size)
-    assert calibrate.compliance(load("tiny"), 8e-3) == 8e-3
+    assert calibration.compliance(load("tiny"), 8e-3) == 8e-3

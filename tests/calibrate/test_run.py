@@ -8,21 +8,20 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 
-import calibrate
-import lowfi
-from calibrate import Curves, evidence, parameters
-from calibrate.objective import VELOCITY_WEIGHT, Objective, Parts, targets
-from scenes import Calibration, SceneError
-from scenes.outcome import Outcome
-from studies.settings import Settings
-from studies.stages import calibrate as stage
-from studies.study import Study
 from tests.calibrate.support import CONDITIONS, SMALL, TRUTH, own_curves, scene
+from tipoff import calibration, lowfi
+from tipoff.calibration import Curves, evidence, parameters
+from tipoff.calibration.objective import VELOCITY_WEIGHT, Objective, Parts, targets
+from tipoff.mechanics.outcome import Outcome
+from tipoff.scenes import Calibration, SceneError
+from tipoff.studies.calibration import stage
+from tipoff.studies.core.settings import Settings
+from tipoff.studies.core.study import Study
 
 
 @pytest.fixture(scope="module")
 def fitted() -> Calibration:
-    return calibrate.run(scene(), own_curves(), plan=SMALL)
+    return calibration.run(scene(), own_curves(), plan=SMALL)
 
 
 def test_recovers_known_constants_from_a_wrong_start(fitted):
@@ -125,7 +124,7 @@ def test_travels_as_a_file_and_drives_the_surrogate(fitted, tmp_path):
 
 def test_same_seed_same_bits(fitted):
     """Threads finish in any order; the result must not know."""
-    again = calibrate.run(scene(), own_curves(), plan=SMALL)
+    again = calibration.run(scene(), own_curves(), plan=SMALL)
     assert again.constants == fitted.constants and again.objective == fitted.objective
     assert (again.information == fitted.information).all()
 
@@ -149,9 +148,11 @@ def test_same_bits_with_any_number_of_workers(monkeypatch):
         return ThreadPoolExecutor(workers)
 
     monkeypatch.setattr(lowfi, "run", run)
-    monkeypatch.setattr(sys.modules["calibrate.run"], "ThreadPoolExecutor", pool)
+    monkeypatch.setattr(sys.modules["tipoff.calibration.run"], "ThreadPoolExecutor", pool)
     plan = SMALL._replace(points=4, evaluations=8, polish=1)
-    one, two = (calibrate.run(scene(), own_curves(), plan=plan, workers=count) for count in (1, 2))
+    one, two = (
+        calibration.run(scene(), own_curves(), plan=plan, workers=count) for count in (1, 2)
+    )
     assert (
         one.constants == two.constants
         and one.objective == two.objective
@@ -165,18 +166,18 @@ def test_the_stage_calibrates_with_the_workers_asked_for(monkeypatch, tmp_path):
 
     def run(asked, references, **others):
         given.update(others)
-        raise calibrate.CalibrationError("enough")
+        raise calibration.CalibrationError("enough")
 
-    monkeypatch.setattr(calibrate, "run", run)
+    monkeypatch.setattr(calibration, "run", run)
     study = Study(scene(), tmp_path, Settings(workers=3))
-    with pytest.raises(calibrate.CalibrationError, match="enough"):
+    with pytest.raises(calibration.CalibrationError, match="enough"):
         stage._fitted(study, own_curves(), tmp_path / "none.toml")
     assert given["workers"] == 3
 
 
 def test_progress_grows_to_one():
     seen = []
-    calibrate.run(
+    calibration.run(
         scene(),
         own_curves(),
         plan=SMALL._replace(points=4, evaluations=8, polish=1),
@@ -186,23 +187,23 @@ def test_progress_grows_to_one():
 
 
 def test_refuses_missing_references():
-    with pytest.raises(calibrate.CalibrationError, match="phi60 is missing"):
-        calibrate.run(scene(), {"phi15": own_curves()["phi15"]})
-    with pytest.raises(calibrate.CalibrationError, match="given none"):
-        calibrate.run(scene(), {})
+    with pytest.raises(calibration.CalibrationError, match="phi60 is missing"):
+        calibration.run(scene(), {"phi15": own_curves()["phi15"]})
+    with pytest.raises(calibration.CalibrationError, match="given none"):
+        calibration.run(scene(), {})
 
 
 def test_refuses_a_diverged_reference():
     broken = dataclasses.replace(own_curves()["phi15"], status="diverged", outcome=Outcome())
-    with pytest.raises(calibrate.CalibrationError, match="phi15 is diverged"):
-        calibrate.run(scene(), own_curves() | {"phi15": broken})
+    with pytest.raises(calibration.CalibrationError, match="phi15 is diverged"):
+        calibration.run(scene(), own_curves() | {"phi15": broken})
 
 
 def test_refuses_a_scene_without_contact_and_an_unknown_condition():
-    with pytest.raises(calibrate.CalibrationError, match="contact"):
-        calibrate.run(scene().replace({"contact": "absent"}), own_curves())
+    with pytest.raises(calibration.CalibrationError, match="contact"):
+        calibration.run(scene().replace({"contact": "absent"}), own_curves())
     with pytest.raises(SceneError, match="phi16"):
-        calibrate.run(scene(), own_curves() | {"phi16": own_curves()["phi15"]})
+        calibration.run(scene(), own_curves() | {"phi16": own_curves()["phi15"]})
 
 
 def test_refuses_references_that_do_not_turn():
@@ -212,5 +213,5 @@ def test_refuses_references_that_do_not_turn():
         )
         for name, run in own_curves().items()
     }
-    with pytest.raises(calibrate.CalibrationError, match="rates are zero"):
-        calibrate.run(scene(), still)
+    with pytest.raises(calibration.CalibrationError, match="rates are zero"):
+        calibration.run(scene(), still)

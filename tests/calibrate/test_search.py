@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.optimize import least_squares
 
-from calibrate import information
-from calibrate.search import Plan, search
+from tipoff.calibration import information
+from tipoff.calibration.search import Plan, search
 
 TARGET = np.array([0.71, 0.23, 0.55])
 

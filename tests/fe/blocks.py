@@ -4,8 +4,9 @@ import numpy as np
 from scipy.sparse import diags_array
 from scipy.sparse.linalg import eigsh, spsolve
 
-from highfi import assembly, element
-from highfi.mesh import RailMesh, boundary_facets
+from tipoff.highfi.elements import hexahedron
+from tipoff.highfi.mesh.rail_mesh import RailMesh, boundary_facets
+from tipoff.highfi.statics import assembly
 
 ALUMINIUM = {"density": 2810.0, "youngs_modulus": 72e9, "poisson_ratio": 0.33}
 
@@ -61,8 +62,8 @@ def without_bubbles(mesh, operator, youngs_modulus, poisson_ratio):
     """The same operator with the plain, fully integrated hexahedron, which the tests of bending use
     as their control."""
     _, representatives = assembly.shape_classes(mesh)
-    strain = element.kinematics(element.basis(mesh.points[mesh.cells[representatives]]))
-    law = element.elasticity(youngs_modulus, poisson_ratio)
+    strain = hexahedron.kinematics(hexahedron.basis(mesh.points[mesh.cells[representatives]]))
+    law = hexahedron.elasticity(youngs_modulus, poisson_ratio)
     return operator._replace(
         stiffness=np.einsum("cq,cqsi,st,cqtj->cij", strain.volume, strain.nodal, law, strain.nodal)
     )

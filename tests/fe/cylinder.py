@@ -5,9 +5,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from highfi import assembly
-from highfi.mesh import RailMesh, boundary_facets
 from tests.fe.blocks import block, static, without_bubbles
+from tipoff.highfi.mesh.rail_mesh import RailMesh, boundary_facets
+from tipoff.highfi.statics import assembly
 
 INNER, OUTER, PRESSURE, MODULUS = 3.0, 9.0, 1.0, 1000.0
 

@@ -9,8 +9,8 @@ import itertools
 
 import numpy as np
 
-from meshes import generator
-from meshes.l_rail import (
+from tipoff.meshes import generator
+from tipoff.meshes.l_rail import (
     SURFACES,
     LRailGeometry,
     _depths,

@@ -6,9 +6,9 @@ asked, nodal forces.
 
 import numpy as np
 
-from highfi.nodes import kick_nodes
-from highfi.operator import internal_force
-from scenes.jit import njit
+from tipoff.highfi.state.nodes import kick_nodes
+from tipoff.highfi.statics.operator import internal_force
+from tipoff.kernels.jit import njit
 
 
 def march(operator, displacement, velocity, step, steps, watched=(0, 0)):

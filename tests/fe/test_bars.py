@@ -9,12 +9,13 @@ the bars and the steps are the product's.
 import numpy as np
 import pytest
 
-from highfi import assembly, timestep
-from highfi.mesh import RailMesh
-from highfi.operator import internal_force
 from tests.exact import elasticity
 from tests.fe.blocks import block
 from tests.fe.leapfrog import driven
+from tipoff.highfi.dynamics import stable_step as timestep
+from tipoff.highfi.mesh.rail_mesh import RailMesh
+from tipoff.highfi.statics import assembly
+from tipoff.highfi.statics.operator import internal_force
 
 LENGTH, WIDTH, MODULUS, DENSITY = 0.5, 0.02, 72e9, 2810.0
 AREA = WIDTH**2

@@ -6,11 +6,11 @@ import math
 import numpy as np
 import pytest
 
-from highfi.cells import corner_jacobians
-from highfi.mesh import read
-from meshes import channel, msh
-from scenes import load
 from tests.fe.test_mesh import facet_vectors
+from tipoff.highfi.mesh.cells import corner_jacobians
+from tipoff.highfi.mesh.rail_mesh import read
+from tipoff.meshes import channel, msh
+from tipoff.scenes import load
 
 
 @pytest.fixture(scope="module")

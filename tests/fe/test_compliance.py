@@ -6,14 +6,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-import scenes
-from highfi import compliance, pieces, pressure
-from highfi.mesh import MeshError, boundary_facets
-from highfi.rail import make_mesh
-from scenes.model import Faces
-from scenes.rail import MaterialTable
 from tests.exact import elasticity
 from tests.fe.blocks import block
+from tipoff import scenes
+from tipoff.highfi import compliance
+from tipoff.highfi.mesh import pieces
+from tipoff.highfi.mesh.rail_mesh import MeshError, boundary_facets
+from tipoff.highfi.rail.scene_mesh import make_mesh
+from tipoff.highfi.statics import pressure
+from tipoff.mechanics.model import Faces
+from tipoff.scenes.rail import MaterialTable
 
 LENGTH, WIDTH, HEIGHT, MODULUS = 0.6, 0.03, 0.04, 72e9
 HALF = 0.03  # m along the beam

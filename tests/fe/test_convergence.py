@@ -3,11 +3,13 @@
 import numpy as np
 import pytest
 
-from highfi import assembly, element, timestep
 from tests.exact import elasticity
 from tests.fe import cylinder
 from tests.fe.blocks import ALUMINIUM, block, modes
 from tests.fe.leapfrog import driven, march
+from tipoff.highfi.dynamics import stable_step
+from tipoff.highfi.elements import hexahedron
+from tipoff.highfi.statics import assembly
 
 NU = 0.3
 
@@ -25,13 +27,15 @@ def space_errors(refinement):
     )
     mean = exact[:, None] * found.mesh.points[:, :2] / found.radius[:, None]
     miss = ((found.displacement[:, :2] - mean) ** 2).sum(axis=1)
-    law, corners = element.elasticity(cylinder.MODULUS, NU), found.mesh.points[found.mesh.cells]
-    cells = element.basis(corners)
-    places = np.einsum("aq,cai->cqi", element.shape_functions(cells), corners)
+    law, corners = hexahedron.elasticity(cylinder.MODULUS, NU), found.mesh.points[found.mesh.cells]
+    cells = hexahedron.basis(corners)
+    places = np.einsum("aq,cai->cqi", hexahedron.shape_functions(cells), corners)
     stress = elasticity.pressed_cylinder_stress(
         places, cylinder.INNER, cylinder.OUTER, cylinder.PRESSURE, NU
     )
-    astray = element.gauss_strain(corners, law, found.displacement[found.mesh.cells]) @ law - stress
+    astray = (
+        hexahedron.gauss_strain(corners, law, found.displacement[found.mesh.cells]) @ law - stress
+    )
     volume = cells.dx[..., None]
     return (
         np.sqrt((found.mass @ miss) / (found.mass @ exact**2)),
@@ -58,7 +62,7 @@ def test_order_in_time():
     frequencies, shapes = modes(operator, 1)
     shape, end = shapes[0], 1.125 / frequencies[0]
     node = np.unravel_index(np.argmax(np.abs(shape)), shape.shape)
-    fewest = np.ceil(end / (0.9 * timestep.critical_step(timestep.element_bound(operator))))
+    fewest = np.ceil(end / (0.9 * stable_step.critical_step(stable_step.element_bound(operator))))
 
     def error(halvings, centred):
         steps = int(fewest) * 2**halvings

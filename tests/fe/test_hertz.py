@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 from scipy.sparse.linalg import splu
 
-from highfi import assembly
 from tests.exact import contact
 from tests.fe.blocks import block
+from tipoff.highfi.statics import assembly
 
 RADIUS, MASS, SPEED, NU = 0.010, 32.882e-3, 0.1, 0.33
 STIFFNESS = contact.hertz_stiffness(RADIUS, (210e9, 0.3), (72e9, NU))

@@ -10,12 +10,12 @@ import meshio
 import numpy as np
 import pytest
 
-import scenes
-from highfi.cells import corner_jacobians, edge_lengths
-from highfi.mesh import MeshError, along_x, read
-from highfi.rail import make_mesh
-from meshes import generator, l_rail, msh
 from tests.fe import gmsh_rails
+from tipoff import scenes
+from tipoff.highfi.mesh.cells import corner_jacobians, edge_lengths
+from tipoff.highfi.mesh.rail_mesh import MeshError, along_x, read
+from tipoff.highfi.rail.scene_mesh import make_mesh
+from tipoff.meshes import generator, l_rail, msh
 
 GEOMETRY = l_rail.LRailGeometry()
 AREAS = {
@@ -33,9 +33,9 @@ class Missing:
             raise OSError("libGL.so.1: cannot open shared object file: No such file or directory")
 
 sys.meta_path.insert(0, Missing())
-import scenes
-from highfi.rail import make_mesh
-from meshes import generator
+from tipoff import scenes
+from tipoff.highfi.rail.scene_mesh import make_mesh
+from tipoff.meshes import generator
 
 print(len(make_mesh(scenes.load("tiny"), 0.008).cells), "gmsh" in sys.modules)
 try:

@@ -4,10 +4,11 @@ to its rail."""
 import numpy as np
 import pytest
 
-from highfi import assembly, timestep
 from tests.exact import elasticity
 from tests.fe.blocks import ALUMINIUM, block, without_bubbles
 from tests.fe.leapfrog import driven
+from tipoff.highfi.dynamics import stable_step
+from tipoff.highfi.statics import assembly
 
 LENGTH, WIDTH, HEIGHT, FORCE = 0.8, 0.02, 0.01, 50.0
 MODULUS, DENSITY = ALUMINIUM["youngs_modulus"], ALUMINIUM["density"]
@@ -29,7 +30,9 @@ def midspan(elements, ratio, fraction, bubbles=True):
     line = np.flatnonzero(axis)[np.argsort(x[axis], kind="stable")].reshape(elements + 1, 2)
     crossing = LENGTH / (ratio * CRITICAL)
     steps = int(
-        np.ceil(crossing / (fraction * timestep.critical_step(timestep.element_bound(operator))))
+        np.ceil(
+            crossing / (fraction * stable_step.critical_step(stable_step.element_bound(operator)))
+        )
     )
     load, displacement, velocity = (np.zeros(mesh.points.shape) for _ in range(3))
 

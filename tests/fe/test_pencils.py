@@ -5,13 +5,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from highfi import assembly, folding, pencils
-from highfi.mesh import read
-from highfi.operator import internal_force
-from highfi.pencil_kernel import pencil_force
-from meshes import l_rail
-from scenes.memory import zeros
 from tests.fe.blocks import ALUMINIUM, block
+from tipoff.highfi.extruded import folding
+from tipoff.highfi.extruded import mesh as pencils
+from tipoff.highfi.extruded.kernel import pencil_force
+from tipoff.highfi.mesh.rail_mesh import read
+from tipoff.highfi.statics import assembly
+from tipoff.highfi.statics.operator import internal_force
+from tipoff.kernels.memory import zeros
+from tipoff.meshes import l_rail
 
 
 def graded(divisions, size):

@@ -12,10 +12,10 @@ import meshio
 import numpy as np
 import pytest
 
-from highfi import assembly
-from highfi.mesh import boundary_facets, read
 from tests.exact import elasticity
 from tests.fe.blocks import block, static, without_bubbles
+from tipoff.highfi.mesh.rail_mesh import boundary_facets, read
+from tipoff.highfi.statics import assembly
 
 LENGTH, DEPTH, THICKNESS = 6.0, 0.2, 0.1
 ELASTIC = {"youngs_modulus": 1e7, "poisson_ratio": 0.3}

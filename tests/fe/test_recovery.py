@@ -5,20 +5,21 @@ import numpy as np
 import pytest
 from scipy.sparse.linalg import spsolve
 
-from highfi import assembly, element, recovery
-from highfi.mesh import RailMesh
 from tests.exact import elasticity
 from tests.fe import cylinder
 from tests.fe.blocks import ALUMINIUM, block
 from tests.fe.test_beams import BEAM, ELASTIC, ROOT_STRESS, deflection
 from tests.fe.test_element import PATCH_GRADIENT, PATCH_HEXES, PATCH_INNER, PATCH_OUTER
+from tipoff.highfi.elements import hexahedral_recovery, hexahedron
+from tipoff.highfi.mesh.rail_mesh import RailMesh
+from tipoff.highfi.statics import assembly
 
-CORNERS = element.VTK_CORNERS.astype(float)
+CORNERS = hexahedron.VTK_CORNERS.astype(float)
 
 
 def at_corners(mesh, law, displacement):
     """Stress (e,8,6) Pa at the corners of the elements."""
-    matrix = recovery.corner_matrix(mesh.points[mesh.cells], law)
+    matrix = hexahedral_recovery.corner_matrix(mesh.points[mesh.cells], law)
     return (matrix @ displacement[mesh.cells].reshape(-1, 1, 24, 1))[..., 0]
 
 
@@ -32,7 +33,7 @@ def test_patch_has_constant_stress_at_every_corner():
     """2000 and 400, and hence a von Mises stress of 1200, at all eight corners of each distorted
     element."""
     points = np.concatenate([PATCH_OUTER, PATCH_INNER])
-    mesh, law = RailMesh(points, PATCH_HEXES, {}), element.elasticity(1e6, 0.25)
+    mesh, law = RailMesh(points, PATCH_HEXES, {}), hexahedron.elasticity(1e6, 0.25)
     matrix, inner = (
         assembly.sparse(assembly.build(mesh, 1.0, 1e6, 0.25, fixed=())),
         np.arange(24, 48),
@@ -42,32 +43,38 @@ def test_patch_has_constant_stress_at_every_corner():
     displacement[inner] = spsolve(matrix[inner][:, inner].tocsc(), -(matrix @ displacement)[inner])
     stress = at_corners(mesh, law, displacement.reshape(-1, 3))
     assert np.abs(stress - [2000.0, 2000.0, 2000.0, 400.0, 400.0, 400.0]).max() < 1e-10 * 2000.0
-    assert recovery.von_mises(stress) == pytest.approx(1200.0, rel=1e-10)
+    assert hexahedral_recovery.von_mises(stress) == pytest.approx(1200.0, rel=1e-10)
 
 
 def test_recovery_agrees_with_the_integration_points_of_the_element():
     """The plain formulas here and those the stiffness is integrated with are written apart and must
     be the same modes."""
-    corners, law = distorted(), element.elasticity(72e9, 0.33)
+    corners, law = distorted(), hexahedron.elasticity(72e9, 0.33)
     displacement = np.random.default_rng(4).standard_normal((4, 8, 3))
-    places = element.basis(corners).X.T
-    expected = element.gauss_strain(corners, law, displacement)
+    places = hexahedron.basis(corners).X.T
+    expected = hexahedron.gauss_strain(corners, law, displacement)
     for point, place in enumerate(places):
-        found = recovery.strain(corners, law, np.tile(place, (4, 1)), displacement)
+        found = hexahedral_recovery.strain(corners, law, np.tile(place, (4, 1)), displacement)
         assert found == pytest.approx(
             expected[:, point], rel=1e-11, abs=1e-12 * np.abs(expected).max()
         )
-    centre = recovery.strain(corners, law, np.tile(recovery.CENTRE, (4, 1)), displacement)
-    assert centre == pytest.approx(element.centre_strain(corners, displacement), rel=1e-12)
+    centre = hexahedral_recovery.strain(
+        corners, law, np.tile(hexahedral_recovery.CENTRE, (4, 1)), displacement
+    )
+    assert centre == pytest.approx(hexahedron.centre_strain(corners, displacement), rel=1e-12)
 
 
 def test_corner_gradients_are_those_of_the_corner_matrix():
-    corners, law = distorted(), element.elasticity(72e9, 0.33)
+    corners, law = distorted(), hexahedron.elasticity(72e9, 0.33)
     displacement = np.random.default_rng(5).standard_normal((4, 8, 3))
     for corner in range(8):
-        found = recovery.strain(corners, law, np.tile(CORNERS[corner], (4, 1)), displacement) @ law
+        found = (
+            hexahedral_recovery.strain(corners, law, np.tile(CORNERS[corner], (4, 1)), displacement)
+            @ law
+        )
         expected = (
-            recovery.corner_matrix(corners, law)[:, corner] @ displacement.reshape(4, 24, 1)
+            hexahedral_recovery.corner_matrix(corners, law)[:, corner]
+            @ displacement.reshape(4, 24, 1)
         )[..., 0]
         assert found == pytest.approx(expected, rel=1e-11, abs=1e-12 * np.abs(expected).max())
 
@@ -81,7 +88,7 @@ def test_root_stress_in_the_outer_fibre(divisions):
     Control: at the centres, which the mean over an element sees, one element through the height
     shows nothing at all.
     """
-    mesh, law = block(divisions, tuple(BEAM.values())), element.elasticity(**ELASTIC)
+    mesh, law = block(divisions, tuple(BEAM.values())), hexahedron.elasticity(**ELASTIC)
     operator = assembly.build(mesh, **ALUMINIUM, fixed=())
     _, displacement = deflection(mesh, operator)
     stress = at_corners(mesh, law, displacement)[..., 0]
@@ -95,7 +102,7 @@ def test_root_stress_in_the_outer_fibre(divisions):
     assert -root.mean() == pytest.approx(ROOT_STRESS, rel=1e-4)
     assert np.ptp(root) < 0.01 * ROOT_STRESS
     if divisions[2] == 1:
-        centre = element.centre_strain(place, displacement[mesh.cells]) @ law
+        centre = hexahedron.centre_strain(place, displacement[mesh.cells]) @ law
         assert np.abs(centre[:, 0]).max() < 0.01 * ROOT_STRESS
 
 
@@ -105,7 +112,7 @@ def test_stress_of_a_thick_cylinder(poisson_ratio):
     """Corner stresses, averaged over the elements that meet at a node, come to Lame's with the
     first order that a wall allows, where only elements of one side meet: 7 % of the largest stress
     on 24 elements through the wall."""
-    law = element.elasticity(cylinder.MODULUS, poisson_ratio)
+    law = hexahedron.elasticity(cylinder.MODULUS, poisson_ratio)
     errors = []
     for refinement in (3, 6):
         found = cylinder.solve(refinement, poisson_ratio)
@@ -118,8 +125,8 @@ def test_stress_of_a_thick_cylinder(poisson_ratio):
         size = cylinder.INNER, cylinder.OUTER, cylinder.PRESSURE
         exact = elasticity.pressed_cylinder_stress(found.mesh.points, *size, poisson_ratio)
         assert (
-            recovery.von_mises(exact)[found.radius < 3.0001].max()
-            == recovery.von_mises(exact).max()
+            hexahedral_recovery.von_mises(exact)[found.radius < 3.0001].max()
+            == hexahedral_recovery.von_mises(exact).max()
         )
         errors.append(np.abs(mean - exact).max() / np.abs(exact).max())
     assert errors[1] < 0.075

@@ -6,17 +6,19 @@ import math
 import numpy as np
 import pytest
 
-from highfi import assembly, element, facets, tetrahedron
-from highfi.cells import corner_jacobians
-from highfi.mesh import MeshError, RailMesh, boundary_facets, read
-from highfi.rail import make_mesh
-from meshes import generator, l_rail, solid
-from scenes import SceneError, parse
 from tests.exact import elasticity
 from tests.fe.blocks import ALUMINIUM, modes
 from tests.fe.test_mesh import facet_vectors
 from tests.fe.test_split import ordered
 from tests.scenes.support import SMALL, small
+from tipoff.highfi.elements import hexahedron, tetrahedron
+from tipoff.highfi.mesh import facets
+from tipoff.highfi.mesh.cells import corner_jacobians
+from tipoff.highfi.mesh.rail_mesh import MeshError, RailMesh, boundary_facets, read
+from tipoff.highfi.rail.scene_mesh import make_mesh
+from tipoff.highfi.statics import assembly
+from tipoff.meshes import generator, l_rail, solid
+from tipoff.scenes import SceneError, parse
 
 pytestmark = pytest.mark.gmsh
 NONE = np.empty((0, 3))
@@ -138,7 +140,7 @@ def test_a_solid_with_a_hole_is_filled_to_its_volume(tmp_path):
         axis=0
     ) == pytest.approx([0.040, 0.020, 0.008])
     volume = 0.008 * (0.040 * 0.020 - math.pi * 0.005**2)
-    assert element.basis(points[hexes]).dx.sum() == pytest.approx(volume, rel=0.01)
+    assert hexahedron.basis(points[hexes]).dx.sum() == pytest.approx(volume, rel=0.01)
     # One solid without gaps: points - edges + facets of its surface are 2 less 2 for each hole.
     facets = boundary_facets(hexes)
     edges = np.unique(
@@ -170,7 +172,7 @@ def test_a_tube_is_its_section_in_layers_that_keep_to_the_planes_asked_for(tmp_p
         [0.0, 0.2], abs=1e-9
     )
     assert len(points) % len(stations) == 0 and len(hexes) % (len(stations) - 1) == 0
-    assert element.basis(points[hexes]).dx.sum() == pytest.approx(
+    assert hexahedron.basis(points[hexes]).dx.sum() == pytest.approx(
         0.2 * math.pi * (0.020**2 - 0.016**2), rel=0.01
     )
 

@@ -4,16 +4,16 @@ corners' numbering."""
 import numpy as np
 import pytest
 
-from highfi import tetrahedron
-from highfi.cells import corner_jacobians, jacobians
-from highfi.facets import gauss
-from highfi.halve import halved
-from highfi.mesh import boundary_facets, read
-from highfi.split import split, to_size
-from meshes import channel, l_rail
 from tests.fe import tets
 from tests.fe.blocks import block
 from tests.fe.test_mesh import AREAS, facet_vectors
+from tipoff.highfi.elements import tetrahedron
+from tipoff.highfi.mesh.cells import corner_jacobians, jacobians
+from tipoff.highfi.mesh.facets import gauss
+from tipoff.highfi.mesh.halve import halved
+from tipoff.highfi.mesh.rail_mesh import boundary_facets, read
+from tipoff.highfi.mesh.split import split, to_size
+from tipoff.meshes import channel, l_rail
 
 
 def ordered(points) -> np.ndarray:

@@ -7,12 +7,13 @@ import meshio
 import numpy as np
 import pytest
 
-from highfi import cells, facets, tetrahedron
-from highfi.mesh import MeshError, along_x, boundary_facets, read
-from highfi.rail import with_steps
-from meshes import generator, msh
 from tests.fe import tets
 from tests.fe.blocks import ALUMINIUM, block
+from tipoff.highfi.elements import tetrahedron
+from tipoff.highfi.mesh import cells, facets
+from tipoff.highfi.mesh.rail_mesh import MeshError, along_x, boundary_facets, read
+from tipoff.highfi.rail.scene_mesh import with_steps
+from tipoff.meshes import generator, msh
 
 
 def write_drilled(path, version=2.2, order=2):

@@ -6,15 +6,22 @@ import pytest
 from skfem import ElementTetP2
 from skfem.quadrature import get_quadrature
 
-from highfi import assembly, element, peaks, recovery, tetrahedral_recovery, tetrahedron
-from highfi.mesh import RailMesh
-from highfi.worst import ROTATION, STRAIN, STRESS, nothing
 from tests.fe.blocks import ALUMINIUM
 from tests.fe.test_beams import BEAM, ELASTIC, ROOT_STRESS, deflection
 from tests.fe.test_element import PATCH_GRADIENT
 from tests.fe.test_tetrahedron import EVEN, beam, bulged, patch, strained
+from tipoff.highfi.elements import (
+    hexahedral_recovery,
+    hexahedron,
+    tetrahedral_recovery,
+    tetrahedron,
+)
+from tipoff.highfi.mesh.rail_mesh import RailMesh
+from tipoff.highfi.statics import assembly
+from tipoff.highfi.stress import peaks
+from tipoff.highfi.stress.peak import ROTATION, STRAIN, STRESS, nothing
 
-LAW = element.elasticity(72e9, 0.33)
+LAW = hexahedron.elasticity(72e9, 0.33)
 
 
 def at_nodes(mesh, law, displacement):
@@ -48,7 +55,7 @@ def test_patch_has_constant_stress_at_every_node(curved):
     """2000 and 400, and hence a von Mises stress of 1200, at all ten nodes of each element, by
     formulas and kernel."""
     mesh, inside = patch(curved)
-    law = element.elasticity(1e6, 0.25)
+    law = hexahedron.elasticity(1e6, 0.25)
     displacement = strained(
         mesh, inside, assembly.sparse(assembly.build(mesh, 1.0, 1e6, 0.25, fixed=()))
     )
@@ -79,7 +86,7 @@ def test_recovery_agrees_with_the_integration_points_of_the_element():
 )
 def test_kernel_finds_the_worst_node_of_the_plain_formulas(mesh):
     displacement = 1e-6 * np.random.default_rng(5).standard_normal(mesh.points.shape)
-    stress = recovery.von_mises(at_nodes(mesh, LAW, displacement))
+    stress = hexahedral_recovery.von_mises(at_nodes(mesh, LAW, displacement))
     worst, place = found(mesh, displacement), np.unravel_index(stress.argmax(), stress.shape)
     assert LAW[3, 3] * np.sqrt(worst.square[STRESS]) == pytest.approx(stress.max(), rel=1e-11)
     assert tuple(worst.place[STRESS]) == place
@@ -131,7 +138,7 @@ def test_the_middle_of_a_curved_edge_may_be_the_worst_node(bulge):
 def test_root_stress_in_the_outer_fibre(divisions):
     """7.5 MPa 6 P L / b h^2, read at the nodes themselves and taken to the root along M(x), with
     one layer of cubes of six tetrahedra through the height: within 0.3 %."""
-    mesh, law = beam(divisions), element.elasticity(**ELASTIC)
+    mesh, law = beam(divisions), hexahedron.elasticity(**ELASTIC)
     _, displacement = deflection(mesh, assembly.build(mesh, **ALUMINIUM, fixed=()))
     stress, place = at_nodes(mesh, law, displacement)[..., 0], mesh.points[mesh.cells]
     x = place[..., 0]

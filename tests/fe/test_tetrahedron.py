@@ -5,14 +5,16 @@ import numpy as np
 import pytest
 from scipy.sparse.linalg import spsolve
 
-from highfi import assembly, element, tetrahedron, timestep
-from highfi.mesh import RailMesh, boundary_facets
-from highfi.operator import internal_force
 from tests.exact import elasticity
 from tests.fe import tets
 from tests.fe.blocks import ALUMINIUM, block, highest_mode
 from tests.fe.test_beams import BEAM, ELASTIC, FORCE, deflection, free_frequencies
 from tests.fe.test_element import PATCH_GRADIENT, bending_frequencies
+from tipoff.highfi.dynamics import stable_step
+from tipoff.highfi.elements import hexahedron, tetrahedron
+from tipoff.highfi.mesh.rail_mesh import RailMesh, boundary_facets
+from tipoff.highfi.statics import assembly
+from tipoff.highfi.statics.operator import internal_force
 
 COARSE = (20, 1, 1)  # cubes of six tetrahedra, one layer across the beam
 
@@ -51,7 +53,7 @@ def stress(mesh, inside, matrix):
     """Stress (e,q,6) of the patch so strained."""
     nodal = strained(mesh, inside, matrix)[mesh.cells].reshape(len(mesh.cells), 30)
     strain = tetrahedron.kinematics(mesh.points[mesh.cells]).nodal
-    return np.einsum("eqsd,ed->eqs", strain, nodal) @ element.elasticity(1e6, 0.25)
+    return np.einsum("eqsd,ed->eqs", strain, nodal) @ hexahedron.elasticity(1e6, 0.25)
 
 
 EVEN = np.array([2000.0] * 3 + [400.0] * 3)
@@ -72,7 +74,7 @@ def test_four_points_fail_the_patch_test_between_curved_edges():
     wander."""
     mesh, inside = patch(curved=True)
     strain = tetrahedron.kinematics(mesh.points[mesh.cells], 2)
-    law = element.elasticity(1e6, 0.25)
+    law = hexahedron.elasticity(1e6, 0.25)
     few = np.einsum("cq,cqsi,st,cqtj->cij", strain.volume, strain.nodal, law, strain.nodal)
     operator = assembly.build(mesh, 1.0, 1e6, 0.25, fixed=())
     reduced = operator._replace(shape_class=np.arange(len(few), dtype=np.uint32), stiffness=few)
@@ -220,6 +222,6 @@ def test_kernel_agrees_with_the_assembled_matrix():
 )
 def test_bounds_enclose_the_highest_frequency(mesh):
     operator = assembly.build(mesh, **ALUMINIUM)
-    exact, bound = highest_mode(operator)[0], timestep.operator_bound(operator)
+    exact, bound = highest_mode(operator)[0], stable_step.operator_bound(operator)
     assert bound.ritz <= exact * (1.0 + 1e-12) and exact <= bound.upper <= exact * 1.002
-    assert bound.upper <= timestep.element_bound(operator)
+    assert bound.upper <= stable_step.element_bound(operator)

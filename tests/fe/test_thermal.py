@@ -6,17 +6,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-import scenes
-from highfi import assembly, thermal
-from highfi.mesh import read
-from highfi.rail import make_mesh
-from highfi.statics import Clamped
-from meshes import l_rail
-from scenes.effects.thermal import Thermal
-from scenes.rail import MaterialTable
 from tests.exact import thermal as exact
 from tests.fe import tets
 from tests.fe.blocks import ALUMINIUM, block, static
+from tipoff import scenes
+from tipoff.highfi.mesh.rail_mesh import read
+from tipoff.highfi.rail.scene_mesh import make_mesh
+from tipoff.highfi.statics import assembly, thermal
+from tipoff.highfi.statics.solve import Clamped
+from tipoff.meshes import l_rail
+from tipoff.scenes.effects.thermal import Thermal
+from tipoff.scenes.rail import MaterialTable
 
 MATERIAL = MaterialTable.model_validate(ALUMINIUM, context={"bare_numbers_are_si": True})
 EXPANSION, LENGTH, WIDTH, HEIGHT = 23.6e-6, 0.2, 0.012, 0.016

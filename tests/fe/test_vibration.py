@@ -6,10 +6,11 @@ import pytest
 from scipy.sparse import csc_array
 from scipy.sparse.linalg import splu
 
-from highfi import assembly, compliance, vibration
-from scenes.rail import MaterialTable
 from tests.exact import elasticity
 from tests.fe.test_compliance import HEIGHT, LENGTH, MODULUS, WIDTH, beam, pads
+from tipoff.highfi import compliance
+from tipoff.highfi.statics import assembly, vibration
+from tipoff.scenes.rail import MaterialTable
 
 DENSITY = 2700.0
 # At a Poisson ratio of zero the clamp of a solid is that of beam theory.

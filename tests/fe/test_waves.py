@@ -11,10 +11,10 @@ import math
 import numpy as np
 import pytest
 
-from highfi import assembly
 from tests.exact import elasticity
 from tests.fe.blocks import block
 from tests.fe.leapfrog import march
+from tipoff.highfi.statics import assembly
 
 LENGTH, LAYERS = 0.5, 100
 SPACING = LENGTH / LAYERS

@@ -3,9 +3,9 @@ diagonal."""
 
 import numpy as np
 
-from highfi.cells import TETRAHEDRON
-from highfi.mesh import RailMesh, boundary_facets
-from highfi.tetrahedron import EDGES
+from tipoff.highfi.elements.tetrahedron import EDGES
+from tipoff.highfi.mesh.cells import TETRAHEDRON
+from tipoff.highfi.mesh.rail_mesh import RailMesh, boundary_facets
 
 # Tetrahedra around the diagonal from corner 0 to corner 6, one for each way along the three axes
 # (Kuhn). Neighbours whose corners are numbered along the same axes meet in the same triangles.

@@ -6,13 +6,13 @@ from contextlib import suppress
 import meshio
 import numpy as np
 
-import highfi
-from highfi.mesh import RailMesh, read
-from highfi.numerics import Numerics
-from highfi.run import Loop
-from highfi.stepping import choose
-from highfi.system import build
-from scenes import load
+from tipoff import highfi
+from tipoff.highfi.dynamics.step_size import choose
+from tipoff.highfi.dynamics.system import build
+from tipoff.highfi.mesh.rail_mesh import RailMesh, read
+from tipoff.highfi.numerics import Numerics
+from tipoff.highfi.run import Loop
+from tipoff.scenes import load
 
 COARSE = Numerics(element_size=0.008)
 

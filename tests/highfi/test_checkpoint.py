@@ -12,12 +12,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import highfi
-from highfi import Numerics
-from highfi.checkpoint import CONSTANT, Checkpoint, arrays, digest, restore
-from highfi.records import Active, Body, State
-from scenes.trajectory import Trajectory
 from tests.highfi.support import COARSE, Stopped, begun, stopped, tiny
+from tipoff import highfi
+from tipoff.highfi import Numerics
+from tipoff.highfi.dynamics.checkpoint import CONSTANT, Checkpoint, arrays, digest, restore
+from tipoff.highfi.state.records import Active, Body, State
+from tipoff.mechanics.trajectory import Trajectory
 
 pytestmark = pytest.mark.case("X20")
 ROOT = Path(__file__).resolve().parent.parent.parent
@@ -161,7 +161,7 @@ def test_what_is_left_out_does_not_change():
 
 CHILD = """
 import sys
-import highfi
+from tipoff import highfi
 from tests.highfi.support import COARSE, tiny
 found = highfi.run(tiny(), COARSE, progress=lambda fraction: print(fraction, flush=True), checkpoint=sys.argv[1],
                    checkpoint_every=0.0, resume=True)

@@ -8,11 +8,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-import highfi
-from highfi import CheckpointError, Numerics, checkpoint
-from highfi.checkpoint import FORMAT, Checkpoint
-from scenes.files import discard
 from tests.highfi.support import COARSE, begun, stopped, tiny
+from tipoff import highfi
+from tipoff.files import discard
+from tipoff.highfi import CheckpointError, Numerics
+from tipoff.highfi.dynamics import checkpoint
+from tipoff.highfi.dynamics.checkpoint import FORMAT, Checkpoint
 
 pytestmark = pytest.mark.case("X20")
 

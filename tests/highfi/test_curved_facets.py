@@ -4,17 +4,17 @@ adds."""
 import numpy as np
 import pytest
 
-from highfi import facets
-from highfi.limits import contact_frequency_squared
-from highfi.mesh import RailMesh, boundary_facets
-from highfi.numerics import Numerics
-from highfi.run import Loop
-from highfi.stepping import choose
-from highfi.surface import magnification
-from highfi.system import build
 from tests.fe import tets
 from tests.fe.blocks import block
 from tests.highfi.test_impact import GAP, WIDTH, scene
+from tipoff.highfi.contact.surface import magnification
+from tipoff.highfi.dynamics.step_limit import contact_frequency_squared
+from tipoff.highfi.dynamics.step_size import choose
+from tipoff.highfi.dynamics.system import build
+from tipoff.highfi.mesh import facets
+from tipoff.highfi.mesh.rail_mesh import RailMesh, boundary_facets
+from tipoff.highfi.numerics import Numerics
+from tipoff.highfi.run import Loop
 
 TRIANGLE = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0.5, 0, 0], [0.5, 0.5, 0], [0, 0.5, 0]])
 PENALTY = 1e12

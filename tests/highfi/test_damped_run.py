@@ -4,13 +4,13 @@ after a resume, the compiled code."""
 import numpy as np
 import pytest
 
-import highfi
-from highfi import Numerics
-from highfi.checkpoint import Checkpoint, arrays, restore
-from scenes import ledger
 from tests.highfi import test_kernels
 from tests.highfi.support import COARSE, bar_mesh, begun, loop_on, spinning_bar_stretch, tiny
 from tests.highfi.test_damping import scene
+from tipoff import highfi
+from tipoff.highfi import Numerics
+from tipoff.highfi.dynamics.checkpoint import Checkpoint, arrays, restore
+from tipoff.mechanics import ledger
 
 DAMPED = {"rail__damping__frequencies": ["500 Hz", "5 kHz"], "rail__damping__ratios": [0.05, 0.01]}
 EARLY = {"duration": "9 ms", "contact__clearance": "0.05 mm"}

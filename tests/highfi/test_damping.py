@@ -7,15 +7,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from highfi import timestep
-from highfi.limits import step_limit, used
-from highfi.numerics import Numerics
-from highfi.run import Loop
-from scenes import parse
-from scenes.effects.structural_damping import Damping
 from tests.exact import elasticity
 from tests.fe.blocks import block, free_stiffness, highest_mode, modes
 from tests.highfi.support import loop_on
+from tipoff.highfi.dynamics import stable_step
+from tipoff.highfi.dynamics.step_limit import step_limit, used
+from tipoff.highfi.numerics import Numerics
+from tipoff.highfi.run import Loop
+from tipoff.scenes import parse
+from tipoff.scenes.effects.structural_damping import Damping
 
 LENGTH, WIDTH, CYCLES = 0.06, 0.02, 20
 TWO_STEPS = pytest.mark.parametrize("safety", [0.9, 0.45])
@@ -177,9 +177,9 @@ def test_step_of_a_damped_rail_keeps_below_the_damped_limit(ratio):
     given = scene(damping([0.5 * frequency, frequency], (ratio, ratio))).replace(
         {"output.interval": 1.01e-3}
     )
-    limit = timestep.critical_step(highest, ratio)
+    limit = stable_step.critical_step(highest, ratio)
     largest = {}
-    for step in (None, 1.001 * limit, 0.999 * timestep.critical_step(highest)):
+    for step in (None, 1.001 * limit, 0.999 * stable_step.critical_step(highest)):
         loop = loop_on(given, bar(2), Numerics(safety=1.0))
         assert 0.99 * limit < loop.stepping.dt_s <= loop.stepping.dt_limit_s <= limit
         assert loop.stepping.damping_ratio == pytest.approx(ratio, rel=2e-3)
@@ -191,7 +191,7 @@ def test_step_of_a_damped_rail_keeps_below_the_damped_limit(ratio):
         )
     chosen, above, undamped = largest.values()
     assert chosen <= 1.0 and above > 1e3 and undamped > 1e3
-    with pytest.raises(timestep.StepError, match="is not stable"):
+    with pytest.raises(stable_step.StepError, match="is not stable"):
         loop_on(given, bar(2), Numerics(step=1.001 * loop.stepping.dt_limit_s))
 
 

@@ -6,11 +6,11 @@ import pytest
 import scipy.integrate
 import scipy.optimize
 
-import highfi
-from highfi.checkpoint import Checkpoint, restore
-from highfi.numerics import Numerics
-from scenes.ending import DONE
 from tests.highfi.support import COARSE, Stopped, begun, tiny
+from tipoff import highfi
+from tipoff.highfi.dynamics.checkpoint import Checkpoint, restore
+from tipoff.highfi.numerics import Numerics
+from tipoff.mechanics.ending import DONE
 
 
 def assert_same(found, expected) -> None:

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-import highfi
 from tests.highfi.support import COARSE, tiny
+from tipoff import highfi
 
 
 @pytest.mark.parametrize("velocity", [(1000.0, 0.0, 0.0), (4330.1, 3061.9, -5303.3)])

@@ -4,9 +4,9 @@ from outside."""
 import numpy as np
 import pytest
 
-import highfi
-from scenes import parse
 from tests.highfi.support import COARSE, bar_mesh, loop_on, spinning_bar_stretch, tiny
+from tipoff import highfi
+from tipoff.scenes import parse
 
 
 @pytest.mark.case("O12")

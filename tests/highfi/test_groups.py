@@ -2,11 +2,11 @@
 
 import numpy as np
 
-import highfi
-from highfi import Numerics
-from highfi.surface import group_faces
-from highfi.system import build
 from tests.highfi.support import tiny
+from tipoff import highfi
+from tipoff.highfi import Numerics
+from tipoff.highfi.contact.surface import group_faces
+from tipoff.highfi.dynamics.system import build
 
 NUMERICS = Numerics(element_size=0.008)
 

@@ -8,13 +8,13 @@ nothing holds.
 import numpy as np
 import pytest
 
-from highfi import observe
-from highfi.mesh import RailMesh, boundary_facets
-from highfi.numerics import Numerics
-from scenes import parse
 from tests.exact import contact, elasticity
 from tests.fe.blocks import block
 from tests.highfi.support import loop_on
+from tipoff.highfi.dynamics import observe
+from tipoff.highfi.mesh.rail_mesh import RailMesh, boundary_facets
+from tipoff.highfi.numerics import Numerics
+from tipoff.scenes import parse
 
 MODULUS, DENSITY, WIDTH, GAP = 72e9, 2810.0, 0.02, 1e-6
 LENGTH, AREA = 0.3, WIDTH**2

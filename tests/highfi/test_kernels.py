@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-import highfi
-from highfi import Numerics
-from highfi.run import Loop
-from highfi.stepping import choose
-from highfi.system import build, general_elements
 from tests.highfi.support import tiny
+from tipoff import highfi
+from tipoff.highfi import Numerics
+from tipoff.highfi.dynamics.step_size import choose
+from tipoff.highfi.dynamics.system import build, general_elements
+from tipoff.highfi.run import Loop
 
 NUMERICS = Numerics(element_size=0.004)
 

@@ -5,14 +5,13 @@ import meshio
 import numpy as np
 import pytest
 
-import highfi
-import lowfi
-from highfi.mesh import MeshError
-from highfi.rail import geometry
-from meshes import channel, l_rail, msh
-from scenes import SceneError, load
 from tests.fe.test_solid import drawn, l_sections, l_surfaces, scene_of
 from tests.highfi.support import COARSE, tiny
+from tipoff import highfi, lowfi
+from tipoff.highfi.mesh.rail_mesh import MeshError
+from tipoff.highfi.rail.scene_mesh import geometry
+from tipoff.meshes import channel, l_rail, msh
+from tipoff.scenes import SceneError, load
 
 # The catalogue's channel under the fast pulse of the tiny scene, and aimed so badly that pads press
 # within its first 8 ms.

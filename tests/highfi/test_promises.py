@@ -4,10 +4,10 @@ them would be seen."""
 import numpy as np
 import pytest
 
-import highfi
-from highfi import records
-from scenes import ledger
 from tests.highfi.support import COARSE, loop_on, tiny
+from tipoff import highfi
+from tipoff.highfi.state import records
+from tipoff.mechanics import ledger
 
 
 @pytest.fixture(scope="module")

@@ -5,9 +5,9 @@ import sys
 
 import pytest
 
-import highfi
-from highfi.compiled import LAWS
 from tests.highfi.support import COARSE, tiny
+from tipoff import highfi
+from tipoff.highfi.compiled import LAWS
 
 DAMPED = {"rail__damping__ratios": [0.01, 0.01], "rail__damping__frequencies": ["500 Hz", "5 kHz"]}
 FOUND = ("friction", "platform")  # kernels that other tests compile too
@@ -42,7 +42,7 @@ def test_code_read_from_the_disk_cache_is_the_code_that_runs():
     """A second process finds the kernel compiled; what it reads must not depend on who compiled
     it."""
     ask = (
-        "import highfi; from tests.highfi.support import COARSE, tiny; "
+        "from tipoff import highfi; from tests.highfi.support import COARSE, tiny; "
         "print(highfi.compiled_effects(tiny(friction=None), COARSE))"
     )
     said = [

@@ -6,15 +6,16 @@ import importlib
 import pytest
 from typer.testing import CliRunner
 
-import highfi
-from highfi import Numerics, footprint
-from highfi.rail import geometry
-from meshes import l_rail
-from scenes import SceneError, load
-from studies.cli import app
 from tests.highfi.support import tiny
+from tipoff import highfi
+from tipoff.highfi import Numerics
+from tipoff.highfi.rail import memory_estimate
+from tipoff.highfi.rail.scene_mesh import geometry
+from tipoff.meshes import l_rail
+from tipoff.scenes import SceneError, load
+from tipoff.studies.cli import app
 
-runs = importlib.import_module("highfi.run")  # the name in the package is the function
+runs = importlib.import_module("tipoff.highfi.run")  # the name in the package is the function
 MEMINFO = "MemTotal:       16000000 kB\nMemFree:         1000000 kB\nMemAvailable:    8000000 kB\n"
 
 
@@ -42,7 +43,7 @@ def test_elements_are_foretold(name, size):
 )
 def test_estimate_is_what_was_measured(elements, measured):
     """Within a quarter, and not below."""
-    assert measured <= footprint.of_section(elements) <= 1.25 * measured
+    assert measured <= memory_estimate.of_section(elements) <= 1.25 * measured
 
 
 def files(folder, **contents):
@@ -55,8 +56,8 @@ def files(folder, **contents):
 
 
 def test_machine_says_what_is_left(tmp_path):
-    assert footprint.available(tmp_path) is None
-    assert footprint.available(files(tmp_path, **{"proc/meminfo": MEMINFO})) == 8_192_000_000
+    assert memory_estimate.available(tmp_path) is None
+    assert memory_estimate.available(files(tmp_path, **{"proc/meminfo": MEMINFO})) == 8_192_000_000
 
 
 @pytest.mark.parametrize(
@@ -87,13 +88,13 @@ def test_control_group_and_those_around_it_count(tmp_path, line, folder, names):
             f"{own}/{used}": "2000000000\n",
         },
     )
-    assert footprint.available(tmp_path) == 1_500_000_000
+    assert memory_estimate.available(tmp_path) == 1_500_000_000
 
 
 def test_section_that_does_not_fit_is_refused_before_it_is_meshed(monkeypatch):
     """Both numbers are named, and a size that fits: at that size the check passes. Control: without
     it the mesh would be begun."""
-    monkeypatch.setattr(footprint, "available", lambda: 2_000_000_000)
+    monkeypatch.setattr(memory_estimate, "available", lambda: 2_000_000_000)
     monkeypatch.setattr(runs, "make_mesh", lambda *_: pytest.fail("meshed"))
     with pytest.raises(SceneError) as caught:
         highfi.prepare(load("reference"), Numerics(element_size=0.00025))
@@ -112,18 +113,22 @@ def test_mesh_of_a_file_that_leaves_too_little_is_refused(monkeypatch):
     mesh = highfi.prepare(scene)
     elements, nodes = mesh.cells.shape
     runs._MESHES.clear()
-    monkeypatch.setattr(footprint, "available", lambda: 0.9 * footprint.of_mesh(elements, nodes, 0))
+    monkeypatch.setattr(
+        memory_estimate, "available", lambda: 0.9 * memory_estimate.of_mesh(elements, nodes, 0)
+    )
     with pytest.raises(SceneError, match="a coarser file"):
         highfi.prepare(scene)
     monkeypatch.setattr(
-        footprint, "available", lambda: 0.9 * footprint.of_mesh(elements, nodes, elements)
+        memory_estimate,
+        "available",
+        lambda: 0.9 * memory_estimate.of_mesh(elements, nodes, elements),
     )
     assert highfi.prepare(scene).cells.shape == (elements, nodes)
 
 
 @pytest.mark.parametrize("command", ["highfi", "bench"])
 def test_commands_say_so_without_a_traceback(tmp_path, monkeypatch, command):
-    monkeypatch.setattr(footprint, "available", lambda: 100_000_000)
+    monkeypatch.setattr(memory_estimate, "available", lambda: 100_000_000)
     runs._MESHES.clear()
     result = CliRunner().invoke(
         app, [command, "--element-size", "1", "--out", str(tmp_path / "out")]
@@ -137,11 +142,15 @@ def test_commands_say_so_without_a_traceback(tmp_path, monkeypatch, command):
 
 
 def test_other_systems_are_not_asked(monkeypatch):
-    monkeypatch.setattr(footprint, "available", lambda: None)
+    monkeypatch.setattr(memory_estimate, "available", lambda: None)
     assert highfi.prepare(tiny(), Numerics(element_size=0.008)).cells.size
 
 
 def test_estimate_of_a_mesh_bounds_its_arrays():
     """The matrices of elements no two of which are alike are the largest part."""
     matrices = 8 * 30 * 30 * 1000
-    assert 3 * matrices < footprint.of_mesh(1000, 10, 1000) - footprint.FIXED < 4 * matrices
+    assert (
+        3 * matrices
+        < memory_estimate.of_mesh(1000, 10, 1000) - memory_estimate.FIXED
+        < 4 * matrices
+    )

@@ -11,10 +11,8 @@ import dataclasses
 import numpy as np
 import pytest
 
-import highfi
-import lowfi
-import scenes
 from tests.exact import guided as exact
+from tipoff import highfi, lowfi, scenes
 
 STIFFER = (4.0, 16.0, 64.0)
 DURATION, APPROACH = 6e-3, 0.01  # s, m/s

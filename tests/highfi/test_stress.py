@@ -4,15 +4,16 @@ of threads; wall gauges."""
 import numpy as np
 import pytest
 
-import highfi
-from highfi import element, patch, peaks, recovery, watch
-from highfi.numerics import Numerics
-from highfi.system import build
-from highfi.worst import ROTATION, STRAIN, STRESS, nothing
 from tests.fe.blocks import block
 from tests.highfi.support import COARSE, begun, tiny
+from tipoff import highfi
+from tipoff.highfi.dynamics.system import build
+from tipoff.highfi.elements import hexahedral_recovery, hexahedron
+from tipoff.highfi.numerics import Numerics
+from tipoff.highfi.stress import gauge, monitor, peaks
+from tipoff.highfi.stress.peak import ROTATION, STRAIN, STRESS, nothing
 
-LAW = element.elasticity(72e9, 0.33)
+LAW = hexahedron.elasticity(72e9, 0.33)
 
 
 @pytest.fixture(scope="module")
@@ -24,8 +25,10 @@ def seen():
     def look(loop):
         hexes = loop.system.number[loop.system.mesh.cells]
         moved = loop.state.displacement[hexes].reshape(-1, 1, 24, 1)
-        matrix = recovery.corner_matrix(loop.system.mesh.points[loop.system.mesh.cells], LAW)
-        stresses.append(recovery.von_mises((matrix @ moved)[..., 0]))
+        matrix = hexahedral_recovery.corner_matrix(
+            loop.system.mesh.points[loop.system.mesh.cells], LAW
+        )
+        stresses.append(hexahedral_recovery.von_mises((matrix @ moved)[..., 0]))
 
     return highfi.run(tiny(), COARSE, observer=look), np.array(stresses)
 
@@ -86,7 +89,7 @@ def test_yield_and_large_motion_are_warned_of(bare):
     assert (
         len(weak.stress["warnings"]) == 1 and "yield strength, 1 MPa" in weak.stress["warnings"][0]
     )
-    large = watch.warnings(
+    large = monitor.warnings(
         bare.stress
         | {"largest_strain": 0.02, "largest_rotation_rad": 0.05, "yield_strength_pa": None}
     )
@@ -99,7 +102,7 @@ def test_any_number_of_threads_finds_the_same_corner(threads):
     moved = 1e-6 * np.random.default_rng(7).standard_normal((2, *single.state.displacement.shape))
     for loop in (several, single):
         for time, displacement in enumerate(moved):
-            watch.look(
+            monitor.look(
                 loop.watch, np.asfortranarray(displacement), float(time), loop.worst, loop.pool
             )
     for found, expected in zip(several.worst, single.worst):
@@ -131,7 +134,7 @@ def test_strain_and_rotation_of_a_distorted_mesh():
         @ LAW
     )
     assert LAW[3, 3] * np.sqrt(worst.square[STRESS]) == pytest.approx(
-        recovery.von_mises(stress), rel=1e-10
+        hexahedral_recovery.von_mises(stress), rel=1e-10
     )
     assert np.sqrt(worst.square[STRAIN]) == pytest.approx(np.linalg.norm(even), rel=1e-10)
     assert np.sqrt(worst.square[ROTATION]) == pytest.approx(
@@ -142,7 +145,7 @@ def test_strain_and_rotation_of_a_distorted_mesh():
 def patches(size):
     scene, numerics = tiny(), Numerics(element_size=size)
     system = build(scene, numerics, highfi.prepare(scene, numerics))
-    return system, watch.build(system, scene.rail.material, 100, 1).patch
+    return system, monitor.build(system, scene.rail.material, 100, 1).patch
 
 
 @pytest.mark.parametrize("size", [0.016, 0.008, 0.004, 0.003])
@@ -159,7 +162,7 @@ def test_patches_are_where_they_are_on_every_mesh_and_see_a_uniform_stress(size)
     strain = np.array(
         [even[0, 0], even[1, 1], even[2, 2], 2 * even[0, 1], 2 * even[1, 2], 2 * even[2, 0]]
     )
-    stress = patch.stress(found, system.rail.points @ gradient.T)
+    stress = gauge.stress(found, system.rail.points @ gradient.T)
     assert np.abs(stress - strain @ LAW).max() < 1e-9 * np.abs(strain @ LAW).max()
 
 

@@ -4,18 +4,19 @@ hexahedra give."""
 import numpy as np
 import pytest
 
-import highfi
-from highfi import assembly, facets
-from highfi.halve import halved
-from highfi.mesh import read
-from highfi.rail import geometry
-from highfi.system import general_elements
-from meshes import l_rail, msh
 from tests.fe import tets
 from tests.fe.blocks import ALUMINIUM, block, static
 from tests.highfi import tet_rails
 from tests.highfi.support import COARSE, tiny
 from tests.highfi.test_own_rail import assert_promises, from_file, saved
+from tipoff import highfi
+from tipoff.highfi.dynamics.system import general_elements
+from tipoff.highfi.mesh import facets
+from tipoff.highfi.mesh.halve import halved
+from tipoff.highfi.mesh.rail_mesh import read
+from tipoff.highfi.rail.scene_mesh import geometry
+from tipoff.highfi.statics import assembly
+from tipoff.meshes import l_rail, msh
 
 # Thrown at the walls, so that pads press from the first samples on, while sliding: at rest,
 # friction would damp light nodes faster than any step follows.

@@ -4,19 +4,20 @@ what hexahedra say."""
 import numpy as np
 import pytest
 
-import highfi
-from highfi import element, patch, recovery, watch
-from highfi.numerics import Numerics
-from highfi.rail import geometry
-from highfi.system import build
-from scenes.trajectory import Trajectory
 from tests.fe.test_tetrahedral_recovery import at_nodes
 from tests.highfi import tet_rails
 from tests.highfi.support import COARSE, tiny
 from tests.highfi.test_own_rail import from_file, saved
 from tests.highfi.test_tetrahedral_rail import PRESSED, cut
+from tipoff import highfi
+from tipoff.highfi.dynamics.system import build
+from tipoff.highfi.elements import hexahedral_recovery, hexahedron
+from tipoff.highfi.numerics import Numerics
+from tipoff.highfi.rail.scene_mesh import geometry
+from tipoff.highfi.stress import gauge, monitor
+from tipoff.mechanics.trajectory import Trajectory
 
-LAW = element.elasticity(72e9, 0.33)
+LAW = hexahedron.elasticity(72e9, 0.33)
 # Friction would damp nodes too fast for the step while the payload does not yet slide.
 THROWN = PRESSED | {"friction__static": 0.0, "friction__dynamic": 0.0}
 
@@ -35,7 +36,7 @@ def seen(rails):
 
     def look(loop):
         moved = loop.state.displacement[loop.system.number]
-        stresses.append(recovery.von_mises(at_nodes(loop.system.mesh, LAW, moved)))
+        stresses.append(hexahedral_recovery.von_mises(at_nodes(loop.system.mesh, LAW, moved)))
 
     return highfi.run(rails, COARSE, observer=look), np.array(stresses)
 
@@ -71,7 +72,7 @@ def test_any_number_of_threads_finds_the_same_and_the_file_keeps_it(seen, rails,
 def gauges(scene, numerics=COARSE):
     """System of a scene and the patches on its walls."""
     system = build(scene, numerics, highfi.prepare(scene, numerics))
-    return system, watch.build(system, scene.rail.material, 100, 1).patch
+    return system, monitor.build(system, scene.rail.material, 100, 1).patch
 
 
 @pytest.mark.parametrize("filled", [False, pytest.param(True, marks=pytest.mark.gmsh)])
@@ -92,7 +93,7 @@ def test_patches_are_where_hexahedra_have_them_and_see_a_uniform_stress(rails, f
     strain = np.array(
         [even[0, 0], even[1, 1], even[2, 2], 2 * even[0, 1], 2 * even[1, 2], 2 * even[2, 0]]
     )
-    stress = patch.stress(found, system.rail.points @ gradient.T)
+    stress = gauge.stress(found, system.rail.points @ gradient.T)
     assert np.abs(stress - strain @ LAW).max() < 1e-9 * np.abs(strain @ LAW).max()
 
 
@@ -104,7 +105,7 @@ def test_walls_bear_what_finer_hexahedra_say(seen):
         highfi.run(tiny(**THROWN), Numerics(element_size=size)) for size in (0.008, 0.004)
     )
     largest, expected, coarse = (
-        recovery.von_mises(part.wall_stress).max() for part in (run, finer, same)
+        hexahedral_recovery.von_mises(part.wall_stress).max() for part in (run, finer, same)
     )
     assert largest == pytest.approx(expected, rel=0.15)
     assert coarse > 1.5 * expected

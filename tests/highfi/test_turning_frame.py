@@ -13,14 +13,14 @@ import functools
 import numpy as np
 import pytest
 
-import highfi
-from highfi import Numerics
-from highfi.run import Loop
-from highfi.stepping import choose
-from highfi.system import build
-from scenes import rotation
 from tests import turning
 from tests.highfi.support import tiny
+from tipoff import highfi
+from tipoff.highfi import Numerics
+from tipoff.highfi.dynamics.step_size import choose
+from tipoff.highfi.dynamics.system import build
+from tipoff.highfi.run import Loop
+from tipoff.kernels import rotation
 
 SLOWER = 300.0
 RATE, OFFSET, BEHIND = (0.5, 6e-4, -4e-4), 0.06e-3, -0.05

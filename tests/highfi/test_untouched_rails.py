@@ -7,14 +7,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-import highfi
-from highfi import Numerics
-from highfi.mesh import RailMesh
-from highfi.run import Loop
-from highfi.stepping import choose
-from highfi.system import build
-from scenes import load
 from tests.highfi.support import COARSE, loop_on, tiny
+from tipoff import highfi
+from tipoff.highfi import Numerics
+from tipoff.highfi.dynamics.step_size import choose
+from tipoff.highfi.dynamics.system import build
+from tipoff.highfi.mesh.rail_mesh import RailMesh
+from tipoff.highfi.run import Loop
+from tipoff.scenes import load
 
 FLOOR = 0.016  # deg/s: what 1 um of clearance changes on the reference scene
 

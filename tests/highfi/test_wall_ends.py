@@ -6,9 +6,9 @@ import re
 import numpy as np
 import pytest
 
-import highfi
-from scenes import ledger
 from tests.highfi.support import COARSE, tiny
+from tipoff import highfi
+from tipoff.mechanics import ledger
 
 SPEED = 3.0  # m/s
 CLEARANCE, HALF, END = 0.25e-3, 0.008, 0.136  # m, of the tiny scene

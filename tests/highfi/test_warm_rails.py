@@ -4,10 +4,12 @@ meets the bowed walls, the ledgers close."""
 import numpy as np
 import pytest
 
-import highfi
-from highfi import compliance, recovery, thermal
-from scenes.walls import POWERS
 from tests.highfi.support import COARSE, begun, stopped, tiny
+from tipoff import highfi
+from tipoff.highfi import compliance
+from tipoff.highfi.elements import hexahedral_recovery
+from tipoff.highfi.statics import thermal
+from tipoff.mechanics.rail_compliance import POWERS
 
 WARM = {"thermal__mean": 20.0, "thermal__gradient__y": 500.0, "thermal__gradient__z": -300.0}
 KEPT = ("velocity", "rate", "pad_force", "energy", "transverse_energy", "wall_stress")
@@ -99,7 +101,7 @@ def test_stress_is_that_of_the_held_rail():
     assert np.sqrt(free.worst.square[0]) * free.watch.shear_modulus < 1e-6 * modulus * strain
     assert np.abs(free.gauges[0]).max() < 1e-6 * modulus * strain
     held = begun(tiny(thermal__mean=strain / EXPANSION))
-    gauges = recovery.von_mises(held.gauges[0])
+    gauges = hexahedral_recovery.von_mises(held.gauges[0])
     assert 0.1 * modulus * strain < gauges.max() < 2.0 * modulus * strain
     # Control: with the free expansion left in, the gauges of rails free of stress would show it.
     assert np.abs(free.watch.free).max() > modulus * strain

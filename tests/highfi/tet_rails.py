@@ -5,7 +5,7 @@ import itertools
 
 import numpy as np
 
-from meshes import generator, msh
+from tipoff.meshes import generator, msh
 
 _CORNERS = ((1, 1), (-1, 1), (-1, -1), (1, -1))
 # nodes of a tetrahedron, and below of a triangle, whose orientation is reversed

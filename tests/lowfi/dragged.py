@@ -12,12 +12,12 @@ import sys
 
 import numpy as np
 
-import lowfi
-from lowfi import equations
-from lowfi import state as slot
-from scenes import ledger
-from scenes.jit import inlined
 from tests.lowfi.support import G, numerics, scene
+from tipoff import lowfi
+from tipoff.kernels.jit import inlined
+from tipoff.lowfi import state as slot
+from tipoff.lowfi.dynamics import equations
+from tipoff.mechanics import ledger
 
 STIFFNESS, SPEED = 1e4, 1e-4  # of the drag spring (N/m) and of its far end (m/s)
 STATIC, DYNAMIC = 0.4, 0.3

@@ -7,17 +7,18 @@ from typing import NamedTuple
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-import scenes
-from highfi import compliance
-from lowfi import equations, touch
-from lowfi import state as slot
-from lowfi import system as systems
-from lowfi.walls import record
-from scenes import model as models
-from scenes import rotation
-from scenes.jit import kernel
-from scenes.scene import Scene
-from scenes.walls import PATTERNS, POWERS, Walls, digest
+from tipoff import scenes
+from tipoff.highfi import compliance
+from tipoff.kernels import rotation
+from tipoff.kernels.jit import kernel
+from tipoff.lowfi import state as slot
+from tipoff.lowfi import system as systems
+from tipoff.lowfi.contact import springs
+from tipoff.lowfi.contact.compliant import record
+from tipoff.lowfi.dynamics import equations
+from tipoff.mechanics import model as models
+from tipoff.mechanics.rail_compliance import PATTERNS, POWERS, Walls, digest
+from tipoff.scenes.scene import Scene
 
 REFERENCE = scenes.load("reference")
 # the kernels of friction, without its forces
@@ -124,7 +125,7 @@ def state_of(model, pose: Pose, twist: np.ndarray = np.zeros(12)) -> np.ndarray:
 def seen_from_platform(platform, payload, state):
     """Place (m) and rotation (nine numbers) of the payload in platform axes."""
     body = slot.motion(payload.mass, payload.inverse_inertia, state, slot.PAYLOAD)
-    return touch.relative_pose(platform, body, slot.frame(platform, state))
+    return springs.relative_pose(platform, body, slot.frame(platform, state))
 
 
 @kernel
@@ -157,7 +158,7 @@ def pressed(scene: Scene, walls: Walls, modes: int = 0):
 def forces_of(
     walls: Walls, model, cells: int, face: int, pose: Pose, displacement: np.ndarray
 ) -> np.ndarray:
-    """P (p,) N of a face on a wall displaced by (p,) m: the equations of ``lowfi.walls.cells`` cell
+    """P (p,) N of a face on a wall displaced by (p,) m: the equations of ``lowfi.contact.compliant.cells`` cell
     by cell, over the middle of the rail."""
     faces, base = model.faces, rotation.matrices([pose.base_attitude])[0]
     turn, place = (

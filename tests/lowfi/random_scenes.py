@@ -12,9 +12,10 @@ import numpy as np
 from hypothesis import HealthCheck, Phase, given, seed, settings
 from hypothesis import strategies as st
 
-from scenes import parse, rotation
-from scenes.body import InertiaTensor, tensor
-from scenes.scene import Scene
+from tipoff.kernels import rotation
+from tipoff.scenes import parse
+from tipoff.scenes.body import InertiaTensor, tensor
+from tipoff.scenes.scene import Scene
 
 MIRROR = np.diag([1.0, -1.0, 1.0])
 QUARTER_TURN = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])

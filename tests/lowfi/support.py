@@ -1,11 +1,11 @@
 """Small scenes for the surrogate's tests: one body, few pads, one effect. SI numbers."""
 
-import lowfi
-import scenes
-from lowfi import march, plan, state
-from lowfi.run import Run
-from scenes import rotation
 from tests import turning
+from tipoff import lowfi, scenes
+from tipoff.kernels import rotation
+from tipoff.lowfi import state
+from tipoff.lowfi.dynamics import integrate, plan
+from tipoff.lowfi.run import Run
 
 G = 9.80665
 PAPER_PAD = {
@@ -73,7 +73,7 @@ def unwatched(asked: scenes.Scene, numerics: lowfi.Numerics, change=None) -> Run
     it: no exit and no jam ends it."""
     run = Run(asked, numerics)
     if change is not None:
-        run.loop = march.ready(
+        run.loop = integrate.ready(
             run.system, change(state.initial(run.model)), plan.first_step(run.plan)
         )
     run.whole = True

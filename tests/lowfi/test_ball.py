@@ -5,9 +5,9 @@ import math
 import pytest
 from scipy.optimize import brentq
 
-import lowfi
 from tests.exact import contact as exact
 from tests.lowfi.support import close, drop, numerics, scene
+from tipoff import lowfi
 
 RADIUS = 0.010
 MASS = 7850.0 * 4.0 / 3.0 * math.pi * RADIUS**3

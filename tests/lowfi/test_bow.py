@@ -7,13 +7,14 @@ import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
 
-import lowfi
-from lowfi import Numerics, bow, oracle, touch
-from lowfi import system as systems
-from scenes import model as models
-from scenes.effects.thermal import FIELDS
-from scenes.walls import GRAM, PATTERNS
 from tests.lowfi.giving import REFERENCE, handmade, reference_walls
+from tipoff import lowfi
+from tipoff.lowfi import Numerics, oracle
+from tipoff.lowfi import system as systems
+from tipoff.lowfi.contact import springs, thermal_offset
+from tipoff.mechanics import model as models
+from tipoff.mechanics.rail_compliance import GRAM, PATTERNS
+from tipoff.scenes.effects.thermal import FIELDS
 
 MEAN = 1.0 / REFERENCE.rail.material.expansion  # K: one of the first field
 WARM = {"thermal.mean": 20.0, "thermal.gradient.y": 500.0, "thermal.gradient.z": -300.0}
@@ -37,7 +38,7 @@ def test_where_walls_stand():
     ends."""
     scene, walls = REFERENCE.replace(WARM), reference_walls().rigid()
     model = models.build(scene)
-    record = bow.under_pads(scene, model, walls)
+    record = thermal_offset.under_pads(scene, model, walls)
     wanted = CubicSpline(
         walls.travel,
         np.tensordot(scene.thermal.record(scene.rail).amounts, walls.warm, 1) @ GRAM[0],
@@ -47,15 +48,17 @@ def test_where_walls_stand():
         start = model.faces.centre[face, 0] - model.platform.mass_centre[0]
         for way in (0.0, 0.0371, 0.2, last):
             here = wanted(way)[face], wanted(way, 1)[face]
-            assert bow.stand(record, face, start + way) == pytest.approx(here, rel=1e-9, abs=1e-15)
+            assert thermal_offset.stand(record, face, start + way) == pytest.approx(
+                here, rel=1e-9, abs=1e-15
+            )
         for end, over in ((first, -0.01), (last, 0.01)):
             beyond = wanted(end)[face] + over * wanted(end, 1)[face], wanted(end, 1)[face]
-            assert bow.stand(record, face, start + end + over) == pytest.approx(
+            assert thermal_offset.stand(record, face, start + end + over) == pytest.approx(
                 beyond, rel=1e-9, abs=1e-15
             )
-    assert bow.under_pads(REFERENCE, models.build(REFERENCE), None) is None
+    assert thermal_offset.under_pads(REFERENCE, models.build(REFERENCE), None) is None
     # walls that give way know it themselves
-    assert bow.under_pads(scene, model, reference_walls()) is None
+    assert thermal_offset.under_pads(scene, model, reference_walls()) is None
 
 
 def test_force_is_along_the_gradient_of_the_penetration():
@@ -64,20 +67,23 @@ def test_force_is_along_the_gradient_of_the_penetration():
     scene = REFERENCE.replace({"thermal.mean": MEAN})
     model, x = models.build(scene), np.linspace(0.0, 0.23, 9)
     system = systems.build(
-        model, bow=bow.under_pads(scene, model, standing_away(scene, 1e-3 * np.sin(20.0 * x)))
+        model,
+        bow=thermal_offset.under_pads(scene, model, standing_away(scene, 1e-3 * np.sin(20.0 * x))),
     )
     upright, h = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0), 1e-6
     place = np.array([0.137, 2e-4, 1e-4])
     for face in system.faces[[0, 3, 12]]:
 
         def depth(at, face=face):
-            return touch.penetration(system.contact.bow, face, tuple(at), upright)
+            return springs.penetration(system.contact.bow, face, tuple(at), upright)
 
         difference = [
             (depth(place + h * axis) - depth(place - h * axis)) / (2.0 * h) for axis in np.eye(3)
         ]
         rates = [
-            touch.approach(system.contact.bow, face, tuple(place), upright, tuple(axis), (0.0,) * 9)
+            springs.approach(
+                system.contact.bow, face, tuple(place), upright, tuple(axis), (0.0,) * 9
+            )
             for axis in np.eye(3)
         ]
         assert rates == pytest.approx(difference, abs=1e-8)

@@ -7,14 +7,14 @@ import sys
 
 import pytest
 
-import lowfi
-from lowfi import cluster
-from lowfi import store as stores
-from lowfi.fill import fill
-from lowfi.request import Ensemble
-from lowfi.rows import Drawn
-from lowfi.store import StoreError
-from scenes import load, uncertainty
+from tipoff import lowfi
+from tipoff.lowfi.ensemble import cluster
+from tipoff.lowfi.ensemble import store as stores
+from tipoff.lowfi.ensemble.fill import fill
+from tipoff.lowfi.ensemble.request import Ensemble
+from tipoff.lowfi.ensemble.rows import Drawn
+from tipoff.lowfi.ensemble.store import StoreError
+from tipoff.scenes import load, uncertainty
 
 pytest.importorskip("zarr")
 distributed = pytest.importorskip("distributed")

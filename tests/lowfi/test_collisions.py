@@ -5,12 +5,13 @@ import math
 
 import pytest
 
-import lowfi
-from lowfi import state, touch
-from lowfi.system import Contact
-from scenes.effects import contact as law
 from tests.exact import contact as exact
 from tests.lowfi.support import PAPER_PAD, G, close, drop, numerics, scene
+from tipoff import lowfi
+from tipoff.lowfi import state
+from tipoff.lowfi.contact import springs
+from tipoff.lowfi.system import Contact
+from tipoff.scenes.effects import contact as law
 
 K = PAPER_PAD["stiffness"]
 TWO_TOLERANCES = pytest.mark.parametrize("tolerance", [1e-7, 1e-9])
@@ -33,7 +34,7 @@ def test_impact_spot_values(p_mm, closing, force):
     turn, zero = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0), (0.0, 0.0, 0.0)
     body = state.Motion(zero, (0.0, 0.0, -closing / 1e3), turn, zero)
     face = (0.0, 0.0, -0.1, 0.0, -1.0, 0.1, 0.0)
-    found = touch.load(
+    found = springs.load(
         Contact(*law.laws(record), None),
         None,
         None,

@@ -7,10 +7,10 @@ import shutil
 import numpy as np
 import pytest
 
-from lowfi import columns
-from lowfi import store as stores
-from lowfi.columns import Columns
-from lowfi.store import Chunk, Store, StoreError
+from tipoff.lowfi.ensemble import columns
+from tipoff.lowfi.ensemble import store as stores
+from tipoff.lowfi.ensemble.columns import Columns
+from tipoff.lowfi.ensemble.store import Chunk, Store, StoreError
 
 pytest.importorskip("zarr")
 CASES, CHUNK, IDENTITY = 20, 8, {"scene": "a scene", "cases": {"seed": 1}}

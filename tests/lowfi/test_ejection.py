@@ -4,11 +4,12 @@ as oracle."""
 import numpy as np
 import pytest
 
-import lowfi
-from lowfi import oracle
-from scenes import ledger, load, momenta, promises
-from scenes.outcome import Motion
 from tests.lowfi.support import PAPER_PAD, corners, scene
+from tipoff import lowfi
+from tipoff.lowfi import oracle
+from tipoff.mechanics import ledger, momenta, promises
+from tipoff.mechanics.outcome import Motion
+from tipoff.scenes import load
 
 SHORT = {
     "start": -0.2,

@@ -6,14 +6,16 @@ import pytest
 import scipy.optimize
 import scipy.special
 
-import lowfi
-from lowfi import Numerics, columns
-from lowfi.run import Run
-from scenes import load, rotation
-from scenes.ending import DONE
 from tests.exact import rigid
 from tests.lowfi.giving import REFERENCE, reference_walls
 from tests.lowfi.support import scene
+from tipoff import lowfi
+from tipoff.kernels import rotation
+from tipoff.lowfi import Numerics
+from tipoff.lowfi.ensemble import columns
+from tipoff.lowfi.run import Run
+from tipoff.mechanics.ending import DONE
+from tipoff.scenes import load
 
 STEEL = {"density": 2810.0, "youngs_modulus": 72e9, "poisson_ratio": 0.33}
 RAIL = {"start": -1.0, "end": 0.1, "material": STEEL}

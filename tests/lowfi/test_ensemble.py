@@ -4,11 +4,11 @@ bit."""
 import numpy as np
 import pytest
 
-import lowfi
-from lowfi import columns
-from scenes import load
-from scenes.faults import SceneError
-from studies.bench.surrogate import varied
+from tipoff import lowfi
+from tipoff.lowfi.ensemble import columns
+from tipoff.scenes import load
+from tipoff.scenes.faults import SceneError
+from tipoff.studies.bench.surrogate import varied
 
 ROWS = [{"thrust_offset.misalignment.radial": f"{angle} deg"} for angle in (5, 25, 45, 65)]
 

@@ -10,13 +10,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import lowfi
-from lowfi import store as stores
-from lowfi.fill import fill
-from lowfi.request import Ensemble
-from lowfi.rows import Drawn, Listed
-from lowfi.store import StoreError
-from scenes import load, uncertainty
+from tipoff import lowfi
+from tipoff.lowfi.ensemble import store as stores
+from tipoff.lowfi.ensemble.fill import fill
+from tipoff.lowfi.ensemble.request import Ensemble
+from tipoff.lowfi.ensemble.rows import Drawn, Listed
+from tipoff.lowfi.ensemble.store import StoreError
+from tipoff.scenes import load, uncertainty
 
 pytest.importorskip("zarr")
 ROOT = Path(__file__).resolve().parent.parent.parent
@@ -152,7 +152,9 @@ def test_a_store_of_other_code_or_no_store_is_refused(tmp_path, monkeypatch):
         ensemble().store(tmp_path / "foreign")
     assert (tmp_path / "foreign" / "letter.txt").read_text() == "mine"
     ensemble().store(tmp_path / "store")
-    monkeypatch.setattr("lowfi.request.code", lambda: {"code": "other", "versions": {}})
+    monkeypatch.setattr(
+        "tipoff.lowfi.ensemble.request.code", lambda: {"code": "other", "versions": {}}
+    )
     with pytest.raises(StoreError, match="code, versions differ"):
         ensemble().store(tmp_path / "store")
 

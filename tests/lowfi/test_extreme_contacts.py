@@ -7,15 +7,16 @@ import math
 import numpy as np
 import pytest
 
-import lowfi
-from lowfi import march, state
-from lowfi.run import Run
-from lowfi.system import WALL
-from scenes import ledger
-from studies.stability import weaker_methods as weaker
 from tests.exact import contact as exact
 from tests.exact.rigid import elastic_impact
 from tests.lowfi.support import ONE_PAD, PAPER_PAD, RAIL, close, drop, numerics, scene
+from tipoff import lowfi
+from tipoff.lowfi import state
+from tipoff.lowfi.dynamics import integrate
+from tipoff.lowfi.run import Run
+from tipoff.lowfi.system import WALL
+from tipoff.mechanics import ledger
+from tipoff.studies.stability import weaker_methods as weaker
 
 LINEAR = PAPER_PAD | {"exponent": 1.0, "stiffness": 7e7, "damping": 0.0}
 STORED = ledger.ENTRIES.index("contact_stored")
@@ -73,7 +74,7 @@ def test_opposed_interference_holds_itself(contact, stored, tolerance):
     asked = scene(0.004, 1e-4, pads=opposed, contact=contact | {"clearance": 0.0})
     run = Run(asked, numerics(tolerance))
     run.system.faces[:, WALL] -= 20e-6  # a scene has no negative clearance, walls bent inwards do
-    run.loop = march.ready(run.system, state.initial(run.model), run.interval)
+    run.loop = integrate.ready(run.system, state.initial(run.model), run.interval)
     run.begin()
     run.march(None)
     both = run.trajectory()

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-import lowfi
-from scenes import load
-from scenes.scene import Scene
 from tests.lowfi.giving import reference_walls
+from tipoff import lowfi
+from tipoff.scenes import load
+from tipoff.scenes.scene import Scene
 
 REFERENCE = load("reference").condition("phi35")
 # m/s, the last one 7.5 km/s across the axes

@@ -6,10 +6,10 @@ import math
 import numpy as np
 import pytest
 
-import lowfi
 from tests.exact import rigid as exact
 from tests.exact.thrust import kept_by_cut
 from tests.lowfi.support import numerics, scene
+from tipoff import lowfi
 
 # a table without effect, so that all these scenes share one compiled kernel
 CENTRED = {"eccentricity": {"axial": 0.0}}

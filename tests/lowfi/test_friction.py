@@ -6,11 +6,11 @@ import math
 import numpy as np
 import pytest
 
-import lowfi
-from scenes import ledger
 from tests.exact import contact as collisions
 from tests.exact import friction as exact
 from tests.lowfi.support import G, numerics, scene
+from tipoff import lowfi
+from tipoff.mechanics import ledger
 
 FEET = [{"position": (x, y, -0.02), "normals": ["-z"]} for x in (-0.1, 0.1) for y in (-0.1, 0.1)]
 GROUND = {"law": "linear", "clearance": 0.0, "stiffness": 1e8, "damping": 4e4}

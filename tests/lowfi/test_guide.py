@@ -8,10 +8,10 @@ on.
 import numpy as np
 import pytest
 
-import lowfi
-from lowfi import Numerics
 from tests.exact import guided as exact
 from tests.lowfi.support import scene, unwatched
+from tipoff import lowfi
+from tipoff.lowfi import Numerics
 
 SPAN, PUSH, MASS = 0.2, 2000.0, 20.0
 GUIDE = [

@@ -4,13 +4,14 @@ diverged and give no rates."""
 import numpy as np
 import pytest
 
-import lowfi
-from lowfi import audit, march
-from lowfi.run import Run, improved
-from scenes import load, promises
 from tests.lowfi.giving import reference_walls
 from tests.lowfi.random_scenes import EFFECTS, independent, scene_of
 from tests.lowfi.support import PAPER_PAD, scene
+from tipoff import lowfi
+from tipoff.lowfi.dynamics import audit, integrate
+from tipoff.lowfi.run import Run, improved
+from tipoff.mechanics import promises
+from tipoff.scenes import load
 
 REFERENCE = load("reference").condition("phi35")
 QUICK = ("ejection", "guided", "frictionless", "free")  # kernels that other tests compile too
@@ -99,7 +100,8 @@ def test_a_broken_ledger_is_run_again_with_smaller_steps():
     found = again.trajectory()
     assert found.outcome == fine.outcome and found.status == "exited"
     assert (
-        found.cost["reruns"] == 1 and found.cost["discarded_steps"] == first.loop.count[march.STEPS]
+        found.cost["reruns"] == 1
+        and found.cost["discarded_steps"] == first.loop.count[integrate.STEPS]
     )
     assert "2e-08" in found.message and found.checks["energy_error"] <= 1e-6
 

@@ -6,16 +6,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-import lowfi
-from lowfi import Numerics, march, plan
-from lowfi import state as slot
-from lowfi.run import Run
-from scenes import ledger
-from scenes.walls import PATTERNS
 from tests.exact import elasticity
 from tests.lowfi.giving import REFERENCE, Pose, handmade, in_one_cell, pressed, reference_walls
 from tests.lowfi.test_modes import DAMPED, pull_of_modes
 from tests.lowfi.test_walls_runs import EFFECTS, RUB, TIGHT, on_springs
+from tipoff import lowfi
+from tipoff.lowfi import Numerics
+from tipoff.lowfi import state as slot
+from tipoff.lowfi.dynamics import integrate, plan
+from tipoff.lowfi.run import Run
+from tipoff.mechanics import ledger
+from tipoff.mechanics.rail_compliance import PATTERNS
 
 VIBRATING, TIGHT_VIBRATING = Numerics(modes=4), replace(TIGHT, modes=4)
 # A beam as in tests/fe/test_moving_force.py.
@@ -123,7 +124,7 @@ def test_a_rail_rings_out():
     modes = run.system.walls.modes
     start = 1e-7 * np.random.default_rng(2).standard_normal(modes.square.size)
     begun = np.concatenate([run.loop.start[: slot.STATE_SIZE], start, 0.0 * start])
-    run.loop = march.ready(run.system, begun, plan.first_step(run.plan))
+    run.loop = integrate.ready(run.system, begun, plan.first_step(run.plan))
     states, (square, drag) = sampled(run), (modes.square.ravel(), modes.drag.ravel())
     found, time = run.trajectory(), run.interval * np.arange(len(states))[:, None]
     fast = np.sqrt(square - 0.25 * drag**2)

@@ -6,13 +6,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-import lowfi
-from lowfi import Numerics
-from lowfi import state as slot
-from lowfi.walls import limit
-from scenes.faults import SceneError
 from tests.lowfi.giving import REFERENCE, SMOOTH, pressed, reference_walls, state_of
 from tests.lowfi.test_walls import BASES, POSES, derivative, energy, generalised, pose_of, solved
+from tipoff import lowfi
+from tipoff.lowfi import Numerics
+from tipoff.lowfi import state as slot
+from tipoff.lowfi.contact.compliant import step_limit
+from tipoff.scenes.faults import SceneError
 
 COUNT, FOUR = 5, Numerics(modes=4)
 DAMPED = {"rail.damping.ratios": [0.02, 0.01], "rail.damping.frequencies": [1e3, 5e3]}
@@ -118,7 +118,7 @@ def test_limit_holds_the_spectrum(vibrating, name):
         for step in 1e-9 * np.eye(modes.size // 2, modes.size)
     ]
     fastest = np.abs(np.linalg.eigvals(metric @ np.array(columns).T)).max()
-    springs, dampers = limit.stiffness_and_damping(
+    springs, dampers = step_limit.stiffness_and_damping(
         system.walls,
         system.friction,
         system.faces,

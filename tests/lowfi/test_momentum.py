@@ -4,11 +4,11 @@ Nothing acts from outside."""
 import numpy as np
 import pytest
 
-import lowfi
-from lowfi import oracle
-from scenes import model as models
-from scenes import rotation
 from tests.lowfi.support import PAPER_PAD, corners, scene, unwatched
+from tipoff import lowfi
+from tipoff.kernels import rotation
+from tipoff.lowfi import oracle
+from tipoff.mechanics import model as models
 
 # Undamped pads and little friction, so that the payload goes on rattling in a rail that has no end.
 RATTLING = {

@@ -4,10 +4,10 @@ end well."""
 import numpy as np
 import pytest
 
-import lowfi
-from lowfi import dormand_prince as pair
-from scenes import load
 from tests.lowfi.support import PAPER_PAD, scene
+from tipoff import lowfi
+from tipoff.lowfi.dynamics import dormand_prince as pair
+from tipoff.scenes import load
 
 
 def test_order_conditions_of_the_pair():

@@ -14,10 +14,6 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-import lowfi
-from lowfi import Numerics, march, state
-from lowfi.run import Run
-from scenes import ledger
 from tests import turning
 from tests.lowfi.random_scenes import (
     DURATION,
@@ -30,6 +26,11 @@ from tests.lowfi.random_scenes import (
     transformed,
 )
 from tests.lowfi.support import RAIL, turned_state, unwatched
+from tipoff import lowfi
+from tipoff.lowfi import Numerics, state
+from tipoff.lowfi.dynamics import integrate
+from tipoff.lowfi.run import Run
+from tipoff.mechanics import ledger
 
 QUICK = ("ejection", "guided", "frictionless", "free")  # kernels that other tests compile too
 TOLERANCE = NUDGE = 1e-9  # relative; m/s
@@ -134,7 +135,7 @@ def check_other_axes(raw: dict, base: np.ndarray, yardstick: np.ndarray) -> None
     expected, nudge = (
         np.hstack([turning.turned(values[:, :3]), values[:, 3:]]) for values in (base, yardstick)
     )
-    assert_equal_motion(speeds(run), expected, nudge, factor=run.loop.count[march.STEPS])
+    assert_equal_motion(speeds(run), expected, nudge, factor=run.loop.count[integrate.STEPS])
 
 
 def reversed_motion(end: np.ndarray):
@@ -154,7 +155,10 @@ def check_reversal(raw: dict) -> None:
     back = moved(raw, lambda _: reversed_motion(end))
     yardstick = moved(raw, lambda _: nudged(reversed_motion(end)))
     assert_equal_motion(
-        -speeds(back), speeds(there)[::-1], -speeds(yardstick), factor=there.loop.count[march.STEPS]
+        -speeds(back),
+        speeds(there)[::-1],
+        -speeds(yardstick),
+        factor=there.loop.count[integrate.STEPS],
     )
 
 

@@ -6,10 +6,10 @@ import sys
 
 import pytest
 
-import lowfi
-from lowfi.compiled import LAWS, compiled_code
-from scenes import load
 from tests.lowfi.giving import reference_walls
+from tipoff import lowfi
+from tipoff.lowfi.compiled import LAWS, compiled_code
+from tipoff.scenes import load
 
 # How the effects that the reference scene lacks are added; a law that sticks stands in the place of
 # the other.
@@ -29,13 +29,16 @@ ON_WALLS = ("walls", "modes", "thermal")  # effects that need walls found for th
 COUNT = """
 import numba
 import numpy as np
-from lowfi import equations, limits, state, system
-from scenes import load, model
-from scenes.effects.friction import coefficient_over_speed
+from tipoff.lowfi import state, system
+from tipoff.lowfi.contact import step_limit
+from tipoff.lowfi.dynamics import equations
+from tipoff.mechanics import model
+from tipoff.scenes import load
+from tipoff.scenes.effects.friction import coefficient_over_speed
 @numba.njit
 def call(records, felt, begin, out):
     equations.derivative(records, felt, None, 0.0, begin, out)
-    limits.fastest_rate(records.contact, records.friction, None, records.faces, records.platform,
+    step_limit.fastest_rate(records.contact, records.friction, None, records.faces, records.platform,
                         records.payload, felt, None, begin, 0.0)
 def evaluate(scene):
     built = model.build(scene)

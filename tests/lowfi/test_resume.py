@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
-import lowfi
-from lowfi import Numerics, march
-from lowfi.run import Run
-from scenes import load
+from tipoff import lowfi
+from tipoff.lowfi import Numerics
+from tipoff.lowfi.dynamics import integrate
+from tipoff.lowfi.run import Run
+from tipoff.scenes import load
 
 ASKED = load("sensitive").condition("phi35")
 ARRAYS = (
@@ -39,7 +40,7 @@ def put_away(tolerance: float, last: int, path) -> Run:
         **{name: array for name, array in run.loop._asdict().items() if array is not None},
     )
     kept, other = np.load(path), Run(ASKED, numerics)
-    other.loop = march.Loop(*(kept.get(name) for name in march.Loop._fields))
+    other.loop = integrate.Loop(*(kept.get(name) for name in integrate.Loop._fields))
     other.rows, other.forces, other.taken = kept["rows"], kept["forces"], last + 1
     return other
 
@@ -57,9 +58,12 @@ def test_resumed_run_ends_in_the_same_bits(tolerance, tmp_path):
     # Control: with the state alone kept, and not the size of the next step and the stages, it ends
     # elsewhere.
     poor = put_away(tolerance, last, tmp_path / "run.npz")
-    fresh = march.ready(poor.system, poor.loop.end, poor.interval)
-    fresh.clock[march.NOW], fresh.count[march.TAKEN] = poor.loop.clock[march.NOW], last + 1
-    fresh.count[march.SEGMENT] = poor.loop.count[march.SEGMENT]
+    fresh = integrate.ready(poor.system, poor.loop.end, poor.interval)
+    fresh.clock[integrate.NOW], fresh.count[integrate.TAKEN] = (
+        poor.loop.clock[integrate.NOW],
+        last + 1,
+    )
+    fresh.count[integrate.SEGMENT] = poor.loop.count[integrate.SEGMENT]
     poor.loop = fresh
     poor.march(None)
     assert poor.taken == len(whole.time) and not np.array_equal(poor.trajectory().rate, whole.rate)

@@ -5,13 +5,13 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from lowfi import sampling
-from lowfi.rows import Drawn, numbers
-from lowfi.sampling import Points
-from scenes import load, uncertainty
-from scenes.distributions import BY_NAME
-from scenes.faults import SceneError
-from scenes.uncertainty import Uncertainty
+from tipoff.lowfi.ensemble import sampling
+from tipoff.lowfi.ensemble.rows import Drawn, numbers
+from tipoff.lowfi.ensemble.sampling import Points
+from tipoff.scenes import load, uncertainty
+from tipoff.scenes.distributions import BY_NAME
+from tipoff.scenes.faults import SceneError
+from tipoff.scenes.uncertainty import Uncertainty
 
 
 def drawn(cases: int, how: str, seed: int = 1, **vary) -> Uncertainty:

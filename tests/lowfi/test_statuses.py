@@ -5,9 +5,9 @@ import dataclasses
 import numpy as np
 import pytest
 
-import lowfi
-from lowfi import columns
-from scenes import load
+from tipoff import lowfi
+from tipoff.lowfi.ensemble import columns
+from tipoff.scenes import load
 
 BASE = load("reference").condition("phi15")
 ENDS = {

@@ -6,14 +6,14 @@ import math
 import numpy as np
 import pytest
 
-import highfi
-import lowfi
-from lowfi import oracle
-from scenes import SceneError, ledger, load
 from tests.exact import friction as exact
 from tests.lowfi.support import G, corners, numerics, scene
 from tests.lowfi.test_free_bodies import CENTRED
 from tests.lowfi.test_friction import on_slope as smoothed_on_slope
+from tipoff import highfi, lowfi
+from tipoff.lowfi import oracle
+from tipoff.mechanics import ledger
+from tipoff.scenes import SceneError, load
 
 FEET = [{"position": (x, y, 0.0), "normals": ["-z"]} for x in (-0.1, 0.1) for y in (-0.1, 0.1)]
 GROUND = {"law": "linear", "clearance": 0.0, "stiffness": 1e8, "damping": 2e4}

@@ -4,10 +4,10 @@ bad headers at once."""
 import numpy as np
 import pytest
 
-from lowfi.rows import numbers
-from lowfi.table import TableFile
-from scenes.faults import SceneError
-from scenes.units import to_si
+from tipoff.lowfi.ensemble.rows import numbers
+from tipoff.lowfi.ensemble.table import TableFile
+from tipoff.scenes.faults import SceneError
+from tipoff.scenes.units import to_si
 
 AXIAL, MASS = "thrust_offset.misalignment.axial", "payload.mass"
 

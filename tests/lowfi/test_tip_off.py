@@ -6,9 +6,9 @@ import math
 import numpy as np
 import pytest
 
-import lowfi
 from tests.exact import guided as exact
 from tests.lowfi.support import RAIL, G, numerics, scene
+from tipoff import lowfi
 
 TWO_TOLERANCES = pytest.mark.parametrize("tolerance", [1e-6, 1e-8])
 

@@ -10,11 +10,12 @@ too.
 import numpy as np
 import pytest
 
-from lowfi import Numerics, march, state
-from lowfi.run import Run
-from scenes import rotation
 from tests import turning
 from tests.lowfi.support import corners, scene, turned_state
+from tipoff.kernels import rotation
+from tipoff.lowfi import Numerics, state
+from tipoff.lowfi.dynamics import integrate
+from tipoff.lowfi.run import Run
 
 RATE, OFFSET, ARM = (0.5, 0.003, -0.002), 1.2e-4, (0.1, 1.2e-4, 1.2e-4)
 ISOTROPIC = {"xx": 4.9, "yy": 4.9, "zz": 4.9}
@@ -53,7 +54,7 @@ def ejected(tolerance: float, turn=None, bodies=(state.PAYLOAD, state.PLATFORM))
     """The run, its bodies turned beforehand about the scene's origin by the quaternion ``turn``."""
     run = Run(TURNING, Numerics(relative_tolerance=tolerance))
     if turn:
-        run.loop = march.ready(
+        run.loop = integrate.ready(
             run.system, turned_state(state.initial(run.model), turn, bodies), run.interval
         )
     # what is left of the thrust does not keep the payload from settling

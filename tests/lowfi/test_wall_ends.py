@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-import lowfi
-from lowfi import oracle
-from lowfi.run import Run
-from scenes import ledger
 from tests.lowfi.giving import handmade, in_one_cell
 from tests.lowfi.support import ONE_PAD, RAIL, numerics, scene, unwatched
 from tests.lowfi.test_walls_runs import EFFECTS, RUB, STIFFNESS, on_springs
+from tipoff import lowfi
+from tipoff.lowfi import oracle
+from tipoff.lowfi.run import Run
+from tipoff.mechanics import ledger
 
 WIDTH, START = 2e-3, 0.1  # m: a wall, and how far ahead of the middle of the pad it begins
 K, MASS = 7e7, 20.0

@@ -5,14 +5,6 @@ import numpy as np
 import pytest
 from scipy.sparse.linalg import splu
 
-from highfi import assembly, facets, pieces, surface
-from highfi.numerics import Numerics
-from highfi.run import prepare
-from lowfi import state as slot
-from lowfi.walls import cells, limit, loads, record, solution
-from scenes import model as models
-from scenes import rotation
-from scenes.walls import PATTERNS
 from tests.lowfi.giving import (
     REFERENCE,
     SMOOTH,
@@ -25,6 +17,16 @@ from tests.lowfi.giving import (
     seen_from_platform,
     state_of,
 )
+from tipoff.highfi.contact import surface
+from tipoff.highfi.mesh import facets, pieces
+from tipoff.highfi.numerics import Numerics
+from tipoff.highfi.run import prepare
+from tipoff.highfi.statics import assembly
+from tipoff.kernels import rotation
+from tipoff.lowfi import state as slot
+from tipoff.lowfi.contact.compliant import cells, loads, record, solution, step_limit
+from tipoff.mechanics import model as models
+from tipoff.mechanics.rail_compliance import PATTERNS
 
 CLEARANCE = REFERENCE.contact.clearance
 # What the pads meet: way (m), way across beyond the clearance (m), attitude (rad).
@@ -157,7 +159,7 @@ def test_tangent_bounds_what_the_forces_change_by(reference, name):
             generalised(there, derivative(system, model, there, 0.0 * twist))
             - generalised(back, derivative(system, model, back, 0.0 * twist))
         ) / (2.0 * h)
-    springs, dampers = limit.stiffness_and_damping(
+    springs, dampers = step_limit.stiffness_and_damping(
         system.walls,
         system.friction,
         system.faces,

@@ -5,16 +5,16 @@ import numpy as np
 import pytest
 from scipy.integrate import cumulative_trapezoid, solve_ivp
 
-import lowfi
-from highfi import compliance
-from lowfi import Numerics
-from lowfi.walls import loads
-from scenes import ledger
-from scenes import model as models
-from scenes.scene import load, parse
 from tests.lowfi.giving import REFERENCE, Pose, handmade, in_one_cell, pressed, reference_walls
 from tests.lowfi.support import RAIL, corners
 from tests.lowfi.test_walls import solved
+from tipoff import lowfi
+from tipoff.highfi import compliance
+from tipoff.lowfi import Numerics
+from tipoff.lowfi.contact.compliant import loads
+from tipoff.mechanics import ledger
+from tipoff.mechanics import model as models
+from tipoff.scenes.scene import load, parse
 
 AREA = 0.016**2  # m2, of a pad face
 STIFFNESS = 2e7  # N/m of a pad face

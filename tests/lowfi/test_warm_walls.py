@@ -5,14 +5,13 @@ import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
 
-import highfi
-import lowfi
-from lowfi import Numerics
-from lowfi import state as slot
-from lowfi.walls import warm
-from scenes.walls import PATTERNS
 from tests.lowfi.giving import REFERENCE, SMOOTH, flexibility_at, pressed, reference_walls
 from tests.lowfi.test_walls import BASES, POSES, derivative, energy, generalised, pose_of, solved
+from tipoff import highfi, lowfi
+from tipoff.lowfi import Numerics
+from tipoff.lowfi import state as slot
+from tipoff.lowfi.contact.compliant import thermal_offset
+from tipoff.mechanics.rail_compliance import PATTERNS
 
 # Steep enough that what the walls' slope pushes is far above the rounding of the differences.
 FIELD = {
@@ -58,7 +57,7 @@ def test_forces_are_the_gradient_of_the_energy(heated, name):
         pushed = max(
             pushed,
             *(
-                abs(warm.pull(system.walls.warm, face, system.walls.room.force[face]))
+                abs(thermal_offset.pull(system.walls.warm, face, system.walls.room.force[face]))
                 for face in faces
             ),
             0.0,

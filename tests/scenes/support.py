@@ -4,9 +4,9 @@ import copy
 
 import numpy as np
 
-from scenes import ledger
-from scenes.outcome import Outcome
-from scenes.trajectory import Trajectory
+from tipoff.mechanics import ledger
+from tipoff.mechanics.outcome import Outcome
+from tipoff.mechanics.trajectory import Trajectory
 
 SMALL = {
     "name": "small",

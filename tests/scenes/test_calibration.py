@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from scenes import Calibration, SceneError, load
-from scenes.calibration import _toml
+from tipoff.scenes import Calibration, SceneError, load
+from tipoff.scenes.calibration import _toml
 
 CALIBRATION = Calibration(
     constants={"contact.stiffness": 0.1 + 0.2, "friction.static": 0.25},

@@ -5,7 +5,7 @@ import math
 
 import pytest
 
-from scenes import catalog, load
+from tipoff.scenes import catalog, load
 
 DEGREE = math.pi / 180.0
 

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from scenes import parse
-from scenes.effects import contact
 from tests.scenes.support import CONTACT, small
+from tipoff.scenes import parse
+from tipoff.scenes.effects import contact
 
 HUNT = {
     "law": "hunt-crossley",

@@ -10,11 +10,12 @@ import h5py
 import numpy as np
 import pytest
 
-import scenes
-from scenes import Calibration, Trajectory
-from scenes.walls import PATTERNS, Walls, digest
 from tests.scenes.test_calibration import CALIBRATION, _as_lists
 from tests.scenes.test_trajectory import random_trajectory
+from tipoff import scenes
+from tipoff.mechanics.rail_compliance import PATTERNS, Walls, digest
+from tipoff.mechanics.trajectory import Trajectory
+from tipoff.scenes import Calibration
 
 PLACES = 150  # bits that are flipped in a file, evenly spread
 
@@ -181,7 +182,7 @@ DOCUMENT = {
 
 
 def test_json_carries_its_digest_and_stays_plain(tmp_path):
-    from scenes.files import DamageError, read_json, write_json
+    from tipoff.files import DamageError, read_json, write_json
 
     path = tmp_path / "a.json"
     written = write_json(path, DOCUMENT)

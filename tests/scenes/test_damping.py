@@ -5,9 +5,9 @@ import math
 
 import pytest
 
-from scenes import SceneError, load, parse
-from scenes.effects.structural_damping import Damping, ratio
 from tests.scenes.support import SMALL, small
+from tipoff.scenes import SceneError, load, parse
+from tipoff.scenes.effects.structural_damping import Damping, ratio
 
 FREQUENCIES = ["500 Hz", "5 kHz"]
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from scenes import SceneError, load
+from tipoff.scenes import SceneError, load
 
 
 @pytest.fixture

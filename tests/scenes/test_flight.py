@@ -5,7 +5,7 @@ import math
 
 import pytest
 
-from scenes import SceneError, load
+from tipoff.scenes import SceneError, load
 
 SCENE = load("reference")
 

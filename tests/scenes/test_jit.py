@@ -9,17 +9,18 @@ from pathlib import Path
 
 import pytest
 
-from scenes import rotation
-from scenes.jit import contains
+from tipoff.kernels import rotation
+from tipoff.kernels.jit import contains
 
 ROOT = Path(__file__).resolve().parents[2]
 CALLER = (
-    "from highfi.callee import value\nfrom scenes.jit import njit\n\n\n@njit\ndef "
+    "from tipoff.highfi.callee import value\nfrom tipoff.kernels.jit import njit\n\n\n@njit\ndef "
     'doubled():\n    """Twice the value."""\n    return 2.0 * value()\n'
 )
-CALLEE = 'from scenes.jit import njit\n\n\n@njit\ndef value():\n    """A value."""\n    return {}\n'
+CALLEE = 'from tipoff.kernels.jit import njit\n\n\n@njit\ndef value():\n    """A value."""\n    return {}\n'
 ASK = (
-    "from highfi.caller import doubled; print(doubled(), sum(doubled.stats.cache_misses.values()))"
+    "from tipoff.highfi.caller import doubled; "
+    "print(doubled(), sum(doubled.stats.cache_misses.values()))"
 )
 # The trap as Numba leaves it: all kernels in one place, told apart by their own code alone.
 STAMP = "    return hashlib.sha256(settings.encode()).hexdigest()[:16]"
@@ -27,13 +28,17 @@ STAMP = "    return hashlib.sha256(settings.encode()).hexdigest()[:16]"
 
 @pytest.fixture
 def project(tmp_path):
+    package = tmp_path / "tipoff"
     shutil.copytree(
-        ROOT / "scenes", tmp_path / "scenes", ignore=shutil.ignore_patterns("__pycache__")
+        ROOT / "tipoff" / "kernels",
+        package / "kernels",
+        ignore=shutil.ignore_patterns("__pycache__"),
     )
-    (tmp_path / "scenes" / "__init__.py").write_text("")
-    (tmp_path / "highfi").mkdir()
-    (tmp_path / "highfi" / "__init__.py").write_text("")
-    (tmp_path / "highfi" / "caller.py").write_text(CALLER)
+    for name in ("__init__", "files", "sources"):
+        shutil.copy(ROOT / "tipoff" / f"{name}.py", package)
+    (package / "highfi").mkdir()
+    (package / "highfi" / "__init__.py").write_text("")
+    (package / "highfi" / "caller.py").write_text(CALLER)
     return tmp_path
 
 
@@ -57,7 +62,7 @@ def ask(project: Path) -> tuple[float, int]:
 
 
 def write_callee(project: Path, value: float) -> None:
-    (project / "highfi" / "callee.py").write_text(CALLEE.format(value))
+    (project / "tipoff" / "highfi" / "callee.py").write_text(CALLEE.format(value))
 
 
 def test_an_edited_callee_is_used(project):
@@ -73,7 +78,7 @@ def test_words_compile_nothing(project):
     write_callee(project, 1.0)
     assert ask(project) == (2.0, 1)
     for name in ("caller", "callee"):
-        source = project / "highfi" / f"{name}.py"
+        source = project / "tipoff" / "highfi" / f"{name}.py"
         text = source.read_text().replace("Twice", "Two times").replace("A value", "One number")
         source.write_text('"""What it is for."""\n\n# a remark\n' + text)
     assert ask(project) == (2.0, 0)
@@ -82,7 +87,7 @@ def test_words_compile_nothing(project):
 def test_without_the_digest_the_old_callee_is_used(project):
     """Control: this is the wrong result that the digest prevents. If Numba mends it, the digest can
     go."""
-    source = project / "scenes" / "jit.py"
+    source = project / "tipoff" / "kernels" / "jit.py"
     text = source.read_text()
     assert STAMP in text
     source.write_text(text.replace(STAMP, '    return "fixed" if settings else ""'))
@@ -96,7 +101,7 @@ def test_without_the_digest_the_old_callee_is_used(project):
 def test_code_names_whole_functions_only():
     """A name that begins, ends or contains another one is not taken for it, and neither is the same
     name in another module."""
-    code = b"..._ZN08NumbaEnv6scenes8rotation6rotateB2v1B52c8tJ..."
+    code = b"..._ZN08NumbaEnv6tipoff7kernels8rotation6rotateB2v1B52c8tJ..."
     assert contains(code, rotation.rotate)
     assert not contains(code, rotation.unrotate) and not contains(
         code.replace(b"8rotation", b"6motion"), rotation.rotate

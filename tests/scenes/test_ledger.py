@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from scenes import ledger
+from tipoff.mechanics import ledger
 
 COLUMN = {name: index for index, name in enumerate(ledger.ENTRIES)}
 TIME = np.linspace(0.0, 1.0, 401)

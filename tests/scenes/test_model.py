@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
-from scenes import load, model, parse
-from scenes.effects import gravity
-from scenes.effects.initial import Initial
 from tests.scenes.support import CONTACT, FRICTION, small
+from tipoff.mechanics import model
+from tipoff.scenes import load, parse
+from tipoff.scenes.effects import gravity
+from tipoff.scenes.effects.initial import Initial
 
 PLATFORM = {
     "mass": "80 kg",

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from scenes import ending, load, model, outcome
 from tests.scenes.support import motion
+from tipoff.mechanics import ending, model, outcome
+from tipoff.scenes import load
 
 
 def quaternions(rotation: Rotation) -> np.ndarray:

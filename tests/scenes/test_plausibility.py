@@ -4,8 +4,8 @@ import math
 
 import pytest
 
-from scenes import SceneError, catalog, load, parse, plausibility, sinking
 from tests.scenes.support import CONTACT, small
+from tipoff.scenes import SceneError, catalog, load, parse, plausibility, sinking
 
 DENSITY = 2810.0
 

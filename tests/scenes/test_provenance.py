@@ -3,10 +3,10 @@ condition."""
 
 import pytest
 
-from scenes import SceneError, catalog, load, parse
-from scenes.provenance import of
-from studies.report import inputs
 from tests.scenes.support import small
+from tipoff.scenes import SceneError, catalog, load, parse
+from tipoff.scenes.provenance import of
+from tipoff.studies.report import inputs
 
 BOX = "assumed: box 0.35 x 0.20 x 0.20 m with a real payload's asymmetry"
 PAPER = "paper's group, Syst. Eng. Electron. 47(8) 2696, 2025"

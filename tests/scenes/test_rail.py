@@ -3,10 +3,11 @@ key is named."""
 
 import pytest
 
-import calibrate.parameters
-from scenes import SceneError, load, model, parse
-from scenes.rail import MeshTable, SectionTable
 from tests.scenes.support import CONTACT, SMALL, small
+from tipoff.calibration import parameters
+from tipoff.mechanics import model
+from tipoff.scenes import SceneError, load, parse
+from tipoff.scenes.rail import MeshTable, SectionTable
 
 MATERIAL = SMALL["rail"]["material"]
 
@@ -114,9 +115,9 @@ def test_a_file_that_cannot_be_read(tmp_path, name):
 def test_a_calibration_asks_for_the_lengths_its_bounds_scale_with(file):
     bare = parse(meshed(file) | {"contact": CONTACT})
     with pytest.raises(SceneError) as caught:
-        calibrate.parameters.free(bare)
+        parameters.free(bare)
     assert [fault.key for fault in caught.value.faults] == ["rail.leg", "rail.thickness"]
-    assert calibrate.parameters.free(bare.replace({"rail.leg": 0.024, "rail.thickness": 0.004}))
+    assert parameters.free(bare.replace({"rail.leg": 0.024, "rail.thickness": 0.004}))
 
 
 @pytest.mark.parametrize("clearance", ["0.1 mm", "0.3 mm"])

@@ -2,9 +2,9 @@
 
 import pytest
 
-from scenes import SceneError, load, parse
-from scenes.variation import Variations
 from tests.scenes.support import CONTACT, FRICTION, STICKING, small
+from tipoff.scenes import SceneError, load, parse
+from tipoff.scenes.variation import Variations
 
 pytestmark = pytest.mark.case("X19")
 

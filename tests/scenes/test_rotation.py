@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from scenes import rotation
+from tipoff.kernels import rotation
 
 NUMBER = st.floats(-10.0, 10.0, allow_nan=False)
 TRIPLE = st.tuples(NUMBER, NUMBER, NUMBER)

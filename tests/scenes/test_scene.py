@@ -7,9 +7,9 @@ import json
 import pytest
 from pydantic import ValidationError
 
-from scenes import SceneError, load, parse
-from scenes.scene import EFFECTS
 from tests.scenes.support import CONTACT, FRICTION, small
+from tipoff.scenes import SceneError, load, parse
+from tipoff.scenes.scene import EFFECTS
 
 
 def test_text_carries_units_and_a_number_is_si():

@@ -3,10 +3,11 @@ none."""
 
 import pytest
 
-from scenes import load, model, outcome, parse
-from scenes.effects.friction import Friction
-from scenes.effects.sticking import Sticking
 from tests.scenes.support import CONTACT, FRICTION, STICKING, small
+from tipoff.mechanics import model, outcome
+from tipoff.scenes import load, parse
+from tipoff.scenes.effects.friction import Friction
+from tipoff.scenes.effects.sticking import Sticking
 
 
 def test_record():

@@ -4,11 +4,12 @@ fields, and that it costs nobody else their hash."""
 import numpy as np
 import pytest
 
-from scenes import SceneError, load, model, parse
-from scenes.effects.thermal import fields
-from scenes.variation import Variations
-from scenes.walls import digest
 from tests.scenes.support import small
+from tipoff.mechanics import model
+from tipoff.mechanics.rail_compliance import digest
+from tipoff.scenes import SceneError, load, parse
+from tipoff.scenes.effects.thermal import fields
+from tipoff.scenes.variation import Variations
 
 EXPANSION = "23.6e-6 1/K"
 

@@ -8,11 +8,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from scenes import parse
-from scenes.effects import thrust
-from scenes.effects.measured import MeasuredCurve, fit_gaussian
 from tests.exact.thrust import gaussian_peak, kept_by_cut
 from tests.scenes.support import small
+from tipoff.scenes import parse
+from tipoff.scenes.effects import thrust
+from tipoff.scenes.effects.measured import MeasuredCurve, fit_gaussian
 
 DURATION = 0.05
 O41 = {"kind": "gaussian", "impulse": "100 N*s", "width": "4 ms", "centre": "20 ms"}

@@ -9,10 +9,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from scenes import Trajectory, ledger, load
-from scenes.files import content_hash, replacing, write_json, write_text
-from scenes.outcome import Outcome
 from tests.scenes.support import motion
+from tipoff.files import content_hash, replacing, write_json, write_text
+from tipoff.mechanics import ledger
+from tipoff.mechanics.outcome import Outcome
+from tipoff.mechanics.trajectory import Trajectory
+from tipoff.scenes import load
 
 ARRAYS = (
     "time",
@@ -196,7 +198,7 @@ def test_an_exception_while_saving_leaves_nothing(tmp_path, monkeypatch):
 
 KILLED = """
 import sys, time
-from scenes.files import replacing
+from tipoff.files import replacing
 with replacing(sys.argv[1]) as temporary:
     with open(temporary, "w") as stream:
         stream.write("half")
@@ -205,7 +207,7 @@ with replacing(sys.argv[1]) as temporary:
         time.sleep(60)
 """
 NAIVE = KILLED.replace(
-    "from scenes.files import replacing", "from contextlib import nullcontext as replacing"
+    "from tipoff.files import replacing", "from contextlib import nullcontext as replacing"
 )
 
 

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from scenes.units import parse, to_si
+from tipoff.scenes.units import parse, to_si
 
 
 @pytest.mark.parametrize(

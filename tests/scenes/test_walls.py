@@ -5,10 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-import lowfi
-import scenes
-from scenes.faults import SceneError
-from scenes.walls import PATTERNS, Walls, digest
+from tipoff import lowfi, scenes
+from tipoff.mechanics.rail_compliance import PATTERNS, Walls, digest
+from tipoff.scenes.faults import SceneError
 
 SCENE = scenes.load("reference")
 FACES = 16

@@ -9,7 +9,7 @@ eccentricity r at b, mass eccentricity m at c.
 
 import math
 
-import scenes
+from tipoff import scenes
 
 IMPULSE, ARM, INERTIA, WIDTH = 100.0, 0.15, 0.55, 1e-3  # N s, m, kg m2, s
 # deg/s of the total rate per radian of misalignment

@@ -2,12 +2,12 @@
 
 import numpy as np
 
-import scenes
-from studies import published
-from studies.inference import inputs, solutions
-from studies.report import paper as section
-from studies.report.markup import Html
-from studies.stages import paper
+from tipoff import scenes
+from tipoff.studies import published
+from tipoff.studies.paper import inputs, solutions
+from tipoff.studies.paper import page as section
+from tipoff.studies.paper import stage as paper
+from tipoff.studies.render.markup import Html
 
 BASE = scenes.load("reference")
 COUNT = len(inputs.UNKNOWNS)

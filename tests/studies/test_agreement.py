@@ -5,15 +5,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import highfi
-import lowfi
-from scenes import load
-from studies.agreement import metrics, verdicts
-from studies.agreement.verdicts import Context, Spread
-from studies.settings import Settings
-from studies.stages import compare
-from studies.study import Study
 from tests.studies.synthetic import flight
+from tipoff import highfi, lowfi
+from tipoff.scenes import load
+from tipoff.studies.agreement import metrics, verdicts
+from tipoff.studies.agreement import stage as compare
+from tipoff.studies.agreement.verdicts import Context, Spread
+from tipoff.studies.core.settings import Settings
+from tipoff.studies.core.study import Study
 
 
 def constant(*rate, **parts):

@@ -7,14 +7,15 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-import highfi
-from highfi import Numerics, assembly
-from scenes import load
-from studies.bench import reference
-from studies.bench.csr_loop import CsrLoop
-from studies.cli import app
-from studies.report.figures import Runs
-from studies.report.page import Page
+from tipoff import highfi
+from tipoff.highfi import Numerics
+from tipoff.highfi.statics import assembly
+from tipoff.scenes import load
+from tipoff.studies.bench import reference
+from tipoff.studies.bench.csr_loop import CsrLoop
+from tipoff.studies.cli import app
+from tipoff.studies.report.figures import Runs
+from tipoff.studies.report.page import Page
 
 
 def test_yardstick_is_central_differences_on_the_assembled_matrix():

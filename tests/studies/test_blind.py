@@ -5,14 +5,15 @@ from pathlib import Path
 
 import pytest
 
-import scenes
-from scenes.faults import SceneError
-from studies.agreement.verdicts import Context
-from studies.settings import Settings
-from studies.stages import blind, compare
-from studies.stages.blind import Asked
-from studies.study import Study
 from tests.studies.synthetic import flight
+from tipoff import scenes
+from tipoff.scenes.faults import SceneError
+from tipoff.studies.agreement import stage as compare
+from tipoff.studies.agreement.verdicts import Context
+from tipoff.studies.blind import stage as blind
+from tipoff.studies.blind.stage import Asked
+from tipoff.studies.core.settings import Settings
+from tipoff.studies.core.study import Study
 
 
 def study_of(name: str = "reference") -> Study:

@@ -3,12 +3,12 @@
 import pytest
 from typer.testing import CliRunner
 
-import scenes
-from studies import single
-from studies.cli import app
-from studies.cost.choice import choose, elsewhere
-from studies.settings import Settings
-from studies.study import Study, StudyError
+from tipoff import scenes
+from tipoff.studies.cli import app
+from tipoff.studies.core.settings import Settings
+from tipoff.studies.core.study import Study, StudyError
+from tipoff.studies.cost.choice import choose, elsewhere
+from tipoff.studies.runs import single
 
 # name, error (deg/s), wall (s); None is the yardstick, which is trusted to the band of 0.02.
 POINTS = [

@@ -10,12 +10,12 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from scenes.scene import CATALOG
-from scenes.trajectory import Trajectory
-from studies import store as store_module
-from studies.cli import app
-from studies.helptext import flowed
 from tests.studies.synthetic import flight
+from tipoff.mechanics.trajectory import Trajectory
+from tipoff.scenes.scene import CATALOG
+from tipoff.studies.cli import app
+from tipoff.studies.commands.helptext import flowed
+from tipoff.studies.core import store as store_module
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 STAGES = (
@@ -225,7 +225,7 @@ def test_real_process_has_no_traceback_and_answers_help_at_once(tmp_path):
         [
             sys.executable,
             "-m",
-            "studies.cli",
+            "tipoff.studies.cli",
             "mesh",
             "--set",
             "payload.mass=nan kg",
@@ -242,7 +242,7 @@ def test_real_process_has_no_traceback_and_answers_help_at_once(tmp_path):
     assert not (tmp_path / "out").exists()
     started = time.monotonic()
     answer = subprocess.run(
-        [sys.executable, "-m", "studies.cli", "--help"],
+        [sys.executable, "-m", "tipoff.studies.cli", "--help"],
         cwd=ROOT,
         capture_output=True,
         text=True,

@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 
-import scenes
-from studies.refinement import contact_loads
 from tests.studies.synthetic import flight
+from tipoff import scenes
+from tipoff.studies.convergence import contact_loads
 
 SCENE = scenes.load("reference")  # samples every 0.05 ms, as flight's
 

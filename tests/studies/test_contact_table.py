@@ -4,10 +4,10 @@ in a scene."""
 import numpy as np
 import pytest
 
-from scenes import load
-from scenes.fidelity import COMPLIANT, SPRINGS
-from studies import published
-from studies.sensitivity import contact_table
+from tipoff.mechanics.models import COMPLIANT, SPRINGS
+from tipoff.scenes import load
+from tipoff.studies import published
+from tipoff.studies.sensitivity import contact_table
 
 
 def test_largest_deviations_of_the_paper():

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from studies.refinement import extrapolation
+from tipoff.studies.convergence import extrapolation
 
 # Pressure recovery of a supersonic inlet on three grids, coarsest first: NASA Glenn, NPARC Alliance
 # CFD verification tutorial, "Examining spatial (grid) convergence".

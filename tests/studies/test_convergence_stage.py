@@ -10,18 +10,20 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-import scenes
-from scenes.faults import SceneError
-from studies import store as store_module
-from studies.cli import app
-from studies.cost import timing
-from studies.refinement.ripple import Ripple
-from studies.report.figures import Runs
-from studies.report.page import Page
-from studies.settings import Settings, defaults
-from studies.stages import compliance, convergence, report
-from studies.study import Study, StudyError
 from tests.studies.synthetic import flight
+from tipoff import scenes
+from tipoff.scenes.faults import SceneError
+from tipoff.studies.cli import app
+from tipoff.studies.convergence import stage as convergence
+from tipoff.studies.convergence.ripple import Ripple
+from tipoff.studies.core import rail_compliance
+from tipoff.studies.core import store as store_module
+from tipoff.studies.core.settings import Settings, defaults
+from tipoff.studies.core.study import Study, StudyError
+from tipoff.studies.cost import timing
+from tipoff.studies.report import stage as report
+from tipoff.studies.report.figures import Runs
+from tipoff.studies.report.page import Page
 
 SURROGATE_ERROR = 1.2  # deg/s
 NOMINAL_PENALTY = scenes.load("tiny").contact.penalty
@@ -89,7 +91,7 @@ def asked(monkeypatch):
     for module in (store_module, timing):
         monkeypatch.setattr(module, "prepare", lambda run: None)
     monkeypatch.setattr(timing, "execute", lambda run, progress=None: motion(run))
-    monkeypatch.setattr(compliance, "under", lambda study, names: dict.fromkeys(names))
+    monkeypatch.setattr(rail_compliance, "under", lambda study, names: dict.fromkeys(names))
     monkeypatch.setattr(convergence.ripple, "measure", rippling)
     return made
 

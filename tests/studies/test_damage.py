@@ -9,21 +9,22 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-import calibrate
-import scenes
-from scenes.files import write_json
-from scenes.trajectory import Trajectory
-from scenes.walls import PATTERNS, Walls, digest
-from studies import store as store_module
-from studies.bench import reference
-from studies.cli import app
-from studies.limits import results
-from studies.populations import answers
-from studies.settings import Settings
-from studies.stages import compliance, runs, view
-from studies.study import Study, read
 from tests.scenes.test_calibration import CALIBRATION
 from tests.studies.synthetic import flight
+from tipoff import calibration, scenes
+from tipoff.files import write_json
+from tipoff.mechanics.rail_compliance import PATTERNS, Walls, digest
+from tipoff.mechanics.trajectory import Trajectory
+from tipoff.studies.bench import reference
+from tipoff.studies.cli import app
+from tipoff.studies.core import rail_compliance
+from tipoff.studies.core import store as store_module
+from tipoff.studies.core.settings import Settings
+from tipoff.studies.core.study import Study, read
+from tipoff.studies.limits import results
+from tipoff.studies.populations import answers
+from tipoff.studies.runs import stage as runs
+from tipoff.studies.view import stage as view
 
 RATE = 0.125  # rad/s, of which means are exact
 
@@ -42,7 +43,7 @@ def engine(monkeypatch):
 
     monkeypatch.setattr(store_module, "execute", execute)
     monkeypatch.setattr(store_module, "prepare", lambda run: None)
-    monkeypatch.setattr("studies.stages.runs.stresses.facts", lambda run: {})
+    monkeypatch.setattr("tipoff.studies.runs.stage.stresses.facts", lambda run: {})
     return calls
 
 
@@ -168,15 +169,17 @@ def test_damaged_walls_are_found_again(study, monkeypatch, capsys):
         calls.append(size)
         return known
 
-    monkeypatch.setattr(calibrate, "compliance", found)
+    monkeypatch.setattr(calibration, "compliance", found)
     assert (
-        compliance.load(study, scene).hash == compliance.load(study, scene).hash == known.hash
+        rail_compliance.load(study, scene).hash
+        == rail_compliance.load(study, scene).hash
+        == known.hash
         and len(calls) == 1
     )
     (path,) = study.folder.glob("compliance-*.npz")
     for number, place in enumerate(np.linspace(0, path.stat().st_size - 1, 40).astype(int)):
         flip(path, int(min(place, path.stat().st_size - 1)))
-        assert compliance.load(study, scene).hash == known.hash and len(calls) == number + 2
+        assert rail_compliance.load(study, scene).hash == known.hash and len(calls) == number + 2
         assert (
             f"{path}: not a file of walls" in (told := capsys.readouterr().err)
             and "found again" in told
@@ -239,8 +242,8 @@ def test_an_edited_calibration_is_bad_input_until_its_digest_is_removed(tmp_path
 def test_every_netcdf_result_carries_a_digest(tmp_path):
     """Those that only users read, too: the stages keep the digests of whole files, and who copies
     one file can check it."""
-    from scenes.files import require_whole
-    from studies.droptest import analysis, shipped, signals
+    from tipoff.files import require_whole
+    from tipoff.studies.droptest import analysis, shipped, signals
 
     drop = analysis.analyse(shipped.sheets()[0])
     signals.write(tmp_path / "droptest.nc", [drop._replace(name="a"), drop._replace(name="b")])

@@ -7,8 +7,8 @@ import json
 import pytest
 from typer.testing import CliRunner
 
-from lowfi import store as stores
-from studies.cli import app
+from tipoff.lowfi.ensemble import store as stores
+from tipoff.studies.cli import app
 
 pytest.importorskip("zarr")
 

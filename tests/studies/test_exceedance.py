@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from scenes.faults import SceneError
-from studies.populations import exceedance, order_statistics
-from studies.populations.exceedance import Limit
+from tipoff.scenes.faults import SceneError
+from tipoff.studies.populations import exceedance, order_statistics
+from tipoff.studies.populations.exceedance import Limit
 
 
 def test_limits_are_read_with_their_axis():

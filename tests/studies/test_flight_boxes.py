@@ -8,7 +8,7 @@ import pytest
 from scipy.optimize import lsq_linear
 from scipy.spatial.transform import Rotation
 
-from studies.flight import boxes
+from tipoff.studies.flight import boxes
 
 HALF, OTHER = np.array([0.3, 0.1, 0.2]), np.array([0.15, 0.25, 0.05])
 

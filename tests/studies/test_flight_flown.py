@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-import lowfi
-from scenes import load, rotation
-from studies.flight import bodies, flown, orbit, summary
-from studies.flight import rotation as free
+from tipoff import lowfi
+from tipoff.kernels import rotation
+from tipoff.scenes import load
+from tipoff.studies.flight import bodies, flown, orbit, summary
+from tipoff.studies.flight import rotation as free
 
 SCENE = load("reference").replace({"flight.body": ["0.35 m", "0.19 m", "0.19 m"]})
 # no orbit to speak of

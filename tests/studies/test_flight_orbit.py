@@ -8,8 +8,8 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
-from scenes import load
-from studies.flight import orbit
+from tipoff.scenes import load
+from tipoff.studies.flight import orbit
 
 N = 1.1e-3
 PERIOD = 2.0 * math.pi / N

@@ -8,8 +8,8 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
-from studies.flight import rotation
 from tests.exact import rigid as exact
+from tipoff.studies.flight import rotation
 
 # of the reference scene
 INERTIA = np.array([[0.066, 0.004, -0.002], [0.004, 0.134, 0.0], [-0.002, 0.0, 0.128]])

@@ -7,17 +7,17 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from scenes import load
-from scenes.files import write_json
-from studies.cli import app
-from studies.flight import summary
-from studies.populations import answers, population
-from studies.populations.population import Surrogate
-from studies.report import chart
-from studies.report import flight as section
-from studies.settings import Settings
-from studies.stages import flight
-from studies.study import Study
+from tipoff.files import write_json
+from tipoff.scenes import load
+from tipoff.studies.cli import app
+from tipoff.studies.core.settings import Settings
+from tipoff.studies.core.study import Study
+from tipoff.studies.flight import page as section
+from tipoff.studies.flight import stage as flight
+from tipoff.studies.flight import summary
+from tipoff.studies.populations import answers, population
+from tipoff.studies.populations.population import Surrogate
+from tipoff.studies.render import chart
 
 pytest.importorskip("zarr")
 xarray = pytest.importorskip("xarray")

@@ -8,13 +8,12 @@ from dataclasses import replace
 import h5py
 import pytest
 
-import scenes
-from calibrate import parameters, search
-from scenes.files import sealed, write_json
-from studies.cost import forecast
-from studies.settings import defaults
-from studies.stages import calibrate as stage
-from studies.study import Study
+from tipoff import scenes
+from tipoff.calibration import parameters, search
+from tipoff.files import sealed, write_json
+from tipoff.studies.calibration import forecast, stage
+from tipoff.studies.core.settings import defaults
+from tipoff.studies.core.study import Study
 
 
 def study(folder, **settings) -> Study:

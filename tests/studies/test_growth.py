@@ -3,10 +3,9 @@
 import numpy as np
 import pytest
 
-import lowfi
-import scenes
-from studies.agreement.growth import contacts, growth, horizon
 from tests.studies.synthetic import flight
+from tipoff import lowfi, scenes
+from tipoff.studies.agreement.growth import contacts, growth, horizon
 
 GATE = 0.1  # deg/s
 RATE, START = 400.0, 1e-5  # 1/s, rad/s

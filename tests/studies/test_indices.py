@@ -4,11 +4,11 @@ estimators; and what is left out of them."""
 import numpy as np
 import pytest
 
-from lowfi.rows import numbers
-from scenes import load
-from scenes.effects import thrust_offset
-from scenes.fidelity import SPRINGS
-from studies.sensitivity import indices, tolerances
+from tipoff.lowfi.ensemble.rows import numbers
+from tipoff.mechanics.models import SPRINGS
+from tipoff.scenes import load
+from tipoff.scenes.effects import thrust_offset
+from tipoff.studies.sensitivity import indices, tolerances
 
 SCENE = load("reference")
 ANGLES = (

@@ -12,13 +12,13 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-import scenes
-from scenes.trajectory import Trajectory
-from studies import store as store_module
-from studies.cli import app
-from studies.settings import Settings
-from studies.study import Study
 from tests.studies.synthetic import flight
+from tipoff import scenes
+from tipoff.mechanics.trajectory import Trajectory
+from tipoff.studies.cli import app
+from tipoff.studies.core import store as store_module
+from tipoff.studies.core.settings import Settings
+from tipoff.studies.core.study import Study
 
 pytestmark = pytest.mark.case("X20")
 ROOT = Path(__file__).resolve().parent.parent.parent
@@ -134,7 +134,7 @@ def test_command_line_hands_its_choice_on(tmp_path, asked):
 def test_command_killed_and_given_again_ends_with_the_same_bits(tmp_path):
     """The first life is killed once there is a checkpoint; the second one says that it goes on from
     there."""
-    command = [sys.executable, "-m", "studies.cli", *RUN, "--out"]
+    command = [sys.executable, "-m", "tipoff.studies.cli", *RUN, "--out"]
     subprocess.run([*command, str(tmp_path / "whole")], cwd=ROOT, check=True, capture_output=True)
     child = subprocess.Popen(
         [*command, str(tmp_path / "killed"), "--checkpoint-every", "0s"],

@@ -4,7 +4,7 @@ was put."""
 import numpy as np
 import pytest
 
-from studies.sweeps.knee import growth
+from tipoff.studies.sweeps.knee import growth
 
 SIZES = np.arange(1, 11) / 10.0
 KNEE = 0.43

@@ -9,20 +9,20 @@ import xarray
 from scipy import stats
 from typer.testing import CliRunner
 
-from lowfi.rows import numbers
-from scenes import load
-from scenes.calibration import Calibration
-from studies.cli import app
-from studies.limits import constants, within
-from studies.limits.inputs import Asked
-from studies.limits.within import ADVISED
-from studies.populations import answers, exceedance
-from studies.populations.population import Surrogate
-from studies.report import limits as pictures
-from studies.settings import Settings
-from studies.stages import limits
-from studies.study import Study
 from tests.studies import free_flight
+from tipoff.lowfi.ensemble.rows import numbers
+from tipoff.scenes import load
+from tipoff.scenes.calibration import Calibration
+from tipoff.studies.cli import app
+from tipoff.studies.core.settings import Settings
+from tipoff.studies.core.study import Study
+from tipoff.studies.limits import constants, within
+from tipoff.studies.limits import page as pictures
+from tipoff.studies.limits import stage as limits
+from tipoff.studies.limits.inputs import Asked
+from tipoff.studies.limits.within import ADVISED
+from tipoff.studies.populations import answers, exceedance
+from tipoff.studies.populations.population import Surrogate
 
 pytest.importorskip("zarr")
 LIMIT, PROBABILITY = 6.0, 0.9
@@ -174,7 +174,9 @@ def test_limits_that_none_or_every_tolerance_keeps_are_said(study, monkeypatch):
     """0.3 mm of thrust eccentricity alone are 3.1 deg/s: no misalignment brings that below 2,
     unless it is taken away."""
     monkeypatch.setattr(limits, "_RAYS", 1)
-    monkeypatch.setattr("studies.report.chart.to_files", lambda *_: [])  # drawn in another test
+    monkeypatch.setattr(
+        "tipoff.studies.render.chart.to_files", lambda *_: []
+    )  # drawn in another test
     offset = Study(
         study.scene.replace({"thrust_offset.eccentricity.axial": 0.3e-3}),
         study.folder,

@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from studies.agreement import iso18571, metrics
 from tests.studies.synthetic import flight
+from tipoff.studies.agreement import iso18571, metrics
 
 TIME = np.linspace(0.0, 1.0, 1001)
 WAVE = np.sin(2.0 * np.pi * 3.0 * TIME) * np.exp(-TIME)

@@ -7,14 +7,16 @@ from dataclasses import replace
 import pytest
 from typer.testing import CliRunner
 
-import scenes
-from scenes.faults import SceneError
-from scenes.fidelity import COMPLIANT, FINITE_ELEMENTS, MODELS, SPRINGS, SURROGATES
-from studies import models, options, single
-from studies.agreement import kept
-from studies.cli import app
-from studies.settings import defaults
-from studies.study import Study, StudyError
+from tipoff import scenes
+from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS, MODELS, SPRINGS, SURROGATES
+from tipoff.scenes.faults import SceneError
+from tipoff.studies.agreement import kept
+from tipoff.studies.cli import app
+from tipoff.studies.commands import options
+from tipoff.studies.core import models
+from tipoff.studies.core.settings import defaults
+from tipoff.studies.core.study import Study, StudyError
+from tipoff.studies.runs import single
 
 ROW = {
     "condition": "phi15",
@@ -104,7 +106,7 @@ def test_an_answer_names_its_model_and_its_error(tmp_path):
 
 
 def test_the_error_comes_from_the_agreement_table(study, monkeypatch):
-    monkeypatch.setattr("studies.stages.compare.stored", lambda _: TABLE)
+    monkeypatch.setattr("tipoff.studies.agreement.stage.stored", lambda _: TABLE)
     assert kept.words(study, COMPLIANT, "phi15") == (
         "settled rates within 0.012 deg/s of the reference, curves within 0.33 %"
     )
@@ -127,9 +129,9 @@ def test_a_run_is_not_answered_by_a_model_that_its_agreement_rejects(study, monk
             TABLE["compliant"][1],
         ]
     }
-    monkeypatch.setattr("studies.stages.compare.stored", lambda _: missed)
+    monkeypatch.setattr("tipoff.studies.agreement.stage.stored", lambda _: missed)
     monkeypatch.setattr(single, "_made", lambda *_: {"made": True})
-    monkeypatch.setattr(single.compliance, "load", lambda *_, **__: None)
+    monkeypatch.setattr(single.rail_compliance, "load", lambda *_, **__: None)
     with pytest.raises(StudyError, match="phi15: misses: rate L2 2 x limit"):
         single.run(replace(study, only=("phi15",)), "phi15")
     assert single.run(study, "phi15", models.Asked(COMPLIANT)) == {"made": True}

@@ -9,17 +9,17 @@ from scipy import stats
 from scipy.special import j0
 from typer.testing import CliRunner
 
-from lowfi import columns
-from scenes import load
-from studies.cli import app
-from studies.populations import answers, population, spread
-from studies.populations.population import Population
-from studies.report import montecarlo as pictures
-from studies.settings import Settings
-from studies.stages import montecarlo
-from studies.stages.montecarlo import Asked
-from studies.study import Study, StudyError
 from tests.studies import free_flight
+from tipoff.lowfi.ensemble import columns
+from tipoff.scenes import load
+from tipoff.studies.cli import app
+from tipoff.studies.core.settings import Settings
+from tipoff.studies.core.study import Study, StudyError
+from tipoff.studies.montecarlo import page as pictures
+from tipoff.studies.montecarlo import stage as montecarlo
+from tipoff.studies.montecarlo.stage import Asked
+from tipoff.studies.populations import answers, population, spread
+from tipoff.studies.populations.population import Population
 
 pytest.importorskip("zarr")
 
@@ -45,7 +45,9 @@ def test_what_is_written_is_whole_and_not_made_again(study, found, monkeypatch):
     } == set(found["files"])
     # no springs and no clearance without contact
     assert found["models"] is None and len(found["readings"]) == 7
-    monkeypatch.setattr("studies.populations.population.run", lambda *_: pytest.fail("made again"))
+    monkeypatch.setattr(
+        "tipoff.studies.populations.population.run", lambda *_: pytest.fail("made again")
+    )
     assert (
         montecarlo.run(study, Asked(cases=1500, limits=("y=6 deg/s", "8 deg/s")))
         == found

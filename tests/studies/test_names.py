@@ -3,12 +3,12 @@
 import pytest
 from typer.testing import CliRunner
 
-from scenes import SceneError, load, parse
-from studies.cli import app
-from studies.settings import Settings
-from studies.stages import calibrate
-from studies.study import Study
 from tests.scenes.support import small
+from tipoff.scenes import SceneError, load, parse
+from tipoff.studies.calibration import stage as calibrate
+from tipoff.studies.cli import app
+from tipoff.studies.core.settings import Settings
+from tipoff.studies.core.study import Study
 
 WRONG = [
     "../../../escaped",

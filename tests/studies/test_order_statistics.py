@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from studies.populations.order_statistics import bounds, runs_needed
+from tipoff.studies.populations.order_statistics import bounds, runs_needed
 
 
 @pytest.mark.case("O49")

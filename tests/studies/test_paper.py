@@ -10,20 +10,19 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 
-import lowfi
-import scenes
-from lowfi.numerics import Numerics
-from scenes.faults import SceneError
-from scenes.files import write_json
-from studies import published
-from studies.inference import inputs, misfit, solutions, toml
-from studies.paper import known
-from studies.progress import Interrupted
-from studies.report import paper as section
-from studies.settings import Settings
-from studies.stages import compare, paper
-from studies.study import Study, StudyError
 from tests.studies.searched import BASE, COUNT, SMALL, page, stub
+from tipoff import lowfi, scenes
+from tipoff.files import write_json
+from tipoff.lowfi.numerics import Numerics
+from tipoff.scenes.faults import SceneError
+from tipoff.studies import published
+from tipoff.studies.agreement import stage as compare
+from tipoff.studies.core.progress import Interrupted
+from tipoff.studies.core.settings import Settings
+from tipoff.studies.core.study import Study, StudyError
+from tipoff.studies.paper import inputs, known, misfit, scene_file, solutions
+from tipoff.studies.paper import page as section
+from tipoff.studies.paper import stage as paper
 
 
 def test_deviations_are_those_of_the_printed_table():
@@ -152,7 +151,7 @@ def test_front():
 def test_scene_file_is_the_scene(tmp_path, truth):
     shares, rates, _ = truth
     path = tmp_path / "found.toml"
-    path.write_text(toml.scene(BASE, inputs.values(shares), rates))
+    path.write_text(scene_file.scene(BASE, inputs.values(shares), rates))
     kept, meant = scenes.load(path), misfit.Launcher(BASE).scene(shares)
     numerics = Numerics(relative_tolerance=1e-5)
     for name in ("phi15", "phi90"):

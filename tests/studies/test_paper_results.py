@@ -8,19 +8,18 @@ import numpy as np
 import pytest
 import xarray
 
-import lowfi
-from lowfi import columns
-from lowfi.batch import Case
-from lowfi.numerics import Numerics
-from scenes.outcome import Outcome
-from studies import published
-from studies.inference import inputs, misfit, solutions
-from studies.paper import exits, results, told
-from studies.populations import answers
-from studies.settings import Settings
-from studies.stages import paper
-from studies.study import Study
 from tests.studies.searched import BASE, COUNT, SMALL, page, stub
+from tipoff import lowfi
+from tipoff.lowfi.ensemble import columns
+from tipoff.lowfi.ensemble.batch import Case
+from tipoff.lowfi.numerics import Numerics
+from tipoff.mechanics.outcome import Outcome
+from tipoff.studies import published
+from tipoff.studies.core.settings import Settings
+from tipoff.studies.core.study import Study
+from tipoff.studies.paper import exits, inputs, misfit, results, solutions, told
+from tipoff.studies.paper import stage as paper
+from tipoff.studies.populations import answers
 
 # the paper's conditions by their names in the catalogue
 PHI = ("phi0", "phi15", "phi35", "phi60", "phi90")

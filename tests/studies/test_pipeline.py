@@ -5,15 +5,15 @@ import json
 import time
 
 import pytest
+from tipoff.studies.report.answers import ANSWERS
 from typer.testing import CliRunner
 
-from scenes import load
-from scenes.calibration import Calibration
-from scenes.trajectory import Trajectory
-from studies.cli import app
-from studies.report.answers import ANSWERS
-from studies.stages import ablation
-from studies.stages.report import STAGES
+from tipoff.mechanics.trajectory import Trajectory
+from tipoff.scenes import load
+from tipoff.scenes.calibration import Calibration
+from tipoff.studies.ablation import stage as ablation
+from tipoff.studies.cli import app
+from tipoff.studies.report.stage import STAGES
 
 # nearly all of it compiles kernels, side by side with other test files
 pytestmark = pytest.mark.timeout(1500)
@@ -291,7 +291,7 @@ def test_blind_conditions_are_judged_beside_what_was_made(pipeline):
     )
     assert all(ROW <= set(row) and row["role"] == "held_out" for row in kept["compliant"])
     assert (pipeline[0] / "calibration.toml").stat().st_mtime_ns == fitted
-    from studies.report import blind
+    from tipoff.studies.blind import page as blind
 
     assert "blind2" in blind.draw(kept, None)
 

@@ -6,16 +6,16 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-import lowfi
-from lowfi.numerics import Numerics
-from lowfi.rows import Listed
-from scenes import load
-from scenes.fidelity import COMPLIANT, SPRINGS
-from studies.agreement import kept
-from studies.populations import answers, population
-from studies.populations.population import Surrogate
-from studies.settings import Settings
-from studies.study import Study, StudyError
+from tipoff import lowfi
+from tipoff.lowfi.ensemble.rows import Listed
+from tipoff.lowfi.numerics import Numerics
+from tipoff.mechanics.models import COMPLIANT, SPRINGS
+from tipoff.scenes import load
+from tipoff.studies.agreement import kept
+from tipoff.studies.core.settings import Settings
+from tipoff.studies.core.study import Study, StudyError
+from tipoff.studies.populations import answers, population
+from tipoff.studies.populations.population import Surrogate
 
 SCENE = load("reference")
 FLEXIBLE = SimpleNamespace(flexibility=1.0)
@@ -24,14 +24,14 @@ FLEXIBLE = SimpleNamespace(flexibility=1.0)
 @pytest.mark.parametrize("model", [None, COMPLIANT])
 def test_compliant_contact_answers_and_needs_no_calibration(tmp_path, monkeypatch, model):
     monkeypatch.setattr(population.calibrate, "load", lambda _: pytest.fail("fitted springs"))
-    monkeypatch.setattr(population.compliance, "load", lambda *_, **__: FLEXIBLE)
+    monkeypatch.setattr(population.rail_compliance, "load", lambda *_, **__: FLEXIBLE)
     found = population.surrogate(Study(SCENE, tmp_path, Settings()), model)
     assert found.name == found.words == COMPLIANT and found.scene.hash == SCENE.hash
 
 
 def test_springs_answer_where_they_are_named(tmp_path, monkeypatch):
     monkeypatch.setattr(
-        population.compliance, "load", lambda *_, **__: pytest.fail("found a compliance")
+        population.rail_compliance, "load", lambda *_, **__: pytest.fail("found a compliance")
     )
     monkeypatch.setattr(
         population.calibrate, "load", lambda _: SimpleNamespace(apply=lambda scene: scene)
@@ -58,7 +58,7 @@ def test_a_model_that_the_agreement_table_rejects_answers_by_name_only(tmp_path,
         },
     ]
     monkeypatch.setattr(kept, "rows", lambda *_, **__: rows)
-    monkeypatch.setattr(population.compliance, "load", lambda *_, **__: FLEXIBLE)
+    monkeypatch.setattr(population.rail_compliance, "load", lambda *_, **__: FLEXIBLE)
     study = Study(SCENE, tmp_path, Settings())
     for condition in (None, "h1"):
         with pytest.raises(
@@ -98,7 +98,9 @@ def test_cases_are_kept_and_not_run_again(tmp_path, monkeypatch):
     assert [values[f"attitude_{axis}_deg"] for axis in "xyz"] == np.degrees(
         alone.exit_attitude
     ).tolist()
-    monkeypatch.setattr("lowfi.fill.completed", lambda *_: pytest.fail("ran a stored case again"))
+    monkeypatch.setattr(
+        "tipoff.lowfi.ensemble.fill.completed", lambda *_: pytest.fail("ran a stored case again")
+    )
     again = population.run(study, "trial", Surrogate(SCENE, None, None), Listed(rows))
     assert (
         np.array_equal(again.results.rate, found.results.rate, equal_nan=True)

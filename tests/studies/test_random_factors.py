@@ -5,14 +5,14 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from lowfi.rows import numbers
-from scenes import load
-from scenes.faults import SceneError
-from studies.populations import answers, population, random_factors, spread
-from studies.populations.random_factors import ERRORS, READINGS, Reading
-from studies.settings import Settings
-from studies.study import Study
 from tests.studies import free_flight
+from tipoff.lowfi.ensemble.rows import numbers
+from tipoff.scenes import load
+from tipoff.scenes.faults import SceneError
+from tipoff.studies.core.settings import Settings
+from tipoff.studies.core.study import Study
+from tipoff.studies.populations import answers, population, random_factors, spread
+from tipoff.studies.populations.random_factors import ERRORS, READINGS, Reading
 
 pytest.importorskip("zarr")
 SCENE, COUNT = load("reference"), 20_000

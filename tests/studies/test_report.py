@@ -6,18 +6,18 @@ import re
 import numpy as np
 import pytest
 
-import scenes
-from studies.report import figures, inputs, rails, tables
-from studies.report.chart import Chart, Line, Panel, to_files, to_html
-from studies.report.figures import Runs
-from studies.report.markup import number, table
-from studies.report.page import Page
-from studies.report.promises import promises
-from studies.settings import defaults
-from studies.stages import report as stage
-from studies.stages.runs import row
-from studies.study import Study
 from tests.studies.synthetic import flight
+from tipoff import scenes
+from tipoff.studies.agreement import rails_page
+from tipoff.studies.core.settings import defaults
+from tipoff.studies.core.study import Study
+from tipoff.studies.render.chart import Chart, Line, Panel, to_files, to_html
+from tipoff.studies.render.markup import number, table
+from tipoff.studies.report import figures, inputs, stage, tables
+from tipoff.studies.report.figures import Runs
+from tipoff.studies.report.page import Page
+from tipoff.studies.report.promises import promises
+from tipoff.studies.runs.stage import row
 
 
 @pytest.mark.parametrize(
@@ -191,12 +191,12 @@ def test_other_rails_are_judged_where_a_pad_touches_and_the_reference_is_converg
             judged("h9", None, None, passes=False),
         ],
     }
-    springs, walls = rails.rows(
+    springs, walls = rails_page.rows(
         [{"name": "thin", "element_size_m": 4e-3, "agreement": agreement, "constants": {}}]
     )
     assert springs == ("thin", "4 mm", "springs, calibrated", "2 of 2", "1", "12", "0.3", "")
     assert walls == ("thin", "4 mm", "compliant", "3 of 4", "2", "0.5", "0.02", "h8")
-    shown = rails.table(
+    shown = rails_page.table(
         [
             {
                 "name": "thin",

@@ -4,10 +4,9 @@ reference's own rails."""
 import numpy as np
 import pytest
 
-import highfi
-import scenes
-from highfi import Numerics
-from studies.refinement import ripple
+from tipoff import highfi, scenes
+from tipoff.highfi import Numerics
+from tipoff.studies.convergence import ripple
 
 FREQUENCY, FACETS, SAMPLES = 1500.0, 11, 367  # 44 mm at 6 m/s, every 0.02 ms
 

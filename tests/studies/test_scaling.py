@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-import scenes
-from scenes.fidelity import COMPLIANT, FINITE_ELEMENTS, SPRINGS
-from scenes.model import build
-from studies.cost import scaling
-from studies.cost.scaling import effects, fitted, power_law, shares, with_pads
-from studies.report import scaling as page
-from studies.settings import defaults
-from studies.study import Study
+from tipoff import scenes
+from tipoff.mechanics.model import build
+from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS, SPRINGS
+from tipoff.studies.core.settings import defaults
+from tipoff.studies.core.study import Study
+from tipoff.studies.cost import scaling
+from tipoff.studies.cost import scaling_page as page
+from tipoff.studies.cost.scaling import effects, fitted, power_law, shares, with_pads
 
 SIZES = [520, 2420, 4500, 19360]
 

@@ -8,17 +8,17 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from lowfi import columns
-from lowfi.columns import STATUSES
-from scenes import load
-from studies.cli import app
-from studies.populations import answers, population
-from studies.populations.population import Population, Surrogate
-from studies.report import sensitivity as section
-from studies.report.markup import Html
-from studies.settings import defaults
-from studies.stages import sensitivity
-from studies.study import Study, StudyError, read
+from tipoff.lowfi.ensemble import columns
+from tipoff.lowfi.ensemble.columns import STATUSES
+from tipoff.scenes import load
+from tipoff.studies.cli import app
+from tipoff.studies.core.settings import defaults
+from tipoff.studies.core.study import Study, StudyError, read
+from tipoff.studies.populations import answers, population
+from tipoff.studies.populations.population import Population, Surrogate
+from tipoff.studies.render.markup import Html
+from tipoff.studies.sensitivity import page as section
+from tipoff.studies.sensitivity import stage as sensitivity
 
 pytest.importorskip("zarr")
 TOLERANCES = """

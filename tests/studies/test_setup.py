@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from meshes import generator
-from scenes.scene import CATALOG
+from tipoff.meshes import generator
+from tipoff.scenes.scene import CATALOG
 
 ROOT = Path(__file__).resolve().parents[2]
 SOLID = """
@@ -57,7 +57,7 @@ def bare(tmp_path):
 
 
 def test_set_up_misses_nothing(bare):
-    said = bare("-m", "studies.doctor")
+    said = bare("-m", "tipoff.studies.doctor")
     assert said.returncode == 0 and said.stderr == "" and "everything" in said.stdout
 
 
@@ -65,14 +65,20 @@ def test_a_solid_says_what_is_missing_and_a_built_in_rail_is_meshed(bare, tmp_pa
     (tmp_path / "rails.step").write_text("ISO-10303-21;")
     scene = tmp_path / "drawn.toml"
     scene.write_text('extends = "tiny"\nname = "drawn"\n' + SOLID)
-    said = bare("-m", "studies.cli", "mesh", "--scene", scene, "--out", tmp_path / "out")
+    said = bare("-m", "tipoff.studies.cli", "mesh", "--scene", scene, "--out", tmp_path / "out")
     assert said.returncode == 1 and "Traceback" not in said.stderr
     (line,) = [line for line in said.stderr.splitlines() if line.startswith("tipoff: ")]
     assert re.search(r"lacks the system library \S*lib\w+\.so", line) and line.endswith(
         generator.SYSTEM_INSTALL
     )
     built = bare(
-        "-m", "studies.cli", "mesh", "--scene", CATALOG / "tiny.toml", "--out", tmp_path / "out"
+        "-m",
+        "tipoff.studies.cli",
+        "mesh",
+        "--scene",
+        CATALOG / "tiny.toml",
+        "--out",
+        tmp_path / "out",
     )
     assert built.returncode == 0 and (tmp_path / "out" / "tiny" / "mesh.json").is_file()
 

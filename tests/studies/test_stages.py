@@ -6,17 +6,20 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-import scenes
-from highfi.compiled import LAWS as highfi_laws
-from lowfi.compiled import LAWS as lowfi_laws
-from scenes.files import write_json
-from scenes.scene import EFFECTS
-from studies import machine
-from studies.settings import Settings, defaults
-from studies.stability import weaker_methods
-from studies.stages import ablation, compare, cost, sweeps
-from studies.stages.mesh import area
-from studies.study import Study
+from tipoff import scenes
+from tipoff.files import write_json
+from tipoff.highfi.compiled import LAWS as highfi_laws
+from tipoff.lowfi.compiled import LAWS as lowfi_laws
+from tipoff.scenes.scene import EFFECTS
+from tipoff.studies.ablation import stage as ablation
+from tipoff.studies.agreement import stage as compare
+from tipoff.studies.core import machine
+from tipoff.studies.core.settings import Settings, defaults
+from tipoff.studies.core.study import Study
+from tipoff.studies.cost import stage as cost
+from tipoff.studies.mesh.stage import area
+from tipoff.studies.stability import weaker_methods
+from tipoff.studies.sweeps import stage as sweeps
 
 
 def test_area_of_quadrilaterals():
@@ -68,7 +71,7 @@ def test_surrogate_is_timed_by_turns(monkeypatch, tmp_path):
 
     monkeypatch.setattr(ablation, "warm_up", lambda run: None)
     monkeypatch.setattr(ablation, "timed", timed)
-    monkeypatch.setattr(ablation.compliance, "load", lambda *_: None)
+    monkeypatch.setattr(ablation.rail_compliance, "load", lambda *_: None)
     study = Study(scenes.load("tiny"), tmp_path, replace(defaults("tiny"), lowfi_repeats=3))
     lines = {"a": {}, "b": {"friction": None}}
     _, runs, times = ablation._surrogate(study, "phi15", lines)

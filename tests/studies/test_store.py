@@ -11,12 +11,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import scenes
-from scenes.trajectory import Trajectory
-from studies import store as store_module
-from studies.settings import Settings
-from studies.study import Study
 from tests.studies.synthetic import flight
+from tipoff import scenes
+from tipoff.mechanics.trajectory import Trajectory
+from tipoff.studies.core import store as store_module
+from tipoff.studies.core.settings import Settings
+from tipoff.studies.core.study import Study
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 
@@ -162,7 +162,7 @@ def test_settings_and_roles_change_a_stage_key_and_workers_do_not(study):
     def key(**change):
         return Study(
             **{"scene": study.scene, "folder": study.folder, "settings": study.settings} | change
-        ).key("scenes.scene")
+        ).key("tipoff.scenes.scene")
 
     assert key(settings=Settings(workers=7)) == key()
     assert key(settings=Settings(element_size=0.001)) != key()

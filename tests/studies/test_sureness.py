@@ -3,7 +3,7 @@ choice among them."""
 
 import pytest
 
-from studies.cost import sureness
+from tipoff.studies.convergence import equal_accuracy
 
 SIZES = (8e-3, 4e-3, 2e-3, 1e-3)
 RATES = [
@@ -13,7 +13,7 @@ RATES = [
 
 
 def test_mesh_is_as_uncertain_as_the_finest_and_its_way_from_it_on_the_worst_axis():
-    assert sureness.uncertainties(RATES) == pytest.approx([0.41, 0.11, 0.03, 0.02])
+    assert equal_accuracy.uncertainties(RATES) == pytest.approx([0.41, 0.11, 0.03, 0.02])
 
 
 @pytest.mark.parametrize(
@@ -24,7 +24,7 @@ def test_mesh_is_as_uncertain_as_the_finest_and_its_way_from_it_on_the_worst_axi
     ],
 )
 def test_axis_that_did_not_settle_leaves_all_unknown(axis):
-    assert sureness.uncertainties([*RATES, axis]) is None
+    assert equal_accuracy.uncertainties([*RATES, axis]) is None
 
 
 @pytest.mark.parametrize(
@@ -39,7 +39,7 @@ def test_axis_that_did_not_settle_leaves_all_unknown(axis):
     ],
 )
 def test_coarsest_mesh_that_is_surer_or_the_finest(error, size, surer):
-    mesh = sureness.coarsest(SIZES, [0.41, 0.11, 0.03, 0.02], error)
+    mesh = equal_accuracy.coarsest(SIZES, [0.41, 0.11, 0.03, 0.02], error)
     assert (mesh.element_size, mesh.surer) == (size, surer)
 
 
@@ -56,8 +56,8 @@ def test_speedup_over_a_mesh_that_is_not_surer_is_the_least_it_can_be():
         "lowfi_wall_s": 5e-3,
     }
     least, surer = (
-        sureness.sentence(found | {"surer": False}),
-        sureness.sentence(found | {"surer": True}),
+        equal_accuracy.sentence(found | {"surer": False}),
+        equal_accuracy.sentence(found | {"surer": True}),
     )
     assert "no mesh down to 1 mm has a smaller discretisation error (0.012 by all meshes" in least
     assert "counted); at least 50,000 times (40,000 to 60,000), 250 s against 5 ms" in least

@@ -8,17 +8,17 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from scenes import load, moments
-from scenes.effects import thrust, thrust_offset
-from studies.cli import app
-from studies.populations import answers, population
-from studies.populations.population import Surrogate
-from studies.report import sweeps as sections
-from studies.report.markup import Html
-from studies.settings import Settings
-from studies.stages import sweeps
-from studies.study import Study, read
-from studies.sweeps import burnout, factors, sides
+from tipoff.scenes import load, moments
+from tipoff.scenes.effects import thrust, thrust_offset
+from tipoff.studies.cli import app
+from tipoff.studies.core.settings import Settings
+from tipoff.studies.core.study import Study, read
+from tipoff.studies.populations import answers, population
+from tipoff.studies.populations.population import Surrogate
+from tipoff.studies.render.markup import Html
+from tipoff.studies.sweeps import burnout, factors, sides
+from tipoff.studies.sweeps import page as sections
+from tipoff.studies.sweeps import stage as sweeps
 
 pytest.importorskip("zarr")
 # Of the reference scene, whose pulse begins three widths before its peak.

@@ -3,7 +3,7 @@ answer, and counts that do not grow."""
 
 import pytest
 
-from studies.limits.search import ALL, FOUND, NONE, SMALL, largest, near
+from tipoff.studies.limits.search import ALL, FOUND, NONE, SMALL, largest, near
 
 
 def step(place, below=0, beyond=10):

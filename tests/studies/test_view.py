@@ -10,22 +10,23 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-import scenes
-from highfi import Numerics, watch
-from highfi.step import evaluate
-from highfi.worst import STRESS, nothing
-from scenes.trajectory import Trajectory
-from studies.cli import app
-from studies.report import stress as section
-from studies.report.figures import Runs
-from studies.report.page import Page
-from studies.settings import defaults
-from studies.stages import view
-from studies.stages.runs import row
-from studies.study import Study
-from studies.view import frames, vtk_files
 from tests.highfi.support import begun, stopped, tiny
 from tests.studies.synthetic import flight
+from tipoff import scenes
+from tipoff.highfi import Numerics
+from tipoff.highfi.dynamics.step import evaluate
+from tipoff.highfi.stress import monitor
+from tipoff.highfi.stress.peak import STRESS, nothing
+from tipoff.mechanics.trajectory import Trajectory
+from tipoff.studies.cli import app
+from tipoff.studies.core.settings import defaults
+from tipoff.studies.core.study import Study
+from tipoff.studies.report.figures import Runs
+from tipoff.studies.report.page import Page
+from tipoff.studies.runs import stress_page as section
+from tipoff.studies.runs.stage import row
+from tipoff.studies.view import frames, vtk_files
+from tipoff.studies.view import stage as view
 
 TOUCHING = 115  # a sample at which pads of ``tiny`` touch
 
@@ -145,7 +146,7 @@ def test_contact_pressure_comes_to_the_force_on_the_pads(size, off):
 def test_camera_sees_the_stress_that_the_run_is_watched_for(touching):
     loop, frame = touching
     worst = nothing()
-    watch.look(loop.watch, loop.state.displacement, 0.0, worst, loop.pool)
+    monitor.look(loop.watch, loop.state.displacement, 0.0, worst, loop.pool)
     assert frame.worst.max() == pytest.approx(
         loop.watch.shear_modulus * np.sqrt(worst.square[STRESS]), rel=1e-12
     )

@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from highfi import element, recovery
-from studies.view import frames, pictures, vtk_files
 from tests.fe.test_tetrahedral_recovery import at_nodes
 from tests.highfi.support import stopped, tiny
 from tests.highfi.test_tetrahedral_rail import cut
 from tests.highfi.test_tetrahedral_stress import THROWN
+from tipoff.highfi.elements import hexahedral_recovery, hexahedron
+from tipoff.studies.view import frames, pictures, vtk_files
 
-LAW = element.elasticity(72e9, 0.33)
+LAW = hexahedron.elasticity(72e9, 0.33)
 
 
 @pytest.fixture(scope="module")
@@ -41,13 +41,15 @@ def test_files_hold_quadratic_tetrahedra_and_their_stress(touching):
     )
     stress, mean = at_nodes(mesh, LAW, moved), np.zeros((len(mesh.points), 6))
     np.add.at(mean, mesh.cells, stress)
-    mean = recovery.von_mises(mean / np.bincount(mesh.cells.ravel())[:, None])
+    mean = hexahedral_recovery.von_mises(mean / np.bincount(mesh.cells.ravel())[:, None])
     assert mean.max() > 1e6
     np.testing.assert_allclose(
         rails.point_data[vtk_files.VON_MISES], mean, rtol=1e-6, atol=1e-6 * mean.max()
     )
     np.testing.assert_allclose(
-        rails.cell_data[vtk_files.WORST][0], recovery.von_mises(stress).max(axis=1), rtol=1e-6
+        rails.cell_data[vtk_files.WORST][0],
+        hexahedral_recovery.von_mises(stress).max(axis=1),
+        rtol=1e-6,
     )
 
 

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from scipy import signal
 
-from studies.droptest.channel_class import DESIGN, coefficients, filtered, reach
+from tipoff.studies.droptest.channel_class import DESIGN, coefficients, filtered, reach
 
 CLASSES = (60, 180, 600, 1000)
 

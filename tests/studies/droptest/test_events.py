@@ -4,10 +4,6 @@ threshold falls for."""
 import numpy as np
 import pytest
 
-from studies.droptest import analysis, events
-from studies.droptest.calibrated import Calibrated
-from studies.droptest.events import GRAVITY
-from studies.droptest.log import Log, runs
 from tests.studies.droptest.synthetic import (
     BURN,
     END,
@@ -18,6 +14,10 @@ from tests.studies.droptest.synthetic import (
     motion,
     sheet,
 )
+from tipoff.studies.droptest import analysis, events
+from tipoff.studies.droptest.calibrated import Calibrated
+from tipoff.studies.droptest.events import GRAVITY
+from tipoff.studies.droptest.log import Log, runs
 
 
 def knocked(noise, seed):

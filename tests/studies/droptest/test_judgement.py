@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from studies.droptest import judgement
+from tipoff.studies.droptest import judgement
 
 LEVELS = (0.05, 0.25, 0.5, 0.9)
 RIGHT = np.array([[9.0, 3.0, 0.0], [3.0, 4.0, 0.0], [0.0, 0.0, 1.0]])

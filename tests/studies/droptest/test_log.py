@@ -4,9 +4,9 @@ passes silently."""
 import numpy as np
 import pytest
 
-from scenes.faults import SceneError
-from studies.droptest import analysis, shipped
-from studies.droptest.log import read, runs
+from tipoff.scenes.faults import SceneError
+from tipoff.studies.droptest import analysis, shipped
+from tipoff.studies.droptest.log import read, runs
 
 SHEET, TABLE = (
     path.read_text() for path in (shipped.sheets()[0], shipped.sheets()[0].with_suffix(".csv"))

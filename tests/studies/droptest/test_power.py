@@ -6,7 +6,7 @@ from itertools import permutations
 import numpy as np
 import pytest
 
-from studies.droptest import power
+from tipoff.studies.droptest import power
 
 
 @pytest.mark.parametrize("cases, tests", [(2, 1), (3, 2), (4, 3), (5, 2)])

@@ -4,8 +4,8 @@ to what was put in."""
 import numpy as np
 import pytest
 
-from studies.droptest import shipped
-from studies.droptest.analysis import analyse
+from tipoff.studies.droptest import shipped
+from tipoff.studies.droptest.analysis import analyse
 
 # What the makers of the logs know and the analysis is not told (deg/s; s of the log).
 TRUE = ([6.684, 1.851, 9.255], [-0.067, 0.598, -1.036], [0.125, 0.156, 4.426])

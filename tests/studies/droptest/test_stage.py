@@ -10,20 +10,18 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from scenes import load
-from scenes.calibration import Calibration
-from scenes.faults import SceneError
-from studies.cli import app
-from studies.droptest import shipped
-from studies.populations import answers
-from studies.report import chart
-from studies.report import droptest as page
-from studies.report.markup import Html
-from studies.settings import Settings
-from studies.stages import calibrate
-from studies.stages import droptest as stage
-from studies.study import Study, StudyError
 from tests.studies.droptest.test_log import SHEET, TABLE
+from tipoff.scenes import load
+from tipoff.scenes.calibration import Calibration
+from tipoff.scenes.faults import SceneError
+from tipoff.studies.calibration import stage as calibrate
+from tipoff.studies.cli import app
+from tipoff.studies.core.settings import Settings
+from tipoff.studies.core.study import Study, StudyError
+from tipoff.studies.droptest import page, shipped, stage
+from tipoff.studies.populations import answers
+from tipoff.studies.render import chart
+from tipoff.studies.render.markup import Html
 
 pytest.importorskip("zarr")
 xarray = pytest.importorskip("xarray")

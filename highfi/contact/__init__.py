@@ -1,0 +1,1 @@
+"""Contact of rigid pad faces with the surface of the rails."""

@@ -1,0 +1,1 @@
+"""Explicit dynamics: forces, time steps, samples, exit, checkpoints."""

@@ -1,0 +1,180 @@
+"""A run in progress on disk, so that one which is killed goes on from there and ends with the same
+bits.
+
+A checkpoint holds everything of a Loop that evolves, found by exclusion: whatever a Loop is not
+built from. The file is one line of text and a NumPy archive of plain arrays, no code::
+
+    tipoff checkpoint <FORMAT> <SHA-256 of all that follows>
+    <.npz: ``header``, JSON that says which run this is, and one array per evolving value, by its dotted name>
+
+It is taken between two steps, replaced atomically, and read only by a run of the same scene,
+numerics, program and constant arrays. The processor is not asked for: on another kind the run goes
+on, but its last bits are those of both.
+"""
+
+import hashlib
+import io
+import json
+import re
+import time
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from tipoff import sources
+from tipoff.files import content_hash, replacing
+from tipoff.mechanics.trajectory import versions
+
+FORMAT = 3
+# What a Loop is built from.
+CONSTANT = (
+    "scene",
+    "system",
+    "stepping",
+    "team",
+    "pool",
+    "marks",
+    "exit",
+    "last",
+    "most",
+    "walls",
+    "watch",
+)
+_LINE = re.compile(rb"tipoff checkpoint (\d+) ([0-9a-f]{64})")
+_OTHER = {
+    "scene": "belongs to another scene",
+    "numerics": "belongs to a run with other numerics",
+    "program": "was written by another version of the program or of a library",
+    "system": "belongs to a run on another mesh or with another step",
+}
+
+
+class CheckpointError(RuntimeError):
+    """A file that cannot be resumed; ``reason`` continues a sentence that begins with its path."""
+
+    def __init__(self, path: Path, reason: str):
+        self.reason = reason
+        super().__init__(
+            f"{path} {reason}; remove it, or run without resuming, to start from the beginning"
+        )
+
+
+class Checkpoint:
+    """The checkpoint at ``path`` of one run, written when ``every`` seconds (wall clock) have gone
+    by since the last one."""
+
+    def __init__(self, path: str | Path, every: float, loop, numerics):
+        if not every >= 0.0:
+            raise ValueError(
+                f"checkpoint_every: given {every!r}, expected a time of zero or more (s)"
+            )
+        self.path, self.every, self.due = Path(path), every, time.monotonic() + every
+        constant = dict(enumerate(loop.arguments()[:-2])) | {"dt_s": loop.stepping.dt_s}
+        self.header = {
+            "scene": loop.scene.hash,
+            "numerics": numerics.as_dict(),
+            "program": content_hash(sources.digest("tipoff.highfi"), versions()),
+            "system": digest(arrays(constant)),
+        }
+
+    def keep(self, loop) -> None:
+        """Write ``loop`` as it stands, if it is time."""
+        if time.monotonic() >= self.due:
+            self.write(loop)
+            self.due = time.monotonic() + self.every
+
+    def write(self, loop) -> None:
+        """Write ``loop`` as it stands, atomically. Raises OSError on a full disk, which could not
+        take the result either."""
+        archive = io.BytesIO()
+        np.savez(
+            archive,
+            allow_pickle=False,
+            header=json.dumps(self.header),
+            **dict(arrays(evolving(loop))),
+        )
+        content = archive.getbuffer()
+        with replacing(self.path) as temporary, open(temporary, "wb") as stream:
+            stream.write(
+                f"tipoff checkpoint {FORMAT} {hashlib.sha256(content).hexdigest()}\n".encode()
+            )
+            stream.write(content)
+
+    def read(self) -> dict[str, np.ndarray] | None:
+        """Saved arrays by name, or None without a file. Raises CheckpointError for one that is
+        damaged or of another run."""
+        try:
+            line, _, content = self.path.read_bytes().partition(b"\n")
+        except FileNotFoundError:
+            return None
+        except OSError as fault:
+            raise CheckpointError(self.path, f"cannot be read ({fault.strerror})") from fault
+        told = _LINE.fullmatch(line)
+        if told is None:
+            raise CheckpointError(self.path, "is no checkpoint, or damaged in its first line")
+        if int(told[1]) != FORMAT:
+            raise CheckpointError(
+                self.path, f"has format {int(told[1])}, this program reads {FORMAT}"
+            )
+        if hashlib.sha256(content).hexdigest().encode() != told[2]:
+            raise CheckpointError(self.path, "is damaged or was cut short")
+        with np.load(io.BytesIO(content), allow_pickle=False) as archive:
+            saved = dict(archive)
+        header = json.loads(saved.pop("header").item())
+        for name, reason in _OTHER.items():
+            if header[name] != self.header[name]:
+                raise CheckpointError(
+                    self.path, reason + _difference(header[name], self.header[name])
+                )
+        return saved
+
+
+def restore(loop, saved: dict[str, np.ndarray]) -> None:
+    """Put ``saved`` into a loop that has begun; arrays are filled where they lie, because kernels
+    want them aligned."""
+    for name, value in evolving(loop).items():
+        if isinstance(value, list):
+            setattr(loop, name, list(saved[name]))
+        elif isinstance(value, tuple):
+            for key, array in arrays({name: value}):
+                array[...] = saved[key]
+        else:
+            setattr(loop, name, type(value)(saved[name].item()))
+
+
+def evolving(loop) -> dict[str, Any]:
+    """What changes as the loop marches: records, lists of samples, numbers and text, by name."""
+    return {name: value for name, value in vars(loop).items() if name not in CONSTANT}
+
+
+def arrays(parts: dict[Any, Any]) -> Iterator[tuple[str, np.ndarray]]:
+    """Everything in ``parts`` as arrays by dotted name, not copied; records are opened to any
+    depth, what is absent is left out."""
+    for name, part in parts.items():
+        if hasattr(part, "_asdict"):
+            yield from arrays({f"{name}.{field}": value for field, value in part._asdict().items()})
+        elif part is not None:
+            yield str(name), np.asarray(part)
+
+
+def digest(named: Iterable[tuple[str, np.ndarray]]) -> str:
+    """Hexadecimal SHA-256 of names, types, shapes and values."""
+    found = hashlib.sha256()
+    for name, array in named:
+        found.update(f"{name} {array.dtype.str} {array.shape} ".encode())
+        found.update(array.tobytes())
+    return found.hexdigest()
+
+
+def _difference(saved: Any, asked: Any) -> str:
+    """The fields that differ, in words; nothing for digests."""
+    if not isinstance(asked, dict):
+        return ""
+    changed = [
+        f"{name} {saved.get(name)}, not {value}"
+        for name, value in asked.items()
+        if saved.get(name) != value
+    ]
+    return f" ({', '.join(changed)})"

@@ -1,0 +1,199 @@
+"""Exit, settled window and jam of the reference, from every step of the time loop.
+
+A step brings places from n to n + 1 by the velocities at n + 1/2, which hold all through it. So the
+distance past the rail end is taken as linear in a step, speeds and rates as linear from one half
+step to the next, and the integral of a step is its length times the velocity in its middle: the
+order of the scheme itself, two.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from tipoff.highfi.dynamics import samples
+from tipoff.highfi.dynamics.system import System
+from tipoff.highfi.state.pose import triple
+from tipoff.kernels import rotation
+from tipoff.kernels.jit import kernel
+from tipoff.mechanics import ending as books
+from tipoff.mechanics.ending import (
+    AT_EXIT,
+    ATTITUDE,
+    BEFORE,
+    BODY,
+    DONE,
+    EXCESS,
+    EXIT,
+    NOW,
+    PAST,
+    PLACE,
+    ROW_SIZE,
+    SPEED,
+    SPIN,
+)
+from tipoff.mechanics.outcome import Outcome
+
+
+class Ending(NamedTuple):
+    """Evolving: the book (``mechanics.ending``)."""
+
+    book: np.ndarray
+
+
+class Exit(NamedTuple):
+    """Constant: trailing edges (f,3) m of the pads in body axes, and X (m) of the rail end from the
+    frame's origin."""
+
+    edges: np.ndarray
+    rail_end: float
+
+
+def build(system: System) -> tuple[Exit, Ending]:
+    """What a run needs to follow its payload off the rail."""
+    edges = system.faces.centre.copy()
+    edges[:, 0] -= system.faces.half_length
+    book = np.zeros(books.BOOK_SIZE)
+    books.reset(book)
+    return Exit(edges, float(system.model.rail_end + system.body_offset[0])), Ending(book)
+
+
+def found(system: System, book: np.ndarray) -> tuple[str, Outcome]:
+    """Status and outcome of a run with this book. The book tells of the frame's origin, an outcome
+    of the platform's mass centre."""
+    moved, whole = (
+        samples.motion(book[None, AT_EXIT : AT_EXIT + ROW_SIZE], 0.0, system.body_offset),
+        book.copy(),
+    )
+    base = AT_EXIT + BODY
+    if book[DONE] < np.inf:
+        whole[base + PLACE : base + SPEED] = moved.platform_position[0]
+        whole[base + SPEED : base + ATTITUDE] = moved.platform_velocity[0]
+    return books.found(whole)
+
+
+@kernel
+def begin(exit_, payload, frame, state, marks, book):
+    """First look, at ignition, with the velocities of half a step before."""
+    _fill(payload, frame, state, book, 0.0)
+    book[PAST] = _past(exit_, book)
+    _keep(book)
+    if book[PAST] > 0.0:
+        _leave(book, 1.0, 0.0, marks)
+
+
+@kernel
+def follow(exit_, payload, frame, state, marks, book, began, dt):
+    """Bring the book up to date with the step of ``dt`` (s) from ``began`` (s) on: places are those
+    of its end."""
+    if book[DONE] < np.inf:
+        return
+    _fill(payload, frame, state, book, 0.5)
+    past = _past(exit_, book)
+    if book[EXIT] == np.inf:
+        if past > 0.0:
+            share = book[PAST] / (book[PAST] - past)
+            _leave(book, share, began + share * dt, marks)
+        else:
+            _look_at_speed(book, marks, began, dt)
+    if book[EXIT] < np.inf:
+        low, high = books.part_in_window(book, began, began + dt)
+        if high > low:
+            books.count(book, book[NOW:], high - low)
+        books.close(book, began + dt)
+    book[PAST] = past
+    _keep(book)
+
+
+@kernel
+def _keep(book):
+    for i in range(ROW_SIZE):
+        book[BEFORE + i] = book[NOW + i]
+
+
+@kernel
+def _fill(payload, frame, state, book, share):
+    """Places now, and velocities and rates of half a step ago, for which attitudes are taken
+    ``share`` of a step back."""
+    _fill_body(state.payload, payload.inverse_inertia, book[NOW:], book[BEFORE:], share)
+    base = NOW + BODY
+    if frame is not None:
+        _fill_body(state.platform, frame.inverse_inertia, book[base:], book[BEFORE + BODY :], share)
+    else:
+        for i in range(BODY):
+            book[base + i] = 0.0
+        book[base + ATTITUDE] = 1.0
+
+
+@kernel
+def _fill_body(body, inverse_inertia, row, before, share):
+    q = body.quaternion
+    p, here = _four(before), 1.0 - share
+    turn = rotation.matrix(
+        rotation.normalised(
+            (
+                here * q[0] + share * p[0],
+                here * q[1] + share * p[1],
+                here * q[2] + share * p[2],
+                here * q[3] + share * p[3],
+            )
+        )
+    )
+    rate = rotation.unrotate(
+        turn, rotation.angular_velocity(turn, inverse_inertia, triple(body.spin))
+    )
+    for i in range(3):
+        row[PLACE + i], row[SPEED + i], row[SPIN + i] = body.position[i], body.velocity[i], rate[i]
+    for i in range(4):
+        row[ATTITUDE + i] = q[i]
+
+
+@kernel
+def _four(row):
+    return (row[ATTITUDE], row[ATTITUDE + 1], row[ATTITUDE + 2], row[ATTITUDE + 3])
+
+
+@kernel
+def _past(exit_, book):
+    """Distance (m) of the rearmost trailing edge past the rail end."""
+    row, base = book[NOW:], book[NOW + BODY :]
+    turn, axis = rotation.matrix(_four(row)), rotation.matrix(_four(base))
+    along = rotation.unrotate(turn, (axis[0], axis[3], axis[6]))
+    rearmost = np.inf
+    for edge in exit_.edges:
+        rearmost = min(rearmost, along[0] * edge[0] + along[1] * edge[1] + along[2] * edge[2])
+    return (
+        rearmost
+        - exit_.rail_end
+        + (
+            axis[0] * (row[PLACE] - base[PLACE])
+            + axis[3] * (row[PLACE + 1] - base[PLACE + 1])
+            + axis[6] * (row[PLACE + 2] - base[PLACE + 2])
+        )
+    )
+
+
+@kernel
+def _leave(book, share, at, marks):
+    """The exit, when this share of the step is done: places lie between both ends, velocities on
+    the line through this half step and the one before."""
+    for body in (0, BODY):
+        for i in range(body, body + BODY):
+            before, now = book[BEFORE + i], book[NOW + i]
+            is_place = i < body + SPEED or body + ATTITUDE <= i < body + SPIN
+            book[AT_EXIT + i] = before + (share if is_place else share + 0.5) * (now - before)
+        row = book[AT_EXIT + body :]
+        q = rotation.normalised(_four(row))
+        for i in range(4):
+            row[ATTITUDE + i] = q[i]
+    books.leave(book, at, marks)
+
+
+@kernel
+def _look_at_speed(book, marks, began, dt):
+    """The axial speed half way through the step."""
+    at, start = began + 0.5 * dt, books.watched_from(marks)
+    if at >= start:
+        excess, crossing = abs(books.axial_speed(book[NOW:])) - marks.jam_speed, max(start, began)
+        if (book[EXCESS] < 0.0) != (excess < 0.0) and not np.isnan(book[EXCESS]):
+            crossing = at - dt * excess / (excess - book[EXCESS])
+        books.look_at_speed(book, excess, at, crossing)

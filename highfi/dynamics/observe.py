@@ -1,0 +1,143 @@
+"""One sample of a run: places, velocities, energies and momenta *at* time n, from velocities at n -
+1/2 and n + 1/2.
+
+    v(n) = (v(n-1/2) + v(n+1/2)) / 2,     kinetic energy = v(n-1/2) M v(n+1/2) / 2
+
+The second form makes kinetic plus strain energy an exact invariant of central differences for a
+linear system. Plain NumPy: a sample is taken once in a hundred steps, and another kernel would only
+take time to compile.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from tipoff.highfi.dynamics.elastic import elastic_force
+from tipoff.highfi.state import records
+from tipoff.kernels import rotation
+from tipoff.kernels.memory import zeros
+
+# Slots of the sample vector.
+POSITION, VELOCITY, QUATERNION, RATE = 0, 3, 6, 10
+PLATFORM_POSITION, PLATFORM_VELOCITY, PLATFORM_QUATERNION, PLATFORM_RATE = 13, 16, 19, 23
+KINETIC, AXIAL_KINETIC, STRAIN, CONTACT, LINEAR, ANGULAR, IMPULSE = 26, 27, 28, 29, 30, 33, 36
+SAMPLE_SIZE = 42
+
+
+class Moving(NamedTuple):
+    """Copy of everything a kick changes."""
+
+    velocity: np.ndarray
+    spin: np.ndarray
+    platform_velocity: np.ndarray
+    platform_spin: np.ndarray
+    nodes: np.ndarray
+    rail_momentum: np.ndarray
+    impulse: np.ndarray
+
+
+def moving(state: records.State) -> Moving:
+    """Copy of what a kick changes."""
+    return Moving(*(part.copy() for part in _changed(state)))
+
+
+def restore(state: records.State, saved: Moving) -> None:
+    """Put back what ``moving`` copied."""
+    for part, value in zip(_changed(state), saved):
+        part[:] = value
+
+
+def _changed(state):
+    return (
+        state.payload.velocity,
+        state.payload.spin,
+        state.platform.velocity,
+        state.platform.spin,
+        state.velocity,
+        state.rail_momentum,
+        state.impulse,
+    )
+
+
+def sample(system, team, state: records.State, before: Moving, after: Moving) -> np.ndarray:
+    """Sample vector (SAMPLE_SIZE,) of the present places and the velocities half a step before and
+    after them."""
+    row = np.zeros(SAMPLE_SIZE)
+    middle = Moving(*(0.5 * (a + b) for a, b in zip(before, after)))
+    turn, base = (
+        rotation.matrices(body.quaternion[None])[0] for body in (state.payload, state.platform)
+    )
+    row[POSITION : POSITION + 3], row[QUATERNION : QUATERNION + 4] = (
+        state.payload.position,
+        state.payload.quaternion,
+    )
+    row[PLATFORM_POSITION : PLATFORM_POSITION + 3] = state.platform.position
+    row[PLATFORM_QUATERNION : PLATFORM_QUATERNION + 4] = state.platform.quaternion
+    row[VELOCITY : VELOCITY + 3], row[PLATFORM_VELOCITY : PLATFORM_VELOCITY + 3] = (
+        middle.velocity,
+        middle.platform_velocity,
+    )
+    row[RATE : RATE + 3] = system.model.payload.inverse_inertia @ (turn.T @ middle.spin)
+    if system.frame is not None:
+        row[PLATFORM_RATE : PLATFORM_RATE + 3] = system.frame.inverse_inertia @ (
+            base.T @ middle.platform_spin
+        )
+    row[IMPULSE : IMPULSE + 6] = middle.impulse
+    row[KINETIC], row[AXIAL_KINETIC] = _kinetic(system, turn, base, before, after)
+    row[STRAIN], row[CONTACT] = _strain(system.rail, state, team), state.load[records.STORED]
+    row[LINEAR : LINEAR + 3], row[ANGULAR : ANGULAR + 3] = _momenta(system, state, base, middle)
+    return row
+
+
+def _strain(rail, state, team) -> float:
+    force = zeros(state.displacement.shape, order="F")
+    elastic_force(rail, state.displacement, force, np.empty_like(state.turning), team)
+    # Not a BLAS product: its threads would wait for each other where several runs share the
+    # processor.
+    return 0.5 * float((state.displacement * force).sum())
+
+
+def _kinetic(system, turn, base, before: Moving, after: Moving) -> tuple[float, float]:
+    """Kinetic energy (J) of everything, and its axial part."""
+    payload, frame = system.model.payload, system.frame
+    nodes = sum((system.moving_mass * (a * b)).sum() for a, b in zip(before.nodes.T, after.nodes.T))
+    kinetic = 0.5 * (payload.mass * before.velocity @ after.velocity + nodes)
+    kinetic += _spin_energy(turn, payload.inverse_inertia, before.spin, after.spin)
+    axial = 0.5 * payload.mass * before.velocity[0] * after.velocity[0]
+    if frame is not None:
+        kinetic += 0.5 * frame.mass * before.platform_velocity @ after.platform_velocity
+        kinetic += _spin_energy(
+            base, frame.inverse_inertia, before.platform_spin, after.platform_spin
+        )
+        first, second = (
+            frame.mass * part.platform_velocity[0] + (base @ part.rail_momentum)[0]
+            for part in (before, after)
+        )
+        axial += 0.5 * first * second / frame.total_mass
+    return float(kinetic), float(axial)
+
+
+def _spin_energy(turn, inverse_inertia, before, after) -> float:
+    return 0.5 * float((turn.T @ before) @ inverse_inertia @ (turn.T @ after))
+
+
+def _momenta(system, state, base, middle: Moving) -> tuple[np.ndarray, np.ndarray]:
+    """Linear and angular momentum (about the scene origin), summed anew over every node and
+    body."""
+    px, py, pz = (system.moving_mass * component for component in middle.nodes.T)
+    x, y, z = (system.rail.points + state.displacement).T
+    rails = base @ [px.sum(), py.sum(), pz.sum()]
+    turning = base @ [(y * pz - z * py).sum(), (z * px - x * pz).sum(), (x * py - y * px).sum()]
+    own = system.model.payload.mass * middle.velocity
+    linear = own + rails
+    angular = (
+        np.cross(state.payload.position, own)
+        + middle.spin
+        + turning
+        + np.cross(state.platform.position, rails)
+    )
+    if system.frame is not None:
+        carried = system.frame.mass * middle.platform_velocity
+        linear = linear + carried
+        angular = angular + np.cross(state.platform.position, carried) + middle.platform_spin
+    return linear, angular

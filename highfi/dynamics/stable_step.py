@@ -1,0 +1,162 @@
+"""The largest stable step of the explicit scheme, and the step a run takes.
+
+Central differences are stable for
+
+    dt <= (2 / w) (sqrt(1 + z^2) - z)
+
+with w the highest frequency of M^-1 K in rad/s and z its damping ratio when the damping force lags
+by half a step (Belytschko, Liu, Moran, Nonlinear Finite Elements, 2000, section 6.2). Two bounds of
+w are offered. `element_bound` is a theorem: no frequency of the assembled system exceeds the
+highest one of its elements (Irons; Hughes, The Finite Element Method, 1987, section 7.3.2),
+whatever is fixed. `operator_bound` is sharper and takes contact springs into account.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from scipy.linalg import eigh_tridiagonal
+
+from tipoff.highfi.statics.assembly import Operator
+from tipoff.highfi.statics.operator import internal_force
+
+_BATCH = 2048  # classes of elements looked at at once; bounds the memory of an unstructured mesh
+_DIVIDES = 1e-9  # relative error allowed to a requested step that should divide the sample interval
+
+
+class StepError(ValueError):
+    """The step asked for would be unstable or does not meet the samples."""
+
+
+class FrequencyBound(NamedTuple):
+    """Highest frequency in rad/s: `upper` is the one to use, `ritz` a lower bound, `iterations` the
+    operator calls spent."""
+
+    upper: float
+    ritz: float
+    iterations: int
+
+
+def element_bound(operator: Operator) -> float:
+    """Upper bound (rad/s) of every frequency of the mesh: the highest of K_e x = w^2 M_e x over the
+    element classes.
+
+    M_e holds the mass the element itself brings to its nodes. Assembling elements and fixing nodes
+    can only lower the highest frequency; contact springs, which raise it, are not in it.
+    """
+    scale, highest = 1.0 / np.sqrt(np.repeat(operator.node_mass, 3, axis=1)), 0.0
+    for start in range(0, len(scale), _BATCH):
+        part = scale[start : start + _BATCH]
+        matrices = operator.stiffness[start : start + _BATCH] * part[:, :, None] * part[:, None, :]
+        highest = max(highest, np.linalg.eigvalsh(matrices).max())
+    return math.sqrt(highest)
+
+
+def operator_bound(
+    operator: Operator,
+    added_stiffness: np.ndarray | None = None,
+    *,
+    tolerance: float = 1e-3,
+    iterations: int = 200,
+) -> FrequencyBound:
+    """Upper estimate (rad/s) of the highest frequency of the free nodes, by Lanczos iteration on
+    M^-1/2 (K + S) M^-1/2.
+
+    added_stiffness (n,3) N/m is the diagonal S of contact springs, none if absent. With Ritz value
+    t and residual r, an eigenvalue lies in [t - r, t + r]. That it is the highest one is not a
+    theorem but a matter of the start vector, which is random and therefore not orthogonal to the
+    highest mode; the run of Ritz values towards the end of the spectrum is the fastest of all. What
+    is safe whatever happens is the cap: the result never exceeds the element bound with the springs
+    added, w^2 <= w_element^2 + max(S / m), and is that cap where `iterations` do not bring r below
+    tolerance * t.
+    """
+    inverse_root_mass = np.where(operator.free, 1.0 / np.sqrt(operator.mass), 0.0)[:, None]
+    springs = (
+        np.zeros((len(operator.mass), 3))
+        if added_stiffness is None
+        else np.asarray(added_stiffness, dtype=float)
+    )
+    if springs.shape != (len(operator.mass), 3) or not (springs >= 0.0).all():
+        raise ValueError(f"added_stiffness must be non-negative, shape {(len(operator.mass), 3)}")
+    force = np.empty((len(operator.mass), 3))
+
+    def apply(vector):
+        displacement = vector * inverse_root_mass
+        internal_force(
+            displacement, operator.cells, operator.shape_class, operator.stiffness, force
+        )
+        return (force + springs * displacement) * inverse_root_mass
+
+    cap = element_bound(operator) ** 2 + (springs * inverse_root_mass**2).max()
+    ritz, residual, used = _lanczos(apply, inverse_root_mass > 0.0, cap, tolerance, iterations)
+    upper = min(cap, ritz + residual) if residual <= tolerance * ritz else cap
+    return FrequencyBound(math.sqrt(upper), math.sqrt(ritz), used)
+
+
+def _lanczos(apply, free, scale, tolerance, iterations):
+    """Largest Ritz value of a symmetric operator, its residual norm and the number of applications.
+
+    No re-orthogonalisation: lost orthogonality repeats converged values, which leaves the largest
+    one and its residual intact (Paige 1971). The residual of a Ritz pair is the last off-diagonal
+    entry times the last component of its vector.
+    """
+    vector = np.random.default_rng(0).standard_normal((len(free), 3)) * free
+    norm = np.linalg.norm(vector)
+    if norm == 0.0:
+        raise ValueError("no free node: there is no frequency to bound")
+    vector /= norm
+    previous, off_diagonal = np.zeros_like(vector), 0.0
+    diagonal, off_diagonals = [], []
+    for used in range(1, iterations + 1):
+        following = apply(vector) - off_diagonal * previous
+        diagonal.append(float(np.vdot(vector, following)))
+        following -= diagonal[-1] * vector
+        off_diagonal = float(np.linalg.norm(following))
+        if used % 10 == 0 or used == iterations or off_diagonal <= 1e-14 * scale:
+            value, shape = eigh_tridiagonal(
+                diagonal, off_diagonals, select="i", select_range=(used - 1, used - 1)
+            )
+            ritz, residual = float(value[0]), off_diagonal * abs(float(shape[-1, 0]))
+            if residual <= tolerance * ritz:
+                break
+        off_diagonals.append(off_diagonal)
+        previous, vector = vector, following / off_diagonal
+    return ritz, residual, used
+
+
+def critical_step(frequency: float, damping_ratio: float = 0.0) -> float:
+    """Largest stable step (s) for a frequency in rad/s whose damping force lags by half a step, see
+    the module docstring."""
+    # 1 / (sqrt(1+z2) + z) is the same as sqrt(1+z2) - z without the cancellation at large z.
+    return 2.0 / frequency / (math.hypot(1.0, damping_ratio) + damping_ratio)
+
+
+def choose_step(
+    limit: float, safety: float, sample_interval: float, requested: float | None = None
+) -> float:
+    """Largest step (s) that is at most safety * limit and divides the sample interval.
+
+    A `requested` step is not changed but checked: StepError where it exceeds the limit or does not
+    divide the interval. Raises ValueError unless limit > 0, sample_interval > 0 and 0 < safety <=
+    1.
+    """
+    if not (limit > 0.0 and sample_interval > 0.0 and 0.0 < safety <= 1.0):
+        raise ValueError(
+            f"need limit > 0, sample_interval > 0, 0 < safety <= 1; got {limit}, "
+            f"{sample_interval}, {safety}"
+        )
+    if requested is None:
+        return sample_interval / math.ceil(sample_interval / (safety * limit))
+    if not 0.0 < requested <= limit:
+        raise StepError(
+            f"the requested step of {requested:.6g} s is not stable: the limit is {limit:.6g} s "
+            f"(ratio {requested / limit:.4g})"
+        )
+    count = sample_interval / requested
+    if round(count) < 1 or abs(count - round(count)) > _DIVIDES * count:
+        raise StepError(
+            f"the requested step of {requested:.6g} s does not divide the sample interval of "
+            f"{sample_interval:.6g} s; "
+            f"{sample_interval / math.ceil(count):.6g} s does"
+        )
+    return requested

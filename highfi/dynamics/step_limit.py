@@ -1,0 +1,85 @@
+"""The critical step of the coupled system: rail, penalty contact, payload.
+
+Contact adds G k G' to the stiffness, where a column of G is the gap of one Gauss point. In the mass
+metric
+
+    lambda_max(rail + contact) <= lambda_max(rail) + k_p max over nodes (area_a / m_a)
+                                  + k_p sum over faces A (1/m + r'I^-1 r)
+
+because the largest eigenvalue of a sum is at most the sum, and that of G k G' on the nodes alone is
+at most the largest sum of magnitudes in a row of M^-1 G k G' (Gershgorin):
+
+    sum over b of |sum over points of A N_a N_b| / m_a <= area_a / m_a
+    area_a = sum over points of A |N_a| sum over b of |N_b|
+
+On bilinear facets no N is negative and their sum is one, so area_a is the node's own share of the
+area; on quadratic triangles the corners' N may be negative and the last sum reaches 5/3.
+
+Damping C whose velocity lags by half a step is damping at the velocity of the instant, [u(n+1) -
+u(n-1)] / 2dt, in a system with the mass M - dt C/2. Such a system keeps or loses v'(M - dt C/2)v +
+u(n)'K u(n+1), and this is positive, so nothing grows, while
+
+    dt^2/4 lambda(M^-1 K) + dt/2 lambda(M^-1 C) <= 1
+
+With C = alpha M + beta K of the rail, and friction c at the nodes, a step is stable for
+
+    dt^2/4 (lambda_rail + lambda_contact) + dt/2 (alpha + beta lambda_rail) + dt/2 max(c/m) <= 1
+
+where c of a node is bounded by the same sum with each point's damping in place of its area. Every
+term grows with lambda_rail, so its upper bound alone decides, however the damping ratio runs below
+it. The first two make the limit of a run: that of w^2 = lambda_rail + lambda_contact with the ratio
+(alpha + beta lambda_rail) / 2w. The third is watched during the run. Rail frequencies are those of
+a rail whose mounts stand still: a free platform may raise them by the share m_rail / m_platform,
+which is left to the safety factor.
+"""
+
+import numpy as np
+
+from tipoff.highfi.dynamics.stable_step import critical_step
+from tipoff.highfi.dynamics.system import System
+from tipoff.scenes.effects.structural_damping import Damping
+
+
+def contact_frequency_squared(system: System) -> float:
+    """Upper bound (1/s2) of what contact adds to the largest squared frequency."""
+    if system.model.penalty is None:
+        return 0.0
+    surface, rail, payload = system.surface, system.rail, system.model.payload
+    area = np.zeros(rail.mass.size)
+    for node in range(surface.facets.shape[1]):
+        np.add.at(area, surface.facets[:, node], surface.area @ surface.spread[:, node])
+    faces = system.faces
+    size = 4.0 * faces.half_length * faces.half_width
+    reach = (faces.centre**2).sum(axis=1) * np.linalg.eigvalsh(payload.inverse_inertia)[-1]
+    # The crown tilts the normal by at most 4 relief / half length: its gradient is longer than one
+    # by this factor.
+    tilt = (
+        1.0
+        + (
+            (4.0 * faces.relief / faces.half_length) ** 2
+            + (4.0 * faces.relief / faces.half_width) ** 2
+        ).max()
+    )
+    body = (size * (1.0 / payload.mass + reach)).sum()
+    return system.model.penalty * tilt * ((area * rail.inverse_mass).max() + body)
+
+
+def damping_ratio(damping: Damping | None, rail: float, contact: float) -> float:
+    """Ratio z of the limit ``critical_step(w, z)`` of rails whose highest frequency is ``rail``
+    (rad/s), contact adding ``contact`` (1/s2) to its square, so that w^2 = rail^2 + contact; zero
+    without damping."""
+    if damping is None:
+        return 0.0
+    return 0.5 * (damping.mass_rate + damping.stiffness_time * rail**2) / np.sqrt(rail**2 + contact)
+
+
+def step_limit(damping: Damping | None, rail: float, contact: float) -> float:
+    """Largest stable step (s), friction apart; see ``damping_ratio``."""
+    return critical_step(float(np.sqrt(rail**2 + contact)), damping_ratio(damping, rail, contact))
+
+
+def used(step: float, limit: float, ratio: float) -> float:
+    """What ``step`` (s) takes of the condition above, friction apart, where ``limit`` (s), with
+    damping ``ratio``, takes 1."""
+    half_turn = step / limit * (np.hypot(1.0, ratio) - ratio)  # dt w / 2
+    return float(half_turn**2 + 2.0 * ratio * half_turn)

@@ -1,0 +1,80 @@
+"""The step of a run: the largest one below the limit that lands on every sample, and is the same
+for every sampling interval of whole times ``RASTER``.
+
+The limit comes from the assembled rail, whose highest frequency lies well below that of its worst
+element.
+"""
+
+from dataclasses import asdict, dataclass
+
+from tipoff.highfi.dynamics import stable_step
+from tipoff.highfi.dynamics.step_limit import (
+    contact_frequency_squared,
+    damping_ratio,
+    step_limit,
+    used,
+)
+from tipoff.highfi.dynamics.system import System
+from tipoff.highfi.numerics import Numerics
+from tipoff.scenes.scene import Scene
+
+RASTER = 5e-5  # s, the interval of a scene that names none
+_ROUNDING = 1e-9
+
+
+@dataclass(frozen=True)
+class Stepping:
+    """``dt_s`` the step, ``dt_limit_s`` the critical step with contact and damping,
+    ``dt_element_s`` what it would be by the elements' own frequencies, ``safety`` asked for,
+    ``steps_per_sample``, ``damping_ratio`` at the highest frequency."""
+
+    dt_s: float
+    dt_limit_s: float
+    dt_element_s: float
+    safety: float
+    steps_per_sample: int
+    damping_ratio: float
+
+    def as_dict(self) -> dict:
+        return asdict(self)
+
+    def used(self) -> float:
+        """What the step takes of the stability condition in ``limits``, where the critical step
+        takes 1."""
+        return used(self.dt_s, self.dt_limit_s, self.damping_ratio)
+
+
+def choose(system: System, scene: Scene, numerics: Numerics) -> Stepping:
+    """Step of a run. Raises StepError when ``numerics.step`` is above the limit."""
+    contact = contact_frequency_squared(system)
+    by_elements = stable_step.element_bound(system.operator)
+    # A rail held everywhere has no frequency of its own.
+    assembled = (
+        stable_step.operator_bound(system.operator).upper
+        if system.operator.free.any()
+        else by_elements
+    )
+    damping = system.rail.damping
+    limit, by_elements = (step_limit(damping, rail, contact) for rail in (assembled, by_elements))
+    interval = scene.output.interval
+    divided = interval if numerics.step else _divided(interval, numerics.safety * limit)
+    step = stable_step.choose_step(limit, numerics.safety, divided, numerics.step)
+    return Stepping(
+        step,
+        limit,
+        by_elements,
+        numerics.safety,
+        round(interval / step),
+        damping_ratio(damping, assembled, contact),
+    )
+
+
+def _divided(interval: float, largest: float) -> float:
+    """The time (s) that a step of at most ``largest`` (s) divides: ``RASTER`` where that divides
+    the interval, so that how coarsely a run is sampled changes no bit of it."""
+    count = round(interval / RASTER)
+    return (
+        RASTER
+        if largest <= RASTER and count > 0 and abs(interval / RASTER - count) <= _ROUNDING * count
+        else interval
+    )

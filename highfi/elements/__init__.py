@@ -1,0 +1,1 @@
+"""Finite elements of the rails: shape functions, stiffness, strain."""

@@ -1,0 +1,52 @@
+"""Strain anywhere in ten-node tetrahedra from the displacement of their nodes: what
+``highfi.elements.hexahedral_recovery`` is to hexahedra.
+
+    du/dX = sum over nodes of u_a (x) grad N_a,      grad N_a = J^-1 dN_a/dxi
+
+No mode is condensed, so the law does not enter. Between straight edges J is constant and strain
+linear; von Mises stress, strain and rotation are norms, hence convex, and largest at a corner.
+Between curved edges the middle of one may be worse.
+"""
+
+import numpy as np
+
+from tipoff.highfi.elements import hexahedron, tetrahedron
+
+_CORNERS = np.eye(4)[:, 1:]
+# (10,3) places on the unit tetrahedron
+NODES = np.concatenate([_CORNERS, _CORNERS[tetrahedron.EDGES].mean(axis=1)])
+
+
+def gradients(nodes: np.ndarray, local: np.ndarray) -> np.ndarray:
+    """Gradients (p,10,3) 1/m of the nodal functions at p points.
+
+    nodes (p,10,3) m of the element around each point; local (p,3) its place on the unit
+    tetrahedron.
+    """
+    _, slopes = tetrahedron.shape_functions(local.T)
+    mapping = np.einsum("pai,ajp->pij", nodes, slopes)
+    return np.einsum("ajp,pji->pai", slopes, np.linalg.inv(mapping))
+
+
+def strain_matrix(nodes: np.ndarray, law: np.ndarray, local: np.ndarray) -> np.ndarray:
+    """Matrix (p,6,30) 1/m from the displacement of the nodes, node * 3 + component, to the strain
+    at p points; see ``gradients``.
+
+    Strain is ordered xx, yy, zz, xy, yz, zx, shear in engineering measure. ``law`` is that of
+    hexahedra and not looked at.
+    """
+    return hexahedron.strain_matrix(gradients(nodes, local))
+
+
+def strain(
+    nodes: np.ndarray, law: np.ndarray, local: np.ndarray, displacement: np.ndarray
+) -> np.ndarray:
+    """Strain (p,6) at p points from the displacement (p,10,3) m of the nodes around each."""
+    return (strain_matrix(nodes, law, local) @ displacement.reshape(-1, 30, 1))[..., 0]
+
+
+def node_slopes(nodes: np.ndarray) -> np.ndarray:
+    """Slopes (c,10,3,3) 1/m of local coordinate i along j at the nodes of elements with nodes
+    (c,10,3) m."""
+    _, slopes = tetrahedron.shape_functions(NODES.T)
+    return np.linalg.inv(tetrahedron.jacobians(nodes, slopes))

@@ -1,0 +1,1 @@
+"""The internal force of an extruded mesh, section point by section point."""

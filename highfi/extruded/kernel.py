@@ -1,0 +1,331 @@
+"""Internal force of an extruded mesh, pencil by pencil: three sums over the neighbouring pencils,
+then a filter along the layers.
+
+    d = sum D u,  l = sum L u,  o = sum O u,      f(k) = d(k) + (l - o)(k-1) + (l + o)(k+1)
+
+The nine sums of 16 layers stay in vector registers while the neighbours stream by, folded where
+they mirror each other (see ``folding``), and so does what the filter needs of the 16 layers before.
+Numba does not keep them there from a loop in Python, so that this one is written as LLVM code; a
+processor with narrower vectors splits them.
+"""
+
+from llvmlite import ir
+from numba import types
+from numba.core import cgutils
+from numba.extending import intrinsic
+
+from tipoff.highfi.extruded.folding import KINDS, PATTERNS, PLACES, odd
+from tipoff.highfi.extruded.mesh import LANES
+from tipoff.highfi.extruded.vectors import INTEGER, WIDTH, ZERO, Vectors
+from tipoff.kernels import rotation
+from tipoff.kernels.jit import kernel
+
+_HALVES = LANES // WIDTH
+_SUMS = 9
+# The sum each number goes to: sums 0-2 are d, 3-5 are l, 6-8 are o.
+_TARGETS = tuple(
+    3 * (0 if n < 5 else 1 if n < 10 else 2) + row for n, (row, _) in enumerate(PLACES)
+)
+
+
+class _Sweep:
+    """Code that sets the force of one pencil. Pointers and indices are LLVM values; see
+    ``_pencil``."""
+
+    def __init__(self, builder, pointers, indices):
+        self.builder, self.code = builder, Vectors(builder)
+        (
+            self.values,
+            self.members,
+            self.numbers,
+            self.counts,
+            self.weights,
+            self.force,
+            self.lanes,
+        ) = pointers
+        self.kind, self.first_member, self.first_number, self.base, self.layers, self.plane = (
+            indices
+        )
+        self.held = [[self.code.variable() for _ in range(_HALVES)] for _ in range(_SUMS)]
+        self.below, self.pending, self.turning = (
+            [self.code.variable() for _ in range(3)] for _ in range(3)
+        )
+
+    def write(self, pattern):
+        """All layers; the numbers of groups are known beforehand where there is a ``pattern``."""
+        self._clear(self.below, self.pending, self.turning)
+        start, step = ir.Constant(INTEGER, 0), ir.Constant(INTEGER, LANES)
+        with cgutils.for_range_slice(self.builder, start, self.layers, step, INTEGER) as (layer, _):
+            self._clear(*self.held)
+            self._add_groups(layer, pattern)
+            self._finish(layer)
+        self._store(
+            [self.builder.load(part) for part in self.pending], self.code.plus(self.layers, -WIDTH)
+        )
+        for component, turning in enumerate(self.turning):
+            place = ir.Constant(INTEGER, WIDTH * component)
+            total = self.builder.fadd(self.code.read(self.lanes, place), self.builder.load(turning))
+            self.code.write(total, self.lanes, place)
+
+    def _clear(self, *variables):
+        for parts in variables:
+            for part in parts:
+                self.builder.store(ZERO, part)
+
+    def _add_groups(self, layer, pattern):
+        code, member, number = self.code, self.first_member, self.first_number
+        for k, group in enumerate(KINDS):
+            count = (
+                ir.Constant(INTEGER, pattern[k])
+                if pattern
+                else code.number(self.counts, code.plus(self.kind, k))
+            )
+            if pattern:
+                for index in range(pattern[k]):
+                    self._add_group(group, layer, member, number, ir.Constant(INTEGER, index))
+            else:
+                with cgutils.for_range(self.builder, count, intp=INTEGER) as loop:
+                    self._add_group(group, layer, member, number, loop.index)
+            member = self.builder.add(member, code.times(count, group.members))
+            number = self.builder.add(number, code.times(count, len(group.numbers)))
+
+    def _add_group(self, group, layer, member, number, index):
+        """Add the products of the group with that ``index`` among those whose members and numbers
+        start there."""
+        code, builder = self.code, self.builder
+        at = builder.add(member, code.times(index, group.members))
+        starts = [
+            builder.add(code.number(self.members, code.plus(at, m)), layer)
+            for m in range(group.members)
+        ]
+        own = builder.add(number, code.times(index, len(group.numbers)))
+        for component in range(3):
+            rows = [builder.add(start, code.times(self.plane, component)) for start in starts]
+            factors = {
+                n: code.spread(code.number(self.numbers, code.plus(own, k)))
+                for k, n in enumerate(group.numbers)
+                if PLACES[n][1] == component
+            }
+            for half in range(_HALVES):
+                folded = self._fold(
+                    group, [code.read(self.values, code.plus(row, WIDTH * half)) for row in rows]
+                )
+                for n, factor in factors.items():
+                    total, value = (
+                        self.held[_TARGETS[n]][half],
+                        folded[tuple(odd(n, axis) for axis in group.folded)],
+                    )
+                    builder.store(code.multiply_add(factor, value, builder.load(total)), total)
+
+    def _fold(self, group, parts):
+        """Sums and differences of the members' values, by whether they are odd in each folded
+        axis."""
+        folded = {(): parts}
+        for _ in group.folded:
+            # Members of + and - take turns: those of the first axis are next to each other.
+            folded = {
+                (*key, sign): [combine(a, b) for a, b in zip(values[0::2], values[1::2])]
+                for key, values in folded.items()
+                for sign, combine in ((False, self.builder.fadd), (True, self.builder.fsub))
+            }
+        return {key: value for key, (value,) in folded.items()}
+
+    def _finish(self, layer):
+        """Forces of 16 layers but the last eight, which wait for the layer above them, and of the
+        eight that waited before."""
+        first = self.builder.icmp_signed("==", layer, ir.Constant(INTEGER, 0))
+        before, here = zip(*(self._filter(layer, component) for component in range(3)))
+        # Before the first layer nothing waits: what is stored there is overwritten at once, and
+        # must not count as a moment.
+        self._store(before, self.builder.select(first, layer, self.code.plus(layer, -WIDTH)), first)
+        self._store(here, layer)
+
+    def _filter(self, layer, component):
+        """One component of the eight forces that waited and of the next eight."""
+        code, add = self.code, self.builder.fadd
+        weights = [
+            code.read(self.weights, code.plus(layer, WIDTH * half)) for half in range(_HALVES)
+        ]
+        own, even, odds = (
+            [self.builder.load(part) for part in self.held[3 * k + component]] for k in range(3)
+        )
+        below, above = (
+            [combine(one, other) for one, other in zip(even, odds)]
+            for combine in (self.builder.fsub, add)
+        )
+        last, pending = self.below[component], self.pending[component]
+        before = add(self.builder.load(pending), code.slide(ZERO, above[0], 1))
+        around = add(
+            code.slide(self.builder.load(last), below[0], WIDTH - 1),
+            code.slide(above[0], above[1], 1),
+        )
+        here = code.multiply_add(weights[0], own[0], around)
+        around = add(code.slide(below[0], below[1], WIDTH - 1), code.slide(above[1], ZERO, 1))
+        self.builder.store(code.multiply_add(weights[1], own[1], around), pending)
+        self.builder.store(below[1], last)
+        return before, here
+
+    def _store(self, force, layer, void=None):
+        """Store eight forces and add their u x f, but not where ``void``."""
+        code, at = self.code, self.builder.add(self.base, layer)
+        rows = [self.builder.add(at, code.times(self.plane, component)) for component in range(3)]
+        places = [self.builder.gep(self.values, [row]) for row in rows]
+        if void:
+            nothing = self.builder.gep(self.weights, [self.layers])
+            places = [self.builder.select(void, nothing, place) for place in places]
+        values = [code.read(place, ir.Constant(INTEGER, 0)) for place in places]
+        for component, (j, k) in enumerate(((1, 2), (2, 0), (0, 1))):
+            code.write(force[component], self.force, rows[component])
+            total = code.multiply_add(
+                values[j], force[k], self.builder.load(self.turning[component])
+            )
+            self.builder.store(
+                code.multiply_add(self.builder.fneg(values[k]), force[j], total),
+                self.turning[component],
+            )
+
+
+@intrinsic
+def _pencil(
+    typing,
+    values,
+    members,
+    numbers,
+    counts,
+    weights,
+    force,
+    lanes,
+    pattern,
+    kind,
+    member,
+    number,
+    base,
+    layers,
+    plane,
+):
+    """Force of a pencil of ``layers`` nodes from number ``base`` on, without what the end layers
+    alone have; its sum of u x f is added to the rows of ``lanes``.
+
+    It has ``counts[kind + k]`` groups of each kind, their members from ``member`` and their numbers
+    from ``number`` on; ``weights`` are the layers' parts of d, then WIDTH zeros. Arrays are flat:
+    values and force (3 * plane), lanes (3 * WIDTH). No bounds are checked. The commonest patterns
+    of groups have code of their own, without loops over them.
+    """
+    size = types.intp
+    signature = types.void(
+        values,
+        members,
+        numbers,
+        counts,
+        weights,
+        force,
+        lanes,
+        size,
+        size,
+        size,
+        size,
+        size,
+        size,
+        size,
+    )
+
+    def generate(context, builder, signature, arguments):
+        arrays = (
+            context.make_array(kind)(context, builder, value=value)
+            for kind, value in zip(signature.args, arguments[:7])
+        )
+        pointers = [array.data for array in arrays]
+        sweep = _Sweep(builder, pointers, arguments[8:])
+        anything, after = (
+            builder.append_basic_block("anything"),
+            builder.append_basic_block("after"),
+        )
+        switch = builder.switch(arguments[7], anything)
+        for place, pattern in enumerate(PATTERNS):
+            block = builder.append_basic_block("pattern")
+            switch.add_case(ir.Constant(INTEGER, place), block)
+            builder.position_at_end(block)
+            sweep.write(pattern)
+            builder.branch(after)
+        builder.position_at_end(anything)
+        sweep.write(None)
+        builder.branch(after)
+        builder.position_at_end(after)
+        return context.get_dummy_value()
+
+    return signature, generate
+
+
+@kernel
+def pencil_force(pencils, displacement, force, first, last, lanes, turn):
+    """Set the part of ``force`` (N) at section points ``first`` to ``last`` to that of K u, both
+    (3, s * stride) in rows, and ``turn`` (3,) to their sum of u x K u (N m). ``lanes``: room for
+    (3, WIDTH) numbers on a cache line."""
+    groups, plane = pencils.groups, displacement.shape[1]
+    kinds, counts = groups.counts.shape[1], groups.counts.reshape(groups.counts.size)
+    values, forces, flat = (
+        displacement.reshape(displacement.size),
+        force.reshape(force.size),
+        lanes.reshape(lanes.size),
+    )
+    flat[:] = 0.0
+    turn[:] = 0.0
+    for point in range(first, last):
+        _pencil(
+            values,
+            groups.members,
+            groups.numbers,
+            counts,
+            pencils.weights,
+            forces,
+            flat,
+            groups.pattern[point],
+            point * kinds,
+            groups.first_member[point],
+            groups.first_number[point],
+            point * pencils.stride,
+            pencils.stride,
+            plane,
+        )
+        _add_ends(pencils, point, displacement, force, turn)
+    for component in range(3):
+        for lane in range(WIDTH):
+            turn[component] += flat[WIDTH * component + lane]
+
+
+@kernel
+def _add_ends(pencils, point, displacement, force, turn):
+    """The end layers have, with opposite signs, the odd block E as well; what the filter left
+    beyond them is no force."""
+    base, layers = point * pencils.stride, pencils.layers
+    x, y, z, far_x, far_y, far_z = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    for q in range(pencils.first[point], pencils.first[point + 1]):
+        node = pencils.neighbour[q]
+        far = node + layers - 1
+        xy, xz, yx, zx = (
+            pencils.ends[q, 0],
+            pencils.ends[q, 1],
+            pencils.ends[q, 2],
+            pencils.ends[q, 3],
+        )
+        x += xy * displacement[1, node] + xz * displacement[2, node]
+        y += yx * displacement[0, node]
+        z += zx * displacement[0, node]
+        far_x += xy * displacement[1, far] + xz * displacement[2, far]
+        far_y += yx * displacement[0, far]
+        far_z += zx * displacement[0, far]
+    _add_force(displacement, force, base, (x, y, z), turn)
+    _add_force(displacement, force, base + layers - 1, (-far_x, -far_y, -far_z), turn)
+    for component in range(3):
+        for node in range(base + layers, base + pencils.stride):
+            force[component, node] = 0.0
+
+
+@kernel
+def _add_force(displacement, force, node, extra, turn):
+    moment = rotation.cross(
+        (displacement[0, node], displacement[1, node], displacement[2, node]), extra
+    )
+    for component in range(3):
+        force[component, node] += extra[component]
+        turn[component] += moment[component]

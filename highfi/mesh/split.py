@@ -1,0 +1,71 @@
+"""Elements split evenly, so that the mesh of a file can be refined like one that is made here.
+
+Tetrahedra are halved (``highfi.mesh.halve``) as often as it takes. Each hexahedron becomes n x n x n of
+them at equal distances of its own coordinates: points lie at the trilinear map of the corners, and
+curved walls keep the facets the file gave them. A point is known by its integer weights on the
+corners (in units of 1/n^3), which are the same from every element that shares it, so neighbours are
+joined without comparing places.
+"""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from tipoff.highfi.mesh.cells import HEXAHEDRON, edge_lengths, kind
+from tipoff.highfi.mesh.halve import halved
+from tipoff.highfi.mesh.rail_mesh import RailMesh
+
+# Corners of the unit square and cube in VTK order.
+_SQUARE = np.array([[0, 0], [1, 0], [1, 1], [0, 1]])
+_CUBE = np.concatenate([np.insert(_SQUARE, 2, level, axis=1) for level in (0, 1)])
+
+
+def to_size(mesh: RailMesh, element_size: float) -> RailMesh:
+    """``mesh`` split so that its shortest edges, as a rule across a wall, come near to
+    ``element_size`` (m); never coarser."""
+    size = float(np.median(edge_lengths(mesh.points, mesh.cells).min(axis=1)))
+    if kind(mesh.cells) is HEXAHEDRON:
+        return split(mesh, max(1, round(size / element_size)))
+    for _ in range(round(math.log2(size / element_size))):
+        mesh = halved(mesh)
+    return mesh
+
+
+def split(mesh: RailMesh, parts: int) -> RailMesh:
+    """Hexahedra with ``parts`` elements along every edge of each in ``mesh``; warnings speak of the
+    file's elements and stay."""
+    if parts == 1:
+        return mesh
+    # One random number per node makes a sum of weights a name of the point, whichever element it is
+    # seen from.
+    names = np.random.default_rng(0).integers(1, 2**63, len(mesh.points), dtype=np.uint64)
+    cells, weights = _lattice(_CUBE, parts)
+    found, first, number = np.unique(
+        names[mesh.cells] @ weights.T, return_index=True, return_inverse=True
+    )
+    places = np.einsum("pc,eci->epi", weights / float(parts**3), mesh.points[mesh.cells]).reshape(
+        -1, 3
+    )
+    hexes = number.reshape(len(mesh.cells), -1)[:, cells].reshape(-1, 8)
+    quads, shares = _lattice(_SQUARE, parts)
+    surfaces = {
+        name: np.searchsorted(found, names[facets] @ (shares * np.uint64(parts)).T)[
+            :, quads
+        ].reshape(-1, 4)
+        for name, facets in mesh.surfaces.items()
+    }
+    return replace(mesh, points=places[first], cells=hexes, surfaces=surfaces)
+
+
+def _lattice(corners: np.ndarray, parts: int) -> tuple[np.ndarray, np.ndarray]:
+    """Cells (c,k) of a unit square or cube (k corners) split evenly, and integer weights (p,k) of
+    their points on its corners."""
+    dimension = corners.shape[1]
+    steps = np.stack(
+        np.meshgrid(*[np.arange(parts + 1)] * dimension, indexing="ij"), axis=-1
+    ).reshape(-1, dimension)
+    weights = np.where(corners, steps[:, None], parts - steps[:, None]).prod(axis=2)
+    place = (parts + 1) ** np.arange(dimension)[::-1]
+    lowest = steps[(steps < parts).all(axis=1)]
+    return (lowest[:, None] + corners) @ place, weights.astype(np.uint64)

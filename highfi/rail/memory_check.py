@@ -1,0 +1,67 @@
+"""Refusal of a mesh that the memory of this process cannot hold, before it is made where its size
+can be foretold."""
+
+from tipoff.highfi.mesh.rail_mesh import RailMesh
+from tipoff.highfi.rail import memory_estimate
+from tipoff.highfi.rail.scene_mesh import geometry
+from tipoff.highfi.statics import assembly
+from tipoff.meshes import l_rail
+from tipoff.scenes.faults import Fault, SceneError
+from tipoff.scenes.rail import SectionTable
+from tipoff.scenes.scene import Scene
+
+_COARSER = 1.05  # from one size tried to the next
+_COARSEST = 0.1  # m
+
+
+def check_before(scene: Scene, element_size: float) -> None:
+    """Raise SceneError where the built-in section of ``scene`` with elements of ``element_size``
+    (m) will not fit into memory."""
+    left = memory_estimate.available()
+    if left is None or not isinstance(scene.rail, SectionTable):
+        return
+    section = geometry(scene)
+    assert isinstance(section, l_rail.LRailGeometry)
+
+    def needed(size: float) -> float:
+        return memory_estimate.of_section(l_rail.elements(section, size))
+
+    if needed(element_size) > left:
+        size = element_size
+        while needed(size) > left and size < _COARSEST:
+            size *= _COARSER
+        raise _too_large(
+            scene,
+            element_size,
+            l_rail.elements(section, element_size),
+            needed(element_size),
+            left,
+            f"{1e3 * size:.2g} mm or more",
+        )
+
+
+def check_mesh(scene: Scene, element_size: float, mesh: RailMesh) -> None:
+    """Raise SceneError where the run will not fit into the memory that the ``mesh`` of ``scene``,
+    given by a file, has left."""
+    left = memory_estimate.available()
+    if left is None or isinstance(scene.rail, SectionTable):
+        return
+    elements, nodes = mesh.cells.shape
+    needed = memory_estimate.of_mesh(elements, nodes, elements)
+    if needed > left:  # as if no two elements were alike; only then is it worth while to count them
+        needed = memory_estimate.of_mesh(elements, nodes, len(assembly.shape_classes(mesh)[1]))
+    if needed > left:
+        raise _too_large(
+            scene, element_size, elements, needed, left, "a larger one, or a coarser file"
+        )
+
+
+def _too_large(
+    scene: Scene, element_size: float, elements: int, needed: float, left: float, expected: str
+) -> SceneError:
+    given = (
+        f"{1e3 * element_size:.4g} mm: {elements:,} elements take about "
+        f"{memory_estimate.in_words(needed)} of memory, and "
+        f"{memory_estimate.in_words(left)} can be had"
+    )
+    return SceneError([Fault(scene.name, "element_size", given, expected)])

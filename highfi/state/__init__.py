@@ -1,0 +1,1 @@
+"""What the time loop works on: arrays, poses, passes over the nodes, threads."""

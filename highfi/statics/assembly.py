@@ -1,0 +1,112 @@
+"""Stiffness and lumped mass of a rail mesh, in the form the explicit kernel reads.
+
+    f(u) = sum over elements of scatter(K_class gather(u)),    m = sum over elements of scatter(m_class)
+
+Elements that are translations of each other have the same matrix, so one matrix is stored per class
+of them. A structured mesh has a handful of classes, which stay in the fastest cache while the
+kernel streams over the elements.
+"""
+
+from types import ModuleType
+from typing import NamedTuple
+
+import numpy as np
+from scipy.sparse import coo_array, csr_array
+
+from tipoff.highfi.elements import hexahedron, tetrahedron
+from tipoff.highfi.mesh.cells import thickness
+from tipoff.highfi.mesh.rail_mesh import RailMesh
+from tipoff.kernels.memory import aligned
+
+_SAME_SHAPE = 1e-9  # of the thinnest element: node coordinates that differ by less make one class
+_FORMULATION = {8: hexahedron, 10: tetrahedron}  # by the nodes of an element
+_BATCH = 2048  # classes integrated at once; bounds the memory of an unstructured mesh
+
+
+class Operator(NamedTuple):
+    """Linear elastic operator of e elements with k nodes each in c shape classes over n nodes.
+
+    cells (e,k) node numbers and shape_class (e,), unsigned so that no index needs a test for a
+    negative one; stiffness (c,3k,3k) N/m, degrees of freedom node * 3 + component; node_mass (c,k)
+    kg that one element brings to its nodes; mass (n,) kg, their sum at each node; free (n,) False
+    where the node is fixed.
+    """
+
+    cells: np.ndarray
+    shape_class: np.ndarray
+    stiffness: np.ndarray
+    node_mass: np.ndarray
+    mass: np.ndarray
+    free: np.ndarray
+
+
+def build(
+    mesh: RailMesh,
+    density: float,
+    youngs_modulus: float,
+    poisson_ratio: float,
+    fixed: tuple[str, ...] = ("mount",),
+) -> Operator:
+    """Operator of a homogeneous isotropic solid: density kg/m3, Young's modulus Pa, nodes of the
+    `fixed` surfaces held.
+
+    Raises ValueError for constants no stable material has.
+    """
+    if not (density > 0.0 and np.isfinite(density)):
+        raise ValueError(f"density must be positive and finite, got {density!r} kg/m3")
+    law = hexahedron.elasticity(youngs_modulus, poisson_ratio)
+    shape_class, representatives = shape_classes(mesh)
+    batches, formulation = _batches(mesh, representatives)
+    stiffness = np.concatenate([formulation.stiffness(batch, law) for batch in batches])
+    node_mass = np.concatenate([formulation.node_mass(batch, density) for batch in batches])
+    mass = np.bincount(
+        mesh.cells.ravel(), node_mass[shape_class].ravel(), minlength=len(mesh.points)
+    )
+    free = np.ones(len(mesh.points), dtype=np.bool_)
+    for name in fixed:
+        free[mesh.surfaces[name]] = False
+    return Operator(
+        mesh.cells.astype(np.uint32), shape_class, aligned(stiffness), node_mass, mass, free
+    )
+
+
+def expansion(mesh: RailMesh, youngs_modulus: float, poisson_ratio: float) -> np.ndarray:
+    """Loads (c,3k,k) in N on an element of each class of a free strain that is one at each of its
+    nodes in turn."""
+    law = hexahedron.elasticity(youngs_modulus, poisson_ratio)
+    batches, formulation = _batches(mesh, shape_classes(mesh)[1])
+    return np.concatenate([formulation.expansion(batch, law) for batch in batches])
+
+
+def _batches(mesh: RailMesh, representatives: np.ndarray) -> tuple[list[np.ndarray], ModuleType]:
+    """Nodes (c,k,3) m of the first element of each class, some at a time, and the module of their
+    formulas."""
+    nodes = mesh.points[mesh.cells[representatives]]
+    return [nodes[start : start + _BATCH] for start in range(0, len(nodes), _BATCH)], _FORMULATION[
+        mesh.cells.shape[1]
+    ]
+
+
+def shape_classes(mesh: RailMesh) -> tuple[np.ndarray, np.ndarray]:
+    """Class (e,) of each element, and the first element (c,) of each class of translations of one
+    another."""
+    nodes = mesh.points[mesh.cells]
+    grid = _SAME_SHAPE * thickness(mesh.points, mesh.cells).min()
+    shape = np.round((nodes - nodes[:, :1]) / grid).reshape(len(nodes), -1)
+    _, representatives, shape_class = np.unique(
+        shape, axis=0, return_index=True, return_inverse=True
+    )
+    return shape_class.reshape(-1).astype(np.uint32), representatives
+
+
+def sparse(operator: Operator) -> csr_array:
+    """Assembled stiffness (3n,3n) in N/m, degrees of freedom node * 3 + component, for static and
+    modal solutions."""
+    size = 3 * len(operator.mass)
+    width = operator.stiffness.shape[1]
+    freedoms = (3 * operator.cells[:, :, None] + np.arange(3)).reshape(-1, width)
+    rows = np.repeat(freedoms, width, axis=1).ravel()
+    columns = np.tile(freedoms, (1, width)).ravel()
+    return coo_array(
+        (operator.stiffness[operator.shape_class].ravel(), (rows, columns)), shape=(size, size)
+    ).tocsr()

@@ -1,0 +1,88 @@
+"""Pressure patterns of a pad face on the wall under it, as nodal loads.
+
+    f_na = 1/A integral N_n phi_a dA,    phi = 1, xi, eta, xi^2, xi eta, eta^2
+
+over the part of the pad face (area A) that has a wall under it; N are the nodal functions of the
+wall's facets. The face is divided into cells half as long as a facet with 2 x 2 Gauss points each,
+whatever the facets' own borders: nodal functions sum to one and reproduce the place, so force and
+moment are exact, and only how neighbouring nodes share them is rounded.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from tipoff.highfi.mesh import facets as geometry
+from tipoff.mechanics.rail_compliance import POWERS
+
+_CELLS_PER_FACET = 2  # along each edge
+_SAME = 1e-9  # m: what is narrower holds no pressure
+
+
+class Pressed(NamedTuple):
+    """Patterns of one pad face: gram (p,p), integral of phi_a phi_b dA / A over the part of the
+    face (area A) that has a wall, the first entry its share; node (q,k) numbers and load (p,q,k),
+    which is to be added up."""
+
+    gram: np.ndarray
+    node: np.ndarray
+    load: np.ndarray
+
+
+def pressed(
+    points: np.ndarray,
+    facets: np.ndarray,
+    across: int,
+    middle: np.ndarray,
+    half: np.ndarray,
+    patterns: int,
+) -> Pressed | None:
+    """The first so many ``patterns`` on a face with its ``middle`` (2,) m and ``half`` its size
+    (2,) m along X and the axis ``across``, over a wall of ``facets`` (m,k) between points (n,3) m;
+    None where there is no wall.
+
+    xi and eta run from -1 to 1 over the face, against the axis where ``half`` is negative.
+    """
+    plane = points[facets][:, :, [0, across]]
+    control = geometry.hull(plane)
+    low = np.maximum(middle - np.abs(half), control.min(axis=(0, 1)))
+    high = np.minimum(middle + np.abs(half), control.max(axis=(0, 1)))
+    if (high - low < _SAME).any():
+        return None
+    place, area = _gauss(low, high, np.median(np.ptp(plane, axis=1), axis=0) / _CELLS_PER_FACET)
+    found, facet, weight = _located(plane, control, place)
+    local = (place[found] - middle) / half
+    phi = (local[:, None] ** POWERS[:patterns]).prod(axis=2)
+    part = area / (4.0 * np.abs(half).prod())
+    return Pressed(part * phi.T @ phi, facets[facet], part * phi.T[:, :, None] * weight)
+
+
+def _gauss(low: np.ndarray, high: np.ndarray, size: np.ndarray) -> tuple[np.ndarray, float]:
+    """Gauss points (q,2) of the rectangle from ``low`` to ``high`` in cells no larger than ``size``
+    (2,), and the area of each."""
+    count = np.ceil((high - low) / size - _SAME / size).astype(np.int64).clip(min=1)
+    width = (high - low) / count
+    axes = [
+        start
+        + step * (np.arange(cells)[:, None] + 0.5 + np.array([-0.5, 0.5]) / np.sqrt(3.0)).ravel()
+        for start, step, cells in zip(low, width, count)
+    ]
+    return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 2), 0.25 * width.prod()
+
+
+def _located(
+    plane: np.ndarray, control: np.ndarray, place: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Numbers of the places (q,2) that lie in a facet, of that facet, and the values of its nodal
+    functions there."""
+    slack = geometry.INSIDE * np.ptp(control, axis=1)
+    low, high = control.min(axis=1) - slack, control.max(axis=1) + slack
+    near = np.flatnonzero(((low < place.max(axis=0)) & (place.min(axis=0) < high)).all(axis=1))
+    point, facet = np.nonzero(
+        ((low[near] < place[:, None]) & (place[:, None] < high[near])).all(axis=2)
+    )
+    facet = near[facet]
+    values, inside = geometry.weights(plane[facet], place[point])
+    # a place on the border of two facets belongs to the first
+    found, first = np.unique(point[inside], return_index=True)
+    return found, facet[inside][first], values[inside][first]

@@ -1,0 +1,42 @@
+"""Linear statics of a clamped rail: K u = f over the free nodes, one factor for many loads."""
+
+import numpy as np
+from scipy.sparse import csc_array, csr_array
+from scipy.sparse.linalg import splu
+
+from tipoff.highfi.mesh.rail_mesh import MeshError
+from tipoff.highfi.statics import assembly
+
+
+class Clamped:
+    """The ``stiffness`` of ``operator`` with its fixed nodes held, among the degrees of freedom
+    that are ``free``. Raises MeshError where nothing holds it."""
+
+    def __init__(self, operator: assembly.Operator):
+        if operator.free.all():
+            raise MeshError(
+                "a rail that pads press, or that is warm, has no mount: nothing holds it"
+            )
+        self.free = np.repeat(operator.free, 3)
+        self._free_rows: csr_array = assembly.sparse(operator)[self.free]
+        self.stiffness = csc_array(self._free_rows[:, self.free])
+        # A positive definite matrix needs no pivoting, and an ordering for symmetric ones keeps its
+        # factors sparse.
+        self._factor = splu(
+            self.stiffness,
+            permc_spec="MMD_AT_PLUS_A",
+            diag_pivot_thresh=0.0,
+            options={"SymmetricMode": True},
+        )
+
+    def solve(self, loads: np.ndarray) -> np.ndarray:
+        """Displacement (m) of the free degrees of freedom under ``loads`` (N) on them, (3k,) or
+        (3k,c)."""
+        return self._factor.solve(loads)
+
+    def displaced(self, loads: np.ndarray, held: np.ndarray) -> np.ndarray:
+        """Displacement (3n,c) m under ``loads`` (3n,c) N, the fixed degrees of freedom at those of
+        ``held`` (3n,c) m."""
+        found = np.where(self.free[:, None], 0.0, held)
+        found[self.free] = self._factor.solve(loads[self.free] - self._free_rows @ found)
+        return found

@@ -1,0 +1,66 @@
+"""Where an uneven temperature holds the rails: the static thermo-elastic solution before ignition.
+
+    K u = f,    f = integral B' D m e dV,    m = (1, 1, 1, 0, 0, 0),    u = s (X - X_m) at the mounts
+
+with the free strain e and the strain s of the platform of ``scenes.effects.thermal``, and the
+elements of the dynamics, whose bubbles feel e too. The rails are linear: what moves them after
+ignition is seen from u as it is from the undeformed rails without [thermal], so the time loop does
+not know of it. Only contact does, whose walls stand at X + u, and stresses, which are those of D
+(strain - m e). Their von Mises part does not feel m e; left out of them is what the bubbles would
+add on account of e, at most the stress of the difference of temperature within an element, which
+falls with its size. Nodes keep their mass at X.
+
+Source: Timoshenko and Goodier, Theory of Elasticity, 3rd ed. 1970, chapter 13.
+"""
+
+import numpy as np
+
+from tipoff.highfi.mesh import pieces
+from tipoff.highfi.mesh.rail_mesh import RailMesh
+from tipoff.highfi.statics import assembly
+from tipoff.highfi.statics.solve import Clamped
+from tipoff.scenes.effects.thermal import FIELDS, Thermal, fields
+from tipoff.scenes.rail import MaterialTable
+
+
+def displacement(mesh: RailMesh, material: MaterialTable, thermal: Thermal) -> np.ndarray:
+    """Displacement (n,3) m of rails with points in scene axes. Raises MeshError where one has no
+    mount."""
+    found = np.empty_like(mesh.points)
+    for nodes, rail in zip(pieces.nodes(mesh), pieces.pieces(mesh)):
+        operator = assembly.build(
+            rail, material.density, material.youngs_modulus, material.poisson_ratio
+        )
+        found[nodes] = (
+            of_fields(rail, operator, material, Clamped(operator), thermal.middle) @ thermal.amounts
+        )
+    return found
+
+
+def of_fields(
+    mesh: RailMesh,
+    operator: assembly.Operator,
+    material: MaterialTable,
+    clamped: Clamped,
+    middle: float,
+) -> np.ndarray:
+    """Displacement (n,3,FIELDS) m of one rail under one of each of the fields around X = ``middle``
+    (m)."""
+    strain = fields(mesh.points, middle)
+    load, held = np.zeros((len(strain), 3, FIELDS)), np.zeros((len(strain), 3, FIELDS))
+    # the last three are X - X_m
+    load[..., :-1], held[..., -1] = loads(mesh, operator, material, strain), strain[:, 1:]
+    return clamped.displaced(load.reshape(-1, FIELDS), held.reshape(-1, FIELDS)).reshape(load.shape)
+
+
+def loads(
+    mesh: RailMesh, operator: assembly.Operator, material: MaterialTable, strain: np.ndarray
+) -> np.ndarray:
+    """Loads f (n,3,c) N of free strains (n,c) at the nodes."""
+    matrix = assembly.expansion(mesh, material.youngs_modulus, material.poisson_ratio)[
+        operator.shape_class
+    ]
+    parts = (matrix @ strain[mesh.cells]).reshape(*mesh.cells.shape, 3, -1)
+    found = np.zeros((*mesh.points.shape, strain.shape[1]))
+    np.add.at(found, mesh.cells, parts)
+    return found

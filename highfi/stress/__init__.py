@@ -1,0 +1,1 @@
+"""Stress of the rails while a run goes on."""

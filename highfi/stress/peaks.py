@@ -1,0 +1,56 @@
+"""The worst node of all elements of a mesh, whichever kind they are of: one kernel for each, chosen
+by the nodes of an element."""
+
+import math
+
+import numpy as np
+
+from tipoff.highfi.stress import hexahedral_peaks, tetrahedral_peaks
+from tipoff.highfi.stress.peak import Worst
+
+_KERNELS = {8: hexahedral_peaks, 10: tetrahedral_peaks}  # by the nodes of an element
+SIZE = max(kernels.SIZE for kernels in _KERNELS.values())  # room for one element
+
+Recovery = hexahedral_peaks.Recovery | tetrahedral_peaks.Recovery
+
+
+def build(
+    points: np.ndarray,
+    cells: np.ndarray,
+    shape_class: np.ndarray,
+    law: np.ndarray,
+    number: np.ndarray,
+) -> Recovery:
+    """Recovery of a mesh, points (n,3) m and cells (e,k), with the classes of its operator; ``law``
+    (6,6) Pa; ``number`` (n,) of each node in the nodal arrays."""
+    return _KERNELS[cells.shape[1]].build(points, cells, shape_class, law, number)
+
+
+def find(
+    displacement: np.ndarray,
+    recovery: Recovery,
+    worst: Worst,
+    room: np.ndarray,
+    first: int,
+    last: int,
+) -> None:
+    """Raise ``worst`` to what elements ``first`` to ``last`` have under displacement (n,3) m;
+    ``room`` (SIZE,) for one of them."""
+    _KERNELS[recovery.cells.shape[1]].find(displacement, recovery, worst, room, first, last)
+
+
+def gradients(
+    displacement: np.ndarray, recovery: Recovery, room: np.ndarray, first: int, last: int
+) -> np.ndarray:
+    """Displacement gradients (last - first,k,3,3) at the nodes of elements ``first`` to ``last``:
+    component, axis."""
+    nodes = recovery.cells.shape[1]
+    found = np.empty((last - first, 9 * nodes))
+    _KERNELS[nodes].gradients(displacement, recovery, room, first, last, found)
+    return found.reshape(-1, 3, 3, nodes).transpose(0, 3, 1, 2)
+
+
+def samples_between(recovery: Recovery, steps_per_sample: int, share: float) -> int:
+    """Samples from one look at all elements to the next, such that looks take no more than
+    ``share`` of a run."""
+    return math.ceil(_KERNELS[recovery.cells.shape[1]].STEPS / (share * steps_per_sample))

@@ -1,0 +1,1 @@
+"""Contact of pad faces with rail walls: springs, compliant contact, friction that sticks."""

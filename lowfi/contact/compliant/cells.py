@@ -1,0 +1,198 @@
+"""Pressure of one crowned pad face on its wall, cell by cell.
+
+With the lever (p_0, a, b) of the rigid face and the displacement U of its wall (``mechanics.rail_compliance``),
+in the middle of each cell::
+
+    p = p_0 + a xi + b eta - relief (xi^4 + eta^4) - sum_a U_a phi_a(xi', eta'),   pressure = penalty max(0, p)
+
+where the crown is its mean over the cell and xi' = xi + shift, eta' = eta + aside is the place on
+the wall, which was found for pads that stand midway between all rails: 0.25 mm aside, the leg of an
+L, held along one edge only, is three percent softer or stiffer. Of rows of cells that hang over an
+end of the rail only the part over the wall counts, their sums taken as piecewise linear between the
+middles of the rows.
+"""
+
+import numpy as np
+
+from tipoff.kernels.jit import inlined, kernel
+from tipoff.lowfi.contact.compliant.record import ASIDE, BY_ETA, BY_XI, DEPTH, DRIFT, MIDDLE, SHIFT
+from tipoff.lowfi.contact.springs import penetration
+from tipoff.lowfi.system import NORMAL_Y, NORMAL_Z
+
+# in xi: where a pad comes to hang over an end, its place on the wall stops over so much way on
+# either side
+_EASED = 0.1
+
+
+@inlined
+def take_lever(walls, faces, face, place, turn):
+    """Fill the face's lever for the payload's pose in platform axes."""
+    lever, half = walls.room.lever[face], walls.half[face]
+    y, z = faces[face, NORMAL_Y], faces[face, NORMAL_Z]
+    lever[DEPTH] = penetration(None, faces[face], place, turn)
+    lever[BY_XI] = half[0] * (y * turn[3] + z * turn[6])
+    # a face along y is wide along z, and the other way round
+    lever[BY_ETA] = half[1] * (y * turn[5] + z * turn[7])
+    middle = place[0] + faces[face, 0]
+    lever[MIDDLE] = middle
+    over_end, by_end = eased((middle - walls.end) / half[0] + 1.0)
+    over_start, by_start = eased((walls.start - middle) / half[0] + 1.0)
+    lever[SHIFT], lever[DRIFT] = over_end - over_start, (by_end + by_start) / half[0]
+    first = 6 if z == 0.0 else 3  # of the row of the turn for the axis across the rail
+    across = (
+        place[first // 3]
+        + turn[first] * faces[face, 0]
+        + turn[first + 1] * faces[face, 1]
+        + turn[first + 2] * faces[face, 2]
+    )
+    lever[ASIDE] = (across - walls.across[face]) / half[1]
+
+
+@inlined
+def eased(over):
+    """``over`` where above zero, else zero, with the corner rounded off, and its slope: a force
+    along the rail goes with it."""
+    if abs(over) >= _EASED:
+        return max(over, 0.0), 1.0 if over > 0.0 else 0.0
+    return 0.25 * (over + _EASED) ** 2 / _EASED, 0.5 * (over + _EASED) / _EASED
+
+
+@inlined
+def cover(walls, half, middle, row):
+    """Share of a row of cells that is over the wall, and what a metre of way takes from it."""
+    behind_end, at_end = _behind(walls, row, (walls.end - middle) / half)
+    behind_start, at_start = _behind(walls, row, (walls.start - middle) / half)
+    return behind_end - behind_start, (at_end - at_start) / half
+
+
+@inlined
+def _behind(walls, row, xi):
+    """Share of a row of cells behind an end of the rail at ``xi``, and its slope: what two
+    neighbouring rows hold changes evenly from one's middle to the other's, so the rate at which
+    energy is left behind does not jump."""
+    away = 0.5 * walls.node.size * (xi - walls.node[row])  # in cells
+    outermost = row == 0 if away < 0.0 else row == walls.node.size - 1
+    reach = 0.5 if outermost else 1.0
+    near = min(abs(away), reach)
+    part = near if outermost else near - 0.5 * near * near
+    slope = (1.0 if outermost else 1.0 - near) if near < reach else 0.0
+    return 0.5 + part if away > 0.0 else 0.5 - part, 0.5 * walls.node.size * slope
+
+
+@inlined
+def row_depth(walls, face, xi, displacement):
+    """Coefficients of 1, eta' and eta'^2 in p (m) along the row of cells at ``xi``, without the
+    crown across it."""
+    lever, u = walls.room.lever[face], displacement
+    x = xi + lever[SHIFT]
+    rigid = lever[DEPTH] + lever[BY_XI] * xi - lever[BY_ETA] * lever[ASIDE]
+    return (rigid - u[0] - x * (u[1] + x * u[3]), lever[BY_ETA] - u[2] - x * u[4], -u[5])
+
+
+@kernel
+def press(walls, face):
+    """Fill the face's force (p,) N and its moments, sums over the pressed cells of penalty dA xi'^i
+    eta'^j."""
+    force, moment, lever = walls.room.force[face], walls.room.moment[face], walls.room.lever[face]
+    relief, half = walls.relief[face], walls.half[face]
+    count = walls.node.size
+    stiffness = walls.penalty * 4.0 * half[0] * abs(half[1]) / (count * count)
+    force[:] = 0.0
+    moment[:] = 0.0
+    for row in range(count):
+        xi = walls.node[row]
+        weight = stiffness * cover(walls, half[0], lever[MIDDLE], row)[0]
+        if weight > 0.0:
+            level, tilt, bend = row_depth(walls, face, xi, walls.room.displacement[face])
+            level -= relief * walls.crown[row]
+            f0, f1, f2 = 0.0, 0.0, 0.0
+            m0, m1, m2, m3, m4 = 0.0, 0.0, 0.0, 0.0, 0.0
+            for column in range(count):
+                eta = walls.node[column] + lever[ASIDE]
+                p = level + eta * (tilt + eta * bend) - relief * walls.crown[column]
+                if p > 0.0:
+                    square = eta * eta
+                    f0, f1, f2 = f0 + p, f1 + p * eta, f2 + p * square
+                    m0, m1, m2, m3, m4 = (
+                        m0 + 1.0,
+                        m1 + eta,
+                        m2 + square,
+                        m3 + eta * square,
+                        m4 + square * square,
+                    )
+            if m0 > 0.0:
+                x = xi + lever[SHIFT]
+                _add_force(force, weight, x, f0, f1, f2)
+                _add_moments(moment, weight, x, (m0, m1, m2, m3, m4))
+
+
+@inlined
+def _add_force(force, weight, x, f0, f1, f2):
+    force[0] += weight * f0
+    force[1] += weight * x * f0
+    force[2] += weight * f1
+    force[3] += weight * x * x * f0
+    force[4] += weight * x * f1
+    force[5] += weight * f2
+
+
+@inlined
+def _add_moments(moment, weight, x, sums):
+    power = weight
+    for i in range(5):
+        for j in range(5 - i):
+            moment[i, j] += power * sums[j]
+        power *= x
+
+
+@kernel
+def deepest(walls, face, displacement):
+    """Largest p (m) of all cells, over the wall or where it would go on, and xi and eta of that
+    cell on the pad."""
+    aside, relief, largest, along, across = (
+        walls.room.lever[face, ASIDE],
+        walls.relief[face],
+        -np.inf,
+        0.0,
+        0.0,
+    )
+    for row in range(walls.node.size):
+        level, tilt, bend = row_depth(walls, face, walls.node[row], displacement)
+        for column in range(walls.node.size):
+            eta = walls.node[column] + aside
+            p = (
+                level
+                + eta * (tilt + eta * bend)
+                - relief * (walls.crown[row] + walls.crown[column])
+            )
+            if p > largest:
+                largest, along, across = p, walls.node[row], walls.node[column]
+    return largest, along, across
+
+
+@kernel
+def stored(walls, face):
+    """Energy (J) in the penalty of the face, and what of it is lost per metre that the pad moves
+    on, over an end of the rail."""
+    lever, relief, half = walls.room.lever[face], walls.relief[face], walls.half[face]
+    count = walls.node.size
+    stiffness = walls.penalty * 4.0 * half[0] * abs(half[1]) / (count * count)
+    energy, fading = 0.0, 0.0
+    for row in range(count):
+        xi = walls.node[row]
+        share, lost = cover(walls, half[0], lever[MIDDLE], row)
+        if share > 0.0:
+            level, tilt, bend = row_depth(walls, face, xi, walls.room.displacement[face])
+            squares = 0.0
+            for column in range(count):
+                eta = walls.node[column] + lever[ASIDE]
+                p = max(
+                    0.0,
+                    level
+                    + eta * (tilt + eta * bend)
+                    - relief * (walls.crown[row] + walls.crown[column]),
+                )
+                squares += p * p
+            energy += 0.5 * stiffness * share * squares
+            fading += 0.5 * stiffness * lost * squares
+    return energy, fading

@@ -1,0 +1,112 @@
+"""Forces of walls that give way on the payload, from the gradient of one potential::
+
+    E = sum over cells of penalty dA max(0, p)^2 / 2 + P' F P / 2
+
+(that of the modes, where the rail has some, is their own). With the pose of the payload they are:
+P_1 against the normal, at the centre of pressure, and along X, as the rail is softer or stiffer
+ahead and as its bent wall slopes (xi' moves with the pad where a face hangs over an end)::
+
+    X = P' F' P / 2 + P' (T' + W' q) + sum of pressure d(xi')/dx du/dxi'
+
+which acts on payload and platform at the payload's mass centre, since that is the place whose way
+counts. Where the pad moves across the rail, eta' moves with its middle, and there the slope of the
+wall pushes::
+
+    Y = sum of pressure d(eta')/dy du/deta'
+
+Energy still under the part of a pad that leaves the wall is lost.
+"""
+
+from tipoff.kernels import rotation
+from tipoff.kernels.jit import inlined, kernel
+from tipoff.lowfi.contact.compliant import thermal_offset
+from tipoff.lowfi.contact.compliant.cells import stored
+from tipoff.lowfi.contact.compliant.modes import offset, slope
+from tipoff.lowfi.contact.compliant.record import ASIDE, DRIFT, SHIFT
+from tipoff.lowfi.contact.springs import (
+    Load,
+    along_width,
+    friction_force,
+    outward,
+    pad_point,
+    relative_velocity,
+)
+from tipoff.mechanics.rail_compliance import PATTERNS
+
+
+@kernel
+def load(walls, friction, platform, faces, face, body, base):
+    """Load of a pressed face, after ``solve``; the wall's own velocity is left out."""
+    room = walls.room
+    force, lever, half = room.force[face], room.lever[face], walls.half[face]
+    across = along_width(faces[face], half[1] * (force[2] / force[0] - lever[ASIDE]))
+    arm = rotation.rotate(
+        body.turn,
+        (
+            faces[face, 0] + half[0] * (force[1] / force[0] - lever[SHIFT]),
+            faces[face, 1] + across[1],
+            faces[face, 2] + across[2],
+        ),
+    )
+    point = (body.place[0] + arm[0], body.place[1] + arm[1], body.place[2] + arm[2])
+    n, u = outward(faces[face], base), relative_velocity(platform, body, base, point)
+    closing = rotation.dot(u, n)
+    slip = (u[0] - closing * n[0], u[1] - closing * n[1], u[2] - closing * n[2])
+    return Load(
+        point,
+        (-force[0] * n[0], -force[0] * n[1], -force[0] * n[2]),
+        friction_force(friction, force[0], slip),
+        slip,
+        closing,
+        force[0],
+        force[0],
+    )
+
+
+@inlined
+def lean(walls, faces, face, body, base):
+    """Force (N) across the rail on the payload by the slope of the wall under a pressed face, and
+    where it acts (m), in scene axes."""
+    u, force = walls.room.displacement[face], walls.room.force[face]
+    size = (u[2] * force[0] + u[4] * force[1] + 2.0 * u[5] * force[2]) / walls.half[face, 1]
+    return rotation.rotate(base.turn, along_width(faces[face], size)), pad_point(faces[face], body)
+
+
+@kernel
+def drive(walls, count):
+    """Force (N) along the rail on the payload by the ``count`` faces solved for,
+    and the energy (J/m) its way takes from the wall."""
+    room, pull, fading = walls.room, 0.0, 0.0
+    for i in range(count):
+        face = room.order[i]
+        u, force = room.displacement[face], room.force[face]
+        pull += room.lever[face, DRIFT] * (
+            u[1] * force[0] + 2.0 * u[3] * force[1] + u[4] * force[2]
+        )
+        pull += thermal_offset.pull(walls.warm, face, force)
+        if room.lever[face, DRIFT] != 0.0:  # else all of it is over the wall
+            fading += stored(walls, face)[1]
+        for a in range(PATTERNS):
+            total = 0.0
+            for j in range(count):
+                for b in range(PATTERNS):
+                    total += (
+                        room.slope[i * PATTERNS + a, j * PATTERNS + b]
+                        * room.force[room.order[j], b]
+                    )
+            pull += force[a] * (0.5 * total + slope(walls.modes, face, a))
+    return pull, fading
+
+
+@kernel
+def energy(walls, count):
+    """Energy (J) in walls and penalty under the ``count`` faces solved for: P' F P is P' (U - T - W
+    q)."""
+    total = 0.0
+    for i in range(count):
+        face = walls.room.order[i]
+        total += stored(walls, face)[0]
+        for a in range(PATTERNS):
+            own = thermal_offset.place(walls.warm, face, a) + offset(walls.modes, face, a)
+            total += 0.5 * walls.room.force[face, a] * (walls.room.displacement[face, a] - own)
+    return total

@@ -1,0 +1,154 @@
+"""The proven step limit while anything touches.
+
+Linearised, the touching faces are springs and dampers on two rigid bodies: s^2 + C s + K = 0 in the
+metric of the masses. With the slopes k_i = dF/dp and c_i = dF/d(p_dot) of each face and the inverse
+mass w_i it meets (payload plus platform, turning included), the traces bound the spectra of K and
+C, hence every eigenvalue s::
+
+    |s| <= S = C/2 + sqrt(C^2/4 + K),   K = sum_i |k_i| w_i(n),   C = sum_i |c_i| w_i(n) + N_i |mu'| (w_i(t1) + w_i(t2))
+
+and no step is taken above ``STABLE_RADIUS / S`` (``lowfi.dynamics.dormand_prince``). |mu'| is the larger of
+mu/s and |d mu/ds| at the slip now. Under the law that sticks a held face adds its spring and damper
+in both tangents, a sliding one N mu_d/|g| across g (``lowfi.contact.stick_slip``).
+"""
+
+import numpy as np
+
+from tipoff.kernels import rotation
+from tipoff.kernels.jit import inlined
+from tipoff.lowfi import state as slot
+from tipoff.lowfi.contact.springs import gradient, load, outward, penetration, relative_pose
+from tipoff.lowfi.contact.stick_slip import HELD, heading
+from tipoff.scenes.effects import contact as law
+from tipoff.scenes.effects.friction import coefficient_over_speed
+
+# relative change of p or s in a difference quotient: truncation and rounding are then both below
+# 1e-5
+_NUDGE = 1e-6
+
+
+@inlined
+def fastest_rate(laws, friction, sticking, faces, platform, payload, active, grip, state, ahead):
+    """Bound S (1/s) of the eigenvalues of the ``active`` faces (f,) that touch at ``state``; 0 when
+    none does.
+
+    With a time ``ahead`` (s) it is a guess of the bound then: every face that closes is taken to go
+    on closing at its speed.
+    """
+    rate = 0.0
+    if laws is not None:
+        body, base = (
+            slot.motion(payload.mass, payload.inverse_inertia, state, slot.PAYLOAD),
+            slot.frame(platform, state),
+        )
+        place, turn = relative_pose(platform, body, base)
+        stiffness, damping = 0.0, 0.0
+        for i in range(active.size):
+            if active[i]:
+                p = penetration(laws.bow, faces[i], place, turn)
+                if p > 0.0:
+                    p += ahead * max(
+                        load(laws, None, platform, faces[i], p, body, base).closing, 0.0
+                    )
+                    k, c = _face(laws, friction, platform, payload, faces[i], p, body, base)
+                    held, rubbed = _grip(
+                        laws, sticking, grip, i, platform, payload, faces, p, body, base
+                    )
+                    stiffness += k + held
+                    damping += c + rubbed
+        rate = 0.5 * damping + np.sqrt(0.25 * damping * damping + stiffness)
+    return rate
+
+
+@inlined
+def _face(laws, friction, platform, payload, face, p, body, base):
+    """Contribution of one face to K (1/s2) and C (1/s)."""
+    now = load(laws, friction, platform, face, p, body, base)
+    n = gradient(laws.bow, face, base, now.point)
+    more = law.parts(laws.impact, laws.hunt_crossley, laws.linear, p * (1.0 + _NUDGE), now.closing)
+    unit = law.parts(laws.impact, laws.hunt_crossley, laws.linear, p, 1.0)
+    across = inverse_mass(platform, payload, body, base, now.point, n)
+    stiffness = abs(more[0] + more[1] - now.raw) / (_NUDGE * p) * across
+    damping = unit[1] * across + friction_damping(friction, now, platform, payload, body, base, n)
+    return stiffness, damping
+
+
+@inlined
+def friction_damping(friction, now, platform, payload, body, base, n):
+    """Contribution of a face's friction to C (1/s)."""
+    damping = 0.0
+    if friction is not None:
+        speed = np.sqrt(rotation.dot(now.slip, now.slip)) + _NUDGE * friction.static_speed
+        here = coefficient_over_speed(friction, speed)
+        there = coefficient_over_speed(friction, speed * (1.0 + _NUDGE)) * (1.0 + _NUDGE)
+        slope = max(here, abs(there - here) / _NUDGE)
+        a = _tangent(n)
+        b = rotation.cross(n, a)
+        damping = (
+            max(now.raw, 0.0)
+            * slope
+            * (
+                inverse_mass(platform, payload, body, base, now.point, a)
+                + inverse_mass(platform, payload, body, base, now.point, b)
+            )
+        )
+    return damping
+
+
+@inlined
+def _grip(laws, sticking, grip, number, platform, payload, faces, p, body, base):
+    """Contribution of the law that sticks to K (1/s2) and C (1/s)."""
+    stiffness, damping = 0.0, 0.0
+    if sticking is not None:
+        now, n = (
+            load(laws, None, platform, faces[number], p, body, base),
+            outward(faces[number], base),
+        )
+        row = grip[number]
+        if row[HELD] != 0.0:
+            a = _tangent(n)
+            across = inverse_mass(platform, payload, body, base, now.point, a) + inverse_mass(
+                platform, payload, body, base, now.point, rotation.cross(n, a)
+            )
+            stiffness, damping = sticking.stiffness * across, sticking.damping * across
+        else:
+            g = heading(sticking, row, now.slip, base)
+            size = np.sqrt(rotation.dot(g, g))
+            a = rotation.cross(n, (g[0] / size, g[1] / size, g[2] / size))
+            damping = (
+                sticking.dynamic
+                * max(now.raw, 0.0)
+                / size
+                * inverse_mass(platform, payload, body, base, now.point, a)
+            )
+    return stiffness, damping
+
+
+@inlined
+def _tangent(n):
+    """A unit vector across the unit vector ``n``."""
+    t = (
+        rotation.cross(n, (1.0, 0.0, 0.0))
+        if abs(n[0]) < 0.7
+        else rotation.cross(n, (0.0, 1.0, 0.0))
+    )
+    size = np.sqrt(rotation.dot(t, t))
+    return (t[0] / size, t[1] / size, t[2] / size)
+
+
+@inlined
+def inverse_mass(platform, payload, body, base, point, direction):
+    """Inverse mass (1/kg) that a pair of forces along ``direction`` at ``point`` meets."""
+    total = _own(payload.mass, payload.inverse_inertia, body, point, direction)
+    if platform is not None:
+        total += _own(platform.mass, platform.inverse_inertia, base, point, direction)
+    return total
+
+
+@inlined
+def _own(mass, inverse_inertia, body, point, direction):
+    p = body.place
+    lever = rotation.cross((point[0] - p[0], point[1] - p[1], point[2] - p[2]), direction)
+    return 1.0 / mass + rotation.dot(
+        lever, rotation.angular_velocity(body.turn, inverse_inertia, lever)
+    )

@@ -1,0 +1,159 @@
+"""Where a wall ends: which faces stand over it, where a face comes over it within a step, and what
+strikes its edges.
+
+A wall is a plate. With X of a face's middle, s the place of that middle across the rail, measured
+from where the pad stands when it is centred, and p the penetration, a face stands over its wall
+while::
+
+    start - o <= X <= end + o,    |s| <= leg + o_s,    p < thickness
+
+Contact springs act at the middle of a face, so o is zero; walls that give way are pressed by
+whatever part of the face is over them, so o is half of its length. o_s is half of its width, and
+``leg`` bounds the width of the wall, so no part of a face farther away than that is over it. A face
+over its wall may lift off, touch, and leave over any edge.
+
+A face that comes over an edge brings p with it. At p <= 0 it comes in over the surface. At p > 0 it
+is behind the surface, and what meets the edge of the plate there is the edge of the pad, which no
+contact law here holds. The run ends: a **strike**. The edge of a pad lies back by its relief, and
+no edge is sharper than ``ROUNDED``; up to the sum of both the pad rides up. A face that has left
+over an edge and is still partly over the wall was held by that part, so it may come back as deep as
+it left. A face behind the plate (p >= thickness) feels nothing; when it comes back through p =
+thickness it strikes the back.
+"""
+
+import numpy as np
+
+from tipoff.kernels.jit import inlined
+from tipoff.lowfi.system import BACK, HALF_LENGTH, OVERHANG, ROUND, SIDE_REACH
+from tipoff.mechanics import outcome
+
+# A crossing is aimed this far beyond itself (m), which is above rounding and below anything a force
+# could feel.
+BEYOND = 1e-12
+SOONEST = 1e-9  # an event in this first part of a step is the one the step began at
+# Columns of what ``lowfi.dynamics.events.survey`` fills.
+MODE, DEPTH, CLOSING, PULL, ALONG, MARGIN, FORWARD, SIDE, SIDEWAYS, SURVEY_SIZE = range(10)
+NOWHERE = -1
+
+
+@inlined
+def stands_over(rail, face, row):
+    """Whether ``face``, a row of the table of faces, stands over its wall, by its ``row`` of a
+    survey; ``rail`` is start and end (m)."""
+    return (
+        rail[0] - face[OVERHANG] <= row[ALONG] <= rail[1] + face[OVERHANG]
+        and abs(row[SIDE]) <= face[SIDE_REACH]
+        and row[DEPTH] < face[BACK]
+    )
+
+
+@inlined
+def strikes(face, row, left):
+    """Whether a face that comes over its wall strikes an edge of it. ``left``: penetration (m) with
+    which it left, zero once no part of it was over the wall."""
+    return row[DEPTH] > face[ROUND] + left
+
+
+@inlined
+def depth_it_left_with(rail, face, row, left):
+    """``left`` (m), or zero where no part of a face is over the wall any more."""
+    half = face[HALF_LENGTH]
+    beside = abs(row[SIDE]) > face[SIDE_REACH]
+    return (
+        0.0
+        if beside or row[DEPTH] >= face[BACK] or not rail[0] - half <= row[ALONG] <= rail[1] + half
+        else left
+    )
+
+
+@inlined
+def turning_point(before, after, rise, fall):
+    """Fraction at which a cubic with these values and slopes at 0 and 1 turns, and its value there;
+    1 and ``after`` if its slopes have one sign."""
+    theta, value = 1.0, after
+    if rise * fall < 0.0:
+        # p(theta) = before + rise theta + b theta^2 + a theta^3; the form without cancellation
+        step = after - before
+        a, b = rise + fall - 2.0 * step, 3.0 * step - 2.0 * rise - fall
+        root = np.sqrt(max(b * b - 3.0 * a * rise, 0.0))
+        theta = rise / (root - b) if rise > 0.0 else -rise / (root + b)
+        value = before + theta * (rise + theta * (b + theta * a))
+    return theta, value
+
+
+@inlined
+def _interval(rail, face, kind):
+    """What a face's quantity ``kind`` is while it stands over its wall and may touch (m)."""
+    if kind == ALONG:
+        return rail[0] - face[OVERHANG], rail[1] + face[OVERHANG]
+    if kind == SIDE:
+        return -face[SIDE_REACH], face[SIDE_REACH]
+    return BEYOND, face[BACK]
+
+
+@inlined
+def _rate(kind):
+    """Column of the rate of a quantity."""
+    return FORWARD if kind == ALONG else SIDEWAYS if kind == SIDE else CLOSING
+
+
+@inlined
+def comes_over(rail, face, before, after, dt):
+    """Where in a step of ``dt`` (s) a face that does not stand over its wall comes over it and may
+    touch: the quantity whose interval it enters, the level (m) it passes then, and a fraction.
+
+    The quantity is NOWHERE if it does not. The level is NaN where the quantity is inside only
+    between the ends of the step: then the fraction is where it turns, and the step up to there
+    shows the entry. Ends may lie on either side of a wall that is short against the step. A face
+    may be engaged too early in this way, never too late.
+    """
+    entered, level, fraction = NOWHERE, np.nan, 1.0
+    for kind in (ALONG, SIDE, DEPTH):
+        low, high = _interval(rail, face, kind)
+        a, b = before[kind], after[kind]
+        theta, turn = turning_point(a, b, dt * before[_rate(kind)], dt * after[_rate(kind)])
+        if max(a, b, turn) < low or min(a, b, turn) > high:
+            return NOWHERE, np.nan, 1.0
+        # In front of its wall a face is in no one's way.
+        if entered == NOWHERE and (a > high or (a < low and kind != DEPTH)):
+            entered, fraction = kind, theta
+            if a > high:
+                level = high - BEYOND if b < high else np.nan
+            else:
+                level = low + BEYOND if b > low else np.nan
+    return entered, level, fraction
+
+
+@inlined
+def goes_and_returns(rail, face, before, after, dt):
+    """Fraction of a step at which a face that stands over its wall when it begins and when it ends
+    is farthest beyond an edge; 1 if it stays over the wall."""
+    for kind in (ALONG, SIDE):
+        low, high = _interval(rail, face, kind)
+        if low <= after[kind] <= high:
+            theta, turn = turning_point(
+                before[kind], after[kind], dt * before[_rate(kind)], dt * after[_rate(kind)]
+            )
+            if turn > high + BEYOND or turn < low - BEYOND:
+                return theta
+    return 1.0
+
+
+def strike(model, number: int, face: np.ndarray, row: np.ndarray, time: float) -> str:
+    """What struck an edge of its wall: face ``number`` of ``model``, its rows (FACE_SIZE,) and
+    (SURVEY_SIZE,) of table and survey, and the instant (s). The step ended just inside the edge, so
+    that is the nearest one."""
+    x, over, depth = row[ALONG], face[OVERHANG], row[DEPTH]
+    away = {
+        "the rear end": x - model.rail_start + over,
+        "the open end": model.rail_end + over - x,
+        "a side": face[SIDE_REACH] - abs(row[SIDE]),
+        "the back": face[BACK] - depth,
+    }
+    edge = (
+        "strikes " + min(away, key=away.__getitem__)
+        if depth < face[BACK]
+        else "is pressed through a wall"
+    )
+    origin = model.platform.mass_centre[0] if model.platform is not None else 0.0
+    return outcome.strike(model.faces, number, edge, depth, x + origin, time)

@@ -1,0 +1,94 @@
+"""From samples to the motion a Trajectory holds, its ledgers and its checks."""
+
+import numpy as np
+
+from tipoff.lowfi import state
+from tipoff.lowfi.dynamics import audit
+from tipoff.lowfi.dynamics.integrate import DAMPING_POWER, FRICTION_POWER, Loop
+from tipoff.lowfi.dynamics.sample import (
+    AXIAL_KINETIC,
+    GIVEN,
+    KINETIC,
+    LINEAR,
+    RATE,
+    STORED,
+    STRAIN,
+    WORKS,
+)
+from tipoff.mechanics import ledger, momenta
+from tipoff.mechanics.outcome import Motion
+from tipoff.mechanics.promises import Promises
+
+_ENTRY = {name: index for index, name in enumerate(ledger.ENTRIES)}
+
+
+def motion(rows: np.ndarray, interval: float) -> Motion:
+    """Motion of ``rows`` (n, SAMPLE_SIZE), ``interval`` (s) apart from ignition on."""
+    parts = [
+        rows[:, body + begin : body + begin + size]
+        for body in (state.PAYLOAD, state.PLATFORM)
+        for begin, size in ((state.PLACE, 3), (state.VELOCITY, 3), (state.QUATERNION, 4), (RATE, 3))
+    ]
+    return Motion(np.arange(len(rows)) * interval, *parts)
+
+
+def ledgers(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Total and transverse ledger (n, len(ENTRIES)) J of ``rows`` (n, SAMPLE_SIZE)."""
+
+    def work(slot):
+        return rows[:, WORKS + slot - state.WORK]
+
+    total = np.zeros((len(rows), len(ledger.ENTRIES)))
+    for name, values in (
+        ("thrust", work(state.THRUST)),
+        ("gravity", work(state.GRAVITY)),
+        ("kinetic", rows[:, KINETIC]),
+        ("strain", rows[:, STRAIN]),
+        ("contact_stored", rows[:, STORED]),
+        ("contact_damping", work(state.DAMPING)),
+        ("friction", work(state.FRICTION)),
+        ("released", work(state.RELEASED)),
+        ("structural_damping", work(state.STRUCTURAL)),
+    ):
+        total[:, _ENTRY[name]] = values
+    across = total.copy()
+    for name, values in (
+        ("thrust", work(state.THRUST_AXIAL)),
+        ("gravity", work(state.GRAVITY_AXIAL)),
+        ("kinetic", rows[:, AXIAL_KINETIC]),
+        ("friction", work(state.FRICTION_AXIAL)),
+        ("contact_axial", -work(state.CONTACT_AXIAL)),
+    ):
+        across[:, _ENTRY[name]] -= values
+    return total, across
+
+
+def checks(
+    rows: np.ndarray, moved: Motion, forces: np.ndarray, mass: float, loop: Loop, promised: Promises
+) -> dict[str, float]:
+    """What is ``promised``, as it was kept: by the ledgers at the ends of all steps, by the momenta
+    at all samples with pad ``forces`` (n,f,3) N."""
+    energy, transverse = audit.errors(
+        loop.audit, promised.energy_error, promised.transverse_energy_error
+    )
+    linear, angular = momenta.errors(
+        moved, mass, rows[:, LINEAR : LINEAR + 6], rows[:, GIVEN : GIVEN + 6], forces, promised
+    )
+    clock = loop.clock
+    norms = [
+        np.sqrt(np.einsum("ni,ni->n", q, q)) for q in (moved.quaternion, moved.platform_quaternion)
+    ]
+    return {
+        "energy_error": float(energy),
+        "transverse_energy_error": float(transverse),
+        "linear_momentum_error": linear,
+        "angular_momentum_error": angular,
+        "quaternion_error": float(max(np.abs(norm - 1.0).max() for norm in norms)),
+        "friction_power_max": _power(clock[FRICTION_POWER]),
+        "damping_power_max": _power(clock[DAMPING_POWER]),
+    }
+
+
+def _power(value: float) -> float:
+    # A run without a single step has felt no power at all. Adding zero turns -0.0 into 0.0.
+    return float(value) + 0.0 if np.isfinite(value) else 0.0

@@ -1,0 +1,155 @@
+"""Local error of a step, as speeds at the pads, against what is allowed.
+
+With the error e of each slot, the spin error e_w = R I^-1 R' (e_A - e_r x m v - r x m e_v), the
+distance ``reach`` of the farthest pad from the mass centre and the step h, each body's ratio is the
+largest of::
+
+    |e_v| across, reach |e_w|, |e_r| / h across, 2 reach |e_q| / h      over   rtol (floor + |v| across + reach |w|)
+    |e_v| along X, |e_r| / h along X                                     over   rtol (floor + |v| along X)
+
+so that 6 m/s along the rail do not loosen what is asked of the millimetres per second across it.
+All speeds are those of the frame that ``mechanics.comoving`` moves with the platform, so a speed that
+all bodies share loosens nothing either. Modes of the rails are held by the energy they may be wrong
+by, as a speed of the payload's mass m. A step too long for the highest mode fails here, or at the
+proven limit before::
+
+    sqrt(sum over modes of (e_q'^2 + omega^2 e_q^2) / m)                 over   the first of these, of the payload
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from tipoff.kernels import rotation
+from tipoff.kernels.jit import inlined
+from tipoff.lowfi.contact.compliant.modes import energies
+from tipoff.lowfi.dynamics.dormand_prince import local_error
+from tipoff.lowfi.numerics import Numerics
+from tipoff.lowfi.state import (
+    BODY_SIZE,
+    MOMENT,
+    PAYLOAD,
+    PLACE,
+    PLATFORM,
+    VELOCITY,
+    modal_size,
+    motion,
+    quaternion,
+    triple,
+)
+from tipoff.mechanics.promises import Promises
+
+
+class Tolerance(NamedTuple):
+    """relative (1), floor (m/s), reach (m); what is promised of the total and the transverse ledger
+    (1)."""
+
+    relative: float
+    floor: float
+    reach: float
+    total: float
+    across: float
+
+
+def tolerance(numerics: Numerics, promised: Promises, reach: float) -> Tolerance:
+    """Of a payload whose farthest pad is ``reach`` (m) from its mass centre."""
+    return Tolerance(
+        numerics.relative_tolerance,
+        numerics.speed_floor,
+        reach,
+        promised.energy_error,
+        promised.transverse_energy_error,
+    )
+
+
+@inlined
+def error_ratio(tolerance, payload, platform, walls, dt, stages, end, error):
+    """Error of the step that led to ``end`` over what is allowed; NaN where anything is. ``error``,
+    as long as ``end``, is scratch."""
+    local_error(dt, stages, modal_size(walls), error)
+    ratio = _body_ratio(
+        tolerance, payload.mass, payload.inverse_inertia, dt, error[:BODY_SIZE], end[:BODY_SIZE]
+    )
+    return worse(
+        worse(ratio, _platform_ratio(tolerance, platform, dt, error, end)),
+        _rail_ratio(tolerance, payload, walls, error, end),
+    )
+
+
+@inlined
+def worse(a, b):
+    """The larger of two numbers; NaN when either is NaN."""
+    return a if not a <= b else b
+
+
+@inlined
+def _platform_ratio(tolerance, platform, dt, error, end):
+    ratio = 0.0
+    if platform is not None:
+        ratio = _body_ratio(
+            tolerance, platform.mass, platform.inverse_inertia, dt, error[PLATFORM:], end[PLATFORM:]
+        )
+    return ratio
+
+
+@inlined
+def _rail_ratio(tolerance, payload, walls, error, end):
+    ratio = 0.0
+    if walls is not None:
+        ratio = _modal_ratio(tolerance, payload, walls.modes, error, end)
+    return ratio
+
+
+@inlined
+def _modal_ratio(tolerance, payload, modes, error, end):
+    ratio = 0.0
+    if modes is not None:
+        body = motion(payload.mass, payload.inverse_inertia, end, PAYLOAD)
+        across = (
+            tolerance.floor
+            + np.hypot(body.velocity[1], body.velocity[2])
+            + tolerance.reach * np.sqrt(rotation.dot(body.rate, body.rate))
+        )
+        kinetic, strain = energies(modes, error)
+        ratio = np.sqrt(2.0 * (kinetic + strain) / payload.mass) / (across * tolerance.relative)
+    return ratio
+
+
+@inlined
+def _body_ratio(tolerance, mass, inverse_inertia, dt, error, end):
+    """Ratio of one body, whose slots stand first in ``error`` and ``end``."""
+    place, velocity = triple(end, PLACE), triple(end, VELOCITY)
+    e_place, e_velocity, e_moment = (
+        triple(error, PLACE),
+        triple(error, VELOCITY),
+        triple(error, MOMENT),
+    )
+    q, e_q = quaternion(end, 0), quaternion(error, 0)
+    turn, orbit = rotation.matrix(q), rotation.cross(place, velocity)
+    moment = triple(end, MOMENT)
+    spin = (moment[0] - mass * orbit[0], moment[1] - mass * orbit[1], moment[2] - mass * orbit[2])
+    a, b = rotation.cross(e_place, velocity), rotation.cross(place, e_velocity)
+    e_spin = (
+        e_moment[0] - mass * (a[0] + b[0]),
+        e_moment[1] - mass * (a[1] + b[1]),
+        e_moment[2] - mass * (a[2] + b[2]),
+    )
+    rate, e_rate = (
+        rotation.angular_velocity(turn, inverse_inertia, spin),
+        rotation.angular_velocity(turn, inverse_inertia, e_spin),
+    )
+    across = (
+        tolerance.floor
+        + np.hypot(velocity[1], velocity[2])
+        + tolerance.reach * np.sqrt(rotation.dot(rate, rate))
+    )
+    lateral = worse(np.hypot(e_velocity[1], e_velocity[2]), np.hypot(e_place[1], e_place[2]) / dt)
+    e_turn = (
+        2.0 * np.sqrt(e_q[0] * e_q[0] + e_q[1] * e_q[1] + e_q[2] * e_q[2] + e_q[3] * e_q[3]) / dt
+    )
+    angular = tolerance.reach * worse(np.sqrt(rotation.dot(e_rate, e_rate)), e_turn)
+    axial = worse(abs(e_velocity[0]), abs(e_place[0]) / dt)
+    return (
+        worse(worse(lateral, angular) / across, axial / (tolerance.floor + abs(velocity[0])))
+        / tolerance.relative
+    )

@@ -1,0 +1,43 @@
+"""Where steps must end and how long they may be, so that none jumps over a corner or a short pulse
+of the thrust."""
+
+import numpy as np
+
+from tipoff.lowfi.dynamics.integrate import Plan
+from tipoff.lowfi.numerics import Numerics
+from tipoff.mechanics.model import Model
+from tipoff.scenes.effects import thrust_law
+
+# A Gaussian is below 2e-14 of its peak beyond this many widths, and the stages of a step inside, at
+# most half of it apart, see four points in any three widths.
+_REACH, _SHARE = 8.0, 1.5
+_FIRST_SHARE = 1e-3  # of the time to the first stop
+
+
+def make(model: Model, end: float, numerics: Numerics) -> Plan:
+    """Plan of a run up to ``end`` (s)."""
+    stops = np.append(thrust_law.corners(model.thrust, end), end)
+    if model.thrust.pulses is None:
+        return Plan(stops, np.full(stops.size, np.inf), numerics.maximum_steps)
+    _, centres, widths, first, last = model.thrust.pulses
+    begins, ends = (
+        np.maximum(centres - _REACH * widths, first),
+        np.minimum(centres + _REACH * widths, last),
+    )
+    edges = np.concatenate([begins, ends])
+    stops = np.unique(np.append(stops, edges[(edges > 0.0) & (edges < end)]))
+    middles = 0.5 * (stops + np.append(0.0, stops[:-1]))
+    acting = (begins < middles[:, None]) & (middles[:, None] < ends)
+    return Plan(
+        stops, np.where(acting, _SHARE * widths, np.inf).min(axis=1), numerics.maximum_steps
+    )
+
+
+def first_step(made: Plan) -> float:
+    """Size (s) of the first step that is tried: whichever it is, error control brings it to the
+    right size in a few attempts."""
+    return (
+        0.25 * float(made.caps[0])
+        if np.isfinite(made.caps[0])
+        else _FIRST_SHARE * float(made.stops[0])
+    )

@@ -1,0 +1,136 @@
+"""The chunks of an ensemble on a Dask cluster: workers run them, this process alone draws the cases
+and writes the store.
+
+A worker that dies loses nothing but time: its chunks go to others. A scheduler that is lost ends
+the run with a message, and the store goes on from there. Sources and library versions of every
+worker must be those of this process, else the bits would not be the same.
+"""
+
+import threading
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import islice
+from typing import Any, NamedTuple
+
+from tipoff.lowfi.ensemble import columns
+from tipoff.lowfi.ensemble.batch import Family
+from tipoff.lowfi.ensemble.columns import Columns
+from tipoff.lowfi.ensemble.request import Ensemble, code
+from tipoff.lowfi.ensemble.store import Chunk, Store, StoreError
+from tipoff.lowfi.ensemble.threads import PIECE, in_order
+from tipoff.lowfi.numerics import Numerics
+from tipoff.mechanics.rail_compliance import Walls
+from tipoff.scenes.calibration import Calibration
+from tipoff.scenes.scene import Scene
+
+PATIENCE = 30.0  # s for a scheduler to answer, and for its first worker to come
+_AHEAD = 2  # chunks per worker thread that are on their way: one runs, the next waits for it
+_RETRIES = 5  # workers that may die under one chunk
+
+_kept = threading.local()
+_Rows = Sequence[Mapping[str, Any]]
+
+
+class Recipe(NamedTuple):
+    """What a worker needs to run rows of an ensemble, and the ``key`` under which it keeps what it
+    made of that."""
+
+    key: str
+    code: dict
+    scene: Scene
+    calibration: Calibration | None
+    numerics: Numerics
+    walls: Walls | None = None
+
+
+def made(
+    ensemble: Ensemble, store: Store, asked: Iterable[tuple[int, _Rows]], scheduler: str
+) -> Iterator[Chunk]:
+    """The chunks that are ``asked`` for, by number and rows, in the order in which they end. Raises
+    StoreError."""
+    distributed = _distributed()
+    try:
+        client = distributed.Client(scheduler, timeout=PATIENCE, set_as_default=False)
+    except (OSError, ValueError) as error:
+        raise StoreError(
+            f"no Dask scheduler answers at {scheduler} ({error}); start one with: dask scheduler"
+        ) from error
+    try:
+        client.wait_for_workers(1, timeout=PATIENCE)
+        yield from _made(
+            client,
+            Recipe(
+                ensemble.key,
+                code(),
+                ensemble.scene,
+                ensemble.calibration,
+                ensemble.numerics,
+                ensemble.walls,
+            ),
+            iter(asked),
+        )
+    except TimeoutError as error:
+        raise StoreError(
+            f"no worker came to {scheduler} in {PATIENCE:g} s; start one with: dask worker "
+            f"{scheduler}"
+        ) from error
+    except (OSError, RuntimeError, distributed.CancelledError, distributed.KilledWorker) as error:
+        what = "the cluster failed" if client.status == "running" else "lost the scheduler"
+        reason = f"{type(error).__name__}: {' '.join(str(error).split())}"
+        raise StoreError(f"{what} at {scheduler} ({reason}); {store.progress()}") from error
+    finally:
+        client.close(timeout=1.0)
+
+
+def _made(client, recipe: Recipe, asked: Iterator[tuple[int, _Rows]]) -> Iterator[Chunk]:
+    from distributed import as_completed
+
+    under_way: dict = {}
+    ended = as_completed(loop=client.loop)
+
+    def send() -> None:
+        # each time anew: workers come and go
+        wanted = _AHEAD * max(1, sum(client.nthreads().values()))
+        for number, rows in islice(asked, max(0, wanted - len(under_way))):
+            future = client.submit(run_rows, recipe, rows, pure=False, retries=_RETRIES)
+            under_way[future] = number, rows
+            ended.add(future)
+
+    send()
+    for future in ended:
+        number, rows = under_way.pop(future)
+        results, messages = future.result()
+        send()
+        yield Chunk(number, rows, results, messages)
+
+
+def run_rows(recipe: Recipe, rows: _Rows) -> tuple[Columns, list[str]]:
+    """Results of ``rows`` and a message each; called in a worker. Raises RuntimeError where its
+    sources or libraries are others."""
+    if (here := code()) != recipe.code:
+        other = [name for name, value in recipe.code.items() if here[name] != value]
+        raise RuntimeError(
+            f"this worker has other {' and '.join(other)} than the process that asks"
+        )
+    family = _family(recipe)
+    pieces = (rows[begin : begin + PIECE] for begin in range(0, len(rows), PIECE))
+    cases = [case for piece in pieces for case in in_order(job() for job in family.jobs(piece))]
+    return columns.of(cases), [case.message for case in cases]
+
+
+def _family(recipe: Recipe) -> Family:
+    """The family of a recipe, kept from chunk to chunk; one per thread, for it changes while it
+    sets up a case."""
+    if getattr(_kept, "key", None) != recipe.key:
+        _kept.key, _kept.family = (
+            recipe.key,
+            Family(recipe.scene, recipe.calibration, recipe.numerics, recipe.walls),
+        )
+    return _kept.family
+
+
+def _distributed():
+    try:
+        import distributed
+    except ImportError:
+        raise StoreError("a cluster needs Dask: pip install 'tipoff[cluster]'") from None
+    return distributed

@@ -1,0 +1,64 @@
+"""Runs an ensemble into its store: what is missing there, chunk by chunk, in threads of this
+machine or on a cluster."""
+
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from typing import Any
+
+from tipoff.lowfi.ensemble import cluster, columns
+from tipoff.lowfi.ensemble.batch import Case
+from tipoff.lowfi.ensemble.request import Ensemble
+from tipoff.lowfi.ensemble.store import Chunk, Store
+from tipoff.lowfi.ensemble.threads import PIECE, completed
+
+_Rows = Sequence[Mapping[str, Any]]
+
+
+def fill(
+    ensemble: Ensemble,
+    store: Store,
+    workers: int | None = None,
+    scheduler: str | None = None,
+    progress: Callable[[int], None] | None = None,
+) -> int:
+    """Run what ``store`` lacks, ``workers`` threads at a time or on the Dask cluster at
+    ``scheduler``; how many cases that were.
+
+    ``progress`` is called with the number of cases stored. Raises StoreError when it cannot go on;
+    what is stored stays, and the next call goes on from there.
+    """
+    pending = store.pending()
+    missing = sum(end - begin for begin, end in map(store.bounds, pending))
+    if not pending:
+        return 0
+    asked = ((number, ensemble.source.rows(*store.bounds(number))) for number in pending)
+    stored = store.asked - missing
+    for chunk in (
+        cluster.made(ensemble, store, asked, scheduler)
+        if scheduler
+        else _here(ensemble, asked, workers)
+    ):
+        store.write(chunk)
+        stored += len(chunk.rows)
+        if progress:
+            progress(stored)
+    return missing
+
+
+def _here(
+    ensemble: Ensemble, asked: Iterable[tuple[int, _Rows]], workers: int | None
+) -> Iterator[Chunk]:
+    begun: deque[tuple[int, _Rows]] = deque()
+
+    def pieces() -> Iterator[_Rows]:
+        for number, rows in asked:
+            begun.append((number, rows))
+            yield from (rows[begin : begin + PIECE] for begin in range(0, len(rows), PIECE))
+
+    cases: list[Case] = []
+    for found in completed(ensemble.family(), pieces(), workers):
+        cases += found
+        if len(cases) == len(begun[0][1]):
+            number, rows = begun.popleft()
+            yield Chunk(number, rows, columns.of(cases), [case.message for case in cases])
+            cases = []

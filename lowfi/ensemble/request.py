@@ -1,0 +1,81 @@
+"""What an ensemble is asked for: the scene, where its cases come from, and everything else the
+numbers depend on."""
+
+from collections.abc import Mapping
+from functools import lru_cache
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from tipoff import sources
+from tipoff.files import content_hash
+from tipoff.lowfi.ensemble import store as stores
+from tipoff.lowfi.ensemble.batch import Case, Family
+from tipoff.lowfi.ensemble.threads import completed
+from tipoff.lowfi.numerics import Numerics
+from tipoff.mechanics.rail_compliance import Walls
+from tipoff.scenes.calibration import Calibration
+from tipoff.scenes.scene import Scene
+
+# whose version may change the last bits of a result
+_LIBRARIES = ("numpy", "scipy", "numba", "llvmlite")
+
+
+class Ensemble(NamedTuple):
+    """A scene, where its cases come from (``lowfi.ensemble.rows``, ``lowfi.ensemble.table``), calibrated constants or
+    none, numerics, and walls that give way or none."""
+
+    scene: Scene
+    source: Any
+    calibration: Calibration | None
+    numerics: Numerics
+    walls: Walls | None = None
+
+    def family(self) -> Family:
+        """What sets up its cases."""
+        return Family(self.scene, self.calibration, self.numerics, self.walls)
+
+    def identity(self) -> dict:
+        """Everything the numbers depend on, as JSON."""
+        return {
+            "scene": self.scene.hash,
+            "cases": self.source.identity,
+            "numerics": self.numerics.as_dict(),
+            "calibration": self.calibration.constants if self.calibration else {},
+            "walls": self.walls.hash if self.walls else "",
+            "chunk": stores.CHUNK,
+        } | code()
+
+    @property
+    def key(self) -> str:
+        """Hexadecimal digest of the identity."""
+        return content_hash(self.identity())
+
+    def store(self, path: str | Path) -> stores.Store:
+        """The store of this ensemble at ``path``, made when there is none. Raises StoreError."""
+        rerun = (
+            "case n has the inputs stored under n, and is drawn again from seed and n alone: "
+            "tipoff ensemble ... --case n"
+        )
+        return stores.Store(
+            path,
+            self.source.asked,
+            self.source.keys,
+            self.identity(),
+            {"scene": self.scene.resolved(), "rerun": rerun},
+        )
+
+    def case(self, number: int) -> tuple[Mapping[str, Any], Case]:
+        """Inputs and result of one case, run alone, to the same bits."""
+        (row,) = self.source.rows(number, number + 1)
+        ((found,),) = completed(self.family(), [[row]], workers=1)
+        return row, found
+
+
+@lru_cache  # the sources do not change while the program runs
+def code() -> dict:
+    """Digest of the sources and versions of the libraries that make the numbers."""
+    return {
+        "code": sources.digest("tipoff.lowfi"),
+        "versions": {name: version(name) for name in _LIBRARIES},
+    }

@@ -1,0 +1,85 @@
+"""Where the cases of an ensemble come from: drawn by number, or listed by a program;
+``lowfi.ensemble.table`` reads them from a file.
+
+All answer alike: ``asked`` cases with ``keys``, an ``identity`` (JSON) that tells one ensemble from
+another, and ``rows(begin, end)``, a list of dotted overrides as ``Scene.replace`` takes them, made
+when it is asked for, so that drawn cases are never held all at once.
+"""
+
+import hashlib
+import json
+from collections.abc import Mapping, Sequence
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from tipoff.lowfi.ensemble.sampling import Points
+from tipoff.scenes import overrides as keys
+from tipoff.scenes import units
+from tipoff.scenes.scene import Scene
+from tipoff.scenes.uncertainty import Uncertainty
+
+
+class Drawn:
+    """Cases of ``uncertainty``."""
+
+    def __init__(self, uncertainty: Uncertainty):
+        self.uncertainty = uncertainty
+        self.asked, self.keys, self.identity = (
+            uncertainty.cases,
+            list(uncertainty.vary),
+            uncertainty.resolved(),
+        )
+        self._points, self._vary = Points(uncertainty), list(uncertainty.vary.values())
+
+    def rows(self, begin: int, end: int) -> list[dict[str, float]]:
+        """Overrides of the cases ``begin`` to ``end`` - 1, SI."""
+        points = self._points.draw(begin, end)
+        columns = [item.ppf(column).tolist() for item, column in zip(self._vary, points.T)]
+        return [dict(zip(self.keys, values)) for values in zip(*columns)]
+
+
+class Listed:
+    """Cases that a program lists."""
+
+    def __init__(self, table: Sequence[Mapping[str, Any]]):
+        self._table, self.asked = list(table), len(table)
+
+    @cached_property
+    def keys(self) -> list[str]:
+        """Every dotted key that some row has."""
+        return list(dict.fromkeys(key for row in self._table for key in row))
+
+    @cached_property
+    def identity(self) -> dict:
+        """Digest of the table."""
+        digest = hashlib.sha256()
+        for row in self._table:
+            digest.update(json.dumps(list(row.items()), default=repr).encode())
+        return {"table": digest.hexdigest(), "cases": self.asked}
+
+    def rows(self, begin: int, end: int) -> list[Mapping[str, Any]]:
+        """Overrides of the cases ``begin`` to ``end`` - 1."""
+        return self._table[begin:end]
+
+
+def numbers(names: Sequence[str], rows: Sequence[Mapping[str, Any]]) -> np.ndarray:
+    """Numbers (n, k) in SI under the k keys ``names`` of n rows; NaN where a row has none, or
+    anything else than a number."""
+    wanted = [(name, keys.unit(Scene, name)) for name in names]
+    found = [
+        [
+            value if type(value := row.get(name)) is float else _si(value, unit)
+            for name, unit in wanted
+        ]
+        for row in rows
+    ]
+    return np.array(found, dtype=float).reshape(len(rows), len(names))
+
+
+def _si(value: Any, unit: str | None) -> float:
+    try:
+        return units.parse(value, unit or "dimensionless", bare_numbers_are_si=True)
+    except ValueError:
+        return np.nan

@@ -1,0 +1,96 @@
+"""Points of the unit cube by case number: plain sampling, Latin hypercube, scrambled Sobol'. Case n
+has the same bits however the cases are cut into chunks, and whoever draws them.
+
+Plain sampling takes 52 bits per number from the counter-based generator Philox (Salmon et al., SC
+2011), keyed by the seed, its counter set to the case, so a case costs the same wherever it stands.
+Sobol' (``scipy.stats.qmc``) is wound forward to the case. A Latin hypercube exists as a whole only,
+and is held in memory.
+"""
+
+import warnings
+
+import numpy as np
+import scipy  # its parts load when they are first used
+
+from tipoff.scenes.faults import Fault, SceneError
+from tipoff.scenes.uncertainty import Uncertainty
+
+MOST_HELD = 2**24  # numbers of a Latin hypercube: 128 MiB, and three times as much while it is made
+_WORDS = 4  # 64-bit words that Philox makes per count
+_SOBOL_BITS = 32  # SciPy winds forward no sequence of more
+_EDGE = 2.0**-53  # 0 and 1 themselves have no finite quantile in a normal distribution
+
+
+class Points:
+    """Points of ``uncertainty`` in the open unit cube, one dimension per varied key.
+
+    Raises SceneError for a Latin hypercube that is too large to hold, and for more dimensions than
+    Sobol' has.
+    """
+
+    def __init__(self, uncertainty: Uncertainty):
+        self._seed, self._size = uncertainty.seed, len(uncertainty.vary)
+        self._draw = {
+            "random": self._random,
+            "latin-hypercube": self._hypercube,
+            "sobol": self._sobol,
+        }[uncertainty.sampling]
+        if uncertainty.sampling == "latin-hypercube":
+            if uncertainty.cases * self._size > MOST_HELD:
+                raise SceneError(
+                    [
+                        Fault(
+                            "vary",
+                            "sampling",
+                            f"latin-hypercube of {uncertainty.cases:,} cases and {self._size} keys",
+                            f"at most {MOST_HELD // self._size:,} cases, for it is held in memory, "
+                            "or random or sobol",
+                        )
+                    ]
+                )
+            self._held = scipy.stats.qmc.LatinHypercube(
+                self._size, rng=np.random.default_rng(self._seed)
+            ).random(uncertainty.cases)
+        if uncertainty.sampling == "sobol":
+            if self._size > scipy.stats.qmc.Sobol.MAXDIM or uncertainty.cases > 2**_SOBOL_BITS:
+                raise SceneError(
+                    [
+                        Fault(
+                            "vary",
+                            "sampling",
+                            f"sobol of {uncertainty.cases:,} cases and {self._size:,} keys",
+                            f"at most {2**_SOBOL_BITS:,} cases and "
+                            f"{scipy.stats.qmc.Sobol.MAXDIM:,} keys",
+                        )
+                    ]
+                )
+            self._engine = scipy.stats.qmc.Sobol(
+                self._size, bits=_SOBOL_BITS, rng=np.random.default_rng(self._seed)
+            )
+
+    def draw(self, begin: int, end: int) -> np.ndarray:
+        """Points (end - begin, d) of the cases ``begin`` to ``end`` - 1."""
+        return np.clip(self._draw(begin, end), _EDGE, 1.0 - _EDGE)
+
+    def _random(self, begin: int, end: int) -> np.ndarray:
+        counts = -(-self._size // _WORDS)
+        words = np.random.Philox(key=self._seed, counter=begin * counts).random_raw(
+            (end - begin) * counts * _WORDS
+        )
+        return (words.reshape(end - begin, -1)[:, : self._size] >> np.uint64(12)) * 2.0**-52
+
+    def _hypercube(self, begin: int, end: int) -> np.ndarray:
+        return self._held[begin:end]
+
+    def _sobol(self, begin: int, end: int) -> np.ndarray:
+        engine = self._engine
+        if begin < engine.num_generated:
+            engine.reset()
+        if begin > engine.num_generated:
+            engine.fast_forward(begin - engine.num_generated)
+        with warnings.catch_warnings():
+            # Balance needs a power of two of all cases, not of this chunk; the summary says so
+            # once.
+            warnings.filterwarnings("ignore", "The balance properties", UserWarning)
+            # middles of the cells: zero has no place in a normal law
+            return engine.random(end - begin) + 0.5 ** (_SOBOL_BITS + 1)

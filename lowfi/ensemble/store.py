@@ -1,0 +1,382 @@
+"""Results of an ensemble in a folder, chunk by chunk, so that it may stop at any instant and go on
+later::
+
+    cases.zarr/        a zarr group: status, exit_time, velocity ... and inputs/<dotted key>, SI,
+                       one chunk per 4096 cases, with checksums
+    done/000012.json   written last, in one piece: chunk 12 is whole; the ensemble it belongs to,
+                       the digest of its numbers, its counts, and each case that failed; with a
+                       digest of its own
+
+A chunk counts as done once its file in done/ is there, fits its own digest, and has the digest of
+what is read back; any other is run again. The descriptions of the arrays (``zarr.json``) are those
+that a new store would have, and are written again where they are not. No time or place is stored,
+so two runs of one ensemble leave the same numbers, whoever ran them.
+"""
+
+import hashlib
+import json
+import os
+import shutil
+import tempfile
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from tipoff.files import (
+    DamageError,
+    content_hash,
+    fits_digest,
+    read_json,
+    replacing,
+    tell,
+    with_digest,
+    write_json,
+)
+from tipoff.lowfi.ensemble import columns
+from tipoff.lowfi.ensemble.columns import Columns
+from tipoff.lowfi.ensemble.rows import numbers
+from tipoff.scenes import overrides as keys
+from tipoff.scenes.scene import Scene
+
+CHUNK = 4096
+_NOT_RUN = -1
+_FAILED = ("refused", "diverged")
+
+
+class StoreError(RuntimeError):
+    """An ensemble that cannot go on in its store; the message says why and what to do. What is
+    stored stays."""
+
+
+class Chunk(NamedTuple):
+    """Cases of one chunk: its number, their rows of overrides, results, and a message each, mostly
+    empty."""
+
+    number: int
+    rows: Sequence[Mapping[str, Any]]
+    results: Columns
+    messages: Sequence[str]
+
+
+class Store:
+    """The store of ``asked`` cases with inputs under the dotted ``names``, at ``path``: opened, or
+    made when there is none.
+
+    ``identity`` (JSON) is everything the numbers depend on; ``attributes`` are kept beside them.
+    Raises StoreError for a folder that is no store, or one of another identity.
+    """
+
+    def __init__(
+        self, path: str | Path, asked: int, names: Sequence[str], identity: dict, attributes: dict
+    ):
+        self.path, self.asked, self.names = Path(path), asked, list(names)
+        self.ensemble = content_hash(json.loads(json.dumps(identity)))
+        attributes = with_digest({"identity": identity, **attributes})
+        if not self.path.exists() or (self.path.is_dir() and not any(self.path.iterdir())):
+            with self._explained():
+                self._make(attributes)
+        else:
+            self._require(identity)
+            with self._explained():
+                self._describe(attributes)
+        self._arrays, self._inputs = self._opened()
+
+    def _make(self, attributes: dict) -> None:
+        """Made under another name and then renamed, so that a store is never half made."""
+        self.path.parent.mkdir(parents=True, exist_ok=True)
+        folder = Path(tempfile.mkdtemp(prefix=f".{self.path.name}.", dir=self.path.parent))
+        try:
+            self._create(folder / "cases.zarr", attributes)
+            (folder / "done").mkdir()
+            folder.chmod(0o755)
+            os.replace(folder, self.path)
+        finally:
+            shutil.rmtree(folder, ignore_errors=True)
+
+    def _create(self, place, attributes: dict) -> None:
+        """The group and its arrays, without cases, in a folder or in memory."""
+        root = _zarr().create_group(place, attributes=attributes)
+        for name in Columns._fields:
+            self._array(
+                root,
+                name,
+                _type(name),
+                {"units": columns.UNITS[name]} if name in columns.UNITS else {},
+            )
+        root["status"].attrs.update(
+            flag_values=list(range(len(columns.STATUSES))), flag_meanings=" ".join(columns.STATUSES)
+        )
+        inputs = root.create_group("inputs")
+        for name in self.names:
+            self._array(inputs, name, "f8", {"units": keys.unit(Scene, name) or "SI"})
+
+    def _array(self, group, name: str, kind: str, attributes: dict) -> None:
+        from zarr.codecs import Crc32cCodec
+
+        inner = (3,) if name in columns.VECTORS else ()
+        group.create_array(
+            name,
+            shape=(self.asked, *inner),
+            chunks=(CHUNK, *inner),
+            dtype=kind,
+            compressors=[Crc32cCodec()],
+            fill_value=np.nan if kind == "f8" else _NOT_RUN,
+            attributes=attributes,
+            dimension_names=("case", "axis")[: 1 + len(inner)],
+        )
+
+    def _require(self, identity: dict) -> None:
+        """Raises StoreError unless this is a store of the ensemble of this ``identity``. Where its
+        description is damaged, its chunks say whose it is."""
+        described, expected = _attributes(self.path), json.loads(json.dumps(identity))
+        if described is None:
+            if not any(self._belongs(mark) for mark in (self.path / "done").glob("*.json")):
+                raise StoreError(
+                    f"{self.path} is no store of an ensemble, or its cases.zarr/zarr.json is "
+                    f"damaged; "
+                    "give another --store, or remove it"
+                )
+        elif other := [
+            name for name in expected if described["identity"].get(name) != expected[name]
+        ]:
+            raise StoreError(
+                f"{self.path} holds another ensemble: {', '.join(other)} differ; "
+                "give another --store, or remove it"
+            )
+
+    def _belongs(self, mark: Path) -> bool:
+        try:
+            return read_json(mark)["ensemble"] == self.ensemble
+        except (DamageError, OSError, KeyError):
+            return False
+
+    def _describe(self, attributes: dict) -> None:
+        """Write every description again that is not as in a new store. What is said of the scene in
+        words may differ."""
+        new: dict = {}
+        self._create(_zarr().storage.MemoryStore(new), attributes)
+        for name, content in new.items():
+            path = self.path / "cases.zarr" / name
+            if not path.is_file() or not _alike(path.read_bytes(), content.to_bytes()):
+                tell(f"{path} is damaged or was edited: it is written again")
+                with replacing(path) as temporary:
+                    temporary.write_bytes(content.to_bytes())
+
+    def _opened(self) -> tuple[dict, list]:
+        """Arrays of the results by name, and of the inputs."""
+        try:
+            group = _zarr().open_group(self.path / "cases.zarr", mode="r+")
+            return {name: group[name] for name in Columns._fields}, [
+                group[f"inputs/{name}"] for name in self.names
+            ]
+        except (OSError, ValueError, KeyError) as error:
+            raise StoreError(
+                f"{self.path} is no store of an ensemble ({type(error).__name__}: {error}); "
+                "give another --store"
+            ) from error
+
+    def __len__(self) -> int:
+        return -(-self.asked // CHUNK)
+
+    def bounds(self, number: int) -> tuple[int, int]:
+        """First case of a chunk, and first of the next."""
+        return number * CHUNK, min((number + 1) * CHUNK, self.asked)
+
+    def pending(self) -> list[int]:
+        """Numbers of the chunks that are missing or damaged; what is damaged is said."""
+        return [number for number in range(len(self)) if not self._whole(number)]
+
+    def holds(self, case: int) -> bool:
+        """Whether the chunk of a case is done and whole; what is damaged is said."""
+        return self._whole(case // CHUNK)
+
+    def write(self, chunk: Chunk) -> None:
+        """Keep the results of a chunk. Raises StoreError when that fails, as on a full disk."""
+        begin, end = self.bounds(chunk.number)
+        inputs = numbers(self.names, chunk.rows)
+        with self._explained():
+            for name, values in zip(Columns._fields, chunk.results):
+                self._arrays[name][begin:end] = values
+            for place, values in zip(self._inputs, inputs.T):
+                place[begin:end] = values
+            failures = [
+                {"case": begin + n, "status": status, "reason": message, "inputs": _plain(row)}
+                for n, (code, message, row) in enumerate(
+                    zip(chunk.results.status, chunk.messages, chunk.rows)
+                )
+                if (status := columns.STATUSES[code]) in _FAILED
+            ]
+            failed = {failure["case"] for failure in failures}
+            warnings = {
+                str(begin + n): text
+                for n, text in enumerate(chunk.messages)
+                if text and begin + n not in failed
+            }
+            write_json(
+                self._mark(chunk.number),
+                {
+                    "ensemble": self.ensemble,
+                    "digest": _digest(chunk.results, inputs),
+                    **columns.counts(chunk.results.status),
+                    "failures": failures,
+                    "warnings": warnings,
+                },
+            )
+
+    @contextmanager
+    def _explained(self) -> Iterator[None]:
+        try:
+            yield
+        except OSError as error:
+            raise StoreError(
+                f"cannot write {self.path}: {error.strerror or error}; {self.progress()}"
+            ) from error
+
+    def progress(self) -> str:
+        """How far the ensemble is, for a message that ends it."""
+        return (
+            f"{self.done():,} of {self.asked:,} cases are stored, and the same command goes on "
+            f"from there"
+        )
+
+    def _whole(self, number: int) -> bool:
+        begin, end = self.bounds(number)
+        try:
+            if (mark := read_json(self._mark(number)))["ensemble"] != self.ensemble:
+                return False
+        except FileNotFoundError:
+            return False
+        except (DamageError, OSError, KeyError):
+            tell(
+                f"{self._mark(number)} is damaged or was edited: the cases {begin:,} to "
+                f"{end - 1:,} are run again"
+            )
+            return False
+        try:
+            whole = mark["digest"] == _digest(*self.read(begin, end))
+        except Exception:  # whatever zarr raises on damaged bytes, the remedy is the same
+            whole = False
+        if not whole:
+            tell(
+                f"{self.path / 'cases.zarr'} is damaged or was edited: the cases {begin:,} to "
+                f"{end - 1:,} are run again"
+            )
+        return whole
+
+    def _mark(self, number: int) -> Path:
+        return self.path / "done" / f"{number:06}.json"
+
+    def _read_mark(self, number: int) -> dict | None:
+        """What is told of a chunk, None before it is done. Raises StoreError where that is
+        damaged."""
+        try:
+            return read_json(self._mark(number))
+        except FileNotFoundError:
+            return None
+        except (DamageError, OSError) as fault:
+            raise StoreError(
+                f"{self._mark(number)} is damaged or was edited; the same command runs its cases "
+                f"again"
+            ) from fault
+
+    def read(self, begin: int, end: int) -> tuple[Columns, np.ndarray]:
+        """Results, and inputs (n, k), of the cases ``begin`` to ``end`` - 1; status -1 in those
+        that did not run yet."""
+        found = Columns(*(self._arrays[name][begin:end] for name in Columns._fields))
+        return found, np.array([place[begin:end] for place in self._inputs]).reshape(
+            len(self.names), -1
+        ).T
+
+    def column(self, name: str, begin: int = 0, end: int | None = None) -> np.ndarray:
+        """One of the results of the cases ``begin`` to ``end`` - 1, absent: of all."""
+        return self._arrays[name][begin:end]
+
+    def done(self) -> int:
+        """Cases that are stored."""
+        return sum(
+            end - begin
+            for begin, end in (
+                self.bounds(number) for number in range(len(self)) if self._mark(number).is_file()
+            )
+        )
+
+    def failures(self) -> list[dict]:
+        """Case number, status, reason and inputs of each case that was refused or diverged. Raises
+        StoreError where the list is damaged."""
+        return [
+            failure
+            for number in range(len(self))
+            for failure in (self._read_mark(number) or {"failures": []})["failures"]
+        ]
+
+    def digest(self) -> str:
+        """Hexadecimal digest of all numbers, the same for every run of one ensemble."""
+        return content_hash(
+            [(self._read_mark(number) or {}).get("digest") for number in range(len(self))]
+        )
+
+    def results(self) -> tuple[Columns, list[str]]:
+        """Results of all cases, and a message each."""
+        messages = [""] * self.asked
+        for number in range(len(self)):
+            mark = self._read_mark(number) or {"failures": [], "warnings": {}}
+            for failure in mark["failures"]:
+                messages[failure["case"]] = failure["reason"]
+            for case, text in mark["warnings"].items():
+                messages[int(case)] = text
+        return Columns(*map(self.column, Columns._fields)), messages
+
+
+def _attributes(path: Path) -> dict | None:
+    """What the store at ``path`` says of itself; None where there is nothing, or it does not fit
+    its digest."""
+    try:
+        found = json.loads((path / "cases.zarr" / "zarr.json").read_bytes())["attributes"]
+        return found if fits_digest(found) else None
+    except (OSError, ValueError, KeyError, TypeError, AttributeError):
+        return None
+
+
+def _alike(there: bytes, new: bytes) -> bool:
+    """Whether two descriptions (JSON) are the same, apart from attributes that fit a digest of
+    their own."""
+    try:
+        found, expected = json.loads(there), json.loads(new)
+        if fits_digest(found["attributes"]):
+            found["attributes"] = expected["attributes"]
+        return found == expected
+    except (ValueError, KeyError, TypeError, AttributeError):
+        return False
+
+
+def _digest(results: Columns, inputs: np.ndarray) -> str:
+    digest = hashlib.sha256()
+    for name, values in zip(Columns._fields, results):
+        digest.update(np.ascontiguousarray(values, dtype=_type(name)).data)
+    digest.update(np.ascontiguousarray(inputs).data)
+    return digest.hexdigest()
+
+
+def _type(name: str) -> str:
+    return {"status": "i1", "steps": "i8"}.get(name, "f8")
+
+
+def _plain(row: Mapping[str, Any]) -> dict[str, Any]:
+    """Inputs as JSON has them: text for what is neither a finite number nor text."""
+    return {
+        key: value
+        if isinstance(value, (str, int)) or (isinstance(value, float) and np.isfinite(value))
+        else repr(value)
+        for key, value in row.items()
+    }
+
+
+def _zarr():
+    try:
+        import zarr
+    except ImportError:
+        raise StoreError("a store needs zarr: pip install 'tipoff[ensemble]'") from None
+    return zarr

@@ -1,0 +1,139 @@
+"""Cases of an ensemble from a CSV file, held as columns of numbers."""
+
+import csv
+import hashlib
+import json
+from array import array
+from collections.abc import Callable, Iterator
+from functools import partial
+from itertools import chain, repeat
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from tipoff.scenes import overrides as keys
+from tipoff.scenes import units
+from tipoff.scenes.faults import Fault, SceneError
+from tipoff.scenes.scene import Scene
+
+_TOO_MANY, _TOO_FEW = "cells beyond the header", "a missing cell"
+
+
+class TableFile:
+    """Cases of a CSV file: dotted keys in its header, units in the second line or in each cell, one
+    case a line; an empty cell leaves the scene's own value. A cell that is no number of its unit
+    stays text, for the scene to refuse that one case.
+
+    Raises SceneError for a file that cannot be read, and for keys and units that do not fit a
+    scene.
+    """
+
+    def __init__(self, path: str | Path):
+        self._odd: dict[int, dict[str, str]] = {}
+        try:
+            with open(path, newline="", encoding="utf-8-sig") as stream:
+                lines: Iterator[list[str]] = filter(None, csv.reader(stream, strict=True))
+                self.keys = _header(str(path), next(lines, []))
+                self._columns = [array("d") for _ in self.keys]
+                wanted = [keys.unit(Scene, key) for key in self.keys]
+                second = next(lines, [])
+                readers: list[Callable[[str], float]]
+                if units.are_units(second):
+                    readers = [
+                        partial(_number, factor)
+                        for factor in _factors(str(path), self.keys, wanted, second)
+                    ]
+                else:
+                    readers = [partial(_quantity, unit) for unit in wanted]
+                    lines = chain([second] if second else [], lines)
+                for line in lines:
+                    self._append(line, readers)
+        except (OSError, UnicodeDecodeError, csv.Error) as error:
+            raise SceneError(
+                [Fault(str(path), "file", str(error), "a readable CSV file")]
+            ) from error
+        self.asked = len(self._columns[0])
+        digest = hashlib.sha256(json.dumps([self.keys, list(self._odd.items())]).encode())
+        for column in self._columns:
+            digest.update(column)
+        self.identity = {"table": digest.hexdigest(), "cases": self.asked}
+
+    def _append(self, line: list[str], readers: list[Callable[[str], float]]) -> None:
+        number, odd = len(self._columns[0]), {}
+        for key, column, read, text in zip(
+            self.keys, self._columns, readers, chain(line, repeat(_TOO_FEW))
+        ):
+            column.append(value := read(text))
+            if value != value and text.strip():
+                odd[key] = text.strip()
+        if len(line) > len(self.keys):
+            odd[_TOO_MANY] = ", ".join(line[len(self.keys) :])
+        if odd:
+            self._odd[number] = odd
+
+    def rows(self, begin: int, end: int) -> list[dict[str, Any]]:
+        """Overrides of the cases ``begin`` to ``end`` - 1."""
+        # NaN marks a cell that is empty or text
+        found = [
+            {key: value for key, value in zip(self.keys, values) if value == value}
+            for values in zip(*(column[begin:end] for column in self._columns))
+        ]
+        for number, row in enumerate(found, begin):
+            row.update(self._odd.get(number, {}))
+        return found
+
+
+def _header(path: str, header: list[str]) -> list[str]:
+    names = [name.strip() for name in header]
+    faults = [
+        Fault(
+            path,
+            name or "header",
+            "twice" if keys.is_key(Scene, name) else repr(name),
+            "a dotted key of a scene, once",
+        )
+        for place, name in enumerate(names)
+        if not keys.is_key(Scene, name) or name in names[:place]
+    ]
+    if faults or not names:
+        raise SceneError(faults or [Fault(path, "header", "nothing", "dotted keys of a scene")])
+    return names
+
+
+def _factors(
+    path: str, names: list[str], wanted: list[str | None], units_given: list[str]
+) -> list[float]:
+    """Factors to SI, NaN for a key that holds no number."""
+    faults, factors = [], []
+    for name, unit, text in zip(names, wanted, chain(units_given, repeat(""))):
+        try:
+            factors.append(
+                np.nan if unit is None else units.to_si(f"1 {text}", unit or "dimensionless")
+            )
+        except ValueError as error:
+            faults.append(Fault(path, name, repr(text), str(error)))
+    if faults:
+        raise SceneError(faults)
+    return factors
+
+
+def _number(factor: float, text: str) -> float:
+    try:
+        return float(text) * factor
+    except ValueError:
+        return np.nan
+
+
+def _quantity(unit: str | None, text: str) -> float:
+    """SI value of a cell such as "0.1 deg"; the same bits as ``units.to_si``, which reads a unit
+    anew for every number."""
+    number, _, given = text.strip().partition(" ")
+    try:
+        return (
+            np.nan
+            if unit is None
+            else float(number) * units.to_si(f"1 {given}", unit or "dimensionless")
+        )
+    except ValueError:
+        return np.nan

@@ -1,2 +1,0 @@
-"""Walls that give way: pads pressed through cells of their faces on the static flexibility of the
-rail (data: ``scenes.walls``)."""

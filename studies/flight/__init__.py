@@ -1,2 +1,0 @@
-"""After separation: free rotation, relative motion in orbit, clearance of boxes, and what becomes
-of a payload."""

@@ -1,0 +1,1 @@
+"""Which velocity and which angular rates does a payload leave its rail with?"""

@@ -1,0 +1,1 @@
+"""What every compiled kernel rests on: compilation, aligned arrays, rotations."""

@@ -1,0 +1,135 @@
+"""Numba settings shared by every kernel, and a disk cache that cannot go stale.
+
+Numba keys its cache by the file of the compiled function: a kernel whose *callee* in another file
+changed is loaded from disk with the old callee inside, and an edited docstring compiles all kernels
+of its file again. Here the compiled kernels of a module lie in a folder that is named by the digest
+of the code that the module depends on (``sources``).
+"""
+
+import functools
+import hashlib
+import os
+from collections.abc import Callable
+from types import CodeType, FunctionType
+from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeVar, overload
+
+import numba
+from numba.core.caching import _CacheLocator
+
+from tipoff import sources
+
+if TYPE_CHECKING:
+    from numba.core.dispatcher import Dispatcher
+
+# Numba names its settings while it loads, where no type checker sees them.
+_settings: Any = numba.config
+_Function = TypeVar("_Function", bound=Callable[..., object])
+
+
+class Compiler(Protocol):
+    """A decorator that makes a kernel of a function, bare or with options. A kernel is called as
+    the function is, and tells of its compilation besides."""
+
+    @overload
+    def __call__(self, function: _Function, /) -> "Dispatcher[_Function]": ...
+    @overload
+    def __call__(self, /, *, inline: Literal["never", "always"]) -> "Compiler": ...
+
+
+def kernel_digest(module: str) -> str:
+    """Hexadecimal digest (16 digits) of the code that the kernels of a ``module`` (dotted name)
+    depend on, of the Numba version and its optimisation level."""
+    settings = f"{numba.__version__} {_settings.OPT!r} {sources.digest(module)}"
+    return hashlib.sha256(settings.encode()).hexdigest()[:16]
+
+
+class KernelCacheLocator(_CacheLocator):
+    """Where Numba keeps the compiled kernels of a module, and by what it tells them apart."""
+
+    def __init__(self, function: FunctionType):
+        self._digest = kernel_digest(function.__module__)
+        self._place = sources.cache_folder() / "kernels" / f"{function.__module__}-{self._digest}"
+        self._code = _digest_of_code(function.__code__)
+
+    @classmethod
+    def from_function(cls, py_func: FunctionType, py_file: str) -> "KernelCacheLocator | None":
+        """The place of a kernel of this project, None for any other function."""
+        if sources.path(py_func.__module__) is None:
+            return None
+        locator = cls(py_func)
+        locator.ensure_cache_path()
+        return locator
+
+    def get_cache_path(self) -> str:
+        """Folder of the module's kernels."""
+        return str(self._place)
+
+    def get_source_stamp(self) -> str:
+        """What a stored kernel must have been compiled from."""
+        return self._digest
+
+    def get_disambiguator(self) -> str:
+        """Tells functions of one name in one module apart."""
+        return self._code
+
+
+def _digest_of_code(code: CodeType) -> str:
+    """Hexadecimal digest (8 digits) of ``code`` without its line numbers and docstring."""
+    constants = [
+        _digest_of_code(item) if isinstance(item, CodeType) else repr(item)
+        for item in code.co_consts[1:]  # the first one is the docstring, or None
+    ]
+    parts = (code.co_code, code.co_names, code.co_varnames, code.co_freevars, constants)
+    return hashlib.sha256(repr(parts).encode()).hexdigest()[:8]
+
+
+# Kernels are compiled as parts of those that call them, each time from code that was optimised
+# before. At level 3 the first pass turns vectors of states into scalars, which the next one does
+# not mend: the surrogate then takes half as long again.
+if "NUMBA_OPT" not in os.environ:
+    _settings.OPT = type(_settings.OPT)("max")
+
+_settings.CACHE_LOCATOR_CLASSES = f"{__name__}.KernelCacheLocator,UserProvidedCacheLocator"
+_settings.CACHE_DIR = str(sources.cache_folder() / "kernels")
+
+if TYPE_CHECKING:
+    njit: Compiler
+    kernel: Compiler
+    inlined: Compiler
+else:
+    # error_model="numpy": division by zero gives inf, which reaches the status check, instead of an
+    # exception inside a kernel.
+    njit = functools.partial(numba.njit, cache=True, error_model="numpy", nogil=True)
+    # For kernels that neither make nor return arrays: without reference counts, which cost more
+    # than the arithmetic where records of arrays are handed from function to function, and half the
+    # time to compile.
+    kernel = functools.partial(njit, _nrt=False)
+    # The same for what innermost loops call with whole records: each call would copy some hundred
+    # words of array headers.
+    inlined = functools.partial(kernel, forceinline=True)
+
+
+def machine_code(kernel, arguments: tuple) -> bytes:
+    """Object code of ``kernel`` for the types of ``arguments``, the very code that runs: what it
+    does not name, it cannot call.
+
+    Read from the disk cache, since Numba keeps no copy of code once it is loaded. Raises
+    RuntimeError without a cache.
+    """
+    signature = tuple(numba.typeof(argument) for argument in arguments)
+    kernel.compile(signature)
+    cache = kernel._cache
+    stored = cache._cache_file.load(cache._index_key(signature, kernel.targetctx.codegen()))
+    if stored is None:
+        raise RuntimeError(f"no compiled {kernel.__name__} in {cache.cache_path}")
+    (_, _, (code, _)), *_ = stored
+    return code
+
+
+def contains(code: bytes, function) -> bool:
+    """Whether object ``code`` holds the compiled ``function``, called or inlined: Numba leaves one
+    symbol for each, in which module and name stand with their lengths, so that no other name can be
+    taken for it."""
+    python = function.py_func
+    parts = (*python.__module__.split("."), *python.__qualname__.split("."))
+    return ("NumbaEnv" + "".join(f"{len(part)}{part}" for part in parts) + "B").encode() in code

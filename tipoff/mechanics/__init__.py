@@ -1,0 +1,1 @@
+"""What both solvers share: records, exit, trajectory, energy and momentum, rail compliance."""

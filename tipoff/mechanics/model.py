@@ -1,0 +1,229 @@
+"""What kernels of both fidelities are given: constant records made once from a scene, None where an
+effect is absent.
+
+Places on the payload are measured from its *actual* mass centre in body axes; places on the rail
+from the platform's mass centre at ignition (the scene origin when the platform is fixed), in
+platform axes, which coincide with scene axes then.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from tipoff.scenes.body import tensor
+from tipoff.scenes.effects import contact, thrust, thrust_offset
+from tipoff.scenes.effects.friction import Friction
+from tipoff.scenes.effects.gravity import Gravity
+from tipoff.scenes.effects.initial import Initial
+from tipoff.scenes.effects.platform import Platform
+from tipoff.scenes.effects.sticking import Sticking
+from tipoff.scenes.effects.thermal import Thermal
+from tipoff.scenes.rail import SectionTable
+from tipoff.scenes.scene import Scene
+
+# Tables of a scene whose records may be kept.
+_REUSED = (
+    "payload",
+    "pads",
+    "rail",
+    "thrust",
+    "initial",
+    "contact",
+    "friction",
+    "platform",
+    "thermal",
+)
+
+
+class Payload(NamedTuple):
+    """Mass (kg), inertia about the mass centre (3,3), its inverse, and the mass centre at rest in
+    scene axes (m)."""
+
+    mass: float
+    inertia: np.ndarray
+    inverse_inertia: np.ndarray
+    mass_centre: tuple
+
+
+class Faces(NamedTuple):
+    """Pad faces, f of them, and the rail walls they may touch.
+
+    centre (f,3) m in body axes; axis (f,) 1 or 2, the normal's axis; sign (f,) of the normal;
+    half_length and half_width (f,) m; relief (f,) m; wall (f,) m, coordinate of the undeformed wall
+    along axis in platform axes; pad (f,) index.
+    """
+
+    centre: np.ndarray
+    axis: np.ndarray
+    sign: np.ndarray
+    half_length: np.ndarray
+    half_width: np.ndarray
+    relief: np.ndarray
+    wall: np.ndarray
+    pad: np.ndarray
+
+
+class Plate(NamedTuple):
+    """What bounds every wall besides the ends of the rail: its thickness (m); the leg (m), which no
+    wall is wider than; and where each face stands across the rail when it is centred, across (f,) m
+    in platform axes. A rail given as a file that does not say its thickness or leg is taken to have
+    those of the built-in section."""
+
+    thickness: float
+    leg: float
+    across: np.ndarray
+
+
+class Model(NamedTuple):
+    """All records of one scene. ``rail_start`` and ``rail_end`` (m) are X in platform axes."""
+
+    payload: Payload
+    faces: Faces
+    plate: Plate
+    rail_start: float
+    rail_end: float
+    thrust: thrust.Thrust
+    reacts_on_platform: bool
+    thrust_offset: thrust_offset.ThrustOffset | None
+    contact: contact.Laws | None
+    penalty: float | None
+    friction: Friction | Sticking | None
+    platform: Platform | None
+    gravity: Gravity | None
+    thermal: Thermal | None
+    initial: Initial
+    thrust_arm: float
+
+
+class Built(NamedTuple):
+    """A model, the scene it was made from, and its faces measured from the nominal mass centre."""
+
+    scene: Scene
+    model: Model
+    nominal: Faces
+
+
+def build(scene: Scene) -> Model:
+    """Records of ``scene``."""
+    return built(scene).model
+
+
+def built(scene: Scene, known: Built | None = None) -> Built:
+    """Records of ``scene``; those that come from the very tables of a ``known`` scene are taken
+    from there."""
+    same = (
+        {name for name in _REUSED if getattr(known.scene, name) is getattr(scene, name)}
+        if known
+        else set()
+    )
+
+    def kept(*names: str) -> Built | None:
+        """What is known, where it comes from these very tables."""
+        return known if same.issuperset(names) else None
+
+    offset = scene.mass_offset.eccentricity.offset() if scene.mass_offset else (0.0, 0.0, 0.0)
+    platform = (
+        old.model.platform
+        if (old := kept("platform"))
+        else scene.platform.record()
+        if scene.platform
+        else None
+    )
+    origin = platform.mass_centre[0] if platform else 0.0
+    standing = kept("pads", "rail", "contact", "platform")
+    nominal = standing.nominal if standing else _faces(scene, platform)
+    return Built(
+        scene,
+        Model(
+            payload=_payload(
+                scene, offset, old.model.payload if (old := kept("payload")) else None
+            ),
+            faces=nominal._replace(centre=nominal.centre - np.array(offset)),
+            plate=standing.model.plate if standing else _plate(scene, nominal, platform),
+            rail_start=scene.rail.start - origin,
+            rail_end=scene.rail.end - origin,
+            thrust=old.model.thrust if (old := kept("thrust")) else scene.thrust.record(),
+            reacts_on_platform=scene.thrust.reaction == "platform",
+            thrust_offset=thrust_offset.record(
+                scene.thrust_offset, scene.mass_offset, scene.thrust.arm
+            ),
+            contact=old.model.contact
+            if (old := kept("contact"))
+            else contact.laws(scene.contact.record())
+            if scene.contact
+            else None,
+            penalty=scene.contact.penalty if scene.contact else None,
+            # Friction without contact has no normal force to act on, so it is absent too.
+            friction=(
+                old.model.friction
+                if (old := kept("friction", "contact"))
+                else scene.friction.record()
+                if scene.friction and scene.contact
+                else None
+            ),
+            platform=platform,
+            gravity=scene.gravity.record() if scene.gravity else None,
+            thermal=old.model.thermal
+            if (old := kept("rail", "thermal"))
+            else scene.thermal.record(scene.rail)
+            if scene.thermal
+            else None,
+            initial=old.model.initial
+            if (old := kept("initial"))
+            else scene.initial.record()
+            if scene.initial
+            else Initial(),
+            thrust_arm=scene.thrust.arm,
+        ),
+        nominal,
+    )
+
+
+def _payload(scene: Scene, offset: tuple, known: Payload | None) -> Payload:
+    if known is not None:
+        return known._replace(mass_centre=offset)
+    inertia = tensor(scene.payload.inertia)
+    return Payload(scene.payload.mass, inertia, np.linalg.inv(inertia), offset)
+
+
+def _plate(scene: Scene, nominal: Faces, platform: Platform | None) -> Plate:
+    origin = np.array(platform.mass_centre if platform else (0.0, 0.0, 0.0))
+    thickness, leg = (
+        getattr(scene.rail, name) or SectionTable.model_fields[name].default
+        for name in ("thickness", "leg")
+    )
+    return Plate(
+        thickness, leg, (nominal.centre - origin)[np.arange(nominal.axis.size), 3 - nominal.axis]
+    )
+
+
+def _faces(scene: Scene, platform: Platform | None) -> Faces:
+    """Faces with their centres measured from the nominal mass centre."""
+    origin = platform.mass_centre if platform else (0.0, 0.0, 0.0)
+    clearance = scene.contact.clearance if scene.contact else 0.0
+    gap = scene.rail.gap(clearance)
+    rows = []
+    for index, pad in enumerate(scene.pads):
+        corner = np.array(pad.position)
+        for normal in pad.normals:
+            axis, sign = "xyz".index(normal[1]), 1.0 if normal[0] == "+" else -1.0
+            across = 3 - axis
+            centre = corner.copy()
+            centre[across] -= np.sign(corner[across]) * pad.inset
+            # a shim, where the walls of a file stand off the pads by another clearance
+            centre[axis] += sign * (gap - clearance)
+            wall = corner[axis] + sign * gap - origin[axis]
+            rows.append(
+                (centre, axis, sign, pad.length / 2, pad.width / 2, pad.relief, wall, index)
+            )
+    columns = list(zip(*rows))
+    return Faces(
+        centre=np.array(columns[0]),
+        axis=np.array(columns[1], dtype=np.int64),
+        sign=np.array(columns[2]),
+        half_length=np.array(columns[3]),
+        half_width=np.array(columns[4]),
+        relief=np.array(columns[5]),
+        wall=np.array(columns[6]),
+        pad=np.array(columns[7], dtype=np.int64),
+    )

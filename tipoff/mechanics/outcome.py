@@ -1,0 +1,129 @@
+"""What became of an ejection: exit, settled velocity and rate, jam. One home for the definitions,
+used by both fidelities.
+
+* **Exit**: first instant at which the trailing edge of the last pad face is past the rail end.
+* **Settled window**: 2 ms from the later of exit + 1 ms and thrust below 0.1 % of its peak; settled
+  values are means over it.
+* **Jammed**: after thrust fell below 1 % of its peak, or under constant thrust, relative axial
+  speed below the friction transition speed (10 mm/s where friction has none) for 5 ms.
+
+All of it is read from the steps of a run (``mechanics.ending``), whatever is sampled.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from tipoff.kernels import rotation
+from tipoff.kernels.jit import kernel
+from tipoff.scenes.effects import thrust
+from tipoff.scenes.effects.friction import Friction
+from tipoff.scenes.scene import Scene
+
+SETTLE_DELAY = 1e-3
+SETTLE_WINDOW = 2e-3
+JAM_DURATION = 5e-3
+
+
+class Motion(NamedTuple):
+    """Sampled motion, named as in Trajectory."""
+
+    time: np.ndarray
+    position: np.ndarray
+    velocity: np.ndarray
+    quaternion: np.ndarray
+    rate: np.ndarray
+    platform_position: np.ndarray
+    platform_velocity: np.ndarray
+    platform_quaternion: np.ndarray
+    platform_rate: np.ndarray
+
+
+class Outcome(NamedTuple):
+    """Exit time (s), settled window start (s), means over it: velocity (m/s), rate (rad/s); lateral
+    velocity (m/s), direction error of the velocity (rad). At the exit: attitude of the payload as a
+    rotation vector (rad), its position (m), and position (m), velocity (m/s), attitude (rad) and
+    rate (rad/s) of the platform. All None unless the payload exited and settled."""
+
+    exit_time: float | None = None
+    window_start: float | None = None
+    velocity: list[float] | None = None
+    rate: list[float] | None = None
+    lateral_velocity: float | None = None
+    direction_error: float | None = None
+    exit_attitude: list[float] | None = None
+    exit_position: list[float] | None = None
+    exit_platform_position: list[float] | None = None
+    exit_platform_velocity: list[float] | None = None
+    exit_platform_attitude: list[float] | None = None
+    exit_platform_rate: list[float] | None = None
+
+
+class Milestones(NamedTuple):
+    """What a scene fixes beforehand: thrust below 0.1 % and 1 % of its peak (s), the jam speed
+    (m/s), whether thrust is constant."""
+
+    settled_thrust: float
+    spent_thrust: float
+    jam_speed: float
+    constant_thrust: bool
+
+
+def milestones(scene: Scene, model) -> Milestones:
+    """Instants and speed that decide what becomes of a run of ``scene``."""
+    settled, spent = thrust.burnouts(model.thrust, (1e-3, 1e-2), scene.duration)
+    return Milestones(
+        settled_thrust=settled,
+        spent_thrust=spent,
+        jam_speed=jam_speed(model),
+        constant_thrust=scene.thrust.kind == "constant",
+    )
+
+
+def jam_speed(model) -> float:
+    """Relative axial speed (m/s) below which a payload may be jammed."""
+    return model.friction.static_speed if isinstance(model.friction, Friction) else 0.01
+
+
+def relative_motion(motion) -> dict[str, np.ndarray]:
+    """Payload position (m) and velocity (m/s) relative to the platform in its axes, and rate
+    (rad/s) in payload body axes."""
+    frame = rotation.matrices(motion.platform_quaternion)
+    separation = motion.position - motion.platform_position
+    spin = np.einsum("nij,nj->ni", frame, motion.platform_rate)
+    drift = motion.velocity - motion.platform_velocity - rotation.crosses(spin, separation)
+    body = rotation.matrices(motion.quaternion)
+    return {
+        "relative_position": np.einsum("nji,nj->ni", frame, separation),
+        "relative_velocity": np.einsum("nji,nj->ni", frame, drift),
+        "relative_rate": motion.rate - np.einsum("nji,nj->ni", body, spin),
+    }
+
+
+@kernel
+def window_start(exit_at, marks):
+    """Start (s) of the settled window of an exit at ``exit_at`` (s)."""
+    return max(exit_at + SETTLE_DELAY, marks.settled_thrust)
+
+
+def pressed_at_ignition(faces, forces: np.ndarray) -> str:
+    """A warning that names the pads on which there are ``forces`` (f,3) N before anything moves, or
+    nothing."""
+    pads = sorted(set(faces.pad[(forces != 0.0).any(axis=1)].tolist()))
+    return (
+        f"initial interference: pads {', '.join(map(str, pads))} press on the rail at ignition"
+        if pads
+        else ""
+    )
+
+
+def strike(faces, face: int, how: str, depth: float, place: float, time: float) -> str:
+    """Why a run ends at a pad that meets a wall where no contact is modelled: what it does
+    (``how``), with the penetration ``depth`` (m), the middle of the face standing at X = ``place``
+    (m, as the scene counts it at ignition), at ``time`` (s)."""
+    name = f"{'+' if faces.sign[face] > 0.0 else '-'}{'xyz'[faces.axis[face]]}"
+    return (
+        f"pad {faces.pad[face]} {how} of its rail with its face {name}, {depth * 1e3:.4g} mm "
+        f"behind the surface of the wall, "
+        f"X = {place:.6g} m, at {time:.6g} s: no contact is modelled there"
+    )

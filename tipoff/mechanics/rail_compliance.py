@@ -1,0 +1,290 @@
+"""How the walls of a rail give way under the pads: data found once for a rail and its pads, which
+the rigid surrogate can stand on.
+
+On pad face i, with xi along the rail and eta across it in [-1, 1], a pressure p moves the wall away
+from the payload by u::
+
+    u_i = sum_a U_ia phi_a(xi, eta),   P_jb = integral over face j of p phi_b dA,   U_ia = sum_jb F_iajb(travel) P_jb
+    phi = 1, xi, eta, xi^2, xi eta, eta^2
+
+F is symmetric and positive definite: the flexibility of linear statics, at every place the pads
+come to. Near an end of the rail a face keeps the last place where all of it has a wall under it,
+and xi goes on from there.
+
+Of this the lowest modes of the rail, mass-normalised and of frequencies omega_m, bring a part;
+without it statics has the rest::
+
+    U = F_res P + W q,   F_res = F - sum_m W_m W_m' / omega_m^2,   W_iam(travel) the displacement in mode m
+
+F_res is positive semidefinite, for it is what the other modes would bring. Where the rail is warm
+(``scenes.effects.thermal``) its walls stand away from their places before anything presses them, by
+T = sum_t amount_t warm_t of the same patterns, on top of which comes U; walls known to be warm and
+rigid have no F.
+"""
+
+import hashlib
+import zipfile
+import zlib
+from dataclasses import MISSING, dataclass, fields, replace
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+from tipoff.files import DamageError, content_hash, require_whole, sealed
+from tipoff.mechanics.models import COMPLIANT, SPRINGS
+from tipoff.scenes.effects.thermal import FIELDS
+from tipoff.scenes.faults import Fault, SceneError
+from tipoff.scenes.scene import Scene
+
+MODES = 20  # of each rail, kept beside its compliance
+PATTERNS = 6  # phi: all products of powers of xi and eta up to the second degree
+POWERS = np.array([[0, 0], [1, 0], [0, 1], [2, 0], [1, 1], [0, 2]])  # of xi and eta
+
+# of the largest eigenvalue of F: what the modes' own accuracy may take from an eigenvalue of zero
+_ROUNDING = 1e-9
+
+# Means over a face of products of two patterns: the mean of xi^n is 1 / (n + 1) for even n.
+_TOGETHER = POWERS[:, None] + POWERS
+GRAM = np.where((_TOGETHER % 2 == 0).all(axis=2), 1.0 / (_TOGETHER + 1.0).prod(axis=2), 0.0)
+
+
+@dataclass(frozen=True, eq=False)
+class Walls:
+    """travel (s,) m of the payload along X since ignition, evenly spaced; flexibility (s,f,p,f,p)
+    m/N; rail (f,) number of the rail each face is on; half (f,2) m, half the size of each face
+    along xi and eta, negative where eta runs against the axis; frequency (r,n) rad/s of the lowest
+    modes of each rail, ascending, and their shape W (s,f,p,n) 1/kg^0.5; made_for, digest of the
+    rail and pads; warm (t,s,f,p) m away from the payload under one of each field of temperature,
+    None where nobody asked. Rigid walls have None for their flexibility."""
+
+    travel: np.ndarray
+    flexibility: np.ndarray | None
+    rail: np.ndarray
+    half: np.ndarray
+    frequency: np.ndarray
+    shape: np.ndarray
+    made_for: str
+    warm: np.ndarray | None = None
+
+    def cubic(self, modes: int = 0) -> tuple[np.ndarray, np.ndarray]:
+        """Flexibility (s-1,f,f,p,p,4) without the part of the first ``modes``, and their shapes
+        (s-1,f,n,p,4), between stations: coefficients of the rising powers of the way (m) from the
+        one before. Raises ValueError as ``residual`` does."""
+        if modes not in self._cubics:
+            flexibility, shape = (
+                cubic(self.travel, table)
+                for table in (self.residual(modes), self.shape[..., :modes])
+            )
+            self._cubics[modes] = (
+                np.ascontiguousarray(flexibility.transpose(0, 1, 3, 2, 4, 5)),
+                np.ascontiguousarray(shape.transpose(0, 1, 3, 2, 4)),
+            )
+        return self._cubics[modes]
+
+    @cached_property
+    def _cubics(self) -> dict:
+        return {}
+
+    def residual(self, modes: int) -> np.ndarray:
+        """Flexibility (s,f,p,f,p) m/N without the part of the first ``modes`` of each rail. Raises
+        ValueError where this is no longer positive semidefinite: the modes are not those of the
+        rail the flexibility belongs to."""
+        flexibility = self._flexibility()
+        if modes == 0:
+            return flexibility
+        part = self.shape[..., :modes] / self.frequency[self.rail, None, :modes]
+        together = (self.rail[:, None] == self.rail)[:, None, :, None]
+        rest = flexibility - together * np.einsum("siam,sjbm->siajb", part, part)
+        size = rest.shape[1] * PATTERNS
+        lowest, largest = (
+            np.linalg.eigvalsh(table.reshape(-1, size, size))[:, end]
+            for table, end in ((rest, 0), (flexibility, -1))
+        )
+        if not (lowest >= -_ROUNDING * largest).all():
+            raise ValueError(
+                f"modes: given {modes} that give way more than the whole wall, expected modes of "
+                f"the same rail"
+            )
+        return rest
+
+    def _flexibility(self) -> np.ndarray:
+        """The flexibility of walls that are not rigid."""
+        assert self.flexibility is not None
+        return self.flexibility
+
+    def __getstate__(self) -> dict:
+        """What goes to another process: not what it can make by itself."""
+        return {field.name: getattr(self, field.name) for field in fields(self)}
+
+    @cached_property
+    def hash(self) -> str:
+        """Hexadecimal SHA-256 of all of it."""
+        digest = hashlib.sha256(self.made_for.encode())
+        for array in (
+            self.travel,
+            self.flexibility,
+            self.rail,
+            self.half,
+            self.frequency,
+            self.shape,
+            self.warm,
+        ):
+            if array is not None:
+                digest.update(np.ascontiguousarray(array).tobytes())
+        return digest.hexdigest()
+
+    def compliance(self) -> np.ndarray:
+        """Mean displacement (s,f,f) in m/N of each face under a unit force spread evenly over
+        each."""
+        return (GRAM @ self._flexibility().transpose(0, 1, 3, 2, 4) @ GRAM)[..., 0, 0]
+
+    def rigid(self) -> "Walls":
+        """The same walls for a contact law to stand on: where they are when they are warm, and
+        nothing of how they give way."""
+        return replace(self, flexibility=None)
+
+    def moved(self, amounts: np.ndarray) -> np.ndarray:
+        """W (s,f,p) m by ``amounts`` (t,) of the fields of temperature."""
+        assert self.warm is not None
+        return np.tensordot(amounts, self.warm, 1)
+
+    def restricted(self, patterns: int = PATTERNS, coupled: bool = True) -> "Walls":
+        """The same walls with the first so many patterns of pressure and displacement by load only,
+        and, unless ``coupled``, each face by itself, without modes then, which faces have in
+        common: what a simpler model knows of them."""
+        kept = np.arange(PATTERNS) < patterns
+        known = self._flexibility()
+        blocks = (GRAM @ known.transpose(0, 1, 3, 2, 4) @ GRAM)[..., kept, :][..., kept]
+        inverse = np.linalg.inv(GRAM[np.ix_(kept, kept)])
+        flexibility = np.zeros_like(known)
+        flexibility[:, :, :patterns, :, :patterns] = (inverse @ blocks @ inverse).transpose(
+            0, 1, 3, 2, 4
+        )
+        frequency, shape = self.frequency, np.zeros_like(self.shape)
+        shape[:, :, :patterns] = inverse @ (GRAM @ self.shape)[:, :, kept]
+        if not coupled:
+            flexibility *= np.eye(len(self.rail))[None, :, None, :, None]
+            frequency, shape = frequency[:, :0], shape[..., :0]
+        return replace(self, flexibility=flexibility, frequency=frequency, shape=shape)
+
+    def require(self, scene: Scene) -> None:
+        """Raises SceneError where ``scene`` has another rail or other pads than these walls were
+        found for, or a temperature of which they do not know."""
+        if self.made_for != digest(scene):
+            raise SceneError(
+                [
+                    Fault(
+                        scene.name,
+                        "rail",
+                        "another rail, or other pads",
+                        "those the walls were found for: find them anew",
+                    )
+                ]
+            )
+        if scene.thermal is not None and self.warm is None:
+            raise SceneError(
+                [
+                    Fault(
+                        scene.name,
+                        "thermal",
+                        "walls that know of no temperature",
+                        "walls found for warm rails: find them anew",
+                    )
+                ]
+            )
+
+    def save(self, path: str | Path) -> None:
+        """Write atomically, as arrays with their digest."""
+        with sealed(path) as temporary, open(temporary, "wb") as stream:
+            np.savez_compressed(
+                stream,
+                **{name: value for name, value in self.__getstate__().items() if value is not None},
+            )
+
+    @classmethod
+    def load(cls, path: str | Path) -> "Walls":
+        """Read what ``save`` wrote. Raises FileNotFoundError, or ValueError for a foreign file or
+        one that its digest does not fit."""
+        try:
+            require_whole(path)
+            with np.load(path, allow_pickle=False) as found:
+                arrays = {
+                    field.name: found[field.name]
+                    for field in fields(cls)
+                    if field.default is MISSING or field.name in found
+                }
+            walls = cls(**arrays | {"made_for": str(arrays["made_for"])})
+            walls._require_whole()
+        except DamageError as fault:
+            raise ValueError(f"{path}: not a file of walls: it {fault.reason}") from fault
+        # TypeError: a lone array
+        except (zipfile.BadZipFile, zlib.error, KeyError, EOFError, TypeError, ValueError) as error:
+            raise ValueError(f"{path}: not a file of walls ({error})") from error
+        return walls
+
+    def _require_whole(self) -> None:
+        """Raises ValueError where shapes do not belong together or a number is not finite."""
+        stations, faces = self.travel.size, self.rail.size
+        modes = self.frequency.shape[-1]
+        expected = {
+            "travel": (stations,),
+            "flexibility": (stations, faces, PATTERNS, faces, PATTERNS),
+            "rail": (faces,),
+            "half": (faces, 2),
+            "frequency": (int(self.rail.max()) + 1, modes),
+            "shape": (stations, faces, PATTERNS, modes),
+        }
+        if self.warm is not None:
+            expected["warm"] = (FIELDS, stations, faces, PATTERNS)
+        for name, shape in expected.items():
+            array = getattr(self, name)
+            if array.shape != shape or not np.isfinite(array).all():
+                raise ValueError(
+                    f"{name}: given shape {array.shape}, expected finite numbers in the shape "
+                    f"{shape}"
+                )
+        if stations < 2:
+            raise ValueError(f"travel: given {stations} stations, expected at least 2")
+
+
+def model_of(scene: Scene, walls: Walls | None) -> str:
+    """The surrogate that ``scene`` has on ``walls``: springs on rigid ones or on none. Without
+    contact both are one, the default."""
+    flexible = walls is not None and walls.flexibility is not None
+    return COMPLIANT if flexible or scene.contact is None else SPRINGS
+
+
+def require_modes(source: str, walls: Walls | None, modes: int) -> None:
+    """Raises SceneError, naming ``source``, where ``walls`` do not have so many ``modes``."""
+    if walls is not None and modes > (known := walls.frequency.shape[1]):
+        raise SceneError(
+            [
+                Fault(
+                    source,
+                    "numerics.modes",
+                    str(modes),
+                    f"at most {known}, the modes this rail compliance holds",
+                )
+            ]
+        )
+
+
+def cubic(travel: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Cubic spline (s-1,...,4) through ``values`` (s,...) at ``travel`` (s,) m: coefficients of the
+    rising powers of the way (m) from the station before."""
+    from scipy.interpolate import CubicSpline
+
+    if not values.size:
+        return np.zeros((len(travel) - 1, *values.shape[1:], 4))
+    return np.ascontiguousarray(np.moveaxis(CubicSpline(travel, values).c[::-1], 0, -1))
+
+
+def digest(scene: Scene) -> str:
+    """Hexadecimal digest of what walls depend on. The clearance is not part of it:
+    it moves pads over a leg by a hundredth of its width."""
+    described = scene.model_dump(mode="json", include={"rail", "pads"})
+    described["rail"] |= scene.rail.contents()
+    described["rail"].pop("damping", None)  # statics
+    described["rail"]["material"].pop("expansion", None)  # found for one of each field
+    return content_hash(described)

@@ -1,0 +1,259 @@
+"""The result of one run, the same in both fidelities: names, units and coordinates, and a netCDF
+file of it.
+
+Positions and velocities are of the payload's mass centre, inertial, in initial scene axes; rates
+are in body axes; quaternions are scalar first, body to inertial. Ledgers and momenta are those of
+the frame a run is solved in, which moves with the platform's mass centre as that moves at ignition
+(``mechanics.comoving``).
+"""
+
+import functools
+import json
+import math
+from dataclasses import dataclass, field, fields
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tipoff.files import DamageError, require_whole, sealed
+from tipoff.mechanics import ledger, outcome
+from tipoff.mechanics.models import MODELS
+
+if TYPE_CHECKING:
+    import xarray
+
+STATUSES = ("exited", "time_limit", "jammed", "diverged", "refused")
+_VECTOR = ("x", "y", "z")
+_DIMENSIONS = {
+    "position": ("time", "axis"),
+    "velocity": ("time", "axis"),
+    "quaternion": ("time", "component"),
+    "rate": ("time", "axis"),
+    "platform_position": ("time", "axis"),
+    "platform_velocity": ("time", "axis"),
+    "platform_quaternion": ("time", "component"),
+    "platform_rate": ("time", "axis"),
+    "pad_force": ("time", "face", "axis"),
+    "energy": ("time", "entry"),
+    "transverse_energy": ("time", "entry"),
+    "wall_stress": ("time", "patch", "stress_component"),
+}
+_PLAIN = ("checks", "cost", "scene", "numerics", "versions", "stress")
+_STRESS = ("xx", "yy", "zz", "xy", "yz", "zx")
+_UNITS = {
+    "position": "m",
+    "velocity": "m/s",
+    "quaternion": "1",
+    "rate": "rad/s",
+    "platform_position": "m",
+    "platform_velocity": "m/s",
+    "platform_quaternion": "1",
+    "platform_rate": "rad/s",
+    "pad_force": "N",
+    "energy": "J",
+    "transverse_energy": "J",
+    "wall_stress": "Pa",
+}
+
+
+@functools.cache
+def _versions() -> dict[str, str]:
+    found = {}
+    for name in ("tipoff", "numpy", "scipy", "numba", "scikit-fem", "gmsh"):
+        try:
+            found[name] = version(name)
+        except PackageNotFoundError:
+            found[name] = "not installed"
+    return found
+
+
+def versions() -> dict[str, str]:
+    """Versions of the libraries a result depends on."""
+    # Looked up once: reading the metadata anew takes longer than a whole run of the surrogate.
+    return dict(_versions())
+
+
+@dataclass(frozen=True, eq=False)
+class Trajectory:
+    """Sampled motion of payload and platform, pad forces on the payload (scene axes) and both
+    energy ledgers.
+
+    Arrays have the samples first: time (n,) s, vectors (n,3), quaternions (n,4), pad_force (n,f,3)
+    N, ledgers (n, len(ledger.ENTRIES)) J. ``checks`` holds the kept promises (dimensionless),
+    ``cost`` wall_s, compile_s, steps, dt_s and what a model adds, ``scene`` the resolved inputs. A
+    diverged or refused run has no settled values.
+
+    A run with flexible rails also says what they bear. ``stress``: peak_stress_pa, the largest von
+    Mises stress, at peak_stress_place_m (scene axes, undeformed) of peak_stress_rail at
+    peak_stress_time_s; yield_strength_pa or None; largest_strain, largest_rotation_rad; warnings,
+    words about what these make doubtful; patch_places_m of the w patches whose mean stress in
+    platform axes is ``wall_stress`` (n,w,6) Pa. A rigid rail has none: None, and no patches; nor
+    does a run that diverged say how strong its rails must be.
+
+    ``model`` is one of ``mechanics.models.MODELS``. Raises ValueError for another one, for an
+    unknown status, arrays that do not fit each other, and any NaN or inf, naming where it is.
+    """
+
+    model: str
+    status: str
+    time: np.ndarray
+    position: np.ndarray
+    velocity: np.ndarray
+    quaternion: np.ndarray
+    rate: np.ndarray
+    platform_position: np.ndarray
+    platform_velocity: np.ndarray
+    platform_quaternion: np.ndarray
+    platform_rate: np.ndarray
+    pad_force: np.ndarray
+    energy: np.ndarray
+    transverse_energy: np.ndarray
+    outcome: outcome.Outcome
+    checks: dict[str, float]
+    cost: dict[str, float]
+    scene: dict
+    message: str = ""
+    numerics: dict = field(default_factory=dict)
+    stress: dict | None = None
+    wall_stress: np.ndarray | None = None
+    versions: dict[str, str] = field(default_factory=versions)
+
+    def __post_init__(self):
+        if self.status not in STATUSES:
+            raise ValueError(f"status {self.status!r}, expected one of {STATUSES}")
+        if self.model not in MODELS:
+            raise ValueError(f"model {self.model!r}, expected one of {MODELS}")
+        if self.wall_stress is None:
+            object.__setattr__(self, "wall_stress", np.zeros((np.size(self.time), 0, len(_STRESS))))
+        widths = {
+            "stress_component": len(_STRESS),
+            "axis": 3,
+            "component": 4,
+            "entry": len(ledger.ENTRIES),
+            "time": np.size(self.time),
+        }
+        for name, dimensions in ({"time": ("time",)} | _DIMENSIONS).items():
+            shape = np.shape(getattr(self, name))
+            if len(shape) != len(dimensions) or any(
+                widths.get(d, n) != n for d, n in zip(dimensions, shape)
+            ):
+                raise ValueError(f"{name} has shape {shape}, expected {dimensions} with {widths}")
+            if not np.isfinite(getattr(self, name)).all():
+                raise ValueError(
+                    f"{name} holds NaN or inf: a run must stop before it reaches a result"
+                )
+        plain = {name: getattr(self, name) for name in _PLAIN} | {"outcome": self.outcome._asdict()}
+        if not _is_finite(plain):
+            lost = [".".join(path) for path, number in _numbers(plain) if not math.isfinite(number)]
+            raise ValueError(
+                f"{', '.join(lost)}: NaN or inf, which no result may hold (None says that there is "
+                f"no value)"
+            )
+
+    def to_xarray(self) -> "xarray.Dataset":
+        """Labelled copy with units as attributes; motion relative to the platform is added."""
+        import xarray  # slow to load, and a run that writes no file does without
+
+        variables = {
+            name: (dims, getattr(self, name), {"units": _UNITS[name]})
+            for name, dims in _DIMENSIONS.items()
+        }
+        relative = outcome.relative_motion(self)
+        for name, unit in (
+            ("relative_position", "m"),
+            ("relative_velocity", "m/s"),
+            ("relative_rate", "rad/s"),
+        ):
+            variables[name] = (("time", "axis"), relative[name], {"units": unit})
+        coordinates = {
+            "time": ("time", self.time, {"units": "s"}),
+            "axis": list(_VECTOR),
+            "component": ["w", "x", "y", "z"],
+            "entry": list(ledger.ENTRIES),
+        }
+        assert self.wall_stress is not None  # since __post_init__
+        if self.wall_stress.size:
+            coordinates["stress_component"] = list(_STRESS)
+        else:
+            # a dimension of no length means an unlimited one to netCDF
+            del variables["wall_stress"]
+        plain = {name: json.dumps(getattr(self, name), allow_nan=False) for name in _PLAIN}
+        return xarray.Dataset(
+            variables,
+            coordinates,
+            attrs={
+                "model": self.model,
+                "status": self.status,
+                "message": self.message,
+                "outcome": json.dumps(self.outcome._asdict()),
+                **plain,
+            },
+        )
+
+    def save(self, path: str | Path) -> None:
+        """Write netCDF with its digest, atomically: an interrupted call leaves the file that was
+        there, or none."""
+        with sealed(path) as temporary:
+            self.to_xarray().to_netcdf(temporary, engine="h5netcdf")
+
+    @classmethod
+    def load(cls, path: str | Path) -> "Trajectory":
+        """Read what ``save`` wrote. Raises FileNotFoundError, or OSError for a foreign file or one
+        that does not fit its digest."""
+        import xarray
+
+        if not Path(path).is_file():
+            raise FileNotFoundError(f"{path}: no such trajectory file")
+        try:
+            require_whole(path)
+            with xarray.open_dataset(path, engine="h5netcdf", decode_timedelta=False) as data:
+                arrays: dict[str, Any] = {
+                    name: data[name].values
+                    for name in _DIMENSIONS
+                    if name in data or name != "wall_stress"
+                }
+                plain = {name: json.loads(data.attrs[name]) for name in _PLAIN}
+                result = outcome.Outcome(**json.loads(data.attrs["outcome"]))
+                return cls(
+                    model=data.attrs["model"],
+                    status=data.attrs["status"],
+                    message=data.attrs["message"],
+                    time=data["time"].values,
+                    outcome=result,
+                    **arrays,
+                    **plain,
+                )
+        except DamageError as fault:
+            raise OSError(
+                f"{path}: not a whole trajectory file: it {fault.reason}; make it again"
+            ) from fault
+        except (OSError, KeyError, TypeError, ValueError, RuntimeError) as error:
+            # What HDF5 says of a foreign file depends on what it lacks.
+            raise OSError(f"{path}: not a whole trajectory file ({error})") from error
+
+
+def _is_finite(plain: dict) -> bool:
+    """Whether every number of nested dicts and lists is finite, asked of the encoder that will
+    write them."""
+    try:
+        json.dumps(plain, allow_nan=False)
+    except ValueError:
+        return False
+    return True
+
+
+def _numbers(value, path=()):
+    """(path, float) of every float inside nested dicts and lists."""
+    if isinstance(value, dict):
+        for key, item in value.items():
+            yield from _numbers(item, (*path, str(key)))
+    elif isinstance(value, (list, tuple)):
+        for index, item in enumerate(value):
+            yield from _numbers(item, (*path, str(index)))
+    elif isinstance(value, float):
+        yield path, value
+
+
+assert set(_DIMENSIONS) <= {item.name for item in fields(Trajectory)}

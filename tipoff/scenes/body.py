@@ -1,0 +1,39 @@
+"""Inertia of a rigid body: the table a scene file holds and the tensor kernels use."""
+
+import numpy as np
+from pydantic import model_validator
+
+from tipoff.scenes.table import Table
+from tipoff.scenes.units import Inertia, PositiveInertia
+
+
+class InertiaTensor(Table):
+    """Inertia tensor entries (kg m2) about the mass centre in body axes; xy, xz, yz are tensor
+    entries, not products' negatives."""
+
+    xx: PositiveInertia
+    yy: PositiveInertia
+    zz: PositiveInertia
+    xy: Inertia = 0.0
+    xz: Inertia = 0.0
+    yz: Inertia = 0.0
+
+    @model_validator(mode="after")
+    def _physical(self):
+        moments = np.linalg.eigvalsh(tensor(self))
+        if moments[0] <= 0.0:
+            raise ValueError("a positive definite inertia tensor")
+        if moments[0] + moments[1] < moments[2] * (1.0 - 1e-12):
+            raise ValueError("principal moments that satisfy the triangle inequality I1 + I2 >= I3")
+        return self
+
+
+def tensor(inertia: InertiaTensor) -> np.ndarray:
+    """The (3,3) tensor (kg m2) of an inertia table."""
+    return np.array(
+        [
+            [inertia.xx, inertia.xy, inertia.xz],
+            [inertia.xy, inertia.yy, inertia.yz],
+            [inertia.xz, inertia.yz, inertia.zz],
+        ]
+    )

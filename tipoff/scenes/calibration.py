@@ -1,0 +1,106 @@
+"""Calibrated surrogate constants: values with their evidence, as a TOML file. Data only; the fit
+itself is in ``calibrate``."""
+
+import json
+import math
+import tomllib
+from dataclasses import asdict, dataclass, field
+from numbers import Integral, Real
+from pathlib import Path
+
+import numpy as np
+
+from tipoff.files import DamageError, is_sealed, require_whole, sealed
+from tipoff.scenes.scene import Scene
+
+
+@dataclass(frozen=True, eq=False)
+class Calibration:
+    """Constants found for a scene.
+
+    ``constants`` are dotted overrides in SI, applied to a scene by ``apply``. ``parameters`` name
+    the fitted coordinates (with ``values``, their 95 % ``intervals``, infinite where the curves do
+    not tell and without model error, ``lower``, ``upper`` bounds and ``justification``);
+    ``information`` is the matrix (p,p) of the scaled parameters; ``weak_directions`` describe what
+    the curves cannot tell; ``residuals`` are per condition.
+    """
+
+    constants: dict[str, float]
+    parameters: list[str]
+    values: list[float]
+    units: list[str]
+    lower: list[float]
+    upper: list[float]
+    justification: list[str]
+    information: np.ndarray
+    weak_directions: list[str]
+    residuals: dict[str, dict[str, float]]
+    conditions: list[str]
+    objective: float
+    provenance: dict[str, str] = field(default_factory=dict)
+    intervals: list[list[float]] = field(default_factory=list)
+
+    def apply(self, scene: Scene) -> Scene:
+        """``scene`` with the calibrated constants; constants of an effect the scene lacks are left
+        out."""
+        return scene.replace(
+            {
+                key: value
+                for key, value in self.constants.items()
+                if getattr(scene, key.split(".")[0], "unknown") is not None
+            }
+        )
+
+    def save(self, path: str | Path) -> None:
+        """Write TOML with its digest, atomically. Raises ValueError for a NaN (an interval without
+        an end is inf)."""
+        tables = asdict(self) | {"information": np.asarray(self.information).tolist()}
+        plain = {key: value for key, value in tables.items() if not isinstance(value, dict)}
+        nested = {key: value for key, value in tables.items() if isinstance(value, dict)}
+        lines = [f"{key} = {_toml(value)}" for key, value in plain.items()]
+        for name, table in nested.items():
+            lines += ["", f"[{name}]"] + [
+                f"{_toml(key)} = {_toml(value)}" for key, value in table.items()
+            ]
+        with sealed(path) as temporary:
+            temporary.write_text("\n".join(lines) + "\n", encoding="utf-8", newline="\n")
+
+    @classmethod
+    def load(cls, path: str | Path) -> "Calibration":
+        """Read what ``save`` wrote, or what a user did, whose file need not have a digest. Raises
+        FileNotFoundError, or ValueError for a foreign file or one that does not fit the digest it
+        has."""
+        try:
+            if is_sealed(path):
+                require_whole(path)
+            data = tomllib.loads(Path(path).read_text(encoding="utf-8"))
+            return cls(**data | {"information": np.array(data["information"])})
+        except DamageError as fault:
+            raise ValueError(
+                f"{path} {fault.reason}: make it again, or remove the line '# sha-256 ...' if you "
+                f"edited the file on "
+                "purpose"
+            ) from fault
+        except (ValueError, TypeError, KeyError) as error:
+            raise ValueError(f"{path}: not a calibration file ({error})") from error
+
+
+def _toml(value) -> str:
+    if isinstance(value, (bool, np.bool_)):
+        return "true" if value else "false"
+    if isinstance(value, Integral):
+        return str(int(value))
+    if isinstance(value, Real):
+        if math.isnan(value):
+            raise ValueError("a calibration holds NaN")
+        return repr(float(value))
+    if isinstance(value, str):
+        # JSON's escapes are TOML's
+        return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+    if isinstance(value, (list, tuple)):
+        return "[" + ", ".join(_toml(item) for item in value) + "]"
+    if isinstance(value, dict):
+        return (
+            "{ " + ", ".join(f"{_toml(key)} = {_toml(item)}" for key, item in value.items()) + " }"
+        )
+    raise TypeError(f"cannot write {type(value).__name__} as TOML")

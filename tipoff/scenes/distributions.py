@@ -1,0 +1,143 @@
+"""How an uncertain number is spread: one table per distribution, with its quantile function
+``ppf``::
+
+    x = F^-1(u), u uniform in (0, 1):   normal  m + s z(u)     Rayleigh  s sqrt(-2 ln(1 - u))     z = Phi^-1
+    truncated normal, a < x < b:        redraw  m + s z(A + u (B - A)), A = Phi((a - m)/s), B = Phi((b - m)/s)
+                                        clip    min(max(m + s z(u), a), b)
+
+A truncated normal names its rule. "redraw" is the law of a draw repeated until it lies inside the
+limits; "clip" puts what lies outside onto the limit, so that probability piles up there. Each value
+depends on its own u alone, in every bit: ``scipy.special`` works element by element, where NumPy's
+vector code may treat the end of an array in another way than its middle.
+"""
+
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from pydantic import BeforeValidator, ValidationInfo, field_validator
+from scipy.special import log1p, ndtr, ndtri
+
+from tipoff.scenes.table import Table
+from tipoff.scenes.units import parse
+
+
+def _in_unit_of_key(value: Any, info: ValidationInfo[dict[str, Any]]) -> float:
+    unit = info.context["unit"]
+    # A number whose unit depends on other keys of the scene can only be given in SI.
+    return parse(
+        value,
+        unit or "dimensionless",
+        bare_numbers_are_si=not unit or info.context["bare_numbers_are_si"],
+    )
+
+
+def _positive(value: float) -> float:
+    if value <= 0.0:
+        raise ValueError("greater than 0")
+    return value
+
+
+Value = Annotated[float, BeforeValidator(_in_unit_of_key)]
+
+
+class _Limits(Table):
+    low: Value
+    high: Value
+
+    @field_validator("high")
+    @classmethod
+    def _above_low(cls, value: float, info: ValidationInfo) -> float:
+        if value <= info.data.get("low", -np.inf):
+            raise ValueError("more than low")
+        return value
+
+
+class Fixed(Table):
+    """The same ``value`` in every case."""
+
+    distribution: Literal["fixed"]
+    value: Value
+    provenance: str = ""
+
+    def ppf(self, u: np.ndarray) -> np.ndarray:
+        """Quantiles (SI) of probabilities ``u``, any shape."""
+        return np.full_like(u, self.value)
+
+
+class Uniform(_Limits):
+    """Every value from ``low`` to ``high`` alike."""
+
+    distribution: Literal["uniform"]
+    provenance: str = ""
+
+    def ppf(self, u: np.ndarray) -> np.ndarray:
+        """Quantiles (SI) of probabilities ``u``, any shape."""
+        return self.low + u * (self.high - self.low)
+
+
+class Normal(Table):
+    """Gaussian with ``mean`` and standard deviation ``sd``."""
+
+    distribution: Literal["normal"]
+    mean: Value
+    sd: Value
+    provenance: str = ""
+
+    _spread = field_validator("sd")(_positive)
+
+    def ppf(self, u: np.ndarray) -> np.ndarray:
+        """Quantiles (SI) of probabilities ``u``, any shape."""
+        return self.mean + self.sd * ndtri(u)
+
+
+class TruncatedNormal(_Limits):
+    """Gaussian (``mean`` and ``sd`` before it is cut) between ``low`` and ``high`` by a
+    ``rule``."""
+
+    distribution: Literal["truncated-normal"]
+    mean: Value
+    sd: Value
+    rule: Literal["redraw", "clip"]
+    provenance: str = ""
+
+    _spread = field_validator("sd")(_positive)
+
+    def ppf(self, u: np.ndarray) -> np.ndarray:
+        """Quantiles (SI) of probabilities ``u``, any shape."""
+        if self.rule == "redraw":
+            a, b = (self.low - self.mean) / self.sd, (self.high - self.mean) / self.sd
+            # Probabilities near one have no digits left, so limits above the mean are mirrored to
+            # below it.
+            z = -_between(-b, -a, 1.0 - u) if a > 0.0 else _between(a, b, u)
+        else:
+            z = ndtri(u)
+        return np.clip(self.mean + self.sd * z, self.low, self.high)
+
+
+class Rayleigh(Table):
+    """Length of a plane vector whose two parts are normal with standard deviation ``scale``."""
+
+    distribution: Literal["rayleigh"]
+    scale: Value
+    provenance: str = ""
+
+    _spread = field_validator("scale")(_positive)
+
+    def ppf(self, u: np.ndarray) -> np.ndarray:
+        """Quantiles (SI) of probabilities ``u``, any shape."""
+        return self.scale * np.sqrt(-2.0 * log1p(-u))
+
+
+def _between(a: float, b: float, u: np.ndarray) -> np.ndarray:
+    below = ndtr(a)
+    return ndtri(below + u * (ndtr(b) - below))
+
+
+Distribution = Fixed | Uniform | Normal | TruncatedNormal | Rayleigh
+BY_NAME: dict[str, type[Distribution]] = {
+    "fixed": Fixed,
+    "uniform": Uniform,
+    "normal": Normal,
+    "truncated-normal": TruncatedNormal,
+    "rayleigh": Rayleigh,
+}

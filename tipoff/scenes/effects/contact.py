@@ -1,0 +1,190 @@
+"""Clearance and contact between pad faces and rail walls. Absent table: nothing touches.
+
+With penetration p > 0 and closing speed q = dp/dt the normal force is F = max(0, raw), where raw
+is::
+
+    IMPACT          k p^e + c s(p/d) q,   s(x) = x^2 (3 - 2 x) on 0..1 and 1 beyond     (ADAMS/Solver)
+    Hunt-Crossley   k p^e (1 + a q)                                                     (Hunt and Crossley 1975)
+    linear          k p + c q
+
+The finite-element reference uses the penalty k_p (N/m3): pressure k_p p on the crowned pads,
+without damping. Stored energy is k p^(e+1) / (e+1) in each law.
+"""
+
+from typing import Annotated, Any, Literal, NamedTuple
+
+import numpy as np
+from pydantic import Field, ValidationInfo, field_validator
+
+from tipoff.kernels.jit import njit
+from tipoff.scenes.table import Table
+from tipoff.scenes.units import (
+    ContactDamping,
+    Dissipation,
+    NonNegativeLength,
+    PenaltyStiffness,
+    PositiveLength,
+    PositiveNumber,
+    parse,
+)
+
+
+class _ContactTable(Table):
+    clearance: NonNegativeLength
+    exponent: PositiveNumber = 1.5
+    stiffness: float
+    penalty: PenaltyStiffness = 1.8e12
+
+    @field_validator("stiffness", mode="before")
+    @classmethod
+    def _stiffness_matches_exponent(cls, value: Any, info: ValidationInfo) -> float:
+        if "exponent" not in info.data:
+            return 1.0  # the exponent is refused, so the unit to expect is unknown
+        bare = bool(info.context and info.context.get("bare_numbers_are_si"))
+        stiffness = parse(value, f"N/m**{info.data['exponent']:.12g}", bare)
+        if stiffness <= 0.0:
+            raise ValueError("greater than 0")
+        return stiffness
+
+
+class ImpactTable(_ContactTable):
+    """``[contact] law = "impact"``: k (N/m^e), e, c (N s/m), d (m)."""
+
+    law: Literal["impact"]
+    damping: ContactDamping
+    damping_depth: PositiveLength
+
+    def record(self) -> "Impact":
+        """Kernel record."""
+        return Impact(self.stiffness, self.exponent, self.damping, self.damping_depth)
+
+
+class HuntCrossleyTable(_ContactTable):
+    """``[contact] law = "hunt-crossley"``: k (N/m^e), e, dissipation a (s/m)."""
+
+    law: Literal["hunt-crossley"]
+    dissipation: Dissipation
+
+    def record(self) -> "HuntCrossley":
+        """Kernel record."""
+        return HuntCrossley(self.stiffness, self.exponent, self.dissipation)
+
+
+class LinearTable(_ContactTable):
+    """``[contact] law = "linear"``: spring k (N/m) and damper c (N s/m) that never pull."""
+
+    law: Literal["linear"]
+    exponent: Literal[1.0] = 1.0  # type: ignore[valid-type]  # pydantic has literal fractions
+    damping: ContactDamping = 0.0
+
+    def record(self) -> "Linear":
+        """Kernel record."""
+        return Linear(self.stiffness, self.damping)
+
+
+ContactTable = Annotated[ImpactTable | HuntCrossleyTable | LinearTable, Field(discriminator="law")]
+
+
+class Impact(NamedTuple):
+    """Kernel record: stiffness (N/m^e), exponent e, damping (N s/m) and the depth of its full
+    effect (m)."""
+
+    stiffness: float
+    exponent: float
+    damping: float
+    damping_depth: float
+
+
+class HuntCrossley(NamedTuple):
+    """Kernel record: stiffness (N/m^e), exponent e, dissipation (s/m)."""
+
+    stiffness: float
+    exponent: float
+    dissipation: float
+
+
+class Linear(NamedTuple):
+    """Kernel record: stiffness (N/m), damping (N s/m)."""
+
+    stiffness: float
+    damping: float
+
+
+class Laws(NamedTuple):
+    """The one law a scene uses; the others are None, so only it is compiled."""
+
+    impact: Impact | None
+    hunt_crossley: HuntCrossley | None
+    linear: Linear | None
+
+
+def laws(record: Impact | HuntCrossley | Linear | None) -> Laws | None:
+    """Kernel record of the contact law, or None for no contact."""
+    if record is None:
+        return None
+    return Laws(
+        impact=record if isinstance(record, Impact) else None,
+        hunt_crossley=record if isinstance(record, HuntCrossley) else None,
+        linear=record if isinstance(record, Linear) else None,
+    )
+
+
+@njit
+def _power(base, exponent):
+    # sqrt is several times cheaper than pow, and 1.5 (Hertz) is by far the most common exponent.
+    if exponent == 1.5:
+        return base * np.sqrt(base)
+    return base**exponent
+
+
+@njit
+def impact(law, penetration, closing):
+    """Elastic and damping parts of IMPACT (N), before the no-pull rule."""
+    x = min(penetration / law.damping_depth, 1.0)
+    elastic = law.stiffness * _power(penetration, law.exponent)
+    return elastic, law.damping * x * x * (3.0 - 2.0 * x) * closing
+
+
+@njit
+def hunt_crossley(law, penetration, closing):
+    """Elastic and damping parts of Hunt-Crossley (N), before the no-pull rule."""
+    elastic = law.stiffness * _power(penetration, law.exponent)
+    return elastic, elastic * law.dissipation * closing
+
+
+@njit
+def linear(law, penetration, closing):
+    """Elastic and damping parts of the spring-damper (N), before the no-pull rule."""
+    return law.stiffness * penetration, law.damping * closing
+
+
+@njit
+def parts(impact_law, hunt_crossley_law, linear_law, penetration, closing):
+    """(elastic, damping) in N for penetration > 0 (m) and closing speed (m/s) of whichever law is
+    not None."""
+    force = (0.0, 0.0)
+    if impact_law is not None:
+        force = impact(impact_law, penetration, closing)
+    if hunt_crossley_law is not None:
+        force = hunt_crossley(hunt_crossley_law, penetration, closing)
+    if linear_law is not None:
+        force = linear(linear_law, penetration, closing)
+    return force
+
+
+@njit
+def stored_energy(impact_law, hunt_crossley_law, linear_law, penetration):
+    """Elastic energy (J) stored at penetration > 0 (m)."""
+    energy = 0.0
+    if impact_law is not None:
+        energy = _stored(impact_law, penetration)
+    if hunt_crossley_law is not None:
+        energy = _stored(hunt_crossley_law, penetration)
+    if linear_law is not None:
+        energy = 0.5 * linear_law.stiffness * penetration * penetration
+    return energy
+
+
+@njit
+def _stored(law, penetration):
+    return law.stiffness * penetration ** (law.exponent + 1.0) / (law.exponent + 1.0)

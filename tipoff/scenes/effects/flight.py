@@ -1,0 +1,89 @@
+"""The flight after separation: a circular orbit, where the launch axis points there, and a target.
+Absent table: no flight.
+
+Orbit axes are R radially outwards, S along the flight, W along the orbit's normal. At zero angles
+scene +X is S, +Y is W and +Z is R; azimuth turns X from S towards W, elevation then raises it
+towards R, roll turns Y towards Z::
+
+    n = sqrt(mu / (R_e + h)^3)
+
+The target lies ``range`` along the launch axis from the payload's nominal mass centre, at rest in
+orbit axes at exit, and then falls freely like everything else. Constants: WGS 84 (NIMA TR8350.2),
+equatorial radius. The ejection feels nothing of this table, and no result of it depends on it.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from pydantic import model_validator
+
+from tipoff.scenes.rail import BoxTable
+from tipoff.scenes.table import Table
+from tipoff.scenes.units import Angle, PointingLimit, PositiveLength, PositiveRate, PositiveTime
+
+GRAVITATION = 3.986004418e14  # m3/s2, of the Earth
+EARTH_RADIUS = 6378137.0  # m
+# R, S, W of a scene at zero angles
+_ORBIT_FROM_LEVEL = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
+
+
+class FlightTable(Table):
+    """``[flight]``: orbit by altitude (m) or mean_motion (rad/s); azimuth, elevation and roll of
+    the launch axis (rad); range of the target (m); duration (s) of the flight, one orbit where
+    absent; pointing_limit (rad), an error whose time is asked. ``body`` is the size (m) of the
+    payload without its pads, ``payload.size`` where absent; ``envelope`` lists boxes that the
+    platform lies in, in scene axes at ignition, to which built-in rails are added."""
+
+    altitude: PositiveLength | None = None
+    mean_motion: PositiveRate | None = None
+    azimuth: Angle = 0.0
+    elevation: Angle = 0.0
+    roll: Angle = 0.0
+    range: PositiveLength
+    duration: PositiveTime | None = None
+    pointing_limit: PointingLimit | None = None
+    body: tuple[PositiveLength, PositiveLength, PositiveLength] | None = None
+    envelope: tuple[BoxTable, ...] = ()
+
+    @model_validator(mode="after")
+    def _one_orbit(self):
+        if (self.altitude is None) == (self.mean_motion is None):
+            raise ValueError("one of altitude and mean_motion")
+        return self
+
+    def record(self) -> "Flight":
+        """Plain record."""
+        motion = self.mean_motion
+        if motion is None:
+            assert self.altitude is not None  # one of the two is there
+            motion = math.sqrt(GRAVITATION / (EARTH_RADIUS + self.altitude) ** 3)
+        return Flight(
+            motion,
+            _ORBIT_FROM_LEVEL @ _turned(self.azimuth, self.elevation, self.roll),
+            self.range,
+            self.duration or 2.0 * math.pi / motion,
+            self.pointing_limit,
+        )
+
+
+class Flight(NamedTuple):
+    """Mean motion (rad/s); ``axes`` (3,3), R, S and W components of scene vectors; range (m);
+    duration (s); pointing limit (rad) or None."""
+
+    mean_motion: float
+    axes: np.ndarray
+    range: float
+    duration: float
+    pointing_limit: float | None
+
+
+def _turned(azimuth: float, elevation: float, roll: float) -> np.ndarray:
+    """Scene axes, as columns, in those of the scene at zero angles."""
+    (ca, ce, cr), (sa, se, sr) = (
+        np.cos([azimuth, elevation, roll]),
+        np.sin([azimuth, elevation, roll]),
+    )
+    about_z = np.array([[ca, -sa, 0.0], [sa, ca, 0.0], [0.0, 0.0, 1.0]])
+    about_y = np.array([[ce, 0.0, -se], [0.0, 1.0, 0.0], [se, 0.0, ce]])
+    return about_z @ about_y @ np.array([[1.0, 0.0, 0.0], [0.0, cr, -sr], [0.0, sr, cr]])

@@ -1,0 +1,106 @@
+"""Two-step Coulomb friction with static and dynamic coefficients and transition speeds (the law of
+ADAMS/Solver CONTACT).
+
+With s = |v| the sliding speed, v_s the static and v_d the dynamic transition speed::
+
+    mu(s) = mu_s (3 r - r^3) / 2,  r = s / v_s                      s <= v_s
+    mu(s) = mu_s + (mu_d - mu_s) x^2 (3 - 2 x),  x = (s - v_s)/(v_d - v_s)   v_s < s < v_d
+    mu(s) = mu_d                                                    s >= v_d
+
+The first branch is the cubic step from -mu_s at -v_s to mu_s at v_s. The force is ``-mu(s) N v/s``.
+Absent table: none. Beside it stands ``law = "sticking"`` (``scenes.effects.sticking``), under which
+nothing creeps.
+"""
+
+from typing import Annotated, Any, Literal, NamedTuple
+
+from pydantic import BeforeValidator, Field, ValidationInfo, field_validator
+
+from tipoff.kernels.jit import njit
+from tipoff.scenes.effects.sticking import StickingTable
+from tipoff.scenes.faults import Fault, SceneError
+from tipoff.scenes.table import Table
+from tipoff.scenes.units import NonNegativeNumber, PositiveVelocity
+
+
+class TwoStepTable(Table):
+    """``[friction]``: coefficients (dimensionless) and transition speeds (m/s)."""
+
+    # The law of every table that names none; left out of what is written, so that such a scene
+    # keeps its hash.
+    law: Literal["two-step"] = Field("two-step", exclude=True)
+    static: NonNegativeNumber
+    dynamic: NonNegativeNumber
+    static_speed: PositiveVelocity
+    dynamic_speed: PositiveVelocity
+
+    @field_validator("dynamic_speed")
+    @classmethod
+    def _speeds_in_order(cls, dynamic_speed: float, info: ValidationInfo):
+        if dynamic_speed <= info.data.get("static_speed", 0.0):
+            raise ValueError("a speed above static_speed")
+        return dynamic_speed
+
+    def record(self) -> "Friction":
+        """Kernel record."""
+        return Friction(self.static, self.dynamic, self.static_speed, self.dynamic_speed)
+
+
+def require_two_step(scene) -> None:
+    """For a solver that knows no other law. Raises SceneError where ``scene`` asks for one."""
+    if scene.friction is not None and scene.friction.law != "two-step":
+        raise SceneError(
+            [
+                Fault(
+                    scene.name,
+                    "friction.law",
+                    repr(scene.friction.law),
+                    "'two-step', the one law this solver knows",
+                )
+            ]
+        )
+
+
+def _with_law(raw: Any) -> Any:
+    return {"law": "two-step"} | raw if isinstance(raw, dict) else raw
+
+
+FrictionTable = Annotated[
+    TwoStepTable | StickingTable, Field(discriminator="law"), BeforeValidator(_with_law)
+]
+
+
+class Friction(NamedTuple):
+    """Kernel record of the two-step Coulomb law: coefficients, and transition speeds (m/s)."""
+
+    static: float
+    dynamic: float
+    static_speed: float
+    dynamic_speed: float
+
+
+@njit
+def coefficient_over_speed(friction, speed):
+    """mu(s)/s (s/m) at sliding speed ``speed`` >= 0 (m/s): finite at rest, so the force needs no
+    direction there."""
+    if speed <= friction.static_speed:
+        ratio = speed / friction.static_speed
+        return 0.5 * friction.static * (3.0 - ratio * ratio) / friction.static_speed
+    if speed >= friction.dynamic_speed:
+        return friction.dynamic / speed
+    x = (speed - friction.static_speed) / (friction.dynamic_speed - friction.static_speed)
+    return (
+        friction.static + (friction.dynamic - friction.static) * x * x * (3.0 - 2.0 * x)
+    ) / speed
+
+
+def steepest_slope(friction) -> float:
+    """Largest d(mu)/ds (s/m): the damping per newton of normal force that bounds an explicit
+    step."""
+    start = 1.5 * friction.static / friction.static_speed
+    drop = (
+        1.5
+        * abs(friction.dynamic - friction.static)
+        / (friction.dynamic_speed - friction.static_speed)
+    )
+    return max(start, drop)

@@ -1,0 +1,29 @@
+"""Mass eccentricity: the payload's mass centre lies off its nominal place, ``l_y = r1 sin b``,
+``l_z = r1 cos b``.
+
+Pads and thrust keep their places relative to the nominal centre, so their arms about the actual
+mass centre change by ``-l``. The inertia is given about the actual mass centre and does not change.
+Absent table: the centres coincide.
+"""
+
+import math
+
+from tipoff.scenes.table import Table
+from tipoff.scenes.units import Angle, NonNegativeLength
+
+
+class Eccentricity(Table):
+    """Radius r (m) and radial angle (rad): ``l_z = r cos``, ``l_y = r sin``."""
+
+    axial: NonNegativeLength = 0.0
+    radial: Angle = 0.0
+
+    def offset(self) -> tuple[float, float, float]:
+        """Offset (m) in body axes."""
+        return (0.0, self.axial * math.sin(self.radial), self.axial * math.cos(self.radial))
+
+
+class MassOffsetTable(Table):
+    """``[mass_offset]``: where the mass centre lies, measured from the nominal centre."""
+
+    eccentricity: Eccentricity = Eccentricity()

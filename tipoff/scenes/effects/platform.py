@@ -1,0 +1,38 @@
+"""A free platform that recoils: a second rigid body that carries the rails. Absent table: the rails
+are fixed in space.
+
+Its mass, inertia and mass centre are those of the whole platform *with* its undeformed rails.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from tipoff.scenes.body import InertiaTensor, tensor
+from tipoff.scenes.effects.initial import Displacement
+from tipoff.scenes.table import Table
+from tipoff.scenes.units import Mass
+
+
+class PlatformTable(Table):
+    """``[platform]``: mass (kg), inertia about its mass centre (kg m2), mass centre at ignition in
+    scene axes (m)."""
+
+    mass: Mass
+    inertia: InertiaTensor
+    mass_centre: Displacement = Displacement()
+
+    def record(self) -> "Platform":
+        """Kernel record."""
+        inertia = tensor(self.inertia)
+        centre = self.mass_centre
+        return Platform(self.mass, inertia, np.linalg.inv(inertia), (centre.x, centre.y, centre.z))
+
+
+class Platform(NamedTuple):
+    """Kernel record: mass (kg), inertia and its inverse (3,3), mass centre at ignition (m)."""
+
+    mass: float
+    inertia: np.ndarray
+    inverse_inertia: np.ndarray
+    mass_centre: tuple

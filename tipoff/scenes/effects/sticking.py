@@ -1,0 +1,53 @@
+"""Coulomb friction that truly sticks: a touching face is held by spring and damper until they bear
+mu_s N, or slides under mu_d N.
+
+    held      F = -k xi - c u         while |F| <= mu_s N        (xi: way of the face from its anchor, u: slip velocity)
+    sliding   F = -mu_d N u/|u|       until |u| <= the capture speed
+
+``lowfi.contact.stick_slip`` says where one becomes the other. The spring stands for the tangential compliance of
+one pad face, so a held face gives by F/k but does not creep. On springs alone the payload would
+ring: 2 sqrt(k m), m the mass a face carries, damps that critically. Sources: Cundall and Strack,
+Geotechnique 29 (1979) 47 (spring and slider); Karnopp, J. Dyn. Syst. Meas. Control 107 (1985) 100
+(a band about rest).
+"""
+
+from typing import Literal, NamedTuple
+
+from pydantic import ValidationInfo, field_validator
+
+from tipoff.scenes.table import Table
+from tipoff.scenes.units import CaptureSpeed, ContactDamping, NonNegativeNumber, Stiffness
+
+
+class StickingTable(Table):
+    """``[friction] law = "sticking"``: coefficients (dimensionless), tangential stiffness (N/m) and
+    damping (N s/m) of one held face, and the slip (m/s) below which a face that stops is held."""
+
+    law: Literal["sticking"]
+    static: NonNegativeNumber
+    dynamic: NonNegativeNumber
+    stiffness: Stiffness
+    damping: ContactDamping
+    capture_speed: CaptureSpeed = 1e-6
+
+    @field_validator("dynamic")
+    @classmethod
+    def _not_above_static(cls, dynamic: float, info: ValidationInfo):
+        if dynamic > info.data.get("static", dynamic):
+            raise ValueError("at most static, or a face that slips would be held at once")
+        return dynamic
+
+    def record(self) -> "Sticking":
+        """Kernel record."""
+        return Sticking(self.static, self.dynamic, self.stiffness, self.damping, self.capture_speed)
+
+
+class Sticking(NamedTuple):
+    """Kernel record: coefficients, stiffness (N/m) and damping (N s/m) of a held face, capture
+    speed (m/s)."""
+
+    static: float
+    dynamic: float
+    stiffness: float
+    damping: float
+    capture_speed: float

@@ -1,0 +1,76 @@
+"""Structural (Rayleigh) damping of the rails, ``C = alpha M + beta K``, of the reference and of its
+modes in the surrogate. Absent table: none.
+
+A mode of angular frequency w then has the damping ratio ``alpha / 2w + beta w / 2`` (Clough and
+Penzien, Dynamics of Structures, section 12-5), which meets the two ratios given at the two
+frequencies given, is less between them and more outside.
+"""
+
+import math
+from typing import NamedTuple
+
+from pydantic import ValidationInfo, field_validator
+
+from tipoff.scenes.table import Table
+from tipoff.scenes.units import DampingRatio, Frequency
+
+_ROUNDING = 1e-12  # of a bound: a ratio that lies on it may have been computed
+
+
+class Damping(NamedTuple):
+    """Kernel record: alpha, ``mass_rate`` (1/s), and beta, ``stiffness_time`` (s)."""
+
+    mass_rate: float
+    stiffness_time: float
+
+
+class DampingTable(Table):
+    """``[rail.damping]``: two frequencies (Hz), ascending, and the damping ratio at each.
+
+    Neither alpha nor beta may be negative, or some mode would gain energy: with q = f2 / f1 that
+    asks for z1 / q <= z2 <= q z1.
+    """
+
+    frequencies: tuple[Frequency, Frequency]
+    ratios: tuple[DampingRatio, DampingRatio]
+
+    @field_validator("frequencies")
+    @classmethod
+    def _ascending(cls, frequencies):
+        if not frequencies[0] < frequencies[1]:
+            raise ValueError("two different frequencies, the lower one first")
+        return frequencies
+
+    @field_validator("ratios")
+    @classmethod
+    def _possible(cls, ratios, info: ValidationInfo):
+        first, second = info.data.get("frequencies", (0.0, math.inf))
+        quotient = second / first if first > 0.0 else math.inf
+        low, high = ratios[0] / quotient, min(quotient * ratios[0], 1.0) if ratios[0] > 0.0 else 0.0
+        if not low * (1.0 - _ROUNDING) <= ratios[1] <= high * (1.0 + _ROUNDING):
+            raise ValueError(
+                f"beside {ratios[0]:g} a second ratio from {low:.6g} to {high:.6g}, all that these "
+                f"frequencies allow"
+            )
+        return ratios
+
+    def record(self) -> Damping:
+        """Kernel record."""
+        (one, two), (first, second) = (
+            self.ratios,
+            (2.0 * math.pi * frequency for frequency in self.frequencies),
+        )
+        scale = 2.0 / ((second - first) * (second + first))
+        mass_rate, stiffness_time = (
+            scale * first * second * (one * second - two * first),
+            scale * (two * second - one * first),
+        )
+        # On the bound of what is possible one of the two is zero, but for rounding.
+        return Damping(max(0.0, mass_rate), max(0.0, stiffness_time))
+
+
+def ratio(damping: Damping | None, frequency: float) -> float:
+    """Damping ratio at an angular frequency (rad/s); zero where the effect is absent."""
+    if damping is None:
+        return 0.0
+    return 0.5 * (damping.mass_rate / frequency + damping.stiffness_time * frequency)

@@ -1,0 +1,60 @@
+"""Rails warmed unevenly before launch: a temperature linear in place, which does not change in the
+milliseconds of a launch.
+
+With T the change of temperature since the rails were mounted free of stress, X_m the middle of
+their length on the payload's axis, alpha the coefficient of expansion and s the strain of the
+platform that carries the mounts::
+
+    T = mean + gradient . (X - X_m),      free strain alpha T in every direction,      mounts moved by s (X - X_m)
+
+So rails on the sunny side, 0.2 m from those in the shade and 20 K warmer, have a gradient of 0.1
+K/mm, and a platform that warms with its rails and expands as they do has s = alpha mean and leaves
+them free of stress. Absent table: rails as they were mounted.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from tipoff.scenes.table import Table
+from tipoff.scenes.units import Number, TemperatureChange, TemperatureGradient
+
+# of which every [thermal] is a sum: a free strain, its gradients along x, y and z, and the strain
+# of the platform
+FIELDS = 5
+
+
+class GradientTable(Table):
+    """Components along scene axes (K/m)."""
+
+    x: TemperatureGradient = 0.0
+    y: TemperatureGradient = 0.0
+    z: TemperatureGradient = 0.0
+
+
+class ThermalTable(Table):
+    """``[thermal]``: mean change of temperature (K), its gradient, and the strain of the platform
+    between the mounts."""
+
+    mean: TemperatureChange = 0.0
+    gradient: GradientTable = GradientTable()
+    platform_strain: Number = 0.0
+
+    def record(self, rail) -> "Thermal":
+        """Plain record for the ``[rail]`` of a scene."""
+        expansion, gradient = rail.material.expansion, self.gradient
+        strains = expansion * np.array([self.mean, gradient.x, gradient.y, gradient.z])
+        return Thermal(np.append(strains, self.platform_strain), 0.5 * (rail.start + rail.end))
+
+
+class Thermal(NamedTuple):
+    """Plain record: amounts (FIELDS,), how much there is of each of the fields: free strain at X_m
+    (1), its gradients (1/m), strain of the platform (1); ``middle``, X_m in scene axes (m)."""
+
+    amounts: np.ndarray
+    middle: float
+
+
+def fields(points: np.ndarray, middle: float) -> np.ndarray:
+    """One of each of the four fields of free strain (n,4) at ``points`` (n,3) m in scene axes."""
+    return np.column_stack([np.ones(len(points)), np.subtract(points, [middle, 0.0, 0.0])])

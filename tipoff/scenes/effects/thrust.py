@@ -1,0 +1,318 @@
+"""Thrust of the solid thruster: Gaussian, a sum of Gaussians, a constant push, or a measured curve.
+
+    F(t) = sum_i P_i exp(-(t - t_i)^2 / (2 s_i^2))   begin <= t <= end,        impulse of one pulse J = P s sqrt(2 pi)
+
+A pulse cut at ``n`` widths keeps erf(n / sqrt 2) of its impulse; ``rescale`` restores it. A
+measured curve is used point by point, or through its least-squares Gaussian fit; ``describe`` says
+which, with the fit, its residual and both impulses. The law itself is in ``thrust_law``, whose
+names are also found here.
+"""
+
+import math
+from typing import TYPE_CHECKING, Annotated, Literal
+
+import numpy as np
+from pydantic import (
+    AfterValidator,
+    Field,
+    PrivateAttr,
+    ValidationInfo,
+    field_validator,
+    model_validator,
+)
+
+from tipoff.scenes.effects.measured import GaussianFit, MeasuredCurve, fit_gaussian, read_curve
+from tipoff.scenes.effects.thrust_law import (
+    ROOT_TWO_PI,
+    Curve,
+    Pulses,
+    Thrust,
+    burnout,
+    burnouts,
+    corners,
+    impulse,
+    kept,
+    magnitude,
+    peak,
+    sample,
+    shortest_feature,
+)
+from tipoff.scenes.table import Table, at_least_one
+from tipoff.scenes.units import (
+    Force,
+    Impulse,
+    NonNegativeTime,
+    PositiveLength,
+    PositiveNumber,
+    PositiveTime,
+    Time,
+)
+
+__all__ = [
+    "Curve",
+    "Pulse",
+    "Pulses",
+    "Thrust",
+    "ThrustTable",
+    "burnout",
+    "burnouts",
+    "corners",
+    "impulse",
+    "magnitude",
+    "peak",
+    "sample",
+    "shortest_feature",
+]
+
+
+class Pulse(Table):
+    """One Gaussian: peak force (N) or impulse (N s), width sigma (s), centre (s)."""
+
+    peak: Force | None = None
+    impulse: Impulse | None = None
+    width: PositiveTime
+    centre: Time
+
+    @model_validator(mode="after")
+    def _one_size(self):
+        if (self.peak is None) == (self.impulse is None):
+            raise ValueError("exactly one of peak and impulse")
+        return self
+
+    def height(self) -> float:
+        """Peak force (N)."""
+        return self.peak if self.peak is not None else self.impulse / (self.width * ROOT_TWO_PI)
+
+    def size(self) -> float:
+        """Impulse (N s) of the whole, uncut pulse."""
+        return self.height() * self.width * ROOT_TWO_PI
+
+
+class _ThrustTable(Table):
+    """What every kind has: ``arm`` (m), distance of the point of application behind the nominal
+    mass centre; ``reaction``."""
+
+    arm: PositiveLength = 0.1
+    reaction: Literal["platform", "exhaust"] = "platform"
+    if TYPE_CHECKING:
+        kind: str  # a literal in each kind, whose place among the keys is theirs
+
+    def record(self) -> Thrust:
+        """Kernel record."""
+        raise NotImplementedError
+
+    def requested(self) -> float:
+        """Impulse (N s) that the scene asks for."""
+        raise NotImplementedError
+
+    def describe(self, duration: float) -> dict[str, float | str]:
+        """What pushes, for results and report: numbers in SI by name, and ``text`` that says it in
+        one sentence.
+
+        ``impulse_requested_Ns`` is what the scene asks for, ``impulse_delivered_Ns`` what acts in
+        0..``duration`` (s).
+        """
+        record = self.record()
+        asked, given = self.requested(), impulse(record, duration)
+        text = (
+            f"{self.kind}, {self.usage()}; impulse requested {asked:.7g} N s, delivered in the "
+            f"scene {given:.7g} N s"
+        )
+        return {
+            "kind": self.kind,
+            "peak_N": peak(record, duration),
+            "impulse_requested_Ns": asked,
+            "impulse_delivered_Ns": given,
+            **self.details(),
+            "text": text,
+        }
+
+    def usage(self) -> str:
+        """How the table is turned into F(t), in words."""
+        return "used as given"
+
+    def details(self) -> dict[str, float | str]:
+        """What ``describe`` adds for this kind."""
+        return {}
+
+
+class _PulsedTable(_ThrustTable):
+    """Gaussians, cut at ``cutoff`` widths before the first begins and after the last ends (absent:
+    not cut).
+
+    ``rescale`` raises each pulse by the share of it that the cut takes away, so that the impulse
+    stays as asked.
+    """
+
+    cutoff: PositiveNumber | None = None
+    rescale: bool = False
+
+    @field_validator("rescale")
+    @classmethod
+    def _only_when_cut(cls, rescale: bool, info: ValidationInfo):
+        if rescale and "cutoff" in info.data and info.data["cutoff"] is None:
+            raise ValueError("a cutoff beside it: without one there is nothing to restore")
+        return rescale
+
+    def pulses(self) -> tuple[Pulse, ...]:
+        """The Gaussians, one at least."""
+        raise NotImplementedError
+
+    def record(self) -> Thrust:
+        """Kernel record."""
+        pulses = self.pulses()
+        begin, end = -math.inf, math.inf
+        if self.cutoff:
+            begin = min(p.centre - self.cutoff * p.width for p in pulses)
+            end = max(p.centre + self.cutoff * p.width for p in pulses)
+        factors = [
+            1.0 / kept(begin, end, p.centre, p.width) if self.rescale else 1.0 for p in pulses
+        ]
+        rows = np.array(
+            [(p.height() * factor, p.centre, p.width) for p, factor in zip(pulses, factors)]
+        )
+        peaks, centres, widths = (np.ascontiguousarray(column) for column in rows.T)
+        return Thrust(
+            pulses=Pulses(peaks=peaks, centres=centres, widths=widths, begin=begin, end=end),
+            curve=None,
+        )
+
+    def requested(self) -> float:
+        """Impulse (N s) of the uncut pulses."""
+        return float(sum(pulse.size() for pulse in self.pulses()))
+
+    def usage(self) -> str:
+        """Whether the pulses are cut, and whether their impulse is restored."""
+        if not self.cutoff:
+            return "not cut"
+        return f"cut at {self.cutoff:g} widths and {'rescaled' if self.rescale else 'not rescaled'}"
+
+    def details(self) -> dict[str, float | str]:
+        """Where the pulses are cut (widths) and whether they are rescaled."""
+        return {"cutoff_widths": self.cutoff or "none", "rescaled": "yes" if self.rescale else "no"}
+
+
+class GaussianTable(Pulse, _PulsedTable):
+    """``[thrust] kind = "gaussian"``: the keys of one pulse and those of a pulsed thrust."""
+
+    kind: Literal["gaussian"]
+
+    def pulses(self) -> tuple[Pulse, ...]:
+        """The one pulse, which is the table itself."""
+        return (self,)
+
+
+class GaussiansTable(_PulsedTable):
+    """``[thrust] kind = "gaussians"`` with ``[[thrust.components]]``, one pulse each."""
+
+    kind: Literal["gaussians"]
+    components: Annotated[tuple[Pulse, ...], AfterValidator(at_least_one)]
+
+    def pulses(self) -> tuple[Pulse, ...]:
+        """The components."""
+        return self.components
+
+
+class ConstantTable(_ThrustTable):
+    """``[thrust] kind = "constant"``: force (N) from ``start`` for ``duration`` (s)."""
+
+    kind: Literal["constant"]
+    force: Force
+    start: NonNegativeTime = 0.0
+    duration: PositiveTime
+
+    def record(self) -> Thrust:
+        """Kernel record: a curve that jumps on and off."""
+        times = np.array(
+            [self.start, self.start, self.start + self.duration, self.start + self.duration]
+        )
+        return Thrust(None, Curve(times, np.array([0.0, self.force, self.force, 0.0])))
+
+    def requested(self) -> float:
+        """Impulse (N s) of the whole push."""
+        return self.force * self.duration
+
+
+class MeasuredTable(_ThrustTable):
+    """``[thrust] kind = "measured"``: CSV with columns ``time_s,force_N``; ``use`` the curve itself
+    or its Gaussian fit."""
+
+    kind: Literal["measured"]
+    file: str
+    use: Literal["curve", "fit"] = "curve"
+    _curve: MeasuredCurve = PrivateAttr()
+
+    @field_validator("file")
+    @classmethod
+    def _readable(cls, file: str):
+        read_curve(file)
+        return file
+
+    @model_validator(mode="after")
+    def _usable(self):
+        self._curve = read_curve(self.file)
+        if self.use == "fit":
+            self.fit()
+        return self
+
+    def fit(self) -> GaussianFit:
+        """Least-squares Gaussian of the curve, with residual and impulses. Raises ValueError where
+        none fits."""
+        return fit_gaussian(self._curve)
+
+    def points(self) -> list[list[float]]:
+        """Times (s) and forces (N) of the curve."""
+        return [self._curve.time.tolist(), self._curve.force.tolist()]
+
+    def record(self) -> Thrust:
+        """Kernel record: the curve, or one pulse."""
+        if self.use == "fit":
+            fit = self.fit()
+            pulses = Pulses(
+                peaks=np.array([fit.peak]),
+                centres=np.array([fit.centre]),
+                widths=np.array([fit.width]),
+                begin=-math.inf,
+                end=math.inf,
+            )
+            return Thrust(pulses=pulses, curve=None)
+        return Thrust(None, Curve(self._curve.time, self._curve.force))
+
+    def requested(self) -> float:
+        """Impulse (N s) of the measured curve."""
+        return float(np.trapezoid(self._curve.force, self._curve.time))
+
+    def usage(self) -> str:
+        """Whether the points or the fit act, and how well the two agree."""
+        acting = "the points act" if self.use == "curve" else "the Gaussian fit acts"
+        try:
+            fit = self.fit()
+        except ValueError:
+            return f"{acting}, no Gaussian fits"
+        return (
+            f"{acting}; fit peak {fit.peak:.6g} N, centre {fit.centre:.6g} s, width "
+            f"{fit.width:.6g} s, relative residual "
+            f"{fit.relative_residual:.3g}, impulse {fit.impulse:.7g} N s against "
+            f"{fit.curve_impulse:.7g} N s of the curve"
+        )
+
+    def details(self) -> dict[str, float | str]:
+        """Which of curve and fit is used, and the fit."""
+        used: dict[str, float | str] = {"use": self.use}
+        try:
+            fit = self.fit()
+        except ValueError:
+            return used
+        return used | {
+            "fit_peak_N": fit.peak,
+            "fit_centre_s": fit.centre,
+            "fit_width_s": fit.width,
+            "fit_relative_residual": fit.relative_residual,
+            "fit_impulse_Ns": fit.impulse,
+            "curve_impulse_Ns": fit.curve_impulse,
+        }
+
+
+ThrustTable = Annotated[
+    GaussianTable | GaussiansTable | ConstantTable | MeasuredTable, Field(discriminator="kind")
+]

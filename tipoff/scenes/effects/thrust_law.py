@@ -1,0 +1,201 @@
+"""The law of the thrust: kernel records, F(t), and what an integrator must know of it.
+
+F(t) = sum_i P_i exp(-(t - t_i)^2 / (2 s_i^2))   begin <= t <= end,   or a piecewise linear curve
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from tipoff.kernels.jit import njit
+
+ROOT_TWO_PI = math.sqrt(2.0 * math.pi)
+
+
+class Pulses(NamedTuple):
+    """Gaussians: peaks (N), centres (s), widths (s), each (n,), zero outside begin..end (s)."""
+
+    peaks: np.ndarray
+    centres: np.ndarray
+    widths: np.ndarray
+    begin: float
+    end: float
+
+
+class Curve(NamedTuple):
+    """Piecewise linear curve: times (s, not decreasing; a repeated time is a jump) and forces
+    (N)."""
+
+    times: np.ndarray
+    forces: np.ndarray
+
+
+class Thrust(NamedTuple):
+    """Kernel record: exactly one of the two is not None."""
+
+    pulses: Pulses | None
+    curve: Curve | None
+
+
+def _curve(thrust: Thrust) -> Curve:
+    """The curve of a thrust without pulses."""
+    assert thrust.curve is not None
+    return thrust.curve
+
+
+@njit
+def _pulsed(pulses, time):
+    if not pulses.begin <= time <= pulses.end:
+        return 0.0
+    total = 0.0
+    for i in range(pulses.peaks.size):
+        x = (time - pulses.centres[i]) / pulses.widths[i]
+        total += pulses.peaks[i] * np.exp(-0.5 * x * x)
+    return total
+
+
+@njit
+def _interpolated(curve, time):
+    last = curve.times.size - 1
+    if time < curve.times[0] or time >= curve.times[last]:
+        return 0.0
+    after = np.searchsorted(curve.times, time, side="right")
+    t0, t1 = curve.times[after - 1], curve.times[after]
+    f0, f1 = curve.forces[after - 1], curve.forces[after]
+    return f0 + (f1 - f0) * (time - t0) / (t1 - t0)
+
+
+@njit
+def magnitude(pulses, curve, time):
+    """Thrust (N) at ``time`` (s). At a jump of a curve the value after the jump is taken."""
+    force = 0.0
+    if pulses is not None:
+        force = _pulsed(pulses, time)
+    if curve is not None:
+        force = _interpolated(curve, time)
+    return force
+
+
+@njit
+def _sampled(pulses, curve, times):
+    forces = np.empty(times.size)
+    for i in range(times.size):
+        forces[i] = magnitude(pulses, curve, times[i])
+    return forces
+
+
+def sample(thrust: Thrust, time: np.ndarray) -> np.ndarray:
+    """Thrust (N) at each of ``time`` (n,) s."""
+    return _sampled(thrust.pulses, thrust.curve, np.ascontiguousarray(time, dtype=float))
+
+
+def corners(thrust: Thrust, duration: float) -> np.ndarray:
+    """Sorted times (s) inside (0, duration) where F or its slope jumps: an integrator must stop
+    there."""
+    times = (
+        np.array([thrust.pulses.begin, thrust.pulses.end])
+        if thrust.pulses is not None
+        else _curve(thrust).times
+    )
+    return np.unique(times[(times > 0.0) & (times < duration)])
+
+
+def shortest_feature(thrust: Thrust) -> float:
+    """Time scale (s) no step may jump over: the narrowest pulse width, or the shortest segment of a
+    curve."""
+    if thrust.pulses is not None:
+        return float(thrust.pulses.widths.min())
+    return float(np.diff(np.unique(_curve(thrust).times)).min())
+
+
+@njit
+def _bisected(pulses, curve, level, above, below):
+    """Time (s) where the size of the thrust falls to ``level`` (N), between one that is above it
+    and one below."""
+    while True:
+        middle = 0.5 * (above + below)
+        if not above < middle < below:
+            return below
+        if abs(magnitude(pulses, curve, middle)) >= level:
+            above = middle
+        else:
+            below = middle
+
+
+def _grid(thrust: Thrust, duration: float) -> tuple[np.ndarray, np.ndarray]:
+    """Times (s) in 0..duration that miss no pulse and no point of a curve, and the size of the
+    thrust (N) there."""
+    if thrust.pulses is not None:
+        near = (
+            thrust.pulses.centres[:, None]
+            + np.linspace(-8.0, 8.0, 801) * thrust.pulses.widths[:, None]
+        )
+    else:
+        near = _curve(thrust).times
+    time = np.union1d(np.linspace(0.0, duration, 1001), near[(near > 0.0) & (near < duration)])
+    return time, np.abs(sample(thrust, time))
+
+
+def peak(thrust: Thrust, duration: float) -> float:
+    """Largest size of the thrust (N) in 0..duration: exact for one pulse and for a curve, else
+    within 1e-4 of itself."""
+    return float(_grid(thrust, duration)[1].max())
+
+
+def burnouts(thrust: Thrust, fractions: tuple[float, ...], duration: float) -> tuple[float, ...]:
+    """For each fraction the earliest time (s) after which thrust stays below this share of its
+    peak; ``duration`` if that is later.
+
+    The last grid point above is found first, then the crossing behind it by bisection to the last
+    bit.
+    """
+    time, force = _grid(thrust, duration)
+    return tuple(
+        _last_above(thrust, time, force, fraction * force.max(), duration) for fraction in fractions
+    )
+
+
+def burnout(thrust: Thrust, fraction: float, duration: float) -> float:
+    """``burnouts`` of one fraction."""
+    return burnouts(thrust, (fraction,), duration)[0]
+
+
+def _last_above(
+    thrust: Thrust, time: np.ndarray, force: np.ndarray, level: float, duration: float
+) -> float:
+    if level == 0.0:
+        return 0.0
+    above = np.flatnonzero(force >= level)[-1]
+    if above == time.size - 1:
+        return float(duration)
+    return float(_bisected(thrust.pulses, thrust.curve, level, time[above], time[above + 1]))
+
+
+def kept(begin: float, end: float, centre: float, width: float) -> float:
+    """Share of a Gaussian's integral that lies in begin..end (s)."""
+    if end <= begin:
+        return 0.0
+    root = math.sqrt(2.0) * width
+    return 0.5 * (math.erf((end - centre) / root) - math.erf((begin - centre) / root))
+
+
+def impulse(thrust: Thrust, duration: float) -> float:
+    """Impulse (N s) delivered in 0..duration: exact for both kinds."""
+    if thrust.pulses is not None:
+        peaks, centres, widths, begin, end = thrust.pulses
+        window = max(0.0, begin), min(duration, end)
+        return float(
+            sum(
+                p * s * ROOT_TWO_PI * kept(*window, t, s) for p, t, s in zip(peaks, centres, widths)
+            )
+        )
+    times, forces = _curve(thrust)
+    inside = times <= duration
+    total = np.trapezoid(forces[inside], times[inside])
+    if inside.any() and not inside.all():
+        last = np.flatnonzero(inside)[-1]
+        part = (duration - times[last]) / (times[last + 1] - times[last])
+        cut = forces[last] + part * (forces[last + 1] - forces[last])
+        total += 0.5 * (forces[last] + cut) * (duration - times[last])
+    return float(total)

@@ -1,0 +1,60 @@
+"""Thrust misalignment and eccentricity: direction and line of action of the thrust in body axes.
+
+Misalignment theta from +X, phi from +Y towards +Z: ``F (cos t, sin t cos p, sin t sin p)``.
+Eccentricity r at angle a: ``l_z = r cos a``, ``l_y = r sin a``, measured from the nominal centre.
+Absent table: a centred axial force.
+"""
+
+import math
+from typing import NamedTuple
+
+from tipoff.scenes.effects.mass_offset import Eccentricity
+from tipoff.scenes.table import Table
+from tipoff.scenes.units import Angle
+
+
+class Misalignment(Table):
+    """Angle from +X (rad) and clock angle from +Y towards +Z (rad)."""
+
+    axial: Angle = 0.0
+    radial: Angle = 0.0
+
+    def direction(self) -> tuple[float, float, float]:
+        """Unit vector of the thrust in body axes."""
+        sine = math.sin(self.axial)
+        return (math.cos(self.axial), sine * math.cos(self.radial), sine * math.sin(self.radial))
+
+
+class ThrustOffsetTable(Table):
+    """``[thrust_offset]``: misalignment and eccentricity of the thrust."""
+
+    misalignment: Misalignment = Misalignment()
+    eccentricity: Eccentricity = Eccentricity()
+
+
+class ThrustOffset(NamedTuple):
+    """Kernel record: unit direction, and arm from the actual mass centre (m), both in body axes."""
+
+    direction: tuple
+    arm: tuple
+
+
+def record(thrust_offset, mass_offset, arm: float) -> ThrustOffset | None:
+    """Line of action about the actual mass centre, or None when thrust is axial through the mass
+    centre.
+
+    ``arm`` is the distance (m) of the point of application behind the nominal centre.
+    """
+    if thrust_offset is None and mass_offset is None:
+        return None
+    direction, line, centre = (1.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+    if thrust_offset is not None:
+        direction, line = (
+            thrust_offset.misalignment.direction(),
+            thrust_offset.eccentricity.offset(),
+        )
+    if mass_offset is not None:
+        centre = mass_offset.eccentricity.offset()
+    return ThrustOffset(
+        direction, (line[0] - centre[0] - arm, line[1] - centre[1], line[2] - centre[2])
+    )

@@ -1,0 +1,140 @@
+"""Dotted keys such as ``thrust_offset.misalignment.axial`` or ``pads.0.relief``: set, dropped, and
+checked against the tables."""
+
+from collections.abc import Iterator, Mapping
+from types import UnionType
+from typing import Annotated, Any, Union, get_args, get_origin
+
+from tipoff.scenes.table import Table
+
+
+def plain(value: Any) -> Any:
+    """A copy that shares no container with ``value``, tuples turned into lists as TOML has them."""
+    if isinstance(value, Mapping):
+        return {key: plain(item) for key, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [plain(item) for item in value]
+    return value
+
+
+def dotted(table: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
+    """(dotted key, value) pairs of a nested mapping, so that ``a.b = 1`` means the same as ``"a.b"
+    = 1`` in a file."""
+    for key, value in table.items():
+        if isinstance(value, Mapping) and value:
+            yield from dotted(value, f"{prefix}{key}.")
+        else:
+            yield f"{prefix}{key}", value
+
+
+def texts(table: Any) -> dict[str, Any] | None:
+    """A ``[provenance]`` under dotted keys, none where it is absent; None where it is no table."""
+    if table is None or is_drop(table):
+        return {}
+    return dict(dotted(table)) if isinstance(table, Mapping) else None
+
+
+def is_key(annotation: Any, key: str) -> bool:
+    """Whether a table of type ``annotation`` can hold the dotted ``key``, present or not."""
+    part, _, rest = key.partition(".")
+    inner = _inside(annotation, part)
+    return bool(inner) and (not rest or any(is_key(item, rest) for item in inner))
+
+
+def unit(annotation: Any, key: str) -> str | None:
+    """SI unit of the number that a table of type ``annotation`` holds under the dotted ``key``.
+
+    Empty where it depends on other keys (a contact stiffness on its exponent), None where there is
+    no number.
+    """
+    part, _, rest = key.partition(".")
+    found = [unit(item, rest) if rest else _unit(item) for item in _inside(annotation, part)]
+    return next((item for item in found if item is not None), None)
+
+
+def _unit(annotation: Any) -> str | None:
+    if annotation is float:
+        return ""
+    if get_origin(annotation) not in (Annotated, Union, UnionType):
+        return None
+    known = [
+        item.json_schema_extra["unit"]
+        for item in get_args(annotation)
+        if getattr(item, "json_schema_extra", None)
+    ]
+    found = known + [_unit(item) for item in get_args(annotation)]
+    return next((item for item in found if item is not None), None)
+
+
+def _inside(annotation: Any, part: str) -> list:
+    if isinstance(annotation, type) and issubclass(annotation, Table):
+        field = annotation.model_fields.get(part)
+        return [Annotated[field.annotation, field]] if field else []
+    if get_origin(annotation) in (list, tuple):
+        return list(get_args(annotation)[:1]) if part.isdigit() else []
+    if get_origin(annotation) is dict:
+        return [get_args(annotation)[1]]
+    return [found for item in get_args(annotation) for found in _inside(item, part)]
+
+
+def is_drop(value: Any) -> bool:
+    """Whether ``value`` asks for a table or key to be left out."""
+    return value is None or (isinstance(value, str) and value == "absent")
+
+
+def apply_all(
+    raw: dict, overrides: Mapping[str, Any], table_type: type
+) -> list[tuple[str, str, str]]:
+    """Apply overrides in place; faults (key, given, expected) of keys that lead nowhere.
+
+    A misspelt key that is set is found by the validation of ``table_type``; one that is dropped
+    only here.
+    """
+    faults = []
+    for key, value in overrides.items():
+        if is_drop(value) and not is_key(table_type, key):
+            faults.append((key, repr(value), "no such key"))
+        elif fault := apply(raw, key, plain(value)):
+            faults.append(fault)
+    return faults
+
+
+def apply(raw: dict, key: str, value: Any) -> tuple[str, str, str] | None:
+    """Set one dotted key in place, or drop it; returns (key, given, expected) when it leads
+    nowhere.
+
+    A table that loses its last key is dropped with it: an empty table would be present without
+    meaning anything.
+    """
+    head, _, rest = key.partition(".")
+    return _apply_inside(raw, head, rest, key, value)
+
+
+def _apply_inside(
+    table: Any, head: str, rest: str, key: str, value: Any
+) -> tuple[str, str, str] | None:
+    place: int | str
+    if isinstance(table, list):
+        if not (head.isdigit() and int(head) < len(table)):
+            return key, repr(head), f"an index below {len(table)}"
+        place = int(head)
+    elif isinstance(table, dict):
+        place = head
+        if is_drop(value) and head not in table:
+            return None
+        if rest:
+            table.setdefault(head, {})
+    else:
+        return key, repr(head), "a key inside a table"
+    if rest:
+        fault = _apply_inside(table[place], *rest.partition(".")[::2], key, value)
+        if is_drop(value) and table[place] == {}:
+            del table[place]
+        return fault
+    if not is_drop(value):
+        table[place] = value
+    elif isinstance(table, list):
+        return key, "nothing", "a value, since a list keeps its length"
+    else:
+        del table[place]
+    return None

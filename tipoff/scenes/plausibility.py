@@ -1,0 +1,144 @@
+"""Values that pass validation and yet are probably a slip, of units or of what was taken over from
+another scene: warned about by field name, never changed."""
+
+import itertools
+import math
+
+import numpy as np
+
+from tipoff.scenes import sinking
+from tipoff.scenes.effects.thermal import fields
+from tipoff.scenes.rail import SectionTable
+
+_WAVE_SPEED = (100.0, 10_000.0)
+_DENSITY = (10.0, 20_000.0)
+_EXPANSION = 1e-4  # 1/K: polymers; metals expand by a third of it at most
+_FREE_STRAIN = 5e-3  # 200 K in aluminium, whose constants have changed by then
+
+# Of the inertia that a box of even density has: three times is all mass at the corners, which
+# nothing exceeds; a third is all of it within 0.58 of each side.
+_LEAST, _MOST = 1.0 / 3.0, 3.0
+# times, of a free end of a rail against the middle of its widest gap between two mounts
+_SOFTER = 8.0
+
+
+def warnings(scene) -> list[str]:
+    """Messages that name the fields and the plausible range."""
+    found = []
+    material = scene.rail.material
+    speed = math.sqrt(material.youngs_modulus / material.density)
+    if not _WAVE_SPEED[0] <= speed <= _WAVE_SPEED[1]:
+        found.append(
+            f"rail.material.youngs_modulus, rail.material.density: wave speed {speed:.4g} m/s, "
+            f"plausible {_WAVE_SPEED[0]:g} to {_WAVE_SPEED[1]:g} m/s"
+        )
+    if scene.payload.size is not None:
+        density = scene.payload.mass / math.prod(scene.payload.size)
+        if not _DENSITY[0] <= density <= _DENSITY[1]:
+            found.append(
+                f"payload.mass, payload.size: mean density {density:.4g} kg/m3, "
+                f"plausible {_DENSITY[0]:g} to {_DENSITY[1]:g} kg/m3"
+            )
+    found += _of_inertia(scene) + _of_mounts(scene.rail)
+    if scene.contact is not None:
+        found += sinking.warnings(scene)
+    if scene.thermal is not None:
+        found += _of_temperature(scene)
+    return found
+
+
+def of_all_conditions(scene) -> list[str]:
+    """Messages on a scene, and on its conditions where they name keys that no message before
+    does."""
+    found: dict[str, str] = {}
+    for name in (None, *scene.conditions):
+        for words in scene.warnings if name is None else scene.condition(name).warnings:
+            found.setdefault(
+                words.partition(":")[0], words if name is None else f"{words} (condition {name})"
+            )
+    return list(found.values())
+
+
+def _of_inertia(scene) -> list[str]:
+    """Moments of inertia that a body of that mass cannot have, or hardly has, in a box of sides a,
+    b and c.
+
+    A body of even density has I_xx = m (b^2 + c^2) / 12, and none has more than three times that:
+    the mean of (y - y_c)^2 over mass between two planes b apart is at most b^2 / 4 (Popoviciu).
+    Without ``payload.size`` the body reaches as far as its pads do, across the axis no further,
+    along it perhaps.
+    """
+    payload, wrong = scene.payload, []
+    pads = [2.0 * max(abs(pad.position[axis]) for pad in scene.pads) for axis in range(3)]
+    sides = payload.size or (pads[0] + max(pad.length for pad in scene.pads), *pads[1:])
+    for axis, name in enumerate("xyz"):
+        even = (
+            payload.mass * sum(side**2 for other, side in enumerate(sides) if other != axis) / 12.0
+        )
+        most = _MOST * even if payload.size or axis == 0 else math.inf
+        moment = getattr(payload.inertia, 2 * name)
+        if not _LEAST * even <= moment <= most:
+            wrong.append(
+                (
+                    f"payload.inertia.{2 * name}",
+                    f"{moment:.4g} kg m2 (plausible {_LEAST * even:.3g} "
+                    f"{f'to {most:.3g} kg m2' if math.isfinite(most) else 'or more'})",
+                )
+            )
+    if not wrong:
+        return []
+    keys = ", ".join(
+        ["payload.mass", *(key for key, _ in wrong), "payload.size" if payload.size else "pads"]
+    )
+    return [
+        f"{keys}: {payload.mass:.4g} kg in {' x '.join(f'{side:.3g}' for side in sides)} m with "
+        f"{', '.join(words for _, words in wrong)}"
+    ]
+
+
+def _of_mounts(rail) -> list[str]:
+    """A free end of a built-in rail that is far softer than the rail between two of its mounts.
+
+    The tip of a cantilever of length a gives way by F a^3 / (3 E I), the middle of a span g clamped
+    at both ends by F g^3 / (192 E I): 64 (a / g)^3 times as much. Without such a gap the mounts
+    together count as the span.
+    """
+    if not isinstance(rail, SectionTable) or not rail.mounts:
+        return []
+    mounts = sorted(rail.mounts, key=lambda span: span.start)
+    gaps = [after.start - before.end for before, after in itertools.pairwise(mounts)]
+    gap = max(gaps, default=0.0) or mounts[-1].end - mounts[0].start
+    allowed, found = gap * (_SOFTER / 64.0) ** (1.0 / 3.0), []
+    for end, free in (("rear", mounts[0].start), ("open", rail.end - rail.start - mounts[-1].end)):
+        if free > allowed:
+            found.append(
+                f"rail.mounts, rail.start, rail.end: {1e3 * free:.4g} mm at the {end} end are not "
+                f"held, plausible up to "
+                f"{1e3 * allowed:.4g} mm; they give way {64.0 * (free / gap) ** 3:.3g} times as "
+                f"far as between mounts"
+            )
+    return found
+
+
+def _of_temperature(scene) -> list[str]:
+    found, expansion = [], scene.rail.material.expansion
+    if not 0.0 <= expansion <= _EXPANSION:
+        found.append(
+            f"rail.material.expansion: {expansion:.4g} 1/K, plausible 0 to {_EXPANSION:g} 1/K"
+        )
+    thermal = scene.thermal.record(scene.rail)
+    ends = np.array(
+        [
+            (x, y, z)
+            for x in (scene.rail.start, scene.rail.end)
+            for y, z in {pad.position[1:] for pad in scene.pads}
+        ]
+    )
+    largest = float(abs(fields(ends, thermal.middle) @ thermal.amounts[:-1]).max())
+    if largest > _FREE_STRAIN:
+        found.append(
+            f"thermal: rails that would expand by {100.0 * largest:.3g} % if they could, plausible "
+            f"up to "
+            f"{100.0 * _FREE_STRAIN:g} %"
+        )
+    return found

@@ -1,0 +1,240 @@
+"""``[rail]``: the built-in L section, a mesh of the user's own, or a solid of the user's own that
+is meshed here.
+
+Presence of ``mesh`` or ``geometry`` is the switch. Such a file stands in scene axes (m, origin at
+the nominal mass centre at ignition, +X to the open end), its walls one ``clearance`` off the pads.
+The surrogate sees none of it: ``start`` and ``end`` say where the walls begin and end, pads and
+clearance where they stand; the reference refuses a file that says otherwise (``highfi.rail.fit``).
+``damping`` (``scenes.effects.structural_damping``), which any kind of rail may have, is felt by the
+reference and by modes of the rails (``scenes.effects.flexibility``).
+"""
+
+import hashlib
+import itertools
+import math
+from pathlib import Path
+from typing import Annotated, Any, ClassVar, Literal
+
+from pydantic import (
+    AfterValidator,
+    Discriminator,
+    Field,
+    PrivateAttr,
+    Tag,
+    ValidationInfo,
+    field_validator,
+    model_validator,
+)
+
+from tipoff.scenes.effects.structural_damping import DampingTable
+from tipoff.scenes.table import Table, at_least_one, is_absent
+from tipoff.scenes.units import (
+    Density,
+    Expansion,
+    Length,
+    NonNegativeLength,
+    PoissonRatio,
+    PositiveLength,
+    Pressure,
+)
+
+FILES = ("mesh", "geometry")  # keys that give the rail as a file
+SOLIDS = (".step", ".stp", ".iges", ".igs", ".brep")
+
+
+def _beyond_start(end: float, info: ValidationInfo) -> float:
+    if end <= info.data.get("start", -math.inf):
+        raise ValueError("an end beyond start")
+    return end
+
+
+class Span(Table):
+    """A stretch along the rail measured from its rear end (m)."""
+
+    start: NonNegativeLength
+    end: PositiveLength
+
+    _forward = field_validator("end")(_beyond_start)
+
+
+class MaterialTable(Table):
+    """``[rail.material]``: isotropic linear elasticity; ``expansion`` (1/K) is what ``[thermal]``
+    asks for, and nothing else."""
+
+    density: Density
+    youngs_modulus: Pressure
+    poisson_ratio: PoissonRatio
+    yield_strength: Pressure | None = None
+    expansion: Expansion | None = Field(None, exclude_if=is_absent)
+
+
+class _RailTable(Table):
+    """What every rail has: the stretch of X (m) in which its walls stand, its material, and its
+    damping, if it has any."""
+
+    GIVEN_BY: ClassVar[str]
+    start: Length
+    end: Length
+    material: MaterialTable
+    damping: DampingTable | None = None
+
+    _forward = field_validator("end")(_beyond_start)
+
+    def contents(self) -> dict[str, str]:
+        """The keys that name files, each with the digest of what its file holds: what a result
+        depends on."""
+        return {}
+
+    def gap(self, clearance: float) -> float:
+        """Distance (m) of the walls from the pads as drawn, in a scene of that clearance (m): here
+        walls follow the clearance."""
+        return clearance
+
+
+class SectionTable(_RailTable):
+    """Built-in L sections from ``start`` to ``end`` along X, clamped to the platform at
+    ``mounts``."""
+
+    GIVEN_BY = "section"
+    leg: PositiveLength = 0.024
+    thickness: PositiveLength = 0.004
+    mount_width: PositiveLength = 0.004
+    mounts: tuple[Span, ...] = ()
+
+    @field_validator("thickness", "mount_width")
+    @classmethod
+    def _within_leg(cls, value: float, info: ValidationInfo):
+        leg = info.data.get("leg", math.inf)
+        if value > leg or (info.field_name == "thickness" and value == leg):
+            raise ValueError(f"less than the leg, {leg:g} m")
+        return value
+
+    @field_validator("mounts")
+    @classmethod
+    def _apart_on_the_rail(cls, mounts: tuple[Span, ...], info: ValidationInfo):
+        length = info.data.get("end", math.inf) - info.data.get("start", 0.0)
+        if any(span.end > length + 1e-12 for span in mounts):
+            raise ValueError(f"spans that lie on the rail, which is {length:g} m long")
+        inward = sorted(mounts, key=lambda span: span.start)
+        if any(after.start < before.end for before, after in itertools.pairwise(inward)):
+            raise ValueError("spans that do not overlap")
+        return mounts
+
+
+class _FileTable(_RailTable):
+    """A rail given by a file.
+
+    ``clearance`` (m) is the one the file was drawn for; a scene of another one has shims of the
+    difference under its pads. ``thickness`` (m) of its walls and ``leg`` (m), how far they reach
+    unsupported, are what the bounds of a calibration scale with, and where a wall ends for a pad
+    that comes from behind or from beside (``mechanics.model.Plate``).
+    """
+
+    clearance: NonNegativeLength | None = None
+    leg: PositiveLength | None = None
+    thickness: PositiveLength | None = None
+    _digest: str = PrivateAttr()
+
+    @model_validator(mode="after")
+    def _taken(self):
+        self._digest = self._digest_now()
+        return self
+
+    def _digest_now(self) -> str:
+        return hashlib.sha256(self.path().read_bytes()).hexdigest()
+
+    def is_as_found(self) -> bool:
+        """Whether the file still holds what it held when the scene was read, under which results
+        are filed."""
+        return self._digest_now() == self._digest
+
+    def path(self) -> Path:
+        """Where the file lies."""
+        return Path(getattr(self, self.GIVEN_BY))
+
+    def contents(self) -> dict[str, str]:
+        """The digest of the file, as it was when the scene was read."""
+        return {self.GIVEN_BY: self._digest}
+
+    def gap(self, clearance: float) -> float:
+        """Distance (m) of the walls from the pads as drawn: a file does not follow the clearance of
+        the scene."""
+        return clearance if self.clearance is None else self.clearance
+
+
+def _readable(file: str) -> str:
+    try:
+        with open(file, "rb") as stream:
+            stream.read(1)
+    except OSError as error:
+        raise ValueError(f"a readable file ({error.strerror})") from error
+    return file
+
+
+class MeshTable(_FileTable):
+    """``[rail] mesh``: 8-node hexahedra or 10-node tetrahedra in any format meshio reads, with
+    named surfaces ``contact...`` and ``mount`` (``highfi.mesh.rail_mesh``)."""
+
+    GIVEN_BY = "mesh"
+    mesh: Annotated[str, AfterValidator(_readable)]
+
+
+class BoxTable(Table):
+    """A box between two corners in scene axes (m), flat where they agree."""
+
+    low: tuple[Length, Length, Length]
+    high: tuple[Length, Length, Length]
+
+    @field_validator("high")
+    @classmethod
+    def _above(cls, high, info: ValidationInfo):
+        if any(above < below for below, above in zip(info.data.get("low", high), high)):
+            raise ValueError("a corner nowhere below low")
+        return high
+
+
+class GeometryTable(_FileTable):
+    """``[rail] geometry``: a solid drawn in CAD, meshed here with ``elements`` of 8-node hexahedra
+    or 10-node tetrahedra. ``surfaces`` names the parts of its boundary that lie in boxes."""
+
+    GIVEN_BY = "geometry"
+    geometry: Annotated[str, AfterValidator(_readable)]
+    elements: Literal["hex8", "tet10"] = "hex8"
+    surfaces: dict[str, Annotated[tuple[BoxTable, ...], AfterValidator(at_least_one)]]
+
+    @field_validator("geometry")
+    @classmethod
+    def _drawn(cls, file: str):
+        if Path(file).suffix.lower() not in SOLIDS:
+            raise ValueError(f"a file that ends in one of {', '.join(SOLIDS)}")
+        return file
+
+    @field_validator("surfaces")
+    @classmethod
+    def _walls_and_mount(cls, surfaces):
+        wrong = [
+            f"a name that starts with 'contact' or is 'mount' instead of {name!r}"
+            for name in surfaces
+            if not name.startswith("contact") and name != "mount"
+        ]
+        if not any(name.startswith("contact") for name in surfaces):
+            wrong.append("a surface whose name starts with 'contact'")
+        if "mount" not in surfaces:
+            wrong.append("a surface 'mount'")
+        if wrong:
+            raise ValueError("; ".join(wrong))
+        return surfaces
+
+
+def _given_by(rail: Any) -> str:
+    if isinstance(rail, dict):
+        return next((key for key in FILES if key in rail), "section")
+    return getattr(rail, "GIVEN_BY", "section")
+
+
+RailTable = Annotated[
+    Annotated[SectionTable, Tag("section")]
+    | Annotated[MeshTable, Tag("mesh")]
+    | Annotated[GeometryTable, Tag("geometry")],
+    Discriminator(_given_by),
+]

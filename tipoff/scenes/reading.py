@@ -1,0 +1,130 @@
+"""Scene files: TOML on disk to one nested mapping, a file that ``extends`` another merged over it.
+
+In a file that extends another, a table set to ``"absent"`` drops the inherited one, and a
+``[thrust]`` of another kind, a ``[contact]`` of another law or a ``[rail]`` given by a file
+replaces the inherited table instead of mixing with it. What it sets is the user's
+(``scenes.provenance``), unless it says otherwise in a ``[provenance]`` of its own.
+"""
+
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path
+
+from tipoff.scenes import overrides, provenance, rail
+from tipoff.scenes.faults import Fault, SceneError
+
+CATALOG = Path(__file__).resolve().parent / "catalog"
+_CHOICE = {"thrust": "kind", "contact": "law"}
+# written relative to the scene file
+_FILES = (("thrust", "file"), *(("rail", key) for key in rail.FILES))
+_FREE_TEXT = {"conditions", "provenance"}
+
+
+def names() -> list[str]:
+    """Names of the scenes that come with the package."""
+    return sorted(path.stem for path in CATALOG.glob("*.toml"))
+
+
+def read(name_or_path: str | Path) -> tuple[dict, str]:
+    """Mapping and path of a catalogue scene (by name) or of a TOML file. Raises SceneError."""
+    path = Path(name_or_path)
+    if path.suffix != ".toml":
+        path = CATALOG / f"{name_or_path}.toml"
+        if not path.is_file():
+            raise SceneError([Fault(str(name_or_path), "scene", "an unknown name", _known())])
+    raw = _inherit(path, str(path), ())
+    raw.setdefault("name", path.stem)
+    return raw, str(path)
+
+
+def _known() -> str:
+    return f"a path to a .toml file or one of {', '.join(names())}"
+
+
+def _inherit(path: Path, user_file: str, chain: tuple[Path, ...]) -> dict:
+    """``path`` merged over what it extends. Faults of an inherited file name the file the user
+    gave, and that file."""
+    key = "file" if not chain else "extends"
+    if path.resolve() in chain:
+        raise SceneError(
+            [Fault(user_file, key, str(path), "files that do not extend each other in a circle")]
+        )
+    raw = toml(path, user_file, key)
+    for name, entry in _FILES:
+        table = raw.get(name)
+        if (
+            isinstance(table, dict)
+            and isinstance(table.get(entry), str)
+            and table[entry] != "absent"
+        ):
+            table[entry] = str((path.parent / table[entry]).resolve())
+    base = raw.pop("extends", None)
+    if base is None:
+        return raw
+    if not isinstance(base, str):
+        raise SceneError([Fault(user_file, "extends", repr(base), _known())])
+    base_path = path.parent / base if base.endswith(".toml") else CATALOG / f"{base}.toml"
+    if not base_path.is_file():
+        raise SceneError([Fault(user_file, "extends", repr(base), _known())])
+    inherited = _inherit(base_path, user_file, (*chain, path.resolve()))
+    # results are filed by name: a variation may not pass for what it varies
+    inherited.pop("name", None)
+    merged = _merged(inherited, raw)
+    known, given = (overrides.texts(table.get("provenance")) for table in (inherited, raw))
+    if known is not None and given is not None:
+        merged["provenance"] = provenance.overridden(
+            known, merged, dict(_changes(inherited, raw)), given
+        )
+    return merged
+
+
+def toml(path: Path, user_file: str, key: str = "file") -> dict:
+    """Content of a TOML file. Raises SceneError, filed under ``key`` of the file the user gave."""
+    inherited = "" if key == "file" else f"{path}: "
+    try:
+        with open(path, "rb") as stream:
+            return tomllib.load(stream)
+    except OSError as error:
+        raise SceneError(
+            [Fault(user_file, key, f"{inherited}{error.strerror}", "a readable TOML file")]
+        ) from error
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise SceneError([Fault(user_file, key, f"{inherited}{error}", "valid TOML")]) from error
+
+
+def _merged(base: dict, extra: dict) -> dict:
+    merged = dict(base)
+    for key, value in extra.items():
+        if value == "absent" and key in merged:
+            merged.pop(key, None)
+        elif key in _FREE_TEXT and isinstance(value, dict) and isinstance(merged.get(key), dict):
+            merged[key] = merged[key] | value
+        elif (
+            isinstance(value, dict)
+            and isinstance(merged.get(key), dict)
+            and not _other_choice(key, merged[key], value)
+        ):
+            merged[key] = _merged(merged[key], value)
+        else:
+            merged[key] = value
+    return merged
+
+
+def _changes(base: dict, extra: dict, prefix: str = "") -> Iterator[tuple[str, bool]]:
+    """Dotted keys that ``_merged`` sets or, marked True, drops."""
+    for key, value in extra.items():
+        if isinstance(value, dict) and value:
+            inherited = known if isinstance(known := base.get(key), dict) else {}
+            if inherited and _other_choice(key, inherited, value):
+                yield f"{prefix}{key}", True
+                inherited = {}
+            yield from _changes(inherited, value, f"{prefix}{key}.")
+        else:
+            yield f"{prefix}{key}", overrides.is_drop(value)
+
+
+def _other_choice(key: str, base: dict, extra: dict) -> bool:
+    if key == "rail":
+        return any(file in extra and file not in base for file in rail.FILES)
+    choice = _CHOICE.get(key)
+    return choice in extra and extra[choice] != base.get(choice)

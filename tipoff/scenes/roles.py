@@ -1,0 +1,38 @@
+"""What the tables beside the physics may say: conditions have names of files, roles name
+conditions, provenance quantities."""
+
+from typing import Any
+
+from tipoff.scenes import names
+from tipoff.scenes.overrides import is_key
+
+
+def faults(raw: dict[str, Any], scene_type: type) -> list[tuple[str, str, str]]:
+    """Faults (key, given, expected) of the names in ``[conditions]``, and of ``[agreement]`` and
+    ``[provenance]`` of a scene of ``scene_type``."""
+    conditions, roles, provenance = (
+        _table(raw.get(name)) for name in ("conditions", "agreement", "provenance")
+    )
+    lists = {role: members for role, members in roles.items() if isinstance(members, list)}
+    found = names.faults(conditions)
+    found += [
+        (f"agreement.{role}", repr(name), "a name from [conditions]")
+        for role, members in lists.items()
+        for name in members
+        if name not in conditions
+    ]
+    # A held-out condition that was fitted would call a fit a prediction.
+    found += [
+        ("agreement.held_out", repr(name), "a condition that is not fitted")
+        for name in lists.get("held_out", [])
+        if name in lists.get("fitted", [])
+    ]
+    return found + [
+        (f"provenance.{key}", repr(text), "the dotted key of a quantity")
+        for key, text in provenance.items()
+        if not is_key(scene_type, key)
+    ]
+
+
+def _table(value: Any) -> dict:
+    return value if isinstance(value, dict) else {}

@@ -1,0 +1,282 @@
+"""The scene: one immutable, validated description that feeds both fidelities. Presence of a table
+is the switch.
+
+>>> scene = load("reference")
+>>> scene.replace({"thrust_offset.misalignment.axial": "0.3 deg"}).condition("phi35")
+"""
+
+from collections.abc import Mapping
+from functools import cached_property
+from operator import attrgetter
+from pathlib import Path
+from typing import Annotated, Any
+
+from pydantic import (
+    AfterValidator,
+    Field,
+    PrivateAttr,
+    ValidationError,
+    ValidationInfo,
+    field_validator,
+)
+
+from tipoff.files import content_hash
+from tipoff.scenes import names, plausibility, provenance, reading, roles
+from tipoff.scenes import overrides as keys
+from tipoff.scenes.effects.contact import ContactTable
+from tipoff.scenes.effects.flight import FlightTable
+from tipoff.scenes.effects.friction import FrictionTable
+from tipoff.scenes.effects.gravity import GravityTable
+from tipoff.scenes.effects.initial import InitialTable
+from tipoff.scenes.effects.mass_offset import MassOffsetTable
+from tipoff.scenes.effects.platform import PlatformTable
+from tipoff.scenes.effects.thermal import ThermalTable
+from tipoff.scenes.effects.thrust import MeasuredTable, ThrustTable
+from tipoff.scenes.effects.thrust_offset import ThrustOffsetTable
+from tipoff.scenes.faults import Fault, SceneError, faults_of, within
+from tipoff.scenes.rail import RailTable
+from tipoff.scenes.table import Table, at_least_one, is_absent
+from tipoff.scenes.tables import MOST_SAMPLES, AgreementTable, OutputTable, PadTable, PayloadTable
+from tipoff.scenes.units import Duration
+
+CATALOG = reading.CATALOG
+EFFECTS = (
+    "thrust_offset",
+    "mass_offset",
+    "initial",
+    "contact",
+    "friction",
+    "platform",
+    "gravity",
+    "thermal",
+    "rail.damping",
+)
+NOMINAL = "nominal"  # the scene itself, named like a condition
+_BESIDE = ("conditions", "agreement", "provenance")
+# what comes after the exit changes nothing before it
+_NOT_PHYSICS = {"name", "description", "flight", *_BESIDE}
+
+
+class Scene(Table):
+    """Everything a run needs. Fields are SI; an absent effect is None. Use ``replace`` for
+    variations."""
+
+    name: Annotated[str, AfterValidator(names.of_scene)]
+    description: str = ""
+    duration: Duration
+    payload: PayloadTable
+    pads: Annotated[tuple[PadTable, ...], AfterValidator(at_least_one)]
+    rail: RailTable
+    thrust: ThrustTable
+    thrust_offset: ThrustOffsetTable | None = None
+    mass_offset: MassOffsetTable | None = None
+    initial: InitialTable | None = None
+    contact: ContactTable | None = None
+    friction: FrictionTable | None = None
+    platform: PlatformTable | None = None
+    gravity: GravityTable | None = None
+    flight: FlightTable | None = None
+    thermal: ThermalTable | None = Field(None, exclude_if=is_absent)
+    output: OutputTable = Field(OutputTable(), validate_default=True)
+    agreement: AgreementTable = AgreementTable()
+    conditions: dict[str, dict[str, Any]] = Field(default_factory=dict)
+    provenance: dict[str, str] = Field(default_factory=dict)
+    _raw: dict = PrivateAttr(default_factory=dict)
+    _source: str = PrivateAttr(default="scene")
+
+    @field_validator("thermal")
+    @classmethod
+    def _expanding(cls, thermal: ThermalTable | None, info: ValidationInfo):
+        if (
+            thermal is not None
+            and "rail" in info.data
+            and info.data["rail"].material.expansion is None
+        ):
+            raise ValueError(
+                'rails that expand: rail.material.expansion, for example "23.6e-6 1/K"'
+            )
+        return thermal
+
+    @field_validator("output")
+    @classmethod
+    def _of_fitting_interval(cls, output: OutputTable, info: ValidationInfo):
+        if "duration" in info.data and not output.fits(duration := info.data["duration"]):
+            raise within(
+                "interval",
+                f"{output.interval:g} s",
+                f"{duration / MOST_SAMPLES:g} s to {duration:g} s: at least one and at most "
+                f"{MOST_SAMPLES:,} samples in "
+                f"the duration of {duration:g} s",
+            )
+        return output
+
+    def replace(self, overrides: Mapping[str, Any]) -> "Scene":
+        """A new scene with dotted keys set. Text carries units, a bare number is SI, None or
+        "absent" drops a table. What is set has the provenance "user", unless ``overrides`` give
+        another under ``provenance.<key>``.
+
+        Raises SceneError listing every fault.
+        """
+        raw = keys.plain(self._raw)
+        lost = keys.apply_all(raw, overrides, Scene)
+        _mark(raw, overrides)
+        scene, faults = _validated(raw, True)
+        # else they stay as they were found sound
+        if any(key.split(".")[0] in _BESIDE for key in overrides):
+            faults = faults + _beside_faults(raw, True, faults)
+        if scene is None or lost or faults:
+            raise SceneError(
+                [Fault(f"override of {self._source}", *fault) for fault in lost + faults]
+            )
+        scene._raw, scene._source = raw, self._source
+        return scene
+
+    def condition(self, name: str) -> "Scene":
+        """The scene of one named condition, or itself as ``NOMINAL``. Raises SceneError for a name
+        the scene does not have."""
+        if name == NOMINAL and name not in self.conditions:
+            return self
+        if name not in self.conditions:
+            known = ", ".join(self.conditions) or "none are defined"
+            raise SceneError([Fault(self._source, "conditions", repr(name), f"one of {known}")])
+        return self.replace(self.conditions[name])
+
+    def given(self, key: str) -> Any:
+        """What was written under a dotted ``key``, before it was read as a quantity; None where
+        nothing was."""
+        found: Any = self._raw
+        for part in key.split("."):
+            found = found.get(part) if isinstance(found, dict) else None
+        return found
+
+    def physics(self) -> dict:
+        """The resolved physical inputs in SI, without names and roles: what a result depends on."""
+        found = self.model_dump(mode="json", exclude=_NOT_PHYSICS)
+        if self.thermal is None:
+            found["rail"]["material"].pop("expansion", None)
+        return found
+
+    def resolved(self) -> dict:
+        """Every input in SI, as written into result files; ``parse(..., bare_numbers_are_si=True)``
+        reads it back."""
+        return self.model_dump(mode="json", exclude_none=True)
+
+    @cached_property
+    def hash(self) -> str:
+        """SHA-256 of the physical inputs. A file counts by what it holds, a measured thrust by its
+        points, not by where it lies."""
+        physics = self.physics()
+        physics["rail"] |= self.rail.contents()
+        points: list[list[float]] = []
+        if isinstance(self.thrust, MeasuredTable):
+            physics["thrust"].pop("file")
+            points = self.thrust.points()
+        return content_hash(physics, points)
+
+    @cached_property
+    def warnings(self) -> list[str]:
+        """Values that are allowed but implausible, by field name."""
+        return plausibility.warnings(self)
+
+    def agrees(self) -> bool:
+        """Whether tables that were each found sound are so together: rails can follow a
+        temperature, where there is one, and the sampling interval fits the duration."""
+        return (
+            self.thermal is None or self.rail.material.expansion is not None
+        ) and self.output.fits(self.duration)
+
+    def absent_effects(self) -> list[str]:
+        """Dotted keys of the effect tables this scene does not have."""
+        return [key for key in EFFECTS if attrgetter(key)(self) is None]
+
+
+def parse(
+    raw: Mapping[str, Any], source: str = "scene", bare_numbers_are_si: bool = False
+) -> Scene:
+    """Validate a nested mapping, all its conditions included.
+
+    Raises SceneError listing every fault with file, key, given and expected.
+    """
+    tables = keys.plain(raw)
+    scene, faults = _validated(tables, bare_numbers_are_si)
+    if isinstance(tables, dict):
+        faults = faults + _beside_faults(tables, bare_numbers_are_si, faults)
+    if scene is None or faults:
+        raise SceneError([Fault(source, *fault) for fault in faults])
+    scene._raw, scene._source = tables, source
+    return scene
+
+
+def load(name_or_path: str | Path) -> Scene:
+    """Read a catalogue scene by name (``reference``) or a TOML file by path. Raises SceneError."""
+    return parse(*reading.read(name_or_path))
+
+
+def catalog() -> list[str]:
+    """Names of the scenes that come with the package."""
+    return reading.names()
+
+
+_Faults = list[tuple[str, str, str]]
+
+
+def _validated(raw: Any, bare_numbers_are_si: bool) -> tuple[Scene | None, _Faults]:
+    """The scene, or None with its faults as (key, given, expected). Puts conditions and provenance
+    under dotted keys."""
+    if isinstance(raw, dict):
+        if isinstance(raw.get("provenance"), dict):
+            raw["provenance"] = dict(keys.dotted(raw["provenance"]))
+        for name, table in _tables(raw.get("conditions")):
+            raw["conditions"][name] = dict(keys.dotted(table))
+    try:
+        return Scene.model_validate(raw, context={"bare_numbers_are_si": bare_numbers_are_si}), []
+    except ValidationError as error:
+        return None, [fault[1:] for fault in faults_of(error, "")]
+
+
+def _mark(raw: dict, overrides: Mapping[str, Any]) -> None:
+    """Bring the provenance in ``raw``, to which ``overrides`` were applied, up to date with
+    them."""
+    stated = keys.texts(raw.get("provenance"))
+    if stated is None:
+        return
+    given = keys.texts(overrides.get("provenance")) or {}
+    given |= {
+        key.removeprefix("provenance."): text
+        for key, text in overrides.items()
+        if key.startswith("provenance.")
+    }
+    before = {key: text for key, text in stated.items() if key not in given}
+    changes = {key: keys.is_drop(value) for key, value in overrides.items()}
+    raw["provenance"] = provenance.overridden(
+        before, raw, changes, {key: text for key, text in given.items() if key in stated}
+    )
+
+
+def _tables(raw: Any) -> list[tuple[str, dict]]:
+    return (
+        [(name, table) for name, table in raw.items() if isinstance(table, dict)]
+        if isinstance(raw, dict)
+        else []
+    )
+
+
+def _beside_faults(raw: dict, bare_numbers_are_si: bool, known: _Faults) -> _Faults:
+    """What is wrong in conditions, agreement and provenance, apart from the ``known`` faults of the
+    scene itself."""
+    found = []
+    for name, table in _tables(raw.get("conditions")):
+        varied = keys.plain({key: item for key, item in raw.items() if key not in _BESIDE})
+        faults = keys.apply_all(varied, table, Scene) + _validated(varied, bare_numbers_are_si)[1]
+        found += [
+            (f"conditions.{name}.{key}", given, expected)
+            for key, given, expected in faults
+            if (key, given, expected) not in known
+        ]
+    # A misspelt key that was set is known by its own name, and need not be told by that of its
+    # provenance too.
+    return found + [
+        fault
+        for fault in roles.faults(raw, Scene)
+        if not (known and fault[1] == repr(provenance.USER))
+    ]

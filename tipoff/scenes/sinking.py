@@ -1,0 +1,113 @@
+"""How far a pad sinks into its wall under the static load of a scene: what shows a stiffness in the
+wrong unit.
+
+The load is the most that one face can be asked to bear at rest: the thrust's peak across the axis
+and the weight, both on that face alone, and the couple that holds the thrust's moment M about the
+mass centre over the distance L of the outermost pads::
+
+    F = P sin t + m |g_yz| + M / L
+
+    springs     p = (F / k)^(1 / e)          interface of finite elements and compliant walls     p = F / (k_p A)
+
+A is the smallest face of a pad, pressed flat. Springs, which stand for rail and contact, may sink
+up to the clearance: the play would mean nothing if a wall gave way as far. Where the play is small,
+and right so, 1 % of a pad's shortest side may take its place, a strain beyond which any metal
+yields. The interface is a layer of asperities and coating beside a rail that bends: a tenth of
+that.
+"""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from tipoff.scenes import moments
+from tipoff.scenes.effects import thrust
+
+_STRAIN = 0.01  # of a pad's shortest side
+_THOUSAND = 1e3  # between N and kN, and between m and mm
+
+
+class _Spring(NamedTuple):
+    """A stiffness of ``[contact]``."""
+
+    key: str
+    value: float  # SI
+    exponent: float  # of the sink in the force
+    lengths: float  # power of the length in its unit
+    area: float  # m2 that it acts on, 1 where the unit has none
+    share: float  # of the clearance, up to which a sink is plausible
+    share_in_words: str
+
+    def sink(self, load: float, factor: float = 1.0) -> float:
+        """Sink (m) under a load (N), with ``factor`` times the stiffness."""
+        return (load / (factor * self.value * self.area)) ** (1.0 / self.exponent)
+
+
+def load(scene) -> float:
+    """Largest static load (N) of one pad face across the axis, see the module docstring."""
+    peak = float(thrust.peak(scene.thrust.record(), scene.duration))
+    tilt = scene.thrust_offset.misalignment.axial if scene.thrust_offset is not None else 0.0
+    weight = (
+        scene.payload.mass * float(np.hypot(scene.gravity.y, scene.gravity.z))
+        if scene.gravity is not None
+        else 0.0
+    )
+    places = [pad.position[0] for pad in scene.pads]
+    between = max(max(places) - min(places), max(pad.length for pad in scene.pads))
+    return abs(peak * np.sin(tilt)) + weight + float(moments.transverse(scene, {}, peak)) / between
+
+
+def warnings(scene) -> list[str]:
+    """A message for each stiffness of ``[contact]`` under which a pad sinks implausibly far."""
+    contact, force = scene.contact, load(scene)
+    side = min(min(pad.length, pad.width) for pad in scene.pads)
+    base, in_words = max(
+        (contact.clearance, "the clearance"), (_STRAIN * side, "1 % of a pad's shortest side")
+    )
+    area = min(pad.length * pad.width for pad in scene.pads)
+    springs = (
+        _Spring("stiffness", contact.stiffness, contact.exponent, contact.exponent, 1.0, 1.0, ""),
+        _Spring("penalty", contact.penalty, 1.0, 3.0, area, 0.1, "a tenth of "),
+    )
+    found = []
+    for spring in springs:
+        plausible = spring.share * base
+        if (sink := spring.sink(force)) > plausible:
+            text = _given(scene, spring)
+            meant = next(
+                (
+                    f"; {words} it would be {_length(spring.sink(force, factor))}"
+                    for words, factor in _units_meant(text, spring.lengths)
+                    if spring.sink(force, factor) <= plausible
+                ),
+                "",
+            )
+            found.append(
+                f"contact.{spring.key}: under {text} a pad sinks {_length(sink)} at a static load "
+                f"of {force:.3g} N, "
+                f"plausible up to {_length(plausible)}, {spring.share_in_words}{in_words}{meant}"
+            )
+    return found
+
+
+def _given(scene, spring: _Spring) -> str:
+    """The stiffness as the scene was given it, else in SI."""
+    given = scene.given(f"contact.{spring.key}")
+    return given if isinstance(given, str) else f"{spring.value:.4g} N/m**{spring.lengths:g}"
+
+
+def _units_meant(text: str, lengths: float) -> Iterator[tuple[str, float]]:
+    """Units that the number may have been meant in, in words, and how much stiffer each is than the
+    one it was given in."""
+    small, large = "mm" not in text, "N" in text and "kN" not in text
+    if small:
+        yield "in mm instead of m", _THOUSAND**lengths
+    if large:
+        yield "in kN instead of N", _THOUSAND
+    if small and large:
+        yield "in kN and mm instead of N and m", _THOUSAND ** (lengths + 1.0)
+
+
+def _length(metres: float) -> str:
+    return f"{1e3 * metres:.3g} mm"

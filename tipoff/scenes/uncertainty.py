@@ -1,0 +1,144 @@
+"""What varies in an ensemble: distributions under dotted keys, the number of cases, a seed and a
+way of sampling, from a TOML file::
+
+    cases = 1000
+    seed = 1
+    sampling = "sobol"                     # or "latin-hypercube", "random"
+
+    [vary."thrust_offset.misalignment.axial"]
+    distribution = "normal"     # fixed, uniform, truncated-normal, rayleigh: see distributions.py
+    mean = "0 deg"
+    sd = "0.033 deg"
+
+A scene says what is nominal, this file what is not certain about it.
+Quantities carry the dimension the scene asks for under that key.
+"""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Annotated, Any, Literal, NamedTuple
+
+import numpy as np
+from pydantic import AfterValidator, Field, ValidationError
+
+from tipoff.scenes import overrides as keys
+from tipoff.scenes import reading
+from tipoff.scenes.distributions import BY_NAME, Distribution
+from tipoff.scenes.faults import Fault, SceneError, faults_of
+from tipoff.scenes.scene import Scene
+from tipoff.scenes.table import Table, at_least_one
+
+CATALOG = reading.CATALOG / "vary"
+DEFAULT = "paper"
+
+
+class _File(Table):
+    description: str = ""
+    cases: Annotated[int, Field(strict=True, gt=0, le=2**40)]
+    seed: Annotated[int, Field(strict=True, ge=0, lt=2**63)] = 1
+    sampling: Literal["random", "latin-hypercube", "sobol"] = "random"
+    vary: Annotated[dict[str, Any], AfterValidator(at_least_one)]
+
+
+class Uncertainty(NamedTuple):
+    """``cases`` to be drawn with ``seed`` by ``sampling``: the numbers under the dotted keys of
+    ``vary``, each by its distribution."""
+
+    cases: int
+    seed: int
+    sampling: str
+    vary: dict[str, Distribution]
+
+    def resolved(self) -> dict:
+        """What the numbers of a case depend on, in SI, as written into result files."""
+        return self._asdict() | {
+            "vary": {
+                key: item.model_dump(mode="json", exclude={"provenance"})
+                for key, item in self.vary.items()
+            }
+        }
+
+
+def load(name_or_path: str | Path, scene: Scene, **changed: Any) -> Uncertainty:
+    """Read what varies in ``scene`` from a TOML file, or from the catalogue by name; ``changed``
+    replaces cases, seed or sampling.
+
+    Raises SceneError listing every fault.
+    """
+    path = Path(name_or_path)
+    if path.suffix != ".toml":
+        path = CATALOG / f"{name_or_path}.toml"
+        if not path.is_file():
+            known = ", ".join(sorted(item.stem for item in CATALOG.glob("*.toml")))
+            raise SceneError(
+                [
+                    Fault(
+                        str(name_or_path),
+                        "vary",
+                        "an unknown name",
+                        f"a path to a .toml file or one of {known}",
+                    )
+                ]
+            )
+    return parse(reading.toml(path, str(path)) | changed, scene, str(path))
+
+
+def parse(
+    raw: Mapping[str, Any], scene: Scene, source: str = "vary", bare_numbers_are_si: bool = False
+) -> Uncertainty:
+    """Validate a mapping as a file holds it. Raises SceneError listing every fault with file, key,
+    given and expected."""
+    faults: list[Fault] = []
+    try:
+        file = _File.model_validate(raw, context={})
+    except ValidationError as error:
+        faults = faults_of(error, source)
+    tables = _tables(raw.get("vary"))
+    found = {
+        key: _distribution(source, key, table, bare_numbers_are_si, faults)
+        for key, table in tables.items()
+    }
+    if faults:
+        raise SceneError(faults)
+    varied = {key: item for key, item in found.items() if item is not None}
+    try:
+        # One draw as a trial: it finds what no single key shows, such as a pad that the scene does
+        # not have.
+        scene.replace({key: float(item.ppf(np.array(0.5))) for key, item in varied.items()})
+    except SceneError as error:
+        raise SceneError(
+            [fault._replace(source=f"{source}, medians") for fault in error.faults]
+        ) from None
+    return Uncertainty(file.cases, file.seed, file.sampling, varied)
+
+
+def _tables(vary: Any) -> dict[str, dict[str, Any]]:
+    """Tables of distributions by dotted key, whether the file quotes the key or nests it."""
+    found: dict[str, dict[str, Any]] = {}
+    for dotted, value in keys.dotted(vary if isinstance(vary, dict) else {}):
+        key, _, name = dotted.rpartition(".")
+        found.setdefault(key, {})[name] = value
+    return found
+
+
+def _distribution(
+    source: str, key: str, table: dict[str, Any], bare: bool, faults: list[Fault]
+) -> Distribution | None:
+    place = f"vary.{key}"
+    if (unit := keys.unit(Scene, key)) is None:
+        expected = "a key that holds a number" if keys.is_key(Scene, key) else "no such key"
+        faults.append(Fault(source, place, repr(table), expected))
+        return None
+    name = table.get("distribution")
+    if name not in BY_NAME:
+        faults.append(
+            Fault(source, f"{place}.distribution", repr(name), f"one of {', '.join(BY_NAME)}")
+        )
+        return None
+    try:
+        return BY_NAME[name].model_validate(
+            table, context={"unit": unit, "bare_numbers_are_si": bare}
+        )
+    except ValidationError as error:
+        faults += [fault._replace(key=f"{place}.{fault.key}") for fault in faults_of(error, source)]
+        return None

@@ -1,0 +1,137 @@
+"""Many variations of one scene, fast: only what a row of overrides changes is validated again.
+
+What ``Variations.of`` answers has the same tables as ``Scene.replace``. The first row with certain
+keys is validated by tables; the next rows with the same keys by single numbers, where no rule of a
+table ties one number to another. A row that anything is wrong with goes through ``replace`` itself,
+so that the faults are the same too.
+"""
+
+from collections.abc import Mapping
+from typing import Annotated, Any, NamedTuple
+
+from pydantic import TypeAdapter, ValidationError
+from pydantic.fields import FieldInfo
+
+from tipoff.scenes import overrides as keys
+from tipoff.scenes.scene import EFFECTS, Scene
+from tipoff.scenes.table import Table
+
+_TABLES = {
+    "payload",
+    "pads",
+    "rail",
+    "thrust",
+    "output",
+    *(key for key in EFFECTS if "." not in key),
+}
+_CONTEXT = {"bare_numbers_are_si": True}
+
+
+class _Leaf(NamedTuple):
+    """Where a number stands in a scene that may be written over, and what it must be."""
+
+    values: dict
+    name: str
+    adapter: TypeAdapter
+
+
+class Variations:
+    """Variations of ``scene``."""
+
+    def __init__(self, scene: Scene):
+        self.scene = scene
+        self._adapters: dict[Any, TypeAdapter] = {}
+        self._known: dict[tuple, tuple[Scene, list[_Leaf]] | None] = {}
+
+    def of(self, row: Mapping[str, Any]) -> Scene:
+        """The scene with the overrides of ``row``, to be read before the next call. Raises
+        SceneError as ``Scene.replace`` does."""
+        names = tuple(row)
+        if (known := self._known.get(names)) is None:
+            scene = self._by_tables(row)
+            if names not in self._known:
+                self._known[names] = (
+                    self._leaves(names, self._by_tables(row))
+                    if scene._raw is self.scene._raw
+                    else None
+                )
+            return scene
+        scene, leaves = known
+        try:
+            values = [
+                leaf.adapter.validate_python(value, context=_CONTEXT)
+                for leaf, value in zip(leaves, row.values())
+            ]
+        except ValidationError:
+            return self.scene.replace(row)
+        for leaf, value in zip(leaves, values):
+            leaf.values[leaf.name] = value
+        return scene if scene.agrees() else self.scene.replace(row)
+
+    def _by_tables(self, row: Mapping[str, Any]) -> Scene:
+        changed = dict.fromkeys(key.partition(".")[0] for key in row)
+        if not changed.keys() <= _TABLES:
+            return self.scene.replace(row)
+        raw = {
+            name: keys.plain(self.scene._raw[name]) for name in changed if name in self.scene._raw
+        }
+        if keys.apply_all(raw, row, Scene):
+            return self.scene.replace(row)
+        try:
+            tables = {name: self._table(name, raw) for name in changed}
+        except (ValidationError, KeyError):
+            return self.scene.replace(row)
+        found = self.scene.model_copy(update=tables)
+        return found if found.agrees() else self.scene.replace(row)
+
+    def _table(self, name: str, raw: dict) -> Any:
+        field = Scene.model_fields[name]
+        if name not in raw and not field.is_required():
+            return field.get_default()
+        return self._adapter((Scene, name), field).validate_python(raw[name], context=_CONTEXT)
+
+    def _adapter(self, key: tuple, field: FieldInfo) -> TypeAdapter:
+        if key not in self._adapters:
+            kind: Any = (
+                Annotated[(field.annotation, *field.metadata)]
+                if field.metadata
+                else field.annotation
+            )
+            self._adapters[key] = TypeAdapter(kind)
+        return self._adapters[key]
+
+    def _leaves(self, names: tuple[str, ...], scene: Scene) -> tuple[Scene, list[_Leaf]] | None:
+        """``scene``, made for this purpose, and its numbers under ``names``; None where one is more
+        than a free number."""
+        leaves = []
+        for name in names:
+            *path, last = name.split(".")
+            table: Any = scene
+            for part in path:
+                table = (
+                    table.__dict__.get(part)
+                    if isinstance(table, Table) and _free(type(table), table is scene)
+                    else None
+                )
+            if not (
+                isinstance(table, Table)
+                and table is not scene
+                and _free(type(table))
+                and isinstance(getattr(table, last, None), float)
+            ):
+                return None
+            leaves.append(
+                _Leaf(
+                    table.__dict__,
+                    last,
+                    self._adapter((type(table), last), type(table).model_fields[last]),
+                )
+            )
+        return scene, leaves
+
+
+def _free(kind: type[Table], whole: bool = False) -> bool:
+    """Whether no rule of a table of this kind, but that it may not be empty, looks at its
+    values."""
+    rules = kind.__pydantic_decorators__
+    return whole or (not rules.field_validators and set(rules.model_validators) <= {"_not_empty"})

@@ -1,0 +1,123 @@
+"""Digests of code: what a module depends on, without its docstrings and comments.
+
+A module depends on itself and on every module of the project that it imports, at its top or inside
+a function, and these import in turn. `from package import name` depends on the module
+`package.name` if there is one, else on the `package` itself. Imports for the type checker alone do
+not count.
+"""
+
+import ast
+import contextlib
+import functools
+import hashlib
+import json
+import os
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+from tipoff.files import replacing
+
+ROOT = Path(__file__).resolve().parent.parent
+PACKAGE = "tipoff"
+# Syntax trees differ between versions of Python.
+_SYNTAX = f"{sys.version_info[0]}.{sys.version_info[1]}"
+_DOCUMENTED = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
+
+
+def cache_folder() -> Path:
+    """Where compiled kernels and digests of sources are kept: ``NUMBA_CACHE_DIR`` if it is set, else
+    ``tipoff`` in the user's caches."""
+    chosen = os.environ.get("NUMBA_CACHE_DIR")
+    caches = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache"))
+    return Path(chosen) if chosen else caches / "tipoff"
+
+
+class Source(NamedTuple):
+    """What counts of one file."""
+
+    code: str  # hexadecimal SHA-256 of its syntax tree without docstrings
+    imports: tuple[str, ...]  # dotted names, of modules or of names in modules
+
+
+@functools.cache
+def digest(*modules: str) -> str:
+    """Hexadecimal SHA-256 of the code that ``modules`` (dotted names) depend on."""
+    parts = [f"{name} {_source(name).code}" for name in closure(*modules)]
+    return hashlib.sha256("\n".join(parts).encode()).hexdigest()
+
+
+def closure(*modules: str) -> list[str]:
+    """Dotted names of all modules of the project that ``modules`` depend on, themselves included, in
+    alphabetical order. Raises ModuleNotFoundError for a module that the project does not have."""
+    found: set[str] = set()
+    waiting = list(modules)
+    while waiting:
+        name = waiting.pop()
+        if name in found:
+            continue
+        if path(name) is None:
+            raise ModuleNotFoundError(f"the project has no module {name}")
+        found.add(name)
+        waiting += [used for used in map(_module, _source(name).imports) if used]
+    return sorted(found)
+
+
+def path(module: str) -> Path | None:
+    """File of a ``module`` of the project, or None."""
+    if module.split(".")[0] != PACKAGE:
+        return None
+    place = ROOT.joinpath(*module.split("."))
+    for file in (place.with_suffix(".py"), place / "__init__.py"):
+        if file.is_file():
+            return file
+    return None
+
+
+def _module(name: str) -> str | None:
+    """The module that a dotted ``name`` is, or is found in; None outside the project."""
+    if path(name):
+        return name
+    parent = name.rpartition(".")[0]
+    return parent if parent and path(parent) else None
+
+
+@functools.cache
+def _source(module: str) -> Source:
+    """What counts of the file of ``module``. It is kept beside the kernels under the digest of the
+    file, for reading the syntax of all files takes a second."""
+    file = path(module)
+    assert file is not None
+    content = file.read_bytes()
+    kept = cache_folder() / "sources" / f"{_SYNTAX}-{hashlib.sha256(content).hexdigest()}.json"
+    try:
+        code, *imports = json.loads(kept.read_text(encoding="utf-8"))
+        return Source(code, tuple(imports))
+    except (OSError, ValueError):
+        tree = ast.parse(content)
+        imports = sorted(set(_imports(tree)))
+        found = Source(hashlib.sha256(_code(tree).encode()).hexdigest(), tuple(imports))
+        with contextlib.suppress(OSError), replacing(kept) as file:
+            file.write_text(json.dumps([found.code, *imports]), encoding="utf-8")
+        return found
+
+
+def _code(tree: ast.Module) -> str:
+    for node in ast.walk(tree):
+        if isinstance(node, _DOCUMENTED) and ast.get_docstring(node, clean=False) is not None:
+            node.body[:1] = [] if len(node.body) > 1 else [ast.Pass()]
+    return ast.dump(tree)
+
+
+def _imports(node: ast.AST) -> Iterator[str]:
+    if isinstance(node, ast.If) and ast.unparse(node.test).endswith("TYPE_CHECKING"):
+        for other in node.orelse:
+            yield from _imports(other)
+        return
+    if isinstance(node, ast.Import):
+        yield from (part for name in node.names for part in (name.name, name.name.split(".")[0]))
+    elif isinstance(node, ast.ImportFrom) and node.module:
+        yield from (f"{node.module}.{name.name}" for name in node.names)
+    for child in ast.iter_child_nodes(node):
+        yield from _imports(child)

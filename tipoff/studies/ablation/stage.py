@@ -1,0 +1,155 @@
+"""Stage ``ablation``: every effect off, one at a time, in both fidelities: what it changes, what it
+costs, and proof that the compiled kernel without it does not contain it.
+
+The baseline has every effect on: those the scene does not have are added with the small values in
+``ADDED``, except those that need values of the scene's own (contact, friction, platform, and a
+temperature where rails are not known to expand), which count where the scene has them. The scene as
+it asks and the scene without any effect close the table. The surrogate runs all of them by turns,
+so that what else the machine does meets each alike.
+"""
+
+import importlib
+import statistics
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from tipoff.mechanics.trajectory import Trajectory
+from tipoff.scenes.scene import EFFECTS, Scene
+from tipoff.studies.core import machine, rail_compliance
+from tipoff.studies.core.store import Run
+from tipoff.studies.core.study import Study
+from tipoff.studies.cost.timing import timed, warm_up
+
+ADDED: dict[str, dict[str, Any]] = {
+    "thrust_offset": {
+        "thrust_offset.misalignment.axial": "0.1 deg",
+        "thrust_offset.misalignment.radial": "35 deg",
+    },
+    "mass_offset": {
+        "mass_offset.eccentricity.axial": "0.1 mm",
+        "mass_offset.eccentricity.radial": "120 deg",
+    },
+    "initial": {"initial.position.y": "20 um"},
+    "gravity": {"gravity.z": "-9.81 m/s**2"},
+    "thermal": {"thermal.mean": "5 K", "thermal.gradient.y": "20 K/m"},
+    "rail.damping": {
+        "rail.damping.ratios": [0.01, 0.01],
+        "rail.damping.frequencies": ["500 Hz", "5 kHz"],
+    },
+}
+
+
+def variants(scene: Scene) -> dict[str, dict]:
+    """Overrides of ``scene`` for each line of the table, by name."""
+    absent = scene.absent_effects()
+    added = {
+        effect: values
+        for effect, values in ADDED.items()
+        if effect != "thermal" or scene.rail.material.expansion is not None
+    }
+    everything = {key: value for effect in absent for key, value in added.get(effect, {}).items()}
+    present = [effect for effect in EFFECTS if effect not in absent or effect in added]
+    lines = {"all effects": everything}
+    for effect in present:
+        kept = {key: value for key, value in everything.items() if not key.startswith(f"{effect}.")}
+        lines[f"without {effect}"] = kept | {effect: None}
+    return lines | {"as the scene asks": {}, "no effect": dict.fromkeys(present)}
+
+
+def run(study: Study) -> dict:
+    """``rows``: per fidelity and variant the processor time, its change, the settled rates' change,
+    the effects compiled."""
+    name = (study.scene.agreement.refined or tuple(study.conditions))[0]
+
+    def make() -> tuple[dict, list[Path]]:
+        lines = variants(study.condition(name))
+        rows = _rows("highfi", lines, *_reference(study, name, lines)) + _rows(
+            "lowfi", lines, *_surrogate(study, name, lines)
+        )
+        return {
+            "condition": name,
+            "added": ADDED,
+            "element_size_m": study.settings.coarse_size,
+            "rows": rows,
+            "hardware": machine.describe(),
+        }, []
+
+    return study.stage("ablation", study.key(__name__, name, ADDED), make)
+
+
+def _reference(study: Study, name: str, lines: dict[str, dict]):
+    """Runs on the coarse mesh, and the processor time of each: the thread's own, so runs side by
+    side do not disturb it."""
+    asked = [study.coarse(name, overrides, _tag(line)) for line, overrides in lines.items()]
+    runs = study.store.fill("ablation, highfi", asked)
+    return asked, runs, [run.cost.get("cpu_s", run.cost["wall_s"]) for run in runs]
+
+
+def _surrogate(study: Study, name: str, lines: dict[str, dict]):
+    """Runs by turns, and the median time of their loops: set-up and judging, the same for all,
+    would hide what an effect costs."""
+    under = rail_compliance.load(study, study.condition(name))
+    asked = [
+        study.lowfi(
+            name,
+            None,
+            overrides,
+            _tag(line),
+            None if overrides.get("contact", "kept") is None else under,
+        )
+        for line, overrides in lines.items()
+    ]
+    for item in asked:
+        warm_up(item)
+    rounds = [[timed(item) for item in asked] for _ in range(study.settings.lowfi_repeats)]
+    times = [
+        statistics.median(run.cost["kernel_s"] for run, _, _ in repeats) for repeats in zip(*rounds)
+    ]
+    return asked, [run for run, _, _ in rounds[0]], times
+
+
+def _rows(
+    fidelity: str,
+    lines: dict[str, dict],
+    asked: list[Run],
+    runs: list[Trajectory],
+    times: list[float],
+) -> list[dict]:
+    rows = []
+    for line, item, run, seconds in zip(lines, asked, runs, times):
+        rate, baseline = run.outcome.rate, runs[0].outcome.rate
+        change = (
+            None
+            if rate is None or baseline is None
+            else np.degrees(np.subtract(rate, baseline)).tolist()
+        )
+        rows.append(
+            {
+                "fidelity": fidelity,
+                "variant": line,
+                "status": run.status,
+                "time_s": seconds,
+                "ns_per_step": 1e9 * seconds / max(run.cost["steps"], 1),
+                "time_ratio": seconds / times[0],
+                "settled_rate_deg_s": None if rate is None else np.degrees(rate).tolist(),
+                "settled_rate_change_deg_s": change,
+                "compiled": compiled(item),
+            }
+        )
+    return rows
+
+
+def compiled(run: Run) -> list[str]:
+    """Effects whose code is in the kernel compiled for ``run``, as the fidelity reads them off
+    it."""
+    known = {"walls": run.walls} if run.walls is not None else {}
+    present = importlib.import_module(f"tipoff.{run.fidelity}").compiled_effects(
+        run.scene, run.numerics, **known
+    )
+    return sorted(effect for effect in present if present[effect])
+
+
+def _tag(line: str) -> str:
+    return "-" + line.replace(" ", "-")

@@ -1,0 +1,187 @@
+"""How a disturbance of one micrometre grows, and how long two curves can be compared before it has.
+
+    s(t) = largest of |w'(t) - w(t)| over the axes and over the twins w', which start with every
+           wall 1 um farther off or nearer
+    d_k  = mean of s over the free flight after contact k
+    factor d_k / d_(k-1),   exponent ln(d_k / d_(k-1)) / (t_k - t_(k-1)),   t_k the end of contact k
+
+Walls and not the payload are moved, because that is the disturbance of the floor: it meets every
+face whatever way the payload goes, and both models know it. Before the first contact nothing
+differs. The first one turns a length into a rate, d_1; every later one adds such a part of its own,
+so that d_k up to k d_1 is no growth, and more is.
+
+**Horizon**: the first instant at which s passes the gate of the settled rates and is not back below
+it after the same contact. Twins touch at different instants, so that s peaks while one of them is
+in contact and the other not yet; a peak that the contact takes back is a shift of time. Up to the
+horizon of the reference a curve can be compared with its own, from there on it is one of many that
+1 um tells apart. **Sensitive**: 1 um moves a settled rate by more than the gate. **Chaotic**:
+sensitive, and d after the last of n contacts is more than n d_1, so that it is growth from contact
+to contact and not the first one alone that carries 1 um beyond the gate.
+"""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from tipoff.mechanics.trajectory import Trajectory
+from tipoff.studies.agreement.metrics import common_time
+from tipoff.studies.agreement.verdicts import largest, settled_change
+
+_BOUNCE = 1e-3  # s: touches closer than this are one contact, for in between nothing settles
+_DRAWN = 300  # points of a curve that result files keep
+
+
+@dataclass(frozen=True)
+class Contact:
+    """One contact of any of the twins: its begin and end (s), the separation after it (deg/s), and
+    since the one before the factor and the exponent (1/s), None for the first."""
+
+    start_s: float
+    end_s: float
+    separation_deg_s: float
+    factor: float | None = None
+    exponent_per_s: float | None = None
+
+
+@dataclass(frozen=True)
+class Growth:
+    """Separation of one model from its twins on one condition, settled in deg/s (None where a run
+    did not settle) and per um of the disturbance; factor and exponent (1/s) from the first contact
+    to the last, None with fewer than two; horizon (s), None where the gate is never left; the
+    verdicts above; and the curve, of each stretch its largest value."""
+
+    condition: str
+    model: str
+    disturbance_m: float
+    gate_deg_s: float
+    contacts: list[Contact]
+    factor: float | None
+    exponent_per_s: float | None
+    settled_separation_deg_s: float | None
+    settled_growth_deg_s_um: float | None
+    horizon_s: float | None
+    end_s: float
+    sensitive: bool | None
+    chaotic: bool | None
+    time_s: list[float]
+    separation_deg_s: list[float]
+
+
+def growth(
+    condition: str,
+    model: str,
+    nominal: Trajectory,
+    twins: list[Trajectory],
+    disturbance: float,
+    gate: float,
+) -> Growth:
+    """Growth of a ``disturbance`` (m) in one model, from runs that differ by it; ``gate`` (deg/s)
+    is that of the settled rates."""
+    time = min((common_time(nominal, twin) for twin in twins), key=lambda each: each[-1])
+    apart = separation(time, nominal, twins)
+    spans = contacts(time, np.any([_loaded(run, time) for run in (nominal, *twins)], axis=0))
+    touched = _after(time, apart, spans)
+    factor, exponent = _rate(touched[0], touched[-1]) if len(touched) > 1 else (None, None)
+    changes = [settled_change(nominal, twin) for twin in twins]
+    settled = None if None in changes else largest(changes)
+    sensitive = None if settled is None else settled > gate
+    chaotic = sensitive and factor is not None and factor > len(touched)
+    return Growth(
+        condition,
+        model,
+        disturbance,
+        gate,
+        touched,
+        factor,
+        exponent,
+        settled,
+        None if settled is None else settled / (1e6 * disturbance),
+        horizon(time, apart, spans, gate),
+        float(time[-1]),
+        sensitive,
+        chaotic,
+        *_drawn(time, apart),
+    )
+
+
+def separation(time: np.ndarray, nominal: Trajectory, twins: list[Trajectory]) -> np.ndarray:
+    """s (n,) deg/s at ``time`` (n,) s."""
+
+    def rate(run):
+        return np.column_stack(
+            [np.interp(time, run.time, column) for column in np.degrees(run.rate).T]
+        )
+
+    return np.max([np.abs(rate(twin) - rate(nominal)).max(axis=1) for twin in twins], axis=0)
+
+
+def contacts(time: np.ndarray, loaded: np.ndarray) -> list[tuple[int, int]]:
+    """First sample of each contact and the one after its last, where ``loaded`` (n,) says when a
+    pad bears a force."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], loaded, [False]]).astype(int)))
+    spans: list[tuple[int, int]] = []
+    for first, after in zip(edges[::2].tolist(), edges[1::2].tolist()):
+        if spans and time[first] - time[spans[-1][1] - 1] < _BOUNCE:
+            first = spans.pop()[0]
+        spans.append((first, after))
+    return spans
+
+
+def horizon(
+    time: np.ndarray, apart: np.ndarray, spans: list[tuple[int, int]], gate: float
+) -> float | None:
+    """First instant (s) at which ``apart`` (n,) passes ``gate`` for longer than the contact it is
+    in, as ``contacts`` gives them; None without one. Between samples s is taken to grow
+    exponentially."""
+    free = np.ones(time.size, dtype=bool)
+    for first, after in spans:
+        free[first : min(after, time.size - 1)] = False
+    beyond = np.flatnonzero(free & (apart > gate))
+    if not beyond.size:
+        return None
+    begin = next(
+        (first for first, after in spans if after == beyond[0] or first <= beyond[0] < after),
+        beyond[0],
+    )
+    at = begin + int(np.argmax(apart[begin:] > gate))
+    if at == 0 or not 0.0 < apart[at - 1] < gate:
+        return float(time[at])
+    share = math.log(gate / apart[at - 1]) / math.log(apart[at] / apart[at - 1])
+    return float(time[at - 1] + share * (time[at] - time[at - 1]))
+
+
+def _after(time: np.ndarray, apart: np.ndarray, spans: list[tuple[int, int]]) -> list[Contact]:
+    found: list[Contact] = []
+    for (first, after), following in zip(spans, [*(first for first, _ in spans[1:]), time.size]):
+        free = apart[after:following] if following > after else apart[-1:]
+        contact = Contact(float(time[first]), float(time[after - 1]), float(free.mean()))
+        if found:
+            factor, exponent = _rate(found[-1], contact)
+            contact = replace(contact, factor=factor, exponent_per_s=exponent)
+        found.append(contact)
+    return found
+
+
+def _rate(first: Contact, last: Contact) -> tuple[float | None, float | None]:
+    """Factor and exponent (1/s) of the separation between two contacts."""
+    if not (first.separation_deg_s > 0.0 and last.separation_deg_s > 0.0):
+        return None, None
+    factor = last.separation_deg_s / first.separation_deg_s
+    return factor, math.log(factor) / (last.end_s - first.end_s)
+
+
+def _loaded(run: Trajectory, time: np.ndarray) -> np.ndarray:
+    """Whether a pad bears a force at the sample before ``time`` or after it."""
+    bears = np.abs(run.pad_force).max(axis=(1, 2)) > 0.0
+    return np.interp(time, run.time, bears.astype(float)) > 0.0
+
+
+def _drawn(time: np.ndarray, apart: np.ndarray) -> tuple[list[float], list[float]]:
+    starts = np.unique(
+        np.linspace(0, time.size, min(_DRAWN, time.size), endpoint=False).astype(int)
+    )
+    largest_of_each = np.maximum.reduceat(apart, starts)
+    return [round(float(value), 7) for value in time[starts]], [
+        float(f"{value:.4g}") for value in largest_of_each
+    ]

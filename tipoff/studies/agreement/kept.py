@@ -1,0 +1,70 @@
+"""How far a model is from the reference, from the agreement table that ``tipoff compare`` left for
+this very scene and code."""
+
+from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS
+from tipoff.scenes.scene import NOMINAL
+from tipoff.studies.core.study import Study
+
+
+def rows(study: Study, model: str, calibrated: bool = False, modes: int = 0) -> list[dict]:
+    """Rows of ``model`` in the agreement table; none where no table is kept, or none of this model
+    with its options."""
+    from tipoff.studies.agreement import stage as compare
+
+    found = compare.stored(study.unrestricted())
+    if found is None or model == FINITE_ELEMENTS:
+        return []
+    if model == COMPLIANT:
+        return (
+            found["compliant"]
+            if modes == 0
+            else found["modal"]
+            if modes == found["rail_modes"]
+            else []
+        )
+    return found["fitted"] + found["held_out"] if calibrated else found["uncalibrated"]
+
+
+def missed(study: Study, model: str, condition: str | None = None) -> list[dict]:
+    """Rows, those of ``condition`` if one is given, in which the reference is converged and
+    ``model`` is beyond a gate."""
+    return [
+        row
+        for row in rows(study, model)
+        if row["reference_converged"]
+        and not row["passes"]
+        and condition in (None, row["condition"])
+    ]
+
+
+def words(
+    study: Study, model: str, condition: str | None = None, calibrated: bool = False, modes: int = 0
+) -> str:
+    """The error of ``model`` on ``condition``, or its largest over all conditions that are judged,
+    in words."""
+    if model == FINITE_ELEMENTS:
+        return "the reference itself"
+    found = rows(study, model, calibrated, modes)
+    own = [row for row in found if row["condition"] == condition]
+    if own:
+        return _one(own[0])
+    judged = [row for row in found if row["reference_converged"] and row["touches"]]
+    if not judged:
+        return "not measured for this scene with this code (tipoff compare measures it)"
+    where = "" if condition in (None, NOMINAL) else f"; {condition} is not one of them"
+    return (
+        f"at most {max(row['settled_rate_error_deg_s'] for row in judged):.2g} deg/s from the "
+        f"reference on the "
+        f"{len(judged)} conditions where that is converged and pads touch{where}"
+    )
+
+
+def _one(row: dict) -> str:
+    if row["settled_rate_error_deg_s"] is None:
+        return "unknown: the reference or this model did not settle"
+    off = (
+        f"settled rates within {row['settled_rate_error_deg_s']:.2g} deg/s of the reference, "
+        f"curves within "
+        f"{100.0 * row['rate_relative_l2']:.2g} %"
+    )
+    return off if row["reference_converged"] else f"{off}, but the reference is not converged there"

@@ -1,0 +1,198 @@
+"""Rows of the agreement table: metrics, gates, and beside them the floor and the uncertainty of the
+reference itself.
+
+* **Floor**: what +-1 um of clearance changes in a model, by the same two metrics. No agreement
+  finer than that means anything.
+* **Reference uncertainty**: what coming from twice the element size, and there four times the
+  penalty and half the step, change in the settled rates of the reference, each alone. Agreement is
+  claimed only where the largest is at most 0.1 deg/s.
+
+* **Gates**: v_x within 0.1 %, rates and settled rates within the limits of the scene's
+  ``[agreement]``; where twice the floor, taken as at most 0.1 deg/s, is above the limit of the
+  settled rates, that counts, for no model could be held to less.
+
+What the mesh changes is measured on every condition. The rest is measured where the scene says;
+other conditions take the largest of those and say so.
+"""
+
+import math
+from dataclasses import dataclass
+
+from tipoff.mechanics.trajectory import Trajectory
+from tipoff.scenes.scene import Scene
+from tipoff.studies.agreement.metrics import compare, settled_rate_errors
+
+VELOCITY_LIMIT = 0.001
+CONVERGED_DEG_S = 0.1
+FLOOR_CAP_DEG_S = 0.1
+NOT_CONVERGED = "reference not converged"
+_SHORT = {
+    "rate_relative_l2": "rate L2",
+    "velocity_relative_l2": "v_x L2",
+    "settled_rate_error_deg_s": "settled rate",
+}
+
+
+def gates(scene: Scene) -> dict[str, float]:
+    """Limits of the metrics by name, before any floor."""
+    roles = scene.agreement
+    return {
+        "rate_relative_l2": roles.rate_limit,
+        "velocity_relative_l2": VELOCITY_LIMIT,
+        "settled_rate_error_deg_s": math.degrees(roles.settled_limit),
+    }
+
+
+@dataclass(frozen=True)
+class Spread:
+    """How far one cause moves one model on one condition: the larger of its cases; None where a run
+    did not settle."""
+
+    condition: str
+    model: str
+    cause: str
+    rate_relative_l2: float | None
+    settled_rate_change_deg_s: float | None
+
+
+def spread(
+    condition: str, model: str, cause: str, nominal: Trajectory, changed: list[Trajectory]
+) -> Spread:
+    """Largest change of both metrics over the ``changed`` runs of one model."""
+    found = [compare(nominal, run) for run in changed]
+    return Spread(
+        condition,
+        model,
+        cause,
+        largest(item.rate_relative_l2 for item in found),
+        largest(item.settled_rate_error_deg_s for item in found),
+    )
+
+
+def settled_change(nominal: Trajectory, changed: Trajectory) -> float | None:
+    """Largest change of a settled rate (deg/s), or None where one of the runs did not settle."""
+    errors = settled_rate_errors(nominal, changed)
+    return None if errors is None else max(abs(error) for error in errors)
+
+
+def largest(values) -> float | None:
+    """Largest of the values that are known, or None."""
+    known = [value for value in values if value is not None]
+    return max(known) if known else None
+
+
+@dataclass(frozen=True)
+class Context:
+    """What stands beside the metrics: ``floors``, the spreads of both models when the clearance
+    changes; ``refinements``, those of the reference when mesh, step or penalty do; and the
+    ``gates``."""
+
+    floors: list[Spread]
+    refinements: list[Spread]
+    gates: dict[str, float]
+
+    def limits(self, floor_deg_s: float | None) -> dict[str, float]:
+        """The gates on a condition with this floor."""
+        settled = "settled_rate_error_deg_s"
+        return self.gates | {
+            settled: max(self.gates[settled], 2.0 * min(floor_deg_s or 0.0, FLOOR_CAP_DEG_S))
+        }
+
+    def floor(self, condition: str) -> tuple[float | None, float | None, bool]:
+        """Floor of the settled rates (deg/s) and of the rate L2, and whether it was measured on
+        this very condition."""
+        own, measured = _own(self.floors, condition)
+        return (
+            largest(item.settled_rate_change_deg_s for item in own),
+            largest(item.rate_relative_l2 for item in own),
+            measured,
+        )
+
+    def uncertainty(self, condition: str) -> tuple[float | None, dict[str, float | None], bool]:
+        """Reference uncertainty (deg/s), the same by cause, and whether all of it was measured on
+        this very condition."""
+        causes, here = {}, []
+        for cause in dict.fromkeys(item.cause for item in self.refinements):
+            own, measured = _own(
+                [item for item in self.refinements if item.cause == cause], condition
+            )
+            causes[cause] = largest(item.settled_rate_change_deg_s for item in own)
+            here.append(measured)
+        # A refinement after which the payload did not settle leaves nothing known.
+        unknown = not causes or any(
+            item.settled_rate_change_deg_s is None
+            for item in self.refinements
+            if item.condition == condition
+        )
+        return None if unknown else largest(causes.values()), causes, all(here)
+
+    def converged(self, condition: str) -> bool:
+        """Whether the reference is sure enough there to judge a surrogate by."""
+        uncertainty = self.uncertainty(condition)[0]
+        return uncertainty is not None and uncertainty <= CONVERGED_DEG_S
+
+
+def _own(spreads: list[Spread], condition: str) -> tuple[list[Spread], bool]:
+    own = [item for item in spreads if item.condition == condition]
+    return (own, True) if own else (spreads, False)
+
+
+def row(
+    condition: str, role: str, reference: Trajectory, surrogate: Trajectory, context: Context
+) -> dict:
+    """One line of the agreement table as result files hold it."""
+    difference = compare(reference, surrogate)
+    floor_deg_s, floor_l2, floor_measured = context.floor(condition)
+    uncertainty, causes, uncertainty_measured = context.uncertainty(condition)
+    gates = {
+        name: gate(getattr(difference, name), limit)
+        for name, limit in context.limits(floor_deg_s).items()
+    }
+    converged = context.converged(condition)
+    return {
+        "condition": condition,
+        "role": role,
+        "reference_status": reference.status,
+        "surrogate_status": surrogate.status,
+        **difference.as_dict(),
+        "floor_deg_s": floor_deg_s,
+        "floor_l2": floor_l2,
+        "floor_measured_here": floor_measured,
+        "reference_uncertainty_deg_s": uncertainty,
+        "reference_uncertainty_by_cause_deg_s": causes,
+        "reference_uncertainty_measured_here": uncertainty_measured,
+        "reference_converged": converged,
+        "gates": gates,
+        "passes": all(item["passes"] for item in gates.values()),
+        "touches": bool(reference.pad_force.any()),
+        "verdict": verdict(gates, converged, bool(reference.pad_force.any())),
+    }
+
+
+def gate(value: float | None, limit: float) -> dict:
+    """Whether ``value`` is within ``limit``, and how many times the limit it is."""
+    return {
+        "limit": limit,
+        "passes": value is not None and value <= limit,
+        "times_limit": None if value is None else value / limit,
+    }
+
+
+def verdict(gates: dict[str, dict], converged: bool, touches: bool = True) -> str:
+    """One phrase: the reference first, for without it the rest means little. Free flight tests no
+    contact law, and says so."""
+    if not converged:
+        return NOT_CONVERGED
+    missed = [
+        f"{_SHORT[name]} "
+        f"{'unknown' if item['times_limit'] is None else format(item['times_limit'], '.3g') + ' x limit'}"
+        for name, item in gates.items()
+        if not item["passes"]
+    ]
+    return (
+        "misses: " + ", ".join(missed)
+        if missed
+        else "agrees"
+        if touches
+        else "agrees (no pad touches)"
+    )

@@ -1,0 +1,13 @@
+"""Agreement on conditions drawn after everything was settled."""
+
+from tipoff.studies.blind import command
+from tipoff.studies.question import Parts, Question
+
+
+def _load() -> Parts:
+    from tipoff.studies.blind import page, stage
+
+    return Parts(stage.run, stage.stored, page.draw)
+
+
+QUESTION = Question("blind", "Agreement on conditions nobody chose", "Blind", command.add, _load)

@@ -1,0 +1,67 @@
+"""``tipoff blind``."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from tipoff.studies.commands.asked import guarded, study_of
+from tipoff.studies.commands.options import ElementSize, Json, Out, SceneName, Set, Workers
+
+
+def add(app: typer.Typer) -> None:
+    """Put the command under ``app``."""
+    app.command()(blind)
+
+
+def blind(
+    scene: SceneName = "reference",
+    out: Out = Path("out"),
+    set_: Set = None,
+    cases: Annotated[
+        int,
+        typer.Option(
+            "--cases",
+            metavar="N",
+            min=1,
+            help="Conditions to draw; each is two runs of the reference.",
+        ),
+    ] = 8,
+    vary: Annotated[
+        str,
+        typer.Option(
+            "--vary",
+            metavar="NAME_OR_FILE",
+            help="Distributions: a .toml file, or from the catalogue.",
+        ),
+    ] = "paper",
+    seed: Annotated[
+        int | None,
+        typer.Option(
+            "--seed",
+            metavar="N",
+            min=0,
+            help="Seed of the draws; default: from the sources and the scene, so that nobody "
+            "chooses it.",
+        ),
+    ] = None,
+    element_size: ElementSize = None,
+    workers: Workers = None,
+    json_: Json = False,
+) -> None:
+    """Agreement of the surrogates on conditions drawn now, which nobody can have looked at before;
+    writes blind.json."""
+
+    def work() -> dict:
+        from tipoff.studies.blind import stage
+
+        return stage.run(
+            study_of(scene, out, set_, element_size=element_size, workers=workers),
+            stage.Asked(cases, vary, seed),
+        )
+
+    found = guarded(work, json_)
+    if not json_:
+        from tipoff.studies.blind import stage
+
+        print("\n".join(stage.lines(found)))

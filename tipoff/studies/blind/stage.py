@@ -1,0 +1,139 @@
+"""Stage ``blind``: agreement on conditions drawn after everything was settled, by a seed that
+nobody chose.
+
+Held-out conditions are known to whoever writes the surrogate. These are drawn from distributions of
+errors, and unless a seed is given it is that of the sources and the scene: any change of the code
+draws others.
+"""
+
+from dataclasses import asdict, dataclass, replace
+from functools import partial
+from pathlib import Path
+
+from tipoff import sources
+from tipoff.files import content_hash
+from tipoff.lowfi.ensemble.rows import Drawn
+from tipoff.mechanics.models import SPRINGS
+from tipoff.scenes import uncertainty
+from tipoff.studies.agreement import stage as compare
+from tipoff.studies.agreement import verdicts
+from tipoff.studies.agreement.verdicts import Context
+from tipoff.studies.calibration import stage as calibrate
+from tipoff.studies.core.study import Study, require_success
+
+NAME = "blind"
+_CODE = ("tipoff.highfi", "tipoff.lowfi", "tipoff.calibration")
+
+
+@dataclass(frozen=True)
+class Asked:
+    """``cases`` conditions from the distributions ``vary``; ``seed`` None: that of the code and the
+    scene."""
+
+    cases: int = 8
+    vary: str = uncertainty.DEFAULT
+    seed: int | None = None
+
+
+def run(study: Study, asked: Asked = Asked()) -> dict:
+    """Rows of the ``calibrated`` surrogate and of that on ``compliant`` walls, as in the agreement
+    study, and the conditions drawn."""
+    drawn = draw(study, asked)
+    ladder = [
+        compare.Rung("calibrated", f"{SPRINGS}, calibrated", calibrate.load(study)),
+        compare.compliant(drawn, drawn.conditions),
+    ]
+
+    def make() -> tuple[dict, list[Path]]:
+        wanted = {name: drawn.highfi(name) for name in drawn.conditions}
+        highfi = dict(zip(wanted, drawn.store.fill("highfi", list(wanted.values()))))
+        require_success(highfi, "judge blind conditions")
+        changes, floor, gates = (
+            compare.refinements(drawn),
+            compare.floors(drawn, "reference", drawn.coarse),
+            verdicts.gates(study.scene),
+        )
+        rows = {}
+        for rung in ladder:
+            own = compare.floors(drawn, rung.title, partial(rung.ask, drawn))
+            rows[rung.name] = compare.rows(
+                drawn, rung, highfi, Context([*floor, *own], changes, gates)
+            )
+        return {
+            "asked": asdict(asked),
+            "seed": seed_of(study, asked),
+            "gates": gates,
+            "converged_deg_s": verdicts.CONVERGED_DEG_S,
+            "clearance_change_m": study.settings.clearance_change,
+            "conditions": drawn.scene.conditions,
+            **rows,
+        }, []
+
+    return study.stage(NAME, _key(study, drawn), make)
+
+
+def stored(study: Study) -> dict | None:
+    """The result, if it was made from the present scene, code and settings."""
+    return study.stored(NAME, lambda found: _key(study, draw(study, Asked(**found["asked"]))))
+
+
+def draw(study: Study, asked: Asked) -> Study:
+    """The study of the drawn conditions, in the same folder: all held out, each with a floor and
+    refinements of its own, so that none borrows the uncertainty of another, which may be
+    chaotic."""
+    source = Drawn(
+        uncertainty.load(
+            asked.vary,
+            study.scene,
+            cases=asked.cases,
+            seed=seed_of(study, asked),
+            sampling="random",
+        )
+    )
+    conditions = {
+        f"blind{number + 1}": row for number, row in enumerate(source.rows(0, asked.cases))
+    }
+    names = list(conditions)
+    roles = {
+        "agreement.fitted": [],
+        "agreement.held_out": names,
+        "agreement.floor": names,
+        "agreement.refined": names,
+    }
+    return replace(study, scene=study.scene.replace({"conditions": conditions, **roles}), only=())
+
+
+def seed_of(study: Study, asked: Asked) -> int:
+    """The seed of the draws."""
+    return (
+        asked.seed
+        if asked.seed is not None
+        else int(content_hash(sources.digest(*_CODE), study.scene.hash)[:12], 16)
+    )
+
+
+def lines(found: dict) -> list[str]:
+    """The verdicts in words."""
+    said = [f"{len(found['conditions'])} conditions drawn with seed {found['seed']}"]
+    for name in ("calibrated", "compliant"):
+        said += [
+            f"  {name:11} {row['condition']}: rate L2 {_percent(row['rate_relative_l2'])}, settled "
+            f"error "
+            f"{_rate(row['settled_rate_error_deg_s'])} (reference within "
+            f"{_rate(row['reference_uncertainty_deg_s'])}): "
+            f"{row['verdict']}"
+            for row in found[name]
+        ]
+    return said
+
+
+def _percent(value: float | None) -> str:
+    return "unknown" if value is None else f"{100.0 * value:.3g} %"
+
+
+def _rate(value: float | None) -> str:
+    return "unknown" if value is None else f"{value:.3g} deg/s"
+
+
+def _key(study: Study, drawn: Study) -> str:
+    return study.key(__name__, NAME, drawn.scene.conditions, verdicts.gates(study.scene))

@@ -1,0 +1,1 @@
+"""The surrogate's contact taken from the finite elements: rail compliance, constants of springs."""

@@ -1,0 +1,41 @@
+"""Stage ``compliance``: what compliant contact takes from the finite elements, the rail's
+compliance under the pads, by statics and without a single run of the reference.
+
+Where agreement is judged the mesh is the reference's own; elsewhere it is the coarsest whose
+compliance is within 1 % of that.
+"""
+
+import time
+from pathlib import Path
+
+from tipoff.studies.calibration.under_a_pad import under_a_pad
+from tipoff.studies.core import rail_compliance
+from tipoff.studies.core.study import Study
+
+NAME = "compliance"
+
+
+def run(study: Study) -> dict:
+    """``file``, null for a scene without contact; stations, the compliance under a pad, the seconds
+    it took."""
+
+    def make() -> tuple[dict, list[Path]]:
+        began = time.perf_counter()
+        found = rail_compliance.load(study, study.scene)
+        if found is None:
+            return {"file": None, "under_a_pad": None}, []
+        from tipoff import highfi
+
+        asked = study.highfi(next(iter(study.conditions)))
+        mesh = highfi.prepare(asked.scene, asked.numerics)
+        path = rail_compliance.path(study, study.scene, study.settings.element_size)
+        return {
+            "file": study.relative(path),
+            "stations": len(found.travel),
+            "rails": int(found.rail.max()) + 1,
+            "element_size_m": study.settings.element_size,
+            "wall_s": time.perf_counter() - began,
+            "under_a_pad": under_a_pad(study.scene, found, mesh.points[mesh.surfaces["mount"]]),
+        }, [path]
+
+    return study.stage(NAME, study.key(__name__, study.settings.element_size), make)

@@ -1,0 +1,225 @@
+"""Stage ``calibration``: constants of springs from the reference's curves of the fitted conditions,
+and nothing else. Compliant contact has its compliance from statics (``studies.calibration.compliance``).
+
+Curves of another code or of a test may take the place of the reference. What is fitted to them goes
+into a folder of its own, so that the other stages, which compare with the reference, do not replace
+it.
+"""
+
+import math
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from tipoff.mechanics.models import COMPLIANT, SPRINGS
+from tipoff.mechanics.rail_compliance import Walls
+from tipoff.scenes.calibration import Calibration
+from tipoff.scenes.faults import Fault, SceneError
+from tipoff.scenes.scene import NOMINAL
+from tipoff.studies.calibration import compliance, forecast
+from tipoff.studies.core import rail_compliance
+from tipoff.studies.core.progress import Board, say
+from tipoff.studies.core.store import Run
+from tipoff.studies.core.study import Study, StudyError, require_success
+
+FILE = "calibration.toml"
+
+
+def run(study: Study) -> dict:
+    """The calibration as plain values, beside ``calibration.toml``."""
+    names = study.fitted()
+    asked = _asked(study)
+
+    def make() -> tuple[dict, list[Path]]:
+        from tipoff import calibration
+
+        say(f"  {forecast.calibration(study, asked)}")
+        references = dict(zip(names, study.store.fill("highfi", asked)))
+        require_success(references, "calibrate")
+        try:
+            return _fitted(study, references, study.path(FILE))
+        except calibration.CalibrationError as fault:
+            raise StudyError(f"cannot calibrate: {fault}") from None
+
+    return study.stage("calibration", _key(study), make)
+
+
+def of_models(study: Study, model: str | None = None) -> dict:
+    """What the surrogate's ``model`` takes from the finite elements, or both models, None:
+    ``compliance`` and ``springs`` as their result files hold them."""
+    found: dict[str, Any] = {"scene": study.scene.name}
+    if model != COMPLIANT:
+        study.fitted()  # a scene without any is refused before the compliance is found
+    if model != SPRINGS:
+        found["compliance"] = compliance.run(study)
+    return found | ({"springs": run(study)} if model != COMPLIANT else {})
+
+
+def stored(study: Study) -> dict | None:
+    """The result, if it was made from the present scene, code and settings."""
+    return study.stored("calibration", lambda _: _key(study))
+
+
+def _asked(study: Study) -> list[Run]:
+    return [study.highfi(name) for name in study.fitted()]
+
+
+def _key(study: Study) -> str:
+    return study.key(__name__, [item.key for item in _asked(study)])
+
+
+def named(
+    references: list[str], condition: str | None, settled_from: float | None
+) -> list[tuple[str, str]]:
+    """(condition, path) of each ``NAME=FILE``; a file without a name is that of ``condition``, else
+    of the scene itself.
+
+    Raises SceneError for options that no file is there for.
+    """
+    pairs = [item.partition("=") for item in references]
+    unnamed = [name for name, equals, _ in pairs if not equals]
+    idle = (
+        [("--condition", condition, "a file without a name")] if condition and not unnamed else []
+    )
+    idle += (
+        [("--settled-from", f"{settled_from:g} s", "a file")]
+        if settled_from is not None and not pairs
+        else []
+    )
+    if idle:
+        raise SceneError(
+            [
+                Fault(option, given, "no --reference", f"{file} that it speaks of")
+                for option, given, file in idle
+            ]
+        )
+    return [
+        (name.strip(), path) if equals else (condition or NOMINAL, name)
+        for name, equals, path in pairs
+    ]
+
+
+def from_files(
+    study: Study, files: list[tuple[str, str]], settled_from: float | None = None
+) -> dict:
+    """The calibration as plain values, from CSV files (condition, path) as ``calibrate.Curves``
+    reads them, beside ``curves/calibration.toml``.
+
+    Raises SceneError listing every fault of every file, CalibrationError for curves that do not fit
+    the scene.
+    """
+    from tipoff import calibration
+
+    names, references = [name for name, _ in files], {}
+    faults = [
+        Fault("--reference", name, "twice", "one file for a condition")
+        for name in dict.fromkeys(names)
+        if names.count(name) > 1
+    ]
+    for name, path in files:
+        try:
+            study.condition(name)
+            references[name] = calibration.Curves.read_csv(path, settled_from)
+        except SceneError as error:
+            faults += error.faults
+    if faults:
+        raise SceneError(faults)
+
+    def make() -> tuple[dict, list[Path]]:
+        say(f"  {forecast.search(study, len(references))}")
+        return _fitted(study, references, study.path(f"curves/{FILE}"))
+
+    sources = {name: item.source for name, item in references.items()}
+    return study.stage("curves/calibration", study.key(__name__, sources), make)
+
+
+def _fitted(study: Study, references: dict, path: Path) -> tuple[dict, list[Path]]:
+    from tipoff import calibration
+
+    with Board("calibrate", 1) as board:
+        found = calibration.run(
+            study.scene,
+            references,
+            progress=board.callback("calibrate"),
+            walls=rigid_walls(study, references),
+            workers=study.settings.workers,
+        )
+        board.finished("calibrate", f"objective {found.objective:.4g}")
+    found.save(path)
+    return as_dict(found) | {"calibration": study.relative(path)}, [path]
+
+
+def rigid_walls(study: Study, names: Iterable[str]) -> Walls | None:
+    """Rigid walls for the conditions of these ``names``, if any of them is warm: they share a
+    rail."""
+    return next(
+        filter(None, (rail_compliance.of_law(study, study.condition(name)) for name in names)), None
+    )
+
+
+def load(study: Study) -> Calibration:
+    """The calibration of this scene, made if it is not there."""
+    run(study)
+    return Calibration.load(study.path(FILE))
+
+
+def lines(document: dict, folder: Path) -> list[str]:
+    """The compliance and the constants in words, what the curves cannot tell, and where both
+    lie."""
+    if "parameters" not in document:
+        compliance = _compliance(document["compliance"], folder) if "compliance" in document else []
+        return compliance + (lines(document["springs"], folder) if "springs" in document else [])
+    found = zip(
+        document["parameters"], document["values"], document["units"], document["intervals"]
+    )
+    said = [
+        f"  {name:22}{value:.5g}{'' if unit == '1' else f' {unit}'}, {interval(ends)}"
+        for name, value, unit, ends in found
+    ]
+    said += [f"  not told      {words}" for words in document["weak_directions"]]
+    return [
+        f"fitted to {', '.join(document['conditions'])}: objective {document['objective']:.4g}",
+        *said,
+        f"  calibration   {folder / document['calibration']}",
+    ]
+
+
+def _compliance(document: dict, folder: Path) -> list[str]:
+    if document["file"] is None:
+        return ["no contact: no compliance"]
+    largest = max(max(values) for values in document["under_a_pad"]["direct_m_per_n"].values())
+    return [
+        f"rail compliance at {document['stations']} stations, {1e3 * document['element_size_m']:g} "
+        f"mm elements: up to "
+        f"{1e9 * largest:.3g} nm/N under a pad",
+        f"  compliance    {folder / document['file']}",
+    ]
+
+
+def interval(ends: list[float | None]) -> str:
+    """The 95 % interval of a constant in words; without ends the curves do not tell it."""
+    return "not told by the curves" if None in ends else f"{ends[0]:.4g} to {ends[1]:.4g}"
+
+
+def as_dict(found: Calibration) -> dict:
+    """Plain values of a calibration."""
+    return {
+        "constants": found.constants,
+        "parameters": found.parameters,
+        "values": list(found.values),
+        "intervals": [
+            [end if math.isfinite(end) else None for end in ends] for ends in found.intervals
+        ],
+        "units": found.units,
+        "lower": list(found.lower),
+        "upper": list(found.upper),
+        "justification": found.justification,
+        "information": np.asarray(found.information).tolist(),
+        "weak_directions": found.weak_directions,
+        "residuals": found.residuals,
+        "conditions": found.conditions,
+        "objective": float(found.objective),
+        "provenance": found.provenance,
+    }

@@ -1,0 +1,44 @@
+"""What the walls of a rail give way under the rearmost pads, all along their way to the open end,
+as the report shows it."""
+
+import itertools
+
+import numpy as np
+
+from tipoff.mechanics import model as scene_model
+from tipoff.mechanics.rail_compliance import Walls
+from tipoff.scenes.scene import Scene
+
+_SAME = 1e-9  # m
+
+
+def under_a_pad(scene: Scene, walls: Walls, mounts: np.ndarray) -> dict:
+    """Compliance (m/N) under each face of the first of the rearmost pads, and between them, over
+    the place (m) of their middle; ``mounts`` (m,k,3) m are the nodes of the clamped facets."""
+    faces = scene_model.built(scene).nominal
+    pad = faces.pad[faces.centre[:, 0].argmin()]
+    own = np.flatnonzero(faces.pad == pad)
+    matrix = walls.compliance()[:, own][:, :, own]
+    names = [f"{'+' if faces.sign[face] > 0.0 else '-'}{'xyz'[faces.axis[face]]}" for face in own]
+    return {
+        "pad": int(pad),
+        "place_m": (faces.centre[own[0], 0] + walls.travel).tolist(),
+        "mounts_m": _spans(mounts[:, :, 0]),
+        "direct_m_per_n": {name: matrix[:, i, i].tolist() for i, name in enumerate(names)},
+        "cross_m_per_n": {
+            f"{names[i]} {names[j]}": matrix[:, i, j].tolist()
+            for i, j in itertools.combinations(range(len(names)), 2)
+        },
+    }
+
+
+def _spans(facets: np.ndarray) -> list[list[float]]:
+    """Stretches of X (m) that facets with nodes at ``facets`` (m,k) take up, those that touch put
+    together."""
+    spans: list[list[float]] = []
+    for low, high in sorted(zip(facets.min(axis=1).tolist(), facets.max(axis=1).tolist())):
+        if spans and low <= spans[-1][1] + _SAME:
+            spans[-1][1] = max(spans[-1][1], high)
+        else:
+            spans.append([low, high])
+    return spans

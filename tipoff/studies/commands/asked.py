@@ -1,0 +1,103 @@
+"""From the options of a command to a study, and from faults to messages and exit codes."""
+
+import json
+import os
+import sys
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import NoReturn
+
+import typer
+
+
+def study_of(
+    scene: str,
+    out: Path,
+    overrides,
+    conditions=None,
+    element_size=None,
+    workers=None,
+    checkpoint_every=None,
+    resume=True,
+):
+    """The study that the options of a command ask for. Raises SceneError, every fault listed."""
+    from tipoff import scenes
+    from tipoff.scenes import plausibility
+    from tipoff.scenes.faults import Fault, SceneError
+    from tipoff.studies.core.progress import say
+    from tipoff.studies.core.settings import defaults
+    from tipoff.studies.core.study import Study
+
+    pairs = [item.partition("=") for item in overrides or []]
+    if wrong := [item for item, (_, equals, _) in zip(overrides or [], pairs) if not equals]:
+        raise SceneError([Fault("--set", item, "no value", "KEY=VALUE") for item in wrong])
+    found = scenes.load(scene).replace({key.strip(): value.strip() for key, _, value in pairs})
+    settings = replace(defaults(found.name), resume=resume)
+    if element_size is not None:
+        settings = replace(settings, element_size=1e-3 * element_size)
+    if workers is not None:
+        settings = replace(settings, workers=workers)
+    every = quantity("--checkpoint-every", checkpoint_every, "s")
+    if every is not None:
+        settings = replace(settings, checkpoint_every=every)
+    study = Study(found, Path(out) / found.name, settings, tuple(conditions or ()))
+    # a bad override or an unknown condition is a fault of the input, found before anything runs
+    _ = study.conditions
+    for warning in plausibility.of_all_conditions(found):
+        say(f"implausible: {warning}")
+    return study
+
+
+def quantity(option: str, text: str | None, unit: str) -> float | None:
+    """A quantity in ``unit``, zero or more; None without one."""
+    from tipoff.scenes.faults import Fault, SceneError
+    from tipoff.scenes.units import to_si
+
+    if text is None:
+        return None
+    try:
+        value = to_si(text, unit)
+    except ValueError as fault:
+        raise SceneError([Fault(option, "value", text, str(fault))]) from None
+    if value < 0.0:
+        raise SceneError([Fault(option, "value", text, "zero or more")])
+    return value
+
+
+def guarded(work: Callable[[], dict], as_json: bool = False) -> dict:
+    """Run ``work``; turn bad input and failed runs into messages and exit codes."""
+    from tipoff.meshes.generator import GmshUnavailable
+    from tipoff.scenes.faults import SceneError
+    from tipoff.studies.core.study import INPUT_FAULTS, StudyError
+
+    try:
+        result = work()
+    except SceneError as fault:
+        stop(str(fault), 2)
+    except (StudyError, GmshUnavailable) as fault:
+        stop(str(fault), 1)
+    except KeyboardInterrupt:
+        print(
+            "tipoff: stopped; what was finished is kept, and the same command goes on from there",
+            file=sys.stderr,
+            flush=True,
+        )
+        # at once: files are complete at any moment, and a thread that compiles would hold the
+        # process for seconds
+        os._exit(130)
+    except ValueError as fault:
+        if type(fault).__name__ not in INPUT_FAULTS:
+            raise
+        stop(f"{type(fault).__name__}: {fault}", 2)
+    if as_json:
+        print(json.dumps(result, indent=1))
+    if failed := result.get("failed"):
+        stop("failed:\n  " + "\n  ".join(failed), 1)
+    return result
+
+
+def stop(message: str, code: int) -> NoReturn:
+    """End the command with a message on standard error."""
+    print(f"tipoff: {message}", file=sys.stderr)
+    raise typer.Exit(code)

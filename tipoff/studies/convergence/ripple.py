@@ -1,0 +1,162 @@
+"""Ripple of the contact force at the frequency with which a pad crosses the facets of the rail:
+what the mesh alone puts there.
+
+The payload is pressed into a corner of the rails by a constant load, comes to rest there, and then
+slides along them without friction at a constant speed v. The walls are straight, so whatever a
+face's force does at v / h and its multiples, h the length of a facet, comes from elements and
+quadrature::
+
+    ripple = 2 |sum of w (F - trend) exp(-2 pi i k v t / h)| / (sum of w  mean F),   w Hann's window, k = 1 .. HARMONICS
+
+What is physical is slow: bolts and rail ends pass by in ten facets and more, the payload bounces at
+some hundred Hz. The same sum half-way between the multiples tells how much of that, and of the
+ringing rail, leaks in.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from tipoff.highfi import Numerics, prepare
+from tipoff.highfi.dynamics.step_size import choose
+from tipoff.highfi.dynamics.system import build
+from tipoff.highfi.run import Loop
+from tipoff.highfi.state.threads import processors
+from tipoff.scenes.scene import Scene
+
+HARMONICS = 3
+_SPEED = 6.0  # m/s: a facet passes faster than the payload can follow it
+_LOAD = 1000.0  # N
+_INTERVAL = 2e-5  # s
+# samples at rest, and what each leaves of all velocities: about critical damping of the bounce
+_SETTLING, _KEPT = 400, 0.95
+_LEAST = 5  # facets that a slide must cross
+_TREND = 5  # degree of the polynomial that the slow part of a force is
+_EVEN = 1e-3  # relative difference of facet lengths that still have one frequency
+_FRICTIONLESS = {"static": 1e-9, "dynamic": 1e-9, "static_speed": 0.01, "dynamic_speed": 0.02}
+
+
+class Ripple(NamedTuple):
+    """``ripple`` (1) of the face that ripples most, ``background`` (1) the same half-way between
+    the multiples; ``frequency`` (Hz) of the first one, ``facets`` crossed, ``load`` (N) of that
+    face."""
+
+    ripple: float
+    background: float
+    frequency: float
+    facets: int
+    load: float
+
+
+def measure(scene: Scene, numerics: Numerics) -> Ripple | None:
+    """Ripple on the rails of ``scene``; None without contact, where facets differ in length, or
+    where pads cross few."""
+    if scene.contact is None:
+        return None
+    pressed = pressing(scene)
+    mesh = prepare(pressed, numerics)
+    length = facet_length(mesh)
+    system = build(pressed, numerics, mesh)
+    if not length:
+        return None
+    facets = int((pressed.rail.end - leading_edge(system.faces)) / length)
+    if facets < _LEAST:
+        return None
+    loop = Loop(pressed, system, choose(system, pressed, numerics), processors())
+    force = slide(loop, round(facets * length / _SPEED / _INTERVAL))
+    return judge(force, _SPEED / length, facets)
+
+
+def pressing(scene: Scene) -> Scene:
+    """``scene`` with a load into the +y and +z walls, which the pads just touch, and nothing else.
+    Effects that are there stay, because a set of effects of its own would be another kernel to
+    compile."""
+    assert scene.contact is not None  # or there is nothing to press on
+    gap = scene.contact.clearance
+    changes = {
+        "thrust": {"kind": "gaussian", "peak": _LOAD, "width": 1e4, "centre": 0.0, "arm": 1e-6},
+        "mass_offset": None,
+        "thrust_offset": {"misalignment": {"axial": np.pi / 2.0, "radial": np.pi / 4.0}},
+        "duration": 1.0,
+        "initial": {"position": {"y": gap, "z": gap}},
+        "gravity": None,
+        "output.interval": _INTERVAL,
+    }
+    return scene.replace(changes | ({"friction": _FRICTIONLESS} if scene.friction else {}))
+
+
+def facet_length(mesh) -> float | None:
+    """Length (m) along X of the facets that pads touch, or None where they differ."""
+    facets = np.concatenate(
+        [group for name, group in mesh.surfaces.items() if name.startswith("contact")]
+    )
+    lengths = np.ptp(mesh.points[facets][:, :, 0], axis=1)
+    return float(lengths.mean()) if np.ptp(lengths) <= _EVEN * lengths.mean() else None
+
+
+def leading_edge(faces) -> float:
+    """X (m) of the foremost edge of a pad at ignition."""
+    return float((faces.centre[:, 0] + faces.half_length).max())
+
+
+def slide(loop: Loop, samples: int) -> np.ndarray:
+    """Forces (n,f,3) N on the faces while the payload, first brought to rest under its load,
+    slides."""
+    state = loop.state
+    loop.begin()
+    for _ in range(_SETTLING):
+        _advance(loop)
+        for moving in (
+            state.velocity,
+            state.rail_momentum,
+            *state.payload[1::2],
+            *state.platform[1::2],
+        ):
+            moving *= _KEPT
+    state.payload.velocity[0] += _SPEED
+    first = len(loop.forces)
+    for _ in range(samples):
+        _advance(loop)
+    return np.array(loop.forces[first:])
+
+
+def _advance(loop: Loop) -> None:
+    """One sample on. The energy that was taken to bring the payload to rest is no fault of the run.
+    Raises FloatingPointError where a value became infinite."""
+    taken = len(loop.rows)
+    while len(loop.rows) == taken:
+        loop.message = ""
+        loop.advance_one_sample()
+        if not np.isfinite(loop.state.payload.velocity).all():
+            raise FloatingPointError("the sliding payload has no finite velocity any more")
+
+
+def judge(force: np.ndarray, frequency: float, facets: int) -> Ripple:
+    """Ripple of forces (n,f,3) N at the multiples of ``frequency`` (Hz), of faces with a tenth of
+    the largest load or more."""
+    mean = np.linalg.norm(force.mean(axis=0), axis=1)
+    loaded = np.flatnonzero(mean > 0.1 * mean.max())
+    sizes = np.linalg.norm(force[:, loaded], axis=2)
+    multiples = np.arange(1, HARMONICS + 1)
+    at, between = (
+        amplitudes(sizes, frequency * which) / mean[loaded]
+        for which in (multiples, multiples + 0.5)
+    )
+    worst = int(at.max(axis=0).argmax())
+    return Ripple(
+        float(at.max()), float(between.max()), frequency, facets, float(mean[loaded[worst]])
+    )
+
+
+def amplitudes(values: np.ndarray, frequencies: np.ndarray) -> np.ndarray:
+    """Amplitudes (k,f) at ``frequencies`` (k,) Hz of samples (n,f) less their trend."""
+    place = np.linspace(-1.0, 1.0, len(values))
+    rest = (
+        values
+        - np.polynomial.polynomial.polyval(
+            place, np.polynomial.polynomial.polyfit(place, values, _TREND)
+        ).T
+    )
+    window = np.hanning(len(values))
+    turning = np.exp(-2j * np.pi * np.outer(frequencies, _INTERVAL * np.arange(len(values))))
+    return 2.0 * np.abs((turning * window) @ rest) / window.sum()

@@ -1,0 +1,348 @@
+"""Stage ``convergence``: the error of the finite-element reference itself, on one condition.
+
+Meshes and steps are refined one after the other, and every quantity is judged by its observed order
+(``studies.convergence.extrapolation``); penalty and quadrature are changed and compared, and a
+straight slide shows the ripple that facets put into a constant force
+(``studies.convergence.ripple``). What a finer mesh brings with it: a smaller step, and fewer Gauss
+points per facet, so that they stay about 1 mm apart and their own error shows in the quadrature
+alone. What it may not bring: a wall of the rail has one element through it at least, so coarse
+meshes differ in length and width only; ``meshes`` holds the numbers of elements. Now that the error
+of each mesh is known, both fidelities are timed at equal accuracy (``studies.convergence.equal_accuracy``).
+"""
+
+from dataclasses import asdict
+from pathlib import Path
+
+from tipoff.highfi.numerics import Numerics
+from tipoff.mechanics.trajectory import Trajectory
+from tipoff.scenes.scene import Scene
+from tipoff.studies.agreement import verdicts
+from tipoff.studies.agreement.stage import compliant, refined
+from tipoff.studies.convergence import contact_loads, equal_accuracy, ripple, stresses
+from tipoff.studies.convergence.extrapolation import Estimate, estimate
+from tipoff.studies.convergence.quantities import RATE, quantities, settled_rate
+from tipoff.studies.core.progress import Board
+from tipoff.studies.core.store import Run
+from tipoff.studies.core.study import Study, require_success
+from tipoff.studies.cost.timing import speedups
+
+NAME = "convergence"
+_LONG = 60.0  # s, a run of the reference that is timed once only
+
+
+def run(study: Study, condition: str | None = None) -> dict:
+    """``quantities`` over element size and time step with order and uncertainty, ``penalty``,
+    ``quadrature``, ``ripple``, ``equal_accuracy`` and ``summary`` in words. Raises SceneError for
+    an unknown condition, StudyError where a mesh or a step fails."""
+    name = condition or (study.scene.agreement.refined or tuple(study.conditions))[0]
+    scene = study.condition(name)
+
+    def make() -> tuple[dict, list[Path]]:
+        meshes = _finished(study, "convergence, meshes", _meshes(study, name))
+        steps = _finished(study, "convergence, steps", _steps(study, name))
+        judged = [
+            *_judged(
+                scene,
+                "element size",
+                "m",
+                list(study.settings.mesh_sizes),
+                meshes,
+                study.settings.element_size,
+            ),
+            *_judged(
+                scene,
+                "time step",
+                "s",
+                [found.cost["dt_s"] for found in steps],
+                steps,
+                steps[0].cost["dt_s"],
+            ),
+        ]
+        penalty, quadrature, ripples = (
+            _penalties(study, name),
+            _quadratures(study, name),
+            _ripples(study, scene),
+        )
+        equal = _at_equal_accuracy(study, name, judged, meshes)
+        return {
+            "condition": name,
+            "element_size_m": study.settings.element_size,
+            "coarse_size_m": study.settings.coarse_size,
+            "force_cutoff_hz": contact_loads.cutoff(scene),
+            "meshes": [
+                {
+                    "element_size_m": size,
+                    "elements": found.cost["elements"],
+                    "dt_s": found.cost["dt_s"],
+                    "wall_s": found.cost["wall_s"],
+                }
+                for size, found in zip(study.settings.mesh_sizes, meshes)
+            ],
+            "quantities": judged,
+            "penalty": penalty,
+            "quadrature": quadrature,
+            "ripple": ripples,
+            "equal_accuracy": equal,
+            "summary": summary(name, judged, penalty, quadrature, study.settings.coarse_size)
+            + told(ripples)
+            + ([equal_accuracy.sentence(equal)] if equal else []),
+        }, []
+
+    return study.stage(NAME, _key(study, name), make)
+
+
+def stored(study: Study) -> dict | None:
+    """The result, if it was made from the present scene, code and settings: the report shows it and
+    makes none."""
+    return study.stored(NAME, lambda found: _key(study, found["condition"]))
+
+
+def _key(study: Study, name: str) -> str:
+    return study.key(__name__, NAME, name)
+
+
+def _finished(study: Study, title: str, asked: list[Run]) -> list[Trajectory]:
+    runs = study.store.fill(title, asked)
+    require_success(
+        {item.label: found for item, found in zip(asked, runs)}, "judge the convergence"
+    )
+    return runs
+
+
+def _meshes(study: Study, name: str) -> list[Run]:
+    """One run a mesh; those that other stages make too keep their name, so that the store has them
+    once."""
+    settings = study.settings
+    known = {
+        2.0 * settings.coarse_size: "-coarsest",
+        settings.coarse_size: "-coarse",
+        settings.element_size: "",
+    }
+    return [
+        study.highfi(name, element_size=size, tag=known.get(size, f"-{1e3 * size:g}mm"))
+        for size in settings.mesh_sizes
+    ]
+
+
+def _steps(study: Study, name: str) -> list[Run]:
+    known = {Numerics().safety: study.coarse(name), 0.45: refined(study, name)["step"]}
+    return [
+        known.get(safety) or study.coarse(name, tag=f"-safety-{safety:g}", safety=safety)
+        for safety in study.settings.safeties
+    ]
+
+
+def _judged(
+    scene: Scene,
+    parameter: str,
+    unit: str,
+    sizes: list[float],
+    runs: list[Trajectory],
+    nominal: float,
+) -> list[dict]:
+    """One row a quantity. ``nominal_uncertainty`` is that at the ``nominal`` size, with which every
+    other stage runs."""
+    rows = []
+    for quantity, its_unit, values in quantities(scene, runs):
+        found = estimate(sizes, values)
+        at_nominal, finest = values[sizes.index(nominal)], values[-1]
+        if quantity == stresses.PEAK and parameter == "element size":
+            found = Estimate(found.order, None, None, stresses.SINGULAR)
+        rows.append(
+            {
+                "quantity": quantity,
+                "unit": its_unit,
+                "parameter": parameter,
+                "sizes": sizes,
+                "size_unit": unit,
+                "values": values,
+                **asdict(found),
+                "nominal_size": nominal,
+                "nominal_uncertainty": None
+                if found.uncertainty is None or at_nominal is None or finest is None
+                else found.uncertainty + abs(at_nominal - finest),
+            }
+        )
+    return rows
+
+
+def _penalties(study: Study, name: str) -> list[dict]:
+    """Rows by penalty stiffness; none without contact."""
+    contact = study.condition(name).contact
+    if contact is None:
+        return []
+    stiffness = contact.penalty
+    heads = [
+        {"factor": factor, "penalty_n_m3": factor * stiffness}
+        for factor in study.settings.penalty_factors
+    ]
+    known = {1.0: study.coarse(name), 4.0: refined(study, name)["penalty"]}
+    asked = [
+        known.get(factor)
+        or study.coarse(name, {"contact.penalty": factor * stiffness}, f"-penalty-{factor:g}")
+        for factor in study.settings.penalty_factors
+    ]
+    return _compared(study, "convergence, penalty", name, heads, asked)
+
+
+def _quadratures(study: Study, name: str) -> list[dict]:
+    """Rows by Gauss points per facet edge; none without contact."""
+    if study.condition(name).contact is None:
+        return []
+    # The rule that a run takes of its own accord needs no second run.
+    own = Numerics(element_size=study.settings.coarse_size).points_per_edge()
+    asked = [
+        study.coarse(name)
+        if points == own
+        else study.coarse(name, tag=f"-quadrature-{points}", quadrature=points)
+        for points in study.settings.quadratures
+    ]
+    heads = [{"points_per_edge": points} for points in study.settings.quadratures]
+    return _compared(study, "convergence, quadrature", name, heads, asked)
+
+
+def _ripples(study: Study, scene: Scene) -> list[dict]:
+    """Rows by element size, the first with a single Gauss point a facet for comparison; none where
+    the rail lets nothing be told."""
+    rows = []
+    for size, points in (
+        (study.settings.coarse_size, 1),
+        (study.settings.coarse_size, None),
+        (study.settings.element_size, None),
+    ):
+        numerics = Numerics(element_size=size, quadrature=points)
+        if found := ripple.measure(scene, numerics):
+            rows.append(
+                {
+                    "element_size_m": size,
+                    "points_per_edge": numerics.points_per_edge(),
+                    **found._asdict(),
+                }
+            )
+    return rows
+
+
+def _at_equal_accuracy(
+    study: Study, name: str, judged: list[dict], meshes: list[Trajectory]
+) -> dict | None:
+    """The speed-up of compliant contact over the coarsest mesh whose uncertainty is below its
+    error; None where nothing touches, or where it or a mesh did not settle."""
+    rates = [
+        row
+        for row in judged
+        if row["parameter"] == "element size" and row["quantity"].startswith(RATE)
+    ]
+    uncertain = equal_accuracy.uncertainties(rates)
+    if study.scene.contact is None or uncertain is None:
+        return None
+    surrogate = compliant(study, [name]).ask(study, name)
+    error = verdicts.settled_change(
+        meshes[-1], *study.store.fill("convergence, surrogate", [surrogate])
+    )
+    if error is None:
+        return None
+    mesh = equal_accuracy.coarsest(study.settings.mesh_sizes, uncertain, error)
+    wall = meshes[study.settings.mesh_sizes.index(mesh.element_size)].cost["wall_s"]
+    with Board("speed at equal accuracy", 1) as board:
+        (found,) = speedups(
+            study.highfi(name, element_size=mesh.element_size),
+            {"compliant": surrogate},
+            1 if wall > _LONG else study.settings.highfi_repeats,
+            study.settings.lowfi_repeats,
+            board.callback(f"{1e3 * mesh.element_size:g} mm"),
+        ).values()
+        board.finished(f"{1e3 * mesh.element_size:g} mm", f"{found['ratio']:,.0f} times")
+    return found | {
+        "condition": name,
+        "error_deg_s": error,
+        "element_size_m": mesh.element_size,
+        "mesh_uncertainty_deg_s": mesh.uncertainty,
+        "surer": mesh.surer,
+    }
+
+
+def told(ripples: list[dict]) -> list[str]:
+    """The ripple of the finest mesh in words, if there is one."""
+    if not ripples:
+        return []
+    finest = ripples[-1]
+    return [
+        f"ripple of a constant contact force at {finest['frequency']:.4g} Hz, at which facets of "
+        f"{1e3 * finest['element_size_m']:.3g} mm are crossed: {100.0 * finest['ripple']:.2g} %"
+    ]
+
+
+def _compared(
+    study: Study, title: str, name: str, heads: list[dict], asked: list[Run]
+) -> list[dict]:
+    """The rows with the settled rates of their runs and the largest change of one (deg/s) against
+    the nominal run of the coarse mesh."""
+    nominal, *runs = study.store.fill(title, [study.coarse(name), *asked])
+    return [
+        head
+        | {
+            "status": found.status,
+            "settled_rate_deg_s": settled_rate(found),
+            "settled_rate_change_deg_s": verdicts.settled_change(nominal, found),
+        }
+        for head, found in zip(heads, runs)
+    ]
+
+
+def summary(
+    condition: str,
+    judged: list[dict],
+    penalty: list[dict],
+    quadrature: list[dict],
+    coarse_size: float,
+) -> list[str]:
+    """What each table says of the settled rates, one line each; steps are those on elements of
+    ``coarse_size`` (m)."""
+    lines, share = (
+        [],
+        f"{Numerics().safety:g} of the critical step on elements of {1e3 * coarse_size:g} mm",
+    )
+    for parameter, symbol, factor, default in (
+        ("element size", "mm", 1e3, ""),
+        ("time step", "ns", 1e9, f", {share}"),
+    ):
+        rows = [
+            row
+            for row in judged
+            if row["parameter"] == parameter and row["quantity"].startswith(RATE)
+        ]
+        worst = max(rows, key=lambda row: row["nominal_uncertainty"] or 0.0)
+        if worst["uncertainty"] is None:
+            lines.append(
+                f"{parameter} on {condition}: a run did not settle, so nothing is known of its "
+                f"error"
+            )
+            continue
+        lines.append(
+            f"{parameter} on {condition}: settled rates within {worst['nominal_uncertainty']:.2g} "
+            f"deg/s at the "
+            f"default {factor * worst['nominal_size']:.3g} {symbol}{default}, within "
+            f"{max(row['uncertainty'] for row in rows):.2g} deg/s at "
+            f"{factor * worst['sizes'][-1]:.3g} {symbol}"
+        )
+    for title, key, rows in (
+        ("penalty stiffness, times", "factor", penalty),
+        ("Gauss points per facet edge,", "points_per_edge", quadrature),
+    ):
+        if rows:
+            change = verdicts.largest(row["settled_rate_change_deg_s"] for row in rows)
+            odd = "".join(
+                f"; {row[key]:g} {row['status']}"
+                for row in rows
+                if row["settled_rate_change_deg_s"] is None
+            )
+            lines.append(
+                f"{title} {rows[0][key]:g} to {rows[-1][key]:g}: "
+                + (
+                    "no run settled"
+                    if change is None
+                    else f"a settled rate changes by up to {change:.2g} deg/s"
+                )
+                + odd
+            )
+    return lines

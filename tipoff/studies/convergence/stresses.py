@@ -1,0 +1,42 @@
+"""Stresses of a run as numbers that refinement can be judged by: the filtered peak on the patches,
+and the peak of the whole rail.
+
+Contact rings with the modes of the elements, and the walls ring with it; so the mean stress of each
+patch is filtered as contact forces are (``studies.convergence.contact_loads``) before its von Mises
+stress is taken. The peak of the whole rail sits at a sharp inner corner or at the border of a
+clamp. There the stress of linear elasticity is infinite, and what a mesh shows of it grows with
+every refinement.
+"""
+
+from tipoff.highfi.elements.hexahedral_recovery import von_mises
+from tipoff.mechanics.trajectory import Trajectory
+from tipoff.scenes.scene import Scene
+from tipoff.studies.convergence import contact_loads
+
+PEAK = "peak stress of the rail"
+SINGULAR = "mesh-dependent: stress has no limit at a sharp corner or clamp"
+
+
+def patch_peak(scene: Scene, run: Trajectory) -> float | None:
+    """Largest von Mises stress (Pa) of any patch below the cut-off frequency; None for a run
+    without patches."""
+    if run.wall_stress is None or not run.wall_stress.size:
+        return None
+    return float(von_mises(contact_loads.low_passed(scene, run.wall_stress)).max())
+
+
+def facts(run: Trajectory) -> dict:
+    """Peak stress as rows of result files hold it, all None for a run that knows of none."""
+    known = run.stress or {}
+    return {
+        name: known.get(name)
+        for name in (
+            "peak_stress_pa",
+            "peak_stress_place_m",
+            "peak_stress_rail",
+            "peak_stress_time_s",
+            "yield_strength_pa",
+            "largest_strain",
+            "largest_rotation_rad",
+        )
+    } | {"warnings": known.get("warnings", [])}

@@ -1,0 +1,1 @@
+"""A scene under study: its stages, stored runs, settings and models."""

@@ -1,0 +1,21 @@
+"""Input from several places checked as one, so that a user who made two mistakes is told of
+both."""
+
+from collections.abc import Callable
+from typing import Any
+
+from tipoff.scenes.faults import Fault, SceneError
+
+
+def together(*makes: Callable[[], Any]) -> list:
+    """What each call returns. Raises SceneError with the faults of all of them."""
+    found: list[Any] = []
+    faults: list[Fault] = []
+    for make in makes:
+        try:
+            found.append(make())
+        except SceneError as error:
+            faults += error.faults
+    if faults:
+        raise SceneError(faults)
+    return found

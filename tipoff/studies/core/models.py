@@ -1,0 +1,64 @@
+"""Which model answers. Compliant contact does, unless another one is asked for by name; options of
+one model given with another are bad input."""
+
+from pathlib import Path
+from typing import NamedTuple
+
+from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS, MODELS, SPRINGS
+from tipoff.scenes.faults import Fault, SceneError
+from tipoff.studies.core.study import Study, StudyError
+
+_OWNERS = {"--calibration": SPRINGS, "--modes": COMPLIANT, "--checkpoint-every": FINITE_ELEMENTS}
+
+
+class Asked(NamedTuple):
+    """A model by ``name``, None where none was named; the file of a ``calibration`` of springs; how
+    many ``modes`` of each rail vibrate on compliant contact."""
+
+    name: str | None = None
+    calibration: Path | None = None
+    modes: int | None = None
+
+    @property
+    def model(self) -> str:
+        """The name of the model that answers."""
+        return self.name or COMPLIANT
+
+
+def require(asked: Asked, **others: object) -> None:
+    """Raises SceneError, every fault listed, for an unknown name and for options of another model
+    than the one ``asked`` for; ``others`` are further options by the name of their parameter, None
+    where they were not given."""
+    if asked.model not in MODELS:
+        raise SceneError([Fault("--model", "name", asked.model, f"one of {', '.join(MODELS)}")])
+    given: dict[str, object] = {"--calibration": asked.calibration, "--modes": asked.modes}
+    given |= {f"--{name.replace('_', '-')}": value for name, value in others.items()}
+    faults = [
+        Fault(
+            option,
+            "option",
+            str(value),
+            f"none with --model {asked.model}: it belongs to {_OWNERS[option]}",
+        )
+        for option, value in given.items()
+        if value is not None and _OWNERS[option] != asked.model
+    ]
+    if faults:
+        raise SceneError(faults)
+
+
+def require_accepted(study: Study, name: str | None, condition: str | None = None) -> None:
+    """Raises StudyError where no model was named and the agreement of the default with the
+    reference is known and missed: on ``condition``, or, without one, on any condition of the
+    scene."""
+    from tipoff.studies.agreement import kept
+
+    if name is not None:
+        return
+    if missed := kept.missed(study, COMPLIANT, condition):
+        listed = "\n  ".join(f"{row['condition']}: {row['verdict']}" for row in missed)
+        raise StudyError(
+            f"compliant contact misses the reference where that is converged:\n  {listed}\n"
+            f"name a model: --model {FINITE_ELEMENTS} for the reference, --model {COMPLIANT} all "
+            f"the same"
+        )

@@ -1,0 +1,70 @@
+"""Numerical choices of the studies: how fine, how many repeats. A scene says nothing about them.
+
+The reference mesh of 2 mm is the finest with which `make report` takes half an hour on two cores.
+What a change of clearance, penalty or step moves is a difference of two runs, and those run on
+twice the element size; so does the mesh that shows what refining still changes. Finer meshes belong
+to the convergence study.
+"""
+
+import os
+from dataclasses import asdict, dataclass
+
+from tipoff.files import content_hash
+
+_BESIDE_RESULTS = ("workers", "checkpoint_every", "resume")  # how a run is made, not what comes out
+
+COARSER = 2.0  # times the element size, where many runs are needed
+
+
+@dataclass(frozen=True)
+class Settings:
+    """``element_size`` (m) of the reference; ``tolerances`` of the surrogate in the cost study;
+    repeats of timed runs; ``clearance_change`` (m) that defines the floor; ``rail_modes`` of the
+    surrogate whose rails vibrate; ``workers`` side by side; ``checkpoint_every`` seconds (wall
+    clock) of a run of the reference, and whether one that was interrupted may ``resume``. What the
+    convergence study compares, coarsest first: meshes by ``mesh_ratios`` to ``element_size``, one
+    of them 1; ``safeties`` of the step, from that of every other stage down; ``quadratures``; and
+    factors of the scene's penalty stiffness."""
+
+    element_size: float = 0.002
+    tolerances: tuple[float, ...] = (1e-2, 1e-4, 1e-6, 1e-8)
+    highfi_repeats: int = 3
+    lowfi_repeats: int = 20
+    clearance_change: float = 1e-6
+    rail_modes: int = 4
+    mesh_ratios: tuple[float, ...] = (4.0, 2.0, 1.0, 0.5)
+    safeties: tuple[float, ...] = (0.9, 0.45, 0.225)
+    quadratures: tuple[int, ...] = (2, 4, 8)
+    penalty_factors: tuple[float, ...] = (0.25, 1.0, 4.0, 16.0)
+    workers: int = os.cpu_count() or 1
+    checkpoint_every: float = 60.0
+    resume: bool = True
+
+    @property
+    def coarse_size(self) -> float:
+        """Element size (m) where many runs are needed and their differences matter more than their
+        values."""
+        return COARSER * self.element_size
+
+    @property
+    def mesh_sizes(self) -> tuple[float, ...]:
+        """Element sizes (m) of the convergence study, coarsest first."""
+        return tuple(ratio * self.element_size for ratio in self.mesh_ratios)
+
+    @property
+    def hash(self) -> str:
+        """Digest of the choices that can change a result; how many runs go side by side, and from
+        where, is not one of them."""
+        return content_hash(
+            {name: value for name, value in asdict(self).items() if name not in _BESIDE_RESULTS}
+        )
+
+
+def defaults(scene_name: str) -> Settings:
+    """Settings of a catalogue scene: ``tiny`` is coarse, so that its whole pipeline takes
+    seconds."""
+    if scene_name == "tiny":
+        return Settings(
+            element_size=0.008, mesh_ratios=(2.0, 1.0, 0.5), highfi_repeats=2, lowfi_repeats=5
+        )
+    return Settings()

@@ -1,0 +1,197 @@
+"""Results of runs, kept by content: ``out/<scene>/<fidelity>/<label>-<key>.nc``.
+
+    key = SHA-256(physical inputs of the scene, numerics, calibrated constants, rail compliance,
+                  code that the fidelity depends on)
+
+A run whose file is there and fits the digest it carries is loaded, any other is made and written
+atomically; so what was interrupted goes on where it stopped, and neither a changed input or source
+nor a damaged file is answered with an old result. A run of the reference in progress is kept beside
+it as ``<label>-<key>.checkpoint``, which is removed once the result is written.
+
+Runs go side by side in threads: the kernels release the interpreter, and the mesh generator, which
+insists on the main thread, has been called before.
+"""
+
+import functools
+from collections.abc import Callable, Sequence
+from concurrent.futures import as_completed
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from tipoff import sources
+from tipoff.files import content_hash, discard
+from tipoff.mechanics.models import FINITE_ELEMENTS
+from tipoff.mechanics.rail_compliance import Walls, model_of
+from tipoff.mechanics.trajectory import Trajectory
+from tipoff.scenes.calibration import Calibration
+from tipoff.scenes.scene import Scene
+from tipoff.studies.core.progress import Board, say, team
+
+
+@dataclass(frozen=True)
+class Run:
+    """What is asked for: a fidelity, a label that is unique for the scene, the scene of one
+    condition, and numerics."""
+
+    fidelity: str
+    label: str
+    scene: Scene
+    numerics: Any
+    calibration: Calibration | None = None
+    walls: Walls | None = None
+
+    @property
+    def model(self) -> str:
+        """Name of the model that makes it."""
+        return FINITE_ELEMENTS if self.fidelity == "highfi" else model_of(self.scene, self.walls)
+
+    @property
+    def key(self) -> str:
+        """Hexadecimal digest of everything the result depends on."""
+        used = self.calibration.constants if self.calibration else None
+        return content_hash(
+            self.fidelity,
+            self.scene.hash,
+            asdict(self.numerics),
+            used,
+            self.walls.hash if self.walls else None,
+            sources.digest(f"tipoff.{self.fidelity}"),
+        )
+
+
+def execute(
+    run: Run,
+    progress: Callable[[float], None] | None = None,
+    threads: int | None = None,
+    **kept: Any,
+) -> Trajectory:
+    """Run it, without any store; for a run of the reference ``threads``, its own choice when None,
+    and where it is ``kept``, the arguments of ``highfi.run`` on checkpoints."""
+    if run.fidelity == "highfi":
+        from tipoff import highfi
+
+        return highfi.run(
+            run.scene, numerics=run.numerics, progress=progress, threads=threads, **kept
+        )
+    from tipoff import lowfi
+
+    return lowfi.run(
+        run.scene,
+        run.model,
+        walls=run.walls,
+        calibration=run.calibration,
+        numerics=run.numerics,
+        progress=progress,
+    )
+
+
+def prepare(run: Run) -> None:
+    """What must happen in the main thread before ``execute`` may be called in another one."""
+    if run.fidelity == "highfi":
+        from tipoff import highfi
+
+        highfi.prepare(run.scene, run.numerics)
+
+
+class Store:
+    """Trajectories below one folder."""
+
+    def __init__(
+        self, folder: Path, workers: int = 1, checkpoint_every: float = 60.0, resume: bool = True
+    ):
+        self.folder, self.workers = Path(folder), workers
+        self.checkpoint_every, self.resume = checkpoint_every, resume
+
+    def path(self, run: Run) -> Path:
+        """Where the result of ``run`` lies or will lie."""
+        return self.folder / run.fidelity / f"{run.label}-{run.key[:8]}.nc"
+
+    def checkpoint(self, run: Run) -> Path:
+        """Where ``run`` is kept while it is made."""
+        return self.path(run).with_suffix(".checkpoint")
+
+    def load(self, run: Run) -> Trajectory | None:
+        """The stored result, or None when there is none that can be read (a damaged file is named
+        on standard error)."""
+        path = self.path(run)
+        if not path.is_file():
+            return None
+        try:
+            return Trajectory.load(path)
+        # whatever the netCDF stack raises on damaged bytes, the remedy is the same
+        except Exception as fault:
+            say(
+                f"  {path} is damaged or was edited ({type(fault).__name__}), so {run.label} is "
+                f"run again"
+            )
+            return None
+
+    def get(self, run: Run) -> Trajectory:
+        """The result of one run, from the store or made now."""
+        return self.fill(run.fidelity, [run])[0]
+
+    def fill(self, title: str, runs: Sequence[Run]) -> list[Trajectory]:
+        """Results of ``runs`` in their order; those missing are run, ``workers`` at a time, with
+        progress on standard error.
+
+        On Ctrl-C running kernels are told to stop, finished results stay, and KeyboardInterrupt
+        goes on to the caller.
+        """
+        found = {run.key: trajectory for run in runs if (trajectory := self.load(run)) is not None}
+        missing = list({run.key: run for run in runs if run.key not in found}.values())
+        if missing:
+            found |= self._make(title, missing)
+        return [found[run.key] for run in runs]
+
+    def _make(self, title: str, runs: list[Run]) -> dict[str, Trajectory]:
+        for run in runs:
+            prepare(run)
+        made: dict[str, Trajectory] = {}
+        # Side by side each run is best left alone with one processor: threads of one run would wait
+        # for each other.
+        threads = None if min(self.workers, len(runs)) == 1 else 1
+        with Board(title, len(runs)) as board, team(board, self.workers) as pool:
+            pending = {pool.submit(self._one, run, board, threads): run for run in runs}
+            for future in as_completed(pending):
+                made[pending[future].key] = future.result()
+        return made
+
+    def _one(self, run: Run, board: Board, threads: int | None) -> Trajectory:
+        progress = board.callback(run.label)
+        progress(0.0)
+        make = self._kept if run.fidelity == "highfi" else execute
+        trajectory = make(run, progress, threads)
+        trajectory.save(self.path(run))
+        discard(self.checkpoint(run))
+        message = f" ({trajectory.message})" if trajectory.message else ""
+        board.finished(
+            run.label, f"{trajectory.status}{message} in {trajectory.cost['wall_s']:.3g} s"
+        )
+        return trajectory
+
+    def _kept(self, run: Run, progress: Callable[[float], None], threads: int | None) -> Trajectory:
+        """Run the reference from its checkpoint if there is one that can be used, else from the
+        beginning."""
+        from tipoff import highfi
+
+        path = self.checkpoint(run)
+        if not self.resume:
+            discard(path)
+        make = functools.partial(
+            execute,
+            run,
+            progress,
+            threads,
+            checkpoint=path,
+            checkpoint_every=self.checkpoint_every,
+            resume=True,
+        )
+        if path.is_file():
+            say(f"  {run.label} goes on from {path}")
+        try:
+            return make()
+        except highfi.CheckpointError as fault:
+            say(f"  {path} {fault.reason}, so {run.label} starts from the beginning")
+        discard(path)
+        return make()

@@ -1,0 +1,249 @@
+"""One scene under study: its conditions, its folder, its stored runs, and stages that are skipped
+when nothing changed.
+
+A stage leaves ``out/<scene>/<stage>.json`` with the ``key`` of everything it depends on and the
+digests of the ``files`` it wrote. It is made again when the key differs, when one of its files is
+gone or was altered, or when it does not fit the digest that it carries itself. Whatever a stage
+reads is verified by the reader, so nothing is made again from a damaged file.
+"""
+
+import hashlib
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+from tipoff import sources
+from tipoff.files import DamageError, content_hash, read_json, write_json
+from tipoff.mechanics.rail_compliance import Walls
+from tipoff.mechanics.trajectory import Trajectory
+from tipoff.scenes.calibration import Calibration
+from tipoff.scenes.faults import Fault, SceneError
+from tipoff.scenes.scene import NOMINAL, Scene
+from tipoff.studies.core import rail_compliance
+from tipoff.studies.core.progress import say
+from tipoff.studies.core.settings import Settings
+from tipoff.studies.core.store import Run, Store
+
+FAILED = ("diverged", "refused")
+# by name, for the libraries behind them are heavy
+INPUT_FAULTS = ("MeshError", "StepError", "CalibrationError")
+
+
+class StudyError(RuntimeError):
+    """A study that cannot go on because runs it needs failed; the message says which and why."""
+
+
+@dataclass(frozen=True)
+class Study:
+    """``folder`` is out/<scene>; ``only`` restricts the conditions that highfi and lowfi run."""
+
+    scene: Scene
+    folder: Path
+    settings: Settings
+    only: tuple[str, ...] = ()
+    _told: set = field(default_factory=set, repr=False, compare=False)  # stages already announced
+
+    def unrestricted(self) -> "Study":
+        """The same study of all its conditions: its results do not depend on those that are asked
+        for."""
+        return replace(self, only=()) if self.only else self
+
+    @cached_property
+    def store(self) -> Store:
+        """Trajectories of this scene."""
+        return Store(
+            self.folder, self.settings.workers, self.settings.checkpoint_every, self.settings.resume
+        )
+
+    @cached_property
+    def conditions(self) -> dict[str, Scene]:
+        """Scene of every condition by name: fitted and held out, else every named one, else the
+        scene itself."""
+        roles = self.scene.agreement
+        names = (
+            self.only
+            or tuple(dict.fromkeys([*roles.fitted, *roles.held_out]))
+            or tuple(self.scene.conditions)
+        )
+        return {name: self.condition(name) for name in names} or {NOMINAL: self.scene}
+
+    def condition(self, name: str) -> Scene:
+        """The scene of one condition. Raises SceneError for a name the scene does not have."""
+        return self.scene.condition(name)
+
+    def fitted(self) -> list[str]:
+        """Names of the fitted conditions. Raises SceneError when the scene names none."""
+        if not self.scene.agreement.fitted:
+            raise SceneError(
+                [
+                    Fault(
+                        self.scene.name,
+                        "agreement.fitted",
+                        "nothing",
+                        "at least one condition to calibrate on",
+                    )
+                ]
+            )
+        return list(self.scene.agreement.fitted)
+
+    def highfi(
+        self,
+        name: str,
+        overrides: dict | None = None,
+        tag: str = "",
+        element_size: float | None = None,
+        **numerics: Any,
+    ) -> Run:
+        """A finite-element run of condition ``name``, changed by ``overrides`` and told apart by
+        ``tag``."""
+        from tipoff import highfi
+
+        numbers = _numerics(
+            highfi.Numerics, element_size=element_size or self.settings.element_size, **numerics
+        )
+        return Run("highfi", name + tag, self.condition(name).replace(overrides or {}), numbers)
+
+    def coarse(
+        self, name: str, overrides: dict | None = None, tag: str = "", **numerics: Any
+    ) -> Run:
+        """The same on the coarse mesh, where differences of runs are measured."""
+        return self.highfi(name, overrides, f"{tag}-coarse", self.settings.coarse_size, **numerics)
+
+    def lowfi(
+        self,
+        name: str,
+        calibration: Calibration | None = None,
+        overrides: dict | None = None,
+        tag: str = "",
+        walls: Walls | None = None,
+        **numerics: Any,
+    ) -> Run:
+        """A surrogate run of condition ``name``: compliant where its rail compliance ``walls`` are
+        given, else on springs, with the scene's own constants unless calibrated."""
+        from tipoff import lowfi
+
+        label = f"{name}{tag}{'-calibrated' if calibration else ''}{'-compliant' if walls else ''}"
+        numbers = _numerics(lowfi.Numerics, **numerics)
+        scene = self.condition(name).replace(overrides or {})
+        return Run(
+            "lowfi",
+            label,
+            scene,
+            numbers,
+            calibration,
+            walls or rail_compliance.of_law(self, scene),
+        )
+
+    def path(self, name: str) -> Path:
+        """A file in the folder of this scene."""
+        return self.folder / name
+
+    def relative(self, path: Path) -> str:
+        """A path as result files hold it: relative to the folder of this scene."""
+        return path.relative_to(self.folder).as_posix()
+
+    def key(self, module: str, *inputs: Any) -> str:
+        """Digest of the scene with its conditions and roles, settings, the code that the stage's
+        ``module`` depends on, and further inputs."""
+        described = self.scene.model_dump(
+            mode="json", include={"name", "conditions", "agreement", "provenance"}
+        )
+        return content_hash(
+            self.scene.hash,
+            described,
+            self.settings.hash,
+            list(self.only),
+            sources.digest(module),
+            inputs,
+        )
+
+    def stage(self, name: str, key: str, make: Callable[[], tuple[dict, list[Path]]]) -> dict:
+        """The stage's result: read when it was made under the same key and its files are whole,
+        else made and written.
+
+        ``make`` returns the result and the files it wrote.
+        """
+        path = self.path(f"{name}.json")
+        known = read(path, f"{name} is made again")
+        if (
+            known is not None
+            and known.get("key") == key
+            and self.whole(known, f"{name} is made again")
+        ):
+            self._tell(name, "nothing changed")
+            return known
+        self._tell(name, self.scene.name)
+        result, files = make()
+        return write_json(
+            path,
+            {
+                "stage": name,
+                "scene": self.scene.name,
+                "key": key,
+                **result,
+                "files": {self.relative(file): _digest(file) for file in files},
+            },
+        )
+
+    def stored(self, name: str, key: Callable[[dict], str]) -> dict | None:
+        """The stage's result, if it has the ``key`` that a result of its settings would be given
+        now; None too where those are of other code, or a file they name is gone."""
+        found = read(self.path(f"{name}.json"))
+        try:
+            return found if found and found["key"] == key(found) else None
+        except (SceneError, OSError, KeyError, TypeError, ValueError):
+            return None
+
+    def _tell(self, name: str, words: str) -> None:
+        if name not in self._told:
+            say(f"{name}: {words}")
+        self._told.add(name)
+
+    def whole(self, document: dict, remedy: str) -> bool:
+        """Whether every file of a result is there as its stage left it; the first that was altered
+        is said, with the ``remedy``."""
+        for name, digest in document.get("files", {}).items():
+            path = self.path(name)
+            if not path.is_file():
+                return False
+            if _digest(path) != digest:
+                say(f"  {path} is not as it was left (damaged, edited, or made again): {remedy}")
+                return False
+        return True
+
+
+def read(path: Path, remedy: str = "the command that wrote it writes it again") -> dict | None:
+    """A stage's result file, or None when it is missing, or does not fit its digest, which is said
+    with the ``remedy``."""
+    try:
+        return read_json(path)
+    except DamageError as fault:
+        say(f"  {path} {fault.reason}: {remedy}")
+    except OSError:
+        pass
+    return None
+
+
+def require_success(runs: dict[str, Trajectory], purpose: str) -> None:
+    """Raise StudyError naming every run that failed."""
+    failed = [
+        f"{name}: {run.status}{': ' + run.message if run.message else ''}"
+        for name, run in runs.items()
+        if run.status in FAILED
+    ]
+    if failed:
+        raise StudyError(f"cannot {purpose}, because these runs failed:\n  " + "\n  ".join(failed))
+
+
+def _numerics(kind: type, **values: Any) -> Any:
+    """A fidelity's numerics; a bad value is bad input, reported like a bad scene."""
+    try:
+        return kind(**values)
+    except ValueError as fault:
+        raise SceneError([Fault("numerics", ", ".join(values), str(values), str(fault))]) from None
+
+
+def _digest(path: Path) -> str:
+    return hashlib.sha256(path.read_bytes()).hexdigest()

@@ -1,0 +1,275 @@
+"""How cost grows: with the elements of the reference, with the pads of each model, and with the
+effects that are on.
+
+    t = c n^p,   p the slope of a straight line through log t over log n, with its standard error
+
+Elements: a step does the same for each of n elements, so p = 1 per step. A step may be no longer
+than a wave takes through an element, so with all edges shrinking alike a run takes n^(1/3) times as
+many of them: p = 4/3. Less is found on coarse meshes, where much of a step is the same on any mesh
+(t = a + b n beside it says how much), and where the thickness of a wall, one element from edge to
+edge, sets the step.
+
+Pads are taken away or added between the others of the same payload. Its motion is another then, and
+with it how often it touches, so that p of a run is the price of pads in that motion; per step it is
+nearer to the price of the pads themselves. Effects differ in what they are, so that no power of
+their number means anything: what counts is the price of each, and of all over none.
+
+Times are of one processor, without compilation, and as in the ablation study: of a whole run of the
+reference, of the time loop of the surrogate.
+"""
+
+import statistics
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.stats import linregress
+
+from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS, SPRINGS
+from tipoff.scenes.faults import SceneError
+from tipoff.scenes.rail import MeshTable
+from tipoff.scenes.scene import Scene
+from tipoff.studies.core.progress import Board
+from tipoff.studies.core.store import Run
+from tipoff.studies.core.study import Study
+from tipoff.studies.cost.timing import timed, warm_up
+
+_TIME = {"highfi": "cpu_s", "lowfi": "kernel_s"}
+_SHARES = (0.125, 0.25, 0.5, 1.0, 2.0)  # of the scene's own number of pads
+_REPEATS = {"highfi": 2, "lowfi": 20}
+
+
+def power_law(sizes: Sequence[float], times: Sequence[float]) -> dict:
+    """``exponent`` p of t = c n^p, None of a single size, as a mesh from a file has, and its
+    ``standard_error``, which two points do not have."""
+    if len(set(sizes)) < 2:
+        return {"exponent": None, "standard_error": None}
+    line = linregress(np.log(sizes), np.log(times))
+    return {
+        "exponent": float(line.slope),
+        "standard_error": float(line.stderr) if len(sizes) > 2 else None,
+    }
+
+
+def shares(
+    sizes: Sequence[float], times: Sequence[float]
+) -> tuple[float, float] | tuple[None, None]:
+    """a and b of t = a + b n, by least squares of the relative error; None of a single size."""
+    if len(set(sizes)) < 2:
+        return None, None
+    design = np.column_stack([1.0 / np.array(times), np.array(sizes) / np.array(times)])
+    fixed, each = np.linalg.lstsq(design, np.ones(len(times)))[0]
+    return float(fixed), float(each)
+
+
+def fitted(model: str, points: list[dict]) -> dict:
+    """``points`` (``n``, ``time_s`` of a run, ``steps``) of one model with their power laws, per
+    ``run`` and per ``step``."""
+    sizes = [point["n"] for point in points]
+    per_step = [point["time_s"] / point["steps"] for point in points]
+    return {
+        "model": model,
+        "points": [point | {"step_s": step} for point, step in zip(points, per_step)],
+        "run": power_law(sizes, [point["time_s"] for point in points]),
+        "step": power_law(sizes, per_step),
+    }
+
+
+def elements(study: Study, name: str) -> dict:
+    """Law over the elements of the reference's meshes, and between its two finest (``finest``); and
+    what a step takes on any mesh with what each element adds (``fixed_s``, ``element_s``). The runs
+    are those of other stages, medians over conditions."""
+    names = dict.fromkeys([name, *study.scene.agreement.fitted])
+    coarsest = 2.0 * study.settings.coarse_size
+    ask = {
+        coarsest: [study.highfi(name, element_size=coarsest, tag="-coarsest")],
+        study.settings.coarse_size: [study.coarse(each) for each in names],
+        study.settings.element_size: [study.highfi(each) for each in names],
+    }
+    runs = iter(
+        study.store.fill("cost, elements", [run for asked in ask.values() for run in asked])
+    )
+    points = [
+        _median([next(runs).cost for _ in asked], "cpu_s") | {"element_size_m": size}
+        for size, asked in ask.items()
+    ]
+    law = fitted(FINITE_ELEMENTS, points)
+    fixed, each = shares(
+        [point["n"] for point in points], [point["step_s"] for point in law["points"]]
+    )
+    return law | {
+        "finest": {of: fitted(FINITE_ELEMENTS, points[-2:])[of] for of in ("run", "step")},
+        "fixed_s": fixed,
+        "element_s": each,
+    }
+
+
+def _median(costs: list[dict], time: str) -> dict:
+    """Repeats of a run as one point; the elements are its ``n`` unless said otherwise."""
+    return {
+        "n": costs[0].get("elements"),
+        "steps": statistics.median(cost["steps"] for cost in costs),
+        "repeats": len(costs),
+        "time_s": statistics.median(cost[time] for cost in costs),
+        "wall_s": statistics.median(cost["wall_s"] for cost in costs),
+    }
+
+
+def pads(study: Study, name: str) -> list[dict]:
+    """Law over the number of pads of each model, the reference on the coarsest mesh, walls from the
+    statics of that mesh. On a mesh from a file, which has no coarser one, the reference is left
+    out: ten of its runs may take hours."""
+    variants = pad_variants(study, name)
+    asked = (
+        {}
+        if isinstance(study.scene.rail, MeshTable)
+        else {
+            FINITE_ELEMENTS: [
+                _coarsest(study, name, change, count) for count, change in variants.items()
+            ]
+        }
+    )
+    asked[SPRINGS] = [
+        study.lowfi(name, None, change, f"-pads-{count}") for count, change in variants.items()
+    ]
+    if study.scene.contact is not None:
+        asked[COMPLIANT] = [
+            study.lowfi(name, None, change, f"-pads-{count}", _walls(study, name, change))
+            for count, change in variants.items()
+        ]
+    with Board("cost, pads", len(asked)) as board:
+        return [_over_pads(model, runs, list(variants), board) for model, runs in asked.items()]
+
+
+def _over_pads(model: str, runs: list[Run], counts: list[int], board: Board) -> dict:
+    """Runs by turns, so that what else the machine does meets each number of pads alike."""
+    fidelity, progress = runs[0].fidelity, board.callback(model)
+    for run in runs:
+        warm_up(run)
+    rounds = []
+    for repeat in range(_REPEATS[fidelity]):
+        rounds.append([timed(run)[0] for run in runs])
+        progress((repeat + 1) / _REPEATS[fidelity])
+    points = [
+        _median([found.cost for found in repeats], _TIME[fidelity])
+        | {"n": count, "status": repeats[0].status}
+        for count, repeats in zip(counts, zip(*rounds))
+    ]
+    law = fitted(model, points)
+    board.finished(model, f"{', '.join(map(str, counts))} pads timed")
+    return law
+
+
+def pad_variants(study: Study, name: str) -> dict[int, dict]:
+    """Overrides by number of pads, of those that the scene can have."""
+    scene, found = study.condition(name), {}
+    for share in _SHARES:
+        count = share * len(scene.pads)
+        change = with_pads(scene, int(count)) if count == int(count) else None
+        if change and _possible(study, name, change, int(count)):
+            found[int(count)] = change
+    return found
+
+
+def with_pads(scene: Scene, count: int) -> dict | None:
+    """Override that leaves ``count`` pads: those of the rear, so that the exit stays where it is,
+    and of a part of a band those farthest apart; or more bands, evenly from the rear to the front
+    one. None where bands do not go into it."""
+    own = sorted(
+        (pad.model_dump(mode="json") for pad in scene.pads), key=lambda pad: pad["position"][0]
+    )
+    places = sorted({pad["position"][0] for pad in own})
+    rear = [pad for pad in own if pad["position"][0] == places[0]]
+    if count <= len(rear):
+        return {
+            "pads": [rear[at] for at in np.linspace(0, len(rear) - 1, count).round().astype(int)]
+        }
+    if count <= len(own):
+        return {"pads": own[:count]}
+    bands, left = divmod(count, len(rear))
+    if left or len(places) < 2:
+        return None
+    return {
+        "pads": [
+            pad | {"position": [float(x), *pad["position"][1:]]}
+            for x in np.linspace(places[0], places[-1], bands)
+            for pad in rear
+        ]
+    }
+
+
+def _possible(study: Study, name: str, change: dict, count: int) -> bool:
+    """Whether both models take the scene with these pads."""
+    from tipoff import highfi
+
+    try:
+        run = _coarsest(study, name, change, count)
+        highfi.prepare(run.scene, run.numerics)
+    except SceneError:
+        return False
+    return True
+
+
+def _coarsest(study: Study, name: str, change: dict, count: int) -> Run:
+    return study.highfi(name, change, f"-pads-{count}", 2.0 * study.settings.coarse_size)
+
+
+def _walls(study: Study, name: str, change: dict):
+    """A surrogate's time does not hang on the mesh its walls come from, so the coarsest will do."""
+    from tipoff import highfi
+
+    return highfi.walls(
+        study.condition(name).replace(change), element_size=2.0 * study.settings.coarse_size
+    )
+
+
+def effects(scene: Scene, ablation: dict) -> list[dict]:
+    """What the ablation study measured, for each model: times with ``none`` and with ``all``
+    effects and their ``ratio``; ``ladder``, rungs of effects added to those before, each with the
+    number on; ``effects``, what each costs alone, as the time that all take more than all but it;
+    ``asked``, number and time of those of the scene."""
+    found = []
+    for fidelity, model in (("highfi", FINITE_ELEMENTS), ("lowfi", COMPLIANT)):
+        time = {
+            row["variant"]: row["time_s"] for row in ablation["rows"] if row["fidelity"] == fidelity
+        }
+        without = {
+            name.removeprefix("without "): seconds
+            for name, seconds in time.items()
+            if name.startswith("without ")
+        }
+        found.append(
+            {
+                "model": model,
+                "none_s": time["no effect"],
+                "all_s": time["all effects"],
+                "ratio": time["all effects"] / time["no effect"],
+                "ladder": _ladder(time, len(without)),
+                "asked": [
+                    sum(effect not in scene.absent_effects() for effect in without),
+                    time["as the scene asks"],
+                ],
+                "effects": [
+                    {
+                        "effect": effect,
+                        "time_s": time["all effects"] - seconds,
+                        "of_none": (time["all effects"] - seconds) / time["no effect"],
+                    }
+                    for effect, seconds in without.items()
+                ],
+            }
+        )
+    return found
+
+
+def _ladder(time: dict[str, float], count: int) -> list[dict]:
+    """No further kernel is compiled for it: the sets of the ablation study that lie inside each
+    other. Friction has nothing to rub on without contact, and no code."""
+    rungs = [
+        ("none", 0, "no effect"),
+        ("all but contact and friction", count - 2, "without contact"),
+        ("contact too", count - 1, "without friction"),
+        ("friction too", count, "all effects"),
+    ]
+    if {"without contact", "without friction"} - set(time):
+        rungs = [rungs[0], ("all", count, "all effects")]
+    return [{"added": words, "on": on, "time_s": time[variant]} for words, on, variant in rungs]

@@ -1,0 +1,256 @@
+"""Stage ``cost``: what accuracy costs in time. Error of the settled rates against wall time, both
+fidelities on one condition; and how time grows with elements, pads and effects
+(``studies.cost.scaling``).
+
+The yardstick is the finest finite-element mesh; its own uncertainty is the band below which no
+error can be told from zero, so an error below it counts as the band where the front of the best is
+drawn. Every model is timed alone, each run with all the machine. The surrogate's time-integration
+error, against its own tightest tolerance, stands beside its error against the yardstick: what
+remains when it is small is the model, and no tolerance can buy it.
+
+``cost.json`` is the bare list of points for other tools, ``cost_study.json`` the whole result.
+"""
+
+import json
+import statistics
+from collections.abc import Iterable
+from pathlib import Path
+
+from tipoff.files import write_text
+from tipoff.lowfi.numerics import Numerics
+from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS
+from tipoff.mechanics.trajectory import Trajectory
+from tipoff.studies.ablation import stage as ablation
+from tipoff.studies.agreement import verdicts
+from tipoff.studies.agreement.metrics import compare
+from tipoff.studies.agreement.stage import Rung, refined, rungs
+from tipoff.studies.core import machine
+from tipoff.studies.core.progress import Board
+from tipoff.studies.core.store import Run
+from tipoff.studies.core.study import Study, read
+from tipoff.studies.cost import choice, scaling
+from tipoff.studies.cost.timing import timed, warm_up
+
+BY_MODES = f"{COMPLIANT}, modes varied"
+MODES = (1, 2, 8)  # of each rail, beside those of the agreement study
+STIFFNESS_ALONG = f"{COMPLIANT}, mean pressure of each face by itself"
+NAME, POINTS = "cost_study", "cost.json"
+
+
+def run(study: Study) -> dict:
+    """``points``: model, rung, numerics, setting (element size in m or relative tolerance), modes
+    (None where the rung has its own), error_deg_s, curve_error (rate L2), wall_s, pareto;
+    ``band_deg_s``: uncertainty of the yardstick; ``matched``; ``scaling`` over ``elements``,
+    ``pads`` and ``effects``."""
+    name = _condition(study)
+    ladder = surrogates(study)
+
+    def make() -> tuple[dict, list[Path]]:
+        finest, band, points = _reference_points(study, name)
+        for rung in ladder:
+            points += _surrogate_points(study, name, rung, finest, study.settings.tolerances)
+        points += _points_by_modes(study, name, ladder[-1], finest)
+        growing = {
+            "elements": scaling.elements(study, name),
+            "pads": scaling.pads(study, name),
+            "effects": scaling.effects(study.condition(name), ablation.run(study)),
+        }
+        path, points = study.path(POINTS), marked(points, band)
+        write_text(path, json.dumps(points, indent=1, allow_nan=False) + "\n")
+        return {
+            "condition": name,
+            "scene_hash": study.scene.hash,
+            "band_deg_s": band,
+            "points": points,
+            "matched": matched(points),
+            "scaling": growing,
+            "hardware": machine.describe(),
+        }, [path]
+
+    return study.stage(
+        NAME,
+        _key(study, next(rung.calibration for rung in ladder if rung.calibration).constants),
+        make,
+    )
+
+
+def stored(study: Study) -> dict | None:
+    """The result, if it was made from the present scene, code, settings and calibration."""
+    calibration = read(study.path("calibration.json"))
+    return (
+        study.stored(NAME, lambda _: _key(study, calibration["constants"])) if calibration else None
+    )
+
+
+def _key(study: Study, constants: dict) -> str:
+    return study.key(__name__, _condition(study), constants)
+
+
+def _condition(study: Study) -> str:
+    return (study.scene.agreement.refined or study.fitted())[0]
+
+
+def surrogates(study: Study, conditions: Iterable[str] | None = None) -> list[Rung]:
+    """The rungs of the agreement study for ``conditions``, else for all, and one more between
+    them."""
+    plain, calibrated, compliant, modal = rungs(study, conditions)
+    along = {
+        name: known and known.restricted(1, coupled=False)
+        for name, known in compliant.walls.items()
+    }
+    return [
+        plain,
+        calibrated,
+        compliant._replace(name="along", title=STIFFNESS_ALONG, walls=along),
+        compliant,
+        modal,
+    ]
+
+
+def _reference_points(study: Study, name: str) -> tuple[Trajectory, float | None, list[dict]]:
+    settings = study.settings
+    sizes = (2.0 * settings.coarse_size, settings.coarse_size, settings.element_size)
+    # The last two are runs of the agreement study, not others under another name.
+    asked = [
+        study.highfi(name, element_size=sizes[0], tag="-coarsest"),
+        study.coarse(name),
+        study.highfi(name),
+        *refined(study, name).values(),
+    ]
+    coarsest, coarse, finest, *changed = study.store.fill("cost, meshes", asked)
+    band = verdicts.largest(verdicts.settled_change(coarse, run) for run in (finest, *changed))
+    points = [
+        {
+            "model": FINITE_ELEMENTS,
+            "rung": "highfi",
+            "setting": size,
+            "modes": None,
+            "numerics": f"{1e3 * size:g} mm, {found.cost['elements']:,} elements",
+            **(
+                dict.fromkeys(("error_deg_s", "curve_error"))
+                if found is finest
+                else _errors(finest, found)
+            ),
+            "integration_error_deg_s": None,
+            "wall_s": wall,
+            "status": found.status,
+        }
+        for size, found, wall in zip(
+            sizes, (coarsest, coarse, finest), _wall_times(asked[: len(sizes)])
+        )
+    ]
+    return finest, band, points
+
+
+def _wall_times(runs: list[Run]) -> list[float]:
+    """Seconds that each run takes by itself: in the store they may have been made side by side, on
+    a processor each."""
+    found = []
+    with Board("cost, times", len(runs)) as board:
+        for run in runs:
+            warm_up(run)
+            found.append(timed(run, board.callback(run.label))[1])
+            board.finished(run.label, f"{found[-1]:.3g} s")
+    return found
+
+
+def _errors(finest: Trajectory, found: Trajectory) -> dict[str, float | None]:
+    """Errors against the yardstick: of the settled rates (deg/s) and of the curves (rate L2,
+    relative)."""
+    return {
+        "error_deg_s": verdicts.settled_change(finest, found),
+        "curve_error": compare(finest, found).rate_relative_l2,
+    }
+
+
+def _points_by_modes(study: Study, name: str, rung: Rung, finest: Trajectory) -> list[dict]:
+    """What more or fewer modes buy, at the tolerance of all other studies."""
+    return [
+        point | {"model": BY_MODES, "numerics": f"{count} mode{'s' * (count > 1)}", "modes": count}
+        for count in MODES
+        if count != rung.modes
+        for point in _surrogate_points(
+            study, name, rung._replace(modes=count), finest, [Numerics().relative_tolerance]
+        )
+    ]
+
+
+def _surrogate_points(
+    study: Study, name: str, rung: Rung, finest: Trajectory, tolerances: Iterable[float]
+) -> list[dict]:
+    tolerances = sorted(tolerances)
+    asked = [rung.ask(study, name, relative_tolerance=tolerance) for tolerance in tolerances]
+    warm_up(asked[0])
+    measured = [[timed(run) for _ in range(study.settings.lowfi_repeats)] for run in asked]
+    runs = [repeats[0][0] for repeats in measured]
+    return [
+        {
+            "model": rung.title,
+            "rung": rung.name,
+            "setting": tolerance,
+            "modes": None,
+            "numerics": f"tolerance {tolerance:g}",
+            **_errors(finest, found),
+            "integration_error_deg_s": verdicts.settled_change(runs[0], found)
+            if found is not runs[0]
+            else None,
+            "wall_s": statistics.median(wall for _, wall, _ in repeats),
+            "status": found.status,
+        }
+        for tolerance, found, repeats in reversed(list(zip(tolerances, runs, measured)))
+    ]
+
+
+def matched(points: list[dict]) -> list[dict]:
+    """For each surrogate: the cheapest mesh that is as exact, and how many times longer it takes. A
+    surrogate's error is that at its tightest tolerance, for errors of the steps may cancel it by
+    luck; its time that of the loosest one that adds no tenth to it. The finest mesh, the yardstick,
+    is as exact as anything can be told to be. Other numbers of modes are left out, for no tolerance
+    was varied there."""
+    points = [point for point in points if point["modes"] is None]
+    meshes = [point for point in points if point["model"] == FINITE_ELEMENTS]
+    found = []
+    for model in dict.fromkeys(
+        point["model"] for point in points if point["model"] != FINITE_ELEMENTS
+    ):
+        known = [
+            point
+            for point in points
+            if point["model"] == model and point["error_deg_s"] is not None
+        ]
+        if known:
+            error = min(known, key=lambda point: point["setting"])["error_deg_s"]
+            enough = [
+                point for point in known if (point["integration_error_deg_s"] or 0.0) <= 0.1 * error
+            ]
+            point = min(enough, key=lambda point: point["wall_s"])
+            as_exact = [mesh for mesh in meshes if (mesh["error_deg_s"] or 0.0) <= error]
+            mesh = min(as_exact, key=lambda point: point["wall_s"])
+            found.append(
+                {
+                    "model": model,
+                    "numerics": point["numerics"],
+                    "error_deg_s": error,
+                    "wall_s": point["wall_s"],
+                    "mesh": mesh["numerics"],
+                    "mesh_error_deg_s": mesh["error_deg_s"],
+                    "mesh_wall_s": mesh["wall_s"],
+                    "ratio": mesh["wall_s"] / point["wall_s"],
+                }
+            )
+    return found
+
+
+def marked(points: list[dict], band: float | None) -> list[dict]:
+    """The points, each told whether no other one can be trusted as far and is as fast
+    (``pareto``)."""
+    known = choice.trusted(points, band)
+
+    def beaten(point: dict) -> bool:
+        return any(
+            other["trusted_deg_s"] <= point["trusted_deg_s"] and other["wall_s"] < point["wall_s"]
+            for other in known
+        )
+
+    best = [(point["model"], point["numerics"]) for point in known if not beaten(point)]
+    return [point | {"pareto": (point["model"], point["numerics"]) in best} for point in points]

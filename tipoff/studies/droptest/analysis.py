@@ -1,0 +1,104 @@
+"""One drop test from its sheet to its change of rate: what the other files here do, in order."""
+
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from tipoff.scenes.faults import Fault, SceneError
+from tipoff.studies.droptest import events as finding
+from tipoff.studies.droptest.calibrated import Calibrated, calibrated, untold
+from tipoff.studies.droptest.channel_class import filtered
+from tipoff.studies.droptest.events import WINDOWS, Events, Spans, inside
+from tipoff.studies.droptest.log import Log, read
+from tipoff.studies.droptest.reduction import Reduced, reduced
+from tipoff.studies.droptest.sheet import Sheet
+
+
+class Drop(NamedTuple):
+    """A drop test: its sheet, calibrated samples, filtered rate (n,3) rad/s, samples that are
+    ``doubtful`` (n,) as they are missing or clipped, events, windows, change of rate; largest rate
+    (rad/s) in the window at rest, and ``notes``, everything that was repaired, assumed or left out,
+    in words."""
+
+    name: str
+    sheet: Sheet
+    samples: Calibrated
+    filtered: np.ndarray
+    doubtful: np.ndarray
+    events: Events
+    spans: Spans
+    reduced: Reduced
+    unrest: float
+    notes: list[str]
+
+
+def analyse(path: str | Path) -> Drop:
+    """The whole analysis of one log. Raises SceneError listing every fault."""
+    sheet, log = read(path)
+    return of(sheet, log, str(path))
+
+
+def of(sheet: Sheet, log: Log, source: str) -> Drop:
+    """The same of a log that was read already."""
+    samples = calibrated(sheet, log)
+    smooth = filtered(samples.rate, sheet.channel_class, log.interval)
+    events = finding.find(sheet, samples, source)
+    spans = finding.spans(sheet, samples, events, source)
+    _require_whole(log, spans, source)
+    result = reduced(sheet, samples, spans, source)
+    unrest = float(np.abs(smooth[inside(log.time, spans.rest)]).max())
+    return Drop(
+        Path(source).stem,
+        sheet,
+        samples,
+        smooth,
+        log.doubtful | log.clipped,
+        events,
+        spans,
+        result,
+        unrest,
+        _notes(sheet, log, events, unrest),
+    )
+
+
+def _require_whole(log: Log, spans: Spans, source: str) -> None:
+    """No gap in a window, no clipped rate, nor acceleration, by which the rate is compensated.
+    Raises SceneError else."""
+    faults = []
+    for name in WINDOWS:
+        places = inside(log.time, getattr(spans, name))
+        if bad := int((log.doubtful | log.clipped)[places].sum()):
+            faults.append(
+                Fault(
+                    source,
+                    f"{name} window",
+                    f"{bad} of {places.size} samples missing or clipped",
+                    "none",
+                )
+            )
+    if faults:
+        raise SceneError(faults)
+
+
+def _notes(sheet: Sheet, log: Log, events: Events, unrest: float) -> list[str]:
+    notes = [*log.notes, *untold(sheet, log)]
+    if events.given:
+        notes.append("release and ignition as the sheet gives them")
+    if events.later:
+        times = ", ".join(f"{at:.4g} s" for at in events.later)
+        notes.append(
+            f"pushed along +X as long as by a burn after ignition too, at {times}: taken for the "
+            f"catch"
+        )
+    if unrest > sheet.windows.rest_rate:
+        notes.append(
+            f"settling rule broken: {np.degrees(unrest):.3g} deg/s in the {sheet.windows.rest:g} s "
+            f"before release, "
+            f"{np.degrees(sheet.windows.rest_rate):g} deg/s allowed"
+        )
+    if log.acceleration is None:
+        notes.append(
+            "no accelerations: the budget takes the specific force as the same in both windows"
+        )
+    return notes

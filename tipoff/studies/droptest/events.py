@@ -1,0 +1,166 @@
+"""Release and ignition in the accelerations, and the windows that follow from them.
+
+**Release**: while the platform hangs its accelerometers feel g, in free fall nothing. Free fall is
+the first stretch in which the filtered force stays below g/2 for 50 ms, so that no knock passes for
+it; its beginning is then put where a step from the mean force before to zero fits the unfiltered
+samples best (least squares, which is maximum likelihood for white noise).
+
+**Ignition**: of all stretches after release in which the force along +X exceeds six standard
+deviations of its noise (and 1 m/s2), the first whose impulse is that of an ejection is the burn,
+and its beginning is ignition. A latch may knock harder, but not for as long; and whatever catches
+the platform may push for longer than the thruster, but not before it.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from tipoff.scenes.faults import Fault, SceneError
+from tipoff.studies.droptest.calibrated import Calibrated
+from tipoff.studies.droptest.channel_class import filtered, reach
+from tipoff.studies.droptest.log import runs
+from tipoff.studies.droptest.sheet import Sheet
+
+GRAVITY = 9.80665
+WINDOWS = ("rest", "reference", "settled")
+_FALL = 0.05  # s; no knock lasts as long
+_NOISE_FROM, _NOISE_TO = 0.01, 0.05  # s after release, where the noise of the force is judged
+_SIGMAS, _LEAST = 6.0, 1.0  # a sample that belongs to the burn: standard deviations, and m/s2
+_JOINED = 0.002  # s between samples of one burn
+_IMPULSE = 0.3  # m/s; less is no ejection
+_AT_REST = 0.05  # relative error of g while hanging, beyond which units or scale are wrong
+_SHORTEST = 0.03  # s of a window
+
+
+class Events(NamedTuple):
+    """Instants (s of the log), and whether they are found or given; ``later``, where further pushes
+    begin that are as long as a burn and lie after the exit, and are taken for the catch."""
+
+    release: float
+    ignition: float
+    given: bool
+    later: tuple[float, ...] = ()
+
+
+class Spans(NamedTuple):
+    """First and last instant (s) of the windows: at ``rest`` before release, ``reference`` in free
+    fall, ``settled`` after exit; ``instant`` is when the settled rate is told, in the middle of the
+    window over which simulations take it."""
+
+    rest: tuple[float, float]
+    reference: tuple[float, float]
+    settled: tuple[float, float]
+    instant: float
+
+
+def find(sheet: Sheet, found: Calibrated, source: str) -> Events:
+    """Release and ignition. Raises SceneError for a log without one of them, or whose resting force
+    is not g."""
+    if sheet.events is not None:
+        return Events(sheet.events.release, sheet.events.ignition, True)
+    interval = found.time[1] - found.time[0]
+    release = _release(sheet, found, interval, source)
+    hanging = _force(found)[: max(1, release - int(_NOISE_FROM / interval))]
+    felt = float(np.linalg.norm(hanging.mean(axis=0)))
+    if abs(felt / GRAVITY - 1.0) > _AT_REST:
+        raise SceneError(
+            [
+                Fault(
+                    source,
+                    "units.acceleration",
+                    f"{felt:.4g} m/s2 at rest",
+                    f"{GRAVITY:.4g} m/s2 within {100.0 * _AT_REST:g} %: unit, scale or bias is "
+                    f"wrong",
+                )
+            ]
+        )
+    ignition, *others = (
+        float(found.time[place]) for place in _pushes(found, interval, release, source)
+    )
+    return Events(
+        float(found.time[release]),
+        ignition,
+        False,
+        tuple(at for at in others if at > ignition + sheet.windows.exit),
+    )
+
+
+def _force(found: Calibrated) -> np.ndarray:
+    """The specific force (n,3), which every log has whose sheet does not give the events."""
+    assert found.force is not None
+    return found.force
+
+
+def _release(sheet: Sheet, found: Calibrated, interval: float, source: str) -> int:
+    force = _force(found)
+    smooth = np.linalg.norm(filtered(force, sheet.channel_class, interval), axis=1)
+    falls = [run for run in runs(smooth < 0.5 * GRAVITY) if run[1] - run[0] >= _FALL / interval]
+    if not falls or falls[0][0] == 0:
+        given = "a log that begins in free fall" if falls else "no free fall"
+        expected = f"a force that falls from g to nothing for {1e3 * _FALL:g} ms and longer"
+        raise SceneError([Fault(source, "release", given, expected)])
+    crossing = falls[0][0]
+    span = max(3, int(np.ceil(reach(sheet.channel_class) / interval)))
+    low, high = max(crossing - span, 1), min(crossing + span, found.time.size - 1)
+    before = force[max(0, low - 5 * span) : low].mean(axis=0)
+    felt = force[low:high] @ before / (before @ before)  # 1 while hanging, 0 in free fall
+    # Sum of squares that a step after k samples leaves, but for a constant.
+    wrong = np.concatenate([[0.0], np.cumsum((felt - 1.0) ** 2 - felt**2)])
+    return low + int(np.argmin(wrong))
+
+
+def _pushes(found: Calibrated, interval: float, release: int, source: str) -> list[int]:
+    """Where pushes along +X with the impulse of an ejection begin, in order. Raises SceneError
+    where there is none."""
+    ahead = _force(found)[:, 0]
+    begin, end = (release + int(after / interval) for after in (_NOISE_FROM, _NOISE_TO))
+    calm = ahead[begin:end]
+    level = np.median(calm)
+    limit = max(_SIGMAS * 1.4826 * np.median(np.abs(calm - level)), _LEAST)
+    pushed = np.flatnonzero(ahead[begin:] - level > limit) + begin
+    burns = np.split(pushed, np.flatnonzero(np.diff(pushed) > _JOINED / interval) + 1)
+    strong = [
+        int(burn[0])
+        for burn in burns
+        if burn.size and interval * float(ahead[burn].sum()) >= _IMPULSE
+    ]
+    if not strong:
+        expected = f"one of {_IMPULSE} m/s and more; do the axes point so?"
+        raise SceneError([Fault(source, "ignition", "no push along +X in free fall", expected)])
+    return strong
+
+
+def spans(sheet: Sheet, found: Calibrated, events: Events, source: str) -> Spans:
+    """The windows. Raises SceneError where the log does not hold them, or they are too short."""
+    from tipoff.mechanics.outcome import SETTLE_DELAY, SETTLE_WINDOW
+
+    ask, guard = sheet.windows, reach(sheet.channel_class)
+    left = events.ignition + ask.exit
+    settled = left + SETTLE_DELAY + 2.0 * ask.exit_uncertainty
+    spans_ = Spans(
+        (events.release - ask.rest, events.release - guard),
+        (events.release + ask.after_release, events.ignition - guard),
+        (settled, settled + ask.settled),
+        left + SETTLE_DELAY + 0.5 * SETTLE_WINDOW,
+    )
+    faults = []
+    for name in WINDOWS:
+        begin, end = getattr(spans_, name)
+        if end - begin < _SHORTEST or begin < found.time[0] or end > found.time[-1]:
+            faults.append(
+                Fault(
+                    source,
+                    f"{name} window",
+                    f"{begin:.4g} to {end:.4g} s",
+                    f"{1e3 * _SHORTEST:g} ms and more inside the log, {found.time[0]:.4g} to "
+                    f"{found.time[-1]:.4g} s",
+                )
+            )
+    if faults:
+        raise SceneError(faults)
+    return spans_
+
+
+def inside(time: np.ndarray, span: tuple[float, float]) -> np.ndarray:
+    """Places (k,) of the instants (n,) that lie in a window."""
+    return np.flatnonzero((time >= span[0]) & (time <= span[1]))

@@ -1,0 +1,245 @@
+"""Reading the log of an inertial unit: units, an even time base, and what had to be done to get
+there, in words.
+
+Every sample belongs to an instant of an even grid. Time that jitters by less than half an interval
+is interpolated onto it; one or two samples that are missing or not a number are bridged by a
+straight line; longer gaps and clipped rates are marked, so that no window that matters may hold
+them. A temperature, which drifts in seconds, is interpolated over gaps of any length. Each of these
+leaves a note; anything worse is a fault.
+"""
+
+import csv
+import math
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from tipoff.scenes.faults import Fault, SceneError
+from tipoff.scenes.units import to_si
+from tipoff.studies.droptest import sheet as sheets
+from tipoff.studies.droptest.channel_class import SAMPLES_PER_CLASS
+from tipoff.studies.droptest.sheet import Sheet
+
+_BRIDGED = 2  # samples that a straight line may stand for
+_JITTER = 0.01  # of an interval: less is the rounding of a clock, and left as it is
+_UNEVEN = 0.45  # of an interval: more, and it is not clear which instant a sample belongs to
+_FEWEST = 100
+_SHOWN = 5
+
+
+class Log(NamedTuple):
+    """time (n,) s, even; raw rate (n,3) rad/s, acceleration (n,3) m/s2 or None, in sensor axes;
+    temperature (n,) K or None; samples that are ``doubtful`` (n,): not measured, or the rate
+    clipped; those with ``clipped`` acceleration (n,); ``notes``."""
+
+    time: np.ndarray
+    rate: np.ndarray
+    acceleration: np.ndarray | None
+    temperature: np.ndarray | None
+    doubtful: np.ndarray
+    clipped: np.ndarray
+    notes: list[str]
+
+    @property
+    def interval(self) -> float:
+        """Between samples (s)."""
+        return float(self.time[1] - self.time[0])
+
+
+def read(path: str | Path) -> tuple[Sheet, Log]:
+    """A sheet and its log. Raises SceneError listing every fault of either."""
+    sheet = sheets.load(path)
+    source = Path(path).parent / sheet.file
+    names = sheet.columns
+    groups = {
+        "time": (names.time,),
+        "rate": names.rate,
+        "acceleration": names.acceleration or (),
+        "temperature": (names.temperature,) if names.temperature else (),
+    }
+    table = _table(source, [name for group in groups.values() for name in group])
+    values = {}
+    for group, columns in groups.items():
+        if columns:
+            si = {"time": "s", "rate": "rad/s", "acceleration": "m/s**2", "temperature": "K"}[group]
+            unit = getattr(sheet.units, group)
+            # degC has an offset
+            zero, one = to_si(f"0 {unit}", si, absolute=True), to_si(f"1 {unit}", si, absolute=True)
+            values[group] = zero + (one - zero) * np.column_stack([table[name] for name in columns])
+    return sheet, _even(sheet, str(source), values)
+
+
+def _table(path: Path, wanted: list[str]) -> dict[str, np.ndarray]:
+    """The wanted columns (n,) by name; an empty cell is NaN."""
+    try:
+        with open(path, newline="", encoding="utf-8-sig") as stream:
+            rows = list(
+                csv.reader(line for line in stream if line.strip() and not line.startswith("#"))
+            )
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        raise SceneError([Fault(str(path), "file", str(error), "a readable CSV file")]) from error
+    head = [cell.strip() for cell in rows[0]] if rows else []
+    if missing := [name for name in wanted if head.count(name) != 1]:
+        given = f"columns {', '.join(head) or 'none'}"
+        raise SceneError(
+            [Fault(str(path), name, given, "one column of this name") for name in missing]
+        )
+    places, faults = [head.index(name) for name in wanted], []
+    data = np.full((len(rows) - 1, len(wanted)), np.nan)
+    for number, row in enumerate(rows[1:]):
+        try:
+            data[number] = [
+                float(row[place]) if row[place].strip() else math.nan for place in places
+            ]
+        except (ValueError, IndexError):
+            faults.append(
+                Fault(
+                    str(path),
+                    f"sample {number + 1}",
+                    ",".join(row)[:80],
+                    f"a number in each of {', '.join(wanted)}",
+                )
+            )
+    if faults:
+        raise SceneError(faults[:_SHOWN])
+    if len(data) < _FEWEST:
+        raise SceneError([Fault(str(path), "file", f"{len(data)} samples", f"at least {_FEWEST}")])
+    return dict(zip(wanted, data.T))
+
+
+def _even(sheet: Sheet, source: str, values: dict[str, np.ndarray]) -> Log:
+    time = values["time"][:, 0]
+    if not np.isfinite(time).all():
+        raise SceneError(
+            [
+                Fault(
+                    source,
+                    "time",
+                    f"{(~np.isfinite(time)).sum()} samples without a time",
+                    "a time for every sample",
+                )
+            ]
+        )
+    steps = np.diff(time)
+    if (steps <= 0.0).any():
+        given = f"{(steps <= 0.0).sum()} samples not later than the one before"
+        raise SceneError([Fault(source, "time", given, "times in increasing order")])
+    # Counted step by step: jitter may put the median off by more than the whole log forgives.
+    place = np.concatenate([[0], np.cumsum(np.round(steps / np.median(steps)).astype(int))])
+    interval, start = (
+        float(value) for value in np.polynomial.Polynomial.fit(place, time, 1).convert().coef[::-1]
+    )
+    if interval * SAMPLES_PER_CLASS * sheet.channel_class > 1.0 + 1e-6:
+        expected = (
+            f"at least {SAMPLES_PER_CLASS * sheet.channel_class:g} Hz for CFC "
+            f"{sheet.channel_class} (SAE J211)"
+        )
+        raise SceneError([Fault(source, "time", f"{1.0 / interval:.4g} Hz", expected)])
+    off = np.abs(time - start - interval * place).max() / interval
+    if off > _UNEVEN or (np.diff(place) == 0).any():
+        given = f"samples up to {off:.2g} of an interval off an even grid"
+        raise SceneError([Fault(source, "time", given, f"less than {_UNEVEN}")])
+    notes = (
+        [
+            f"time jitters by up to {100.0 * off:.2g} % of an interval: interpolated onto an even "
+            f"grid"
+        ]
+        if off > _JITTER
+        else []
+    )
+    grid = start + interval * np.arange(place[-1] + 1)
+    filled, doubtful = {"time": grid}, np.zeros(grid.size, dtype=bool)
+    for name, columns in values.items():
+        if name == "temperature":
+            filled[name] = _drifting(time, columns[:, 0], grid, source, notes)
+        elif name != "time":
+            filled[name], gone = _bridged(
+                time if off > _JITTER else grid[place], columns, grid, place, name, notes
+            )
+            doubtful |= gone
+    return _marked(sheet, filled, doubtful, notes)
+
+
+def _bridged(
+    time, columns, grid, place, name: str, notes: list[str]
+) -> tuple[np.ndarray, np.ndarray]:
+    """Values (n,k) on the grid, and where (n,) a gap was too long to be bridged; says so in
+    ``notes``."""
+    good = np.isfinite(columns).all(axis=1)
+    missing = np.ones(grid.size, dtype=bool)
+    missing[place[good]] = False
+    gaps = runs(missing)
+    short = [gap for gap in gaps if gap[1] - gap[0] <= _BRIDGED]
+    long = [gap for gap in gaps if gap[1] - gap[0] > _BRIDGED]
+    if short:
+        notes.append(
+            f"{name}: {len(short)} gaps of one or two samples bridged by a straight line, the "
+            f"first at "
+            f"{grid[short[0][0]]:.6g} s"
+        )
+    gone = np.zeros(grid.size, dtype=bool)
+    for begin, end in long:
+        gone[begin:end] = True
+        notes.append(
+            f"{name}: {end - begin} samples missing from {grid[begin]:.6g} s on: left out of every "
+            f"window"
+        )
+    if not good.any():
+        return np.full((grid.size, columns.shape[1]), np.nan), gone
+    return np.column_stack(
+        [np.interp(grid, time[good], column[good]) for column in columns.T]
+    ), gone
+
+
+def _drifting(time, values, grid, source: str, notes: list[str]) -> np.ndarray:
+    """Temperature (n,) on the grid; a logger may write it more slowly than rates. Raises SceneError
+    for a column without a number."""
+    good = np.isfinite(values)
+    if not good.any():
+        raise SceneError(
+            [
+                Fault(
+                    source,
+                    "temperature",
+                    "no number in the column",
+                    "a temperature, or no such column in the sheet",
+                )
+            ]
+        )
+    if not good.all():
+        known = time[good]
+        longest = np.diff([time[0], *known, time[-1]]).max()
+        notes.append(
+            f"temperature: given in {good.sum()} of {good.size} samples, interpolated between and "
+            f"held before the first "
+            f"and after the last, over {longest:.3g} s at most"
+        )
+    return np.interp(grid, time[good], values[good])
+
+
+def _marked(sheet: Sheet, filled: dict, doubtful: np.ndarray, notes: list[str]) -> Log:
+    rate, force, temperature = filled["rate"], filled.get("acceleration"), filled.get("temperature")
+    at_end = (np.abs(rate) >= sheet.gyro.range * (1.0 - 1e-9)).any(axis=1)
+    clipped = np.zeros(doubtful.size, dtype=bool)
+    if at_end.any():
+        notes.append(
+            f"rate: {at_end.sum()} samples clipped at the range of "
+            f"{np.degrees(sheet.gyro.range):.4g} deg/s: left out of "
+            "every window"
+        )
+    if force is not None:
+        assert sheet.accelerometer is not None  # as a sheet with accelerations has to have it
+        largest = sheet.accelerometer.range
+        clipped = (np.abs(force) >= largest * (1.0 - 1e-9)).any(axis=1)
+        if clipped.any():
+            notes.append(
+                f"acceleration: {clipped.sum()} samples clipped at the range of {largest:.4g} m/s2"
+            )
+    return Log(filled["time"], rate, force, temperature, doubtful | at_end, clipped, notes)
+
+
+def runs(flags: np.ndarray) -> list[tuple[int, int]]:
+    """First and one past the last place of every stretch of True in ``flags`` (n,)."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], flags, [False]]).astype(int)))
+    return list(zip(edges[::2].tolist(), edges[1::2].tolist()))

@@ -1,0 +1,150 @@
+"""The change of rate by ejection, with a budget of its uncertainty in the manner of the GUM.
+
+    d = w_1 - w_0
+    w_0   mean over the reference window
+    w_1   line through the settled window, at the instant of simulations
+    u_c^2 = sum of squares of the standard uncertainties below
+    U = k u_c,   k = t(95 %, nu_eff)   (Welch, Satterthwaite)
+
+| part | standard uncertainty of component i | kind |
+|---|---|---|
+| noise | sigma sqrt(tau sum w^2), from residuals in both windows | A |
+| bias instability | from B and the weights (``studies.droptest.noise``) | B |
+| scale | u(s) abs(d_i) | B |
+| misalignment, mounting | u(E) sqrt(sum over j != i of d_j^2) | B |
+| g-sensitivity | u(G) times the change of specific force between the windows | B |
+| temperature | u(c) times the change of temperature between the windows | B |
+| quantisation | q sqrt(tau sum w^2 / 12); q sqrt(2/12) where noise does not spread it | B |
+| bent line | a free tumble bends: w'' = 2 w'^2 / w for equations quadratic in w; rectangular | B |
+| instant | slope times u(exit) | B |
+
+The samples are not filtered here: a mean needs no filter, which would only carry the burn into the
+windows.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+import scipy  # its parts load when they are first used
+
+from tipoff.scenes.faults import Fault, SceneError
+from tipoff.studies.droptest import noise
+from tipoff.studies.droptest.calibrated import Calibrated
+from tipoff.studies.droptest.events import Spans, inside
+from tipoff.studies.droptest.sheet import Sheet
+
+COVERAGE = 0.95
+_FITTED = 3  # parameters: a mean before, a straight line after
+_TINY = 1e-15  # rad/s; noise that is none
+# probability of so large a residual by chance: less, and something still moves the payload
+_UNSETTLED = 1e-5
+
+
+class Reduced(NamedTuple):
+    """Rates (3,) rad/s before ignition and after exit, their ``change``; ``parts``: standard
+    uncertainties (3,) by name; ``combined`` (3,), ``factor`` (3,) of expansion; noise of one sample
+    (3,) rad/s, its correlation time in samples."""
+
+    before: np.ndarray
+    after: np.ndarray
+    change: np.ndarray
+    parts: dict[str, np.ndarray]
+    combined: np.ndarray
+    factor: np.ndarray
+    noise: np.ndarray
+    correlation: float
+
+
+def reduced(sheet: Sheet, found: Calibrated, spans: Spans, source: str) -> Reduced:
+    """The change of rate. Raises SceneError where the rate is not settled."""
+    calm, settled = inside(found.time, spans.reference), inside(found.time, spans.settled)
+    away = found.time[settled] - found.time[settled].mean()
+    lever, spread = spans.instant - found.time[settled].mean(), float((away**2).sum())
+    weights = np.zeros(found.time.size)
+    weights[calm], weights[settled] = -1.0 / calm.size, 1.0 / settled.size + lever * away / spread
+    before, middle = found.rate[calm].mean(axis=0), found.rate[settled].mean(axis=0)
+    slope = away @ found.rate[settled] / spread
+    after = middle + lever * slope
+    residuals = [found.rate[calm] - before, found.rate[settled] - middle - np.outer(away, slope)]
+    tau = noise.correlation_time(residuals, _FITTED)
+    freedom = max(1.0, calm.size + settled.size - _FITTED * tau)
+    sigma = np.sqrt(sum((stretch**2).sum(axis=0) for stretch in residuals) / freedom)
+    change, length = after - before, spans.settled[1] - spans.settled[0]
+    bend = 2.0 * slope**2 / np.maximum(np.abs(after), np.maximum(sigma, _TINY))
+    _require_settled(
+        residuals, tau, bend * length**2 / np.sqrt(720.0), sheet.gyro.resolution, source
+    )
+    parts = {"noise": sigma * np.sqrt(tau * (weights**2).sum())} | _systematic(
+        sheet, found, change, weights, (calm, settled)
+    )
+    parts["quantisation"] = _quantised(sheet.gyro.resolution, sigma, tau * (weights**2).sum())
+    parts["bent line"] = 0.5 * bend * abs(lever**2 - length**2 / 12.0) / np.sqrt(3.0)
+    parts["instant"] = np.abs(slope) * sheet.windows.exit_uncertainty
+    combined = np.sqrt(sum(part**2 for part in parts.values()))
+    # All other parts count as known; a share of noise that small leaves the factor of a normal
+    # distribution.
+    effective = freedom / tau / np.maximum(parts["noise"] / np.maximum(combined, _TINY), 1e-2) ** 4
+    return Reduced(
+        before,
+        after,
+        change,
+        parts,
+        combined,
+        scipy.stats.t.ppf(0.5 + 0.5 * COVERAGE, effective),
+        sigma,
+        tau,
+    )
+
+
+def _systematic(
+    sheet: Sheet, found: Calibrated, change: np.ndarray, weights: np.ndarray, windows
+) -> dict[str, np.ndarray]:
+    """What the calibration leaves uncertain. Scale and misalignment act on the change alone: both
+    rates share their errors."""
+    sure, interval = sheet.gyro.uncertainty, found.time[1] - found.time[0]
+    across = np.sqrt((change**2).sum() - change**2)
+    calm, settled = windows
+
+    def moved(values) -> np.ndarray | float:
+        return 0.0 if values is None else values[settled].mean(axis=0) - values[calm].mean(axis=0)
+
+    return {
+        "bias instability": np.full(
+            3, np.sqrt(noise.instability_variance(weights, interval, sure.bias_instability))
+        ),
+        "scale": sure.scale * np.abs(change),
+        "misalignment": sure.misalignment * across,
+        "g-sensitivity": np.full(3, sure.g_sensitivity * np.linalg.norm(moved(found.force))),
+        "temperature": np.full(3, sure.temperature * np.abs(moved(found.temperature))),
+    }
+
+
+def _quantised(resolution: float, sigma: np.ndarray, factor: float) -> np.ndarray:
+    """Rounding that noise of half a step spreads is averaged with it; with less, a mean may be off
+    by a whole rounding."""
+    return np.where(
+        sigma >= 0.5 * resolution,
+        resolution * np.sqrt(factor / 12.0),
+        resolution * np.sqrt(2.0 / 12.0),
+    )
+
+
+def _require_settled(
+    residuals: list[np.ndarray], tau: float, bent: np.ndarray, resolution: float, source: str
+) -> None:
+    """The straight line of a settled payload leaves noise as small as the reference window has, and
+    what a free tumble is ``bent`` (3,) rad/s. Raises SceneError else."""
+    calm, settled = (
+        (stretch**2).sum(axis=0) / (len(stretch) - lost) for stretch, lost in zip(residuals, (1, 2))
+    )
+    freedom = [max(1.0, len(stretch) / tau) for stretch in residuals]
+    expected = np.maximum(calm, resolution**2 / 12.0 + _TINY**2)
+    chance = scipy.stats.f.sf((settled - bent**2) / expected, freedom[1], freedom[0])
+    if (chance < _UNSETTLED).any():
+        worst = int(np.argmin(chance))
+        given = f"{np.degrees(np.sqrt(settled[worst])):.3g} deg/s of scatter about {'xyz'[worst]}"
+        expected = (
+            f"the {np.degrees(np.sqrt(calm[worst])):.3g} deg/s of free fall; is "
+            f"windows.exit too early?"
+        )
+        raise SceneError([Fault(source, "settled window", given, expected)])

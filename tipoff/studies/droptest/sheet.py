@@ -1,0 +1,208 @@
+"""The sheet of a log: a small TOML file beside the CSV file that says what the columns are and how
+sure the sensor is::
+
+    file = "drop1.csv"
+    channel_class = 60                         # CFC of SAE J211 and ISO 6487
+    axes = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]   # columns: the sensor's axes in payload body axes
+
+    [columns]  [units]                         # names in the CSV and their units
+    [gyro]                                     # raw = (1 + scale_error) (1 + misalignment) w + bias
+                                               #       + g_sensitivity f + temperature
+    [gyro.uncertainty]                         # standard uncertainties of these (GUM)
+    [accelerometer]  [events]  [windows]
+
+Quantities carry units, as in a scene; whatever is misspelt, missing or of another dimension is a
+fault.
+"""
+
+from pathlib import Path
+from typing import Annotated, Any, Literal, TypeVar
+
+import numpy as np
+from pydantic import (
+    AfterValidator,
+    BeforeValidator,
+    ValidationError,
+    ValidationInfo,
+    model_validator,
+)
+
+from tipoff.scenes import reading
+from tipoff.scenes.faults import SceneError, faults_of
+from tipoff.scenes.table import Table
+from tipoff.scenes.units import (
+    Acceleration,
+    Angle,
+    NonNegativeNumber,
+    NonNegativeTime,
+    Number,
+    PositiveTime,
+    Rate,
+    Time,
+    parse,
+    quantity,
+    to_si,
+)
+
+_Kind = TypeVar("_Kind")
+_Triple = tuple[_Kind, _Kind, _Kind]
+_Matrix = tuple[_Triple[_Kind], _Triple[_Kind], _Triple[_Kind]]
+_SKEW = 1e-3  # how far typed direction cosines may be from orthonormal
+
+
+def _in(unit: str, **bounds: float) -> tuple:
+    """What ``quantity`` lays over a float."""
+    return quantity(unit, **bounds).__metadata__
+
+
+NonNegativeRate = Annotated[float, *_in("rad/s", ge=0.0)]
+PositiveRate = Annotated[float, *_in("rad/s", gt=0.0)]
+PositiveAcceleration = Annotated[float, *_in("m/s**2", gt=0.0)]
+GSensitivity = Annotated[float, *_in("rad*s/m")]
+GSensitivityError = Annotated[float, *_in("rad*s/m", ge=0.0)]
+Drift = Annotated[float, *_in("rad/s/K")]
+DriftError = Annotated[float, *_in("rad/s/K", ge=0.0)]
+
+
+def _unit_of(si: str) -> AfterValidator:
+    def check(text: str) -> str:
+        to_si(f"1 {text}", si, absolute=True)
+        return text
+
+    return AfterValidator(check)
+
+
+def _temperature(value: Any, info: ValidationInfo) -> float:
+    """On the absolute scale, so that a degC has its zero."""
+    bare = bool(info.context and info.context.get("bare_numbers_are_si"))
+    return to_si(value, "K", absolute=True) if isinstance(value, str) else parse(value, "K", bare)
+
+
+class Columns(Table):
+    """Names of columns in the CSV file."""
+
+    time: str
+    rate: _Triple[str]
+    acceleration: _Triple[str] | None = None
+    temperature: str | None = None
+
+
+class Units(Table):
+    """Units of the columns."""
+
+    time: Annotated[str, _unit_of("s")]
+    rate: Annotated[str, _unit_of("rad/s")]
+    acceleration: Annotated[str, _unit_of("m/s**2")] | None = None
+    temperature: Annotated[str, _unit_of("K")] | None = None
+
+
+class GyroUncertainty(Table):
+    """Standard uncertainties: ``bias_instability`` (rad/s) is B of IEEE 952, scale and
+    ``misalignment`` (rad) are those of one entry after calibration and mounting, ``g_sensitivity``
+    in rad s/m, ``temperature`` in rad/s/K. White noise is in the log."""
+
+    bias_instability: NonNegativeRate
+    scale: NonNegativeNumber
+    misalignment: Annotated[float, *_in("rad", ge=0.0)]
+    g_sensitivity: GSensitivityError
+    temperature: DriftError = 0.0
+
+
+class Gyro(Table):
+    """Calibration of the gyros in sensor axes; zero where absent, except what clipping and
+    quantisation are judged by."""
+
+    range: PositiveRate
+    resolution: NonNegativeRate
+    uncertainty: GyroUncertainty
+    bias: _Triple[Rate] = (0.0,) * 3
+    scale_error: _Triple[Number] = (0.0,) * 3
+    misalignment: _Matrix[Angle] = ((0.0,) * 3,) * 3
+    g_sensitivity: _Matrix[GSensitivity] = ((0.0,) * 3,) * 3
+    temperature: _Triple[Drift] = (0.0,) * 3
+    reference_temperature: Annotated[float, BeforeValidator(_temperature)] = 293.15
+
+
+class Accelerometer(Table):
+    """Calibration of the accelerometers in sensor axes."""
+
+    range: PositiveAcceleration
+    bias: _Triple[Acceleration] = (0.0,) * 3
+    scale_error: _Triple[Number] = (0.0,) * 3
+
+
+class Triggers(Table):
+    """Instants (s of the log) known from elsewhere, such as a trigger channel, in place of those
+    found in the accelerations."""
+
+    release: Time
+    ignition: Time
+
+
+class Windows(Table):
+    """``exit`` (s after ignition) of the payload from its rail with its standard uncertainty;
+    ``rest`` (s) before release during which no rate may exceed ``rest_rate`` (rad/s);
+    ``after_release`` (s) until it is calm; length of the ``settled`` window (s)."""
+
+    exit: PositiveTime
+    exit_uncertainty: PositiveTime = 1e-3
+    rest: PositiveTime = 1.0
+    rest_rate: PositiveRate = np.radians(0.5)
+    after_release: NonNegativeTime = 0.05
+    settled: PositiveTime = 0.1
+
+
+class Sheet(Table):
+    """All of it."""
+
+    file: str
+    channel_class: Literal[60, 180, 600, 1000]
+    axes: _Matrix[Number]
+    columns: Columns
+    units: Units
+    gyro: Gyro
+    windows: Windows
+    accelerometer: Accelerometer | None = None
+    events: Triggers | None = None
+    description: str = ""
+    simulated: bool = False
+    scene: str | None = None
+
+    @model_validator(mode="after")
+    def _whole(self) -> "Sheet":
+        wrong = [
+            f"{name} both in [columns] and in [units], or in neither"
+            for name in ("acceleration", "temperature")
+            if (getattr(self.columns, name) is None) != (getattr(self.units, name) is None)
+        ]
+        if self.columns.acceleration is None and self.events is None:
+            wrong.append(
+                "accelerations, in which release and ignition show, or [events] that says when "
+                "they were"
+            )
+        if self.columns.acceleration is not None and self.accelerometer is None:
+            wrong.append("[accelerometer] with the range of the accelerations")
+        axes = np.array(self.axes)
+        if np.abs(axes.T @ axes - np.eye(3)).max() > _SKEW:
+            wrong.append("axes of unit length, perpendicular to each other")
+        elif np.linalg.det(axes) < 0.0:
+            wrong.append("right-handed axes")
+        if wrong:
+            raise ValueError("; ".join(wrong))
+        return self
+
+    @property
+    def mounting(self) -> np.ndarray:
+        """Rotation (3,3) from sensor to body axes: the one nearest to ``axes``, which were typed
+        with a few digits."""
+        left, _, right = np.linalg.svd(np.array(self.axes))
+        return left @ right
+
+
+def load(path: str | Path) -> Sheet:
+    """Read a sheet. Raises SceneError listing every fault."""
+    raw = reading.toml(Path(path), str(path))
+    try:
+        return Sheet.model_validate(raw, context={})
+    except ValidationError as error:
+        raise SceneError(faults_of(error, str(path))) from error

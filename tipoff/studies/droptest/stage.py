@@ -1,0 +1,188 @@
+"""Stage ``droptest``: logs of drop tests against the distribution that the surrogate has for the
+same launcher.
+
+The simulated cases vary what the distributions that are asked for vary, the catalogue's ``paper``
+unless told otherwise, and start at rest in free fall. How a test sits among them is told by ranks
+(``studies.droptest.judgement``), what that is worth by its power (``studies.droptest.power``).
+"""
+
+import hashlib
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+import numpy as np
+
+from tipoff.lowfi.ensemble.rows import Drawn
+from tipoff.scenes import uncertainty
+from tipoff.scenes.faults import Fault, SceneError
+from tipoff.scenes.scene import Scene
+from tipoff.studies.core.checked import together
+from tipoff.studies.core.study import Study, StudyError
+from tipoff.studies.droptest import sheet, shipped, signals
+from tipoff.studies.droptest.analysis import Drop, analyse
+from tipoff.studies.droptest.results import joint, quantiles, row_of, summary
+from tipoff.studies.populations import population
+from tipoff.studies.populations.population import Population
+
+NAME = "droptest"
+CASES = 1000
+_FEWEST = 20  # settled cases; a covariance of fewer says little
+_SHOWN = 2000  # cases in the figure
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What ``tipoff droptest`` is given beside the scene and the logs: distributions, how many
+    cases and their seed, None as the file says, the condition that was dropped, None for the scene
+    itself, and the name of a ``model``, None for the default."""
+
+    vary: str = uncertainty.DEFAULT
+    cases: int = CASES
+    seed: int | None = None
+    condition: str | None = None
+    model: str | None = None
+
+
+def run(study: Study, logs: list[Path] | None = None, asked: Asked = Asked()) -> dict:
+    """``tests`` with their rates, budgets and standing, ``together``, ``power``, and ``summary`` in
+    words.
+
+    Raises SceneError listing every fault of every log and of what varies, StudyError where too few
+    cases settle.
+    """
+    drops, drawn = together(
+        lambda: _analysed(logs or shipped.sheets()), lambda: _drawn(study, asked)
+    )
+    request = asdict(asked) | {"logs": [str(path.resolve()) for path in logs] if logs else None}
+
+    def make() -> tuple[dict, list[Path]]:
+        from tipoff.studies.droptest import page
+        from tipoff.studies.render.chart import to_files
+
+        model = population.surrogate(study, asked.model, asked.condition)
+        cases = population.run(study, NAME, model, drawn)
+        found = result(study, drops, cases, drawn.uncertainty.sampling == "random")
+        found |= {
+            "request": request,
+            **population.answering(study, model, asked.condition),
+            "varied": drawn.uncertainty.resolved(),
+        }
+        found["summary"] = summary(study.scene.name, found)
+        data = study.path(f"{NAME}.nc")
+        signals.write(data, drops)
+        pictures = [
+            path for chart in page.charts(found) for path in to_files(chart, study.path("figures"))
+        ]
+        return found | {"data": study.relative(data)}, [data, *pictures]
+
+    return study.stage(NAME, _key(study, request), make)
+
+
+def stored(study: Study) -> dict | None:
+    """The result, if it was made from the present scene, code and settings: the report shows it and
+    makes none."""
+    return study.stored(NAME, lambda found: _key(study, found["request"]))
+
+
+def _key(study: Study, request: dict) -> str:
+    """By the paths of the logs, and by what these and the distributions hold now. Raises SceneError
+    for a file that is gone or broken."""
+    digests = [_digest(Path(path)) for path in request["logs"] or shipped.sheets()]
+    asked = Asked(**{name: value for name, value in request.items() if name != "logs"})
+    return study.key(__name__, NAME, request, digests, _drawn(study, asked).uncertainty.resolved())
+
+
+def _drawn(study: Study, asked: Asked) -> Drawn:
+    seed = {} if asked.seed is None else {"seed": asked.seed}
+    return Drawn(uncertainty.load(asked.vary, _scene(study, asked), cases=asked.cases, **seed))
+
+
+def _scene(study: Study, asked: Asked) -> Scene:
+    return study.condition(asked.condition) if asked.condition else study.scene
+
+
+def _digest(path: Path) -> list[str]:
+    """Of a sheet and of the table it names."""
+    files = (path, path.parent / sheet.load(path).file)
+    try:
+        return [hashlib.sha256(file.read_bytes()).hexdigest() for file in files]
+    except OSError as error:
+        raise SceneError([Fault(str(path), "file", str(error), "a readable CSV file")]) from error
+
+
+def _analysed(paths: list[Path]) -> list[Drop]:
+    """Every log under a name of its own. Raises SceneError listing every fault of every log."""
+    drops, different = [], {path.resolve(): path for path in reversed(paths)}
+    places = [path.resolve() for path in paths]
+    faults = [
+        Fault("LOG", str(path), "twice", "every test once")
+        for place, path in different.items()
+        if places.count(place) > 1
+    ]
+    for path, name in zip(paths, _names(places)):
+        try:
+            drops.append(analyse(path)._replace(name=name))
+        except SceneError as error:
+            faults += error.faults
+    if faults:
+        raise SceneError(list(dict.fromkeys(faults)))
+    return drops
+
+
+def _names(places: list[Path]) -> list[str]:
+    """The names of the sheets without their ending, with as many folders before them as it takes to
+    tell one from another."""
+    names = [place.stem for place in places]
+    for depth in range(2, max(len(place.parts) for place in places)):
+        names = [
+            "/".join(place.with_suffix("").parts[-depth:]) if names.count(name) > 1 else name
+            for place, name in zip(places, names)
+        ]
+    return names
+
+
+def result(study: Study, drops: list[Drop], cases: Population, independent: bool = True) -> dict:
+    """The drops among the cases, which are ``independent`` draws or points that depend on each
+    other, as plain values. Raises StudyError where too few cases settle."""
+    settled = cases.settled
+    if settled.sum() < _FEWEST:
+        raise StudyError(
+            f"only {settled.sum()} of {settled.size} simulated cases left the rail and settled: "
+            f"too few"
+        )
+    rates = np.degrees(cases.results.rate[settled])
+    tests = [row_of(number, drop, rates) for number, drop in enumerate(drops)]
+    for row, drop in zip(tests, drops):
+        row["notes"] += _doubts(study, drop, cases.results.exit_time[settled])
+    return {
+        "simulated_logs": all(drop.sheet.simulated for drop in drops),
+        "tests": tests,
+        **joint(tests, rates),
+        "cases": {
+            **cases.counts,
+            "settled": int(settled.sum()),
+            "quantiles": quantiles(cases.results, settled, independent),
+            "store": cases.store,
+            "shown_deg_s": np.round(rates[:_SHOWN], 4).tolist(),
+        },
+    }
+
+
+def _doubts(study: Study, drop: Drop, exits: np.ndarray) -> list[str]:
+    """What makes a test and the cases not quite the same thing, in words."""
+    notes, ask = [], drop.sheet.windows
+    if drop.sheet.scene not in (None, study.scene.name):
+        notes.append(
+            f"the log is of the scene {drop.sheet.scene}, the simulated cases of {study.scene.name}"
+        )
+    if (
+        not exits.min() - 3.0 * ask.exit_uncertainty
+        <= ask.exit
+        <= exits.max() + 3.0 * ask.exit_uncertainty
+    ):
+        notes.append(
+            f"left its rail {1e3 * ask.exit:.4g} ms after ignition, the simulated cases after "
+            f"{1e3 * exits.min():.4g} to "
+            f"{1e3 * exits.max():.4g} ms"
+        )
+    return notes

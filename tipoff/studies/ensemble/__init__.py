@@ -1,0 +1,1 @@
+"""Many varied cases of the surrogate, and what they say."""

@@ -1,0 +1,196 @@
+"""Stage ``ensemble``: many varied cases of the surrogate into a store, and what they say of the
+rates a payload leaves with."""
+
+import resource
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from tipoff.files import write_json
+from tipoff.lowfi.ensemble import columns
+from tipoff.lowfi.ensemble.fill import fill
+from tipoff.lowfi.ensemble.request import Ensemble
+from tipoff.lowfi.ensemble.rows import Drawn
+from tipoff.lowfi.ensemble.store import StoreError
+from tipoff.lowfi.ensemble.table import TableFile
+from tipoff.lowfi.numerics import Numerics
+from tipoff.mechanics.models import SPRINGS
+from tipoff.scenes import uncertainty
+from tipoff.scenes.faults import Fault, SceneError
+from tipoff.studies.agreement import kept
+from tipoff.studies.calibration.files import constants
+from tipoff.studies.core import machine, models, rail_compliance
+from tipoff.studies.core.progress import Board
+from tipoff.studies.core.study import Study, StudyError
+from tipoff.studies.ensemble import summary
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What ``tipoff ensemble`` is given beside the scene; None: as the file of distributions says,
+    or the default."""
+
+    vary: str = uncertainty.DEFAULT
+    table: Path | None = None
+    cases: int | None = None
+    seed: int | None = None
+    sampling: str | None = None
+    store: Path | None = None
+    tolerance: float = 1e-2
+    scheduler: str | None = None
+    workers: int | None = None
+    model: models.Asked = models.Asked()
+
+
+def request(study: Study, asked: Asked) -> Ensemble:
+    """The ensemble that is ``asked`` for. Raises SceneError for bad input, before any rail
+    compliance is found, and StudyError where no model is named and the agreement table rejects the
+    default."""
+    fitted = constants(asked.model.calibration)
+    changed = {
+        name: value
+        for name in ("cases", "seed", "sampling")
+        if (value := getattr(asked, name)) is not None
+    }
+    if asked.table is not None:
+        if changed:
+            expected = "nothing, since the table lists its cases"
+            raise SceneError(
+                [Fault("--table", name, str(value), expected) for name, value in changed.items()]
+            )
+        source: Any = TableFile(asked.table)
+    else:
+        source = Drawn(uncertainty.load(asked.vary, study.scene, **changed))
+    try:
+        numerics = Numerics(relative_tolerance=asked.tolerance, modes=asked.model.modes or 0)
+    except ValueError as fault:
+        given = f"{asked.tolerance:g}, {asked.model.modes}"
+        raise SceneError([Fault("--tolerance, --modes", "numerics", given, str(fault))]) from None
+    if asked.store is not None and asked.store.exists() and not asked.store.is_dir():
+        raise SceneError([Fault("--store", "path", str(asked.store), "a folder")])
+    models.require_accepted(study, asked.model.name)
+    springs = asked.model.model == SPRINGS
+    found = (
+        rail_compliance.of_law(study, study.scene)
+        if springs
+        else rail_compliance.load(study, study.scene, judged=False)
+    )
+    return Ensemble(study.scene, source, fitted, numerics, found)
+
+
+def run(study: Study, asked: Asked) -> dict:
+    """Run what the store lacks; the summary, also written as ``ensemble.json``. Raises StudyError
+    when the run cannot go on."""
+    ensemble = request(study, asked)
+    try:
+        store = ensemble.store(path := _path(study, asked, ensemble))
+        ensemble.case(0)  # compiles, or loads the kernels from disk, before any clock runs
+        began, processor = time.perf_counter(), time.process_time()
+        with Board("ensemble", 1) as board:
+            label = f"{store.asked:,} cases"
+            report = board.callback(label)
+            new = fill(
+                ensemble,
+                store,
+                asked.workers,
+                asked.scheduler,
+                lambda stored: report(stored / store.asked),
+            )
+            wall, spent = time.perf_counter() - began, time.process_time() - processor
+            board.finished(
+                label, f"{new:,} run in {wall:.3g} s" if new else "all of them stored before"
+            )
+    except StoreError as fault:
+        raise StudyError(str(fault)) from fault
+    said = summary.of(ensemble, store)
+    cost = {
+        "cases": new,
+        "wall_s": wall,
+        "peak_memory_bytes": 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss,
+        "scheduler": asked.scheduler,
+    }
+    if new and not asked.scheduler:
+        cost["cpu_ms_per_case"] = 1e3 * spent / new
+    found = {
+        "stage": "ensemble",
+        "scene": study.scene.name,
+        "store": str(path),
+        **said,
+        "agreement": _agreement(study, asked),
+        "run": cost,
+        "hardware": machine.describe(),
+    }
+    write_json(study.path("ensemble.json"), found)
+    return found
+
+
+def _agreement(study: Study, asked: Asked) -> str:
+    return kept.words(
+        study, asked.model.model, None, asked.model.calibration is not None, asked.model.modes or 0
+    )
+
+
+def _path(study: Study, asked: Asked, ensemble: Ensemble) -> Path:
+    """The store: where it was asked for, else one of its own for every ensemble."""
+    return asked.store or study.path(f"ensemble-{ensemble.key[:8]}")
+
+
+def case(study: Study, asked: Asked, number: int) -> dict:
+    """One case run alone, and whether its store, if there is one, holds the same bits."""
+    ensemble = request(study, asked)
+    if not 0 <= number < ensemble.source.asked:
+        raise SceneError(
+            [Fault("--case", "number", str(number), f"0 to {ensemble.source.asked - 1}")]
+        )
+    row, found = ensemble.case(number)
+    result = {
+        "case": number,
+        "inputs": {key: str(value) for key, value in row.items()},
+        "status": found.status,
+        "message": found.message,
+        "steps": found.steps,
+        **found.outcome._asdict(),
+        "stored": None,
+    }
+    path = _path(study, asked, ensemble)
+    if path.exists():
+        try:
+            store = ensemble.store(path)
+            stored = store.read(number, number + 1)[0] if store.holds(number) else None
+        except StoreError as fault:
+            raise StudyError(str(fault)) from fault
+        alone = columns.of([found])
+        if stored is not None:
+            result["stored"] = all(
+                np.array_equal(a, b, equal_nan=a.dtype.kind == "f") for a, b in zip(stored, alone)
+            )
+    return result
+
+
+def case_lines(found: dict) -> list[str]:
+    """One case in words and units."""
+    said = [
+        f"case {found['case']}: {found['status']}"
+        + (f" ({found['message']})" if found["message"] else "")
+    ]
+    said += [f"  {key} = {value}" for key, value in found["inputs"].items()]
+    if found["rate"] is not None:
+        said.append(
+            "  velocity      "
+            + ", ".join(f"{value:.17g}" for value in found["velocity"])
+            + " m/s (x, y, z)"
+        )
+        said.append(
+            "  rate          "
+            + ", ".join(f"{value:.17g}" for value in found["rate"])
+            + " rad/s (x, y, z)"
+        )
+    kept = {
+        None: "no stored result to compare with",
+        True: "the stored result has the same bits",
+        False: "THE STORED RESULT DIFFERS",
+    }
+    return [*said, f"  {kept[found['stored']]}"]

@@ -1,0 +1,14 @@
+"""After separation: free rotation, relative motion in orbit, clearance of boxes, and what becomes
+of a payload."""
+
+from tipoff.studies.flight import command
+from tipoff.studies.question import Parts, Question
+
+
+def _load() -> Parts:
+    from tipoff.studies.flight import page, stage
+
+    return Parts(stage.run, stage.stored, page.draw)
+
+
+QUESTION = Question("flight", "After separation", "Flight", command.add, _load)

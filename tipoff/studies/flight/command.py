@@ -1,0 +1,91 @@
+"""``tipoff flight``: the payload after its exit."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from tipoff.studies.commands.asked import guarded, study_of
+from tipoff.studies.commands.options import (
+    Conditions,
+    ElementSize,
+    Json,
+    Out,
+    SceneName,
+    Set,
+    Surrogate,
+    Workers,
+)
+
+
+def add(app: typer.Typer) -> None:
+    """Put the command under ``app``."""
+    app.command()(flight)
+
+
+def flight(
+    scene: SceneName = "reference",
+    out: Out = Path("out"),
+    set_: Set = None,
+    condition: Conditions = None,
+    range_: Annotated[
+        str | None,
+        typer.Option(
+            "--range",
+            metavar="LENGTH",
+            help="How far the target lies along the "
+            'launch axis, "500 m"; default: as the scene says.',
+        ),
+    ] = None,
+    altitude: Annotated[
+        str | None, typer.Option(metavar="LENGTH", help='Altitude of the orbit, "500 km".')
+    ] = None,
+    duration: Annotated[
+        str | None, typer.Option(metavar="TIME", help='How long the flight is followed, "2 hour".')
+    ] = None,
+    vary: Annotated[
+        str, typer.Option("--vary", metavar="NAME_OR_FILE", help="Distributions of the cases.")
+    ] = "paper",
+    cases: Annotated[
+        int | None,
+        typer.Option(metavar="N", min=1, help="Number of cases; default: as the file says."),
+    ] = None,
+    seed: Annotated[
+        int | None,
+        typer.Option(metavar="N", min=0, help="Seed of all draws; default: as the file says."),
+    ] = None,
+    model: Surrogate = None,
+    element_size: ElementSize = None,
+    workers: Workers = None,
+    json_: Json = False,
+) -> None:
+    """What becomes of the payload in orbit: miss of a target, pointing, coning, and whether it
+    touches the platform again.
+
+    Every condition, and many cases with errors of assembly; writes flight.json, flight.nc and
+    figures. The scene says where:
+
+      \\[flight]
+      altitude = "500 km"
+      range = "100 m"
+
+    azimuth, elevation and roll turn the launch axis out of the flight direction. Options take the
+    place of what the table says:
+
+      tipoff flight --range "1 km" --cases 10000
+      tipoff flight --scene my_launcher.toml --altitude "600 km" --range "200 m" --set flight.elevation="90 deg"
+    """
+
+    def work() -> dict:
+        from tipoff.studies.flight import stage
+
+        said = {"range": range_, "altitude": altitude, "duration": duration}
+        table = [f"flight.{key}={value}" for key, value in said.items() if value is not None]
+        study = study_of(scene, out, [*(set_ or []), *table], condition, element_size, workers)
+        return stage.run(study, stage.Asked(vary, cases, seed, model and model.value))
+
+    found = guarded(work, json_)
+    if not json_:
+        from tipoff.studies.flight import summary
+
+        print("\n".join(summary.lines(found)))

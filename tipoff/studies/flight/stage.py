@@ -1,0 +1,191 @@
+"""Stage ``flight``: what becomes of the payload after its exit, for every condition and for many
+cases with errors."""
+
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+import numpy as np
+
+from tipoff.files import sealed
+from tipoff.lowfi.ensemble.columns import Columns
+from tipoff.lowfi.ensemble.rows import Drawn
+from tipoff.scenes import uncertainty
+from tipoff.scenes.effects.flight import FlightTable
+from tipoff.scenes.faults import Fault, SceneError
+from tipoff.scenes.scene import Scene
+from tipoff.scenes.variation import Variations
+from tipoff.studies.core.progress import Board
+from tipoff.studies.core.study import Study, StudyError
+from tipoff.studies.flight import bodies, curves, flown, summary
+from tipoff.studies.populations import population
+
+NAME = "flight"
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What ``tipoff flight`` is given beside the scene: distributions, how many cases and their
+    seed, None as the file says, and the name of a ``model``, None for the default."""
+
+    vary: str = uncertainty.DEFAULT
+    cases: int | None = None
+    seed: int | None = None
+    model: str | None = None
+
+
+def run(study: Study, asked: Asked = Asked()) -> dict:
+    """``conditions``, rows as ``studies.flight.summary`` has them; ``cases``, their distributions;
+    ``curves`` of the first conditions. Raises SceneError for a scene that says nothing of a
+    flight."""
+    _require(study.conditions | {study.scene.name: study.scene})
+    changed = {
+        name: value
+        for name, value in (("cases", asked.cases), ("seed", asked.seed))
+        if value is not None
+    }
+    drawn = Drawn(uncertainty.load(asked.vary, study.scene, **changed))
+    if wrong := [key for key in drawn.keys if key.split(".")[0] == "flight"]:
+        expected = "a key of the ejection: a flight is the same for all cases"
+        raise SceneError(
+            [Fault(asked.vary, f"vary.{key}", "a distribution", expected) for key in wrong]
+        )
+
+    def make() -> tuple[dict, list[Path]]:
+        from tipoff.studies.flight import page
+        from tipoff.studies.render import chart
+
+        rows, shapes, single, exits = _conditions(study, asked)
+        cases, many, left = _cases(study, asked, drawn)
+        found = {
+            "asked": asdict(asked),
+            **population.answering(study, population.surrogate(study, asked.model)),
+            "flight": summary.orbit(study.scene),
+            "conditions": rows,
+            "curves": shapes,
+            "cases": cases,
+        }
+        data = study.path(f"{NAME}.nc")
+        labelled = summary.dataset(
+            [row["condition"] for row in rows if row["flown"]], single, exits, many, left
+        )
+        with sealed(data) as temporary:
+            labelled.to_netcdf(temporary, engine="h5netcdf")
+        pictures = [
+            path
+            for drawing, _ in page.charts(found)
+            for path in chart.to_files(drawing, study.path("figures"))
+        ]
+        return found | {"data": study.relative(data)}, [data, *pictures]
+
+    return study.stage(NAME, _key(study, asked), make)
+
+
+def stored(study: Study) -> dict | None:
+    """The result, if it was made from the present scene, code and settings."""
+    return (
+        study.stored(NAME, lambda found: _key(study, Asked(**found["asked"])))
+        if study.scene.flight
+        else None
+    )
+
+
+def _key(study: Study, asked: Asked) -> str:
+    tables = {
+        name: scene.flight and scene.flight.model_dump(mode="json")
+        for name, scene in study.conditions.items()
+    }
+    varied = uncertainty.load(asked.vary, study.scene).resolved()
+    own = _flight(study.scene).model_dump(mode="json")
+    return study.key(
+        __name__, NAME, own, tables, asdict(asked), varied, study.settings.element_size
+    )
+
+
+def _flight(scene: Scene) -> FlightTable:
+    assert scene.flight is not None  # which is required of every scene
+    return scene.flight
+
+
+def _require(scenes: dict[str, Scene]) -> None:
+    expected = 'a table [flight], or --set flight.altitude="500 km" --set flight.range="100 m"'
+    faults = [
+        Fault(name, "flight", "nothing", expected)
+        for name, scene in scenes.items()
+        if scene.flight is None
+    ]
+    faults += [
+        Fault(name, "gravity", "a table", "none beside [flight]: scene axes in orbit fall freely")
+        for name, scene in scenes.items()
+        if scene.flight and scene.gravity
+    ]
+    if faults:
+        raise SceneError(faults)
+
+
+def _conditions(
+    study: Study, asked: Asked
+) -> tuple[list[dict], list[dict], flown.Flown | None, bodies.Exits | None]:
+    """A row for every condition, curves of the first that settled, what was found for all that did,
+    and their outcomes as arrays."""
+    runs = []
+    for name in study.conditions:
+        model = population.surrogate(study, asked.model, name)
+        runs.append(study.lowfi(name, model.calibration, walls=model.walls))
+    ended = dict(zip(study.conditions, study.store.fill(NAME, runs)))
+    settled = [name for name, found in ended.items() if found.outcome.rate is not None]
+    exits = {name: bodies.of_outcomes([ended[name].outcome]) for name in settled}
+    pairs = {
+        name: flown.pair(
+            _flight(study.conditions[name]).record(),
+            bodies.bodies([study.conditions[name]]),
+            bodies.start(exits[name]),
+        )
+        for name in settled
+    }
+    single = [flown.found(both) for both in pairs.values()]
+    values = dict(zip(settled, single))
+    rows = [
+        {
+            "condition": name,
+            "status": ended[name].status,
+            "flown": summary.row(values[name], exits[name], 0) if name in values else None,
+        }
+        for name in ended
+    ]
+    first = [name for name in study.scene.agreement.fitted if name in pairs] or settled
+    shapes = [
+        {"condition": name, **curves.of(pairs[name], values[name])}
+        for name in first[: curves.SHOWN]
+    ]
+    return (
+        rows,
+        shapes,
+        *(
+            (flown.joined(single), bodies.of_outcomes([ended[name].outcome for name in settled]))
+            if single
+            else (None, None)
+        ),
+    )
+
+
+def _cases(study: Study, asked: Asked, drawn: Drawn) -> tuple[dict, flown.Flown, Columns]:
+    """Distributions over the cases of ``drawn``, what was found for each that settled, and what
+    these left their rails with."""
+    model = population.surrogate(study, asked.model)
+    cases = population.run(study, NAME, model, drawn)
+    which = np.flatnonzero(cases.settled)
+    if not len(which):
+        raise StudyError(
+            f"none of {drawn.asked:,} cases left the rail and settled: nothing flies; store "
+            f"{cases.store}"
+        )
+    variations, rows = Variations(model.scene), drawn.rows(0, drawn.asked)
+    parted = bodies.bodies(variations.of(rows[number]) for number in which)
+    with Board(NAME, 1) as board:
+        label = f"{len(which):,} flights"
+        left = Columns(*(part[which] for part in cases.results))
+        many = flown.fly(
+            _flight(study.scene).record(), parted, bodies.start(left), board.callback(label)
+        )
+        board.finished(label, "flown")
+    return summary.cases(many, cases, drawn.uncertainty), many, left

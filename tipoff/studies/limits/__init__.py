@@ -1,0 +1,14 @@
+"""Tolerances that keep rates below limits: what is asked, cases within tolerances, the largest that
+are certified."""
+
+from tipoff.studies.limits import command
+from tipoff.studies.question import Parts, Question
+
+
+def _load() -> Parts:
+    from tipoff.studies.limits import page, stage
+
+    return Parts(stage.run, stage.stored, page.draw)
+
+
+QUESTION = Question("limits", "Tolerances that keep limits", "Tolerances", command.add, _load)

@@ -1,0 +1,131 @@
+"""``tipoff limits``: the tolerances that keep rates below limits."""
+
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from tipoff.studies.commands.asked import guarded, study_of
+from tipoff.studies.commands.options import Json, Out, SceneName, Set, Surrogate, Workers
+
+
+class Tolerances(StrEnum):
+    """Sets of tolerances that are scaled together."""
+
+    advised = "advised"
+    table3 = "table3"
+
+
+class Others(StrEnum):
+    """What errors are that do not vary."""
+
+    scene = "scene"
+    zero = "zero"
+
+
+Limit = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--limit",
+        metavar="[AXIS=]RATE",
+        help='Limit of a rate, "x=2 deg/s", or of '
+        'the total, "5 deg/s"; repeatable, and '
+        "all are to be kept. Default: 5 deg/s "
+        "for the total.",
+    ),
+]
+Probability = Annotated[
+    float, typer.Option("--probability", metavar="P", help="Share of launches that keep them.")
+]
+Confidence = Annotated[
+    float, typer.Option("--confidence", metavar="C", help="Confidence with which that is shown.")
+]
+Cases = Annotated[
+    int | None,
+    typer.Option(
+        "--cases",
+        metavar="N",
+        min=1,
+        help="Cases of each set of tolerances; default: ten times the fewest that can show it.",
+    ),
+]
+Scaled = Annotated[
+    Tolerances,
+    typer.Option(
+        "--tolerances",
+        help="What is scaled together: what the paper advises, or the ranges of its Table 3.",
+    ),
+]
+Fixed = Annotated[
+    Others,
+    typer.Option("--others", help="Errors that do not vary: as the scene has them, or zero."),
+]
+Draws = Annotated[
+    int | None,
+    typer.Option(
+        "--draws",
+        metavar="N",
+        help="Draws of the calibrated constants from their "
+        "intervals, with --model springs; default: 8.",
+    ),
+]
+Condition = Annotated[
+    str | None,
+    typer.Option("--condition", metavar="NAME", help="Named condition; default: the scene."),
+]
+Seed = Annotated[int, typer.Option("--seed", metavar="N", min=0, help="Seed of all draws.")]
+
+
+def add(app: typer.Typer) -> None:
+    """Put the command under ``app``."""
+
+    @app.command()
+    def limits(
+        scene: SceneName = "reference",
+        out: Out = Path("out"),
+        set_: Set = None,
+        limit: Limit = None,
+        probability: Probability = 0.99,
+        confidence: Confidence = 0.95,
+        cases: Cases = None,
+        tolerances: Scaled = Tolerances.advised,
+        others: Fixed = Others.scene,
+        draws: Draws = None,
+        condition: Condition = None,
+        seed: Seed = 1,
+        model: Surrogate = None,
+        workers: Workers = None,
+        json_: Json = False,
+    ) -> None:
+        """Tolerances of thrust, mass, clearance and friction that keep the rates below limits at a
+        probability; writes limits.json.
+
+        Each alone, all together, and misalignment against mass eccentricity; with what is not
+        certain.
+
+          tipoff limits --limit "x=2 deg/s" --limit "5 deg/s" --probability 0.99
+          tipoff limits --limit "10 deg/s" --others zero --tolerances table3
+        """
+
+        def work() -> dict:
+            from tipoff.studies.limits import stage
+            from tipoff.studies.limits.inputs import Asked
+
+            asked = Asked(
+                tuple(limit or Asked.limits),
+                probability,
+                confidence,
+                cases,
+                seed,
+                tolerances.value,
+                others.value,
+                draws,
+                model and model.value,
+                condition,
+            )
+            return stage.run(study_of(scene, out, set_, workers=workers), asked)
+
+        found = guarded(work, json_)
+        if not json_:
+            print("\n".join(found["summary"]))

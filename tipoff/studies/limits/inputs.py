@@ -1,0 +1,81 @@
+"""What ``tipoff limits`` is asked, and whether that can be answered."""
+
+from dataclasses import dataclass
+
+from tipoff.mechanics.models import SPRINGS
+from tipoff.scenes.faults import Fault, SceneError
+from tipoff.studies.core.checked import together
+from tipoff.studies.populations import exceedance, order_statistics
+from tipoff.studies.populations.exceedance import Limit
+
+# of the fewest cases: some may then be above, and tolerances are not cut for want of cases
+TIMES_NEEDED = 10
+DRAWS, _MOST_DRAWS = 8, 1000
+
+
+@dataclass(frozen=True)
+class Asked:
+    """``limits`` as ``exceedance.limits`` reads them, all of which a case must keep with
+    ``probability``, to be shown with ``confidence`` from ``cases`` (None: ten times the fewest);
+    the ``tolerances`` that are scaled together, advised or table3; errors that do not vary as in
+    the ``scene`` or ``zero``; ``draws`` of calibrated constants, which springs have alone, None for
+    eight; the name of a ``model``, None for the default."""
+
+    limits: tuple[str, ...] = ("5 deg/s",)
+    probability: float = 0.99
+    confidence: float = 0.95
+    cases: int | None = None
+    seed: int = 1
+    tolerances: str = "advised"
+    others: str = "scene"
+    draws: int | None = None
+    model: str | None = None
+    condition: str | None = None
+
+
+def checked(asked: Asked) -> tuple[list[Limit], int]:
+    """Limits and number of cases. Raises SceneError listing every fault."""
+    return tuple(together(lambda: _limits(asked.limits), lambda: _cases(asked)))
+
+
+def _limits(texts: tuple[str, ...]) -> list[Limit]:
+    found = exceedance.limits(texts)
+    axes = [limit.axis for limit in found]
+    if twice := sorted({axis for axis in axes if axes.count(axis) > 1}):
+        raise SceneError(
+            [Fault("--limit", axis, "two limits", "one limit for a rate") for axis in twice]
+        )
+    return found
+
+
+def _cases(asked: Asked) -> int:
+    faults = []
+    if not 0.5 <= asked.probability < 1.0:
+        faults.append(
+            Fault("--probability", "value", f"{asked.probability:g}", "0.5 or more and less than 1")
+        )
+    if not 0.5 <= asked.confidence < 1.0:
+        faults.append(
+            Fault("--confidence", "value", f"{asked.confidence:g}", "0.5 or more and less than 1")
+        )
+    if asked.draws is not None and asked.model != SPRINGS:
+        expected = f"none but with --model {SPRINGS}: compliant contact has no fitted constants"
+        faults.append(Fault("--draws", "option", str(asked.draws), expected))
+    elif asked.draws is not None and not 0 <= asked.draws <= _MOST_DRAWS:
+        faults.append(Fault("--draws", "value", str(asked.draws), f"0 to {_MOST_DRAWS}"))
+    if not faults:
+        needed = order_statistics.runs_needed(asked.probability, asked.confidence)
+        if asked.cases is None:
+            return TIMES_NEEDED * needed
+        if asked.cases >= needed:
+            return asked.cases
+        faults.append(
+            Fault(
+                "--cases",
+                "value",
+                f"{asked.cases:,}",
+                f"{needed:,} or more: with fewer, none above the limits does not show "
+                f"{asked.probability:g} at a confidence of {asked.confidence:g}",
+            )
+        )
+    raise SceneError(faults)

@@ -1,0 +1,56 @@
+"""The quantities of all cases within one set of tolerances, as a netCDF file that explains
+itself."""
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+
+from tipoff.files import DamageError, require_whole, sealed
+from tipoff.studies.core.progress import say
+from tipoff.studies.populations import answers
+
+
+def save(path: Path, values: np.ndarray, scale: float, tolerances: Mapping[str, float]) -> None:
+    """Write ``values`` (n,k) of ``answers.ALL`` atomically; ``scale`` and the ``tolerances`` (SI)
+    there are attributes."""
+    import xarray
+
+    found = xarray.Dataset(
+        {
+            "value": (
+                ("case", "quantity"),
+                values,
+                {"long_name": "what a case leaves the rail with, NaN where it did not settle"},
+            )
+        },
+        {
+            "case": np.arange(len(values)),
+            "quantity": [item.name for item in answers.ALL],
+            "units": ("quantity", [item.unit for item in answers.ALL]),
+        },
+        {"scale": scale, "tolerances_si": json.dumps(dict(tolerances))},
+    )
+    with sealed(path) as temporary:
+        found.to_netcdf(temporary, engine="h5netcdf")
+
+
+def load(path: Path) -> np.ndarray | None:
+    """The values (n,k) that ``save`` wrote; None where they are not there, those of other
+    quantities, or not whole, which is said."""
+    if not path.is_file():
+        return None
+    import xarray
+
+    try:
+        require_whole(path)
+        with xarray.open_dataset(path, engine="h5netcdf") as found:
+            same = found["quantity"].values.tolist() == [item.name for item in answers.ALL]
+            return found["value"].transpose("case", "quantity").values if same else None
+    except DamageError as fault:
+        say(f"  {path} {fault.reason}: its cases are run again")
+        return None
+    # what HDF5 says of a foreign file depends on what it lacks
+    except (OSError, KeyError, TypeError, ValueError, RuntimeError):
+        return None

@@ -1,0 +1,160 @@
+"""Cases within tolerances: an error of size T is normal about zero (or a number normal about its
+nominal value) with T for three sigma, redrawn beyond T, as parts that are inspected and sent back;
+an error of thrust or mass points anywhere around the axis.
+
+The draws of a case are the same whatever varies and however far, so that the rates of two sets of
+tolerances differ by what the sets differ in, not by chance.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from tipoff.lowfi.ensemble import columns
+from tipoff.lowfi.ensemble.request import Ensemble
+from tipoff.lowfi.ensemble.threads import PIECE, completed
+from tipoff.lowfi.numerics import Numerics
+from tipoff.scenes.scene import Scene
+from tipoff.scenes.uncertainty import Uncertainty
+from tipoff.studies.core.study import Study
+from tipoff.studies.limits import results
+from tipoff.studies.populations import answers, population
+from tipoff.studies.populations.derived import Derived, Numbers, around_zero, friction, law
+from tipoff.studies.populations.population import Surrogate
+from tipoff.studies.populations.random_factors import ERRORS, pointing
+
+CLEARANCE, FRICTION = "clearance", "friction"
+# the paper's abstract
+ADVISED = {
+    "misalignment": math.radians(0.2),
+    "thrust_eccentricity": 0.4e-3,
+    "mass_eccentricity": 0.2e-3,
+}
+TABLE3 = {name: error.three_sigma for name, error in ERRORS.items()}
+SETS = {"advised": ADVISED, "table3": TABLE3}
+_REACH = 5.0  # times the advised tolerances: misalignments as far as the paper's own sweep goes
+
+
+class Factor(NamedTuple):
+    """A factor that may have a tolerance: words, the unit it is shown in with its size (SI), the
+    largest tolerance searched (SI), and the one that the paper advises (SI), if any."""
+
+    words: str
+    unit: str
+    scale: float
+    most: float
+    advised: float | None
+
+
+def factors(scene: Scene) -> dict[str, Factor]:
+    """Every factor that ``scene`` has, by name."""
+    found = {
+        name: Factor(error.words, error.unit, error.scale, _REACH * ADVISED[name], ADVISED[name])
+        for name, error in ERRORS.items()
+    }
+    if scene.contact is not None and scene.contact.clearance > 0.0:
+        found[CLEARANCE] = Factor(
+            "clearance, about its nominal value", "mm", 1e-3, scene.contact.clearance, None
+        )
+    if scene.friction is not None and scene.friction.dynamic > 0.0:
+        found[FRICTION] = Factor(
+            "friction coefficient, about its nominal value", "1", 1.0, scene.friction.dynamic, None
+        )
+    return found
+
+
+def without_errors(model: Surrogate, but=()) -> Surrogate:
+    """``model`` with every error of thrust and mass zero, but those of the names ``but``."""
+    return model.at(
+        {f"{error.key}.axial": 0.0 for name, error in ERRORS.items() if name not in but}
+    )
+
+
+def source(scene: Scene, tolerances: dict[str, float], cases: int, seed: int) -> Derived:
+    """Cases of ``scene`` within ``tolerances`` (SI) by name of a factor."""
+    turn, unit = law("uniform", low=0.0, high=2.0 * math.pi), around_zero(1.0, "redraw")
+    drawn = dict.fromkeys((*ERRORS, CLEARANCE, FRICTION), unit) | {
+        f"{name} angle": turn for name in ERRORS
+    }
+    return Derived(
+        Uncertainty(cases, seed, "random", drawn),
+        lambda columns_: _overrides(scene, tolerances, columns_),
+    )
+
+
+def _overrides(scene: Scene, tolerances: dict[str, float], drawn: Numbers) -> Numbers:
+    found: Numbers = {}
+    for name, size in tolerances.items():
+        if name in ERRORS:
+            value, angle = pointing(size * drawn[name], drawn[f"{name} angle"])
+            found |= {f"{ERRORS[name].key}.axial": value, f"{ERRORS[name].key}.radial": angle}
+        elif name == CLEARANCE:
+            assert scene.contact is not None
+            found["contact.clearance"] = scene.contact.clearance + size * drawn[name]
+        else:
+            assert scene.friction is not None
+            found |= friction(scene, scene.friction.dynamic + size * drawn[name])
+    return found
+
+
+class Cases:
+    """Results of ``model`` within ``tolerances`` times any scale, each scale run once and kept in a
+    file."""
+
+    def __init__(
+        self,
+        study: Study,
+        folder: str,
+        model: Surrogate,
+        tolerances: dict[str, float],
+        cases: int,
+        seed: int,
+    ):
+        self._study, self._folder, self._model, self._tolerances = study, folder, model, tolerances
+        self._cases, self._seed = cases, seed
+        self._known: dict[float, np.ndarray] = {}
+
+    def source(self, scale: float) -> Derived:
+        """The cases at a scale; at zero all are alike, and one stands for them."""
+        sizes = {name: scale * size for name, size in self._tolerances.items()}
+        return source(self._model.scene, sizes, self._cases if scale > 0.0 else 1, self._seed)
+
+    def values(self, scale: float) -> np.ndarray:
+        """The quantities (n,k) of ``answers.ALL``; NaN in cases that did not settle."""
+        if scale not in self._known:
+            self._known[scale] = np.broadcast_to(self._run(scale), (self._cases, len(answers.ALL)))
+        return self._known[scale]
+
+    def rates(self, scale: float) -> np.ndarray:
+        """Rates (n,3), deg/s."""
+        return self.values(scale)[:, : len(answers.RATES)]
+
+    def _run(self, scale: float) -> np.ndarray:
+        drawn = self.source(scale)
+        ensemble = Ensemble(
+            self._model.scene,
+            drawn,
+            None,
+            Numerics(relative_tolerance=population.TOLERANCE),
+            self._model.walls,
+        )
+        path = self._study.path(f"{self._folder}/{ensemble.key[:16]}.nc")
+        if (known := results.load(path)) is not None:
+            return known
+        pieces = (
+            drawn.rows(begin, min(begin + PIECE, drawn.asked))
+            for begin in range(0, drawn.asked, PIECE)
+        )
+        found = columns.of(
+            [
+                case
+                for piece in completed(ensemble.family(), pieces, self._study.settings.workers)
+                for case in piece
+            ]
+        )
+        values = np.column_stack([quantity.of(found) for quantity in answers.ALL])
+        results.save(
+            path, values, scale, {name: scale * size for name, size in self._tolerances.items()}
+        )
+        return values

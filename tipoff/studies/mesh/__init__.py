@@ -1,0 +1,1 @@
+"""The rails as the reference will use them."""

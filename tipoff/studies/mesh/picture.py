@@ -1,0 +1,148 @@
+"""A drawing of the rail mesh: all rails, and one cross-section at full detail, named surfaces
+coloured."""
+
+from pathlib import Path
+
+import numpy as np
+
+from tipoff.files import replacing
+from tipoff.studies.render.chart import AMBER, GREY, NAVY, TEAL, VERMILION
+
+_WALLS = (VERMILION, AMBER, NAVY)  # taken in turn by surfaces that pads touch
+_LIGHT = np.array([0.35, 0.5, 0.8])
+
+
+def draw(mesh, path: Path) -> None:
+    """Write a PNG of ``mesh`` (a ``highfi.mesh.rail_mesh.RailMesh``)."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+    from matplotlib.patches import Patch
+
+    figure = Figure(figsize=(9.6, 4.2), dpi=140, layout="constrained")
+    FigureCanvasAgg(figure)
+    left, right = figure.subplots(1, 2, width_ratios=[1.9, 1.0])
+    colours = _colours(mesh)
+    _oblique(left, mesh, colours)
+    _section(right, mesh, colours)
+    figure.legend(
+        [Patch(color=GREY, alpha=0.6), *(Patch(color=colour) for colour in colours.values())],
+        ["rail", *(name.replace("_", " ") for name in colours)],
+        loc="outside lower center",
+        ncols=4,
+        frameon=False,
+    )
+    with replacing(path) as temporary:
+        figure.savefig(temporary, format="png")
+
+
+def _colours(mesh) -> dict[str, str]:
+    """Colour of each named surface, walls first."""
+    walls = sorted(name for name in mesh.surfaces if name != "mount")
+    return {name: _WALLS[place % len(_WALLS)] for place, name in enumerate(walls)} | {"mount": TEAL}
+
+
+def _boundary(mesh) -> tuple[np.ndarray, list[str]]:
+    """Outer facets (m,4) of the solid and the surface each belongs to, ``rail`` where it has no
+    name."""
+    from tipoff.highfi.mesh.rail_mesh import boundary_facets
+
+    facets = boundary_facets(mesh.cells)
+    names = {
+        tuple(sorted(facet)): name
+        for name, group in mesh.surfaces.items()
+        for facet in group.tolist()
+    }
+    return facets, [names.get(tuple(sorted(facet)), "rail") for facet in facets.tolist()]
+
+
+def _oblique(axes, mesh, colours: dict[str, str]) -> None:
+    """Painter's algorithm on the facets that face the eye."""
+    from matplotlib.collections import PolyCollection
+    from matplotlib.colors import to_rgb
+
+    from tipoff.highfi.mesh.facets import normals
+
+    facets, names = _boundary(mesh)
+    turn = _view(azimuth=-60.0, elevation=26.0)
+    nodes = (mesh.points @ turn.T)[facets]
+    normal = normals(nodes)
+    corners = nodes[:, :4] if nodes.shape[1] == 4 else nodes[:, :3]
+    front = np.flatnonzero(normal[:, 2] > 1e-9)
+    order = front[np.argsort(corners[front, :, 2].mean(axis=1))]
+    shade = 0.62 + 0.38 * np.abs(normal @ (_LIGHT / np.linalg.norm(_LIGHT)))
+    base = np.array([to_rgb(colours.get(name, "#c6cbd1")) for name in names])
+    axes.add_collection(
+        PolyCollection(
+            1e3 * corners[order][:, :, :2],
+            facecolors=(base * shade[:, None])[order],
+            edgecolors="#3b4149",
+            linewidths=0.18,
+        )
+    )
+    axes.autoscale()
+    axes.set_aspect("equal")
+    axes.set_axis_off()
+    axes.set_title(f"all rails, {len(mesh.cells):,} elements", fontsize=10.5)
+
+
+def _section(axes, mesh, colours: dict[str, str]) -> None:
+    """Elements of the middle layer of the rail at +y +z (of all, where none is there), seen along
+    X, named walls drawn thick."""
+    from matplotlib.collections import LineCollection, PolyCollection
+
+    centres = mesh.points[mesh.cells].mean(axis=1)
+    corner = (centres[:, 1] > 0.0) & (centres[:, 2] > 0.0)
+    corner |= not corner.any()  # a launcher of one's own may have no rail there
+    inside = centres[corner, 0]
+    layer = _cut(mesh, corner, inside[np.argmin(np.abs(inside - inside.mean()))])
+    axes.add_collection(
+        PolyCollection(
+            _outlines(mesh, layer), facecolors="#dfe3e7", edgecolors="#3b4149", linewidths=0.7
+        )
+    )
+    reach = mesh.points[mesh.cells[layer]][:, :, 0]
+    for name, colour in colours.items():
+        facets = mesh.points[mesh.surfaces[name]]
+        near = facets[
+            (facets[:, :, 1:].min(axis=(1, 2)) > 0.0)
+            & (np.abs(facets[:, :, 0].mean(axis=1) - reach.mean()) < np.ptp(reach))
+        ]
+        lines = [(1e3 * facet[:, 1:].min(axis=0), 1e3 * facet[:, 1:].max(axis=0)) for facet in near]
+        axes.add_collection(LineCollection(lines, colors=colour, linewidths=3.0))
+    axes.autoscale()
+    axes.margins(0.08)
+    axes.set_aspect("equal")
+    axes.set_xlabel("y (mm)", fontsize=9)
+    axes.set_ylabel("z (mm)", fontsize=9)
+    axes.tick_params(labelsize=8)
+    axes.spines[["top", "right"]].set_visible(False)
+    axes.set_title("section of one rail", fontsize=10.5, color=NAVY)
+
+
+def _cut(mesh, among, x: float) -> np.ndarray:
+    """Numbers of the elements ``among`` those marked that the plane at ``x`` (m) cuts."""
+    along = mesh.points[mesh.cells][:, :, 0]
+    return np.flatnonzero(among & (along.min(axis=1) < x) & (along.max(axis=1) > x))
+
+
+def _outlines(mesh, layer) -> list[np.ndarray]:
+    """Outlines (mm) of elements seen along X: the box around a hexahedron, the four faces of a
+    tetrahedron."""
+    from tipoff.highfi.mesh.cells import HEXAHEDRON, TETRAHEDRON, kind
+
+    nodes = 1e3 * mesh.points[mesh.cells[layer]][:, :, 1:]
+    if kind(mesh.cells) is not HEXAHEDRON:
+        return list(nodes[:, TETRAHEDRON.faces[:, :3]].reshape(-1, 3, 2))
+    low, high = nodes.min(axis=1), nodes.max(axis=1)
+    return [
+        np.array([(a[0], a[1]), (b[0], a[1]), (b[0], b[1]), (a[0], b[1])])
+        for a, b in zip(low, high)
+    ]
+
+
+def _view(azimuth: float, elevation: float) -> np.ndarray:
+    """Rotation (3,3) to eye axes: right, up, towards the eye."""
+    a, e = np.radians([azimuth, elevation])
+    towards = np.array([np.cos(e) * np.cos(a), np.cos(e) * np.sin(a), np.sin(e)])
+    right = np.array([-np.sin(a), np.cos(a), 0.0])
+    return np.stack([right, np.cross(towards, right), towards])

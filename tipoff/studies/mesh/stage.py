@@ -1,0 +1,76 @@
+"""Stage ``mesh``: the rails as the reference will use them, with their size, quality and a
+picture."""
+
+from pathlib import Path
+
+import numpy as np
+
+from tipoff.files import replacing
+from tipoff.studies.core.progress import say
+from tipoff.studies.core.study import Study
+
+
+def run(study: Study) -> dict:
+    """Elements, nodes, named surfaces with area, quality, and the mesh as ``mesh.vtu``."""
+    name = next(iter(study.conditions))
+    asked = study.highfi(name)
+
+    def make() -> tuple[dict, list[Path]]:
+        from tipoff import highfi
+        from tipoff.highfi.mesh import cells as checks
+
+        mesh = highfi.prepare(asked.scene, asked.numerics)
+        for warning in mesh.warnings:
+            say(f"mesh: {warning}")
+        from tipoff.studies.mesh.picture import draw
+
+        path, picture = study.path("mesh.vtu"), study.path("figures") / "mesh.png"
+        _save(mesh, path)
+        draw(mesh, picture)
+        lengths = checks.edge_lengths(mesh.points, mesh.cells)
+        _, scaled = checks.jacobians(mesh.points, mesh.cells)
+        surfaces = {
+            name: {"facets": len(facets), "area_m2": area(mesh.points, facets)}
+            for name, facets in mesh.surfaces.items()
+        }
+        return {
+            "element_size_m": asked.numerics.element_size,
+            "elements": len(mesh.cells),
+            "kind": checks.kind(mesh.cells).name,
+            "nodes": len(mesh.points),
+            "shortest_edge_m": float(lengths.min()),
+            "longest_edge_m": float(lengths.max()),
+            "smallest_scaled_jacobian": float(scaled.min()),
+            "warnings": list(mesh.warnings),
+            "surfaces": surfaces,
+            "mesh": study.relative(path),
+            "picture": study.relative(picture),
+        }, [path, picture]
+
+    return study.stage("mesh", study.key(__name__, asked.key), make)
+
+
+def area(points: np.ndarray, facets: np.ndarray) -> float:
+    """Area (m2) of facets (m,4) or (m,6), exact for plane ones."""
+    from tipoff.highfi.mesh.facets import gauss
+
+    return float(gauss(points[facets], 2)[1].sum())
+
+
+def _save(mesh, path: Path) -> None:
+    import meshio
+
+    from tipoff.highfi.mesh.cells import kind
+
+    names = list(mesh.surfaces)
+    facets = np.concatenate([mesh.surfaces[name] for name in names])
+    group = np.concatenate(
+        [np.full(len(mesh.surfaces[name]), index + 1) for index, name in enumerate(names)]
+    )
+    document = meshio.Mesh(
+        mesh.points,
+        [(kind(mesh.cells).cell, mesh.cells), (kind(mesh.cells).facet, facets)],
+        cell_data={"surface": [np.zeros(len(mesh.cells), dtype=int), group]},
+    )
+    with replacing(path) as temporary:
+        document.write(temporary, file_format="vtu")

@@ -1,0 +1,13 @@
+"""The paper's random errors, case by case."""
+
+from tipoff.studies.montecarlo import command
+from tipoff.studies.question import Parts, Question
+
+
+def _load() -> Parts:
+    from tipoff.studies.montecarlo import page, stage
+
+    return Parts(stage.run, stage.stored, page.draw)
+
+
+QUESTION = Question("montecarlo", "Random errors", "Random errors", command.add, _load)

@@ -1,0 +1,191 @@
+"""The inputs that the paper does not print, as points of the unit cube: bounds with their reasons,
+and the overrides of a scene.
+
+Inertia comes from a mass that is spread over the body, so that every point of the cube is a body
+that can exist: with P_i = m g_i^2 the second moments about the mass centre (g the radii along the
+axes) and P_ij = r_ij sqrt(P_i P_j),
+
+    I_xx = P_y + P_z,  I_yy = P_x + P_z,  I_zz = P_x + P_y,  I_ij = -P_ij
+
+P is positive definite where the correlations r are small. A cuboid of edge L filled evenly has g =
+L / sqrt(12).
+"""
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from tipoff.scenes.scene import Scene
+
+
+class Unknown(NamedTuple):
+    """An input: its bounds (SI), searched on a logarithmic or linear scale, the unit and factor it
+    is printed with, and why these bounds."""
+
+    name: str
+    low: float
+    high: float
+    logarithmic: bool
+    unit: str
+    factor: float
+    reason: str
+
+    def value(self, share: float) -> float:
+        """Value (SI) at ``share`` (0 to 1) of the way from the lower to the upper bound."""
+        if self.logarithmic:
+            return self.low * (self.high / self.low) ** share
+        return self.low + (self.high - self.low) * share
+
+    def share(self, value: float) -> float:
+        """Inverse of ``value``."""
+        if self.logarithmic:
+            return math.log(value / self.low) / math.log(self.high / self.low)
+        return (value - self.low) / (self.high - self.low)
+
+
+_BODY = "a body of the group's drawings' scale: cuboid edges of 0.1 to 0.6 m"
+UNKNOWNS = (
+    Unknown("mass", 8.0, 12.0, False, "kg", 1.0, "9.9 kg in the group's companion paper"),
+    Unknown("radius_x", 0.06, 0.15, True, "mm", 1e3, _BODY),
+    Unknown("radius_y", 0.03, 0.09, True, "mm", 1e3, _BODY),
+    Unknown("radius_z", 0.03, 0.09, True, "mm", 1e3, _BODY),
+    Unknown("correlation_xy", -0.15, 0.15, False, "1", 1.0, "equipment off the axes of symmetry"),
+    Unknown("correlation_xz", -0.15, 0.15, False, "1", 1.0, "equipment off the axes of symmetry"),
+    Unknown("correlation_yz", -0.15, 0.15, False, "1", 1.0, "equipment off the axes of symmetry"),
+    Unknown(
+        "rear", 0.03, 0.15, False, "mm", 1e3, "rear pads behind the mass centre, within the body"
+    ),
+    Unknown(
+        "front", 0.03, 0.15, False, "mm", 1e3, "front pads before the mass centre, within the body"
+    ),
+    Unknown("half_width", 0.06, 0.14, False, "mm", 1e3, "pads at the corners of the body"),
+    Unknown("half_height", 0.06, 0.14, False, "mm", 1e3, "pads at the corners of the body"),
+    Unknown("guided", 0.02, 0.40, True, "mm", 1e3, "rail ahead of the front pads at ignition"),
+    Unknown("clearance", 0.03e-3, 0.5e-3, True, "mm", 1e3, "a sliding fit to a loose one"),
+    Unknown("arm", 0.05, 0.20, False, "mm", 1e3, "thruster at the rear of the body"),
+    Unknown("impulse", 30.0, 120.0, True, "N s", 1.0, "exit at 3 to 12 m/s"),
+    Unknown("width", 1e-3, 10e-3, True, "ms", 1e3, "a solid thruster that burns for 5 to 50 ms"),
+    Unknown(
+        "friction",
+        0.02,
+        0.4,
+        True,
+        "1",
+        1.0,
+        "aluminium, bare or lubricated; 0.2 in the companion paper",
+    ),
+    Unknown(
+        "exponent",
+        1.0,
+        2.2,
+        False,
+        "1",
+        1.0,
+        "flat contact to beyond Hertz; the paper prints k without it",
+    ),
+    Unknown(
+        "offset_y",
+        -0.9,
+        0.9,
+        False,
+        "of the clearance",
+        1.0,
+        "where between the rails the body stands at ignition",
+    ),
+    Unknown(
+        "offset_z",
+        -0.9,
+        0.9,
+        False,
+        "of the clearance",
+        1.0,
+        "where between the rails the body stands at ignition",
+    ),
+)
+NAMES = tuple(item.name for item in UNKNOWNS)
+STIFFNESS, DAMPING, DEPTH = 70000.0, 60e3, 0.3e-3  # N/mm^e, N s/m, m: the paper's Table 2 baseline
+_CENTRE = 3.0  # widths before the peak of the thrust
+_MOUNTS = ((0.05, 0.15), (0.45, 0.55), (0.85, 0.95))  # shares of the rail, which is rigid here
+
+
+def values(shares: np.ndarray) -> dict[str, float]:
+    """Values (SI) by name at a point (p,) of the unit cube."""
+    return {item.name: item.value(float(share)) for item, share in zip(UNKNOWNS, shares)}
+
+
+def shares(found: dict[str, float]) -> np.ndarray:
+    """Inverse of ``values``."""
+    return np.array([item.share(found[item.name]) for item in UNKNOWNS])
+
+
+def inertia(found: dict[str, float]) -> dict[str, float]:
+    """Entries of the inertia tensor (kg m2) about the mass centre."""
+    radius = {axis: found[f"radius_{axis}"] for axis in "xyz"}
+    moment = {axis: found["mass"] * radius[axis] ** 2 for axis in "xyz"}
+    product = {
+        a + b: -found["mass"] * found[f"correlation_{a}{b}"] * radius[a] * radius[b]
+        for a, b in ("xy", "xz", "yz")
+    }
+    return {
+        "xx": moment["y"] + moment["z"],
+        "yy": moment["x"] + moment["z"],
+        "zz": moment["x"] + moment["y"],
+        **product,
+    }
+
+
+def overrides(base: Scene, found: dict[str, float]) -> dict[str, Any]:
+    """Dotted overrides (SI) that turn ``base``, of eight pads at the corners, into the scene of
+    these inputs."""
+    clearance, width, exponent = found["clearance"], found["width"], found["exponent"]
+    changed = {
+        "payload.mass": found["mass"],
+        **{f"payload.inertia.{entry}": value for entry, value in inertia(found).items()},
+    }
+    for number, pad in enumerate(base.pads):
+        x, y, z = pad.position
+        changed[f"pads.{number}.position.0"] = found["front"] if x > 0.0 else -found["rear"]
+        changed[f"pads.{number}.position.1"] = math.copysign(found["half_width"], y)
+        changed[f"pads.{number}.position.2"] = math.copysign(found["half_height"], z)
+    start = -found["rear"] - 0.5 * base.pads[0].length
+    end = found["front"] + 0.5 * base.pads[0].length + found["guided"]
+    return changed | {
+        "rail.start": start,
+        "rail.end": end,
+        "contact.clearance": clearance,
+        "contact.exponent": exponent,
+        "contact.stiffness": stiffness(STIFFNESS, exponent),
+        "contact.damping": DAMPING,
+        "contact.damping_depth": DEPTH,
+        "friction.static": found["friction"],
+        "friction.dynamic": found["friction"],
+        "thrust.peak": found["impulse"] / (width * math.sqrt(2.0 * math.pi)),
+        "thrust.width": width,
+        "thrust.centre": _CENTRE * width,
+        "thrust.arm": found["arm"],
+        "initial.position.y": found["offset_y"] * clearance,
+        "initial.position.z": found["offset_z"] * clearance,
+        "rail.mounts": [
+            {"start": first * (end - start), "end": last * (end - start)} for first, last in _MOUNTS
+        ],
+        "duration": duration(found),
+    }
+
+
+def stiffness(printed: float, exponent: float) -> float:
+    """The paper's k (N/mm^e) in N/m^e."""
+    return printed * 1e3**exponent
+
+
+def duration(found: dict[str, float]) -> float:
+    """Time (s) in which the body leaves the rail and settles: burnout, or the way at half the final
+    speed, whichever is longer."""
+    way = found["rear"] + found["front"] + found["guided"] + 0.016
+    return (
+        max(
+            7.0 * found["width"],
+            _CENTRE * found["width"] + 2.0 * way * found["mass"] / found["impulse"],
+        )
+        + 6e-3
+    )

@@ -1,0 +1,152 @@
+"""Where every search ended, every admissible point kept, what they trade and what the best set
+leaves its rail with, as a netCDF file that explains itself.
+
+Inputs stand there in the units they are printed with, a variable each, with the bounds they were
+searched within.
+"""
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tipoff.files import sealed
+from tipoff.lowfi.ensemble.columns import Columns
+from tipoff.studies import published
+from tipoff.studies.paper import exits, inputs, misfit, solutions, told
+from tipoff.studies.populations import answers
+
+if TYPE_CHECKING:
+    import xarray
+
+
+def save(path: Path, found: list[solutions.Search], best: int, left: Columns) -> None:
+    """Write ``dataset`` atomically."""
+    labelled = dataset(found, best, left)
+    with sealed(path) as temporary:
+        labelled.to_netcdf(temporary, engine="h5netcdf")
+
+
+def dataset(found: list[solutions.Search], best: int, left: Columns) -> "xarray.Dataset":
+    """The ends of the searches by ``search``, ``best`` of which left its rail with ``left``;
+    admissible points by ``point``; the front of all searches by ``pair``."""
+    import xarray
+
+    points = np.vstack([item.admissible for item in found])
+    origin = np.repeat(np.arange(len(found)), [len(item.admissible) for item in found])
+    variables = (
+        _ends(found)
+        | _inputs(
+            "end", "search", np.array([item.shares for item in found]), "at the end of a search"
+        )
+        | _inputs("admissible", "point", points, "at an admissible point")
+        | {"admissible_search": _of("point", origin, "the search that met it", "1")}
+        | _traded(found)
+        | {
+            f"exit_{item.name}": _of(
+                "condition",
+                item.of(left),
+                f"{item.label}, best set, NaN where it did not settle",
+                item.unit,
+            )
+            for item in answers.ALL
+        }
+    )
+    return xarray.Dataset(
+        variables,
+        _coordinates(len(found)),
+        {
+            "source": published.CITATION,
+            "best_search": best,
+            "admissible_deg_s": solutions.ADMISSIBLE,
+            "negligible_deg_s": misfit.NEGLIGIBLE,
+            "calibration": exits.CALIBRATION,
+        },
+    )
+
+
+def _of(dimensions, values, words: str, unit: str, **more) -> tuple:
+    return dimensions, values, {"long_name": words, "units": unit} | more
+
+
+def _ends(found: list[solutions.Search]) -> dict[str, tuple]:
+    return {
+        "stress": _of(
+            "search",
+            [item.stress for item in found],
+            "weight the search gave the rates of conditions 1 and 5",
+            "1",
+        ),
+        "seed": _of("search", [item.seed for item in found], "seed of the search", "1"),
+        "misfit": _of(
+            "search",
+            [told.misfit_of(item) for item in found],
+            "misfit with conditions 1 and 5 at full weight",
+            "1",
+        ),
+        "rates_deg_s": _of(
+            ("search", "condition", "axis"),
+            [item.rates for item in found],
+            "settled rates",
+            "deg/s",
+        ),
+        "changed_deg_s": _of(
+            ("search", "sensitive_condition", "change", "axis"),
+            [item.changed for item in found],
+            "settled rates with one contact constant changed",
+            "deg/s",
+        ),
+    }
+
+
+def _inputs(prefix: str, dimension: str, shares: np.ndarray, where: str) -> dict[str, tuple]:
+    """A variable for each input at points (n,p) of the unit cube."""
+    return {
+        f"{prefix}_{item.name}": _of(
+            dimension,
+            np.array([item.factor * item.value(share) for share in column]),
+            f"{item.name.replace('_', ' ')} {where}"
+            + (f", {item.unit}" if item.unit.startswith("of") else ""),
+            "1" if item.unit.startswith("of") else item.unit,
+            lower_bound=item.factor * item.low,
+            upper_bound=item.factor * item.high,
+            searched="logarithmic" if item.logarithmic else "linear",
+            reason=item.reason,
+        )
+        for item, column in zip(inputs.UNKNOWNS, shares.T)
+    }
+
+
+def _traded(found: list[solutions.Search]) -> dict[str, tuple]:
+    errors, sizes = told.front(found).T
+    return {
+        "front_largest_error_deg_s": _of(
+            "pair", errors, "largest error of the nine printed rates", "deg/s"
+        ),
+        "front_largest_negligible_deg_s": _of(
+            "pair", sizes, "largest rate of conditions 1 and 5", "deg/s"
+        ),
+    }
+
+
+def _coordinates(count: int) -> dict[str, tuple]:
+    angles = published.angles()
+    axial, radial = np.array(list(angles.values())).T
+    return {
+        "search": _of("search", np.arange(count), "place among the searches of paper.json", "1"),
+        "condition": _of("condition", list(angles), "condition of the paper's Table 1", "1"),
+        "axial_misalignment": _of("condition", axial, "axial misalignment of the thrust", "deg"),
+        "radial_misalignment": _of("condition", radial, "radial misalignment of the thrust", "deg"),
+        "sensitive_condition": _of(
+            "sensitive_condition",
+            list(published.SENSITIVE),
+            "condition of the paper's Table 2",
+            "1",
+        ),
+        "change": (
+            "change",
+            list(told.CHANGES),
+            {"long_name": "the contact constant that was changed, and what to"},
+        ),
+        "axis": ("axis", list("xyz"), {"long_name": "payload body axis"}),
+    }

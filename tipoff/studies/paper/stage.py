@@ -1,0 +1,308 @@
+"""Stage ``paper``: what the inputs that the paper does not print must have been, and its tables
+beside those of the best set found.
+
+Every search is kept as it ends, so that a stage that was stopped goes on with the next, and more
+starts add to those there are.
+"""
+
+import math
+from concurrent.futures import as_completed
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+
+from tipoff import sources
+from tipoff.files import content_hash, write_json, write_text
+from tipoff.scenes.faults import Fault, SceneError
+from tipoff.scenes.scene import Scene, load
+from tipoff.studies import published
+from tipoff.studies.agreement import stage as compare
+from tipoff.studies.core.progress import Board, team
+from tipoff.studies.core.study import Study, StudyError, read
+from tipoff.studies.paper import exits, inputs, known, misfit, results, scene_file, solutions, told
+from tipoff.studies.paper import page as drawn
+from tipoff.studies.render.chart import to_files
+
+NAME = "paper"
+SCENE = "paper_like.toml"
+CATALOGUED = "paper_like"  # the best set of those who made the catalogue
+STRESSES = (0.0, 1.0)  # without and with the rates that the paper calls negligible
+_WRITTEN = 1e-5  # relative: a scene file has nine digits of most numbers, six of the mounts
+# a search outlives a change of anything else
+
+
+@dataclass(frozen=True)
+class Asked:
+    """``starts`` searches for each stress, and the ``plan`` of each."""
+
+    starts: int = 3
+    plan: solutions.Plan = solutions.Plan()
+
+
+def run(study: Study, asked: Asked = Asked()) -> dict:
+    """The searches, what they tell of every input, and the best set beside the printed tables;
+    writes it as a scene too, and every end and admissible point as netCDF.
+
+    Raises SceneError for a scene that ``require`` refuses, StudyError where the best set could not
+    be kept as a scene file.
+    """
+    require(study.scene)
+
+    def make() -> tuple[dict, list[Path]]:
+        base = _base(study.scene)
+        # before the searches, which are dear, and not only after them
+        with TemporaryDirectory() as folder:
+            _write(base, np.full(len(inputs.UNKNOWNS), 0.5), np.zeros((5, 3)), Path(folder, SCENE))
+        found = _searches(study, base, asked)
+        best = min(found, key=told.misfit_of)
+        path, data = study.path(SCENE), study.path(f"{NAME}.nc")
+        _write(base, best.shares, best.rates, path)
+        left = exits.run(misfit.Launcher(base, asked.plan.tolerances[-1]), best.shares)
+        results.save(data, found, found.index(best), left)
+        result = {
+            "asked": {"starts": asked.starts, "plan": _plain(asked.plan)},
+            "admissible_deg_s": solutions.ADMISSIBLE,
+            "negligible_deg_s": misfit.NEGLIGIBLE,
+            "scatter_deg_s": misfit.SCATTER.tolist(),
+            "searches": [told.summary(item) for item in found],
+            "best": found.index(best),
+            "inputs": told.ranges(found, best),
+            "admissible": told.counted(found),
+            "exit": exits.told(left),
+            "known": known.errors(load(CATALOGUED), asked.plan.tolerances[-1]),
+            "front": told.front(found).tolist(),
+            "slips": published.slips(),
+            "headline": published.headline(),
+            "scene_file": study.relative(path),
+            "data": study.relative(data),
+        }
+        pictures = [
+            file
+            for chart in drawn.charts(result)
+            for file in to_files(chart, study.path("figures"))
+        ]
+        return result, [path, data, *pictures]
+
+    return _with_present(study, study.stage(NAME, _key(study, asked), make))
+
+
+def stored(study: Study) -> dict | None:
+    """The result, if it was made from the present scene, code and settings."""
+    found = study.stored(NAME, lambda found: _key(study, _asked(found["asked"])))
+    return found and _with_present(study, found)
+
+
+def require(scene: Scene) -> None:
+    """Raise SceneError unless ``scene`` is one whose inputs the searches can replace: every fault
+    of it."""
+    impact = scene.contact is not None and scene.contact.law == "impact"
+    corners = {(x > 0.0, y > 0.0, z > 0.0) for x, y, z in (pad.position for pad in scene.pads)}
+    wrong = [
+        Fault(scene.name, key, given, expected)
+        for holds, key, given, expected in (
+            (
+                scene.rail.GIVEN_BY == "section",
+                "rail",
+                f"a {scene.rail.GIVEN_BY}",
+                "the built-in section, whose ends are searched",
+            ),
+            (
+                scene.thermal is None,
+                "thermal",
+                "a table",
+                "absent, for the searches have rails that stand where they are drawn",
+            ),
+            (
+                impact,
+                "contact.law",
+                "another law, or no contact",
+                "impact, of which the paper prints the constants",
+            ),
+            (
+                scene.thrust.kind == "gaussian",
+                "thrust.kind",
+                scene.thrust.kind,
+                "gaussian, as the paper fits its thrust",
+            ),
+            (
+                scene.friction is not None and hasattr(scene.friction, "static"),
+                "friction",
+                "absent",
+                "a table with static and dynamic",
+            ),
+            (
+                len(scene.pads) == len(corners) == 8,
+                "pads",
+                f"{len(scene.pads)} pads",
+                "eight, one at each corner of the body",
+            ),
+            (
+                scene.thrust_offset is not None,
+                "thrust_offset",
+                "absent",
+                "the misalignment of the paper's Table 1",
+            ),
+        )
+        if not holds
+    ]
+    if wrong:
+        raise SceneError(wrong)
+
+
+def _base(scene: Scene) -> Scene:
+    """The scene with the misalignment that the paper's Table 1 has."""
+    return scene.replace({"thrust_offset.misalignment.axial": f"{published.angles()[1][0]} deg"})
+
+
+def _write(base: Scene, shares: np.ndarray, rates: np.ndarray, path: Path) -> None:
+    """Write the set at ``shares`` (p,) as a scene that extends ``base`` by its name. Raises
+    StudyError unless the file loads and is the scene that was searched: what was put over a file of
+    the catalogue is not in it."""
+    write_text(path, scene_file.scene(base, inputs.values(shares), rates))
+    cannot = (
+        f"the best set cannot be kept as {path.name}, which extends {base.name!r} of the catalogue"
+    )
+    try:
+        kept = load(path)
+    except SceneError as fault:
+        raise StudyError(f"{cannot}, for it does not load: {fault}") from fault
+    if other := _differing(kept.physics(), misfit.Launcher(base).scene(shares).physics()):
+        raise StudyError(f"{cannot}, for the scene given here is another: {', '.join(other)}")
+
+
+def _differing(first, second, key: str = "") -> list[str]:
+    """Dotted keys at which two scenes (``Scene.physics``) are not the same to the digits of a scene
+    file."""
+    if isinstance(first, dict) and isinstance(second, dict):
+        return [
+            name
+            for entry in {**first, **second}
+            for name in _differing(
+                first.get(entry), second.get(entry), f"{key}.{entry}".lstrip(".")
+            )
+        ]
+    if isinstance(first, list) and isinstance(second, list) and len(first) == len(second):
+        return [
+            name
+            for number, pair in enumerate(zip(first, second))
+            for name in _differing(*pair, f"{key}.{number}")
+        ]
+    if isinstance(first, float) and isinstance(second, float):
+        return [] if math.isclose(first, second, rel_tol=_WRITTEN, abs_tol=1e-12) else [key]
+    return [] if first == second else [key]
+
+
+def _searches(study: Study, base: Scene, asked: Asked) -> list[solutions.Search]:
+    """Every search in its order, ``workers`` at a time; on Ctrl-C none is waited for or begun."""
+    plans = [(stress, seed) for seed in range(asked.starts) for stress in STRESSES]
+    with Board(NAME, len(plans)) as board, team(board, study.settings.workers) as pool:
+
+        def one(stress: float, seed: int) -> solutions.Search:
+            path = study.path(f"{NAME}/search-{stress:g}-{seed}.json")
+            key = content_hash(
+                base.hash,
+                sources.digest("tipoff.lowfi", "tipoff.studies.paper.solutions"),
+                _plain(asked.plan),
+                stress,
+                seed,
+            )
+            kept = read(path)
+            if kept and kept.get("key") == key:
+                return solutions.restored(kept)
+            label = f"search {seed + 1}, {'all five conditions' if stress else 'three conditions'}"
+            found = solutions.run(
+                lambda tolerance: misfit.Launcher(base, tolerance),
+                stress,
+                seed,
+                asked.plan,
+                board.callback(label),
+            )
+            write_json(path, {"key": key, **solutions.plain(found)})
+            board.finished(
+                label,
+                f"largest error of nine rates {np.abs(misfit.nine(found.rates)).max():.3g} deg/s, "
+                f"largest rate of conditions 1 and 5 "
+                f"{solutions.largest_negligible(found.rates):.3g} deg/s",
+            )
+            return found
+
+        pending = [pool.submit(one, *plan) for plan in plans]
+        for future in as_completed(pending):
+            future.result()
+    return [future.result() for future in pending]
+
+
+def _with_present(study: Study, found: dict) -> dict:
+    """The result with what stands beside it now, which comes and goes without it: the cost of both
+    fidelities where the present agreement study measured it, and whether the best set is the
+    catalogue's."""
+    kept = load(CATALOGUED)
+    best = misfit.Launcher(_base(study.scene)).scene(
+        inputs.shares(found["searches"][found["best"]]["values"])
+    )
+    return found | {
+        "ours": (compare.stored(study) or {}).get("speedup"),
+        "catalogue": {
+            "name": kept.name,
+            "same": not _differing(kept.physics(), best.physics()),
+            "description": kept.description,
+        },
+    }
+
+
+def _key(study: Study, asked: Asked) -> str:
+    return study.key(__name__, NAME, asked.starts, _plain(asked.plan))
+
+
+def _asked(plain: dict) -> Asked:
+    """Inverse of what a result holds of it."""
+    plan = plain["plan"]
+    return Asked(
+        plain["starts"], solutions.Plan(**plan | {"tolerances": tuple(plan["tolerances"])})
+    )
+
+
+def _plain(plan: solutions.Plan) -> dict:
+    return plan._asdict() | {"tolerances": list(plan.tolerances)}
+
+
+def lines(found: dict) -> list[str]:
+    """The result in words and units."""
+    best = found["searches"][found["best"]]
+    said = [
+        f"best of {len(found['searches'])} searches: a printed rate missed by "
+        f"{best['largest_error_deg_s']:.3g} deg/s at most, "
+        f"a deviation by {best['largest_deviation_error_deg_s']:.3g} deg/s; rates of conditions 1 "
+        f"and 5 up to "
+        f"{best['largest_negligible_deg_s']:.3g} deg/s",
+        drawn.in_catalogue(found),
+        drawn.admissible(found),
+    ]
+    for item in found["inputs"]:
+        kept = (
+            "nothing admissible"
+            if item["share"] is None
+            else f"admissible at least {item['from']:.3g} to {item['to']:.3g}"
+        )
+        said.append(
+            f"  {item['name']:16}{item['best']:.4g} {item['unit']}, {kept} of {item['low']:.3g} to "
+            f"{item['high']:.3g}"
+        )
+    ours = found["ours"]
+    cost = (
+        f"{ours['highfi_wall_s']:.3g} s in finite elements, {1e3 * ours['lowfi_wall_s']:.3g} ms "
+        f"calibrated: "
+        f"{ours['ratio']:,.0f} times as fast"
+        if ours
+        else f"not measured yet: make compare SCENE={found['scene']} does it"
+    )
+    said += exits.lines(found["exit"])
+    return [
+        *said,
+        *(f"  note          {words}" for words in found["slips"]),
+        f"  one case      {cost}",
+        f"  scene         {found['scene_file']}",
+        f"  data          {found['data']}",
+    ]

@@ -1,0 +1,76 @@
+"""What a payload leaves its rail with, as the studies of tolerances report it: rates, velocity
+across, its direction, and attitude.
+
+    settled rates w_x, w_y, w_z and |w|      deg/s, inertial, in payload body axes
+    lateral velocity  sqrt(v_y^2 + v_z^2)    mm/s, initial scene axes
+    direction error   atan(v_lat / v_x)      deg
+    attitude at exit  rotation vector        deg, about x, y and z
+"""
+
+from collections.abc import Callable
+from typing import NamedTuple, Protocol
+
+import numpy as np
+
+
+class Left(Protocol):
+    """What n payloads left their rails with, named as in ``lowfi.ensemble.columns.Columns``: rate (n,3)
+    rad/s, lateral_velocity (n,) m/s, direction_error (n,) rad, exit_attitude (n,3) rad."""
+
+    @property
+    def rate(self) -> np.ndarray: ...
+    @property
+    def lateral_velocity(self) -> np.ndarray: ...
+    @property
+    def direction_error(self) -> np.ndarray: ...
+    @property
+    def exit_attitude(self) -> np.ndarray: ...
+
+
+class Quantity(NamedTuple):
+    """A result: ``name`` with its unit, as in result files, its ``label`` and ``unit`` in figures,
+    and its values (n,) of columns."""
+
+    name: str
+    label: str
+    unit: str
+    of: Callable[[Left], np.ndarray]
+
+
+def _rate(axis: int) -> Callable[[Left], np.ndarray]:
+    return lambda found: np.degrees(found.rate[:, axis])
+
+
+def _attitude(axis: int) -> Callable[[Left], np.ndarray]:
+    return lambda found: np.degrees(found.exit_attitude[:, axis])
+
+
+RATES = tuple(
+    Quantity(f"rate_{axis}_deg_s", f"rate about {axis}", "deg/s", _rate(number))
+    for number, axis in enumerate("xyz")
+)
+TOTAL_RATE = Quantity(
+    "rate_deg_s",
+    "total rate",
+    "deg/s",
+    lambda found: np.degrees(np.linalg.norm(found.rate, axis=1)),
+)
+VELOCITY = (
+    Quantity(
+        "lateral_velocity_mm_s",
+        "lateral velocity",
+        "mm/s",
+        lambda found: 1e3 * found.lateral_velocity,
+    ),
+    Quantity(
+        "direction_error_deg",
+        "direction error of the velocity",
+        "deg",
+        lambda found: np.degrees(found.direction_error),
+    ),
+)
+ATTITUDE = tuple(
+    Quantity(f"attitude_{axis}_deg", f"attitude at exit about {axis}", "deg", _attitude(number))
+    for number, axis in enumerate("xyz")
+)
+ALL = (*RATES, TOTAL_RATE, *VELOCITY, *ATTITUDE)

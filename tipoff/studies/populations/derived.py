@@ -1,0 +1,68 @@
+"""Cases of an ensemble whose overrides follow from draws, where one number drawn decides several
+inputs: a ``lowfi.ensemble.rows`` of studies."""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from tipoff.files import content_hash
+from tipoff.lowfi.ensemble.sampling import Points
+from tipoff.scenes.distributions import BY_NAME, Distribution
+from tipoff.scenes.scene import Scene
+from tipoff.scenes.uncertainty import Uncertainty
+
+Numbers = dict[str, np.ndarray]
+_TOLD = 16  # cases whose overrides stand for the way they were derived, in the identity
+
+
+class Derived:
+    """``derive`` turns columns (n,) of the draws of ``uncertainty``, under the names of its
+    ``vary``, which need be no keys of a scene, into columns (n,) of overrides by dotted key, SI. It
+    works case by case, so that a case has the same bits however cases are cut."""
+
+    def __init__(self, uncertainty: Uncertainty, derive: Callable[[Numbers], Numbers]):
+        self._points, self._vary, self._derive = Points(uncertainty), uncertainty.vary, derive
+        self.asked = uncertainty.cases
+        told = self.rows(0, min(_TOLD, self.asked))
+        self.keys, self.identity = (
+            list(told[0]),
+            uncertainty.resolved() | {"derived": content_hash(told)},
+        )
+
+    def rows(self, begin: int, end: int) -> list[dict[str, float]]:
+        """Overrides of the cases ``begin`` to ``end`` - 1, SI."""
+        points = self._points.draw(begin, end)
+        columns = self._derive(
+            {name: law.ppf(column) for (name, law), column in zip(self._vary.items(), points.T)}
+        )
+        return [
+            dict(zip(columns, values))
+            for values in zip(*(column.tolist() for column in columns.values()))
+        ]
+
+
+def friction(scene: Scene, dynamic: np.ndarray) -> Numbers:
+    """Overrides of friction in ``scene``, which has some, by coefficients ``dynamic`` (n,): that of
+    rest goes along in proportion, for it is the same pair of surfaces, and no draw may slide with
+    more friction than it stands with."""
+    assert scene.friction is not None
+    return {
+        "friction.dynamic": dynamic,
+        "friction.static": dynamic * (scene.friction.static / scene.friction.dynamic),
+    }
+
+
+def law(distribution: str, **values) -> Distribution:
+    """A distribution with its values in SI."""
+    return BY_NAME[distribution].model_validate(
+        {"distribution": distribution, **values}, context={"unit": "", "bare_numbers_are_si": True}
+    )
+
+
+def around_zero(half_range: float, rule: str) -> Distribution:
+    """A normal distribution about zero whose three sigma are ``half_range``, limited there by a
+    ``rule``: redraw, clip, or none."""
+    sd = half_range / 3.0
+    if rule == "none":
+        return law("normal", mean=0.0, sd=sd)
+    return law("truncated-normal", mean=0.0, sd=sd, low=-half_range, high=half_range, rule=rule)

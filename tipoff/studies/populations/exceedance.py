@@ -1,0 +1,107 @@
+"""How often a rate is above a limit, and how sure that is.
+
+Of n independent cases, k above a limit leave for the probability of being above it the bounds of
+Clopper and Pearson (Biometrika 26, 1934), quantiles of beta laws: beta(k, n - k + 1) below and
+beta(k + 1, n - k) above. They hold whatever the distribution is. A case that did not settle counts
+as above every limit.
+"""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from scipy.stats import binomtest
+
+from tipoff.scenes.faults import Fault, SceneError
+from tipoff.scenes.units import to_si
+
+TOTAL = "total"
+_AXES = ("x", "y", "z", TOTAL)
+
+
+class Limit(NamedTuple):
+    """A limit (deg/s) of a rate: about the axis x, y or z, or of its magnitude, ``TOTAL``."""
+
+    axis: str
+    deg_s: float
+
+    @property
+    def words(self) -> str:
+        """In words."""
+        return (
+            f"{'total rate' if self.axis == TOTAL else f'rate about {self.axis}'} "
+            f"{self.deg_s:g} deg/s"
+        )
+
+
+def limits(texts: Sequence[str], option: str = "--limit") -> list[Limit]:
+    """Limits such as ``x=2 deg/s``, or ``5 deg/s`` for the total rate. Raises SceneError listing
+    every fault."""
+    found, faults = [], []
+    for text in texts:
+        axis, equals, value = text.rpartition("=")
+        axis = axis.strip() if equals else TOTAL
+        if axis not in _AXES:
+            faults.append(
+                Fault(
+                    option,
+                    axis or "axis",
+                    text,
+                    f"one of {', '.join(_AXES)} before the equals sign",
+                )
+            )
+        try:
+            rate = to_si(value, "deg/s")
+            if rate <= 0.0:
+                faults.append(Fault(option, "value", text, "more than zero"))
+            found.append(Limit(axis, rate))
+        except ValueError as fault:
+            faults.append(Fault(option, "value", text, str(fault)))
+    if faults:
+        raise SceneError(faults)
+    return found
+
+
+def above(rates: np.ndarray, limit: Limit) -> np.ndarray:
+    """Whether each of ``rates`` (n,3), deg/s, is above ``limit`` (n,); NaN is."""
+    value = (
+        np.linalg.norm(rates, axis=1)
+        if limit.axis == TOTAL
+        else np.abs(rates[:, _AXES.index(limit.axis)])
+    )
+    return ~(value <= limit.deg_s)
+
+
+def any_above(rates: np.ndarray, asked: Sequence[Limit]) -> np.ndarray:
+    """Whether each of ``rates`` (n,3), deg/s, is above some limit (n,)."""
+    return np.logical_or.reduce([above(rates, limit) for limit in asked])
+
+
+def bounds(count: int, cases: int, confidence: float) -> tuple[float, float]:
+    """Two-sided bounds of a probability that ``count`` of ``cases`` tell."""
+    found = binomtest(count, cases).proportion_ci(confidence, method="exact")
+    return float(found.low), float(found.high)
+
+
+def at_most(count: int, cases: int, confidence: float) -> float:
+    """One-sided upper bound of that probability."""
+    return float(
+        binomtest(count, cases, alternative="less").proportion_ci(confidence, method="exact").high
+    )
+
+
+def allowed(cases: int, probability: float, confidence: float) -> int | None:
+    """Most of ``cases`` that may be above a limit for the upper bound to be 1 - ``probability`` or
+    less; None where not even zero is."""
+    if at_most(0, cases, confidence) > 1.0 - probability:
+        return None
+    # the share itself is below its bound
+    fine, many = 0, min(int((1.0 - probability) * cases) + 1, cases)
+    while many - fine > 1:
+        middle = (fine + many) // 2
+        fine, many = (
+            (middle, many)
+            if at_most(middle, cases, confidence) <= 1.0 - probability
+            else (fine, middle)
+        )
+    return fine

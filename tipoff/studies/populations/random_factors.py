@@ -1,0 +1,174 @@
+"""The paper's random factors (its Table 3), and what "normal axial value, uniform radial angle" can
+mean.
+
+    signed       x normal about zero, three sigma as printed, at the angle a; a negative one
+                 points to the other side, a + pi
+    half         |x| at the angle a
+    components   one such x along y, another along z: the size follows Rayleigh's law
+
+Where every error has an angle of its own, signed and half are one law, since a + pi is as uniform
+as a; components are larger. Where all share one angle, thrust and mass eccentricity lie on one
+line, and only signs tell whether they add up or cancel.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from tipoff.scenes.distributions import Distribution
+from tipoff.scenes.faults import Fault, SceneError
+from tipoff.scenes.scene import Scene
+from tipoff.scenes.uncertainty import Uncertainty
+from tipoff.studies.populations.derived import Derived, Numbers, around_zero, law
+
+VALUES, ANGLES, RULES = (
+    ("signed", "half", "components"),
+    ("independent", "shared"),
+    ("redraw", "clip", "none"),
+)
+
+
+class Error(NamedTuple):
+    """An error of assembly: the dotted key above ``axial`` and ``radial``, words for it, the three
+    sigma of Table 3 (SI), and the unit it is shown in with that unit's size (SI)."""
+
+    key: str
+    words: str
+    three_sigma: float
+    unit: str
+    scale: float
+
+
+ERRORS = {
+    "misalignment": Error(
+        "thrust_offset.misalignment",
+        "thrust misalignment",
+        math.radians(0.4),
+        "deg",
+        math.radians(1.0),
+    ),
+    "thrust_eccentricity": Error(
+        "thrust_offset.eccentricity", "thrust eccentricity", 0.6e-3, "mm", 1e-3
+    ),
+    "mass_eccentricity": Error("mass_offset.eccentricity", "mass eccentricity", 0.4e-3, "mm", 1e-3),
+}
+
+
+class Reading(NamedTuple):
+    """How Table 3 is read: ``values`` and ``angles`` as above, the ``rule`` of truncation, and
+    whether the place inside the clearance at ignition is one more random factor."""
+
+    values: str = "signed"
+    angles: str = "independent"
+    rule: str = "redraw"
+    initial: bool = False
+
+    @property
+    def words(self) -> str:
+        """In words."""
+        what = {
+            "signed": "signed normal",
+            "half": "half normal",
+            "components": "two normal components",
+        }[self.values]
+        where = (
+            ""
+            if self.values == "components"
+            else {"independent": ", three angles", "shared": ", one angle"}[self.angles]
+        )
+        cut = {
+            "redraw": "redrawn beyond 3 sigma",
+            "clip": "clipped at 3 sigma",
+            "none": "not truncated",
+        }[self.rule]
+        return f"{what}{where}, {cut}{', anywhere in the clearance' if self.initial else ''}"
+
+
+# What the table of all readings compares, the default first.
+READINGS = (
+    Reading(),
+    Reading("half"),
+    Reading("components"),
+    Reading(angles="shared"),
+    Reading("half", "shared"),
+    Reading(rule="clip"),
+    Reading(rule="none"),
+    Reading(initial=True),
+)
+
+
+def source(scene: Scene, reading: Reading, cases: int, seed: int) -> Derived:
+    """Cases of ``scene`` under ``reading``. Raises SceneError for one that has no meaning, every
+    fault listed."""
+    faults = []
+    if reading.values == "components" and reading.angles == "shared":
+        faults.append(
+            Fault(
+                "--angles",
+                "value",
+                "shared",
+                "independent, for two components have an angle of their own",
+            )
+        )
+    if reading.initial and not (scene.contact is not None and scene.contact.clearance > 0.0):
+        faults.append(Fault("--initial", "contact.clearance", "nothing", "a clearance to lie in"))
+    if faults:
+        raise SceneError(faults)
+    return Derived(
+        Uncertainty(cases, seed, "random", _laws(scene, reading)),
+        lambda drawn: _overrides(reading, drawn),
+    )
+
+
+def _laws(scene: Scene, reading: Reading) -> dict[str, Distribution]:
+    """What is drawn, by name."""
+    whole_turn = law("uniform", low=0.0, high=2.0 * math.pi)
+    found: dict[str, Distribution] = {}
+    for name, error in ERRORS.items():
+        normal = around_zero(error.three_sigma, reading.rule)
+        found |= (
+            {f"{name} y": normal, f"{name} z": normal}
+            if reading.values == "components"
+            else {name: normal}
+        )
+        if reading.values != "components" and reading.angles == "independent":
+            found[f"{name} angle"] = whole_turn
+    if reading.angles == "shared":
+        found["angle"] = whole_turn
+    if reading.initial:
+        assert scene.contact is not None  # or ``source`` has refused the reading
+        gap = scene.contact.clearance
+        found |= {f"initial.position.{axis}": law("uniform", low=-gap, high=gap) for axis in "yz"}
+    return found
+
+
+def _overrides(reading: Reading, drawn: Numbers) -> Numbers:
+    """Overrides of the scene from what was drawn."""
+    found = {key: values for key, values in drawn.items() if key.startswith("initial.")}
+    for name, error in ERRORS.items():
+        if reading.values == "components":
+            size, angle = _polar(drawn[f"{name} y"], drawn[f"{name} z"])
+        else:
+            size, angle = (
+                drawn[name],
+                drawn["angle" if reading.angles == "shared" else f"{name} angle"],
+            )
+            size, angle = pointing(np.abs(size) if reading.values == "half" else size, angle)
+        found |= {f"{error.key}.axial": size, f"{error.key}.radial": angle}
+    return found
+
+
+def pointing(value: np.ndarray, angle: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Size and angle of signed values (n,) at ``angle`` (n,): an eccentricity of a scene has no
+    sign."""
+    return np.abs(value), np.where(value < 0.0, angle + math.pi, angle)
+
+
+def _polar(y: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    # One number at a time: NumPy's vector code may round the end of an array in another way than
+    # its middle.
+    pairs = list(zip(y.tolist(), z.tolist()))
+    return np.array([math.hypot(*pair) for pair in pairs]), np.array(
+        [math.atan2(b, a) for a, b in pairs]
+    )

@@ -1,0 +1,1 @@
+"""Tables, text and figures as HTML, Markdown, terminal lines and images."""

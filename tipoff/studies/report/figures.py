@@ -1,0 +1,295 @@
+"""The figures of the report, from trajectories and result files."""
+
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import NamedTuple
+
+import numpy as np
+
+from tipoff.mechanics import ledger
+from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS
+from tipoff.mechanics.trajectory import Trajectory
+from tipoff.scenes.effects import thrust_law
+from tipoff.scenes.scene import Scene
+from tipoff.studies.convergence.contact_loads import by_pad
+from tipoff.studies.cost import choice
+from tipoff.studies.render.chart import (
+    AMBER,
+    AXIS_COLOURS,
+    GREY,
+    NAVY,
+    TEAL,
+    VERMILION,
+    Chart,
+    Line,
+    Panel,
+)
+
+_MILLISECONDS = "time after ignition (ms)"
+
+
+class Runs(NamedTuple):
+    """Trajectories by condition: the reference, compliant contact, and springs after and before
+    calibration (empty where there are none)."""
+
+    highfi: dict[str, Trajectory]
+    compliant: dict[str, Trajectory]
+    calibrated: Mapping[str, Trajectory] = MappingProxyType({})
+    uncalibrated: Mapping[str, Trajectory] = MappingProxyType({})
+
+
+# In the order of the legend. Width, dash, opacity: the reference is a broad pale line under the
+# thin ones of the surrogate.
+_STYLES = {
+    "highfi": ("finite elements", 5.0, "-", 0.35),
+    "compliant": ("compliant", 1.5, "-", 1.0),
+    "calibrated": ("springs, calibrated", 1.2, "--", 0.9),
+    "uncalibrated": ("springs, uncalibrated", 1.1, ":", 0.9),
+}
+_COLOURS = {"highfi": NAVY, "compliant": VERMILION, "calibrated": AMBER}
+
+
+def thrust_curve(scene: Scene) -> Chart:
+    """Thrust over the duration of the scene."""
+    time = np.linspace(0.0, scene.duration, 600)
+    force = thrust_law.sample(scene.thrust.record(), time)
+    line = Line(1e3 * time, 1e-3 * force, "thrust", NAVY, 2.0, legend=False)
+    return Chart("thrust", [Panel("", _MILLISECONDS, "thrust (kN)", [line])], height=260)
+
+
+def figure6(runs: Runs, conditions: list[str]) -> Chart:
+    """The paper's Figure 6: v_x, then the three rates of each fitted condition, all models."""
+    shades = dict(zip(conditions, (NAVY, VERMILION, AMBER, TEAL, GREY) * 4))
+    speed = [
+        _line(run.time, run.velocity[:, 0], shades[name], kind, legend=False)
+        for kind in _STYLES
+        for name, run in getattr(runs, kind).items()
+        if name in shades
+    ]
+    panels = [Panel("(a) velocity along X, all conditions", _MILLISECONDS, "v_x (m/s)", speed)]
+    for letter, name in zip("bcdefghijk", conditions):
+        known = {kind: getattr(runs, kind)[name] for kind in _STYLES if name in getattr(runs, kind)}
+        lines = [
+            _line(
+                run.time, np.degrees(run.rate[:, i]), colour, kind, f"rate about {axis.upper()}, "
+            )
+            for kind, run in known.items()
+            for i, (axis, colour) in enumerate(AXIS_COLOURS.items())
+        ]
+        panels.append(Panel(f"({letter}) {name}", _MILLISECONDS, "rate (deg/s)", lines))
+    return Chart("figure6", panels, columns=3 if len(panels) > 4 else 2, height=290)
+
+
+def _line(time, values, colour: str, kind: str, name: str = "", legend: bool = True) -> Line:
+    model, width, dash, opacity = _STYLES[kind]
+    return Line(1e3 * time, values, f"{name}{model}", colour, width, dash, opacity, legend=legend)
+
+
+def contact_forces(scene: Scene, runs: Runs, condition: str) -> Chart:
+    """Force on every pad that is ever touched, all models but the uncalibrated one, one
+    condition."""
+    forces = {
+        kind: (
+            found[condition].time,
+            np.linalg.norm(by_pad(scene, found[condition].pad_force), axis=2),
+        )
+        for kind in _COLOURS
+        if condition in (found := getattr(runs, kind))
+    }
+    loaded = sorted(
+        {
+            int(pad)
+            for _, force in forces.values()
+            for pad in np.flatnonzero(force.max(axis=0) > 1.0)
+        }
+    )
+    panels = [
+        Panel(
+            _pad_title(scene, pad),
+            _MILLISECONDS,
+            "force (N)",
+            [
+                Line(
+                    1e3 * time, force[:, pad], _STYLES[kind][0], _COLOURS[kind], *_STYLES[kind][1:]
+                )
+                for kind, (time, force) in forces.items()
+            ],
+        )
+        for pad in loaded
+    ]
+    return Chart("contact-forces", panels, columns=2 if len(panels) > 1 else 1, height=250)
+
+
+def _pad_title(scene: Scene, pad: int) -> str:
+    x, y, z = scene.pads[pad].position
+    return (
+        f"pad {pad + 1} ({'front' if x > 0 else 'rear'}, {'+' if y > 0 else '-'}y "
+        f"{'+' if z > 0 else '-'}z)"
+    )
+
+
+_LEDGER_COLOURS = dict(
+    zip(
+        ledger.ENTRIES,
+        (NAVY, GREY, VERMILION, AMBER, TEAL, "#7b4b94", "#8c6d46", "#b0b5bb", "#5f9ed1", "#c98bb9"),
+    )
+)
+
+
+def energy_ledgers(runs: Runs, condition: str) -> Chart:
+    """Every entry of both ledgers that is not zero, with the residual, all models but the
+    uncalibrated one, one condition."""
+    panels = []
+    for kind in _COLOURS:
+        run = getattr(runs, kind).get(condition)
+        if run is None:
+            continue
+        for title, entries, unit, factor in (
+            ("total", run.energy, "J", 1.0),
+            ("transverse", run.transverse_energy, "mJ", 1e3),
+        ):
+            largest = np.abs(entries).max()
+            lines = [
+                Line(
+                    1e3 * run.time,
+                    factor * entries[:, i],
+                    name.replace("_", " "),
+                    _LEDGER_COLOURS[name],
+                )
+                for i, name in enumerate(ledger.ENTRIES)
+                if np.abs(entries[:, i]).max() > 1e-6 * largest
+            ]
+            lines.append(
+                Line(
+                    1e3 * run.time,
+                    factor * ledger.residual(entries),
+                    "residual",
+                    "#000000",
+                    1.6,
+                    "--",
+                )
+            )
+            panels.append(
+                Panel(
+                    f"{title} ledger, {_STYLES[kind][0]}", _MILLISECONDS, f"energy ({unit})", lines
+                )
+            )
+    return Chart("energy-ledgers", panels, columns=2, height=290)
+
+
+def cost_picture(cost: dict) -> Chart:
+    """Errors of the settled rates and of the curves against wall time, one line per model, with the
+    band of the reference's own uncertainty and the front of the best; and the part of the
+    surrogate's error that a tighter tolerance can buy off."""
+    looks = (("s", "-"), ("^", ":"), ("o", "--"), ("v", "-."), ("D", "-"), ("o", ":"), ("x", ""))
+    models = dict.fromkeys(point["model"] for point in cost["points"])
+    look = {
+        model: (colour, *rest)
+        for model, colour, rest in zip(
+            models, (NAVY, GREY, AMBER, TEAL, VERMILION, NAVY, NAVY), looks
+        )
+    }
+    band = (cost["band_deg_s"], "the reference's own uncertainty") if cost["band_deg_s"] else None
+    settled = [
+        point
+        | {
+            "error_deg_s": cost["band_deg_s"]
+            if point["error_deg_s"] is None
+            else point["error_deg_s"]
+        }
+        for point in cost["points"]
+    ]
+    curves = [
+        point | {"curve_error": point["curve_error"] and 100.0 * point["curve_error"]}
+        for point in cost["points"]
+    ]
+    panels = []
+    for title, points, error, label, shaded in (
+        (
+            "settled rates, against the finest mesh",
+            settled,
+            "error_deg_s",
+            "error of the settled rates (deg/s)",
+            band,
+        ),
+        (
+            "curves of the rates, against the finest mesh",
+            curves,
+            "curve_error",
+            "rate L2 (%)",
+            None,
+        ),
+        (
+            "settled rates, of which time integration",
+            cost["points"],
+            "integration_error_deg_s",
+            "error of the settled rates (deg/s)",
+            None,
+        ),
+    ):
+        lines = [
+            _cost_line(
+                [p for p in points if p["model"] == model and (p[error] or 0.0) > 0.0],
+                error,
+                model,
+                *style,
+            )
+            for model, style in look.items()
+        ]
+        front = [_front(cost)] if shaded else []
+        shown = [line for line in front + lines if len(line.x)]
+        panels.append(Panel(title, "wall time of one run (s)", label, shown, True, shaded))
+    return Chart("cost", [panel for panel in panels if panel.lines], columns=3, height=380)
+
+
+def _front(cost: dict) -> Line:
+    """Steps from each of the best to the next: errors below the band count as the band."""
+    best = sorted(
+        (p["wall_s"], p["trusted_deg_s"])
+        for p in choice.trusted(cost["points"], cost["band_deg_s"])
+        if p["pareto"]
+    )
+    walls, errors = [wall for wall, _ in best], [error for _, error in best]
+    return Line(
+        [
+            wall
+            for pair in zip(walls, [*walls[1:], max(p["wall_s"] for p in cost["points"])])
+            for wall in pair
+        ],
+        [error for error in errors for _ in range(2)],
+        "front of the best",
+        "#000000",
+        3.0,
+        "-",
+        opacity=0.25,
+    )
+
+
+def _cost_line(
+    points: list[dict], error: str, model: str, colour: str, marker: str, dash: str
+) -> Line:
+    """One model; tolerances are labelled only where they matter, in the panel of the time
+    integration, and once for all models, numbers of modes wherever they are varied."""
+    varied = any(point["modes"] for point in points)
+    labels = [
+        str(point["modes"])
+        if varied
+        else point["numerics"].split(",")[0].removeprefix("tolerance ")
+        for point in points
+    ]
+    if (
+        model != FINITE_ELEMENTS
+        and not varied
+        and (error != "integration_error_deg_s" or model != COMPLIANT)
+    ):
+        labels = [""] * len(labels)
+    return Line(
+        [p["wall_s"] for p in points],
+        [p[error] for p in points],
+        model,
+        colour,
+        1.6,
+        dash,
+        marker=marker,
+        labels=tuple(labels),
+    )

@@ -1,0 +1,186 @@
+"""The scene as the report shows it: every value with its unit and where it comes from, and what the
+thrust really delivers."""
+
+import math
+import typing
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+from pydantic import BaseModel
+
+from tipoff.scenes import provenance as origin
+from tipoff.scenes.effects import thrust_law
+from tipoff.scenes.effects.thrust import GaussiansTable, GaussianTable
+from tipoff.scenes.scene import Scene
+from tipoff.scenes.units import registry
+from tipoff.studies.render.markup import Html, code, fold, number, table, text
+
+_SCALED = ("m", "s", "N", "Pa", "m/s", "Hz")
+_APART = {"name", "description", "conditions", "provenance", "agreement", "pads"}
+
+
+def values(table_: BaseModel, prefix: str = "") -> Iterator[tuple[str, Any, str, bool]]:
+    """(dotted key, value, SI unit, whether the file states it) of every field that holds a value
+    and is written with the scene."""
+    for name, field in type(table_).model_fields.items():
+        value, key = getattr(table_, name), f"{prefix}{name}"
+        if value is None or field.exclude or (not prefix and name in _APART):
+            continue
+        if isinstance(value, BaseModel):
+            yield from values(value, key + ".")
+        elif isinstance(value, (list, tuple)) and value and isinstance(value[0], BaseModel):
+            for index, item in enumerate(value):
+                yield from values(item, f"{key}.{index}.")
+        elif isinstance(value, dict):
+            for name_, items in value.items():
+                for index, item in enumerate(items):
+                    yield from values(item, f"{key}.{name_}.{index}.")
+        else:
+            yield key, value, _unit(field), name in table_.model_fields_set
+
+
+def _unit(field) -> str:
+    extra = field.json_schema_extra
+    return (
+        extra["unit"]
+        if isinstance(extra, dict) and "unit" in extra
+        else _unit_inside(field.annotation)
+    )
+
+
+def _unit_inside(annotation) -> str:
+    for item in getattr(annotation, "__metadata__", ()):
+        if isinstance(extra := getattr(item, "json_schema_extra", None), dict) and "unit" in extra:
+            return extra["unit"]
+    return next((unit for part in typing.get_args(annotation) if (unit := _unit_inside(part))), "")
+
+
+def readable(value: Any, unit: str) -> str:
+    """A value in a unit an engineer reads: degrees, and prefixes that avoid strings of zeros."""
+    if isinstance(value, (list, tuple)):
+        return (
+            ", ".join(readable(item, unit) for item in value)
+            if not isinstance(value[0], str)
+            else ", ".join(value)
+        )
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        return str(value)
+    if unit == "rad":
+        return f"{math.degrees(value):.6g} deg"
+    if unit == "rad/s":
+        return f"{math.degrees(value):.6g} deg/s"
+    if unit in _SCALED and value != 0.0:
+        return f"{registry.Quantity(value, unit).to_compact():.6g~P}"
+    symbol = "" if unit in ("", "dimensionless") else f" {registry.Unit(unit):~P}"
+    return Html(number(value, 6) + symbol)
+
+
+def provenance(scene: Scene, key: str, stated: bool) -> str:
+    """What the scene says of a key or of the table around it; "default" where the file leaves it
+    out."""
+    found = origin.of(scene.provenance, key)
+    return found if found is not None else "not stated" if stated else "default"
+
+
+def scene_tables(scene: Scene) -> Html:
+    """All values, the pads, the conditions, the effects that are absent."""
+    rows = []
+    for key, value, unit, stated in values(scene):
+        if key == "contact.stiffness":
+            assert scene.contact is not None
+            unit = f"N/m**{scene.contact.exponent:g}"
+        rows.append(
+            (
+                code(key),
+                Html(f"<span>{text(readable(value, unit))}</span>"),
+                provenance(scene, key, stated),
+            )
+        )
+    pads = [
+        (
+            index + 1,
+            readable(pad.position, "m"),
+            ", ".join(pad.normals),
+            f"{readable(pad.length, 'm')} x {readable(pad.width, 'm')}",
+            readable(pad.inset, "m"),
+            readable(pad.relief, "m"),
+        )
+        for index, pad in enumerate(scene.pads)
+    ]
+    conditions = [
+        (
+            name,
+            _role(scene, name),
+            "; ".join(f"{key} = {value}" for key, value in overrides.items()),
+        )
+        for name, overrides in scene.conditions.items()
+    ]
+    absent = ", ".join(scene.absent_effects()) or "none"
+    parts = [
+        table(("key", "value", "provenance"), rows),
+        fold(
+            f"{len(pads)} pads ({provenance(scene, 'pads', True)})",
+            table(("pad", "corner x, y, z", "faces", "size", "inset", "relief"), pads),
+        ),
+    ]
+    if conditions:
+        parts.append(
+            fold(
+                f"{len(conditions)} conditions",
+                table(("condition", "role", "what differs"), conditions),
+            )
+        )
+    return Html(
+        "".join(parts)
+        + f"<p>Effects this scene does not call for, absent from the compiled code: {absent}.</p>"
+    )
+
+
+def _role(scene: Scene, name: str) -> str:
+    return next(
+        (
+            role.replace("_", " ")
+            for role in ("fitted", "held_out")
+            if name in getattr(scene.agreement, role)
+        ),
+        "",
+    )
+
+
+def thrust_facts(scene: Scene) -> Html:
+    """Impulse, what the duration and a cutoff leave out, and the fit of a measured curve."""
+    record = scene.thrust.record()
+    delivered = thrust_law.impulse(record, scene.duration)
+    rows = [
+        ("impulse delivered within the scene", f"{delivered:.6g} N s"),
+        ("velocity it gives the payload alone", f"{delivered / scene.payload.mass:.5g} m/s"),
+        ("thrust at ignition", f"{thrust_law.sample(record, np.zeros(1))[0]:.4g} N"),
+    ]
+    if record.pulses is not None:
+        p = record.pulses
+        whole = float((p.peaks * p.widths).sum() * math.sqrt(2.0 * math.pi))
+        rows.append(
+            (
+                "impulse of the whole Gaussian",
+                f"{whole:.6g} N s, of which {100.0 * (1.0 - delivered / whole):.3g} % falls "
+                "before ignition, after the end, or beyond the cutoff",
+            )
+        )
+        cut = "none"
+        if isinstance(scene.thrust, (GaussianTable, GaussiansTable)) and scene.thrust.cutoff:
+            kept = "rescaled" if scene.thrust.rescale else "not rescaled"
+            cut = f"{scene.thrust.cutoff:g} widths, {kept}"
+        rows.append(("cutoff", cut))
+    if scene.thrust.kind == "measured":
+        fit = scene.thrust.fit()
+        rows.append(
+            (
+                "Gaussian fit of the measured curve",
+                f"peak {fit.peak:.5g} N at {1e3 * fit.centre:.4g} ms, width "
+                f"{1e3 * fit.width:.4g} ms, impulse {fit.impulse:.5g} N s against "
+                f"{fit.curve_impulse:.5g} N s of the curve, "
+                f"residual {100.0 * fit.relative_residual:.3g} %",
+            )
+        )
+    return table(("thrust", ""), [(name, Html(f"<span>{words}</span>")) for name, words in rows])

@@ -1,0 +1,191 @@
+"""The promises of the project, each with what was measured over every stored run, kept or
+broken."""
+
+from collections.abc import Iterable
+from typing import NamedTuple
+
+from tipoff.mechanics.promises import FINITE_ELEMENTS, RIGID
+from tipoff.studies.render.markup import Html, section, table
+
+
+class Promise(NamedTuple):
+    """A promise: what it says, worst measured value and where, limit, and whether it was kept
+    (None: not measured here)."""
+
+    text: str
+    worst: str
+    limit: str
+    kept: bool | None
+
+
+_WORDS = {
+    "linear_momentum_error": "linear momentum of the free system",
+    "angular_momentum_error": "angular momentum",
+    "quaternion_error": "norm of the quaternions",
+    "energy_error": "total energy ledger",
+    "transverse_energy_error": "transverse energy ledger",
+}
+# check, model, limit, words
+_CHECKS = tuple(
+    (check, fidelity, getattr(promised, check), f"{words}, {model}")
+    for check, words in _WORDS.items()
+    for fidelity, promised, model in (
+        ("highfi", FINITE_ELEMENTS, "finite elements"),
+        ("lowfi", RIGID, "surrogate"),
+    )
+)
+_NOT_MEASURED = (
+    "orders of accuracy are as stated",
+    "mirror image, contact order and turned frames give the same answer",
+    "same bits for any worker count and after a resume",
+)
+
+
+def promises(rows: dict[str, list[dict]], documents: dict[str, dict | None]) -> list[Promise]:
+    """All promises; ``rows`` are the condition rows of every run by fidelity."""
+    agreement, calibration = documents.get("agreement"), documents.get("calibration")
+    found: list[Promise | None] = [
+        _check(name, rows[fidelity], limit, words)
+        for name, fidelity, limit, words in _CHECKS
+        if rows[fidelity]
+    ]
+    found += [
+        _step(rows["highfi"]),
+        _surrogate_step(rows["lowfi"]),
+        _friction([*rows["highfi"], *rows["lowfi"]]),
+        _finite(rows),
+    ]
+    if agreement:
+        found.append(_same_bits(agreement["speedup"]))
+    found.append(_calibration(calibration, agreement))
+    return [item for item in found if item] + [
+        Promise(words, "not measured by this report", "", None) for words in _NOT_MEASURED
+    ]
+
+
+def _check(name: str, rows: list[dict], limit: float, words: str) -> Promise:
+    worst, where = _worst(rows, name)
+    return Promise(
+        words,
+        "not reported" if worst is None else f"{worst:.2e} ({where})",
+        f"{limit:g}",
+        worst is not None and worst <= limit,
+    )
+
+
+def _worst(rows: Iterable[dict], name: str) -> tuple[float | None, str]:
+    known = [
+        (row["checks"][name], row["condition"])
+        for row in rows
+        if row["checks"].get(name) is not None
+    ]
+    return max(known) if known else (None, "")
+
+
+def _step(rows: list[dict]) -> Promise | None:
+    known = [
+        (row["cost"]["dt_s"] / row["cost"]["dt_limit_s"], row)
+        for row in rows
+        if row["cost"].get("dt_limit_s")
+    ]
+    if not known:
+        return None
+    ratio, row = max(known, key=lambda pair: pair[0])
+    return Promise(
+        "no step above the critical one, finite elements",
+        f"{1e9 * row['cost']['dt_s']:.4g} ns of {1e9 * row['cost']['dt_limit_s']:.4g} ns, "
+        f"{ratio:.3f} ({row['condition']})",
+        f"{row['numerics'].get('safety', 1.0):g} of the limit",
+        ratio <= 1.0,
+    )
+
+
+def _surrogate_step(rows: list[dict]) -> Promise | None:
+    known = [
+        (row["cost"]["limit_used"], row["condition"]) for row in rows if "limit_used" in row["cost"]
+    ]
+    if not known:
+        return None
+    used, where = max(known)
+    return Promise(
+        "no step above the critical one, surrogate",
+        f"{used:.3f} of the limit ({where})",
+        "1",
+        used <= 1.0 + 1e-9,
+    )
+
+
+def _friction(rows: list[dict]) -> Promise | None:
+    worst, where = _worst(rows, "friction_power_max")
+    return (
+        None
+        if worst is None
+        else Promise(
+            "friction never gives energy back",
+            f"{worst + 0.0:.2e} W ({where})",
+            "0 W",
+            worst <= 0.0,
+        )
+    )
+
+
+def _finite(rows: dict[str, list[dict]]) -> Promise:
+    every = [row for found in rows.values() for row in found]
+    bad = [row["condition"] for row in every if row["status"] in ("diverged", "refused")]
+    return Promise(
+        "no NaN leaves the program; every run asked for is accounted for",
+        f"{len(every) - len(bad)} runs ended well, {len(bad)} diverged or were refused, of "
+        f"{len(every)}",
+        "all",
+        True,
+    )
+
+
+def _same_bits(speedup: dict) -> Promise | None:
+    same = speedup.get("repeats_identical")
+    return (
+        None
+        if same is None
+        else Promise(
+            "same input, same bits",
+            f"{speedup['highfi_repeats']} reference and "
+            f"{speedup['lowfi_repeats']} surrogate repeats compared",
+            "identical",
+            same,
+        )
+    )
+
+
+def _calibration(calibration: dict | None, agreement: dict | None) -> Promise | None:
+    if not calibration:
+        return None
+    told = (
+        bool(calibration["information"]) and agreement is not None and bool(agreement["held_out"])
+    )
+    return Promise(
+        "calibration reports its information matrix and weak directions; agreement is given on "
+        "held-out conditions",
+        f"{len(calibration['weak_directions'])} weak directions named, "
+        f"{len(agreement['held_out']) if agreement else 0} held-out conditions",
+        "",
+        told,
+    )
+
+
+def render(found: list[Promise]) -> Html:
+    """The table of promises."""
+    rows = [
+        (
+            item.text,
+            item.worst,
+            item.limit,
+            {True: "kept", False: "BROKEN", None: "not measured"}[item.kept],
+        )
+        for item in found
+    ]
+    kinds = [{True: "good", False: "bad", None: ""}[item.kept] for item in found]
+    return section(
+        "promises",
+        "Promises",
+        table(("promise", "worst measured (where)", "limit", ""), rows, kinds=kinds),
+    )

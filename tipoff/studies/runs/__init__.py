@@ -1,0 +1,1 @@
+"""Every condition of a scene in either model, and single runs."""

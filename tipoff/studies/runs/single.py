@@ -1,0 +1,120 @@
+"""One run of one condition in one model, its outcome printed."""
+
+from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS, SPRINGS
+from tipoff.studies.agreement import kept
+from tipoff.studies.agreement import stage as compare
+from tipoff.studies.calibration.files import constants
+from tipoff.studies.core import models, rail_compliance, words
+from tipoff.studies.core.progress import say
+from tipoff.studies.core.store import Run
+from tipoff.studies.core.study import FAILED, Study, StudyError
+from tipoff.studies.cost import choice
+from tipoff.studies.cost import stage as cost
+from tipoff.studies.runs.stage import row
+
+
+def run(
+    study: Study, condition: str, asked: models.Asked = models.Asked(), quiet: bool = False
+) -> dict:
+    """The run's result as a stage would hold it; prints it unless ``quiet``. Raises SceneError for
+    an unreadable calibration and for options of another model, StudyError where no model is named
+    and the agreement table rejects the default on ``condition``."""
+    fitted, scene = constants(asked.calibration), study.condition(condition)
+    if asked.model == FINITE_ELEMENTS:
+        return _made(study, condition, study.highfi(condition), quiet)
+    if asked.model == SPRINGS:
+        return _made(study, condition, study.lowfi(condition, fitted), quiet)
+    models.require_accepted(study, asked.name, condition)
+    # checks the number before the rail compliance is found
+    vibrating = study.lowfi(condition, modes=asked.modes or 0)
+    if scene.contact is None:
+        return _made(study, condition, vibrating, quiet)
+    found = rail_compliance.load(study, scene, judged=False)
+    return _made(
+        study, condition, study.lowfi(condition, walls=found, modes=asked.modes or 0), quiet
+    )
+
+
+def chosen(
+    study: Study, condition: str, accuracy: float | None, budget: float | None, quiet: bool = False
+) -> dict:
+    """The same in the model that measured cost calls for; ``chosen`` says which and why. Raises
+    StudyError when none fits, or when no cost was measured for this scene and this code."""
+    whole = study.unrestricted()  # results are those of all conditions, whichever one is asked for
+    measured = cost.stored(whole)
+    if measured is None:
+        raise StudyError(
+            f"no cost was measured for this scene with this code: run tipoff cost --scene "
+            f"{study.scene.name} first"
+        )
+    point = choice.choose(measured, condition, compare.stored(whole), accuracy, budget)
+    say(point["why"])
+    if point["rung"] == "highfi":
+        asked = study.highfi(condition, element_size=point["setting"])
+    else:
+        rung = next(
+            rung for rung in cost.surrogates(whole, [condition]) if rung.name == point["rung"]
+        )
+        rung = rung if point["modes"] is None else rung._replace(modes=point["modes"])
+        asked = rung.ask(study, condition, relative_tolerance=point["setting"])
+    return _made(study, condition, asked, quiet) | {"chosen": point}
+
+
+def _made(study: Study, condition: str, asked: Run, quiet: bool) -> dict:
+    found = study.store.get(asked)
+    calibrated, modes = asked.calibration is not None, getattr(asked.numerics, "modes", 0)
+    result = row(condition, found, study.relative(study.store.path(asked)))
+    result["agreement"] = kept.words(study, asked.model, condition, calibrated, modes)
+    if not quiet:
+        print("\n".join(lines(result, model(asked), study)))
+    return result | {
+        "failed": [f"{condition}: {found.status}: {found.message}"]
+        if found.status in FAILED
+        else []
+    }
+
+
+def model(asked: Run) -> str:
+    """What a run is made with, in words."""
+    if asked.fidelity == "highfi":
+        return f"{FINITE_ELEMENTS}, {1e3 * asked.numerics.element_size:g} mm"
+    found, modes = words.model(asked.scene, asked.calibration, asked.walls), asked.numerics.modes
+    return found + (f", {modes} modes of each rail" if modes and asked.model == COMPLIANT else "")
+
+
+def lines(result: dict, made_with: str, study: Study) -> list[str]:
+    """The outcome in words and units."""
+    said = [
+        f"{study.scene.name} / {result['condition']}, model {made_with}: {result['status']}"
+        + (f" ({result['message']})" if result["message"] else "")
+    ]
+    if result["exit_time_s"] is not None:
+        said.append(f"  exit          {1e3 * result['exit_time_s']:.4g} ms after ignition")
+    if settled := result["settled"]:
+        said.append(
+            "  velocity      "
+            + ", ".join(f"{value:.5g}" for value in settled["velocity_m_s"])
+            + " m/s (x, y, z)"
+        )
+        said.append(
+            "  rate          "
+            + ", ".join(f"{value:.4g}" for value in settled["rate_deg_s"])
+            + " deg/s (x, y, z)"
+        )
+        said.append(
+            f"  direction     {settled['direction_error_deg']:.4g} deg off axis, "
+            f"{1e3 * settled['lateral_velocity_m_s']:.4g} mm/s across"
+        )
+    if result.get("peak_stress_pa") is not None:
+        place = ", ".join(f"{1e3 * value:.4g}" for value in result["peak_stress_place_m"])
+        said.append(
+            f"  peak stress   {1e-6 * result['peak_stress_pa']:.4g} MPa (von Mises) at x, y, z = "
+            f"{place} mm, rail "
+            f"{result['peak_stress_rail']}, {1e3 * result['peak_stress_time_s']:.4g} ms after "
+            f"ignition"
+        )
+        said += [f"  warning       {words}" for words in result["warnings"]]
+    said.append(f"  agreement     {result['agreement']}")
+    said.append(f"  took          {result['wall_s']:.3g} s, {result['steps']} steps")
+    said.append(f"  trajectory    {study.path(result['trajectory'])}")
+    return said

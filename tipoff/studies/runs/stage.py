@@ -1,0 +1,81 @@
+"""Stages ``highfi`` and ``lowfi``: every condition of the scene in one fidelity, the surrogate on
+compliant contact."""
+
+import math
+from pathlib import Path
+
+from tipoff.mechanics.models import FINITE_ELEMENTS
+from tipoff.mechanics.trajectory import Trajectory
+from tipoff.studies.convergence import stresses
+from tipoff.studies.core import rail_compliance
+from tipoff.studies.core.store import Run
+from tipoff.studies.core.study import FAILED, Study
+
+
+def requests(study: Study, fidelity: str) -> dict[str, Run]:
+    """The run of each condition, by name."""
+    if fidelity == "highfi":
+        return {name: study.highfi(name) for name in study.conditions}
+    under = rail_compliance.under(study, study.conditions)
+    return {name: study.lowfi(name, walls=under[name]) for name in study.conditions}
+
+
+def run(study: Study, fidelity: str) -> dict:
+    """``{"conditions": [...]}``; ``failed`` names conditions that diverged or were refused."""
+    asked = requests(study, fidelity)
+
+    def make() -> tuple[dict, list[Path]]:
+        runs = dict(zip(asked, study.store.fill(fidelity, list(asked.values()))))
+        rows = [
+            row(name, runs[name], study.relative(study.store.path(asked[name]))) for name in asked
+        ]
+        failed = [
+            f"{name}: {found.status}: {found.message}"
+            for name, found in runs.items()
+            if found.status in FAILED
+        ]
+        return {"conditions": rows, "failed": failed}, [
+            study.store.path(item) for item in asked.values()
+        ]
+
+    return study.stage(fidelity, study.key(__name__, [item.key for item in asked.values()]), make)
+
+
+def row(name: str, run: Trajectory, path: str) -> dict:
+    """One condition as result files hold it; a run that did not settle has ``settled`` null."""
+    result, cost, checks = run.outcome, run.cost, run.checks
+    settled = None
+    if result.rate is not None:
+        assert result.direction_error is not None  # all of them are known, or none
+        settled = {
+            "velocity_m_s": result.velocity,
+            "rate_deg_s": [math.degrees(rate) for rate in result.rate],
+            "lateral_velocity_m_s": result.lateral_velocity,
+            "direction_error_deg": math.degrees(result.direction_error),
+        }
+    found = {
+        "condition": name,
+        "model": run.model,
+        "status": run.status,
+        "message": run.message,
+        "exit_time_s": result.exit_time,
+        "wall_s": cost["wall_s"],
+        "compile_s": cost["compile_s"],
+        "steps": cost["steps"],
+        "dt_s": cost["dt_s"],
+        "energy_error": checks.get("energy_error"),
+        "transverse_energy_error": checks.get("transverse_energy_error"),
+        "linear_momentum_error": checks.get("linear_momentum_error"),
+        "angular_momentum_error": checks.get("angular_momentum_error"),
+        "settled": settled,
+        "trajectory": path,
+        "checks": checks,
+        "cost": cost,
+        "numerics": run.numerics,
+    }
+    if run.model == FINITE_ELEMENTS:
+        found |= {
+            "elements": cost["elements"],
+            "ns_per_element_step": cost["ns_per_element_step"],
+        } | stresses.facts(run)
+    return found

@@ -1,0 +1,81 @@
+"""``tipoff sensitivity``."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from tipoff.studies.commands.asked import guarded, study_of
+from tipoff.studies.commands.options import (
+    ElementSize,
+    Json,
+    Out,
+    SceneName,
+    Set,
+    Surrogate,
+    Workers,
+)
+
+
+def add(app: typer.Typer) -> None:
+    """Put the command under ``app``."""
+    app.command()(sensitivity)
+
+
+def sensitivity(
+    scene: SceneName = "reference",
+    out: Out = Path("out"),
+    set_: Set = None,
+    vary: Annotated[
+        Path | None,
+        typer.Option(
+            "--vary",
+            metavar="FILE",
+            help="What is not certain, as a .toml file; default: "
+            "studies/sensitivity/tolerances.toml.",
+        ),
+    ] = None,
+    points: Annotated[
+        int,
+        typer.Option(
+            "--points",
+            metavar="N",
+            help="Base points of the Sobol' indices, a power "
+            "of two; each takes one case an input, and two.",
+        ),
+    ] = 1024,
+    seed: Annotated[
+        int, typer.Option("--seed", metavar="N", help="Seed of the points and of the bootstrap.")
+    ] = 1,
+    model: Surrogate = None,
+    element_size: ElementSize = None,
+    workers: Workers = None,
+    json_: Json = False,
+) -> None:
+    """Which numbers the answer depends on: contact constants as in the paper's Table 2, and Sobol'
+    indices; writes sensitivity.json.
+
+    A file of tolerances holds a distribution for the number itself, or for a factor of the number
+    that the surrogate has:
+
+      \\[factor."friction.dynamic"]
+      distribution = "uniform"
+      low = "0.75"
+      high = "1.25"
+
+      \\[vary."thrust_offset.misalignment.y"]      y and z are components of an offset
+      distribution = "normal"
+      mean = "0 deg"
+      sd = "0.1 deg"
+    """
+
+    def work() -> dict:
+        from tipoff.studies.sensitivity import stage
+
+        study = study_of(scene, out, set_, element_size=element_size, workers=workers)
+        tolerances = None if vary is None else str(vary)
+        return stage.run(study, stage.Asked(tolerances, points, seed, model and model.value))
+
+    found = guarded(work, json_)
+    if not json_:
+        print("\n".join(found["summary"]))

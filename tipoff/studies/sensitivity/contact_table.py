@@ -1,0 +1,167 @@
+"""Contact constants moved one at a time about those of a surrogate, laid out like Table 2 of the
+paper (``studies.published``).
+
+A deviation is absolute, w - w0, and relative, (w - w0)/w0; the relative one says nothing where w0
+itself is nearly zero, which here means below a twentieth of the total rate of its condition. One
+micrometre of clearance stands beside them: no contact constant needs to be known better than that.
+"""
+
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from tipoff.mechanics.models import COMPLIANT
+from tipoff.scenes.scene import Scene
+from tipoff.studies import published
+
+# Of Table 2: 66,000 and 74,000 about 70,000; 50 and 70 about 60; 0.25 and 0.35 about 0.30. The
+# penalty is what compliant contact has.
+_STIFFNESS, _DAMPING = 4.0 / 70.0, 10.0 / 60.0
+_MOVED = {
+    "stiffness": ("k", _STIFFNESS),
+    "damping": ("c", _DAMPING),
+    "damping_depth": ("d", _DAMPING),
+    "dissipation": ("a", _DAMPING),
+}
+_COMPLIANT = {"penalty": ("penalty", _STIFFNESS)}
+CLEARANCE = 1e-6  # m
+_NEARLY_ZERO = 0.05
+
+
+class Change(NamedTuple):
+    """A constant that is moved: its ``symbol``, whether it is ``raised`` (None: nothing is
+    changed), by which ``share``, and overrides."""
+
+    symbol: str
+    raised: bool | None
+    share: float
+    overrides: dict[str, float]
+
+
+def changes(scene: Scene, model: str) -> list[Change]:
+    """What is moved in ``scene``, which has contact: nothing first, then each constant of the
+    contact of ``model`` down and up, then the clearance."""
+    assert scene.contact is not None
+    found = [Change("baseline", None, 0.0, {})]
+    for name, (symbol, share) in (_COMPLIANT if model == COMPLIANT else _MOVED).items():
+        if (value := getattr(scene.contact, name, None)) is not None:
+            found += [
+                Change(symbol, raised, share, {f"contact.{name}": value * (1.0 + sign * share)})
+                for raised, sign in ((False, -1.0), (True, 1.0))
+            ]
+    share = CLEARANCE / scene.contact.clearance if scene.contact.clearance else 0.0
+    return [
+        *found,
+        Change(
+            "clearance", True, share, {"contact.clearance": scene.contact.clearance + CLEARANCE}
+        ),
+    ]
+
+
+def conditions(scene: Scene) -> list[str]:
+    """Those of Table 2 where the scene has them, else the fitted ones, else all it has."""
+    names = [name for name in published.CONDITIONS if name in scene.conditions]
+    return (
+        names
+        if len(names) == len(published.CONDITIONS)
+        else list(scene.agreement.fitted or scene.conditions)
+    )
+
+
+def deviations(baseline: Sequence[float], rates: Sequence[float]) -> dict:
+    """Absolute (deg/s) and relative deviations by axis; relative ones None where the rate is nearly
+    zero at the ``baseline``."""
+    nominal = np.asarray(baseline, dtype=float)
+    moved = np.asarray(rates, dtype=float) - nominal
+    told = (abs(nominal) >= _NEARLY_ZERO * np.linalg.norm(nominal)) & (nominal != 0.0)
+    return {
+        "absolute_deg_s": moved.tolist(),
+        "relative": [float(d / w) if ok else None for d, w, ok in zip(moved, nominal, told)],
+    }
+
+
+def rows(
+    condition: str,
+    changed: Sequence[Change],
+    rates: np.ndarray,
+    others: Mapping[str, np.ndarray] | None = None,
+) -> list[dict]:
+    """Rows of the table for one condition; ``rates`` (n,3) in deg/s, NaN where a case did not
+    settle, and any ``others`` (n,) by name: their ``values``, and by how much each ``moved``."""
+    found, columns = [], others or {}
+    for place, (change, rate) in enumerate(zip(changed, rates)):
+        settled = bool(np.isfinite(rate).all() and np.isfinite(rates[0]).all())
+        values = {name: float(column[place]) for name, column in columns.items()}
+        found.append(
+            {
+                "condition": condition,
+                "symbol": change.symbol,
+                "raised": change.raised,
+                "share": change.share,
+                "value_si": next(iter(change.overrides.values()), None),
+                "rate_deg_s": rate.tolist() if settled else None,
+                **(
+                    deviations(rates[0], rate)
+                    if settled
+                    else {"absolute_deg_s": None, "relative": None}
+                ),
+                "values": values if settled else None,
+                "moved": {name: value - float(columns[name][0]) for name, value in values.items()}
+                if settled
+                else None,
+            }
+        )
+    return found
+
+
+def of_paper() -> list[dict]:
+    """Table 2 of the paper with the deviations that follow from its rates."""
+    names = {number: name for name, number in published.CONDITIONS.items()}
+    found = []
+    baseline: tuple[float, float, float] | None = None
+    for row in published.table_2():
+        baseline = row.rates if row.raised is None else baseline
+        assert baseline is not None  # the first row of each condition
+        found.append(
+            {
+                "condition": names[row.condition],
+                "symbol": row.symbol,
+                "raised": row.raised,
+                "rate_deg_s": list(row.rates),
+                **deviations(baseline, row.rates),
+            }
+        )
+    return found
+
+
+def largest(table: Sequence[dict], symbols: Sequence[str] | None = None) -> dict:
+    """Largest deviations by axis over the rows of a table, or over those of ``symbols``: absolute
+    (deg/s) and relative."""
+    moved = [
+        row
+        for row in table
+        if row["raised"] is not None
+        and row["rate_deg_s"] is not None
+        and (row["symbol"] in symbols if symbols else row["symbol"] != "clearance")
+    ]
+
+    def most(name: str) -> list[float | None]:
+        columns = [
+            [abs(row[name][axis]) for row in moved if row[name][axis] is not None]
+            for axis in range(3)
+        ]
+        return [max(column, default=None) for column in columns]
+
+    return {"absolute_deg_s": most("absolute_deg_s"), "relative": most("relative")}
+
+
+def most_moved(table: Sequence[dict]) -> dict[str, float]:
+    """By how much each quantity moves at most over the rows of a table, the clearance left out; of
+    none where no row settled."""
+    moved = [
+        row["moved"]
+        for row in table
+        if row["moved"] and row["raised"] is not None and row["symbol"] != "clearance"
+    ]
+    return {name: max(abs(row[name]) for row in moved) for name in (moved[0] if moved else ())}

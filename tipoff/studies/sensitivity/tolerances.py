@@ -1,0 +1,242 @@
+"""What is not certain about a launcher, as a file says it (``tolerances.toml`` here), and from
+points of the unit cube to cases.
+
+Each key has a distribution of ``scenes.distributions``. Under ``[vary]`` it is that of the number
+itself, under ``[factor]`` that of a factor of the number the surrogate has. An offset that a scene
+holds as size r and angle a may be given by its components::
+
+    misalignment  y = r cos a, z = r sin a
+    eccentricity  y = r sin a, z = r cos a    (angles as in ``scenes.effects``)
+
+so that independent normal components stand for a direction about which nothing is known. Where the
+exponent of a contact law varies, the force at the reference penetration p_r of the calibration
+stays: k' = k p_r^(e - e'). Friction at rest goes along with that of sliding, unless it has a
+distribution of its own.
+"""
+
+from functools import reduce
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from pydantic import ValidationError
+
+from tipoff.calibration.parameters import REFERENCE_PENETRATION
+from tipoff.files import content_hash
+from tipoff.mechanics.models import COMPLIANT, SPRINGS
+from tipoff.scenes import overrides as keys
+from tipoff.scenes import reading
+from tipoff.scenes.distributions import BY_NAME, Distribution
+from tipoff.scenes.effects.contact import LinearTable
+from tipoff.scenes.faults import Fault, SceneError, faults_of
+from tipoff.scenes.scene import Scene
+from tipoff.studies.populations.derived import friction
+
+DEFAULT = Path(__file__).with_name("tolerances.toml")
+_KINDS = ("vary", "factor")
+_SPRINGS = (
+    "contact.stiffness",
+    "contact.exponent",
+    "contact.damping",
+    "contact.damping_depth",
+    "contact.dissipation",
+)
+
+
+class Input(NamedTuple):
+    """A number that is not certain: its dotted key, whether its distribution is that of a factor,
+    the number in the scene or None, unit (SI)."""
+
+    key: str
+    is_factor: bool
+    distribution: Distribution
+    nominal: float | None
+    unit: str
+
+    def values(self, probabilities: np.ndarray) -> np.ndarray:
+        """Numbers (SI) at ``probabilities``, any shape."""
+        drawn = self.distribution.ppf(probabilities)
+        return drawn * self.nominal if self.is_factor else drawn
+
+
+class Tolerances(NamedTuple):
+    """Inputs that apply to a ``scene``, and under the keys of those that do not the reason."""
+
+    scene: Scene
+    inputs: list[Input]
+    left_out: dict[str, str]
+
+    def rows(self, probabilities: np.ndarray) -> list[dict[str, float]]:
+        """Overrides (SI) of the cases at points (n, d) of the open unit cube."""
+        found = {
+            item.key: item.values(column) for item, column in zip(self.inputs, probabilities.T)
+        }
+        if "contact.exponent" in found:
+            contact = self.scene.contact
+            assert contact is not None  # without it the exponent is left out
+            stiffness = found.get("contact.stiffness", contact.stiffness)
+            found["contact.stiffness"] = stiffness * REFERENCE_PENETRATION ** (
+                contact.exponent - found["contact.exponent"]
+            )
+        if "friction.dynamic" in found and "friction.static" not in found:
+            assert self.scene.friction is not None  # without it the coefficient is left out
+            if self.scene.friction.dynamic > 0.0:
+                found |= friction(self.scene, found["friction.dynamic"])
+        polar = _polar(found)
+        return [
+            dict(zip(polar, values))
+            for values in zip(*(column.tolist() for column in polar.values()))
+        ]
+
+
+def digest(path: str | Path) -> str:
+    """Hexadecimal digest of what a file says. Raises SceneError where it cannot be read."""
+    return content_hash(reading.toml(Path(path), str(path)))
+
+
+def load(path: str | Path, scene: Scene, model: str = COMPLIANT) -> Tolerances:
+    """What a file says of ``scene``, for the surrogate of the name ``model``. Raises SceneError
+    listing every fault."""
+    raw, source = reading.toml(Path(path), str(path)), str(path)
+    found: list[Input] = []
+    left_out: dict[str, str] = {}
+    known = ("description", *_KINDS)
+    faults = [
+        Fault(source, key, "no such key", f"one of {', '.join(known)}")
+        for key in raw
+        if key not in known
+    ]
+    for kind, key, table in _tables(raw, source, faults):
+        item = _input(source, kind, key, table, scene, faults)
+        if item is None:
+            continue
+        if key in {other.key for other in found} | left_out.keys():
+            faults.append(
+                Fault(source, f"{kind}.{key}", "a second distribution", "one for each key")
+            )
+        elif reason := _idle(item, scene, model):
+            left_out[key] = reason
+        else:
+            found.append(item)
+    if not (found or faults):
+        faults.append(
+            Fault(
+                source,
+                "vary, factor",
+                "nothing that the scene has",
+                "at least one number that varies",
+            )
+        )
+    if faults:
+        raise SceneError(faults)
+    tolerances = Tolerances(scene, found, left_out)
+    try:
+        # finds what no single key shows
+        scene.replace(tolerances.rows(np.full((1, len(found)), 0.5))[0])
+    except SceneError as error:
+        raise SceneError(
+            [fault._replace(source=f"{source}, medians") for fault in error.faults]
+        ) from None
+    return tolerances
+
+
+def _tables(raw: dict, source: str, faults: list[Fault]) -> list[tuple[str, str, dict[str, Any]]]:
+    """(kind, key, table) of every distribution, whether the file quotes the key or nests it."""
+    found: dict[tuple[str, str], dict[str, Any]] = {}
+    for kind in _KINDS:
+        if not isinstance(raw.get(kind, {}), dict):
+            faults.append(Fault(source, kind, repr(raw[kind]), "a table"))
+            continue
+        for dotted, value in keys.dotted(raw.get(kind, {})):
+            key, _, name = dotted.rpartition(".")
+            found.setdefault((kind, key), {})[name] = value
+    return [(*place, table) for place, table in found.items()]
+
+
+def _input(
+    source: str, kind: str, key: str, table: dict, scene: Scene, faults: list[Fault]
+) -> Input | None:
+    place = f"{kind}.{key}"
+    unit = keys.unit(Scene, _stored(key))
+    if unit is None:
+        faults.append(Fault(source, place, repr(table), "a key that holds a number"))
+        return None
+    if (name := table.get("distribution")) not in BY_NAME:
+        faults.append(
+            Fault(source, f"{place}.distribution", repr(name), f"one of {', '.join(BY_NAME)}")
+        )
+        return None
+    context = {"unit": "dimensionless" if kind == "factor" else unit, "bare_numbers_are_si": False}
+    try:
+        distribution = BY_NAME[name].model_validate(table, context=context)
+    except ValidationError as error:
+        faults += [fault._replace(key=f"{place}.{fault.key}") for fault in faults_of(error, source)]
+        return None
+    return Input(key, kind == "factor", distribution, _number(scene, key), unit)
+
+
+def _idle(item: Input, scene: Scene, model: str) -> str | None:
+    """Why a number does not vary in this scene, if so."""
+    table = item.key.partition(".")[0]
+    if table in ("contact", "friction") and getattr(scene, table) is None:
+        return f"the scene has no {table}"
+    if model == COMPLIANT and item.key in _SPRINGS:
+        return "compliant contact has no such constant"
+    if model == SPRINGS and item.key == "contact.penalty":
+        return "only compliant contact uses it"
+    if item.key == "contact.exponent" and isinstance(scene.contact, LinearTable):
+        return "the law is linear"
+    if item.nominal is None and (item.is_factor or table in ("contact", "friction", "thrust")):
+        return "the scene has no such number"
+    return (
+        "the scene's number is zero, and so is any multiple of it"
+        if item.is_factor and item.nominal == 0.0
+        else None
+    )
+
+
+def _number(scene: Scene, key: str) -> float | None:
+    """The number under a dotted key, or None where the scene holds none."""
+
+    def inside(table: Any, part: str) -> Any:
+        if isinstance(table, tuple):
+            return table[int(part)] if part.isdigit() and int(part) < len(table) else None
+        return getattr(table, part, None)
+
+    whole: Any = scene
+    return reduce(inside, key.split("."), whole)
+
+
+def _component(key: str) -> tuple[str, str] | None:
+    """Table of an offset and y or z, for a key that is a component of one."""
+    table, _, last = key.rpartition(".")
+    return (
+        (table, last)
+        if table.endswith(("misalignment", "eccentricity")) and last in ("y", "z")
+        else None
+    )
+
+
+def _stored(key: str) -> str:
+    """The key under which a scene holds a number of the same unit."""
+    component = _component(key)
+    return f"{component[0]}.axial" if component else key
+
+
+def _polar(columns: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """The same with components of offsets turned into sizes and angles."""
+    found: dict[str, np.ndarray] = {}
+    offsets: dict[str, dict[str, np.ndarray]] = {}
+    for key, column in columns.items():
+        if component := _component(key):
+            offsets.setdefault(component[0], {})[component[1]] = column
+        else:
+            found[key] = column
+    for table, parts in offsets.items():
+        nothing = np.zeros_like(next(iter(parts.values())))
+        y, z = parts.get("y", nothing), parts.get("z", nothing)
+        found[f"{table}.axial"] = np.hypot(y, z)
+        found[f"{table}.radial"] = (
+            np.arctan2(z, y) if table.endswith("misalignment") else np.arctan2(y, z)
+        )
+    return found

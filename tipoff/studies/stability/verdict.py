@@ -1,0 +1,77 @@
+"""The verdict on a hard case: what was measured, beside what the weaker method gives."""
+
+import math
+from typing import NamedTuple
+
+from tipoff.mechanics.trajectory import Trajectory
+
+
+class Stability(NamedTuple):
+    """``largest_step_s``: the proven limit at its smallest, which no step passed (rigid surrogate),
+    or the step taken (reference); ``critical_step_s``: 2 / omega of the linearised case, beyond
+    which central differences grow; ``energy_drift``: largest residual of the total ledger over its
+    scale. None where nothing touches or vibrates."""
+
+    largest_step_s: float | None = None
+    critical_step_s: float | None = None
+    energy_drift: float | None = None
+
+
+class Verdict(NamedTuple):
+    """One line of the stability table. ``figure`` is what was measured against ``limit``
+    (dimensionless unless ``measure`` says otherwise), ``control_figure`` the same measure of the
+    weaker method; infinite values are given as None. The last three are those of ``Stability``."""
+
+    name: str
+    fidelity: str
+    measure: str
+    figure: float | None
+    limit: float
+    held: bool
+    control: str
+    control_figure: float | None
+    control_failed: bool
+    note: str = ""
+    largest_step_s: float | None = None
+    critical_step_s: float | None = None
+    energy_drift: float | None = None
+
+
+def stability(run: Trajectory, stiffness: float = 0.0, mass: float = 1.0) -> Stability:
+    """What ``run`` says of itself, beside 2 sqrt(m / k) of a ``mass`` (kg) on the steepest
+    ``stiffness`` (N/m) it meets."""
+    critical = 2.0 * math.sqrt(mass / stiffness) if stiffness else None
+    return Stability(run.cost.get("dt_limit_s"), critical, run.checks["energy_error"])
+
+
+def verdict(
+    name: str,
+    fidelity: str,
+    measure: str,
+    figure: float,
+    limit: float,
+    control: str,
+    control_figure: float,
+    note: str = "",
+    holds: bool = True,
+    stable: Stability = Stability(),
+) -> Verdict:
+    """A verdict from the two figures; ``holds`` adds conditions that are not numbers (a refusal, a
+    status)."""
+    return Verdict(
+        name,
+        fidelity,
+        measure,
+        _finite(figure),
+        limit,
+        bool(holds and figure <= limit),
+        control,
+        _finite(control_figure),
+        not bool(control_figure <= limit),
+        note,
+        *stable,
+    )
+
+
+def _finite(value: float) -> float | None:
+    return float(value) if abs(value) < float("inf") else None

@@ -1,0 +1,73 @@
+"""The errors that section 3 of the paper sweeps, one at a time, over size and direction, and what
+each would do to a free payload.
+
+A free payload of inertia I leaves with w = I^-1 L, where L = J (r x f) is the moment impulse of
+``scenes.moments``. On the reference scene that is 26 deg/s per millimetre of arm: the line that the
+rail bends. Gyroscopic moments are left out: they are quadratic in the rates.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from tipoff.lowfi.ensemble.rows import Listed, numbers
+from tipoff.mechanics import model as models
+from tipoff.scenes import moments
+from tipoff.scenes.effects import thrust
+from tipoff.scenes.scene import Scene
+
+
+class Factor(NamedTuple):
+    """A swept error: ``name``, words for it, dotted table of its size ``axial`` and direction
+    ``radial``, its unit, and that in SI."""
+
+    name: str
+    label: str
+    table: str
+    unit: str
+    si: float
+
+    def rows(self, sizes: np.ndarray, angles: np.ndarray) -> list[dict[str, float]]:
+        """Overrides (SI) of every size (in ``unit``) at every angle (rad), sizes outermost."""
+        return [
+            {f"{self.table}.axial": float(size) * self.si, f"{self.table}.radial": float(angle)}
+            for size in sizes
+            for angle in angles
+        ]
+
+
+FACTORS = (
+    Factor(
+        "misalignment", "thrust misalignment", "thrust_offset.misalignment", "deg", np.pi / 180.0
+    ),
+    Factor("thrust_eccentricity", "thrust eccentricity", "thrust_offset.eccentricity", "mm", 1e-3),
+    Factor("mass_eccentricity", "mass eccentricity", "mass_offset.eccentricity", "mm", 1e-3),
+)
+SIZES = np.arange(1, 11) / 10.0  # deg or mm
+
+
+def angles(count: int) -> np.ndarray:
+    """``count`` directions (rad) around the axis, the first along the zero of the scene's angle."""
+    return np.arange(count) * (2.0 * np.pi / count)
+
+
+def alone(scene: Scene) -> Scene:
+    """The scene with none of these errors."""
+    return scene.replace({"thrust_offset": None, "mass_offset": None})
+
+
+def cases(directions: np.ndarray) -> Listed:
+    """Every case of every factor, in their order, sizes outermost, as one list."""
+    return Listed([row for factor in FACTORS for row in factor.rows(SIZES, directions)])
+
+
+def free_rates(scene: Scene, rows: list[dict[str, float]]) -> np.ndarray:
+    """Rates (n,3) in rad/s that ``rows`` of overrides, those of a factor, would give a free payload
+    of ``scene``."""
+    table = Listed(rows)
+    inputs = dict(zip(table.keys, numbers(table.keys, rows).T))
+    impulse = float(thrust.impulse(scene.thrust.record(), scene.duration))
+    return (
+        moments.moment_impulses(scene, inputs, impulse)
+        @ models.build(scene).payload.inverse_inertia.T
+    )

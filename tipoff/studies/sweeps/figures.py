@@ -1,0 +1,283 @@
+"""Figures of the sweeps: rates over size and direction as in the paper's Figures 11, 13 and 15,
+where growth ends, and polar maps."""
+
+import numpy as np
+
+from tipoff.studies.render.chart import (
+    AMBER,
+    AXIS_COLOURS,
+    GREY,
+    NAVY,
+    TEAL,
+    Chart,
+    Line,
+    Panel,
+    Picture,
+)
+
+_LOOKS = {
+    "rate_x_deg_s": ("x", "o", "-."),
+    "rate_y_deg_s": ("y", "s", "-"),
+    "rate_z_deg_s": ("z", "^", "--"),
+}
+_APART = 0.018  # of the axis, so that points of three axes at one size do not hide each other
+_WALLS = {"-y": NAVY, "+y": TEAL, "-z": AMBER, "+z": "#dfe3e8"}  # darker to lighter
+_FIGURES = {"misalignment": 11, "thrust_eccentricity": 13, "mass_eccentricity": 15}
+_ANGLE = {
+    "misalignment": "phi, from +y towards +z",
+    "thrust_eccentricity": "alpha, from +z towards +y",
+    "mass_eccentricity": "beta, from +z towards +y",
+}
+_GROWTH = (
+    "Largest rate over all directions against the size of the error; top as given, below with the "
+    "thrust stretched. Grey "
+    "lines: a payload that no rail holds, w = I^-1 J (r x f). Shaded: the 95 % interval of a knee "
+    "beyond which the rate "
+    "about y or z stays within a tenth. Dotted: where the paper sees its plateau."
+)
+_SCATTER = (
+    "Settled rates of all cases, as in the paper's Figure {figure}: over the size (left) and over "
+    "the direction {angle} "
+    "(right). Points of the three axes stand a little apart."
+)
+_MAP = (
+    "The same over size (radius, {unit}) and direction ({angle}); the line is a rate of zero. "
+    "Below: the wall touched first "
+    "and the wall that bore the largest impulse, of single runs in a coarser grid of directions. "
+    "{jumps}"
+)
+
+
+def pictures(found: dict) -> list[tuple[Chart | Picture, str]]:
+    """Every figure of the study and its caption."""
+    given = found["launches"][0]
+    drawn: list[tuple[Chart | Picture, str]] = [(_growth(found), _GROWTH)]
+    for factor in given["factors"]:
+        angle = _ANGLE[factor["name"]]
+        drawn.append(
+            (_scatter(factor), _SCATTER.format(figure=_FIGURES[factor["name"]], angle=angle))
+        )
+        if factor["sides"] is not None:
+            words = _MAP.format(
+                unit=factor["unit"], angle=angle, jumps=_jumping(factor["sides"]["jumps_deg_s"])
+            )
+            drawn.append((_map(factor, given["faces"]), words))
+    return drawn
+
+
+def _jumping(jumps: list[float | None]) -> str:
+    """How far the rates move where contact changes sides, and elsewhere."""
+    if None in jumps:
+        return (
+            "Contact never changes sides."
+            if jumps[0] is None
+            else "Contact changes sides everywhere."
+        )
+    return (
+        f"Between neighbours of that grid the rates move by {jumps[0]:.2g} deg/s (median) where "
+        f"another wall, or the other end "
+        f"of the payload, takes the largest impulse, and by {jumps[1]:.2g} deg/s elsewhere."
+    )
+
+
+def _scatter(factor: dict) -> Chart:
+    sizes, angles = np.array(factor["sizes"]), np.array(factor["angles_deg"])
+    size, angle = np.meshgrid(sizes, angles, indexing="ij")
+    over_size: list[Line] = []
+    over_angle: list[Line] = []
+    for place, (name, (axis, marker, _)) in enumerate(_LOOKS.items()):
+        rates = np.array(factor["values"][name], dtype=float).ravel()
+        told = np.isfinite(rates)
+        for lines, x, step in (
+            (over_size, size, sizes[-1]),
+            (over_angle, angle, 180.0 / len(angles)),
+        ):
+            shifted = x.ravel()[told] + (place - 1) * _APART * step
+            lines.append(
+                Line(
+                    shifted,
+                    rates[told],
+                    f"rate about {axis}",
+                    AXIS_COLOURS[axis],
+                    dash="",
+                    marker=marker,
+                    size=3.5,
+                    opacity=0.65,
+                )
+            )
+    direction = f"direction {_ANGLE[factor['name']].split(',')[0]} (deg)"
+    panels = [
+        Panel("", label, "settled rate (deg/s)", lines)
+        for label, lines in (
+            (f"{factor['label']} ({factor['unit']})", over_size),
+            (direction, over_angle),
+        )
+    ]
+    return Chart(f"sweep-{factor['name']}", panels, columns=2, height=330)
+
+
+def _growth(found: dict) -> Chart:
+    panels = [
+        _grown(launch, factor) for launch in found["launches"] for factor in launch["factors"]
+    ]
+    return Chart("sweep-growth", panels, columns=3, height=290)
+
+
+def _grown(launch: dict, factor: dict) -> Panel:
+    sizes, lines, spans, top = factor["sizes"], [], [], 0.0
+    for name, (axis, marker, dash) in _LOOKS.items():
+        values = [np.nan if value is None else value for value in factor["largest"][name]]
+        top = max(top, np.nanmax(values, initial=0.0))
+        lines.append(
+            Line(
+                sizes,
+                values,
+                f"about {axis}",
+                AXIS_COLOURS[axis],
+                1.4,
+                dash,
+                marker=marker,
+                size=6.0,
+            )
+        )
+        bent = factor["growth"][name]
+        if axis != "x" and bent and bent["verdict"] == "plateau" and bent["low"] is not None:
+            spans.append((bent["low"], bent["high"]))
+    for name, (axis, _, dash) in _LOOKS.items():
+        free = np.array(factor["free"][name])
+        # a free payload may turn much faster, and would flatten all others
+        shown = free <= 1.15 * top
+        lines.append(
+            Line(
+                np.array(sizes)[shown],
+                free[shown],
+                "free payload",
+                GREY,
+                0.9,
+                dash,
+                legend=axis == "y",
+            )
+        )
+    lines.append(Line([factor["paper"]] * 2, [0.0, top], "the paper's plateau", GREY, 1.6, ":"))
+    how = "as given" if launch["stretch"] == 1.0 else f"thrust x {launch['stretch']:g} as long"
+    return Panel(
+        f"{factor['label']}, {how}",
+        f"size ({factor['unit']})",
+        "largest rate (deg/s)",
+        lines,
+        spans=tuple(spans),
+    )
+
+
+def _map(factor: dict, faces: list[str]) -> Picture:
+    from matplotlib.artist import Artist
+    from matplotlib.figure import Figure
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
+
+    figure = Figure(figsize=(9.8, 7.2), dpi=130, layout="constrained")
+    axes = figure.subplots(2, 3, subplot_kw={"projection": "polar"})
+    for place, name in zip(axes[0], _LOOKS):
+        _rate_map(figure, place, factor, name)
+    sides = factor["sides"]
+    for place, kind, title in (
+        (axes[1, 0], "first", "wall touched first"),
+        (axes[1, 1], "most", "wall with the largest impulse"),
+    ):
+        _side_map(place, factor, np.array(sides[kind]), np.array(sides["angles_deg"]), faces)
+        place.set_title(title, fontsize=10.5)
+    for place in axes.flat[:5]:
+        place.tick_params(labelsize=7.5)
+        place.set_rticks([0.5, 1.0])
+        place.grid(linewidth=0.3)
+    axes[1, 2].set_axis_off()
+    handles: list[Artist] = [
+        Patch(facecolor=colour, edgecolor=GREY, label=f"wall at {wall}")
+        for wall, colour in _WALLS.items()
+    ]
+    handles += [
+        Line2D(
+            [],
+            [],
+            linestyle="",
+            marker="o",
+            color="black",
+            markerfacecolor="white",
+            markersize=4,
+            label="front pads (others: rear)",
+        ),
+        Patch(facecolor="white", edgecolor=GREY, hatch="///", label="no contact"),
+    ]
+    axes[1, 2].legend(handles=handles, loc="center", frameon=False, fontsize=9)
+    figure.suptitle(
+        f"{factor['label']}: radius 0 to {factor['sizes'][-1]:g} {factor['unit']}, direction "
+        f"{_ANGLE[factor['name']]}",
+        fontsize=10.5,
+    )
+    return Picture(f"map-{factor['name']}", figure)
+
+
+def _edges(factor: dict, angles_deg: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Borders of the cells: angles (rad) and sizes."""
+    step = 360.0 / len(angles_deg)
+    sizes = np.array(factor["sizes"])
+    half = 0.5 * (sizes[1] - sizes[0])
+    return np.radians(np.append(angles_deg, 360.0) - 0.5 * step), np.append(
+        sizes - half, sizes[-1] + half
+    )
+
+
+def _rate_map(figure, axes, factor: dict, name: str) -> None:
+    angles, rates = np.array(factor["angles_deg"]), np.array(factor["values"][name], dtype=float)
+    bound = np.nanmax(abs(rates))
+    image = axes.pcolormesh(
+        *_edges(factor, angles), rates, cmap="cividis", vmin=-bound, vmax=bound, rasterized=True
+    )
+    around = np.radians(np.append(angles, 360.0))
+    axes.contour(
+        around,
+        factor["sizes"],
+        np.column_stack([rates, rates[:, 0]]),
+        levels=[0.0],
+        colors="black",
+        linewidths=0.8,
+    )
+    axes.set_title(f"rate about {_LOOKS[name][0]}", fontsize=10.5)
+    figure.colorbar(
+        image, ax=axes, orientation="horizontal", shrink=0.75, pad=0.09, label="deg/s"
+    ).ax.tick_params(labelsize=7.5)
+
+
+def _side_map(
+    axes, factor: dict, faces: np.ndarray, angles_deg: np.ndarray, names: list[str]
+) -> None:
+    from matplotlib.colors import ListedColormap
+
+    walls = list(_WALLS)
+    # the last for no contact, which is -1
+    code = np.array([walls.index(name.split()[1]) for name in names] + [len(walls)])[faces]
+    colours = ListedColormap([*_WALLS.values(), "white"])
+    axes.pcolormesh(
+        *_edges(factor, angles_deg), code, cmap=colours, vmin=-0.5, vmax=len(walls) + 0.5
+    )
+    place, size = np.meshgrid(np.radians(angles_deg), factor["sizes"])
+    front = np.array([name.startswith("front") for name in names] + [False])[faces]
+    axes.plot(
+        place[front],
+        size[front],
+        "o",
+        color="black",
+        markerfacecolor="white",
+        markersize=3,
+        markeredgewidth=0.6,
+    )
+    free = faces < 0
+    axes.plot(
+        place[free],
+        size[free],
+        marker="$/$",
+        linestyle="",
+        color=GREY,
+        markersize=4,
+        markeredgewidth=0.3,
+    )

@@ -1,0 +1,222 @@
+"""Stage ``sweeps``: section 3 of the paper. Misalignment, thrust and mass eccentricity one at a
+time over size and direction; where the largest rate stops to grow, if it does; which walls the
+payload leans on; and the same launcher with a thrust that burns on, or out."""
+
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from tipoff.scenes.faults import Fault, SceneError
+from tipoff.studies import published
+from tipoff.studies.core.progress import Board
+from tipoff.studies.core.study import Study
+from tipoff.studies.populations import answers, population
+from tipoff.studies.populations.population import Population, Surrogate
+from tipoff.studies.render.chart import to_files
+from tipoff.studies.sweeps import burnout, factors, knee, sides
+from tipoff.studies.sweeps import figures as drawing
+from tipoff.studies.sweeps.factors import FACTORS, SIZES, Factor
+
+NAME = "sweeps"
+JUDGED = (*answers.RATES, answers.TOTAL_RATE)  # quantities whose growth is judged
+# at the ensemble's own a long thrust without contact is taken in six steps and loses 0.5 % of its
+# impulse
+_TOLERANCE = 1e-4
+_FEWEST = 8  # directions: fewer tell no side from another
+_COARSER = 5  # directions of the ensemble for each one whose pads are looked at
+_DEPARTS = 0.05  # of the rate of a free payload: by more the rail has its say
+
+
+class Asked(NamedTuple):
+    """What ``tipoff sweeps`` is given beside the scene: directions of each size, the name of a
+    model, None for the default."""
+
+    angles: int = 120
+    model: str | None = None
+
+
+def run(study: Study, asked: Asked = Asked()) -> dict:
+    """``launches``: the scene as given, and with its thrust stretched, each with its factors;
+    ``summary`` in words.
+
+    Raises SceneError for bad input, before anything runs.
+    """
+    if asked.angles < _FEWEST:
+        raise SceneError([Fault("--angles", NAME, str(asked.angles), f"{_FEWEST} or more")])
+
+    def make() -> tuple[dict, list[Path]]:
+        model = population.surrogate(study, asked.model)
+        alone = model._replace(scene=factors.alone(model.scene))
+        launches = [_launch(study, alone, asked, 1.0, burnout.exit_of(alone))]
+        launches[0]["faces"], looked_at = _sides(study, alone, asked)
+        for factor, seen in zip(launches[0]["factors"], looked_at):
+            factor["sides"] = seen
+        if other := burnout.other_way(alone):
+            launches.append(_launch(study, other[1], asked, other[0], other[2]))
+        found = {
+            "asked": asked._asdict(),
+            **population.answering(study, model),
+            "citation": published.CITATION,
+            "launches": launches,
+        }
+        found["summary"] = summary(found)
+        files = [
+            path
+            for picture, _ in drawing.pictures(found)
+            for path in to_files(picture, study.path("figures"))
+        ]
+        return found, files
+
+    return study.stage(NAME, _key(study, asked), make)
+
+
+def stored(study: Study) -> dict | None:
+    """The result, if it was made from the present scene, code and settings."""
+    return study.stored(NAME, lambda found: _key(study, Asked(**found["asked"])))
+
+
+def _key(study: Study, asked: Asked) -> str:
+    return study.key(__name__, NAME, asked._asdict())
+
+
+def _launch(
+    study: Study, model: Surrogate, asked: Asked, stretch: float, leaves: burnout.Exit | None
+) -> dict:
+    """All cases of one surrogate in one ensemble, and what becomes of each factor."""
+    directions = factors.angles(asked.angles)
+    found = population.run(study, NAME, model, factors.cases(directions), _TOLERANCE)
+    count = len(SIZES) * asked.angles
+    return {
+        "stretch": stretch,
+        "exit_s": leaves and leaves.time,
+        "share_after_exit": leaves and leaves.share_after,
+        "cases": found.counts,
+        "not_settled": int((~found.settled).sum()),
+        "store": found.store,
+        "factors": [
+            _factor(model, factor, directions, found, slice(place * count, (place + 1) * count))
+            for place, factor in enumerate(FACTORS)
+        ],
+    }
+
+
+def _factor(
+    model: Surrogate, factor: Factor, directions: np.ndarray, found: Population, part: slice
+) -> dict:
+    """Results of one factor; ``part`` of the cases are its own."""
+    shape = len(SIZES), len(directions)
+    values = {item.name: item.of(found.results)[part].reshape(shape) for item in answers.ALL}
+    free = np.degrees(factors.free_rates(model.scene, factor.rows(SIZES, directions))).reshape(
+        *shape, 3
+    )
+    total, free_total = values[answers.TOTAL_RATE.name], np.linalg.norm(free, axis=2)
+    departs = (abs(total - free_total) > _DEPARTS * free_total).any(axis=1)
+    free_largest = {
+        item.name: abs(column).max(axis=1)
+        for item, column in zip(JUDGED, [*np.moveaxis(free, 2, 0), free_total])
+    }
+    return {
+        "name": factor.name,
+        "label": factor.label,
+        "unit": factor.unit,
+        "paper": published.PLATEAUS[factor.name],
+        "sizes": SIZES.tolist(),
+        "angles_deg": np.degrees(directions).tolist(),
+        "values": {name: _plain(table) for name, table in values.items()},
+        "largest": {name: _plain(knee.largest(abs(table))) for name, table in values.items()},
+        "free": {name: _plain(curve) for name, curve in free_largest.items()},
+        "departs_from_free_at": float(SIZES[departs.argmax()]) if departs.any() else None,
+        "growth": {
+            item.name: (bent := knee.growth(SIZES, abs(values[item.name]))) and bent._asdict()
+            for item in JUDGED
+        },
+    }
+
+
+def _sides(study: Study, model: Surrogate, asked: Asked) -> tuple[list[str], list[dict | None]]:
+    """Faces, and for each factor which of them was touched first and bore most, on a coarser grid
+    of directions."""
+    if model.scene.contact is None:
+        return [], [None] * len(FACTORS)
+    directions = factors.angles(max(_FEWEST, asked.angles // _COARSER))
+    rows = [row for factor in FACTORS for row in factor.rows(SIZES, directions)]
+    with Board("which walls", 1) as board:
+        seen = sides.found(
+            model, rows, study.settings.workers, board.callback(f"which walls, {len(rows)} cases")
+        )
+    shape = len(FACTORS), len(SIZES), len(directions)
+    names = sides.names(model.scene)
+    walls = np.array([*names, ""])  # the last for no face, which is -1
+    return names, [
+        {
+            "angles_deg": np.degrees(directions).tolist(),
+            "first": first.tolist(),
+            "most": most.tolist(),
+            "jumps_deg_s": sides.jumps(walls[most], np.degrees(rate)),
+        }
+        for first, most, rate in zip(
+            seen.first.reshape(shape), seen.most.reshape(shape), seen.rate.reshape(*shape, 3)
+        )
+    ]
+
+
+def _plain(values: np.ndarray) -> list:
+    """Six digits, which no figure can tell from all of them, and None where a case did not
+    settle."""
+    if values.ndim > 1:
+        return [_plain(row) for row in values]
+    return [float(f"{value:.6g}") if np.isfinite(value) else None for value in values]
+
+
+def summary(found: dict) -> list[str]:
+    """What the study says, one line each."""
+    lines, labels = [population.said(found)], {item.name: item.label for item in JUDGED}
+    for launch in found["launches"]:
+        how = (
+            "as given" if launch["stretch"] == 1.0 else f"thrust stretched by {launch['stretch']:g}"
+        )
+        leaves = (
+            "never leaves without errors"
+            if launch["exit_s"] is None
+            else (
+                f"exit after {1e3 * launch['exit_s']:.1f} ms, "
+                f"{100.0 * launch['share_after_exit']:.2g} % of the impulse after it"
+            )
+        )
+        lines.append(
+            f"{how}: {launch['cases']['asked']:,} cases, {launch['not_settled']:,} did not settle; "
+            f"{leaves}"
+        )
+        for factor in launch["factors"]:
+            told = "; ".join(
+                f"{labels[name]}: {said(bent, factor['unit'])}"
+                for name, bent in factor["growth"].items()
+                if bent
+            )
+            lines.append(
+                f"{how}, {factor['label']} (the paper: plateau from {factor['paper']:g} "
+                f"{factor['unit']}): {told}"
+            )
+            most = ", ".join(
+                f"{item.label} {_most(factor['largest'][item.name])} {item.unit}"
+                for item in answers.ALL
+            )
+            lines.append(f"{how}, {factor['label']}, largest at any size and angle: {most}")
+    return lines
+
+
+def _most(values: list[float | None]) -> str:
+    return (
+        f"{max(known):.3g}" if (known := [value for value in values if value is not None]) else "-"
+    )
+
+
+def said(bent: dict, unit: str) -> str:
+    """A verdict in words, with the knee and its interval."""
+    if bent["knee"] is None:
+        return bent["verdict"]
+    return (
+        f"{bent['verdict']}, knee at {bent['knee']:.2f} {unit} ({bent['low']:.2f} to "
+        f"{bent['high']:.2f})"
+    )

@@ -1,0 +1,280 @@
+"""Stage ``view``: one condition of the reference to look at, as VTK files for ParaView and, with
+pyvista, as pictures.
+
+The run is made once more with an observer that writes each frame as it comes, so no more than one
+of them is ever in memory; it ends with the bits of the stored run, which is checked.
+"""
+
+import importlib.metadata
+import json
+import math
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tipoff.mechanics.trajectory import Trajectory
+from tipoff.scenes.faults import Fault, SceneError
+from tipoff.studies.core.progress import Board, say
+from tipoff.studies.core.store import Run
+from tipoff.studies.core.study import Study, read, require_success
+
+if TYPE_CHECKING:
+    from tipoff.studies.view.frames import Camera
+
+FRAMES = 60
+_SHOWN = 8e-3  # m that the largest deformation may take up in a picture
+_HOW = "pictures need pyvista (0.6 GB): make pictures, or pip install 'tipoff[view]'"
+
+
+def run(
+    study: Study, condition: str | None = None, frames: int = FRAMES, factor: float | None = None
+) -> dict:
+    """Times and files of the frames, the collection ParaView opens, the peak stress, the
+    exaggeration, and pictures or why none.
+
+    Raises SceneError for an unknown condition or fewer than two frames, StudyError where the run
+    fails.
+    """
+    if frames < 2:
+        raise SceneError([Fault("view", "frames", str(frames), "2 or more")])
+    name = condition or (study.scene.agreement.refined or tuple(study.conditions))[0]
+    asked = study.highfi(name)
+
+    def make() -> tuple[dict, list[Path]]:
+        known = study.store.get(asked)
+        require_success({name: known}, "show the run")
+        folder = _folder(study, name)
+        taken = _take(study, asked, known, folder, frames)
+        document, files = _document(study, asked, known, folder, taken, factor)
+        drawn, why = _draw(document, folder)
+        document |= {"asked_frames": frames, "asked_factor": factor}
+        document["pictures"] = {
+            Path(picture).stem: study.relative(folder / picture) for picture in drawn
+        }
+        document["without_pictures"] = why
+        if why:
+            say(f"view: {why}")
+        return document, [*files, *(folder / picture for picture in drawn)]
+
+    return study.stage(f"view/{name}", _key(study, asked, frames, factor), make)
+
+
+def stored(study: Study) -> list[dict]:
+    """Results made from the present scene, code and settings, for the report, which makes none."""
+    found = [
+        item
+        for path in sorted((study.folder / "view").glob("*.json"))
+        if (item := read(path)) is not None
+    ]
+    known = {
+        **{name: study.condition(name) for name in study.scene.conditions},
+        "nominal": study.scene,
+    }
+    return [
+        item
+        for item in found
+        if item["condition"] in known
+        and item["key"]
+        == _key(study, study.highfi(item["condition"]), item["asked_frames"], item["asked_factor"])
+        and study.whole(item, "the report does without it until tipoff view makes it again")
+    ]
+
+
+def _key(study: Study, asked: Run, frames: int, factor: float | None) -> str:
+    return study.key(__name__, asked.key, frames, factor, pyvista_version())
+
+
+def pyvista_version() -> str | None:
+    """The version that is installed, or None."""
+    try:
+        return importlib.metadata.version("pyvista")
+    except importlib.metadata.PackageNotFoundError:
+        return None
+
+
+def _folder(study: Study, name: str) -> Path:
+    return study.folder / "view" / name
+
+
+def chosen(frames: int, known: Trajectory) -> list[int]:
+    """Samples to show: evenly spread over the run, one of them moved to the moment of the peak
+    stress."""
+    assert known.stress is not None  # as of every run of the reference that went well
+    last = known.time.size - 1
+    samples = sorted({round(place) for place in np.linspace(0, last, min(frames, last + 1))})
+    peak = int(np.abs(known.time - known.stress["peak_stress_time_s"]).argmin())
+    inner = samples[1:-1] or samples
+    nearest = min(inner, key=lambda sample: abs(sample - peak))
+    return sorted({peak if sample == nearest else sample for sample in samples})
+
+
+class _Observer:
+    """Writes the chosen samples of a run as they come by."""
+
+    def __init__(self, folder: Path, samples: list[int]):
+        self.folder, self.samples = folder, set(samples)
+        self.shared: tuple[Camera, np.ndarray, np.ndarray] | None = None
+        self.frames: list[dict] = []
+        self.low, self.high = np.full(3, np.inf), np.full(3, -np.inf)
+
+    def __call__(self, loop) -> None:
+        from tipoff.studies.view import frames as views
+        from tipoff.studies.view import vtk_files
+
+        if len(loop.rows) - 1 not in self.samples:
+            return
+        if self.shared is None:
+            self.shared = views.Camera(loop), *views.bodies(loop.scene, loop.system.model)
+        camera, boxes, pads = self.shared
+        frame, mesh = camera.take(loop), loop.system.mesh
+        paths = vtk_files.write_frame(self.folder, len(self.frames), frame, mesh, boxes, pads)
+        self._widen(mesh.points)
+        self._widen((boxes @ frame.turn.T + frame.centre).reshape(-1, 3))
+        self.frames.append(
+            {
+                "time_s": frame.time,
+                "rails": paths[0].name,
+                "bodies": paths[1].name,
+                "largest_stress_pa": float(frame.worst.max()),
+                "largest_mean_stress_pa": float(frame.von_mises.max()),
+                "largest_displacement_m": float(np.linalg.norm(frame.displacement, axis=1).max()),
+                "largest_pressure_pa": float(frame.pressure.max()),
+            }
+        )
+
+    def _widen(self, points: np.ndarray) -> None:
+        self.low, self.high = (
+            np.minimum(self.low, points.min(axis=0)),
+            np.maximum(self.high, points.max(axis=0)),
+        )
+
+
+def _take(study: Study, asked: Run, known: Trajectory, folder: Path, frames: int) -> _Observer:
+    from tipoff import highfi
+
+    observer = _Observer(folder, chosen(frames, known))
+    highfi.prepare(asked.scene, asked.numerics)
+    with Board("view", 1) as board:
+        again = highfi.run(
+            asked.scene, asked.numerics, progress=board.callback(asked.label), observer=observer
+        )
+        board.finished(
+            asked.label, f"{len(observer.frames)} frames in {again.cost['wall_s']:.3g} s"
+        )
+    if not (np.array_equal(again.rate, known.rate) and again.stress == known.stress):
+        say(
+            "view: the run shown is not the stored one to the last bit, as on another kind of "
+            "processor"
+        )
+    return observer
+
+
+def _document(
+    study: Study,
+    asked: Run,
+    known: Trajectory,
+    folder: Path,
+    taken: _Observer,
+    factor: float | None,
+) -> tuple[dict, list[Path]]:
+    from tipoff.studies.view import vtk_files
+
+    paths = [[folder / frame["rails"], folder / frame["bodies"]] for frame in taken.frames]
+    files = [path for pair in paths for path in pair]
+    files.append(
+        vtk_files.write_collection(folder, [frame["time_s"] for frame in taken.frames], paths)
+    )
+    vtk_files.discard_others(folder, files)
+    stress = known.stress
+    assert stress is not None  # by which the frames were chosen
+    at_peak = min(
+        range(len(taken.frames)),
+        key=lambda index: abs(taken.frames[index]["time_s"] - stress["peak_stress_time_s"]),
+    )
+    peak = {
+        "stress_pa": stress["peak_stress_pa"],
+        "place_m": stress["peak_stress_place_m"],
+        "rail": stress["peak_stress_rail"],
+        "time_s": stress["peak_stress_time_s"],
+        "frame": at_peak,
+    }
+    return {
+        "condition": asked.label,
+        "folder": study.relative(folder),
+        "collection": study.relative(files[-1]),
+        "frames": taken.frames,
+        "peak": peak,
+        "bounds_m": [taken.low.tolist(), taken.high.tolist()],
+        "element_size_m": asked.numerics.element_size,
+        "factor": factor or exaggeration(taken.frames),
+        "title": f"{study.scene.name} / {asked.label}",
+    }, files
+
+
+def exaggeration(frames: list[dict]) -> float:
+    """Factor 1, 2 or 5 times a power of ten that shows the largest deformation well; 1 where there
+    is none."""
+    largest = max(frame["largest_displacement_m"] for frame in frames)
+    if largest <= 0.0:
+        return 1.0
+    ratio = max(1.0, _SHOWN / largest)
+    power = 10.0 ** math.floor(math.log10(ratio))
+    return next(step * power for step in (5.0, 2.0, 1.0) if step * power <= ratio)
+
+
+def rounded_up(value: float) -> float:
+    """The end of a scale of five parts: the next of 1, 1.5, 2, 2.5, 3, 4, 5, 6, 8 times a power of
+    ten; 1 for nothing."""
+    power = 10.0 ** math.floor(math.log10(value)) if value > 0.0 else 1.0
+    steps = (1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)
+    return next(step * power for step in steps if value <= step * power * (1.0 + 1e-9))
+
+
+def _draw(document: dict, folder: Path) -> tuple[list[str], str]:
+    """Names of the pictures drawn, or none and why."""
+    if pyvista_version() is None:
+        return [], _HOW
+    order = {
+        "folder": str(folder.resolve()),
+        "frames": document["frames"],
+        "factor": document["factor"],
+        "bounds": document["bounds_m"],
+        "peak": document["peak"],
+        "title": document["title"],
+        "mesh": f"elements of {1e3 * document['element_size_m']:g} mm",
+        "scale_pa": rounded_up(
+            max(frame["largest_mean_stress_pa"] for frame in document["frames"])
+        ),
+    }
+    # Complaints go to a file: a full pipe that nobody reads would stop the child.
+    with Board("view", 1) as board, tempfile.TemporaryFile("w+") as complaints:
+        report = board.callback("pictures")
+        report(0.0)
+        child = subprocess.Popen(
+            [sys.executable, "-m", "tipoff.studies.view.pictures"],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=complaints,
+            text=True,
+            cwd=Path(__file__).resolve().parents[3],
+        )
+        assert child.stdin is not None and child.stdout is not None  # both are pipes
+        child.stdin.write(json.dumps(order))
+        child.stdin.close()
+        said = {}
+        for line in child.stdout:
+            if line.startswith("{"):
+                said = json.loads(line)
+                report(said.get("done", 1.0))
+        child.wait()
+        complaints.seek(0)
+        complaint = complaints.read().strip().splitlines()
+        if child.returncode or "pictures" not in said:
+            why = complaint[-1] if complaint else f"exit code {child.returncode}"
+            return [], f"no pictures: pyvista could not draw here ({why})"
+        board.finished("pictures", ", ".join(said["pictures"]))
+    return said["pictures"], ""
