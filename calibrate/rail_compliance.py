@@ -11,11 +11,17 @@ The coarsest of the meshes 2r and r that is within ``ACCURACY`` of the reference
 taken. Rails from a mesh file have one mesh at every size.
 """
 
+import time
+from collections.abc import Callable
+from pathlib import Path
+
 import numpy as np
 
+from tipoff import sources
+from tipoff.files import content_hash
 from tipoff.highfi import compliance as statics
 from tipoff.mechanics import model as scene_model
-from tipoff.mechanics.rail_compliance import Walls
+from tipoff.mechanics.rail_compliance import Walls, digest
 from tipoff.scenes.scene import Scene
 
 ACCURACY = 0.01  # relative, of the mean displacement under a unit force on a pad face
@@ -33,6 +39,36 @@ def compliance(
     Takes seconds to a minute, once for a rail and its pads. Raises SceneError or MeshError.
     """
     return statics.walls(scene, element_size or fine_enough(scene, reference_size))
+
+
+def kept(
+    scene: Scene, folder: Path, element_size: float, say: Callable[[str], None] | None = None
+) -> Walls:
+    """The same in elements of ``element_size`` (m), read from ``folder`` if it was left there for
+    this rail, these pads and this code, else found and left there. ``say`` is told what takes
+    time."""
+    path, say = kept_file(scene, folder, element_size), say or (lambda _: None)
+    try:
+        return Walls.load(path)
+    except FileNotFoundError:
+        pass
+    except ValueError as fault:
+        say(f"  {fault}, so it is found again")
+    say(
+        f"rail compliance, once per rail and pads: {1e3 * element_size:g} mm elements, "
+        "up to a minute"
+    )
+    began = time.perf_counter()
+    found = compliance(scene, element_size)
+    found.save(path)
+    say(f"  found in {time.perf_counter() - began:.3g} s, kept in {path}")
+    return found
+
+
+def kept_file(scene: Scene, folder: Path, element_size: float) -> Path:
+    """Where ``kept`` leaves it."""
+    key = content_hash(digest(scene), element_size, sources.digest(__name__))
+    return folder / f"compliance-{key[:8]}.npz"
 
 
 def fine_enough(scene: Scene, reference_size: float = REFERENCE_SIZE) -> float:

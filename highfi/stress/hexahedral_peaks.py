@@ -74,7 +74,7 @@ def find(displacement, recovery, worst, room, first, last):
     ``room`` (SIZE,) for one of them."""
     u = displacement.T
     for e in range(first, last):
-        _gradients(u, hexahedral_recovery, room, e)
+        _gradients(u, recovery, room, e)
         if measure(room, worst.square, GRADIENT, SQUARES, CORNERS) > 0:
             note(room, worst, e, SQUARES, CORNERS)
 
@@ -85,7 +85,7 @@ def gradients(displacement, recovery, room, first, last, out):
     ``last``: component, axis, corner."""
     u = displacement.T
     for e in range(first, last):
-        _gradients(u, hexahedral_recovery, room, e)
+        _gradients(u, recovery, room, e)
         for j in range(72):
             out[e - first, j] = room[GRADIENT + j]
 
@@ -93,12 +93,12 @@ def gradients(displacement, recovery, room, first, last, out):
 @inlined
 def _gradients(u, recovery, room, e):
     """GRADIENT: displacement gradient at each corner of element ``e``."""
-    c = hexahedral_recovery.shape_class[e]
+    c = recovery.shape_class[e]
     for i in range(3):
-        _gather(u[i], hexahedral_recovery.cells[e], room, i)
-    _bubbles(hexahedral_recovery.amplitude[c], room)
+        _gather(u[i], recovery.cells[e], room, i)
+    _bubbles(recovery.amplitude[c], room)
     for i in range(3):
-        _gradient(hexahedral_recovery.slope[c], hexahedral_recovery.bubble[c], room, i)
+        _gradient(recovery.slope[c], recovery.bubble[c], room, i)
 
 
 @inlined

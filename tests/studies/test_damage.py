@@ -11,7 +11,8 @@ from typer.testing import CliRunner
 
 from tests.scenes.test_calibration import CALIBRATION
 from tests.studies.synthetic import flight
-from tipoff import calibration, scenes
+from tipoff import scenes
+from tipoff.calibration import rail_compliance as calibrated
 from tipoff.files import write_json
 from tipoff.mechanics.rail_compliance import PATTERNS, Walls, digest
 from tipoff.mechanics.trajectory import Trajectory
@@ -169,7 +170,7 @@ def test_damaged_walls_are_found_again(study, monkeypatch, capsys):
         calls.append(size)
         return known
 
-    monkeypatch.setattr(calibration, "compliance", found)
+    monkeypatch.setattr(calibrated, "compliance", found)
     assert (
         rail_compliance.load(study, scene).hash
         == rail_compliance.load(study, scene).hash

@@ -25,10 +25,11 @@ def run(study: Study) -> dict:
         if found is None:
             return {"file": None, "under_a_pad": None}, []
         from tipoff import highfi
+        from tipoff.calibration.rail_compliance import kept_file
 
         asked = study.highfi(next(iter(study.conditions)))
         mesh = highfi.prepare(asked.scene, asked.numerics)
-        path = rail_compliance.path(study, study.scene, study.settings.element_size)
+        path = kept_file(study.scene, study.folder, study.settings.element_size)
         return {
             "file": study.relative(path),
             "stations": len(found.travel),

@@ -1,13 +1,9 @@
 """The rail's compliance under the pads of a study: found once for a rail and its pads, and kept in the
 study's folder by content."""
 
-import time
 from collections.abc import Iterable
-from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tipoff import sources
-from tipoff.files import content_hash
 from tipoff.mechanics.rail_compliance import Walls, digest
 from tipoff.scenes.scene import Scene
 from tipoff.studies.core.progress import say
@@ -21,26 +17,12 @@ def load(study: "Study", scene: Scene, judged: bool = True) -> Walls | None:
     ``judged``; found if it is not kept. None without contact."""
     if scene.contact is None:
         return None
+    from tipoff.calibration import rail_compliance  # slow to load
+
     size = study.settings.element_size
-    if not judged and not path(study, scene, size).is_file():
-        from tipoff.calibration.rail_compliance import fine_enough
-
-        size = fine_enough(scene, size)
-    file = path(study, scene, size)
-    try:
-        return Walls.load(file)
-    except FileNotFoundError:
-        pass
-    except ValueError as fault:
-        say(f"  {fault}, so it is found again")
-    from tipoff import calibration
-
-    say(f"rail compliance, once per rail and pads: {1e3 * size:g} mm elements, up to a minute")
-    began = time.perf_counter()
-    found = calibration.compliance(scene, size)
-    found.save(file)
-    say(f"  found in {time.perf_counter() - began:.3g} s, kept in {file}")
-    return found
+    if not judged and not rail_compliance.kept_file(scene, study.folder, size).is_file():
+        size = rail_compliance.fine_enough(scene, size)
+    return rail_compliance.kept(scene, study.folder, size, say)
 
 
 def of_law(study: "Study", scene: Scene) -> Walls | None:
@@ -55,10 +37,3 @@ def under(study: "Study", names: Iterable[str]) -> dict[str, Walls | None]:
     scenes = {name: study.condition(name) for name in names}
     known = {digest(scene): load(study, scene) for scene in scenes.values() if scene.contact}
     return {name: known[digest(scene)] if scene.contact else None for name, scene in scenes.items()}
-
-
-def path(study: "Study", scene: Scene, element_size: float) -> Path:
-    key = content_hash(
-        digest(scene), element_size, sources.digest("tipoff.calibration.rail_compliance")
-    )
-    return study.path(f"compliance-{key[:8]}.npz")

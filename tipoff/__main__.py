@@ -1,0 +1,5 @@
+"""``python -m tipoff``: the command ``tipoff``."""
+
+from tipoff.studies.cli import app
+
+app()

@@ -1,0 +1,177 @@
+"""The way in from Python: scenes, runs in any model, ensembles, calibration, comparison."""
+
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from tipoff import sources
+from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS, MODELS, SURROGATES
+from tipoff.mechanics.rail_compliance import Walls
+from tipoff.mechanics.trajectory import Trajectory
+from tipoff.scenes import Calibration, Fault, Scene, SceneError, catalog, load, parse, uncertainty
+from tipoff.scenes.uncertainty import Uncertainty
+
+if TYPE_CHECKING:
+    import xarray
+
+    from tipoff.calibration import Curves
+    from tipoff.studies.agreement.metrics import Difference
+
+__all__ = [
+    "Calibration",
+    "Fault",
+    "Scene",
+    "SceneError",
+    "Trajectory",
+    "Walls",
+    "calibrate",
+    "catalog",
+    "compare",
+    "compliance",
+    "ensemble",
+    "load",
+    "parse",
+    "run",
+]
+
+
+def run(
+    scene: Scene,
+    model: str = COMPLIANT,
+    *,
+    walls: Walls | None = None,
+    calibration: Calibration | None = None,
+    progress: Callable[[float], None] | None = None,
+    **numerics: Any,
+) -> Trajectory:
+    """Solve ``scene`` in a ``model``: ``compliant``, ``springs`` or ``finite-elements``.
+
+    ``walls`` is the rail compliance of the model ``compliant``; without it ``compliance`` finds it.
+    ``calibration`` holds constants of ``springs``. ``numerics`` are fields of ``lowfi.Numerics`` or
+    ``highfi.Numerics``, such as ``element_size=2e-3`` (m) or ``modes=4``. ``progress`` is called
+    with the fraction of the duration done. Raises SceneError, every fault listed, and ValueError
+    for numerics that are out of range; what goes wrong later is the ``status`` of the result.
+    """
+    _require(scene, model, MODELS)
+    if model == FINITE_ELEMENTS:
+        from tipoff import highfi
+
+        _require_none(scene, model, walls=walls, calibration=calibration)
+        return highfi.run(scene, highfi.Numerics(**numerics), progress)
+    from tipoff import lowfi
+
+    chosen = lowfi.Numerics(**numerics)
+    known = _walls(scene, model, walls)
+    return lowfi.run(
+        scene, model, walls=known, calibration=calibration, numerics=chosen, progress=progress
+    )
+
+
+def ensemble(
+    scene: Scene,
+    cases: Sequence[Mapping[str, Any]] | Uncertainty | str | Path = "paper",
+    model: str = COMPLIANT,
+    *,
+    count: int | None = None,
+    seed: int | None = None,
+    walls: Walls | None = None,
+    calibration: Calibration | None = None,
+    workers: int | None = None,
+    store: str | Path | None = None,
+    **numerics: Any,
+) -> "xarray.Dataset":
+    """Run ``scene`` once for each of ``cases`` in a surrogate ``model``.
+
+    ``cases``: rows of dotted overrides as in ``Scene.replace``; or distributions, by the name or
+    path of their file, of which ``count`` cases are drawn with a ``seed`` (default: as the file
+    says). ``store`` is a folder that keeps results, so that an interrupted ensemble goes on. The
+    rest is as in ``run``. Raises SceneError, StoreError or ValueError.
+    """
+    from tipoff import lowfi
+
+    _require(scene, model, SURROGATES)
+    if isinstance(cases, (str, Path)):
+        changed = {"cases": count, "seed": seed}
+        changed = {key: value for key, value in changed.items() if value is not None}
+        cases = uncertainty.load(cases, scene, **changed)
+    elif count is not None or seed is not None:
+        raise SceneError(
+            [Fault(scene.name, "count, seed", "given", "none: the cases are listed already")]
+        )
+    chosen = lowfi.Numerics(**numerics)
+    known = _walls(scene, model, walls)
+    return lowfi.run_many(
+        scene,
+        cases,
+        model,
+        walls=known,
+        calibration=calibration,
+        numerics=chosen,
+        workers=workers,
+        store=store,
+    )
+
+
+def compliance(scene: Scene, element_size: float | None = None) -> Walls:
+    """Rail compliance under the pads of ``scene`` from the statics of its finite elements, of
+    ``element_size`` (m), else on the coarsest mesh that is within 1 % of the reference's own.
+
+    Takes seconds to a minute, once for a rail and its pads: it is kept in the cache folder of the
+    user, beside the compiled kernels. Raises SceneError or MeshError.
+    """
+    from tipoff.calibration import rail_compliance
+
+    folder = sources.cache_folder() / "compliance"
+    if element_size is not None:
+        return rail_compliance.kept(scene, folder / "of-a-size", element_size)
+    own = rail_compliance.REFERENCE_SIZE
+    for size in (own, 2.0 * own):
+        if rail_compliance.kept_file(scene, folder, size).is_file():
+            return rail_compliance.kept(scene, folder, size)
+    return rail_compliance.kept(scene, folder, rail_compliance.fine_enough(scene, own))
+
+
+def calibrate(
+    scene: Scene,
+    references: "Mapping[str, Trajectory | Curves]",
+    progress: Callable[[float], None] | None = None,
+    seed: int = 0,
+) -> Calibration:
+    """Constants of ``springs``, fitted to runs of the reference or to other curves, by the name of
+    their condition. Raises CalibrationError or SceneError."""
+    from tipoff import calibration
+
+    walls = _walls(scene, "springs", None)
+    return calibration.run(scene, dict(references), progress=progress, seed=seed, walls=walls)
+
+
+def compare(reference: Trajectory, surrogate: Trajectory) -> "Difference":
+    """How far ``surrogate`` is from ``reference``, two runs of one condition, by every metric of the
+    agreement table."""
+    from tipoff.studies.agreement import metrics
+
+    return metrics.compare(reference, surrogate)
+
+
+def _walls(scene: Scene, model: str, walls: Walls | None) -> Walls | None:
+    """What pads press on: compliant walls, or rigid ones where springs meet warm rails."""
+    if walls is not None or scene.contact is None:
+        return walls
+    if model == COMPLIANT:
+        return compliance(scene)
+    return compliance(scene).rigid() if scene.thermal is not None else None
+
+
+def _require(scene: Scene, model: str, models: Sequence[str]) -> None:
+    if model not in models:
+        raise SceneError([Fault(scene.name, "model", repr(model), f"one of {', '.join(models)}")])
+
+
+def _require_none(scene: Scene, model: str, **given: object) -> None:
+    faults = [
+        Fault(f"{scene.name}, model {model}", name, "given", "none: it belongs to another model")
+        for name, value in given.items()
+        if value is not None
+    ]
+    if faults:
+        raise SceneError(faults)
