@@ -24,7 +24,7 @@ from tipoff.calibration.curves import Curves
 from tipoff.calibration.faults import CalibrationError
 from tipoff.calibration.parameters import Parameter, overrides
 from tipoff.mechanics.models import SPRINGS
-from tipoff.mechanics.rail_compliance import Walls
+from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.scene import Scene
 from tipoff.scenes.variation import Variations
@@ -136,10 +136,10 @@ class Objective:
         parameters: list[Parameter],
         numerics=None,
         over: Callable = map,
-        walls: Walls | None = None,
+        compliance: RailCompliance | None = None,
     ):
         self.scene, self.targets, self.parameters = scene, targets, parameters
-        self.numerics, self.over, self.walls = numerics, over, walls
+        self.numerics, self.over, self.compliance = numerics, over, compliance
         self.variations = {name: Variations(wanted.scene) for name, wanted in targets.items()}
         self.evaluations = 0
 
@@ -162,7 +162,7 @@ class Objective:
                     self.variations[name].of(changed),
                     SPRINGS,
                     numerics=self.numerics,
-                    walls=self.walls,
+                    compliance=self.compliance,
                 ),
             )
 

@@ -21,7 +21,7 @@ from tipoff import sources
 from tipoff.files import content_hash
 from tipoff.highfi import compliance as statics
 from tipoff.mechanics import model as scene_model
-from tipoff.mechanics.rail_compliance import Walls, digest
+from tipoff.mechanics.rail_compliance import RailCompliance, digest
 from tipoff.scenes.scene import Scene
 
 ACCURACY = 0.01  # relative, of the mean displacement under a unit force on a pad face
@@ -31,25 +31,25 @@ _PLACES = 4  # stations along the rail at which meshes are compared
 
 def compliance(
     scene: Scene, element_size: float | None = None, reference_size: float = REFERENCE_SIZE
-) -> Walls:
+) -> RailCompliance:
     """Compliance of the rails of ``scene`` under its pads, with the modes of the rails, in elements
     of ``element_size`` (m), else on the coarsest mesh that is within 1 % of the reference's, whose
     elements are of ``reference_size`` (m).
 
     Takes seconds to a minute, once for a rail and its pads. Raises SceneError or MeshError.
     """
-    return statics.walls(scene, element_size or fine_enough(scene, reference_size))
+    return statics.condense(scene, element_size or fine_enough(scene, reference_size))
 
 
 def kept(
     scene: Scene, folder: Path, element_size: float, say: Callable[[str], None] | None = None
-) -> Walls:
+) -> RailCompliance:
     """The same in elements of ``element_size`` (m), read from ``folder`` if it was left there for
     this rail, these pads and this code, else found and left there. ``say`` is told what takes
     time."""
     path, say = kept_file(scene, folder, element_size), say or (lambda _: None)
     try:
-        return Walls.load(path)
+        return RailCompliance.load(path)
     except FileNotFoundError:
         pass
     except ValueError as fault:

@@ -10,7 +10,7 @@ from tipoff.calibration.curves import Curves
 from tipoff.calibration.information import information, jacobian
 from tipoff.calibration.objective import Objective, targets
 from tipoff.calibration.search import Plan, search
-from tipoff.mechanics.rail_compliance import Walls
+from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.calibration import Calibration
 from tipoff.scenes.scene import Scene
@@ -25,7 +25,7 @@ def run(
     progress: Callable[[float], None] | None = None,
     seed: int = 0,
     plan: Plan | None = None,
-    walls: Walls | None = None,
+    compliance: RailCompliance | None = None,
     workers: int = WORKERS,
 ) -> Calibration:
     """Fit the surrogate's contact constants to ``references`` (condition name to reference run or
@@ -45,10 +45,10 @@ def run(
     free, held, plan = parameters.free(scene), parameters.held(scene), plan or Plan()
     wanted = targets(scene, curves)
     with ThreadPoolExecutor(workers) as pool:
-        objective = Objective(scene, wanted, free, numerics, pool.map, walls=walls)
+        objective = Objective(scene, wanted, free, numerics, pool.map, compliance=compliance)
         found = search(objective, _shares(free, scene), plan, seed, progress)
         residuals = objective.parts(found.shares)
-        wide = Objective(scene, wanted, free + held, numerics, pool.map, walls=walls)
+        wide = Objective(scene, wanted, free + held, numerics, pool.map, compliance=compliance)
         matrix = information(jacobian(wide, np.append(found.shares, _shares(held, scene))))
     values = objective.values(found.shares)
     constants = parameters.overrides(scene, values)

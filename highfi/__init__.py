@@ -2,9 +2,9 @@
 platform."""
 
 from tipoff.highfi.compiled import compiled_effects
-from tipoff.highfi.compliance import walls
+from tipoff.highfi.compliance import condense
 from tipoff.highfi.dynamics.checkpoint import CheckpointError
 from tipoff.highfi.numerics import Numerics
 from tipoff.highfi.run import prepare, run
 
-__all__ = ["CheckpointError", "Numerics", "compiled_effects", "prepare", "run", "walls"]
+__all__ = ["CheckpointError", "Numerics", "compiled_effects", "condense", "prepare", "run"]

@@ -33,7 +33,7 @@ from tipoff.highfi.statics import assembly, thermal, vibration
 from tipoff.highfi.statics.pressure import Pressed, pressed
 from tipoff.highfi.statics.solve import Clamped
 from tipoff.mechanics import model as scene_model
-from tipoff.mechanics.rail_compliance import MODES, PATTERNS, Walls, digest
+from tipoff.mechanics.rail_compliance import MODES, PATTERNS, RailCompliance, digest
 from tipoff.scenes.effects.thermal import FIELDS
 from tipoff.scenes.rail import MaterialTable
 from tipoff.scenes.scene import Scene
@@ -64,9 +64,9 @@ class Compliance(NamedTuple):
     warm: np.ndarray
 
 
-def walls(
+def condense(
     scene: Scene, element_size: float, spacing: float = _SPACING, modes: int = MODES
-) -> Walls:
+) -> RailCompliance:
     """Flexibility and lowest ``modes`` of the rails of ``scene`` in elements of about
     ``element_size`` (m), at stations about ``spacing`` (m) apart from ignition until the last pad
     begins to leave.
@@ -80,7 +80,7 @@ def walls(
     inverse = np.linalg.pinv(found.gram, rcond=_SINGULAR, hermitian=True)
     flexibility = np.einsum("siab,sibjc,sjcd->siajd", inverse, found.matrix, inverse, optimize=True)
     warm = np.einsum("siab,sibt->tsia", inverse, found.warm)
-    return Walls(
+    return RailCompliance(
         stations,
         flexibility,
         found.rail,

@@ -7,7 +7,7 @@ from tipoff.lowfi.dynamics import equations
 from tipoff.lowfi.dynamics.integrate import Sampling, march
 from tipoff.lowfi.numerics import Numerics
 from tipoff.lowfi.run import Run
-from tipoff.mechanics.rail_compliance import Walls
+from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.scenes.effects.friction import coefficient_over_speed
 from tipoff.scenes.scene import Scene
 
@@ -16,7 +16,7 @@ from tipoff.scenes.scene import Scene
 # code.
 LAWS = {
     "contact": springs.load,
-    "walls": solution.solve,
+    "compliance": solution.solve,
     "modes": modes.swing,
     "friction": coefficient_over_speed,
     "sticking": stick_slip.traction,
@@ -28,19 +28,19 @@ LAWS = {
 
 
 def compiled_effects(
-    scene: Scene, numerics: Numerics | None = None, walls: Walls | None = None
+    scene: Scene, numerics: Numerics | None = None, compliance: RailCompliance | None = None
 ) -> dict[str, bool]:
     """For each effect with code of its own, whether the kernel compiled for ``scene``, on compliant
     ``walls`` or springs, contains it."""
-    code = compiled_code(scene, numerics, walls)
+    code = compiled_code(scene, numerics, compliance)
     return {effect: contains(code, law) for effect, law in LAWS.items()}
 
 
 def compiled_code(
-    scene: Scene, numerics: Numerics | None = None, walls: Walls | None = None
+    scene: Scene, numerics: Numerics | None = None, compliance: RailCompliance | None = None
 ) -> bytes:
     """Object code of the time loop."""
-    begun = Run(scene, numerics or Numerics(), walls)
+    begun = Run(scene, numerics or Numerics(), compliance)
     sampling = Sampling(begun.interval, begun.last, 0, begun.whole)
     return machine_code(
         march,

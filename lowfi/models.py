@@ -3,7 +3,7 @@ belongs to its model."""
 
 from tipoff.lowfi.numerics import Numerics
 from tipoff.mechanics.models import COMPLIANT, SURROGATES
-from tipoff.mechanics.rail_compliance import Walls, model_of
+from tipoff.mechanics.rail_compliance import RailCompliance, model_of
 from tipoff.scenes.calibration import Calibration
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.scene import Scene
@@ -12,7 +12,7 @@ from tipoff.scenes.scene import Scene
 def require(
     scene: Scene,
     model: str,
-    walls: Walls | None,
+    compliance: RailCompliance | None,
     calibration: Calibration | None,
     numerics: Numerics | None,
 ) -> None:
@@ -27,9 +27,9 @@ def require(
         return
     faults = []
     if model == COMPLIANT:
-        if model_of(scene, walls) != COMPLIANT:
+        if model_of(scene, compliance) != COMPLIANT:
             faults.append(
-                ("walls", "no rail compliance", "calibrate.compliance(scene), or model='springs'")
+                ("compliance", "no rail compliance", "tipoff.compliance(scene), or model='springs'")
             )
         if calibration is not None:
             faults.append(
@@ -40,10 +40,10 @@ def require(
                 )
             )
     else:
-        if model_of(scene, walls) == COMPLIANT:
+        if model_of(scene, compliance) == COMPLIANT:
             faults.append(
                 (
-                    "walls",
+                    "compliance",
                     "a rail compliance",
                     "none, or rigid walls where rails are warm: model='compliant' uses it",
                 )

@@ -18,7 +18,7 @@ from tipoff.kernels.jit import inlined, njit
 from tipoff.lowfi.contact import thermal_offset
 from tipoff.lowfi.system import BACK, NUMBER, SIDE_MIDDLE, SIDE_REACH, System, build
 from tipoff.mechanics import model as models
-from tipoff.mechanics.rail_compliance import Walls
+from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.scenes.effects import contact as law
 from tipoff.scenes.effects.friction import coefficient_over_speed, require_two_step
 from tipoff.scenes.effects.gravity import acceleration
@@ -46,13 +46,13 @@ def solve(
     steps_per_sample: int,
     samples: int | None = None,
     interval: float | None = None,
-    walls: Walls | None = None,
+    compliance: RailCompliance | None = None,
 ) -> Samples:
     """Motion of the payload of ``scene`` with ``steps_per_sample`` equal steps between samples, to
     the scene's duration; a warm scene asks for rigid ``walls``."""
     interval = interval or scene.output.interval
     samples = samples if samples is not None else round(scene.duration / interval)
-    job, rows = prepared(scene, steps_per_sample, samples, interval, walls)
+    job, rows = prepared(scene, steps_per_sample, samples, interval, compliance)
     integrate(*job, rows)
     return Samples(
         np.arange(len(rows)) * interval,
@@ -65,7 +65,11 @@ def solve(
 
 
 def prepared(
-    scene: Scene, steps_per_sample: int, samples: int, interval: float, walls: Walls | None = None
+    scene: Scene,
+    steps_per_sample: int,
+    samples: int,
+    interval: float,
+    compliance: RailCompliance | None = None,
 ) -> tuple[tuple[System, np.ndarray, np.ndarray, float, int], np.ndarray]:
     """Arguments of ``integrate`` but the last, and the last: rows (samples + 1, 26) of which only
     the first is filled.
@@ -78,7 +82,7 @@ def prepared(
     rows = np.zeros((samples + 1, _SIZE))
     rows[0] = _start(model)
     return (
-        build(model, bow=thermal_offset.under_pads(scene, model, walls)),
+        build(model, bow=thermal_offset.under_pads(scene, model, compliance)),
         model.payload.inertia,
         platform_inertia,
         interval / steps_per_sample,

@@ -27,7 +27,7 @@ from tipoff.lowfi.numerics import Numerics, promises_of
 from tipoff.mechanics import comoving, ending, outcome, promises
 from tipoff.mechanics import model as models
 from tipoff.mechanics.models import COMPLIANT
-from tipoff.mechanics.rail_compliance import Walls, model_of
+from tipoff.mechanics.rail_compliance import RailCompliance, model_of
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.calibration import Calibration
 from tipoff.scenes.scene import Scene
@@ -48,7 +48,7 @@ def run(
     scene: Scene,
     model: str = COMPLIANT,
     *,
-    walls: Walls | None = None,
+    compliance: RailCompliance | None = None,
     calibration: Calibration | None = None,
     numerics: Numerics | None = None,
     progress: Callable[[float], None] | None = None,
@@ -64,8 +64,8 @@ def run(
     message and cost say; one that keeps breaking a promise is diverged. Raises SceneError, every
     fault listed, before any stepping; what goes wrong later is the status of the result.
     """
-    require(scene, model, walls, calibration, numerics)
-    return solved(scene, calibration, numerics, progress, walls)
+    require(scene, model, compliance, calibration, numerics)
+    return solved(scene, calibration, numerics, progress, compliance)
 
 
 def solved(
@@ -73,7 +73,7 @@ def solved(
     calibration: Calibration | None = None,
     numerics: Numerics | None = None,
     progress: Callable[[float], None] | None = None,
-    walls: Walls | None = None,
+    compliance: RailCompliance | None = None,
 ) -> Trajectory:
     """``run`` without its check that options belong to a model: the model is the one that ``walls``
     make."""
@@ -81,7 +81,7 @@ def solved(
     scene = calibration.apply(scene) if calibration else scene
     known = len(integrate.march.overloads)
     setting_up = clock.perf_counter()
-    run_ = Run(scene, numerics or Numerics(), walls)
+    run_ = Run(scene, numerics or Numerics(), compliance)
     run_.begin()
     compile_s = clock.perf_counter() - setting_up if len(integrate.march.overloads) > known else 0.0
     compile_cpu = clock.thread_time()
@@ -109,7 +109,7 @@ def improved(first: "Run", progress: Callable[[float], None] | None = None) -> "
         ):
             break
         numerics = numerics.tightened()
-        finer = Run(first.scene, first.numerics, first.walls, numerics)
+        finer = Run(first.scene, first.numerics, first.compliance, numerics)
         finer.reruns, finer.discarded = reruns, best.discarded + int(best.loop.count[STEPS])
         finer.begin()
         finer.march(progress)
@@ -130,13 +130,13 @@ class Run:
         self,
         scene: Scene,
         numerics: Numerics,
-        walls: Walls | None = None,
+        compliance: RailCompliance | None = None,
         finer: Numerics | None = None,
     ):
-        self.scene, self.numerics, self.walls, self.promised = (
+        self.scene, self.numerics, self.compliance, self.promised = (
             scene,
             numerics,
-            walls,
+            compliance,
             promises_of(numerics),
         )
         self.used = used = finer or numerics
@@ -149,8 +149,8 @@ class Run:
         self.tolerance = local_error.tolerance(used, self.promised, reach)
         self.system = system.build(
             model,
-            walls=wall_record.under_pads(scene, model, walls, numerics.modes),
-            bow=thermal_offset.under_pads(scene, model, walls),
+            compliance=wall_record.under_pads(scene, model, compliance, numerics.modes),
+            bow=thermal_offset.under_pads(scene, model, compliance),
         )
         self.loop = integrate.ready(self.system, state.initial(model), plan.first_step(self.plan))
         self.rows, self.forces = (
@@ -229,7 +229,7 @@ class Run:
         pressed = outcome.pressed_at_ignition(self.model.faces, self.forces[0])
         message = "; ".join(filter(None, [self.message, broken, self._again(), pressed]))
         return Trajectory(
-            model=model_of(self.scene, self.walls),
+            model=model_of(self.scene, self.compliance),
             status=status,
             message=message,
             **comoving.motion(seen_from, moved)._asdict(),

@@ -63,12 +63,12 @@ def copy(source, target, size):
 
 
 @inlined
-def modal_size(walls):
+def modal_size(compliance):
     """How many numbers the modes of ``walls`` add to the state: all amplitudes q (kg^0.5 m), rail
     by rail, then all their rates."""
     size = 0
-    if walls is not None:
-        size = _modal_size(walls.modes)
+    if compliance is not None:
+        size = _modal_size(compliance.modes)
     return size
 
 

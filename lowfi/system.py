@@ -18,7 +18,7 @@ from tipoff.scenes.effects.thrust_law import Thrust
 from tipoff.scenes.effects.thrust_offset import ThrustOffset
 
 if TYPE_CHECKING:
-    from tipoff.lowfi.contact.compliant.record import Walls
+    from tipoff.lowfi.contact.compliant.record import Compliance
     from tipoff.lowfi.contact.thermal_offset import Bow
 
 # Columns of the table of faces: centre in payload body axes (m); outward normal's y and z and the
@@ -76,7 +76,7 @@ class System(NamedTuple):
     reacts_on_platform: bool
     thrust_offset: ThrustOffset | None
     contact: Contact | None
-    walls: "Walls | None"
+    compliance: "Compliance | None"
     friction: Friction | None
     sticking: Sticking | None
     gravity: Gravity | None
@@ -84,23 +84,28 @@ class System(NamedTuple):
 
 
 def build(
-    model: Model, ledger: bool = True, walls: "Walls | None" = None, bow: "Bow | None" = None
+    model: Model,
+    ledger: bool = True,
+    compliance: "Compliance | None" = None,
+    bow: "Bow | None" = None,
 ) -> System:
     """Records of ``model`` as the kernels take them, with a contact law at rigid walls, straight or
     with a ``bow``, or with ``walls`` that give way. Without a ``ledger`` no work, loss or impulse
     is integrated."""
-    contact = Contact(*model.contact, bow) if model.contact is not None and walls is None else None
+    contact = (
+        Contact(*model.contact, bow) if model.contact is not None and compliance is None else None
+    )
     return System(
         _body(model.payload),
         _body(model.platform) if model.platform is not None else None,
-        _table(model, walls),
+        _table(model, compliance),
         float(model.rail_start),
         float(model.rail_end),
         model.thrust,
         model.reacts_on_platform,
         model.thrust_offset,
         contact,
-        walls,
+        compliance,
         _if(model.friction, Friction),
         _if(model.friction, Sticking),
         model.gravity,
@@ -118,7 +123,7 @@ def _body(record) -> Body:
     return Body(record.mass, np.ascontiguousarray(record.inverse_inertia))
 
 
-def _table(model: Model, walls) -> np.ndarray:
+def _table(model: Model, compliance) -> np.ndarray:
     faces = model.faces
     table = np.zeros((faces.axis.size, FACE_SIZE))
     table[:, CENTRE : CENTRE + 3] = faces.centre
@@ -126,8 +131,8 @@ def _table(model: Model, walls) -> np.ndarray:
     table[:, NORMAL_Z] = np.where(faces.axis == 2, faces.sign, 0.0)
     table[:, WALL], table[:, HALF_LENGTH] = faces.sign * faces.wall, faces.half_length
     table[:, NUMBER] = np.arange(faces.axis.size)
-    if walls is not None:
-        table[:, OVERHANG] = walls.half[:, 0] * (1.0 - LAST_STRIP)
+    if compliance is not None:
+        table[:, OVERHANG] = compliance.half[:, 0] * (1.0 - LAST_STRIP)
     table[:, SIDE_MIDDLE], table[:, SIDE_REACH] = (
         model.plate.across,
         model.plate.leg + faces.half_width,

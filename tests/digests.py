@@ -21,7 +21,7 @@ import numpy as np
 
 from tipoff import calibration, highfi, lowfi, scenes
 from tipoff.mechanics.models import COMPLIANT, SPRINGS
-from tipoff.mechanics.rail_compliance import Walls
+from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.studies.bench.surrogate import varied
 
@@ -93,13 +93,14 @@ def trajectories(names: tuple[str, ...]) -> Iterator[str]:
     condition only."""
     for name in names:
         scene = scenes.load(name)
-        walls = calibration.compliance(scene, COARSE)
-        yield line(f"{name}/compliance", digest(*_arrays(walls)))
+        compliance = calibration.compliance(scene, COARSE)
+        yield line(f"{name}/compliance", digest(*_arrays(compliance)))
         for condition in scene.conditions:
             one = scene.condition(condition)
-            for model, given in ((COMPLIANT, walls), (SPRINGS, None)):
+            for model, given in ((COMPLIANT, compliance), (SPRINGS, None)):
                 yield line(
-                    f"{name}/{condition}/{model}", of_trajectory(lowfi.run(one, model, walls=given))
+                    f"{name}/{condition}/{model}",
+                    of_trajectory(lowfi.run(one, model, compliance=given)),
                 )
         first = next(iter(scene.conditions))
         found = highfi.run(scene.condition(first), numerics=highfi.Numerics(element_size=COARSE))
@@ -109,8 +110,8 @@ def trajectories(names: tuple[str, ...]) -> Iterator[str]:
 def ensembles() -> Iterator[str]:
     """A line for a thousand cases of each model of the surrogate."""
     scene, rows = scenes.load("reference"), varied(CASES)
-    for model, walls in ((COMPLIANT, calibration.compliance(scene, COARSE)), (SPRINGS, None)):
-        found = lowfi.run_many(scene, rows, model, walls=walls)
+    for model, compliance in ((COMPLIANT, calibration.compliance(scene, COARSE)), (SPRINGS, None)):
+        found = lowfi.run_many(scene, rows, model, compliance=compliance)
         columns = {
             name: found[name].values.tolist()
             for name in sorted(found.data_vars)
@@ -148,8 +149,8 @@ def _is_unstable(name: str) -> bool:
     return any(part in name for part in UNSTABLE)
 
 
-def _arrays(walls: Walls) -> list[np.ndarray]:
-    return [value for value in vars(walls).values() if isinstance(value, np.ndarray)]
+def _arrays(compliance: RailCompliance) -> list[np.ndarray]:
+    return [value for value in vars(compliance).values() if isinstance(value, np.ndarray)]
 
 
 def main(arguments: list[str] | None = None) -> int:

@@ -14,10 +14,10 @@ if TYPE_CHECKING:
     from tipoff.front import (
         Calibration,
         Fault,
+        RailCompliance,
         Scene,
         SceneError,
         Trajectory,
-        Walls,
         calibrate,
         catalog,
         compare,
@@ -31,10 +31,10 @@ if TYPE_CHECKING:
 __all__ = [
     "Calibration",
     "Fault",
+    "RailCompliance",
     "Scene",
     "SceneError",
     "Trajectory",
-    "Walls",
     "calibrate",
     "catalog",
     "compare",

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from tipoff import sources
 from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS, MODELS, SURROGATES
-from tipoff.mechanics.rail_compliance import Walls
+from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes import Calibration, Fault, Scene, SceneError, catalog, load, parse, uncertainty
 from tipoff.scenes.uncertainty import Uncertainty
@@ -20,10 +20,10 @@ if TYPE_CHECKING:
 __all__ = [
     "Calibration",
     "Fault",
+    "RailCompliance",
     "Scene",
     "SceneError",
     "Trajectory",
-    "Walls",
     "calibrate",
     "catalog",
     "compare",
@@ -39,14 +39,14 @@ def run(
     scene: Scene,
     model: str = COMPLIANT,
     *,
-    walls: Walls | None = None,
+    compliance: RailCompliance | None = None,
     calibration: Calibration | None = None,
     progress: Callable[[float], None] | None = None,
     **numerics: Any,
 ) -> Trajectory:
     """Solve ``scene`` in a ``model``: ``compliant``, ``springs`` or ``finite-elements``.
 
-    ``walls`` is the rail compliance of the model ``compliant``; without it ``compliance`` finds it.
+    ``compliance`` is that of the rail, for the model ``compliant``; found where it is not given.
     ``calibration`` holds constants of ``springs``. ``numerics`` are fields of ``lowfi.Numerics`` or
     ``highfi.Numerics``, such as ``element_size=2e-3`` (m) or ``modes=4``. ``progress`` is called
     with the fraction of the duration done. Raises SceneError, every fault listed, and ValueError
@@ -56,14 +56,14 @@ def run(
     if model == FINITE_ELEMENTS:
         from tipoff import highfi
 
-        _require_none(scene, model, walls=walls, calibration=calibration)
+        _require_none(scene, model, compliance=compliance, calibration=calibration)
         return highfi.run(scene, highfi.Numerics(**numerics), progress)
     from tipoff import lowfi
 
     chosen = lowfi.Numerics(**numerics)
-    known = _walls(scene, model, walls)
+    known = _pressed(scene, model, compliance)
     return lowfi.run(
-        scene, model, walls=known, calibration=calibration, numerics=chosen, progress=progress
+        scene, model, compliance=known, calibration=calibration, numerics=chosen, progress=progress
     )
 
 
@@ -74,7 +74,7 @@ def ensemble(
     *,
     count: int | None = None,
     seed: int | None = None,
-    walls: Walls | None = None,
+    compliance: RailCompliance | None = None,
     calibration: Calibration | None = None,
     workers: int | None = None,
     store: str | Path | None = None,
@@ -99,12 +99,12 @@ def ensemble(
             [Fault(scene.name, "count, seed", "given", "none: the cases are listed already")]
         )
     chosen = lowfi.Numerics(**numerics)
-    known = _walls(scene, model, walls)
+    known = _pressed(scene, model, compliance)
     return lowfi.run_many(
         scene,
         cases,
         model,
-        walls=known,
+        compliance=known,
         calibration=calibration,
         numerics=chosen,
         workers=workers,
@@ -112,7 +112,7 @@ def ensemble(
     )
 
 
-def compliance(scene: Scene, element_size: float | None = None) -> Walls:
+def compliance(scene: Scene, element_size: float | None = None) -> RailCompliance:
     """Rail compliance under the pads of ``scene`` from the statics of its finite elements, of
     ``element_size`` (m), else on the coarsest mesh that is within 1 % of the reference's own.
 
@@ -141,8 +141,10 @@ def calibrate(
     their condition. Raises CalibrationError or SceneError."""
     from tipoff import calibration
 
-    walls = _walls(scene, "springs", None)
-    return calibration.run(scene, dict(references), progress=progress, seed=seed, walls=walls)
+    compliance = _pressed(scene, "springs", None)
+    return calibration.run(
+        scene, dict(references), progress=progress, seed=seed, compliance=compliance
+    )
 
 
 def compare(reference: Trajectory, surrogate: Trajectory) -> "Difference":
@@ -153,10 +155,10 @@ def compare(reference: Trajectory, surrogate: Trajectory) -> "Difference":
     return metrics.compare(reference, surrogate)
 
 
-def _walls(scene: Scene, model: str, walls: Walls | None) -> Walls | None:
-    """What pads press on: compliant walls, or rigid ones where springs meet warm rails."""
-    if walls is not None or scene.contact is None:
-        return walls
+def _pressed(scene: Scene, model: str, known: RailCompliance | None) -> RailCompliance | None:
+    """What pads press on: rail compliance, or warm rigid rails where springs meet these."""
+    if known is not None or scene.contact is None:
+        return known
     if model == COMPLIANT:
         return compliance(scene)
     return compliance(scene).rigid() if scene.thermal is not None else None

@@ -17,7 +17,7 @@ import numpy as np
 
 from tipoff.kernels.jit import inlined
 from tipoff.mechanics.model import Model
-from tipoff.mechanics.rail_compliance import GRAM, Walls, cubic
+from tipoff.mechanics.rail_compliance import GRAM, RailCompliance, cubic
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.scene import Scene
 
@@ -31,36 +31,36 @@ class Bow(NamedTuple):
     origin: np.ndarray
 
 
-def under_pads(scene: Scene, model: Model, walls: Walls | None) -> Bow | None:
+def under_pads(scene: Scene, model: Model, compliance: RailCompliance | None) -> Bow | None:
     """Record for the kernels; None where nothing is warm, nothing touches, or walls that give way
     know it themselves. Raises SceneError as ``require`` does."""
-    require(scene, walls)
+    require(scene, compliance)
     if model.thermal is None or model.contact is None:
         return None
-    assert walls is not None  # which was required
-    if walls.flexibility is not None:
+    assert compliance is not None  # which was required
+    if compliance.flexibility is not None:
         return None
-    mean = walls.moved(model.thermal.amounts) @ GRAM[0]
+    mean = compliance.moved(model.thermal.amounts) @ GRAM[0]
     platform = model.platform.mass_centre[0] if model.platform is not None else 0.0
     origin = model.faces.centre[:, 0] + (model.payload.mass_centre[0] - platform)
     return Bow(
-        cubic(walls.travel, mean),
-        float(walls.travel[1] - walls.travel[0]),
+        cubic(compliance.travel, mean),
+        float(compliance.travel[1] - compliance.travel[0]),
         np.ascontiguousarray(origin),
     )
 
 
-def require(scene: Scene, walls: Walls | None) -> None:
+def require(scene: Scene, compliance: RailCompliance | None) -> None:
     """Raises SceneError for a warm scene without walls, and for walls of another rail."""
     if scene.thermal is None or scene.contact is None:
         return
-    if walls is None:
+    if compliance is None:
         expected = (
             "walls found for warm rails (highfi.compliance.walls), or their rigid() for a "
             "contact law to stand on"
         )
         raise SceneError([Fault(scene.name, "thermal", "no walls", expected)])
-    walls.require(scene)
+    compliance.require(scene)
 
 
 @inlined

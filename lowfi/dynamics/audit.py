@@ -61,7 +61,7 @@ def balances(system, engaged, grip, surveyed, on_walls, state):
     base = slot.frame(system.platform, state)
     kinetic, axial = _kinetic(system.payload.mass, state[:PLATFORM], body)
     more, more_axial = _kinetic_of_platform(system.platform, state, base)
-    vibrating, strain = _of_modes(system.walls, state)
+    vibrating, strain = _of_modes(system.compliance, state)
     kept = (
         on_walls
         + strain
@@ -115,10 +115,10 @@ def _kinetic_of_platform(platform, state, base):
 
 
 @inlined
-def _of_modes(walls, state):
+def _of_modes(compliance, state):
     kinetic, strain = 0.0, 0.0
-    if walls is not None:
-        kinetic, strain = energies(walls.modes, state)
+    if compliance is not None:
+        kinetic, strain = energies(compliance.modes, state)
     return kinetic, strain
 
 
@@ -275,12 +275,12 @@ def _balances(system, loop, state, surveyed):
 
 
 @inlined
-def open_books(ledger, walls, system, loop):
+def open_books(ledger, compliance, system, loop):
     """Begin the ledgers where the first step does, with what its faces hold from the start."""
     if ledger is not None:
         held = 0.0
-        if walls is not None:
+        if compliance is not None:
             held = energy_on_walls(
-                walls, system.faces, system.platform, system.payload, loop.active, loop.start
+                compliance, system.faces, system.platform, system.payload, loop.active, loop.start
             )
         begin(system, loop.engaged, loop.grip, loop.before, held, loop.start, loop.audit)

@@ -55,7 +55,7 @@ def attempt(system, active, grip, stretch, time, dt, fresh, start, stages, end):
     """
     for stage in range(0 if fresh else 1, STAGES):
         _combine(stage, dt, start, stages, end)
-        _combine_modes(stage, dt, start, stages, modal_size(system.walls), end)
+        _combine_modes(stage, dt, start, stages, modal_size(system.compliance), end)
         if stage == STAGES - 1:
             normalise(end)
         derivative(

@@ -53,7 +53,7 @@ def derivative(system, active, grip, time, state, out):
         out,
     )
     add_walls(
-        system.walls,
+        system.compliance,
         system.friction,
         system.faces,
         system.platform,
@@ -211,16 +211,16 @@ def add_contact(laws, friction, sticking, faces, platform, ledger, active, grip,
 
 
 @kernel
-def add_walls(walls, friction, faces, platform, ledger, active, body, base, state, out):
-    if walls is not None:
+def add_walls(compliance, friction, faces, platform, ledger, active, body, base, state, out):
+    if compliance is not None:
         place, turn = relative_pose(platform, body, base)
-        for rail in range(walls.members.shape[0]):
-            count = solve(walls, faces, rail, active, place, turn, state)
+        for rail in range(compliance.members.shape[0]):
+            count = solve(compliance, faces, rail, active, place, turn, state)
             for k in range(count):
-                face = walls.room.order[k]
-                if walls.room.force[face, 0] > 0.0:
+                face = compliance.room.order[k]
+                if compliance.room.force[face, 0] > 0.0:
                     _press(
-                        wall_load(walls, friction, platform, faces, face, body, base),
+                        wall_load(compliance, friction, platform, faces, face, body, base),
                         friction,
                         platform,
                         ledger,
@@ -228,10 +228,10 @@ def add_walls(walls, friction, faces, platform, ledger, active, body, base, stat
                         base,
                         out,
                     )
-                    _lean(walls, faces, face, platform, ledger, body, base, out)
+                    _lean(compliance, faces, face, platform, ledger, body, base, out)
             if count > 0:
-                _drive(walls, count, platform, ledger, body, base, out)
-            _swing(walls.modes, walls.room, rail, count, ledger, state, out)
+                _drive(compliance, count, platform, ledger, body, base, out)
+            _swing(compliance.modes, compliance.room, rail, count, ledger, state, out)
 
 
 @inlined
@@ -244,18 +244,18 @@ def _swing(modes, room, rail, count, ledger, state, out):
 
 
 @inlined
-def _lean(walls, faces, face, platform, ledger, body, base, out):
+def _lean(compliance, faces, face, platform, ledger, body, base, out):
     """Add what a wall that slopes across the rail does there; its work is the walls' own energy."""
-    force, point = lean(walls, faces, face, body, base)
+    force, point = lean(compliance, faces, face, body, base)
     _pair(platform, ledger, force, point, out)
     if ledger is not None:
         out[slot.CONTACT_AXIAL] += force[0] * _axial_speed(platform, body, base)
 
 
 @inlined
-def _drive(walls, count, platform, ledger, body, base, out):
+def _drive(compliance, count, platform, ledger, body, base, out):
     """Add what the walls do along the rail, at the payload's mass centre."""
-    pull, fading = drive(walls, count)
+    pull, fading = drive(compliance, count)
     force = rotation.rotate(base.turn, (pull, 0.0, 0.0))
     _pair(platform, ledger, force, body.place, out)
     if ledger is not None:

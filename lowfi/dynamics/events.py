@@ -57,15 +57,17 @@ OPEN, PRESSING, CUT_OFF = 0.0, 1.0, 2.0
 
 
 @inlined
-def survey(laws, walls, sticking, faces, platform, payload, active, grip, state, out):
+def survey(laws, compliance, sticking, faces, platform, payload, active, grip, state, out):
     """Fill ``out`` (f, SURVEY_SIZE) with mode, penetration (m), its rate (m/s), pull, X (m) and
     margin of grip of every face, the rate of X (m/s), the place across from where the wall has its
     middle (m) and its rate (m/s). The mode of a face off the rail is the one it would have there.
     Walls that give way ask which faces are ``active`` (f,); the energy (J) they hold under those is
     returned."""
     on_walls = 0.0
-    if walls is not None:
-        on_walls = survey_walls(walls, faces, platform, payload, active, state, OPEN, PRESSING, out)
+    if compliance is not None:
+        on_walls = survey_walls(
+            compliance, faces, platform, payload, active, state, OPEN, PRESSING, out
+        )
     if laws is not None:
         body, base = (
             slot.motion(payload.mass, payload.inverse_inertia, state, slot.PAYLOAD),
@@ -118,7 +120,7 @@ def _pull(face):
 @inlined
 def first_event(
     laws,
-    walls,
+    compliance,
     sticking,
     payload,
     platform,
@@ -164,7 +166,7 @@ def first_event(
                 if not np.isnan(level):
                     theta = _locate(
                         laws,
-                        walls,
+                        compliance,
                         sticking,
                         grips.row_of(sticking, grip, i),
                         payload,
@@ -188,7 +190,7 @@ def first_event(
                         first, blamed = theta, i
         first, blamed = _change_of_grip(
             laws,
-            walls,
+            compliance,
             sticking,
             payload,
             platform,
@@ -206,13 +208,13 @@ def first_event(
             first,
             blamed,
         )
-    if walls is not None:
+    if compliance is not None:
         for i in range(engaged.size):
             theta = 1.0
             if engaged[i] and not active[i] and after[i, DEPTH] > BEYOND > before[i, DEPTH]:
                 theta = _locate(
                     laws,
-                    walls,
+                    compliance,
                     sticking,
                     None,
                     payload,
@@ -239,12 +241,12 @@ def first_event(
                 )
             if theta < first:
                 first, blamed = theta, i
-    if laws is not None or walls is not None:
+    if laws is not None or compliance is not None:
         for i in range(engaged.size):
             if not engaged[i]:
                 theta = _entry(
                     laws,
-                    walls,
+                    compliance,
                     payload,
                     platform,
                     faces,
@@ -267,7 +269,7 @@ def first_event(
 @inlined
 def _entry(
     laws,
-    walls,
+    compliance,
     payload,
     platform,
     faces,
@@ -291,7 +293,7 @@ def _entry(
     if not np.isnan(level):
         theta = _locate(
             laws,
-            walls,
+            compliance,
             None,
             None,
             payload,
@@ -315,7 +317,7 @@ def _entry(
 @inlined
 def _change_of_grip(
     laws,
-    walls,
+    compliance,
     sticking,
     payload,
     platform,
@@ -345,7 +347,7 @@ def _change_of_grip(
             ):
                 theta = _locate(
                     laws,
-                    walls,
+                    compliance,
                     sticking,
                     grip[i],
                     payload,
@@ -399,7 +401,7 @@ def _edge(low, high, after):
 
 
 @inlined
-def _gauge(laws, walls, sticking, row, payload, platform, faces, number, active, kind, state):
+def _gauge(laws, compliance, sticking, row, payload, platform, faces, number, active, kind, state):
     """Quantity ``kind`` of face ``number`` at ``state``."""
     body, base = (
         slot.motion(payload.mass, payload.inverse_inertia, state, slot.PAYLOAD),
@@ -408,10 +410,10 @@ def _gauge(laws, walls, sticking, row, payload, platform, faces, number, active,
     place, turn = relative_pose(platform, body, base)
     if kind == SIDE:
         return across(faces[number], place, turn) - faces[number, SIDE_MIDDLE]
-    if walls is not None:
+    if compliance is not None:
         if kind == ALONG:
             return place[0] + faces[number, 0]
-        return depth_in_wall(walls, faces, number, active, place, turn, state)
+        return depth_in_wall(compliance, faces, number, active, place, turn, state)
     return _gauge_at_law(
         laws, sticking, row, platform, faces[number], kind, place, turn, body, base
     )
@@ -446,7 +448,7 @@ def _pull_at(laws, platform, face, p, body, base):
 @inlined
 def _locate(
     laws,
-    walls,
+    compliance,
     sticking,
     row,
     payload,
@@ -476,10 +478,22 @@ def _locate(
         )
     for _ in range(60):
         interpolate(
-            dt, span * theta, start, stages, slot.DYNAMIC_SIZE, slot.modal_size(walls), work
+            dt, span * theta, start, stages, slot.DYNAMIC_SIZE, slot.modal_size(compliance), work
         )
         f = (
-            _gauge(laws, walls, sticking, row, payload, platform, faces, number, active, kind, work)
+            _gauge(
+                laws,
+                compliance,
+                sticking,
+                row,
+                payload,
+                platform,
+                faces,
+                number,
+                active,
+                kind,
+                work,
+            )
             - level
         )
         if abs(f) < close or high - low < 1e-14:
@@ -526,14 +540,14 @@ def _grazing(before, after, rise, fall):
 
 
 @inlined
-def on_rail(laws, walls, rail, faces, surveyed, left, engaged):
+def on_rail(laws, compliance, rail, faces, surveyed, left, engaged):
     """Bring ``engaged`` (f,), the faces that stand over their walls, and ``left`` (f,) up to date
     (``lowfi.contact.wall_ends``): whether any changed, energy (J) that leaving faces took with them, less what
     entering ones bring, the part of the latter (J) with which they had left, and a face that
     strikes an edge or is pressed through its wall, or -1. Walls that give way know their energy
     themselves."""
     changed, energy, returned, struck = False, 0.0, 0.0, -1
-    if laws is not None or walls is not None:
+    if laws is not None or compliance is not None:
         for i in range(engaged.size):
             inside = stands_over(rail, faces[i], surveyed[i])
             if not engaged[i]:

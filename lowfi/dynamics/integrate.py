@@ -100,7 +100,7 @@ class Loop(NamedTuple):
 def ready(system, state: np.ndarray, first_step: float) -> Loop:
     """A loop about to take its first sample of ``system`` at ``state`` (STATE_SIZE,), and its first
     step of ``first_step`` (s). Rails are at rest, or as modes at the end of ``state`` say."""
-    faces, size = system.faces.shape[0], slot.STATE_SIZE + states(system.walls)
+    faces, size = system.faces.shape[0], slot.STATE_SIZE + states(system.compliance)
     state_, survey_ = (size,), (faces, SURVEY_SIZE)
     grip = zeros((faces, GRIP_SIZE)) if system.sticking is not None else None
     loop = Loop(
@@ -136,7 +136,7 @@ def reset(system, state, first_step, loop):
     loop.end[:] = 0.0
     slot.copy(state, loop.start, state.size)
     slot.copy(state, loop.end, state.size)
-    _flatten(system.walls)
+    _flatten(system.compliance)
     loop.engaged[:] = False
     loop.left[:] = 0.0
     loop.active[:] = False
@@ -152,10 +152,10 @@ def reset(system, state, first_step, loop):
 
 
 @inlined
-def _flatten(walls):
+def _flatten(compliance):
     """Forget the displacement that the walls had last."""
-    if walls is not None:
-        walls.room.displacement[:] = 0.0
+    if compliance is not None:
+        compliance.room.displacement[:] = 0.0
 
 
 @inlined
@@ -164,7 +164,7 @@ def _on_rail(system, loop):
     what came back of it."""
     rail = (system.rail_start, system.rail_end)
     left, energy, returned, loop.count[STRIKING] = on_rail(
-        system.contact, system.walls, rail, system.faces, loop.after, loop.left, loop.engaged
+        system.contact, system.compliance, rail, system.faces, loop.after, loop.left, loop.engaged
     )
     return left, energy, returned
 
@@ -180,7 +180,7 @@ def _let_go(grip):
 def _survey(system, loop):
     loop.audit[audit.ON_WALLS] = survey(
         system.contact,
-        system.walls,
+        system.compliance,
         system.sticking,
         system.faces,
         system.platform,
@@ -224,15 +224,15 @@ def _fastest_rate(system, loop, state, ahead):
         state,
         ahead,
     )
-    return max(rate, _rate_on_walls(system.walls, system, loop, state))
+    return max(rate, _rate_on_walls(system.compliance, system, loop, state))
 
 
 @inlined
-def _rate_on_walls(walls, system, loop, state):
+def _rate_on_walls(compliance, system, loop, state):
     rate = 0.0
-    if walls is not None:
+    if compliance is not None:
         stiffness, damping = stiffness_and_damping(
-            walls,
+            compliance,
             system.friction,
             system.faces,
             system.platform,
@@ -266,7 +266,7 @@ def march(system, plan, tolerance, marks, loop, sampling, rows, forces):
         if status != SAMPLED:
             return status
         if time == clock[NOW]:
-            slot.copy_all(loop.end, loop.work, slot.modal_size(system.walls))
+            slot.copy_all(loop.end, loop.work, slot.modal_size(system.compliance))
         else:
             interpolate(
                 clock[SIZE],
@@ -274,7 +274,7 @@ def march(system, plan, tolerance, marks, loop, sampling, rows, forces):
                 loop.start,
                 loop.stages,
                 slot.STATE_SIZE,
-                slot.modal_size(system.walls),
+                slot.modal_size(system.compliance),
                 loop.work,
             )
         # Before the first step nothing is felt yet, and every face may press.
@@ -316,7 +316,7 @@ def advance(system, plan, tolerance, marks, loop):
             if loop.audit[audit.LOST] == 0.0
             else LOST_ENERGY
         )
-    if not _has_finite_energy(loop.end, slot.modal_size(system.walls)):
+    if not _has_finite_energy(loop.end, slot.modal_size(system.compliance)):
         return NOT_FINITE
     ending.follow(system, marks, loop, ending.Step(clock[BEGAN], clock[NOW], clock[SIZE]))
     return SAMPLED
@@ -356,7 +356,7 @@ def step(system, plan, tolerance, loop):
             plan.caps[segment],
             STABLE_RADIUS / rate,
             stop - start,
-            _while_hanging(system.walls, system, loop),
+            _while_hanging(system.compliance, system, loop),
         ),
     )
     while True:
@@ -383,7 +383,7 @@ def step(system, plan, tolerance, loop):
             tolerance,
             system.payload,
             system.platform,
-            system.walls,
+            system.compliance,
             dt,
             loop.stages,
             loop.end,
@@ -448,22 +448,22 @@ def step(system, plan, tolerance, loop):
 
 
 @inlined
-def _release(walls, system, loop, left, sign):
+def _release(compliance, system, loop, left, sign):
     """Book what faces that ``left`` the walls took with them: the energy in the walls before less
     that after."""
-    if walls is not None:
+    if compliance is not None:
         if left:
             loop.start[slot.RELEASED] += sign * energy_on_walls(
-                walls, system.faces, system.platform, system.payload, loop.active, loop.start
+                compliance, system.faces, system.platform, system.payload, loop.active, loop.start
             )
 
 
 @inlined
-def _while_hanging(walls, system, loop):
+def _while_hanging(compliance, system, loop):
     longest = np.inf
-    if walls is not None:
+    if compliance is not None:
         longest = while_hanging(
-            walls, system.faces, system.platform, system.payload, loop.active, loop.start
+            compliance, system.faces, system.platform, system.payload, loop.active, loop.start
         )
     return longest
 
@@ -490,7 +490,7 @@ def _land(system, loop, dt):
     for _ in range(_LANDINGS):
         theta, face = first_event(
             system.contact,
-            system.walls,
+            system.compliance,
             system.sticking,
             system.payload,
             system.platform,
@@ -522,7 +522,7 @@ def _land(system, loop, dt):
             loop.start,
             loop.stages,
             slot.STATE_SIZE,
-            slot.modal_size(system.walls),
+            slot.modal_size(system.compliance),
             loop.end,
         )
         _survey(system, loop)
@@ -534,7 +534,7 @@ def _begin(system, plan, loop):
     """Make the end of the last step the start of the next; what jumps in between jumps here. True
     when the derivative jumps too."""
     clock, count = loop.clock, loop.count
-    slot.copy_all(loop.end, loop.start, slot.modal_size(system.walls))
+    slot.copy_all(loop.end, loop.start, slot.modal_size(system.compliance))
     clock[BEGAN] = clock[NOW]
     fresh = count[SEGMENT] < 0 or clock[NOW] >= plan.stops[count[SEGMENT]]
     if fresh:
@@ -546,14 +546,14 @@ def _begin(system, plan, loop):
     loop.start[slot.FRICTION] += lost
     for i in range(loop.engaged.size):
         slot.copy(loop.after[i], loop.before[i], SURVEY_SIZE)
-    slot.copy_all(loop.stages[STAGES - 1], loop.stages[0], slot.modal_size(system.walls))
-    _release(system.walls, system, loop, left, 1.0)
+    slot.copy_all(loop.stages[STAGES - 1], loop.stages[0], slot.modal_size(system.compliance))
+    _release(system.compliance, system, loop, left, 1.0)
     changed = felt(loop.after, loop.engaged, loop.active) or regripped
     if changed:
         clock[RATE] = _fastest_rate(system, loop, loop.start, 0.0)
-    _release(system.walls, system, loop, left, -1.0)
+    _release(system.compliance, system, loop, left, -1.0)
     if count[STEPS] == 0:
-        audit.open_books(system.ledger, system.walls, system, loop)
+        audit.open_books(system.ledger, system.compliance, system, loop)
     return changed or left or fresh or clock[SPAN] < 1.0
 
 

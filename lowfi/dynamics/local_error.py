@@ -63,16 +63,16 @@ def tolerance(numerics: Numerics, promised: Promises, reach: float) -> Tolerance
 
 
 @inlined
-def error_ratio(tolerance, payload, platform, walls, dt, stages, end, error):
+def error_ratio(tolerance, payload, platform, compliance, dt, stages, end, error):
     """Error of the step that led to ``end`` over what is allowed; NaN where anything is. ``error``,
     as long as ``end``, is scratch."""
-    local_error(dt, stages, modal_size(walls), error)
+    local_error(dt, stages, modal_size(compliance), error)
     ratio = _body_ratio(
         tolerance, payload.mass, payload.inverse_inertia, dt, error[:BODY_SIZE], end[:BODY_SIZE]
     )
     return worse(
         worse(ratio, _platform_ratio(tolerance, platform, dt, error, end)),
-        _rail_ratio(tolerance, payload, walls, error, end),
+        _rail_ratio(tolerance, payload, compliance, error, end),
     )
 
 
@@ -93,10 +93,10 @@ def _platform_ratio(tolerance, platform, dt, error, end):
 
 
 @inlined
-def _rail_ratio(tolerance, payload, walls, error, end):
+def _rail_ratio(tolerance, payload, compliance, error, end):
     ratio = 0.0
-    if walls is not None:
-        ratio = _modal_ratio(tolerance, payload, walls.modes, error, end)
+    if compliance is not None:
+        ratio = _modal_ratio(tolerance, payload, compliance.modes, error, end)
     return ratio
 
 

@@ -61,7 +61,7 @@ def observe(system, engaged, active, grip, state, row, forces):
         forces,
     )
     row[STORED] += _press_walls(
-        system.walls,
+        system.compliance,
         system.friction,
         system.faces,
         system.platform,
@@ -71,7 +71,7 @@ def observe(system, engaged, active, grip, state, row, forces):
         state,
         forces,
     )
-    _rails(system.walls, state, row)
+    _rails(system.compliance, state, row)
     slot.copy(state[WORK:], row[WORKS:], WORK_SIZE)
     slot.copy(state[IMPULSE:], row[GIVEN:], 6)
     total = 0.0
@@ -177,32 +177,32 @@ def _press(laws, friction, sticking, faces, platform, engaged, grip, body, base,
 
 
 @kernel
-def _press_walls(walls, friction, faces, platform, active, body, base, state, forces):
+def _press_walls(compliance, friction, faces, platform, active, body, base, state, forces):
     """The same on walls that give way. A sample leaves no trace:
     the next step begins with the displacement that the last one left."""
     energy = 0.0
-    if walls is not None:
-        _keep(walls.room.displacement, walls.room.kept)
+    if compliance is not None:
+        _keep(compliance.room.displacement, compliance.room.kept)
         place, turn = relative_pose(platform, body, base)
-        for rail in range(walls.members.shape[0]):
-            count = solve(walls, faces, rail, active, place, turn, state)
-            energy += wall_energy(walls, count)
+        for rail in range(compliance.members.shape[0]):
+            count = solve(compliance, faces, rail, active, place, turn, state)
+            energy += wall_energy(compliance, count)
             for k in range(count):
-                i = walls.room.order[k]
-                if walls.room.force[i, 0] > 0.0:
-                    face = wall_load(walls, friction, platform, faces, i, body, base)
-                    aside, _ = lean(walls, faces, i, body, base)
+                i = compliance.room.order[k]
+                if compliance.room.force[i, 0] > 0.0:
+                    face = wall_load(compliance, friction, platform, faces, i, body, base)
+                    aside, _ = lean(compliance, faces, i, body, base)
                     for j in range(3):
                         forces[i, j] = face.normal[j] + face.drag[j] + aside[j]
-        _keep(walls.room.kept, walls.room.displacement)
+        _keep(compliance.room.kept, compliance.room.displacement)
     return energy
 
 
 @inlined
-def _rails(walls, state, row):
+def _rails(compliance, state, row):
     """Add the energies of the rails' modes."""
-    if walls is not None:
-        kinetic, strain = energies(walls.modes, state)
+    if compliance is not None:
+        kinetic, strain = energies(compliance.modes, state)
         row[KINETIC] += kinetic
         row[STRAIN] = strain
 

@@ -80,7 +80,7 @@ def _system(common, cases, n):
         common.reacts_on_platform,
         _offset(cases.direction, cases.arm, n),
         common.contact,
-        common.walls,
+        common.compliance,
         common.friction,
         common.sticking,
         common.gravity,

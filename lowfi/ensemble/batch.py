@@ -17,7 +17,7 @@ from tipoff.lowfi.run import solved
 from tipoff.mechanics import comoving, ending, outcome
 from tipoff.mechanics import model as models
 from tipoff.mechanics.model import Built
-from tipoff.mechanics.rail_compliance import Walls
+from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.scenes.calibration import Calibration
 from tipoff.scenes.faults import SceneError
 from tipoff.scenes.scene import Scene
@@ -54,13 +54,13 @@ class Family:
         scene: Scene,
         calibration: Calibration | None,
         numerics: Numerics,
-        walls: Walls | None = None,
+        compliance: RailCompliance | None = None,
     ):
-        self.scene, self.calibration, self.numerics, self.walls = (
+        self.scene, self.calibration, self.numerics, self.compliance = (
             scene,
             calibration,
             numerics,
-            walls,
+            compliance,
         )
         self.calibrated = calibration.apply(scene) if calibration else scene
         self.touched = (
@@ -97,10 +97,12 @@ class Family:
 
     def _require_walls(self, built: Built) -> None:
         scene, base = built.scene, self.base.scene
-        if self.walls is not None and not (scene.rail is base.rail and scene.pads is base.pads):
-            self.walls.require(scene)
+        if self.compliance is not None and not (
+            scene.rail is base.rail and scene.pads is base.pads
+        ):
+            self.compliance.require(scene)
         if scene.thermal is not base.thermal:
-            thermal_offset.require(scene, self.walls)
+            thermal_offset.require(scene, self.compliance)
 
     def _group(self, groups: dict, built: Built) -> _Group:
         scene, model = built.scene, built.model
@@ -160,11 +162,11 @@ class Family:
     def _kernel(self, group: _Group) -> Callable[[], np.ndarray]:
         model, planned, marks = group.built.model, group.plan, group.marks
         under_pads = wall_record.under_pads(
-            group.built.scene, model, self.walls, self.numerics.modes
+            group.built.scene, model, self.compliance, self.numerics.modes
         )
-        under_law = thermal_offset.under_pads(group.built.scene, model, self.walls)
+        under_law = thermal_offset.under_pads(group.built.scene, model, self.compliance)
         common, first = (
-            system.build(model, walls=under_pads, bow=under_law),
+            system.build(model, compliance=under_pads, bow=under_law),
             plan.first_step(planned),
         )
         loop, cases = integrate.ready(common, state.initial(model), first), _stacked(common, group)
@@ -206,7 +208,7 @@ class Family:
     def _whole(self, row: Mapping[str, Any]) -> Case:
         try:
             found = solved(
-                self.scene.replace(row), self.calibration, self.numerics, walls=self.walls
+                self.scene.replace(row), self.calibration, self.numerics, compliance=self.compliance
             )
         except SceneError as error:
             return Case("refused", str(error), outcome.Outcome(), 0, 0.0)

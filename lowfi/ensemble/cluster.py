@@ -18,7 +18,7 @@ from tipoff.lowfi.ensemble.request import Ensemble, code
 from tipoff.lowfi.ensemble.store import Chunk, Store, StoreError
 from tipoff.lowfi.ensemble.threads import PIECE, in_order
 from tipoff.lowfi.numerics import Numerics
-from tipoff.mechanics.rail_compliance import Walls
+from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.scenes.calibration import Calibration
 from tipoff.scenes.scene import Scene
 
@@ -39,7 +39,7 @@ class Recipe(NamedTuple):
     scene: Scene
     calibration: Calibration | None
     numerics: Numerics
-    walls: Walls | None = None
+    compliance: RailCompliance | None = None
 
 
 def made(
@@ -64,7 +64,7 @@ def made(
                 ensemble.scene,
                 ensemble.calibration,
                 ensemble.numerics,
-                ensemble.walls,
+                ensemble.compliance,
             ),
             iter(asked),
         )
@@ -123,7 +123,7 @@ def _family(recipe: Recipe) -> Family:
     if getattr(_kept, "key", None) != recipe.key:
         _kept.key, _kept.family = (
             recipe.key,
-            Family(recipe.scene, recipe.calibration, recipe.numerics, recipe.walls),
+            Family(recipe.scene, recipe.calibration, recipe.numerics, recipe.compliance),
         )
     return _kept.family
 

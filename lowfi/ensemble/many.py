@@ -16,7 +16,7 @@ from tipoff.lowfi.ensemble.threads import PIECE, completed
 from tipoff.lowfi.models import require
 from tipoff.lowfi.numerics import Numerics
 from tipoff.mechanics.models import COMPLIANT
-from tipoff.mechanics.rail_compliance import Walls
+from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.scenes.calibration import Calibration
 from tipoff.scenes.scene import Scene
 from tipoff.scenes.uncertainty import Uncertainty
@@ -32,7 +32,7 @@ def run_many(
     table: Sequence[Mapping[str, Any]] | Uncertainty,
     model: str = COMPLIANT,
     *,
-    walls: Walls | None = None,
+    compliance: RailCompliance | None = None,
     calibration: Calibration | None = None,
     numerics: Numerics | None = None,
     workers: int | None = None,
@@ -49,19 +49,21 @@ def run_many(
     and what it holds already is not run again (``lowfi.ensemble.fill``, which needs no room for all
     results); it has no ``wall_s``.
     """
-    require(scene, model, walls, calibration, numerics)
+    require(scene, model, compliance, calibration, numerics)
     source, numerics = (
         Drawn(table) if isinstance(table, Uncertainty) else Listed(table),
         numerics or Numerics(),
     )
     if store is not None:
-        return _stored(Ensemble(scene, source, calibration, numerics, walls), workers, store)
+        return _stored(Ensemble(scene, source, calibration, numerics, compliance), workers, store)
     pieces = (
         source.rows(begin, min(begin + PIECE, source.asked))
         for begin in range(0, source.asked, PIECE)
     )
     cases = list(
-        chain.from_iterable(completed(Family(scene, calibration, numerics, walls), pieces, workers))
+        chain.from_iterable(
+            completed(Family(scene, calibration, numerics, compliance), pieces, workers)
+        )
     )
     shares = np.array([case.wall_s for case in cases], dtype=float)
     return _dataset(columns.of(cases), [case.message for case in cases]).assign(

@@ -13,7 +13,7 @@ from tipoff.lowfi.ensemble import store as stores
 from tipoff.lowfi.ensemble.batch import Case, Family
 from tipoff.lowfi.ensemble.threads import completed
 from tipoff.lowfi.numerics import Numerics
-from tipoff.mechanics.rail_compliance import Walls
+from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.scenes.calibration import Calibration
 from tipoff.scenes.scene import Scene
 
@@ -29,11 +29,11 @@ class Ensemble(NamedTuple):
     source: Any
     calibration: Calibration | None
     numerics: Numerics
-    walls: Walls | None = None
+    compliance: RailCompliance | None = None
 
     def family(self) -> Family:
         """What sets up its cases."""
-        return Family(self.scene, self.calibration, self.numerics, self.walls)
+        return Family(self.scene, self.calibration, self.numerics, self.compliance)
 
     def identity(self) -> dict:
         """Everything the numbers depend on, as JSON."""
@@ -42,7 +42,7 @@ class Ensemble(NamedTuple):
             "cases": self.source.identity,
             "numerics": self.numerics.as_dict(),
             "calibration": self.calibration.constants if self.calibration else {},
-            "walls": self.walls.hash if self.walls else "",
+            "walls": self.compliance.hash if self.compliance else "",
             "chunk": stores.CHUNK,
         } | code()
 

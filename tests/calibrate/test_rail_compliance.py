@@ -37,5 +37,5 @@ def test_the_estimate_is_what_the_reference_s_own_mesh_shows():
 
 def test_a_size_that_is_asked_for_is_taken(monkeypatch):
     monkeypatch.setattr(rail_compliance, "fine_enough", lambda *_: pytest.fail("chose a mesh"))
-    monkeypatch.setattr(rail_compliance.statics, "walls", lambda scene, size: size)
+    monkeypatch.setattr(rail_compliance.statics, "condense", lambda scene, size: size)
     assert calibration.compliance(load("tiny"), 8e-3) == 8e-3

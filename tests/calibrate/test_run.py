@@ -133,7 +133,7 @@ def test_same_bits_with_any_number_of_workers(monkeypatch):
     """On a surrogate that takes no time, its conditions in turn or side by side."""
     pools = []
 
-    def run(asked, model, numerics, walls):
+    def run(asked, model, numerics, compliance):
         assert model == "springs"
         known = own_curves()[
             "phi15" if asked.thrust_offset == scene().condition("phi15").thrust_offset else "phi60"

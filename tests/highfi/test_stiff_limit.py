@@ -93,13 +93,13 @@ def apart(one, other) -> tuple[float, float]:
 
 def both(scene, quadrature: int = 4) -> tuple:
     """The reference, the surrogate on rigid walls, and on those of the same rail."""
-    walls = highfi.walls(scene, 0.004)
-    at_rest = dataclasses.replace(walls, flexibility=np.zeros_like(walls.flexibility))
+    compliance = highfi.condense(scene, 0.004)
+    at_rest = dataclasses.replace(compliance, flexibility=np.zeros_like(compliance.flexibility))
     numerics = highfi.Numerics(element_size=0.004, quadrature=quadrature)
     return (
         highfi.run(scene, numerics=numerics),
-        lowfi.run(scene, walls=at_rest),
-        lowfi.run(scene, walls=walls),
+        lowfi.run(scene, compliance=at_rest),
+        lowfi.run(scene, compliance=compliance),
     )
 
 

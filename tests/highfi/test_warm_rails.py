@@ -119,8 +119,12 @@ def test_walls_of_the_surrogate_stand_where_those_of_the_reference_do():
     """The six patterns of a pad face at ignition against the nodes under it, within a sixth of what
     the wall moves over its length."""
     scene = tiny(**WARM)
-    walls, system = compliance.walls(scene, COARSE.element_size), begun(scene).system
-    found, faces, surface = walls.moved(system.model.thermal.amounts), system.faces, system.surface
+    rails, system = compliance.condense(scene, COARSE.element_size), begun(scene).system
+    found, faces, surface = (
+        rails.moved(system.model.thermal.amounts),
+        system.faces,
+        system.surface,
+    )
     for face in range(0, faces.axis.size, 3):
         nodes = np.unique(
             surface.facets[surface.reach[surface.first[face] : surface.first[face + 1]]]
@@ -129,7 +133,7 @@ def test_walls_of_the_surrogate_stand_where_those_of_the_reference_do():
         plane = [0, 3 - axis]
         local = (system.rail.points[nodes] + system.origin - faces.centre[face])[
             :, plane
-        ] / walls.half[face]
+        ] / rails.half[face]
         under = (np.abs(local) < 1.01).all(axis=1)
         patterns = (local[under, None] ** POWERS).prod(axis=2)
         moved = faces.sign[face] * system.warm[nodes, axis]

@@ -17,7 +17,7 @@ from tipoff.lowfi.contact import springs
 from tipoff.lowfi.contact.compliant import record
 from tipoff.lowfi.dynamics import equations
 from tipoff.mechanics import model as models
-from tipoff.mechanics.rail_compliance import PATTERNS, POWERS, Walls, digest
+from tipoff.mechanics.rail_compliance import PATTERNS, POWERS, RailCompliance, digest
 from tipoff.scenes.scene import Scene
 
 REFERENCE = scenes.load("reference")
@@ -27,12 +27,12 @@ UPRIGHT = (1.0, 0.0, 0.0, 0.0)
 
 
 @cache
-def reference_walls() -> Walls:
+def reference_walls() -> RailCompliance:
     """Those of the reference scene, from elements of 4 mm."""
-    return compliance.walls(REFERENCE, 4e-3)
+    return compliance.condense(REFERENCE, 4e-3)
 
 
-def handmade(scene: Scene, entries: dict, rail=None) -> Walls:
+def handmade(scene: Scene, entries: dict, rail=None) -> RailCompliance:
     """Walls whose flexibility is zero but for ``entries``: (face, pattern, face, pattern) -> m/N,
     everywhere the same; one rail holds all faces, or ``rail`` (f,) tells."""
     faces = models.build(scene).faces
@@ -42,7 +42,7 @@ def handmade(scene: Scene, entries: dict, rail=None) -> Walls:
         flexibility[:, i, a, j, b] = flexibility[:, j, b, i, a] = value
     half = np.column_stack([faces.half_length, faces.half_width])
     rail = np.zeros(count, dtype=np.int64) if rail is None else rail
-    return Walls(
+    return RailCompliance(
         np.array([0.0, 1.0]),
         flexibility,
         rail,
@@ -129,11 +129,11 @@ def seen_from_platform(platform, payload, state):
 
 
 @kernel
-def add_walls(walls, friction, faces, platform, payload, active, state, out):
+def add_walls(compliance, friction, faces, platform, payload, active, state, out):
     """What walls alone add to ``out``, the derivative of ``state``."""
     body = slot.motion(payload.mass, payload.inverse_inertia, state, slot.PAYLOAD)
     equations.add_walls(
-        walls,
+        compliance,
         friction,
         faces,
         platform,
@@ -146,17 +146,17 @@ def add_walls(walls, friction, faces, platform, payload, active, state, out):
     )
 
 
-def pressed(scene: Scene, walls: Walls, modes: int = 0):
+def pressed(scene: Scene, compliance: RailCompliance, modes: int = 0):
     """Model and records of ``scene`` on ``walls``."""
     model = models.build(scene)
     damping = scene.rail.damping and scene.rail.damping.record()
     return model, systems.build(
-        model, walls=record.build(walls, model, modes=modes, damping=damping)
+        model, compliance=record.build(compliance, model, modes=modes, damping=damping)
     )
 
 
 def forces_of(
-    walls: Walls, model, cells: int, face: int, pose: Pose, displacement: np.ndarray
+    compliance: RailCompliance, model, cells: int, face: int, pose: Pose, displacement: np.ndarray
 ) -> np.ndarray:
     """P (p,) N of a face on a wall displaced by (p,) m: the equations of ``lowfi.contact.compliant.cells`` cell
     by cell, over the middle of the rail."""
@@ -165,7 +165,7 @@ def forces_of(
         base.T @ rotation.matrices([pose.attitude])[0],
         base.T @ (pose.place - pose.base_place),
     )
-    axis, across, half = faces.axis[face], 3 - faces.axis[face], walls.half[face]
+    axis, across, half = faces.axis[face], 3 - faces.axis[face], compliance.half[face]
     edges = np.linspace(-1.0, 1.0, cells + 1)
     node, crown = 0.5 * (edges[1:] + edges[:-1]), np.diff(edges**5) / 5.0 / np.diff(edges)
     xi, eta = (grid.ravel() for grid in np.meshgrid(node, node, indexing="ij"))
@@ -184,6 +184,6 @@ def forces_of(
     return model.penalty * area * phi.T @ np.maximum(0.0, depth - phi @ displacement)
 
 
-def flexibility_at(walls: Walls, travel: float) -> np.ndarray:
+def flexibility_at(compliance: RailCompliance, travel: float) -> np.ndarray:
     """(f,p,f,p) m/N between the stations."""
-    return CubicSpline(walls.travel, walls.flexibility)(travel)
+    return CubicSpline(compliance.travel, compliance.flexibility)(travel)

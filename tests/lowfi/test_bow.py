@@ -24,26 +24,26 @@ TIGHT = Numerics(relative_tolerance=1e-10)
 def standing_away(scene, distance, flexible=None):
     """Walls of ``scene`` that stand ``distance`` (s,) m away from the payload at every mean of 1 /
     alpha K, all faces alike; with ``flexible`` entries they give way too."""
-    walls = handmade(scene, flexible or {})
+    compliance = handmade(scene, flexible or {})
     travel = np.linspace(0.0, 0.23, len(distance))
-    warm = np.zeros((FIELDS, travel.size, walls.rail.size, PATTERNS))
+    warm = np.zeros((FIELDS, travel.size, compliance.rail.size, PATTERNS))
     warm[0, :, :, 0] = np.asarray(distance)[:, None]
-    flexibility = np.repeat(walls.flexibility[:1], travel.size, axis=0)
-    found = replace(walls, travel=travel, flexibility=flexibility, warm=warm)
+    flexibility = np.repeat(compliance.flexibility[:1], travel.size, axis=0)
+    found = replace(compliance, travel=travel, flexibility=flexibility, warm=warm)
     return found if flexible else found.rigid()
 
 
 def test_where_walls_stand():
     """The mean over a face of the six patterns, as a spline of its place, straight beyond the
     ends."""
-    scene, walls = REFERENCE.replace(WARM), reference_walls().rigid()
+    scene, compliance = REFERENCE.replace(WARM), reference_walls().rigid()
     model = models.build(scene)
-    record = thermal_offset.under_pads(scene, model, walls)
+    record = thermal_offset.under_pads(scene, model, compliance)
     wanted = CubicSpline(
-        walls.travel,
-        np.tensordot(scene.thermal.record(scene.rail).amounts, walls.warm, 1) @ GRAM[0],
+        compliance.travel,
+        np.tensordot(scene.thermal.record(scene.rail).amounts, compliance.warm, 1) @ GRAM[0],
     )
-    first, last = walls.travel[[0, -1]]
+    first, last = compliance.travel[[0, -1]]
     for face in (0, 5, 15):
         start = model.faces.centre[face, 0] - model.platform.mass_centre[0]
         for way in (0.0, 0.0371, 0.2, last):
@@ -98,10 +98,12 @@ def test_walls_that_stand_away_evenly_are_a_wider_clearance(flexible):
     """20 um more on every side, by temperature or by the clearance: the same motion, which without
     them is another."""
     scene, more = REFERENCE.condition("phi35"), 2e-5
-    walls = standing_away(scene, np.full(4, more), flexible)
-    warm = lowfi.run(scene.replace({"thermal.mean": MEAN}), "springs", numerics=TIGHT, walls=walls)
+    compliance = standing_away(scene, np.full(4, more), flexible)
+    warm = lowfi.run(
+        scene.replace({"thermal.mean": MEAN}), "springs", numerics=TIGHT, compliance=compliance
+    )
     wide, plain = (
-        lowfi.run(each, "springs", numerics=TIGHT, walls=walls)
+        lowfi.run(each, "springs", numerics=TIGHT, compliance=compliance)
         for each in (scene.replace({"contact.clearance": scene.contact.clearance + more}), scene)
     )
     assert np.degrees(warm.outcome.rate) == pytest.approx(np.degrees(wide.outcome.rate), abs=1e-6)
@@ -116,8 +118,8 @@ def test_ledgers_on_a_wavy_wall(flexible):
     """Waves of 0.1 mm along the rail: what they push along it is in the ledger, and momentum is
     kept."""
     scene = REFERENCE.condition("phi35").replace({"thermal.mean": MEAN})
-    walls = standing_away(scene, 1e-4 * np.sin(np.linspace(0.0, 12.0, 40)), flexible)
-    run = lowfi.run(scene, "springs", walls=walls)
+    compliance = standing_away(scene, 1e-4 * np.sin(np.linspace(0.0, 12.0, 40)), flexible)
+    run = lowfi.run(scene, "springs", compliance=compliance)
     assert run.status == "exited" and np.abs(run.pad_force).max() > 100.0
     checks = run.checks
     assert checks["linear_momentum_error"] <= 1e-12 and checks["angular_momentum_error"] <= 1e-11
@@ -131,9 +133,9 @@ def test_ledgers_on_a_wavy_wall(flexible):
 @pytest.mark.slow
 def test_the_plain_equations_agree():
     """Fixed steps of 5 us, over all impacts. Control: cold rails are touched otherwise."""
-    scene, walls = REFERENCE.condition("phi35").replace(WARM), reference_walls().rigid()
-    run = lowfi.run(scene, "springs", numerics=TIGHT, walls=walls)
-    plain = oracle.solve(scene, 10, walls=walls)
+    scene, compliance = REFERENCE.condition("phi35").replace(WARM), reference_walls().rigid()
+    run = lowfi.run(scene, "springs", numerics=TIGHT, compliance=compliance)
+    plain = oracle.solve(scene, 10, compliance=compliance)
     cold = lowfi.run(REFERENCE.condition("phi35"), "springs", numerics=TIGHT)
     same = min(run.time.size, cold.time.size)
     error, change = (np.abs(other.rate[:same] - run.rate[:same]).max() for other in (plain, cold))
@@ -143,11 +145,14 @@ def test_the_plain_equations_agree():
 @pytest.mark.slow
 def test_ensembles_vary_the_temperature():
     """Every case as ``lowfi.run`` has it, to the bit; without walls every warm one is refused."""
-    scene, walls = REFERENCE.condition("phi35"), reference_walls().rigid()
+    scene, compliance = REFERENCE.condition("phi35"), reference_walls().rigid()
     rows = [{"thermal.mean": mean} for mean in (0.0, 20.0, 60.0)] + [{"payload.mass": 10.0}]
-    found = lowfi.run_many(scene, rows, "springs", walls=walls)
+    found = lowfi.run_many(scene, rows, "springs", compliance=compliance)
     for row, rate in zip(rows, found.rate.values):
-        assert rate.tolist() == lowfi.run(scene.replace(row), "springs", walls=walls).outcome.rate
+        assert (
+            rate.tolist()
+            == lowfi.run(scene.replace(row), "springs", compliance=compliance).outcome.rate
+        )
     assert len({*map(tuple, found.rate.values.tolist())}) == 4
     assert lowfi.run_many(scene, rows, "springs").status.values.tolist() == ["refused"] * 3 + [
         "exited"
@@ -159,7 +164,7 @@ def test_a_bow_that_closes_the_clearance_is_warned_about():
     scene = REFERENCE.condition("phi35").replace({"thermal.mean": MEAN})
     # where pads stand at ignition, and nowhere else
     tight = np.where(np.arange(12) < 2, -3e-4, 0.0)
-    run = lowfi.run(scene, "springs", walls=standing_away(scene, tight))
+    run = lowfi.run(scene, "springs", compliance=standing_away(scene, tight))
     assert (
         "initial interference: pads 1, 2, 3, 4, 5, 6, 7, 8 press" in run.message
         or "initial interference: pads 0" in run.message

@@ -39,15 +39,15 @@ def assert_same(found, expected) -> None:
 @pytest.mark.parametrize(
     "condition, walls", [("phi35", False), ("phi35", True)], ids=["springs", "compliant"]
 )
-def test_sampling_changes_no_bit(condition, walls):
+def test_sampling_changes_no_bit(condition, compliance):
     """From a thousand samples to two, to an interval that divides nothing, and to none but the
     first in all of the flight."""
     asked, model, stand = (
         REFERENCE.condition(condition),
-        *(("compliant", reference_walls()) if walls else ("springs", None)),
+        *(("compliant", reference_walls()) if compliance else ("springs", None)),
     )
     fine, *others = (
-        lowfi.run(asked.replace({"output.interval": interval}), model, walls=stand)
+        lowfi.run(asked.replace({"output.interval": interval}), model, compliance=stand)
         for interval in ("0.05 ms", "5 ms", "29 ms", "0.73 ms", "58 ms")
     )
     assert fine.status == "exited"

@@ -59,10 +59,10 @@ def test_springs(velocity):
 
 @pytest.mark.parametrize("velocity", FLIGHTS)
 def test_compliant_walls(velocity):
-    walls = reference_walls()
+    compliance = reference_walls()
     assert_same(
-        lowfi.run(flying(REFERENCE, velocity), walls=walls),
-        lowfi.run(REFERENCE, walls=walls),
+        lowfi.run(flying(REFERENCE, velocity), compliance=compliance),
+        lowfi.run(REFERENCE, compliance=compliance),
         velocity,
     )
 

@@ -124,7 +124,7 @@ def test_compliant_walls_at_100_m_s_across(duration):
     walls from outside, which makes energy of nothing."""
     run = lowfi.run(
         REFERENCE.replace({"initial.velocity.y": 100.0, "duration": duration}),
-        walls=reference_walls(),
+        compliance=reference_walls(),
     )
     if "no contact is modelled there" in run.message:  # pressed through the wall
         assert run.status == "diverged" and run.outcome.rate is None

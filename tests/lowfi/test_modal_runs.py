@@ -85,9 +85,9 @@ def crossing(ratio: float):
 
 def midspan(ratio: float, modes: int) -> tuple[np.ndarray, np.ndarray]:
     """Share of the span done, and deflection in the middle of it over the static one."""
-    asked, walls = crossing(ratio)
+    asked, compliance = crossing(ratio)
     states = sampled(
-        Run(asked, Numerics(relative_tolerance=1e-8, speed_floor=1e-9, modes=modes), walls)
+        Run(asked, Numerics(relative_tolerance=1e-8, speed_floor=1e-9, modes=modes), compliance)
     )
     middle = np.sqrt(2.0 / (DENSITY * WIDTH * HEIGHT * LENGTH)) * np.sin(
         0.5 * np.pi * np.arange(1, modes + 1)
@@ -121,7 +121,7 @@ def test_a_rail_rings_out():
         "friction.dynamic": 0.0,
     }
     run = Run(REFERENCE.replace(still | DAMPED), TIGHT_VIBRATING, reference_walls())
-    modes = run.system.walls.modes
+    modes = run.system.compliance.modes
     start = 1e-7 * np.random.default_rng(2).standard_normal(modes.square.size)
     begun = np.concatenate([run.loop.start[: slot.STATE_SIZE], start, 0.0 * start])
     run.loop = integrate.ready(run.system, begun, plan.first_step(run.plan))
@@ -152,9 +152,9 @@ def test_a_rail_rings_out():
 )
 def test_ledgers_and_momentum(condition, changes):
     """As the user gets it; residuals fall with the tolerance."""
-    asked, walls = REFERENCE.condition(condition).replace(changes), reference_walls()
-    run = Run(asked, VIBRATING, walls)
-    states, fine = sampled(run), lowfi.run(asked, numerics=TIGHT_VIBRATING, walls=walls)
+    asked, compliance = REFERENCE.condition(condition).replace(changes), reference_walls()
+    run = Run(asked, VIBRATING, compliance)
+    states, fine = sampled(run), lowfi.run(asked, numerics=TIGHT_VIBRATING, compliance=compliance)
     coarse = run.trajectory()
     for found in (coarse, fine):
         checks = found.checks
@@ -169,7 +169,7 @@ def test_ledgers_and_momentum(condition, changes):
     # Control: without the way along the rail that bent walls lean the transverse ledger would miss
     # tens of times what it may.
     assert (
-        work_of_modes(asked, walls, coarse, states)
+        work_of_modes(asked, compliance, coarse, states)
         > 1e-3 * np.abs(coarse.transverse_energy[:, ledger._STATE].sum(axis=1)).max()
     )
 
@@ -177,9 +177,9 @@ def test_ledgers_and_momentum(condition, changes):
 def test_no_step_is_too_long_for_the_highest_mode():
     """At a tolerance that lets errors grow to centimetres a second the proven limit alone holds the
     steps, and no mode grows."""
-    asked, walls = REFERENCE.condition("phi60"), reference_walls()
+    asked, compliance = REFERENCE.condition("phi60"), reference_walls()
     loose, fine = (
-        lowfi.run(asked, numerics=each, walls=walls)
+        lowfi.run(asked, numerics=each, compliance=compliance)
         for each in (Numerics(relative_tolerance=1e-2, speed_floor=10.0, modes=4), VIBRATING)
     )
     assert loose.status == "exited" and 0.9 < loose.cost["limit_used"] <= 1.0 + 1e-9
@@ -188,9 +188,9 @@ def test_no_step_is_too_long_for_the_highest_mode():
     assert loose.energy[:, strain].max() < 1.2 * fine.energy[:, strain].max()
 
 
-def work_of_modes(scene, walls, run, states) -> float:
+def work_of_modes(scene, compliance, run, states) -> float:
     """Most work (J) by any time of the pull along the rail that comes from its modes."""
-    model, system = pressed(scene, walls, VIBRATING.modes)
+    model, system = pressed(scene, compliance, VIBRATING.modes)
     poses = [
         Pose(*row)
         for row in zip(
@@ -211,15 +211,18 @@ def work_of_modes(scene, walls, run, states) -> float:
 def test_rails_without_inertia_are_the_walls_of_statics():
     """Frequencies to infinity at the same statics: what vibration changes falls with their square,
     four times for twice as fast, and touches at another phase of it may hide a little of that."""
-    asked, walls = REFERENCE.condition("phi60"), reference_walls()
-    static = lowfi.run(asked, numerics=TIGHT, walls=walls).outcome.rate
+    asked, compliance = REFERENCE.condition("phi60"), reference_walls()
+    static = lowfi.run(asked, numerics=TIGHT, compliance=compliance).outcome.rate
     change = []
     for lighter in (1.0, 2.0, 4.0):
-        faster = replace(walls, frequency=lighter * walls.frequency, shape=lighter * walls.shape)
+        faster = replace(
+            compliance, frequency=lighter * compliance.frequency, shape=lighter * compliance.shape
+        )
         change.append(
             np.abs(
                 np.subtract(
-                    lowfi.run(asked, numerics=TIGHT_VIBRATING, walls=faster).outcome.rate, static
+                    lowfi.run(asked, numerics=TIGHT_VIBRATING, compliance=faster).outcome.rate,
+                    static,
                 )
             ).max()
         )
@@ -229,10 +232,13 @@ def test_rails_without_inertia_are_the_walls_of_statics():
 
 @pytest.mark.slow
 def test_ensembles_give_the_same_bits():
-    walls, rows = reference_walls(), [{}, {"payload.mass": 10.0}, DAMPED]
-    found = lowfi.run_many(REFERENCE, rows, walls=walls, numerics=VIBRATING, workers=2)
+    compliance, rows = reference_walls(), [{}, {"payload.mass": 10.0}, DAMPED]
+    found = lowfi.run_many(REFERENCE, rows, compliance=compliance, numerics=VIBRATING, workers=2)
     for row, rate in zip(rows, found.rate.values):
         assert np.array_equal(
-            rate, lowfi.run(REFERENCE.replace(row), walls=walls, numerics=VIBRATING).outcome.rate
+            rate,
+            lowfi.run(
+                REFERENCE.replace(row), compliance=compliance, numerics=VIBRATING
+            ).outcome.rate,
         )
     assert len({tuple(rate) for rate in found.rate.values}) == 3

@@ -23,7 +23,7 @@ def vibrating():
     """Model, records, and any motion of the modes: walls out by micrometres, at centimetres a
     second."""
     model, system = pressed(REFERENCE.replace(SMOOTH | DAMPED), reference_walls(), COUNT)
-    size = system.walls.modes.square.size
+    size = system.compliance.modes.square.size
     random = np.random.default_rng(5)
     return (
         model,
@@ -33,7 +33,7 @@ def vibrating():
 
 
 def rails(system):
-    return range(len(system.walls.members))
+    return range(len(system.compliance.members))
 
 
 @pytest.mark.parametrize("name", POSES)
@@ -63,7 +63,7 @@ def test_forces_are_the_gradient_of_the_energy(vibrating, name):
         not name.startswith("rear")
     )
     q, rate = modes.reshape(2, -1)
-    square, drag = system.walls.modes.square.ravel(), system.walls.modes.drag.ravel()
+    square, drag = system.compliance.modes.square.ravel(), system.compliance.modes.drag.ravel()
     steps = 1e-9 * np.eye(q.size, modes.size)
     by_mode = (
         np.array(
@@ -87,8 +87,8 @@ def pull_of_modes(system, model, pose, modes) -> float:
     """Force (N) along the rail on the payload by walls that modes have bent."""
     found = 0.0
     for rail in rails(system):
-        faces = system.walls.room.order[: solved(system, model, pose, rail, None, modes)]
-        found += (system.walls.room.force[faces] * system.walls.modes.slope[faces]).sum()
+        faces = system.compliance.room.order[: solved(system, model, pose, rail, None, modes)]
+        found += (system.compliance.room.force[faces] * system.compliance.modes.slope[faces]).sum()
     return found
 
 
@@ -119,7 +119,7 @@ def test_limit_holds_the_spectrum(vibrating, name):
     ]
     fastest = np.abs(np.linalg.eigvals(metric @ np.array(columns).T)).max()
     springs, dampers = step_limit.stiffness_and_damping(
-        system.walls,
+        system.compliance,
         system.friction,
         system.faces,
         system.platform,
@@ -127,8 +127,8 @@ def test_limit_holds_the_spectrum(vibrating, name):
         np.ones(len(system.faces), dtype=np.bool_),
         np.append(state_of(model, pose), modes),
     )
-    assert system.walls.modes.square.max() < fastest < springs < 10.0 * fastest
-    assert dampers == system.walls.modes.drag.max() > 0.0
+    assert system.compliance.modes.square.max() < fastest < springs < 10.0 * fastest
+    assert dampers == system.compliance.modes.drag.max() > 0.0
 
 
 def test_modes_need_a_compliance_that_has_them():
@@ -136,10 +136,12 @@ def test_modes_need_a_compliance_that_has_them():
         SceneError, match="numerics.modes: given 4, expected 0: springs stand on rigid rails"
     ):
         lowfi.run(REFERENCE, "springs", numerics=FOUR)
-    walls = reference_walls()
-    few = replace(walls, frequency=walls.frequency[:, :3], shape=walls.shape[..., :3])
+    compliance = reference_walls()
+    few = replace(
+        compliance, frequency=compliance.frequency[:, :3], shape=compliance.shape[..., :3]
+    )
     with pytest.raises(SceneError, match="numerics.modes: given 4, expected at most 3"):
-        lowfi.run(REFERENCE, numerics=FOUR, walls=few)
+        lowfi.run(REFERENCE, numerics=FOUR, compliance=few)
     nothing = REFERENCE.replace({"contact": None, "friction": None})  # presses the rails
     assert lowfi.run(nothing, numerics=FOUR).outcome.rate == lowfi.run(nothing).outcome.rate
 
@@ -152,13 +154,15 @@ def test_a_number_of_modes_is_a_whole_one(given):
 
 def test_rails_that_nothing_touches_take_no_time():
     """No pad touches in h5: not a step more, and the bits of a run without modes."""
-    asked, walls = REFERENCE.condition("h5"), reference_walls()
-    plain, modes = (lowfi.run(asked, numerics=each, walls=walls) for each in (Numerics(), FOUR))
+    asked, compliance = REFERENCE.condition("h5"), reference_walls()
+    plain, modes = (
+        lowfi.run(asked, numerics=each, compliance=compliance) for each in (Numerics(), FOUR)
+    )
     assert modes.cost["steps"] == plain.cost["steps"] and np.array_equal(modes.rate, plain.rate)
 
 
 def test_walls_and_modes_of_different_rails_are_refused():
-    walls = reference_walls()
+    compliance = reference_walls()
     with pytest.raises(ValueError, match="give way more than the whole wall"):
-        replace(walls, shape=3.0 * walls.shape).residual(1)
-    assert walls.residual(0) is walls.flexibility
+        replace(compliance, shape=3.0 * compliance.shape).residual(1)
+    assert compliance.residual(0) is compliance.flexibility

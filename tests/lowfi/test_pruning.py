@@ -25,7 +25,7 @@ ADDED = {
         }
     },
 }
-ON_WALLS = ("walls", "modes", "thermal")  # effects that need walls found for the scene
+ON_WALLS = ("compliance", "modes", "thermal")  # effects that need walls found for the scene
 COUNT = """
 import numba
 import numpy as np
@@ -94,27 +94,29 @@ def test_without_any_effect_nothing_of_them_is_compiled():
 def test_warm_walls_are_compiled_for_a_warm_scene_only():
     """A law asks where they stand, walls that give way know it in code of their own."""
     cold, name = load("reference"), b"5lowfi5walls4warm5_fill"
-    warm, walls = cold.replace({"thermal.mean": 20.0}), reference_walls()
-    assert lowfi.compiled_effects(warm, walls=walls.rigid()) == lowfi.compiled_effects(cold) | {
-        "thermal": True
-    }
-    assert name in compiled_code(warm, walls=walls) and name not in compiled_code(cold, walls=walls)
+    warm, compliance = cold.replace({"thermal.mean": 20.0}), reference_walls()
+    assert lowfi.compiled_effects(warm, compliance=compliance.rigid()) == lowfi.compiled_effects(
+        cold
+    ) | {"thermal": True}
+    assert name in compiled_code(warm, compliance=compliance) and name not in compiled_code(
+        cold, compliance=compliance
+    )
 
 
 def test_walls_that_give_way_stand_in_the_place_of_the_contact_law():
     """Nothing of the package is in a kernel without them."""
     scene, name = load("reference"), b"5lowfi5walls"
-    assert lowfi.compiled_effects(scene, walls=reference_walls()) == lowfi.compiled_effects(
+    assert lowfi.compiled_effects(scene, compliance=reference_walls()) == lowfi.compiled_effects(
         scene
-    ) | {"contact": False, "walls": True}
-    assert name in compiled_code(scene, walls=reference_walls()) and name not in compiled_code(
+    ) | {"contact": False, "compliance": True}
+    assert name in compiled_code(scene, compliance=reference_walls()) and name not in compiled_code(
         scene
     )
 
 
 def test_modes_of_the_rails_are_compiled_where_there_are_any():
-    scene, walls = load("reference"), reference_walls()
+    scene, compliance = load("reference"), reference_walls()
     without, with_modes = (
-        lowfi.compiled_effects(scene, lowfi.Numerics(modes=count), walls) for count in (0, 4)
+        lowfi.compiled_effects(scene, lowfi.Numerics(modes=count), compliance) for count in (0, 4)
     )
     assert with_modes == without | {"modes": True}

@@ -143,7 +143,7 @@ def test_a_short_wall_that_gives_way(monkeypatch, speed, tolerance):
         thrust=EFFECTS["thrust"] | {"peak": 0.0, "width": 1.0},
         initial={"velocity": {"x": speed, "y": across}},
     ).replace({"contact.clearance": across * touch})
-    run = lowfi.run(asked, numerics=numerics(tolerance), walls=handmade(asked, {}))
+    run = lowfi.run(asked, numerics=numerics(tolerance), compliance=handmade(asked, {}))
     expected = pressed_by_a_share(speed, across, touch, over)
     error = run.cost["steps"] * tolerance * across
     assert run.status != "diverged" and run.velocity[-1, 1] == pytest.approx(expected, abs=error)
@@ -190,7 +190,9 @@ def test_back_into_the_mouth(given):
     for depth in (1e-5, 1e-3, 3.9e-3):
         asked = thrown_back(depth)
         run = lowfi.run(
-            asked, "compliant" if given else "springs", walls=handmade(asked, {}) if given else None
+            asked,
+            "compliant" if given else "springs",
+            compliance=handmade(asked, {}) if given else None,
         )
         # the whole pad presses walls, its middle presses springs
         way = 3e-3 + (0.01 * HALF if given else HALF)
@@ -220,9 +222,9 @@ def test_back_into_the_mouth(given):
     )
 
 
-def unwatched_on(asked, walls):
+def unwatched_on(asked, compliance):
     """A run over the scene's whole duration, whoever leaves or stops meanwhile."""
-    run = Run(asked, lowfi.Numerics(), walls)
+    run = Run(asked, lowfi.Numerics(), compliance)
     run.whole = True
     run.begin()
     run.march(None)
@@ -237,14 +239,16 @@ def test_two_kilometres_away(given):
         initial={"position": {"y": 2000.0, "z": CLEARANCE + 1e-5}, "velocity": {"x": 1.0}}
     )
     run = lowfi.run(
-        asked, "compliant" if given else "springs", walls=handmade(asked, {}) if given else None
+        asked,
+        "compliant" if given else "springs",
+        compliance=handmade(asked, {}) if given else None,
     )
     assert run.status == "time_limit" and run.message == "" and not run.pad_force.any()
     assert run.velocity[-1] == pytest.approx([1.0, 0.0, 0.0], abs=1e-12)
     # control: the same crossing where the wall is
     near = asked.replace({"initial.position.y": 0.0})
     assert lowfi.run(
-        near, "compliant" if given else "springs", walls=handmade(near, {}) if given else None
+        near, "compliant" if given else "springs", compliance=handmade(near, {}) if given else None
     ).pad_force.any()
 
 

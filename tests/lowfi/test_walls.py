@@ -44,8 +44,8 @@ POSES = {
 @pytest.fixture(scope="module")
 def reference():
     """Found walls, model, records."""
-    walls = reference_walls()
-    return walls, *pressed(REFERENCE.replace(SMOOTH), walls)
+    compliance = reference_walls()
+    return compliance, *pressed(REFERENCE.replace(SMOOTH), compliance)
 
 
 def pose_of(model, name, base=((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))):
@@ -59,13 +59,13 @@ def solved(system, model, pose, rail, active=None, modes=()):
     state = np.append(state_of(model, pose), modes)
     place, turn = seen_from_platform(system.platform, system.payload, state)
     active = np.ones(len(system.faces), dtype=np.bool_) if active is None else active
-    return solution.solve(system.walls, system.faces, rail, active, place, turn, state)
+    return solution.solve(system.compliance, system.faces, rail, active, place, turn, state)
 
 
 def energy(system, model, pose, modes=()) -> float:
     return sum(
-        loads.energy(system.walls, solved(system, model, pose, rail, None, modes))
-        for rail in range(len(system.walls.members))
+        loads.energy(system.compliance, solved(system, model, pose, rail, None, modes))
+        for rail in range(len(system.compliance.members))
     )
 
 
@@ -77,7 +77,7 @@ def derivative(system, model, pose, twist, modes=()):
     )
     out = np.zeros(state.size)
     add_walls(
-        system.walls,
+        system.compliance,
         system.friction,
         system.faces,
         system.platform,
@@ -136,8 +136,8 @@ def test_forces_are_the_gradient_of_the_energy(reference, name, base):
     # Control: without what a rail softer or stiffer ahead, or bent over its end, does along the way
     # they would not agree.
     along = sum(
-        loads.drive(system.walls, solved(system, model, pose, rail))[0]
-        for rail in range(len(system.walls.members))
+        loads.drive(system.compliance, solved(system, model, pose, rail))[0]
+        for rail in range(len(system.compliance.members))
     )
     assert abs(along) > 1e-6 * size
 
@@ -160,7 +160,7 @@ def test_tangent_bounds_what_the_forces_change_by(reference, name):
             - generalised(back, derivative(system, model, back, 0.0 * twist))
         ) / (2.0 * h)
     springs, dampers = step_limit.stiffness_and_damping(
-        system.walls,
+        system.compliance,
         system.friction,
         system.faces,
         system.platform,
@@ -176,11 +176,11 @@ def test_tangent_bounds_what_the_forces_change_by(reference, name):
 def test_one_solution_whatever_the_first_guess(reference, name):
     """U = F P(U) by the plain equations; walls with a fresh, a wild and the right first guess
     agree."""
-    walls, model, system = reference
-    pose, room = pose_of(model, name), system.walls.room
+    compliance, model, system = reference
+    pose, room = pose_of(model, name), system.compliance.room
     random = np.random.default_rng(8)
-    flexibility = flexibility_at(walls, min(max(POSES[name][0], 0.0), walls.travel[-1]))
-    for rail in range(len(system.walls.members)):
+    flexibility = flexibility_at(compliance, min(max(POSES[name][0], 0.0), compliance.travel[-1]))
+    for rail in range(len(system.compliance.members)):
         found = []
         for guess in (0.0, 3e-4 * random.standard_normal(room.displacement.shape), None):
             if guess is not None:
@@ -194,7 +194,7 @@ def test_one_solution_whatever_the_first_guess(reference, name):
         assert all(np.abs(each - found[0]).max() < 1e-16 for each in found)
         if "over" not in name:
             expected = [
-                forces_of(walls, model, record.CELLS, face, pose, each)
+                forces_of(compliance, model, record.CELLS, face, pose, each)
                 for face, each in zip(faces, found[0])
             ]
             assert force == pytest.approx(
@@ -206,18 +206,18 @@ def test_any_pose_is_solved(reference):
     """From a graze to millimetres deep, over the ends too, from guesses as wild: the forces are
     those of the displacements."""
     _walls, model, system = reference
-    random, room, worst = np.random.default_rng(1), system.walls.room, 0.0
+    random, room, worst = np.random.default_rng(1), system.compliance.room, 0.0
     for size in 10.0 ** random.uniform(-7.0, -2.7, 500):
         offset = random.choice((-1.0, 1.0), 2) * CLEARANCE + size * random.standard_normal(2)
         pose = relative(
             model, random.uniform(-0.01, 0.22), offset, 5.0 * size * random.standard_normal(3)
         )
-        for rail in range(len(system.walls.members)):
+        for rail in range(len(system.compliance.members)):
             room.displacement[:] = size * random.standard_normal(room.displacement.shape)
             faces = room.order[: solved(system, model, pose, rail)]
             told = room.force[faces].copy()
             for face in faces:
-                cells.press(system.walls, face)
+                cells.press(system.compliance, face)
             worst = max(
                 worst,
                 np.abs(room.force[faces] - told).max(initial=0.0)
@@ -289,17 +289,17 @@ def test_force_is_that_of_the_finite_elements(reference, travel, error):
     """One pad: pressure in six patterns under ten by ten cells against pressure free to be
     anything. Nothing is fitted. A mount leaves only the leg's own bending, which knows less of the
     patterns."""
-    walls, model, system = reference
+    compliance, model, system = reference
     face, force = 0, pressed_elements(REFERENCE, 0, travel)
     active = np.arange(len(system.faces)) == face
     for depth in (2e-6, 5e-6, 1e-5, 2e-5):
         offset = np.zeros(2)
         offset[model.faces.axis[face] - 1] = model.faces.sign[face] * (CLEARANCE + depth)
         pose = relative(model, travel, offset)
-        assert solved(system, model, pose, walls.rail[face], active) == 1
-        assert system.walls.room.force[face, 0] == pytest.approx(force(depth), rel=error)
+        assert solved(system, model, pose, compliance.rail[face], active) == 1
+        assert system.compliance.room.force[face, 0] == pytest.approx(force(depth), rel=error)
         # Control: a rigid wall would press back three times as hard, or more.
-        assert forces_of(walls, model, record.CELLS, face, pose, np.zeros(PATTERNS))[
+        assert forces_of(compliance, model, record.CELLS, face, pose, np.zeros(PATTERNS))[
             0
         ] > 3.0 * force(depth)
 
@@ -310,7 +310,7 @@ def test_force_is_that_of_the_finite_elements(reference, travel, error):
 def test_a_pad_aside_meets_a_softer_or_stiffer_leg(reference, aside):
     """The same as with finite elements under the pad where it really stands, though the walls were
     found midway between the rails."""
-    walls, model, system = reference
+    compliance, model, system = reference
     face, travel, depth = 0, 0.056, 2e-5
     active = np.arange(len(system.faces)) == face
     axis = model.faces.axis[face]
@@ -318,8 +318,8 @@ def test_a_pad_aside_meets_a_softer_or_stiffer_leg(reference, aside):
     def force(way):
         offset = np.zeros(2)
         offset[axis - 1], offset[2 - axis] = model.faces.sign[face] * (CLEARANCE + depth), way
-        solved(system, model, relative(model, travel, offset), walls.rail[face], active)
-        return system.walls.room.force[face, 0]
+        solved(system, model, relative(model, travel, offset), compliance.rail[face], active)
+        return system.compliance.room.force[face, 0]
 
     expected = [pressed_elements(REFERENCE, face, travel, way, 16)(depth) for way in (0.0, aside)]
     change = expected[1] / expected[0] - 1.0

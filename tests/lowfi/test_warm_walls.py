@@ -26,8 +26,8 @@ PRESSED = ("all faces of a rail, tilted", "rear pads over the end")
 @pytest.fixture(scope="module")
 def heated():
     """Found walls, model, records."""
-    walls = reference_walls()
-    return walls, *pressed(REFERENCE.replace(SMOOTH | FIELD), walls)
+    compliance = reference_walls()
+    return compliance, *pressed(REFERENCE.replace(SMOOTH | FIELD), compliance)
 
 
 @pytest.mark.parametrize("name", PRESSED)
@@ -52,12 +52,16 @@ def test_forces_are_the_gradient_of_the_energy(heated, name):
     # Control: what the slope of the warm walls pushes along the rail is far above that; over the
     # end the place on the wall stops.
     pushed = 0.0
-    for rail in range(len(system.walls.members)):
-        faces = system.walls.room.order[: solved(system, model, pose, rail)]
+    for rail in range(len(system.compliance.members)):
+        faces = system.compliance.room.order[: solved(system, model, pose, rail)]
         pushed = max(
             pushed,
             *(
-                abs(thermal_offset.pull(system.walls.warm, face, system.walls.room.force[face]))
+                abs(
+                    thermal_offset.pull(
+                        system.compliance.warm, face, system.compliance.room.force[face]
+                    )
+                )
                 for face in faces
             ),
             0.0,
@@ -68,12 +72,12 @@ def test_forces_are_the_gradient_of_the_energy(heated, name):
 @pytest.mark.parametrize("name", PRESSED[:1])
 def test_displacement_starts_where_the_walls_stand(heated, name):
     """U = W + F P, W being the sum of the fields."""
-    walls, model, system = heated
-    travel, pose, room = POSES[name][0], pose_of(model, name), system.walls.room
-    standing = warm_at(walls, model, travel)
-    for rail in range(len(system.walls.members)):
+    compliance, model, system = heated
+    travel, pose, room = POSES[name][0], pose_of(model, name), system.compliance.room
+    standing = warm_at(compliance, model, travel)
+    for rail in range(len(system.compliance.members)):
         faces = room.order[: solved(system, model, pose, rail)].copy()
-        between = flexibility_at(walls, travel)[
+        between = flexibility_at(compliance, travel)[
             np.ix_(faces, range(PATTERNS), faces, range(PATTERNS))
         ]
         expected = standing[faces] + np.einsum("iajb,jb->ia", between, room.force[faces])
@@ -81,17 +85,17 @@ def test_displacement_starts_where_the_walls_stand(heated, name):
     assert np.abs(standing).max() > 1e-6
 
 
-def warm_at(walls, model, travel):
+def warm_at(compliance, model, travel):
     """W (f,p) m."""
-    return CubicSpline(walls.travel, walls.moved(model.thermal.amounts))(travel)
+    return CubicSpline(compliance.travel, compliance.moved(model.thermal.amounts))(travel)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("condition", ["phi35", "h9"])
 def test_ledgers_and_momentum(condition):
-    asked, walls = REFERENCE.condition(condition).replace(FIELD), reference_walls()
+    asked, compliance = REFERENCE.condition(condition).replace(FIELD), reference_walls()
     coarse, fine = (
-        lowfi.run(asked, numerics=Numerics(relative_tolerance=tolerance), walls=walls)
+        lowfi.run(asked, numerics=Numerics(relative_tolerance=tolerance), compliance=compliance)
         for tolerance in (2e-7, 1e-10)
     )
     for run in (coarse, fine):
@@ -114,7 +118,9 @@ def test_nothing_warm_is_the_same_as_no_temperature():
     tight = Numerics(relative_tolerance=1e-10)
     rates = [
         np.degrees(
-            lowfi.run(cold.replace(change), walls=reference_walls(), numerics=tight).outcome.rate
+            lowfi.run(
+                cold.replace(change), compliance=reference_walls(), numerics=tight
+            ).outcome.rate
         )
         for change in (
             {},
@@ -143,7 +149,7 @@ def test_both_fidelities_agree_on_warm_rails():
     shade = {key: -value for key, value in sun.items()}
     errors = [
         np.abs(
-            np.degrees(lowfi.run(cold.replace(change), walls=reference_walls()).outcome.rate)
+            np.degrees(lowfi.run(cold.replace(change), compliance=reference_walls()).outcome.rate)
             - wanted
         ).max()
         for change in (sun, shade, {})

@@ -13,17 +13,17 @@ import pytest
 from tests.scenes.test_calibration import CALIBRATION, _as_lists
 from tests.scenes.test_trajectory import random_trajectory
 from tipoff import scenes
-from tipoff.mechanics.rail_compliance import PATTERNS, Walls, digest
+from tipoff.mechanics.rail_compliance import PATTERNS, RailCompliance, digest
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes import Calibration
 
 PLACES = 150  # bits that are flipped in a file, evenly spread
 
 
-def walls() -> Walls:
+def compliance() -> RailCompliance:
     """Two stations of eight faces, any numbers."""
     scene, random = scenes.load("tiny"), np.random.default_rng(4)
-    return Walls(
+    return RailCompliance(
         np.array([0.0, 0.2]),
         random.random((2, 8, PATTERNS, 8, PATTERNS)),
         np.arange(8) // 2,
@@ -41,7 +41,7 @@ def calibration() -> Calibration:
 
 KINDS = {
     "trajectory.nc": (random_trajectory, Trajectory.load, OSError),
-    "walls.npz": (walls, Walls.load, ValueError),
+    "walls.npz": (compliance, RailCompliance.load, ValueError),
     "calibration.toml": (calibration, Calibration.load, ValueError),
 }
 
@@ -135,7 +135,7 @@ def test_an_outcome_edited_by_another_program_is_refused(tmp_path):
 
 def test_other_programs_read_what_carries_a_digest(tmp_path):
     """HDF5, zip and TOML pass over the last line: the arrays are those that were written."""
-    run, rail = random_trajectory(), walls()
+    run, rail = random_trajectory(), compliance()
     run.save(tmp_path / "run.nc")
     rail.save(tmp_path / "walls.npz")
     calibration().save(tmp_path / "calibration.toml")

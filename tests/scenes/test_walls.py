@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tipoff import lowfi, scenes
-from tipoff.mechanics.rail_compliance import PATTERNS, Walls, digest
+from tipoff.mechanics.rail_compliance import PATTERNS, RailCompliance, digest
 from tipoff.scenes.faults import SceneError
 
 SCENE = scenes.load("reference")
@@ -14,7 +14,7 @@ FACES = 16
 
 
 @pytest.fixture
-def walls():
+def compliance():
     """Any numbers, for the pads and rail of the scene."""
     random = np.random.default_rng(4)
     flexibility = random.random((5, FACES, PATTERNS, FACES, PATTERNS))
@@ -22,7 +22,7 @@ def walls():
         2e4 * np.arange(1.0, 4.0) * np.ones((4, 1)),
         random.random((5, FACES, PATTERNS, 3)),
     )
-    return Walls(
+    return RailCompliance(
         np.linspace(0.0, 0.2, 5),
         flexibility,
         np.arange(FACES) // 4,
@@ -33,40 +33,40 @@ def walls():
     )
 
 
-def test_what_was_saved_is_loaded(walls, tmp_path):
-    walls.save(tmp_path / "walls.npz")
-    found = Walls.load(tmp_path / "walls.npz")
+def test_what_was_saved_is_loaded(compliance, tmp_path):
+    compliance.save(tmp_path / "walls.npz")
+    found = RailCompliance.load(tmp_path / "walls.npz")
     assert all(
-        np.array_equal(getattr(found, name), getattr(walls, name))
+        np.array_equal(getattr(found, name), getattr(compliance, name))
         for name in ("travel", "flexibility", "rail", "half", "frequency", "shape")
     )
-    assert found.made_for == walls.made_for and found.rail.dtype == walls.rail.dtype
+    assert found.made_for == compliance.made_for and found.rail.dtype == compliance.rail.dtype
     assert [path.name for path in tmp_path.iterdir()] == ["walls.npz"]
 
 
-def test_warm_walls_are_saved_too_and_older_files_know_of_none(walls, tmp_path):
+def test_warm_walls_are_saved_too_and_older_files_know_of_none(compliance, tmp_path):
     path, warm = tmp_path / "walls.npz", np.random.default_rng(9).random((5, 5, FACES, PATTERNS))
-    known = replace(walls, warm=warm)
+    known = replace(compliance, warm=warm)
     known.save(path)
-    assert np.array_equal(Walls.load(path).warm, warm) and known.hash != walls.hash
-    walls.save(path)
-    assert Walls.load(path).warm is None
-    replace(walls, warm=warm[:4]).save(path)
+    assert np.array_equal(RailCompliance.load(path).warm, warm) and known.hash != compliance.hash
+    compliance.save(path)
+    assert RailCompliance.load(path).warm is None
+    replace(compliance, warm=warm[:4]).save(path)
     with pytest.raises(ValueError, match="warm: given shape"):
-        Walls.load(path)
+        RailCompliance.load(path)
 
 
 @pytest.mark.parametrize(
     "model, wrong, words",
     [
-        ("springs", lambda walls: None, "given no walls"),
-        ("compliant", lambda walls: walls, "know of no temperature"),
-        ("springs", lambda walls: walls.rigid(), "know of no temperature"),
+        ("springs", lambda compliance: None, "given no walls"),
+        ("compliant", lambda compliance: compliance, "know of no temperature"),
+        ("springs", lambda compliance: compliance.rigid(), "know of no temperature"),
     ],
 )
-def test_a_warm_scene_asks_for_walls_that_know_of_it(walls, model, wrong, words):
+def test_a_warm_scene_asks_for_walls_that_know_of_it(compliance, model, wrong, words):
     with pytest.raises(SceneError, match=words):
-        lowfi.run(SCENE.replace({"thermal.mean": 20.0}), model, walls=wrong(walls))
+        lowfi.run(SCENE.replace({"thermal.mean": 20.0}), model, compliance=wrong(compliance))
 
 
 def damage_end(path):
@@ -99,30 +99,30 @@ def make_one_array(path):
 @pytest.mark.parametrize(
     "damage", [damage_end, damage_middle, make_text, make_empty, make_foreign, make_one_array]
 )
-def test_damaged_and_foreign_files_are_refused(walls, tmp_path, damage):
+def test_damaged_and_foreign_files_are_refused(compliance, tmp_path, damage):
     path = tmp_path / "walls.npz"
-    walls.save(path)
-    Walls.load(path)
+    compliance.save(path)
+    RailCompliance.load(path)
     damage(path)
     with pytest.raises(ValueError, match="not a file of walls"):
-        Walls.load(path)
+        RailCompliance.load(path)
 
 
-def test_arrays_that_do_not_belong_together_are_refused(walls, tmp_path):
-    gap = walls.flexibility.copy()
+def test_arrays_that_do_not_belong_together_are_refused(compliance, tmp_path):
+    gap = compliance.flexibility.copy()
     gap[2, 3, 0, 3, 0] = np.nan
     for change in (
-        {"frequency": walls.frequency[:3]},
-        {"shape": walls.shape[..., :2]},
-        {"half": walls.half[1:]},
-        {"rail": walls.rail[:, None]},
+        {"frequency": compliance.frequency[:3]},
+        {"shape": compliance.shape[..., :2]},
+        {"half": compliance.half[1:]},
+        {"rail": compliance.rail[:, None]},
         {"flexibility": gap},
     ):
-        replace(walls, **change).save(tmp_path / "walls.npz")
+        replace(compliance, **change).save(tmp_path / "walls.npz")
         with pytest.raises(ValueError, match="not a file of walls.*expected finite numbers"):
-            Walls.load(tmp_path / "walls.npz")
+            RailCompliance.load(tmp_path / "walls.npz")
     with pytest.raises(FileNotFoundError):
-        Walls.load(tmp_path / "none.npz")
+        RailCompliance.load(tmp_path / "none.npz")
 
 
 @pytest.mark.parametrize(
@@ -136,9 +136,9 @@ def test_arrays_that_do_not_belong_together_are_refused(walls, tmp_path):
     ],
     ids=str,
 )
-def test_another_rail_or_other_pads_are_refused(walls, change):
+def test_another_rail_or_other_pads_are_refused(compliance, change):
     with pytest.raises(SceneError, match="another rail, or other pads"):
-        lowfi.run(SCENE.replace(change), walls=walls)
+        lowfi.run(SCENE.replace(change), compliance=compliance)
 
 
 @pytest.mark.parametrize(
@@ -153,11 +153,11 @@ def test_another_rail_or_other_pads_are_refused(walls, change):
     ],
     ids=str,
 )
-def test_what_walls_do_not_depend_on_is_free_to_change(walls, change):
-    walls.require(SCENE.replace(change))
+def test_what_walls_do_not_depend_on_is_free_to_change(compliance, change):
+    compliance.require(SCENE.replace(change))
 
 
-def test_friction_that_sticks_is_refused(walls):
+def test_friction_that_sticks_is_refused(compliance):
     law = {"law": "sticking", "static": 0.2, "dynamic": 0.2, "stiffness": 1e7, "damping": 1e4}
     with pytest.raises(SceneError, match="friction.law: given 'sticking', expected 'two-step'"):
-        lowfi.run(SCENE.replace({"friction": law}), walls=walls)
+        lowfi.run(SCENE.replace({"friction": law}), compliance=compliance)

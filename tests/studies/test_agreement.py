@@ -156,7 +156,7 @@ def test_every_condition_of_the_reference_has_an_uncertainty_of_its_own(monkeypa
 
 @pytest.fixture(scope="module")
 def coarse_walls():
-    return highfi.walls(load("reference"), 4e-3)
+    return highfi.condense(load("reference"), 4e-3)
 
 
 @pytest.mark.slow
@@ -168,7 +168,7 @@ def test_compliant_walls_agree_with_finite_elements_on_the_same_mesh(coarse_wall
     scene = load("reference").condition(name)
     reference = highfi.run(scene, highfi.Numerics(element_size=4e-3))
     assert reference.status == "exited" and reference.pad_force.any()
-    found = metrics.compare(reference, lowfi.run(scene, walls=coarse_walls))
+    found = metrics.compare(reference, lowfi.run(scene, compliance=coarse_walls))
     assert found.rate_relative_l2 < 0.02 and found.settled_rate_error_deg_s < 0.05
     assert found.velocity_relative_l2 < GATES["velocity_relative_l2"]
     springs = metrics.compare(reference, lowfi.run(scene, "springs"))

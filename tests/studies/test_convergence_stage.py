@@ -16,7 +16,6 @@ from tipoff.scenes.faults import SceneError
 from tipoff.studies.cli import app
 from tipoff.studies.convergence import stage as convergence
 from tipoff.studies.convergence.ripple import Ripple
-from tipoff.studies.core import rail_compliance
 from tipoff.studies.core import store as store_module
 from tipoff.studies.core.settings import Settings, defaults
 from tipoff.studies.core.study import Study, StudyError
@@ -91,7 +90,7 @@ def asked(monkeypatch):
     for module in (store_module, timing):
         monkeypatch.setattr(module, "prepare", lambda run: None)
     monkeypatch.setattr(timing, "execute", lambda run, progress=None: motion(run))
-    monkeypatch.setattr(rail_compliance, "under", lambda study, names: dict.fromkeys(names))
+    monkeypatch.setattr(Study, "rail_compliances", lambda study, names: dict.fromkeys(names))
     monkeypatch.setattr(convergence.ripple, "measure", rippling)
     return made
 

@@ -14,11 +14,10 @@ from tests.studies.synthetic import flight
 from tipoff import scenes
 from tipoff.calibration import rail_compliance as calibrated
 from tipoff.files import write_json
-from tipoff.mechanics.rail_compliance import PATTERNS, Walls, digest
+from tipoff.mechanics.rail_compliance import PATTERNS, RailCompliance, digest
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.studies.bench import reference
 from tipoff.studies.cli import app
-from tipoff.studies.core import rail_compliance
 from tipoff.studies.core import store as store_module
 from tipoff.studies.core.settings import Settings
 from tipoff.studies.core.study import Study, read
@@ -156,7 +155,7 @@ def test_damaged_walls_are_found_again(study, monkeypatch, capsys):
     """Stiffer or softer by one bit, they would change every rate of the surrogate on them."""
     scene, calls, random = study.scene, [], np.random.default_rng(1)
     faces = sum(len(pad.normals) for pad in scene.pads)
-    known = Walls(
+    known = RailCompliance(
         np.array([0.0, 0.1]),
         random.random((2, faces, PATTERNS, faces, PATTERNS)),
         np.zeros(faces, int),
@@ -172,15 +171,13 @@ def test_damaged_walls_are_found_again(study, monkeypatch, capsys):
 
     monkeypatch.setattr(calibrated, "compliance", found)
     assert (
-        rail_compliance.load(study, scene).hash
-        == rail_compliance.load(study, scene).hash
-        == known.hash
+        study.rail_compliance(scene).hash == study.rail_compliance(scene).hash == known.hash
         and len(calls) == 1
     )
     (path,) = study.folder.glob("compliance-*.npz")
     for number, place in enumerate(np.linspace(0, path.stat().st_size - 1, 40).astype(int)):
         flip(path, int(min(place, path.stat().st_size - 1)))
-        assert rail_compliance.load(study, scene).hash == known.hash and len(calls) == number + 2
+        assert study.rail_compliance(scene).hash == known.hash and len(calls) == number + 2
         assert (
             f"{path}: not a file of walls" in (told := capsys.readouterr().err)
             and "found again" in told

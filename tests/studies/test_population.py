@@ -24,7 +24,7 @@ FLEXIBLE = SimpleNamespace(flexibility=1.0)
 @pytest.mark.parametrize("model", [None, COMPLIANT])
 def test_compliant_contact_answers_and_needs_no_calibration(tmp_path, monkeypatch, model):
     monkeypatch.setattr(population.calibrate, "load", lambda _: pytest.fail("fitted springs"))
-    monkeypatch.setattr(population.rail_compliance, "load", lambda *_, **__: FLEXIBLE)
+    monkeypatch.setattr(Study, "rail_compliance", lambda *_, **__: FLEXIBLE)
     found = population.surrogate(Study(SCENE, tmp_path, Settings()), model)
     assert found.name == found.words == COMPLIANT and found.scene.hash == SCENE.hash
 
@@ -58,7 +58,7 @@ def test_a_model_that_the_agreement_table_rejects_answers_by_name_only(tmp_path,
         },
     ]
     monkeypatch.setattr(kept, "rows", lambda *_, **__: rows)
-    monkeypatch.setattr(population.rail_compliance, "load", lambda *_, **__: FLEXIBLE)
+    monkeypatch.setattr(Study, "rail_compliance", lambda *_, **__: FLEXIBLE)
     study = Study(SCENE, tmp_path, Settings())
     for condition in (None, "h1"):
         with pytest.raises(

@@ -142,7 +142,7 @@ def test_linear_tip_off_on_a_launch_without_contact(tmp_path):
     ]
     assert np.sqrt(0.5 * np.square(sds).sum()) == pytest.approx(exact, abs=1e-6)
     model = population.surrogate(study)
-    assert model.calibration is None and model.walls is None
+    assert model.calibration is None and model.compliance is None
     for reading, expected in (
         (Reading(rule="none"), exact),
         (Reading("components", rule="none"), np.sqrt(2.0) * exact),

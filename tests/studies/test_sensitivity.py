@@ -150,12 +150,12 @@ def test_tables_of_warm_rails_stand_on_the_walls_of_the_model(tmp_path, monkeypa
     rigid = SimpleNamespace(flexibility=None)
     model = Surrogate(study.scene.replace({"contact.stiffness": 1e9}), None, rigid)
     tables = sensitivity._tables(study, model, sensitivity.Asked())
-    assert [found.walls for found in asked] == [rigid] * 2 and len(tables) == 2
+    assert [found.compliance for found in asked] == [rigid] * 2 and len(tables) == 2
     assert asked[1].scene.contact == study.scene.contact
     for table in tables:
         assert {row["symbol"] for row in table["rows"]} == {"baseline", "k", "c", "d", "clearance"}
     (compliant,) = sensitivity._tables(
-        study, model._replace(walls=SimpleNamespace(flexibility=1.0)), sensitivity.Asked()
+        study, model._replace(compliance=SimpleNamespace(flexibility=1.0)), sensitivity.Asked()
     )
     assert {row["symbol"] for row in compliant["rows"]} == {"baseline", "penalty", "clearance"}
 

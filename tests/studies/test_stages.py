@@ -53,7 +53,7 @@ def test_ablation_takes_every_effect_away_once():
     # Every effect with code of its own is looked for in the compiled kernels of both models;
     # sticking is a second law of friction, and the reference feels temperature before its kernels
     # run.
-    assert (set(lowfi_laws) - {"sticking", "walls", "modes"}) | {
+    assert (set(lowfi_laws) - {"sticking", "compliance", "modes"}) | {
         "mass_offset",
         "initial",
         "rail.damping",
@@ -71,7 +71,7 @@ def test_surrogate_is_timed_by_turns(monkeypatch, tmp_path):
 
     monkeypatch.setattr(ablation, "warm_up", lambda run: None)
     monkeypatch.setattr(ablation, "timed", timed)
-    monkeypatch.setattr(ablation.rail_compliance, "load", lambda *_: None)
+    monkeypatch.setattr(Study, "rail_compliance", lambda *_: None)
     study = Study(scenes.load("tiny"), tmp_path, replace(defaults("tiny"), lowfi_repeats=3))
     lines = {"a": {}, "b": {"friction": None}}
     _, runs, times = ablation._surrogate(study, "phi15", lines)

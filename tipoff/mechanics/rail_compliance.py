@@ -50,7 +50,7 @@ GRAM = np.where((_TOGETHER % 2 == 0).all(axis=2), 1.0 / (_TOGETHER + 1.0).prod(a
 
 
 @dataclass(frozen=True, eq=False)
-class Walls:
+class RailCompliance:
     """travel (s,) m of the payload along X since ignition, evenly spaced; flexibility (s,f,p,f,p)
     m/N; rail (f,) number of the rail each face is on; half (f,2) m, half the size of each face
     along xi and eta, negative where eta runs against the axis; frequency (r,n) rad/s of the lowest
@@ -139,7 +139,7 @@ class Walls:
         each."""
         return (GRAM @ self._flexibility().transpose(0, 1, 3, 2, 4) @ GRAM)[..., 0, 0]
 
-    def rigid(self) -> "Walls":
+    def rigid(self) -> "RailCompliance":
         """The same walls for a contact law to stand on: where they are when they are warm, and
         nothing of how they give way."""
         return replace(self, flexibility=None)
@@ -149,7 +149,7 @@ class Walls:
         assert self.warm is not None
         return np.tensordot(amounts, self.warm, 1)
 
-    def restricted(self, patterns: int = PATTERNS, coupled: bool = True) -> "Walls":
+    def restricted(self, patterns: int = PATTERNS, coupled: bool = True) -> "RailCompliance":
         """The same walls with the first so many patterns of pressure and displacement by load only,
         and, unless ``coupled``, each face by itself, without modes then, which faces have in
         common: what a simpler model knows of them."""
@@ -203,7 +203,7 @@ class Walls:
             )
 
     @classmethod
-    def load(cls, path: str | Path) -> "Walls":
+    def load(cls, path: str | Path) -> "RailCompliance":
         """Read what ``save`` wrote. Raises FileNotFoundError, or ValueError for a foreign file or
         one that its digest does not fit."""
         try:
@@ -214,14 +214,14 @@ class Walls:
                     for field in fields(cls)
                     if field.default is MISSING or field.name in found
                 }
-            walls = cls(**arrays | {"made_for": str(arrays["made_for"])})
-            walls._require_whole()
+            compliance = cls(**arrays | {"made_for": str(arrays["made_for"])})
+            compliance._require_whole()
         except DamageError as fault:
             raise ValueError(f"{path}: not a file of walls: it {fault.reason}") from fault
         # TypeError: a lone array
         except (zipfile.BadZipFile, zlib.error, KeyError, EOFError, TypeError, ValueError) as error:
             raise ValueError(f"{path}: not a file of walls ({error})") from error
-        return walls
+        return compliance
 
     def _require_whole(self) -> None:
         """Raises ValueError where shapes do not belong together or a number is not finite."""
@@ -248,16 +248,16 @@ class Walls:
             raise ValueError(f"travel: given {stations} stations, expected at least 2")
 
 
-def model_of(scene: Scene, walls: Walls | None) -> str:
+def model_of(scene: Scene, compliance: RailCompliance | None) -> str:
     """The surrogate that ``scene`` has on ``walls``: springs on rigid ones or on none. Without
     contact both are one, the default."""
-    flexible = walls is not None and walls.flexibility is not None
+    flexible = compliance is not None and compliance.flexibility is not None
     return COMPLIANT if flexible or scene.contact is None else SPRINGS
 
 
-def require_modes(source: str, walls: Walls | None, modes: int) -> None:
+def require_modes(source: str, compliance: RailCompliance | None, modes: int) -> None:
     """Raises SceneError, naming ``source``, where ``walls`` do not have so many ``modes``."""
-    if walls is not None and modes > (known := walls.frequency.shape[1]):
+    if compliance is not None and modes > (known := compliance.frequency.shape[1]):
         raise SceneError(
             [
                 Fault(

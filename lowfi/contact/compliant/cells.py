@@ -25,9 +25,9 @@ _EASED = 0.1
 
 
 @inlined
-def take_lever(walls, faces, face, place, turn):
+def take_lever(compliance, faces, face, place, turn):
     """Fill the face's lever for the payload's pose in platform axes."""
-    lever, half = walls.room.lever[face], walls.half[face]
+    lever, half = compliance.room.lever[face], compliance.half[face]
     y, z = faces[face, NORMAL_Y], faces[face, NORMAL_Z]
     lever[DEPTH] = penetration(None, faces[face], place, turn)
     lever[BY_XI] = half[0] * (y * turn[3] + z * turn[6])
@@ -35,8 +35,8 @@ def take_lever(walls, faces, face, place, turn):
     lever[BY_ETA] = half[1] * (y * turn[5] + z * turn[7])
     middle = place[0] + faces[face, 0]
     lever[MIDDLE] = middle
-    over_end, by_end = eased((middle - walls.end) / half[0] + 1.0)
-    over_start, by_start = eased((walls.start - middle) / half[0] + 1.0)
+    over_end, by_end = eased((middle - compliance.end) / half[0] + 1.0)
+    over_start, by_start = eased((compliance.start - middle) / half[0] + 1.0)
     lever[SHIFT], lever[DRIFT] = over_end - over_start, (by_end + by_start) / half[0]
     first = 6 if z == 0.0 else 3  # of the row of the turn for the axis across the rail
     across = (
@@ -45,7 +45,7 @@ def take_lever(walls, faces, face, place, turn):
         + turn[first + 1] * faces[face, 1]
         + turn[first + 2] * faces[face, 2]
     )
-    lever[ASIDE] = (across - walls.across[face]) / half[1]
+    lever[ASIDE] = (across - compliance.across[face]) / half[1]
 
 
 @inlined
@@ -58,58 +58,62 @@ def eased(over):
 
 
 @inlined
-def cover(walls, half, middle, row):
+def cover(compliance, half, middle, row):
     """Share of a row of cells that is over the wall, and what a metre of way takes from it."""
-    behind_end, at_end = _behind(walls, row, (walls.end - middle) / half)
-    behind_start, at_start = _behind(walls, row, (walls.start - middle) / half)
+    behind_end, at_end = _behind(compliance, row, (compliance.end - middle) / half)
+    behind_start, at_start = _behind(compliance, row, (compliance.start - middle) / half)
     return behind_end - behind_start, (at_end - at_start) / half
 
 
 @inlined
-def _behind(walls, row, xi):
+def _behind(compliance, row, xi):
     """Share of a row of cells behind an end of the rail at ``xi``, and its slope: what two
     neighbouring rows hold changes evenly from one's middle to the other's, so the rate at which
     energy is left behind does not jump."""
-    away = 0.5 * walls.node.size * (xi - walls.node[row])  # in cells
-    outermost = row == 0 if away < 0.0 else row == walls.node.size - 1
+    away = 0.5 * compliance.node.size * (xi - compliance.node[row])  # in cells
+    outermost = row == 0 if away < 0.0 else row == compliance.node.size - 1
     reach = 0.5 if outermost else 1.0
     near = min(abs(away), reach)
     part = near if outermost else near - 0.5 * near * near
     slope = (1.0 if outermost else 1.0 - near) if near < reach else 0.0
-    return 0.5 + part if away > 0.0 else 0.5 - part, 0.5 * walls.node.size * slope
+    return 0.5 + part if away > 0.0 else 0.5 - part, 0.5 * compliance.node.size * slope
 
 
 @inlined
-def row_depth(walls, face, xi, displacement):
+def row_depth(compliance, face, xi, displacement):
     """Coefficients of 1, eta' and eta'^2 in p (m) along the row of cells at ``xi``, without the
     crown across it."""
-    lever, u = walls.room.lever[face], displacement
+    lever, u = compliance.room.lever[face], displacement
     x = xi + lever[SHIFT]
     rigid = lever[DEPTH] + lever[BY_XI] * xi - lever[BY_ETA] * lever[ASIDE]
     return (rigid - u[0] - x * (u[1] + x * u[3]), lever[BY_ETA] - u[2] - x * u[4], -u[5])
 
 
 @kernel
-def press(walls, face):
+def press(compliance, face):
     """Fill the face's force (p,) N and its moments, sums over the pressed cells of penalty dA xi'^i
     eta'^j."""
-    force, moment, lever = walls.room.force[face], walls.room.moment[face], walls.room.lever[face]
-    relief, half = walls.relief[face], walls.half[face]
-    count = walls.node.size
-    stiffness = walls.penalty * 4.0 * half[0] * abs(half[1]) / (count * count)
+    force, moment, lever = (
+        compliance.room.force[face],
+        compliance.room.moment[face],
+        compliance.room.lever[face],
+    )
+    relief, half = compliance.relief[face], compliance.half[face]
+    count = compliance.node.size
+    stiffness = compliance.penalty * 4.0 * half[0] * abs(half[1]) / (count * count)
     force[:] = 0.0
     moment[:] = 0.0
     for row in range(count):
-        xi = walls.node[row]
-        weight = stiffness * cover(walls, half[0], lever[MIDDLE], row)[0]
+        xi = compliance.node[row]
+        weight = stiffness * cover(compliance, half[0], lever[MIDDLE], row)[0]
         if weight > 0.0:
-            level, tilt, bend = row_depth(walls, face, xi, walls.room.displacement[face])
-            level -= relief * walls.crown[row]
+            level, tilt, bend = row_depth(compliance, face, xi, compliance.room.displacement[face])
+            level -= relief * compliance.crown[row]
             f0, f1, f2 = 0.0, 0.0, 0.0
             m0, m1, m2, m3, m4 = 0.0, 0.0, 0.0, 0.0, 0.0
             for column in range(count):
-                eta = walls.node[column] + lever[ASIDE]
-                p = level + eta * (tilt + eta * bend) - relief * walls.crown[column]
+                eta = compliance.node[column] + lever[ASIDE]
+                p = level + eta * (tilt + eta * bend) - relief * compliance.crown[column]
                 if p > 0.0:
                     square = eta * eta
                     f0, f1, f2 = f0 + p, f1 + p * eta, f2 + p * square
@@ -146,51 +150,55 @@ def _add_moments(moment, weight, x, sums):
 
 
 @kernel
-def deepest(walls, face, displacement):
+def deepest(compliance, face, displacement):
     """Largest p (m) of all cells, over the wall or where it would go on, and xi and eta of that
     cell on the pad."""
     aside, relief, largest, along, across = (
-        walls.room.lever[face, ASIDE],
-        walls.relief[face],
+        compliance.room.lever[face, ASIDE],
+        compliance.relief[face],
         -np.inf,
         0.0,
         0.0,
     )
-    for row in range(walls.node.size):
-        level, tilt, bend = row_depth(walls, face, walls.node[row], displacement)
-        for column in range(walls.node.size):
-            eta = walls.node[column] + aside
+    for row in range(compliance.node.size):
+        level, tilt, bend = row_depth(compliance, face, compliance.node[row], displacement)
+        for column in range(compliance.node.size):
+            eta = compliance.node[column] + aside
             p = (
                 level
                 + eta * (tilt + eta * bend)
-                - relief * (walls.crown[row] + walls.crown[column])
+                - relief * (compliance.crown[row] + compliance.crown[column])
             )
             if p > largest:
-                largest, along, across = p, walls.node[row], walls.node[column]
+                largest, along, across = p, compliance.node[row], compliance.node[column]
     return largest, along, across
 
 
 @kernel
-def stored(walls, face):
+def stored(compliance, face):
     """Energy (J) in the penalty of the face, and what of it is lost per metre that the pad moves
     on, over an end of the rail."""
-    lever, relief, half = walls.room.lever[face], walls.relief[face], walls.half[face]
-    count = walls.node.size
-    stiffness = walls.penalty * 4.0 * half[0] * abs(half[1]) / (count * count)
+    lever, relief, half = (
+        compliance.room.lever[face],
+        compliance.relief[face],
+        compliance.half[face],
+    )
+    count = compliance.node.size
+    stiffness = compliance.penalty * 4.0 * half[0] * abs(half[1]) / (count * count)
     energy, fading = 0.0, 0.0
     for row in range(count):
-        xi = walls.node[row]
-        share, lost = cover(walls, half[0], lever[MIDDLE], row)
+        xi = compliance.node[row]
+        share, lost = cover(compliance, half[0], lever[MIDDLE], row)
         if share > 0.0:
-            level, tilt, bend = row_depth(walls, face, xi, walls.room.displacement[face])
+            level, tilt, bend = row_depth(compliance, face, xi, compliance.room.displacement[face])
             squares = 0.0
             for column in range(count):
-                eta = walls.node[column] + lever[ASIDE]
+                eta = compliance.node[column] + lever[ASIDE]
                 p = max(
                     0.0,
                     level
                     + eta * (tilt + eta * bend)
-                    - relief * (walls.crown[row] + walls.crown[column]),
+                    - relief * (compliance.crown[row] + compliance.crown[column]),
                 )
                 squares += p * p
             energy += 0.5 * stiffness * share * squares

@@ -35,10 +35,10 @@ from tipoff.mechanics.rail_compliance import PATTERNS
 
 
 @kernel
-def load(walls, friction, platform, faces, face, body, base):
+def load(compliance, friction, platform, faces, face, body, base):
     """Load of a pressed face, after ``solve``; the wall's own velocity is left out."""
-    room = walls.room
-    force, lever, half = room.force[face], room.lever[face], walls.half[face]
+    room = compliance.room
+    force, lever, half = room.force[face], room.lever[face], compliance.half[face]
     across = along_width(faces[face], half[1] * (force[2] / force[0] - lever[ASIDE]))
     arm = rotation.rotate(
         body.turn,
@@ -64,28 +64,28 @@ def load(walls, friction, platform, faces, face, body, base):
 
 
 @inlined
-def lean(walls, faces, face, body, base):
+def lean(compliance, faces, face, body, base):
     """Force (N) across the rail on the payload by the slope of the wall under a pressed face, and
     where it acts (m), in scene axes."""
-    u, force = walls.room.displacement[face], walls.room.force[face]
-    size = (u[2] * force[0] + u[4] * force[1] + 2.0 * u[5] * force[2]) / walls.half[face, 1]
+    u, force = compliance.room.displacement[face], compliance.room.force[face]
+    size = (u[2] * force[0] + u[4] * force[1] + 2.0 * u[5] * force[2]) / compliance.half[face, 1]
     return rotation.rotate(base.turn, along_width(faces[face], size)), pad_point(faces[face], body)
 
 
 @kernel
-def drive(walls, count):
+def drive(compliance, count):
     """Force (N) along the rail on the payload by the ``count`` faces solved for,
     and the energy (J/m) its way takes from the wall."""
-    room, pull, fading = walls.room, 0.0, 0.0
+    room, pull, fading = compliance.room, 0.0, 0.0
     for i in range(count):
         face = room.order[i]
         u, force = room.displacement[face], room.force[face]
         pull += room.lever[face, DRIFT] * (
             u[1] * force[0] + 2.0 * u[3] * force[1] + u[4] * force[2]
         )
-        pull += thermal_offset.pull(walls.warm, face, force)
+        pull += thermal_offset.pull(compliance.warm, face, force)
         if room.lever[face, DRIFT] != 0.0:  # else all of it is over the wall
-            fading += stored(walls, face)[1]
+            fading += stored(compliance, face)[1]
         for a in range(PATTERNS):
             total = 0.0
             for j in range(count):
@@ -94,19 +94,21 @@ def drive(walls, count):
                         room.slope[i * PATTERNS + a, j * PATTERNS + b]
                         * room.force[room.order[j], b]
                     )
-            pull += force[a] * (0.5 * total + slope(walls.modes, face, a))
+            pull += force[a] * (0.5 * total + slope(compliance.modes, face, a))
     return pull, fading
 
 
 @kernel
-def energy(walls, count):
+def energy(compliance, count):
     """Energy (J) in walls and penalty under the ``count`` faces solved for: P' F P is P' (U - T - W
     q)."""
     total = 0.0
     for i in range(count):
-        face = walls.room.order[i]
-        total += stored(walls, face)[0]
+        face = compliance.room.order[i]
+        total += stored(compliance, face)[0]
         for a in range(PATTERNS):
-            own = thermal_offset.place(walls.warm, face, a) + offset(walls.modes, face, a)
-            total += 0.5 * walls.room.force[face, a] * (walls.room.displacement[face, a] - own)
+            own = thermal_offset.place(compliance.warm, face, a) + offset(compliance.modes, face, a)
+            total += (
+                0.5 * compliance.room.force[face, a] * (compliance.room.displacement[face, a] - own)
+            )
     return total

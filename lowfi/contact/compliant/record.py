@@ -39,7 +39,7 @@ class Room(NamedTuple):
 
 class Modes(NamedTuple):
     """The n modes of each of r rails: square (r,n) 1/s2 of their frequencies, drag (r,n) 1/s, cubic
-    (s-1,f,n,p,4) of their shapes (1/kg^0.5) as that of ``Walls``; and what they are now under each
+    (s-1,f,n,p,4) of their shapes (1/kg^0.5) as that of ``RailCompliance``; and what they are now under each
     face: shape (f,n,p), displacement ``offset`` (f,p) m, its slope along the travel (f,p), its
     speed (f,p) m/s."""
 
@@ -62,7 +62,7 @@ class Warm(NamedTuple):
     slope: np.ndarray
 
 
-class Walls(NamedTuple):
+class Compliance(NamedTuple):
     """cubic (s-1,f,f,p,p,4): flexibility (m/N) between stations as powers of the way (m) from the
     one before, which stand ``spacing`` apart from the X ``origin`` (m) of the first face at
     ignition on; members (r,m) faces on each rail, -1 for none; rail (f,) and half (f,2) as in
@@ -90,8 +90,8 @@ class Walls(NamedTuple):
 
 
 def under_pads(
-    scene: Scene, model: Model, found: data.Walls | None, modes: int = 0
-) -> Walls | None:
+    scene: Scene, model: Model, found: data.RailCompliance | None, modes: int = 0
+) -> Compliance | None:
     """Record of what was ``found`` for the kernels, with so many vibrating ``modes`` of each rail;
     None without contact and for rigid ones. Raises SceneError for walls of another rail or without
     these modes, and for the law of friction that sticks."""
@@ -105,12 +105,12 @@ def under_pads(
 
 
 def build(
-    found: data.Walls,
+    found: data.RailCompliance,
     model: Model,
     cells: int = CELLS,
     modes: int = 0,
     damping: Damping | None = None,
-) -> Walls:
+) -> Compliance:
     """Record of ``found`` for the faces of ``model``, which has contact; ``modes`` of each rail
     vibrate, under the ``damping`` of the rails."""
     assert model.penalty is not None
@@ -128,7 +128,7 @@ def build(
     crown = np.diff(edges**5) / (5.0 * np.diff(edges))
     flexibility, shape = found.cubic(modes)
     vibrating = _modes(found, shape, damping) if shape.size else None
-    return Walls(
+    return Compliance(
         flexibility,
         float(nominal[0, 0]),
         spacing,
@@ -148,7 +148,7 @@ def build(
     )
 
 
-def _warm(found: data.Walls, model: Model) -> Warm | None:
+def _warm(found: data.RailCompliance, model: Model) -> Warm | None:
     if model.thermal is None:
         return None
     by_pattern = (model.faces.axis.size, data.PATTERNS)
@@ -159,12 +159,16 @@ def _warm(found: data.Walls, model: Model) -> Warm | None:
     )
 
 
-def states(walls: Walls | None) -> int:
+def states(compliance: Compliance | None) -> int:
     """How many numbers the modes of ``walls`` add to the state (``lowfi.state.modal_size``)."""
-    return 2 * walls.modes.square.size if walls is not None and walls.modes is not None else 0
+    return (
+        2 * compliance.modes.square.size
+        if compliance is not None and compliance.modes is not None
+        else 0
+    )
 
 
-def _modes(found: data.Walls, cubic: np.ndarray, damping: Damping | None) -> Modes:
+def _modes(found: data.RailCompliance, cubic: np.ndarray, damping: Damping | None) -> Modes:
     count = cubic.shape[2]
     square = found.frequency[:, :count] ** 2
     mass_rate, stiffness_time = damping or (0.0, 0.0)

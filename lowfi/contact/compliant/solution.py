@@ -26,52 +26,60 @@ _XI, _ETA = POWERS.T.copy()
 
 
 @kernel
-def solve(walls, faces, rail, active, place, turn, state):
+def solve(compliance, faces, rail, active, place, turn, state):
     """Number of ``active`` (f,) faces on ``rail``; ``walls.room`` holds them in ``order``, with
     lever, displacement and force. Of ``state`` only the modes are read."""
-    room, count = walls.room, 0
-    for slot in range(walls.members.shape[1]):
-        face = walls.members[rail, slot]
+    room, count = compliance.room, 0
+    for slot in range(compliance.members.shape[1]):
+        face = compliance.members[rail, slot]
         if face >= 0 and active[face]:
-            take_lever(walls, faces, face, place, turn)
+            take_lever(compliance, faces, face, place, turn)
             room.order[count] = face
             count += 1
     if count > 0:
-        take_flexibility(walls, count, place[0] + faces[0, 0], state)
+        take_flexibility(compliance, count, place[0] + faces[0, 0], state)
         for correction in range(_MOST):
-            if _correct(walls, count, 1.0 if correction < _CAREFUL else 0.5) < _ARRIVED:
+            if _correct(compliance, count, 1.0 if correction < _CAREFUL else 0.5) < _ARRIVED:
                 return count
         room.force[:] = np.nan  # never seen; no step could stand on it
     return count
 
 
 @inlined
-def between_stations(walls, place):
+def between_stations(compliance, place):
     """Number of the station before X = ``place`` (m) of the first face, the way (m) from it, inside
     the table, and by how much that changes with the place: at the last station it stops as the
     places of pads on the wall do at the end of the rail."""
-    half = walls.half[0, 0]
-    over, rate = eased((place - walls.origin - walls.spacing * walls.cubic.shape[0]) / half)
-    way, changes = place - walls.origin - half * over, 1.0 - rate
+    half = compliance.half[0, 0]
+    over, rate = eased(
+        (place - compliance.origin - compliance.spacing * compliance.cubic.shape[0]) / half
+    )
+    way, changes = place - compliance.origin - half * over, 1.0 - rate
     if way < 0.0:
         way, changes = 0.0, 0.0
-    station = min(int(way / walls.spacing), walls.cubic.shape[0] - 1)
-    return station, way - station * walls.spacing, changes
+    station = min(int(way / compliance.spacing), compliance.cubic.shape[0] - 1)
+    return station, way - station * compliance.spacing, changes
 
 
 @kernel
-def take_flexibility(walls, count, place, state):
+def take_flexibility(compliance, count, place, state):
     """Fill flexibility and slope between the first ``count`` faces in order, and what the modes are
     under them."""
-    room = walls.room
-    station, s, changes = between_stations(walls, place)
+    room = compliance.room
+    station, s, changes = between_stations(compliance, place)
     for i in range(count):
         take_swing(
-            walls.modes, walls.rail[room.order[i]], room.order[i], station, s, changes, state
+            compliance.modes,
+            compliance.rail[room.order[i]],
+            room.order[i],
+            station,
+            s,
+            changes,
+            state,
         )
-        thermal_offset.take(walls.warm, room.order[i], station, s, changes)
+        thermal_offset.take(compliance.warm, room.order[i], station, s, changes)
         for j in range(count):
-            block = walls.cubic[station, room.order[i], room.order[j]]
+            block = compliance.cubic[station, room.order[i], room.order[j]]
             for a in range(PATTERNS):
                 for b in range(PATTERNS):
                     c = block[a, b]
@@ -90,11 +98,11 @@ def stiffness(moment, a, b):
 
 
 @kernel
-def _correct(walls, count, share):
+def _correct(compliance, count, share):
     """Take ``share`` of one correction; its largest size (m)."""
-    room = walls.room
+    room = compliance.room
     for i in range(count):
-        press(walls, room.order[i])
+        press(compliance, room.order[i])
     wide = count * PATTERNS
     fill_matrix(room, count)
     for row in range(wide):
@@ -107,8 +115,8 @@ def _correct(walls, count, share):
         face, a = room.order[row // PATTERNS], row % PATTERNS
         room.right[row, 0] = total - (
             room.displacement[face, a]
-            - thermal_offset.place(walls.warm, face, a)
-            - offset(walls.modes, face, a)
+            - thermal_offset.place(compliance.warm, face, a)
+            - offset(compliance.modes, face, a)
         )
     eliminate(room.matrix, room.right, wide, 1)
     largest = 0.0
@@ -166,17 +174,17 @@ def eliminate(matrix, right, size, columns):
 
 
 @kernel
-def follow(walls, face, place, count, state, out):
+def follow(compliance, face, place, count, state, out):
     """Fill ``out`` (p,) with the displacement of the wall under a face that may not press, by the
     ``count`` faces solved for and by modes."""
-    room = walls.room
-    station, s, changes = between_stations(walls, place)
-    take_swing(walls.modes, walls.rail[face], face, station, s, changes, state)
-    thermal_offset.take(walls.warm, face, station, s, changes)
+    room = compliance.room
+    station, s, changes = between_stations(compliance, place)
+    take_swing(compliance.modes, compliance.rail[face], face, station, s, changes, state)
+    thermal_offset.take(compliance.warm, face, station, s, changes)
     for a in range(PATTERNS):
-        out[a] = thermal_offset.place(walls.warm, face, a) + offset(walls.modes, face, a)
+        out[a] = thermal_offset.place(compliance.warm, face, a) + offset(compliance.modes, face, a)
         for j in range(count):
             other = room.order[j]
             for b in range(PATTERNS):
-                c = walls.cubic[station, face, other, a, b]
+                c = compliance.cubic[station, face, other, a, b]
                 out[a] += (c[0] + s * (c[1] + s * (c[2] + s * c[3]))) * room.force[other, b]

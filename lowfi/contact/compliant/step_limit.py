@@ -28,7 +28,7 @@ _RIGID = 3  # depth, tilt along, tilt across
 
 
 @kernel
-def stiffness_and_damping(walls, friction, faces, platform, payload, active, state):
+def stiffness_and_damping(compliance, friction, faces, platform, payload, active, state):
     """Traces K (1/s2) and C (1/s) of all faces that are ``active`` (f,) at ``state``."""
     body, base = (
         slot.motion(payload.mass, payload.inverse_inertia, state, slot.PAYLOAD),
@@ -36,30 +36,30 @@ def stiffness_and_damping(walls, friction, faces, platform, payload, active, sta
     )
     place, turn = relative_pose(platform, body, base)
     springs, dampers, square, drag = 0.0, 0.0, 0.0, 0.0
-    for rail in range(walls.members.shape[0]):
-        count = solve(walls, faces, rail, active, place, turn, state)
-        by_rail = fastest(walls.modes, rail, count > 0, state)
+    for rail in range(compliance.members.shape[0]):
+        count = solve(compliance, faces, rail, active, place, turn, state)
+        by_rail = fastest(compliance.modes, rail, count > 0, state)
         square, drag = max(square, by_rail[0]), max(drag, by_rail[1])
         for i in range(count):
-            face = walls.room.order[i]
-            if walls.room.force[face, 0] > 0.0:
-                now = load(walls, friction, platform, faces, face, body, base)
+            face = compliance.room.order[i]
+            if compliance.room.force[face, 0] > 0.0:
+                now = load(compliance, friction, platform, faces, face, body, base)
                 dampers += friction_damping(
                     friction, now, platform, payload, body, base, outward(faces[face], base)
                 )
         if count > 0:
-            columns = _tangent(walls, count)
-            springs += _trace(walls, faces, platform, payload, count, body, base) + _trace_of_modes(
-                walls.modes, walls.room, count, columns
-            )
+            columns = _tangent(compliance, count)
+            springs += _trace(
+                compliance, faces, platform, payload, count, body, base
+            ) + _trace_of_modes(compliance.modes, compliance.room, count, columns)
     return springs + square, dampers + drag
 
 
 @kernel
-def _tangent(walls, count):
+def _tangent(compliance, count):
     """Fill ``right`` with dU (w,) by a unit of each rigid motion, then of each mode; how many
     columns the former take."""
-    room = walls.room
+    room = compliance.room
     fill_matrix(room, count)
     wide = count * PATTERNS
     for row in range(wide):
@@ -72,7 +72,9 @@ def _tangent(walls, count):
                     total += room.flexibility[row, column] * _reaction(room, face, c, rigid)
                 room.right[row, j * _RIGID + rigid] = total
     # dU = (1 + F K)^-1 F K e, dP = K (e - dU)
-    eliminate(room.matrix, room.right, wide, count * _RIGID + _add_modes(walls.modes, room, count))
+    eliminate(
+        room.matrix, room.right, wide, count * _RIGID + _add_modes(compliance.modes, room, count)
+    )
     return count * _RIGID
 
 
@@ -154,26 +156,26 @@ def _own(room, face, rigid, other):
 
 
 @kernel
-def _trace(walls, faces, platform, payload, count, body, base):
+def _trace(compliance, faces, platform, payload, count, body, base):
     total = 0.0
     for i in range(count):
         for a in range(_RIGID):
-            first = _wrench(walls, faces, walls.room.order[i], a, body, base)
+            first = _wrench(compliance, faces, compliance.room.order[i], a, body, base)
             for j in range(count):
                 for b in range(_RIGID):
-                    second = _wrench(walls, faces, walls.room.order[j], b, body, base)
-                    total += _answer(walls.room, i, a, j * _RIGID + b) * _met(
+                    second = _wrench(compliance, faces, compliance.room.order[j], b, body, base)
+                    total += _answer(compliance.room, i, a, j * _RIGID + b) * _met(
                         platform, payload, body, base, first, second
                     )
     return abs(total)
 
 
 @inlined
-def _wrench(walls, faces, face, rigid, body, base):
+def _wrench(compliance, faces, face, rigid, body, base):
     """Force, a point it acts at (m), and couple that belong to a rigid motion of the face."""
-    n, half = outward(faces[face], base), walls.half[face]
+    n, half = outward(faces[face], base), compliance.half[face]
     aside = rotation.rotate(
-        base.turn, along_width(faces[face], -_by_slope(walls.room, face, rigid) / half[1])
+        base.turn, along_width(faces[face], -_by_slope(compliance.room, face, rigid) / half[1])
     )
     if rigid == 0:
         return (

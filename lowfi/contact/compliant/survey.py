@@ -18,42 +18,45 @@ _THERE = 1e-9  # m, how far beyond its aim a step goes
 
 
 @kernel
-def depth(walls, faces, face, active, place, turn, state):
+def depth(compliance, faces, face, active, place, turn, state):
     """Deepest penetration (m) of a face: negative across the gap, which other faces on the rail may
     narrow. ``active`` (f,) tells which faces press."""
-    count = solve(walls, faces, walls.rail[face], active, place, turn, state)
-    return _deepest(walls, faces, face, count, active, place, turn, state)[0]
+    count = solve(compliance, faces, compliance.rail[face], active, place, turn, state)
+    return _deepest(compliance, faces, face, count, active, place, turn, state)[0]
 
 
 @kernel
-def _deepest(walls, faces, face, count, active, place, turn, state):
+def _deepest(compliance, faces, face, count, active, place, turn, state):
     """The same after ``solve``, and xi and eta of the deepest cell. A face past the end has the
     depth it would have there: else a touch in the step in which it leaves would not be seen."""
     if not active[face]:
-        take_lever(walls, faces, face, place, turn)
-    displacement = walls.room.displacement[face]
+        take_lever(compliance, faces, face, place, turn)
+    displacement = compliance.room.displacement[face]
     if not active[face]:
-        follow(walls, face, place[0] + faces[0, 0], count, state, displacement)
-    return deepest(walls, face, displacement)
+        follow(compliance, face, place[0] + faces[0, 0], count, state, displacement)
+    return deepest(compliance, face, displacement)
 
 
 @inlined
-def _approach(walls, faces, face, xi, eta, drift, swing):
+def _approach(compliance, faces, face, xi, eta, drift, swing):
     """Rate (m/s) at which a point of the face comes up to its wall, which only modes move."""
-    y, z, half = faces[face, NORMAL_Y], faces[face, NORMAL_Z], walls.half[face]
+    y, z, half = faces[face, NORMAL_Y], faces[face, NORMAL_Z], compliance.half[face]
     turning = xi * half[0] * (y * swing[3] + z * swing[6]) + eta * half[1] * (
         y * swing[5] + z * swing[7]
     )
-    along, across = xi + walls.room.lever[face, SHIFT], eta + walls.room.lever[face, ASIDE]
+    along, across = (
+        xi + compliance.room.lever[face, SHIFT],
+        eta + compliance.room.lever[face, ASIDE],
+    )
     away = (
-        speed_at(walls.modes, face, along, across)
-        + thermal_offset.recess(walls.warm, face, along, across) * drift[0]
+        speed_at(compliance.modes, face, along, across)
+        + thermal_offset.recess(compliance.warm, face, along, across) * drift[0]
     )
     return approach(None, faces[face], None, None, drift, swing) + turning - away
 
 
 @kernel
-def survey(walls, faces, platform, payload, active, state, open_, pressing, out):
+def survey(compliance, faces, platform, payload, active, state, open_, pressing, out):
     """Fill ``out`` as ``lowfi.dynamics.events.survey`` does; ``open_`` and ``pressing`` are the modes of a
     face. The energy (J) in all walls under the ``active`` faces (f,)."""
     body, base = (
@@ -63,15 +66,15 @@ def survey(walls, faces, platform, payload, active, state, open_, pressing, out)
     place, turn = relative_pose(platform, body, base)
     drift, swing = relative_motion(platform, body, base, place, turn)
     total = 0.0
-    for rail in range(walls.members.shape[0]):
-        count = solve(walls, faces, rail, active, place, turn, state)
-        total += energy_of_rail(walls, count)
-        for k in range(walls.members.shape[1]):
-            face = walls.members[rail, k]
+    for rail in range(compliance.members.shape[0]):
+        count = solve(compliance, faces, rail, active, place, turn, state)
+        total += energy_of_rail(compliance, count)
+        for k in range(compliance.members.shape[1]):
+            face = compliance.members[rail, k]
             if face >= 0:
-                p, xi, eta = _deepest(walls, faces, face, count, active, place, turn, state)
+                p, xi, eta = _deepest(compliance, faces, face, count, active, place, turn, state)
                 out[face, MODE], out[face, DEPTH] = pressing if p > 0.0 else open_, p
-                out[face, CLOSING] = _approach(walls, faces, face, xi, eta, drift, swing)
+                out[face, CLOSING] = _approach(compliance, faces, face, xi, eta, drift, swing)
                 out[face, ALONG], out[face, FORWARD] = place[0] + faces[face, 0], drift[0]
                 out[face, SIDE] = across(faces[face], place, turn) - faces[face, SIDE_MIDDLE]
                 out[face, SIDEWAYS] = sideways(faces[face], drift, swing)
@@ -79,7 +82,7 @@ def survey(walls, faces, platform, payload, active, state, open_, pressing, out)
 
 
 @kernel
-def while_hanging(walls, faces, platform, payload, active, state):
+def while_hanging(compliance, faces, platform, payload, active, state):
     """Longest step (s) where an ``active`` face (f,) comes to an end of the rail. The rate at which
     it leaves energy behind jumps as it begins to hang over and bends with every row of cells that
     leaves, which no error estimate sees; and its last strip leaves at once. So a step goes no
@@ -94,11 +97,15 @@ def while_hanging(walls, faces, platform, payload, active, state):
     longest = np.inf
     for face in range(active.size):
         if active[face]:
-            take_lever(walls, faces, face, place, turn)
-            half, middle = walls.half[face, 0], walls.room.lever[face, MIDDLE]
-            ahead = walls.end - middle if drift[0] > 0.0 else middle - walls.start
-            behind = middle - walls.start if drift[0] > 0.0 else walls.end - middle
-            way = np.inf if walls.room.lever[face, DRIFT] == 0.0 else 0.5 * half / walls.node.size
+            take_lever(compliance, faces, face, place, turn)
+            half, middle = compliance.half[face, 0], compliance.room.lever[face, MIDDLE]
+            ahead = compliance.end - middle if drift[0] > 0.0 else middle - compliance.start
+            behind = middle - compliance.start if drift[0] > 0.0 else compliance.end - middle
+            way = (
+                np.inf
+                if compliance.room.lever[face, DRIFT] == 0.0
+                else 0.5 * half / compliance.node.size
+            )
             for to in (ahead - half, ahead + half * (1.0 - LAST_STRIP)):
                 way = min(way, to + _THERE) if to > 0.0 else way
             if half - behind > _THERE:
@@ -108,7 +115,7 @@ def while_hanging(walls, faces, platform, payload, active, state):
 
 
 @kernel
-def energy(walls, faces, platform, payload, active, state):
+def energy(compliance, faces, platform, payload, active, state):
     """Energy (J) in all walls under the ``active`` faces (f,)."""
     body, base = (
         slot.motion(payload.mass, payload.inverse_inertia, state, slot.PAYLOAD),
@@ -116,6 +123,8 @@ def energy(walls, faces, platform, payload, active, state):
     )
     place, turn = relative_pose(platform, body, base)
     total = 0.0
-    for rail in range(walls.members.shape[0]):
-        total += energy_of_rail(walls, solve(walls, faces, rail, active, place, turn, state))
+    for rail in range(compliance.members.shape[0]):
+        total += energy_of_rail(
+            compliance, solve(compliance, faces, rail, active, place, turn, state)
+        )
     return total

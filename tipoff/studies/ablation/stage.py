@@ -17,7 +17,7 @@ import numpy as np
 
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.scene import EFFECTS, Scene
-from tipoff.studies.core import machine, rail_compliance
+from tipoff.studies.core import machine
 from tipoff.studies.core.store import Run
 from tipoff.studies.core.study import Study
 from tipoff.studies.cost.timing import timed, warm_up
@@ -90,7 +90,7 @@ def _reference(study: Study, name: str, lines: dict[str, dict]):
 def _surrogate(study: Study, name: str, lines: dict[str, dict]):
     """Runs by turns, and the median time of their loops: set-up and judging, the same for all,
     would hide what an effect costs."""
-    under = rail_compliance.load(study, study.condition(name))
+    under = study.rail_compliance(study.condition(name))
     asked = [
         study.lowfi(
             name,
@@ -144,7 +144,7 @@ def _rows(
 def compiled(run: Run) -> list[str]:
     """Effects whose code is in the kernel compiled for ``run``, as the fidelity reads them off
     it."""
-    known = {"walls": run.walls} if run.walls is not None else {}
+    known = {"compliance": run.compliance} if run.compliance is not None else {}
     present = importlib.import_module(f"tipoff.{run.fidelity}").compiled_effects(
         run.scene, run.numerics, **known
     )

@@ -10,13 +10,12 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS, SPRINGS
-from tipoff.mechanics.rail_compliance import PATTERNS, Walls
+from tipoff.mechanics.rail_compliance import PATTERNS, RailCompliance
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.calibration import Calibration
 from tipoff.studies.agreement import growth, metrics, verdicts
 from tipoff.studies.agreement.verdicts import Context, Spread, spread
 from tipoff.studies.calibration import stage as calibrate
-from tipoff.studies.core import rail_compliance
 from tipoff.studies.core.progress import Board
 from tipoff.studies.core.store import Run
 from tipoff.studies.core.study import Study, read, require_success
@@ -37,7 +36,7 @@ class Rung(NamedTuple):
     name: str
     title: str
     calibration: Calibration | None = None
-    walls: Mapping[str, Walls | None] = MappingProxyType({})
+    compliance: Mapping[str, RailCompliance | None] = MappingProxyType({})
     modes: int = 0
 
     def ask(
@@ -50,7 +49,7 @@ class Rung(NamedTuple):
             self.calibration,
             overrides,
             tag + "-modal" * bool(self.modes),
-            self.walls.get(condition),
+            self.compliance.get(condition),
             **vibrating,
             **numerics,
         )
@@ -74,7 +73,7 @@ def rungs(study: Study, conditions: Iterable[str] | None = None) -> list[Rung]:
 
 def compliant(study: Study, conditions: Iterable[str]) -> Rung:
     """The surrogate on compliant contact, for ``conditions``."""
-    return Rung("compliant", COMPLIANT, walls=rail_compliance.under(study, conditions))
+    return Rung("compliant", COMPLIANT, compliance=study.rail_compliances(conditions))
 
 
 def run(study: Study) -> dict:
@@ -152,9 +151,9 @@ def _simpler(study: Study, compliant: Rung, highfi: dict[str, Trajectory]) -> li
     found = []
     for words, (patterns, coupled) in _SIMPLER.items():
         rung = compliant._replace(
-            walls={
+            compliance={
                 name: known and known.restricted(patterns, coupled)
-                for name, known in compliant.walls.items()
+                for name, known in compliant.compliance.items()
             }
         )
         wanted = [

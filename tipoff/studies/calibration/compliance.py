@@ -9,7 +9,6 @@ import time
 from pathlib import Path
 
 from tipoff.studies.calibration.under_a_pad import under_a_pad
-from tipoff.studies.core import rail_compliance
 from tipoff.studies.core.study import Study
 
 NAME = "compliance"
@@ -21,7 +20,7 @@ def run(study: Study) -> dict:
 
     def make() -> tuple[dict, list[Path]]:
         began = time.perf_counter()
-        found = rail_compliance.load(study, study.scene)
+        found = study.rail_compliance(study.scene)
         if found is None:
             return {"file": None, "under_a_pad": None}, []
         from tipoff import highfi

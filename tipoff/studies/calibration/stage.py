@@ -14,12 +14,11 @@ from typing import Any
 import numpy as np
 
 from tipoff.mechanics.models import COMPLIANT, SPRINGS
-from tipoff.mechanics.rail_compliance import Walls
+from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.scenes.calibration import Calibration
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.scene import NOMINAL
 from tipoff.studies.calibration import compliance, forecast
-from tipoff.studies.core import rail_compliance
 from tipoff.studies.core.progress import Board, say
 from tipoff.studies.core.store import Run
 from tipoff.studies.core.study import Study, StudyError, require_success
@@ -143,7 +142,7 @@ def _fitted(study: Study, references: dict, path: Path) -> tuple[dict, list[Path
             study.scene,
             references,
             progress=board.callback("calibrate"),
-            walls=rigid_walls(study, references),
+            compliance=rigid_walls(study, references),
             workers=study.settings.workers,
         )
         board.finished("calibrate", f"objective {found.objective:.4g}")
@@ -151,12 +150,10 @@ def _fitted(study: Study, references: dict, path: Path) -> tuple[dict, list[Path
     return as_dict(found) | {"calibration": study.relative(path)}, [path]
 
 
-def rigid_walls(study: Study, names: Iterable[str]) -> Walls | None:
+def rigid_walls(study: Study, names: Iterable[str]) -> RailCompliance | None:
     """Rigid walls for the conditions of these ``names``, if any of them is warm: they share a
     rail."""
-    return next(
-        filter(None, (rail_compliance.of_law(study, study.condition(name)) for name in names)), None
-    )
+    return next(filter(None, (study.rigid_rails(study.condition(name)) for name in names)), None)
 
 
 def load(study: Study) -> Calibration:

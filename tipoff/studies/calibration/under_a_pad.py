@@ -6,23 +6,23 @@ import itertools
 import numpy as np
 
 from tipoff.mechanics import model as scene_model
-from tipoff.mechanics.rail_compliance import Walls
+from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.scenes.scene import Scene
 
 _SAME = 1e-9  # m
 
 
-def under_a_pad(scene: Scene, walls: Walls, mounts: np.ndarray) -> dict:
+def under_a_pad(scene: Scene, compliance: RailCompliance, mounts: np.ndarray) -> dict:
     """Compliance (m/N) under each face of the first of the rearmost pads, and between them, over
     the place (m) of their middle; ``mounts`` (m,k,3) m are the nodes of the clamped facets."""
     faces = scene_model.built(scene).nominal
     pad = faces.pad[faces.centre[:, 0].argmin()]
     own = np.flatnonzero(faces.pad == pad)
-    matrix = walls.compliance()[:, own][:, :, own]
+    matrix = compliance.compliance()[:, own][:, :, own]
     names = [f"{'+' if faces.sign[face] > 0.0 else '-'}{'xyz'[faces.axis[face]]}" for face in own]
     return {
         "pad": int(pad),
-        "place_m": (faces.centre[own[0], 0] + walls.travel).tolist(),
+        "place_m": (faces.centre[own[0], 0] + compliance.travel).tolist(),
         "mounts_m": _spans(mounts[:, :, 0]),
         "direct_m_per_n": {name: matrix[:, i, i].tolist() for i, name in enumerate(names)},
         "cross_m_per_n": {

@@ -22,7 +22,7 @@ from typing import Any
 from tipoff import sources
 from tipoff.files import content_hash, discard
 from tipoff.mechanics.models import FINITE_ELEMENTS
-from tipoff.mechanics.rail_compliance import Walls, model_of
+from tipoff.mechanics.rail_compliance import RailCompliance, model_of
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.calibration import Calibration
 from tipoff.scenes.scene import Scene
@@ -39,12 +39,14 @@ class Run:
     scene: Scene
     numerics: Any
     calibration: Calibration | None = None
-    walls: Walls | None = None
+    compliance: RailCompliance | None = None
 
     @property
     def model(self) -> str:
         """Name of the model that makes it."""
-        return FINITE_ELEMENTS if self.fidelity == "highfi" else model_of(self.scene, self.walls)
+        return (
+            FINITE_ELEMENTS if self.fidelity == "highfi" else model_of(self.scene, self.compliance)
+        )
 
     @property
     def key(self) -> str:
@@ -55,7 +57,7 @@ class Run:
             self.scene.hash,
             asdict(self.numerics),
             used,
-            self.walls.hash if self.walls else None,
+            self.compliance.hash if self.compliance else None,
             sources.digest(f"tipoff.{self.fidelity}"),
         )
 
@@ -79,7 +81,7 @@ def execute(
     return lowfi.run(
         run.scene,
         run.model,
-        walls=run.walls,
+        compliance=run.compliance,
         calibration=run.calibration,
         numerics=run.numerics,
         progress=progress,

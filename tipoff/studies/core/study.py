@@ -8,7 +8,7 @@ reads is verified by the reader, so nothing is made again from a damaged file.
 """
 
 import hashlib
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
@@ -16,12 +16,11 @@ from typing import Any
 
 from tipoff import sources
 from tipoff.files import DamageError, content_hash, read_json, write_json
-from tipoff.mechanics.rail_compliance import Walls
+from tipoff.mechanics.rail_compliance import RailCompliance, digest
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.calibration import Calibration
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.scene import NOMINAL, Scene
-from tipoff.studies.core import rail_compliance
 from tipoff.studies.core.progress import say
 from tipoff.studies.core.settings import Settings
 from tipoff.studies.core.store import Run, Store
@@ -117,14 +116,16 @@ class Study:
         calibration: Calibration | None = None,
         overrides: dict | None = None,
         tag: str = "",
-        walls: Walls | None = None,
+        compliance: RailCompliance | None = None,
         **numerics: Any,
     ) -> Run:
-        """A surrogate run of condition ``name``: compliant where its rail compliance ``walls`` are
+        """A surrogate run of condition ``name``: compliant where its rail ``compliance`` is
         given, else on springs, with the scene's own constants unless calibrated."""
         from tipoff import lowfi
 
-        label = f"{name}{tag}{'-calibrated' if calibration else ''}{'-compliant' if walls else ''}"
+        label = (
+            f"{name}{tag}{'-calibrated' if calibration else ''}{'-compliant' if compliance else ''}"
+        )
         numbers = _numerics(lowfi.Numerics, **numerics)
         scene = self.condition(name).replace(overrides or {})
         return Run(
@@ -133,8 +134,34 @@ class Study:
             scene,
             numbers,
             calibration,
-            walls or rail_compliance.of_law(self, scene),
+            compliance or self.rigid_rails(scene),
         )
+
+    def rail_compliance(self, scene: Scene, judged: bool = True) -> RailCompliance | None:
+        """Rail compliance under the pads of ``scene``, on the reference's own mesh where agreement
+        is ``judged``. It is found once for a rail and its pads, and kept in this folder by content.
+        None without contact."""
+        if scene.contact is None:
+            return None
+        from tipoff.calibration import rail_compliance  # slow to load
+
+        size = self.settings.element_size
+        if not judged and not rail_compliance.kept_file(scene, self.folder, size).is_file():
+            size = rail_compliance.fine_enough(scene, size)
+        return rail_compliance.kept(scene, self.folder, size, say)
+
+    def rail_compliances(self, names: Iterable[str]) -> dict[str, RailCompliance | None]:
+        """The same for each condition by name; conditions with the same rail and pads share it."""
+        scenes = {name: self.condition(name) for name in names}
+        found = {
+            digest(scene): self.rail_compliance(scene) for scene in scenes.values() if scene.contact
+        }
+        return {name: found.get(digest(scene)) for name, scene in scenes.items()}
+
+    def rigid_rails(self, scene: Scene) -> RailCompliance | None:
+        """What springs stand on in ``scene``: rigid rails where they are warm, else None."""
+        found = self.rail_compliance(scene) if scene.thermal is not None else None
+        return found and found.rigid()
 
     def path(self, name: str) -> Path:
         """A file in the folder of this scene."""
@@ -204,11 +231,11 @@ class Study:
     def whole(self, document: dict, remedy: str) -> bool:
         """Whether every file of a result is there as its stage left it; the first that was altered
         is said, with the ``remedy``."""
-        for name, digest in document.get("files", {}).items():
+        for name, expected in document.get("files", {}).items():
             path = self.path(name)
             if not path.is_file():
                 return False
-            if _digest(path) != digest:
+            if _digest(path) != expected:
                 say(f"  {path} is not as it was left (damaged, edited, or made again): {remedy}")
                 return False
         return True

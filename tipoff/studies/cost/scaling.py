@@ -217,7 +217,7 @@ def _walls(study: Study, name: str, change: dict):
     """A surrogate's time does not hang on the mesh its walls come from, so the coarsest will do."""
     from tipoff import highfi
 
-    return highfi.walls(
+    return highfi.condense(
         study.condition(name).replace(change), element_size=2.0 * study.settings.coarse_size
     )
 

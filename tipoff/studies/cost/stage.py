@@ -96,12 +96,12 @@ def surrogates(study: Study, conditions: Iterable[str] | None = None) -> list[Ru
     plain, calibrated, compliant, modal = rungs(study, conditions)
     along = {
         name: known and known.restricted(1, coupled=False)
-        for name, known in compliant.walls.items()
+        for name, known in compliant.compliance.items()
     }
     return [
         plain,
         calibrated,
-        compliant._replace(name="along", title=STIFFNESS_ALONG, walls=along),
+        compliant._replace(name="along", title=STIFFNESS_ALONG, compliance=along),
         compliant,
         modal,
     ]

@@ -22,7 +22,7 @@ from tipoff.scenes import uncertainty
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.studies.agreement import kept
 from tipoff.studies.calibration.files import constants
-from tipoff.studies.core import machine, models, rail_compliance
+from tipoff.studies.core import machine, models
 from tipoff.studies.core.progress import Board
 from tipoff.studies.core.study import Study, StudyError
 from tipoff.studies.ensemble import summary
@@ -74,9 +74,9 @@ def request(study: Study, asked: Asked) -> Ensemble:
     models.require_accepted(study, asked.model.name)
     springs = asked.model.model == SPRINGS
     found = (
-        rail_compliance.of_law(study, study.scene)
+        study.rigid_rails(study.scene)
         if springs
-        else rail_compliance.load(study, study.scene, judged=False)
+        else study.rail_compliance(study.scene, judged=False)
     )
     return Ensemble(study.scene, source, fitted, numerics, found)
 

@@ -42,7 +42,7 @@ def of(ensemble: Ensemble, store: Store) -> dict:
         else {}
     )
     return {
-        "model": words.model(ensemble.scene, ensemble.calibration, ensemble.walls),
+        "model": words.model(ensemble.scene, ensemble.calibration, ensemble.compliance),
         "counts": counts,
         "statuses": {
             name: int((status == code).sum()) for code, name in enumerate(columns.STATUSES)

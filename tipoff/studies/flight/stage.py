@@ -130,7 +130,7 @@ def _conditions(
     runs = []
     for name in study.conditions:
         model = population.surrogate(study, asked.model, name)
-        runs.append(study.lowfi(name, model.calibration, walls=model.walls))
+        runs.append(study.lowfi(name, model.calibration, compliance=model.compliance))
     ended = dict(zip(study.conditions, study.store.fill(NAME, runs)))
     settled = [name for name, found in ended.items() if found.outcome.rate is not None]
     exits = {name: bodies.of_outcomes([ended[name].outcome]) for name in settled}

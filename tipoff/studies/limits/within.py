@@ -137,7 +137,7 @@ class Cases:
             drawn,
             None,
             Numerics(relative_tolerance=population.TOLERANCE),
-            self._model.walls,
+            self._model.compliance,
         )
         path = self._study.path(f"{self._folder}/{ensemble.key[:16]}.nc")
         if (known := results.load(path)) is not None:

@@ -37,8 +37,10 @@ def draw(mesh, path: Path) -> None:
 
 def _colours(mesh) -> dict[str, str]:
     """Colour of each named surface, walls first."""
-    walls = sorted(name for name in mesh.surfaces if name != "mount")
-    return {name: _WALLS[place % len(_WALLS)] for place, name in enumerate(walls)} | {"mount": TEAL}
+    compliance = sorted(name for name in mesh.surfaces if name != "mount")
+    return {name: _WALLS[place % len(_WALLS)] for place, name in enumerate(compliance)} | {
+        "mount": TEAL
+    }
 
 
 def _boundary(mesh) -> tuple[np.ndarray, list[str]]:

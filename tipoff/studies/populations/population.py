@@ -17,12 +17,12 @@ from tipoff.lowfi.ensemble.request import Ensemble
 from tipoff.lowfi.ensemble.store import StoreError
 from tipoff.lowfi.numerics import Numerics
 from tipoff.mechanics.models import SPRINGS
-from tipoff.mechanics.rail_compliance import Walls, model_of
+from tipoff.mechanics.rail_compliance import RailCompliance, model_of
 from tipoff.scenes.calibration import Calibration
 from tipoff.scenes.scene import Scene
 from tipoff.studies.agreement import kept
 from tipoff.studies.calibration import stage as calibrate
-from tipoff.studies.core import rail_compliance, words
+from tipoff.studies.core import words
 from tipoff.studies.core.models import require_accepted
 from tipoff.studies.core.progress import Board
 from tipoff.studies.core.study import Study, StudyError
@@ -36,17 +36,17 @@ class Surrogate(NamedTuple):
 
     scene: Scene
     calibration: Calibration | None
-    walls: Walls | None
+    compliance: RailCompliance | None
 
     @property
     def words(self) -> str:
         """The model in words."""
-        return words.model(self.scene, self.calibration, self.walls)
+        return words.model(self.scene, self.calibration, self.compliance)
 
     @property
     def name(self) -> str:
         """Name of the model."""
-        return model_of(self.scene, self.walls)
+        return model_of(self.scene, self.compliance)
 
     def at(self, overrides: dict[str, Any]) -> "Surrogate":
         """The same on a changed scene."""
@@ -80,9 +80,9 @@ def surrogate(study: Study, model: str | None = None, condition: str | None = No
         return Surrogate(scene, None, None)
     if model == SPRINGS:
         fitted = calibrate.load(study)
-        return Surrogate(fitted.apply(scene), fitted, rail_compliance.of_law(study, scene))
+        return Surrogate(fitted.apply(scene), fitted, study.rigid_rails(scene))
     require_accepted(study, model, condition)
-    return Surrogate(scene, None, rail_compliance.load(study, scene, judged=False))
+    return Surrogate(scene, None, study.rail_compliance(scene, judged=False))
 
 
 def answering(study: Study, model: Surrogate, condition: str | None = None) -> dict[str, str]:
@@ -105,7 +105,7 @@ def run(
     """Every case of ``source`` (``lowfi.ensemble.rows``), in a store called after ``name``.
     Raises StudyError when it cannot go on."""
     ensemble = Ensemble(
-        model.scene, source, None, Numerics(relative_tolerance=tolerance), model.walls
+        model.scene, source, None, Numerics(relative_tolerance=tolerance), model.compliance
     )
     path = study.path(f"{name}-{ensemble.key[:8]}")
     try:

@@ -4,7 +4,7 @@ from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS, SPRINGS
 from tipoff.studies.agreement import kept
 from tipoff.studies.agreement import stage as compare
 from tipoff.studies.calibration.files import constants
-from tipoff.studies.core import models, rail_compliance, words
+from tipoff.studies.core import models, words
 from tipoff.studies.core.progress import say
 from tipoff.studies.core.store import Run
 from tipoff.studies.core.study import FAILED, Study, StudyError
@@ -29,9 +29,9 @@ def run(
     vibrating = study.lowfi(condition, modes=asked.modes or 0)
     if scene.contact is None:
         return _made(study, condition, vibrating, quiet)
-    found = rail_compliance.load(study, scene, judged=False)
+    found = study.rail_compliance(scene, judged=False)
     return _made(
-        study, condition, study.lowfi(condition, walls=found, modes=asked.modes or 0), quiet
+        study, condition, study.lowfi(condition, compliance=found, modes=asked.modes or 0), quiet
     )
 
 
@@ -78,7 +78,10 @@ def model(asked: Run) -> str:
     """What a run is made with, in words."""
     if asked.fidelity == "highfi":
         return f"{FINITE_ELEMENTS}, {1e3 * asked.numerics.element_size:g} mm"
-    found, modes = words.model(asked.scene, asked.calibration, asked.walls), asked.numerics.modes
+    found, modes = (
+        words.model(asked.scene, asked.calibration, asked.compliance),
+        asked.numerics.modes,
+    )
     return found + (f", {modes} modes of each rail" if modes and asked.model == COMPLIANT else "")
 
 

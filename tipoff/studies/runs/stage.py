@@ -7,7 +7,6 @@ from pathlib import Path
 from tipoff.mechanics.models import FINITE_ELEMENTS
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.studies.convergence import stresses
-from tipoff.studies.core import rail_compliance
 from tipoff.studies.core.store import Run
 from tipoff.studies.core.study import FAILED, Study
 
@@ -16,8 +15,8 @@ def requests(study: Study, fidelity: str) -> dict[str, Run]:
     """The run of each condition, by name."""
     if fidelity == "highfi":
         return {name: study.highfi(name) for name in study.conditions}
-    under = rail_compliance.under(study, study.conditions)
-    return {name: study.lowfi(name, walls=under[name]) for name in study.conditions}
+    under = study.rail_compliances(study.conditions)
+    return {name: study.lowfi(name, compliance=under[name]) for name in study.conditions}
 
 
 def run(study: Study, fidelity: str) -> dict:

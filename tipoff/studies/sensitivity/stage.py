@@ -106,7 +106,7 @@ def _tables(study: Study, model: Surrogate, asked: Asked) -> list[dict]:
     if model.name == SPRINGS and model.scene.contact != study.scene.contact:
         # A law stands on the same rigid walls whatever its constants are: where warm rails have
         # moved them to.
-        own = Surrogate(study.scene, None, model.walls)
+        own = Surrogate(study.scene, None, model.compliance)
         titled.append((own.words, own))
     return [{"title": title, **_table(study, surrogate)} for title, surrogate in titled]
 

@@ -30,7 +30,10 @@ class Exit(NamedTuple):
 def exit_of(model: Surrogate) -> Exit | None:
     """How the payload leaves, or None where it does not."""
     time = lowfi.run(
-        model.scene, model.name, numerics=Numerics(relative_tolerance=TOLERANCE), walls=model.walls
+        model.scene,
+        model.name,
+        numerics=Numerics(relative_tolerance=TOLERANCE),
+        compliance=model.compliance,
     ).outcome.exit_time
     if time is None:
         return None

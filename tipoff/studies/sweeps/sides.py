@@ -46,7 +46,9 @@ def found(
     numerics = Numerics(relative_tolerance=TOLERANCE)
 
     def one(row: dict[str, float]) -> tuple[int, int, list[float]]:
-        run = lowfi.run(model.scene.replace(row), model.name, numerics=numerics, walls=model.walls)
+        run = lowfi.run(
+            model.scene.replace(row), model.name, numerics=numerics, compliance=model.compliance
+        )
         return *of(run.time, np.linalg.norm(run.pad_force, axis=2)), run.outcome.rate or [
             np.nan
         ] * 3

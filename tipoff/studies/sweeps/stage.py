@@ -147,13 +147,13 @@ def _sides(study: Study, model: Surrogate, asked: Asked) -> tuple[list[str], lis
         )
     shape = len(FACTORS), len(SIZES), len(directions)
     names = sides.names(model.scene)
-    walls = np.array([*names, ""])  # the last for no face, which is -1
+    compliance = np.array([*names, ""])  # the last for no face, which is -1
     return names, [
         {
             "angles_deg": np.degrees(directions).tolist(),
             "first": first.tolist(),
             "most": most.tolist(),
-            "jumps_deg_s": sides.jumps(walls[most], np.degrees(rate)),
+            "jumps_deg_s": sides.jumps(compliance[most], np.degrees(rate)),
         }
         for first, most, rate in zip(
             seen.first.reshape(shape), seen.most.reshape(shape), seen.rate.reshape(*shape, 3)
