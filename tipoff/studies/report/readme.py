@@ -1,7 +1,7 @@
 """Writes the figures of README.md and docs/results.md from the result files of ``make
 full-report``, so that no number in them is typed by hand.
 
-    python -m studies.report.readme [FOLDER]        default out/reference
+    python -m tipoff.studies.report.readme [FOLDER]        default out/reference
 """
 
 import shutil
@@ -22,10 +22,10 @@ from tipoff.studies.report.stage import beside
 _ROOT = Path(__file__).resolve().parents[3]
 _TITLE = """# Further results on the reference scene
 
-Written by `python -m studies.report.readme` from the files of `make full-report` and `make bench`; times
+Written by `python -m tipoff.studies.report.readme` from the files of `make full-report` and `make bench`; times
 of different tables may be those of different days and are not to be divided by each other. Terms
 are those of README."""
-_BEGIN, _END = "<!-- results: python -m studies.report.readme -->", "<!-- end of results -->"
+_BEGIN, _END = "<!-- results: python -m tipoff.studies.report.readme -->", "<!-- end of results -->"
 
 
 def main(folder: Path) -> None:
