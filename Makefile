@@ -12,9 +12,13 @@ ASKED = --scene $(SCENE) --out $(OUT)
 READY = .venv/.ready
 CHECKED = .venv/.checked
 # Tests that take a second or two each where kernels are compiled.
-QUICK = tests/test_layers.py tests/scenes tests/fe \
-  $(patsubst %,tests/lowfi/test_%.py,bow ejection extreme_contacts flying friction momentum numerics statuses tip_off) \
-  $(patsubst %,tests/studies/test_%.py,agreement choice growth knee metrics models names report)
+QUICK = tests/test_layers.py tests/test_sources.py tests/kernels tests/scenes tests/mechanics tests/meshes \
+  $(patsubst %,tests/highfi/%,elements mesh statics extruded contact/test_hertz.py test_compliance.py) \
+  $(patsubst %,tests/highfi/dynamics/test_%.py,stable_step waves bars moving_force) \
+  $(patsubst %,tests/lowfi/test_%.py,ejection flying numerics statuses tip_off) \
+  $(patsubst %,tests/lowfi/contact/test_%.py,thermal_offset extreme_contacts friction) tests/lowfi/dynamics/test_momentum.py \
+  tests/studies/test_names.py tests/studies/agreement tests/studies/cost/test_choice.py tests/studies/sweeps/test_knee.py \
+  tests/studies/core/test_models.py tests/studies/report
 
 .DEFAULT_GOAL := help
 .PHONY: help mesh highfi lowfi calibrate compare blind cost stability ablation ensemble sensitivity sweeps montecarlo limits flight droptest paper report view pictures convergence rails full-report bench check coverage hooks test test-slow clean

@@ -274,7 +274,7 @@ LONG = {
     "tests/scenes/test_refusal.py": 440,
     "tipoff/studies/report/readme.py": 430,
     "tipoff/studies/paper/page.py": 430,
-    "tests/studies/test_paper.py": 420,
+    "tests/studies/paper/test_stage.py": 420,
 }
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tests.lowfi.giving import reference_walls
+from tests.lowfi.compliance import reference_walls
 from tipoff import lowfi
 from tipoff.scenes import load
 from tipoff.scenes.scene import Scene

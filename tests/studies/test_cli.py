@@ -17,7 +17,7 @@ from tipoff.studies.cli import app
 from tipoff.studies.commands.helptext import flowed
 from tipoff.studies.core import store as store_module
 
-ROOT = Path(__file__).resolve().parent.parent.parent
+ROOT = Path(__file__).resolve().parents[2]
 STAGES = (
     "mesh",
     "highfi",

@@ -1,0 +1,214 @@
+"""X20: a run that is stopped or killed goes on from its checkpoint and ends with the same bits."""
+
+import functools
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tests.highfi.support import COARSE, Stopped, begun, stopped, tiny
+from tipoff import highfi
+from tipoff.highfi import Numerics
+from tipoff.highfi.dynamics.checkpoint import CONSTANT, Checkpoint, arrays, digest, restore
+from tipoff.highfi.state.records import Active, Body, State
+from tipoff.mechanics.trajectory import Trajectory
+
+pytestmark = pytest.mark.case("X20")
+ROOT = Path(__file__).resolve().parents[3]
+ARRAYS = (
+    "time",
+    "position",
+    "velocity",
+    "quaternion",
+    "rate",
+    "platform_position",
+    "platform_velocity",
+    "platform_quaternion",
+    "platform_rate",
+    "pad_force",
+    "energy",
+    "transverse_energy",
+    "wall_stress",
+)
+TOUCHING = 115  # a sample at which pads of ``tiny`` touch
+
+
+@functools.cache
+def whole() -> Trajectory:
+    """The run that nothing interrupts."""
+    return highfi.run(tiny(), COARSE)
+
+
+def assert_same(found: Trajectory, expected: Trajectory) -> None:
+    """All that a result holds but what it cost, bit for bit."""
+    for name in ARRAYS:
+        np.testing.assert_array_equal(getattr(found, name), getattr(expected, name), err_msg=name)
+    for name in ("status", "message", "outcome", "checks", "stress"):
+        assert getattr(found, name) == getattr(expected, name), name
+    assert found.cost["steps"] == expected.cost["steps"]
+
+
+def test_run_stopped_at_37_percent_goes_on_to_the_same_bits(tmp_path):
+    """The first fraction the second part reports shows that it did not start anew, which would give
+    the same bits too."""
+    seen = []
+
+    def stop(fraction):
+        if fraction >= 0.37:
+            raise Stopped
+
+    with pytest.raises(Stopped):
+        highfi.run(tiny(), COARSE, progress=stop, checkpoint=tmp_path / "run", checkpoint_every=0.0)
+    resumed = highfi.run(
+        tiny(), COARSE, progress=seen.append, checkpoint=tmp_path / "run", resume=True
+    )
+    assert seen[0] >= 0.37
+    assert np.abs(resumed.pad_force).max() > 1.0
+    assert_same(resumed, whole())
+
+
+@pytest.mark.parametrize("samples", [1, TOUCHING, 212])
+def test_any_sample_is_a_place_to_stop(tmp_path, samples):
+    """At the start, while pads touch, and after the run has seen where it ends; resumed by another
+    number of threads."""
+    first, second = stopped(samples), begun(threads=2)
+    kept = Checkpoint(tmp_path / "run", 0.0, first, COARSE)
+    kept.write(first)
+    restore(second, kept.read())
+    assert len(second.rows) == samples + 1 and second.wall == first.wall
+    second.march(None)
+    assert_same(second.trajectory({"steps": second.steps}, COARSE), whole())
+
+
+def test_pencils_go_on_to_the_same_bits(tmp_path):
+    """The finer mesh is extruded and uses the other elastic kernel, whose arrays have nodes of no
+    element between the rails."""
+    scene, numerics = (
+        tiny(duration="9 ms", contact__clearance="0.05 mm"),
+        Numerics(element_size=0.004),
+    )
+    first, second = stopped(45, scene, numerics), begun(scene, numerics)
+    kept = Checkpoint(tmp_path / "run", 0.0, first, numerics)
+    kept.write(first)
+    restore(second, kept.read())
+    results = []
+    for loop in (first, second):
+        loop.march(None)
+        results.append(loop.trajectory({"steps": loop.steps}, numerics))
+    assert first.system.rail.pencils is not None and np.abs(results[0].pad_force).max() > 1.0
+    assert_same(*results)
+
+
+def test_every_evolving_array_is_in_the_file(tmp_path):
+    """The names are those of the records, so a field that is added and not saved fails here."""
+    loop = stopped(TOUCHING)
+    kept = Checkpoint(tmp_path / "run", 0.0, loop, COARSE)
+    kept.write(loop)
+    saved = kept.read()
+    bodies = [name for name in State._fields if isinstance(getattr(loop.state, name), Body)]
+    expected = {
+        f"state.{body}.{name}": getattr(getattr(loop.state, body), name)
+        for body in bodies
+        for name in Body._fields
+    }
+    assert loop.state.history is None  # no structural damping
+    expected |= {
+        f"state.{name}": getattr(loop.state, name)
+        for name in State._fields
+        if name not in (*bodies, "history")
+    }
+    expected |= {f"active.{name}": getattr(loop.active, name) for name in Active._fields}
+    assert len(bodies) == 2
+    assert {name.partition(".")[0] for name in saved} == set(vars(loop)) - set(CONSTANT)
+    for name, array in expected.items():
+        assert saved[name].dtype == array.dtype
+        np.testing.assert_array_equal(saved[name], array, err_msg=name)
+    assert loop.active.count.max() > 0
+
+
+def test_what_is_left_out_does_not_change():
+    loop = begun()
+    # not records, and no kernel is given them
+    system = {"system": loop.system._replace(mesh=None, operator=None)}
+    before, others = (
+        digest(arrays(system | {"exit": loop.exit})),
+        (loop.marks, loop.stepping, loop.last, loop.most),
+    )
+    loop.march(None)
+    assert digest(arrays(system | {"exit": loop.exit})) == before
+    assert (loop.marks, loop.stepping, loop.last, loop.most) == others
+    # A scene is frozen; a team and a pool of threads are not of the run.
+    assert set(CONSTANT) == {
+        "scene",
+        "system",
+        "stepping",
+        "team",
+        "pool",
+        "marks",
+        "exit",
+        "last",
+        "most",
+        "walls",
+        "watch",
+    }
+
+
+CHILD = """
+import sys
+from tipoff import highfi
+from tests.highfi.support import COARSE, tiny
+found = highfi.run(tiny(), COARSE, progress=lambda fraction: print(fraction, flush=True), checkpoint=sys.argv[1],
+                   checkpoint_every=0.0, resume=True)
+found.save(sys.argv[2])
+"""
+
+
+def test_killed_again_and_again_it_ends_with_the_same_bits(tmp_path):
+    """SIGKILL at seeded moments, first of the set-up, then of the march; each life begins where the
+    file of the last one ends."""
+    whole()  # compiles what the children load
+    moments, path, result = random.Random(20), tmp_path / "run", tmp_path / "result.nc"
+    reader = Checkpoint(path, 0.0, begun(), COARSE)
+    child = _child(path, result)
+    time.sleep(moments.uniform(0.0, 1.0))
+    _kill(child)
+    for _ in range(3):
+        rows = _rows(reader)
+        child = _child(path, result)
+        assert float(child.stdout.readline()) >= (rows - 1) / 300
+        time.sleep(moments.uniform(0.0, 0.4))
+        _kill(child)
+        assert _rows(reader) >= max(rows, 19)
+    rows = _rows(reader)
+    child = _child(path, result)
+    fractions = [float(line) for line in child.communicate(timeout=60)[0].split()]
+    assert child.returncode == 0
+    assert fractions[0] >= (rows - 1) / 300 and rows >= 3 * 19
+    assert_same(Trajectory.load(result), whole())
+
+
+def _child(path: Path, result: Path) -> subprocess.Popen:
+    return subprocess.Popen(
+        [sys.executable, "-c", CHILD, str(path), str(result)],
+        cwd=ROOT,
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+
+
+def _kill(child: subprocess.Popen) -> None:
+    os.kill(child.pid, signal.SIGKILL)
+    assert child.wait() == -signal.SIGKILL
+    child.stdout.close()
+
+
+def _rows(reader: Checkpoint) -> int:
+    """Samples in the file; none where there is no file."""
+    saved = reader.read()
+    return 0 if saved is None else len(saved["rows"])

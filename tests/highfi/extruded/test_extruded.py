@@ -1,0 +1,106 @@
+"""The pencil kernel against the element kernel on the same mesh, and meshes it must leave alone."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tests.highfi.blocks import ALUMINIUM, block
+from tipoff.highfi.extruded import folding
+from tipoff.highfi.extruded import mesh as pencils
+from tipoff.highfi.extruded.kernel import pencil_force
+from tipoff.highfi.mesh.rail_mesh import read
+from tipoff.highfi.statics import assembly
+from tipoff.highfi.statics.operator import internal_force
+from tipoff.kernels.memory import zeros
+from tipoff.meshes import l_rail
+
+
+def graded(divisions, size):
+    """A brick whose section has elements of as many widths and heights as it has columns and
+    rows."""
+    mesh = block(divisions, size)
+    points = mesh.points.copy()
+    for axis in (1, 2):
+        points[:, axis] *= 0.5 + 0.5 * points[:, axis] / size[axis]
+    return replace(mesh, points=points)
+
+
+def groups_of(mesh):
+    """Places (s,2) of the section points, and how many products and how many folded groups each has
+    per layer."""
+    operator = assembly.build(mesh, **ALUMINIUM)
+    columns, number = pencils.find(mesh.points, operator)
+    places = np.zeros((number.max() // columns.stride + 1, 2))
+    places[number // columns.stride] = mesh.points[:, 1:]
+    counts = columns.groups.counts
+    return places, *(
+        counts @ np.array(size)
+        for size in zip(*((len(kind.numbers), len(kind.folded) > 0) for kind in folding.KINDS))
+    )
+
+
+def both_forces(mesh):
+    """Internal force (n,3) of one random displacement by pencils and by elements."""
+    operator = assembly.build(mesh, **ALUMINIUM)
+    columns, number = pencils.find(mesh.points, operator)
+    displacement = np.random.default_rng(3).standard_normal(mesh.points.shape)
+    expected = np.empty_like(displacement)
+    internal_force(displacement, operator.cells, operator.shape_class, operator.stiffness, expected)
+    size = -(-(number.max() + 1) // pencils.LANES) * pencils.LANES
+    padded, force = np.zeros((3, size)), np.zeros((3, size))
+    padded[:, number] = displacement.T
+    turn = np.zeros(3)
+    pencil_force(columns, padded, force, 0, columns.first.size - 1, zeros((3, pencils.LANES)), turn)
+    assert (
+        np.abs(turn - np.cross(displacement, expected).sum(axis=0)).max()
+        <= 1e-12 * np.abs(displacement * expected).sum()
+    )
+    return force, number, expected
+
+
+@pytest.mark.parametrize(
+    "mesh",
+    [
+        pytest.param(read(l_rail.build(l_rail.LRailGeometry(), 0.004)), id="L rails"),
+        pytest.param(graded((6, 5, 4), (0.03, 0.02, 0.02)), id="no symmetry in the section"),
+        pytest.param(block((3, 2, 2), (0.03, 0.02, 0.03)), id="three layers"),
+        pytest.param(block((40, 3, 4), (0.6, 0.03, 0.04)), id="cantilever"),
+    ],
+)
+def test_pencils_give_the_force_of_the_elements(mesh):
+    force, number, expected = both_forces(mesh)
+    assert np.abs(force[:, number].T - expected).max() <= 1e-13 * np.abs(expected).max()
+
+
+def test_mirrored_neighbours_share_their_products():
+    """Nine neighbours with 14 numbers each are 126 products; folded twice 36, and on a side 44
+    instead of 84."""
+    places, products, _ = groups_of(block((4, 5, 5), (0.04, 0.05, 0.05)))
+    outside = ((places == places.min(axis=0)) | (places == places.max(axis=0))).sum(axis=1)
+    assert (
+        set(products[outside == 0]) == {36}
+        and set(products[outside == 1]) == {44}
+        and set(products[outside == 2]) == {56}
+    )
+
+
+def test_without_symmetry_nothing_is_folded():
+    _, _, folded = groups_of(graded((4, 3, 3), (0.04, 0.03, 0.03)))
+    assert (folded == 0).all()
+
+
+def test_padding_stays_without_force():
+    force, number, _ = both_forces(block((5, 2, 2), (0.05, 0.02, 0.02)))
+    padding = np.ones(force.shape[1], dtype=bool)
+    padding[number] = False
+    assert padding.any() and (force[:, padding] == 0.0).all()
+
+
+def test_uneven_and_distorted_meshes_are_left_to_the_element_kernel():
+    uneven = block((4, 2, 2), (0.04, 0.02, 0.02), stations=[0.0, 0.01, 0.02, 0.035, 0.04])
+    bent = block((4, 2, 2), (0.04, 0.02, 0.02))
+    points = bent.points.copy()
+    points[len(points) // 2, 1] += 1e-3
+    for mesh in (uneven, replace(bent, points=points)):
+        assert pencils.find(mesh.points, assembly.build(mesh, **ALUMINIUM)) is None

@@ -1,0 +1,176 @@
+"""Peak stress of a run: found where and when a plain look at every sample finds it, on any number
+of threads; wall gauges."""
+
+import numpy as np
+import pytest
+
+from tests.highfi.blocks import block
+from tests.highfi.support import COARSE, begun, tiny
+from tipoff import highfi
+from tipoff.highfi.dynamics.system import build
+from tipoff.highfi.elements import hexahedral_recovery, hexahedron
+from tipoff.highfi.numerics import Numerics
+from tipoff.highfi.stress import gauge, monitor, peaks
+from tipoff.highfi.stress.peak import ROTATION, STRAIN, STRESS, nothing
+
+LAW = hexahedron.elasticity(72e9, 0.33)
+
+
+@pytest.fixture(scope="module")
+def seen():
+    """The run on ``tiny`` and, at every sample, the plain von Mises stress (e,8) Pa at all corners
+    of all elements."""
+    stresses = []
+
+    def look(loop):
+        hexes = loop.system.number[loop.system.mesh.cells]
+        moved = loop.state.displacement[hexes].reshape(-1, 1, 24, 1)
+        matrix = hexahedral_recovery.corner_matrix(
+            loop.system.mesh.points[loop.system.mesh.cells], LAW
+        )
+        stresses.append(hexahedral_recovery.von_mises((matrix @ moved)[..., 0]))
+
+    return highfi.run(tiny(), COARSE, observer=look), np.array(stresses)
+
+
+@pytest.fixture(scope="module")
+def bare():
+    return highfi.run(tiny(), COARSE)
+
+
+def test_peak_is_that_of_the_plain_formulas(seen):
+    run, stresses = seen
+    mesh = highfi.prepare(tiny(), COARSE)
+    every = run.stress["samples_between_looks"]
+    sample, _number, _corner = np.unravel_index(stresses[::every].argmax(), stresses[::every].shape)
+    assert run.stress["peak_stress_pa"] == pytest.approx(stresses[::every].max(), rel=1e-12)
+    assert run.stress["peak_stress_time_s"] == pytest.approx(run.time[every * sample], rel=1e-12)
+    place = np.array(run.stress["peak_stress_place_m"])
+    # Mirror images of the place are other rails; of corners that tie within rounding any may be
+    # named.
+    there = stresses[every * sample][(mesh.points[mesh.cells] == place).all(axis=2)]
+    assert there.max() == pytest.approx(stresses[::every].max(), rel=1e-12)
+    assert run.stress["peak_stress_rail"] == " ".join(
+        f"{'+' if place[axis] > 0.0 else '-'}{'xyz'[axis]}" for axis in (1, 2)
+    )
+
+
+def test_observer_sees_every_sample_and_changes_no_bit(seen, bare):
+    run, stresses = seen
+    assert len(stresses) == run.time.size
+    for name in (
+        "position",
+        "velocity",
+        "quaternion",
+        "rate",
+        "pad_force",
+        "energy",
+        "transverse_energy",
+        "wall_stress",
+    ):
+        np.testing.assert_array_equal(getattr(run, name), getattr(bare, name), err_msg=name)
+    assert (run.stress, run.checks, run.outcome) == (bare.stress, bare.checks, bare.outcome)
+
+
+def test_stress_survives_the_file(bare, tmp_path):
+    bare.save(tmp_path / "run.nc")
+    again = type(bare).load(tmp_path / "run.nc")
+    assert again.stress == bare.stress
+    np.testing.assert_array_equal(again.wall_stress, bare.wall_stress)
+    assert bare.to_xarray().wall_stress.attrs["units"] == "Pa"
+
+
+def test_yield_and_large_motion_are_warned_of(bare):
+    """Control: the run as it is bears a twentieth of its yield strength and is warned of
+    nothing."""
+    assert bare.stress["yield_strength_pa"] == 503e6 and bare.stress["warnings"] == []
+    weak = highfi.run(tiny(duration="12 ms", rail__material__yield_strength="1 MPa"), COARSE)
+    assert weak.stress["peak_stress_pa"] > 1e6
+    assert (
+        len(weak.stress["warnings"]) == 1 and "yield strength, 1 MPa" in weak.stress["warnings"][0]
+    )
+    large = monitor.warnings(
+        bare.stress
+        | {"largest_strain": 0.02, "largest_rotation_rad": 0.05, "yield_strength_pa": None}
+    )
+    assert [words.split()[0] for words in large] == ["strain", "an"]
+
+
+@pytest.mark.parametrize("threads", [1, 2, 3])
+def test_any_number_of_threads_finds_the_same_corner(threads):
+    several, single = begun(threads=threads), begun()
+    moved = 1e-6 * np.random.default_rng(7).standard_normal((2, *single.state.displacement.shape))
+    for loop in (several, single):
+        for time, displacement in enumerate(moved):
+            monitor.look(
+                loop.watch, np.asfortranarray(displacement), float(time), loop.worst, loop.pool
+            )
+    for found, expected in zip(several.worst, single.worst):
+        np.testing.assert_array_equal(found, expected)
+
+
+def test_strain_and_rotation_of_a_distorted_mesh():
+    """A gradient known everywhere: its symmetric part has the norm found as strain, its
+    antisymmetric part that of the rotation."""
+    mesh = block((3, 2, 2), (0.03, 0.02, 0.02))
+    points = mesh.points + 1e-3 * np.random.default_rng(8).uniform(-1.0, 1.0, mesh.points.shape)
+    gradient = 1e-4 * np.random.default_rng(9).standard_normal((3, 3))
+    count = len(points)
+    classes, worst = np.arange(len(mesh.cells), dtype=np.uint32), nothing()
+    found = peaks.build(points, mesh.cells, classes, LAW, np.arange(count))
+    peaks.find(
+        np.asfortranarray(points @ gradient.T),
+        found,
+        worst,
+        np.zeros(peaks.SIZE),
+        0,
+        len(mesh.cells),
+    )
+    even, odd = 0.5 * (gradient + gradient.T), 0.5 * (gradient - gradient.T)
+    stress = (
+        np.array(
+            [even[0, 0], even[1, 1], even[2, 2], 2 * even[0, 1], 2 * even[1, 2], 2 * even[2, 0]]
+        )
+        @ LAW
+    )
+    assert LAW[3, 3] * np.sqrt(worst.square[STRESS]) == pytest.approx(
+        hexahedral_recovery.von_mises(stress), rel=1e-10
+    )
+    assert np.sqrt(worst.square[STRAIN]) == pytest.approx(np.linalg.norm(even), rel=1e-10)
+    assert np.sqrt(worst.square[ROTATION]) == pytest.approx(
+        np.linalg.norm(odd) / np.sqrt(2.0), rel=1e-10
+    )
+
+
+def patches(size):
+    scene, numerics = tiny(), Numerics(element_size=size)
+    system = build(scene, numerics, highfi.prepare(scene, numerics))
+    return system, monitor.build(system, scene.rail.material, 100, 1).patch
+
+
+@pytest.mark.parametrize("size", [0.016, 0.008, 0.004, 0.003])
+def test_patches_are_where_they_are_on_every_mesh_and_see_a_uniform_stress(size):
+    """Midway between the last two clamps, on the track of the pads; under a constant gradient the
+    mean is that constant."""
+    system, found = patches(size)
+    centres = found.centre + system.origin
+    assert centres[:, 0] == pytest.approx(0.068, abs=1e-12)
+    assert sorted(np.abs(centres[:, 1:]).max(axis=1)) == pytest.approx([0.10025] * 8)
+    assert sorted(np.abs(centres[:, 1:]).min(axis=1)) == pytest.approx([0.091] * 8)
+    gradient = 1e-4 * np.random.default_rng(10).standard_normal((3, 3))
+    even = 0.5 * (gradient + gradient.T)
+    strain = np.array(
+        [even[0, 0], even[1, 1], even[2, 2], 2 * even[0, 1], 2 * even[1, 2], 2 * even[2, 0]]
+    )
+    stress = gauge.stress(found, system.rail.points @ gradient.T)
+    assert np.abs(stress - strain @ LAW).max() < 1e-9 * np.abs(strain @ LAW).max()
+
+
+def test_a_wall_too_narrow_for_a_patch_has_none():
+    scene = tiny(rail__leg="14 mm")
+    found = highfi.run(scene.replace({"duration": "1 ms"}), COARSE)
+    assert found.stress["patch_places_m"] == [] and found.wall_stress.shape == (
+        found.time.size,
+        0,
+        6,
+    )

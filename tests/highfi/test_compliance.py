@@ -1,0 +1,222 @@
+"""Compliance of the walls under pads: a beam with a closed form, reciprocity, scaling, mirror
+images, refinement, and what a rail on three mounts must show."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tests.exact import elasticity
+from tests.highfi.blocks import block
+from tipoff import scenes
+from tipoff.highfi import compliance
+from tipoff.highfi.mesh import pieces
+from tipoff.highfi.mesh.rail_mesh import MeshError, boundary_facets
+from tipoff.highfi.rail.scene_mesh import make_mesh
+from tipoff.highfi.statics import pressure
+from tipoff.mechanics.model import Faces
+from tipoff.scenes.rail import MaterialTable
+
+LENGTH, WIDTH, HEIGHT, MODULUS = 0.6, 0.03, 0.04, 72e9
+HALF = 0.03  # m along the beam
+AT_MOUNT, BETWEEN, AT_END = 0.102, 0.056, 0.204  # travel (m) that brings the rear pads there
+TRAVEL = (AT_MOUNT, BETWEEN, AT_END)
+
+
+def beam(divisions=(40, 2, 4)):
+    """Clamped at x = 0, its top a wall."""
+    mesh = block(divisions, (LENGTH, WIDTH, HEIGHT))
+    facets = boundary_facets(mesh.cells)
+    top = facets[(mesh.points[facets][:, :, 2] == HEIGHT).all(axis=1)]
+    return replace(mesh, surfaces=mesh.surfaces | {"contact": top})
+
+
+def pads(*middles, half_length=HALF):
+    """Faces that press the top of the beam downwards over all its width."""
+    count = len(middles)
+    centre = np.array([(middle, 0.5 * WIDTH, HEIGHT) for middle in middles])
+    ones = np.ones(count)
+    return Faces(
+        centre,
+        np.full(count, 2),
+        -ones,
+        half_length * ones,
+        0.5 * WIDTH * ones,
+        0.0 * ones,
+        HEIGHT * ones,
+        np.arange(count),
+    )
+
+
+def elastic(modulus=MODULUS, poisson_ratio=0.0):
+    """At a Poisson ratio of zero the clamp of a solid is that of beam theory."""
+    return MaterialTable.model_validate(
+        {"density": 1.0, "youngs_modulus": modulus, "poisson_ratio": poisson_ratio},
+        context={"bare_numbers_are_si": True},
+    )
+
+
+def beam_theory(first, second):
+    """Matrix (2,2) of the patterns 1 and xi between patches with these middles, by the deflection
+    x^2 (3 s - x) / 6 E I + x / kappa G A at x <= s under a unit force at s."""
+    xi = (np.arange(400) + 0.5) / 200.0 - 1.0
+    x, s = (middle + HALF * xi for middle in (first, second))
+    near, far = np.minimum(x[:, None], s), np.maximum(x[:, None], s)
+    bending, shear = elasticity.cantilever_deflection(1.0, LENGTH, WIDTH, HEIGHT, MODULUS, 0.0)
+    deflection = bending * near**2 * (3.0 * far - near) / (2.0 * LENGTH**3) + shear * near / LENGTH
+    phi = np.stack([np.ones(xi.size), xi]) / xi.size
+    return phi @ deflection @ phi.T
+
+
+@pytest.mark.case("O6")
+def test_beam_under_two_pads():
+    """Means and slopes of the deflection under either pad, wherever the pads stand on the mesh."""
+    rear, front, travel = 0.20, 0.45, (0.0, 0.05, 0.0973)
+    found = compliance.of_mesh(
+        beam(), elastic(), pads(rear, front), (0.0, LENGTH), travel, patterns=2
+    ).matrix
+    for moved, matrix in zip(travel, found):
+        places = [rear + moved, front + moved]
+        for i, j in ((0, 0), (0, 1), (1, 1)):
+            exact = beam_theory(places[i], places[j])
+            # under its own pressure a slope has a local part, which beams do not know
+            here = (1, 1) if i == j else (2, 2)
+            assert matrix[i, :, j][: here[0], : here[1]] == pytest.approx(
+                exact[: here[0], : here[1]], rel=0.01
+            )
+    # Control: in the place of a point force at the middle the mean under a pad near the root would
+    # be off.
+    assert (
+        abs(
+            beam_theory(0.06, 0.06)[0, 0]
+            / (elasticity.cantilever_deflection(1.0, 0.06, WIDTH, HEIGHT, MODULUS, 0.0)[0])
+            - 1.0
+        )
+        > 0.01
+    )
+
+
+def test_a_pad_over_the_end_keeps_its_last_whole_place():
+    over = compliance.of_mesh(
+        beam(), elastic(), pads(LENGTH), (0.0, LENGTH), (0.0, 2.0 * HALF), patterns=1
+    )
+    last = compliance.of_mesh(
+        beam(), elastic(), pads(LENGTH - HALF), (0.0, LENGTH), (0.0,), patterns=1
+    )
+    assert (over.matrix == last.matrix).all()
+
+
+def test_half_a_wall_is_pressed_where_it_is():
+    """A wall that ends under the middle of a pad answers as to the half of the pad over it."""
+    wall = (0.0, LENGTH + HALF)  # as if a wall went on where the beam ends
+    half = compliance.of_mesh(beam(), elastic(), pads(LENGTH), wall, (0.0,), patterns=1)
+    short = compliance.of_mesh(
+        beam(),
+        elastic(),
+        pads(LENGTH - 0.5 * HALF, half_length=0.5 * HALF),
+        wall,
+        (0.0,),
+        patterns=1,
+    )
+    assert half.gram[0, 0] == pytest.approx(0.5, rel=1e-9)
+    # 16 points along an element against 8
+    assert 4.0 * half.matrix[0] == pytest.approx(short.matrix[0], rel=1e-3)
+
+
+def test_stiffer_material_gives_way_less_by_the_ratio_of_the_moduli():
+    soft, hard = (
+        compliance.of_mesh(
+            beam((10, 1, 2)), elastic(modulus, 0.33), pads(0.3), (0.0, LENGTH), (0.0,)
+        ).matrix
+        for modulus in (MODULUS, 1024.0 * MODULUS)
+    )
+    assert 1024.0 * hard == pytest.approx(soft, rel=1e-12)
+
+
+def test_faults():
+    with pytest.raises(ValueError, match="patterns: given 7, expected 1 to 6"):
+        compliance.of_mesh(
+            beam((10, 1, 2)), elastic(), pads(0.3), (0.0, LENGTH), (0.0,), patterns=7
+        )
+    loose = beam((10, 1, 2))
+    loose.surfaces["mount"] = loose.surfaces["mount"][:0]
+    with pytest.raises(MeshError, match="no mount"):
+        compliance.of_mesh(loose, elastic(), pads(0.3), (0.0, LENGTH), (0.0,))
+
+
+def test_loads_have_the_force_and_moment_of_their_pressure():
+    """On facets that the face cuts anyhow and that are no rectangles: integrals of phi and phi x, y
+    over [-1, 1]^2 by four."""
+    mesh = beam((40, 5, 1))
+    random = np.random.default_rng(3)
+    points = mesh.points.copy()
+    inner = (points[:, :2] > 0.0).all(axis=1) & (points[:, 0] < LENGTH) & (points[:, 1] < WIDTH)
+    points[inner, :2] += 0.002 * random.uniform(-1.0, 1.0, (inner.sum(), 2))
+    middle, half = np.array([0.3071, 0.0143]), np.array([0.0307, -0.0121])
+    found = pressure.pressed(points, mesh.surfaces["contact"], 1, middle, half, 6)
+    assert found.gram[0, 0] == pytest.approx(1.0, rel=1e-12)
+    local = (points[found.node][:, :, :2] - middle) / half
+    assert found.load.sum(axis=(1, 2)) == pytest.approx(
+        [1.0, 0.0, 0.0, 1.0 / 3.0, 0.0, 1.0 / 3.0], abs=2e-3
+    )
+    assert np.einsum("pqk,qki->pi", found.load[:3], local) == pytest.approx(
+        np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]) / 3.0, abs=2e-3
+    )
+
+
+@pytest.fixture(scope="module")
+def reference():
+    return compliance.along(scenes.load("reference"), 0.004, TRAVEL, patterns=3)
+
+
+def direct_and_cross(found):
+    """Mean compliance of the first rear pad's two walls and between them, (s,) each."""
+    return found.matrix[:, 0, 0, 0, 0], found.matrix[:, 1, 0, 1, 0], found.matrix[:, 0, 0, 1, 0]
+
+
+def test_reciprocity_and_positive_definiteness(reference):
+    for matrix in reference.matrix:
+        square = matrix.reshape(2 * (matrix.shape[0] * matrix.shape[1],))
+        assert np.abs(square - square.T).max() < 1e-9 * np.abs(square).max()
+        # rear pads: a front pad at the end of its way may stand where a rear one does
+        held = np.r_[0 : 8 * matrix.shape[1]]
+        assert np.linalg.eigvalsh(square[np.ix_(held, held)])[0] > 0.0
+    assert reference.gram[:, :, 0, 0] == pytest.approx(1.0)
+    assert sorted(np.unique(reference.rail, return_counts=True)[1]) == [4, 4, 4, 4]
+
+
+def test_rail_gives_way_between_mounts_and_at_its_end(reference):
+    first, second, cross = direct_and_cross(reference)
+    # the section is the same on both sides of its corner
+    assert first == pytest.approx(second, rel=1e-6)
+    assert (cross < 0.0).all()  # pressing one leg pulls the other inwards
+    assert 1.5 * first[0] < first[2] < first[1] / 1.5  # the last mount ends 8 mm before the rail
+
+
+def test_mirrored_rails_share_one_solution(monkeypatch):
+    scene = scenes.load("reference")
+    mesh = make_mesh(scene, 0.008)
+    assert [len(images) for _, images in pieces.distinct(mesh)] == [4]
+    assert sum(len(piece.cells) for piece in pieces.pieces(mesh)) == len(mesh.cells)
+    once = compliance.along(scene, 0.008, (0.0, 0.03), patterns=3).matrix
+    monkeypatch.setattr(pieces, "_mirror", lambda *_: None)
+    each = compliance.along(scene, 0.008, (0.0, 0.03), patterns=3).matrix
+    assert np.abs(once - each).max() < 1e-9 * np.abs(each).max()
+    # rear pads on the other rails; faces of different rails do not feel each other
+    for corner in (2, 4, 6):
+        assert once[:, corner : corner + 2, :, corner : corner + 2] == pytest.approx(
+            once[:, :2, :, :2], rel=1e-9, abs=1e-15
+        )
+        assert not once[:, :2, :, corner : corner + 2].any()
+
+
+def test_compliance_converges_with_the_mesh(reference):
+    """The wall of 4 mm is one element thick: what 2 mm change is 5 % of the direct compliance, and
+    half of what 4 mm changed."""
+    coarse, fine = (
+        direct_and_cross(compliance.along(scenes.load("reference"), size, TRAVEL[:2], patterns=1))
+        for size in (0.008, 0.002)
+    )
+    for first, second, third in zip(coarse, direct_and_cross(reference), fine):
+        change = np.abs(third - second[:2])
+        assert (change < 0.06 * fine[0]).all() and (change < 0.6 * np.abs(second[:2] - first)).all()

@@ -1,0 +1,302 @@
+"""Runs on walls that give way: limits that are a spring, ledgers, symmetries, the step limit, and a
+wall pulled into touch."""
+
+import numpy as np
+import pytest
+from scipy.integrate import cumulative_trapezoid, solve_ivp
+
+from tests.lowfi.compliance import REFERENCE, Pose, handmade, in_one_cell, pressed, reference_walls
+from tests.lowfi.contact.compliant.test_statics import solved
+from tests.lowfi.support import RAIL, corners
+from tipoff import lowfi
+from tipoff.highfi import compliance
+from tipoff.lowfi import Numerics
+from tipoff.lowfi.contact.compliant import loads
+from tipoff.mechanics import ledger
+from tipoff.mechanics import model as models
+from tipoff.scenes.scene import load, parse
+
+AREA = 0.016**2  # m2, of a pad face
+STIFFNESS = 2e7  # N/m of a pad face
+TIGHT = Numerics(relative_tolerance=1e-10)
+# Records of the reference scene, so that no other kernel is compiled.
+EFFECTS = {
+    "platform": {
+        "mass": 81.2,
+        "inertia": {"xx": 4.9, "yy": 4.9, "zz": 4.9},
+        "mass_centre": {"x": -0.1},
+    },
+    "thrust_offset": {"misalignment": {"axial": 0.01, "radial": 0.7}},
+    "thrust": {"kind": "gaussian", "peak": 6000.0, "width": 2e-3, "centre": 4e-3, "arm": 0.1},
+}
+RUB = {"static": 0.2, "dynamic": 0.2, "static_speed": 0.01, "dynamic_speed": 0.02}
+
+
+def on_springs(
+    friction: dict, stiffness: float = STIFFNESS, penalty: float = STIFFNESS / AREA, **changes
+):
+    """Flat pads between endless rails, with a spring of ``stiffness`` (N/m) for contact: IMPACT
+    without damping, with the exponent 1."""
+    pads = [
+        pad | {"length": 0.016, "width": 0.016, "inset": 0.009, "relief": 0.0} for pad in corners()
+    ]
+    pads = [
+        pad | {"normals": [("+" if pad["position"][i] > 0.0 else "-") + "xyz"[i] for i in (1, 2)]}
+        for pad in pads
+    ]
+    inertia = {"xx": 0.07, "yy": 0.13, "zz": 0.12, "xy": 0.004, "xz": -0.002}
+    contact = {
+        "law": "impact",
+        "clearance": 1e-4,
+        "exponent": 1.0,
+        "stiffness": stiffness,
+        "damping": 0.0,
+        "damping_depth": 1.0,
+        "penalty": penalty,
+    }
+    return parse(
+        {
+            "name": "springs",
+            "duration": 0.02,
+            "payload": {"mass": 9.9, "inertia": inertia},
+            "pads": pads,
+            "rail": RAIL,
+            "output": {"interval": 1e-4},
+            "contact": contact,
+            "friction": friction,
+        }
+        | EFFECTS
+        | changes,
+        bare_numbers_are_si=True,
+    )
+
+
+def speeds(run) -> np.ndarray:
+    """(n,6): velocity, and speed of a pad by turning (m/s)."""
+    return np.hstack([run.velocity, 0.1 * run.rate])
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.2])
+@pytest.mark.parametrize("given", [None, 3e7], ids=["rigid", "in series"])
+def test_one_cell_is_a_spring(monkeypatch, friction, given):
+    """A flat pad of one cell on a rigid wall is penalty times area; on a wall that only gives way
+    as a whole, two springs in series."""
+    rub = RUB | {"static": friction, "dynamic": friction}
+    together = STIFFNESS if given is None else 1.0 / (1.0 / STIFFNESS + 1.0 / given)
+    asked = on_springs(rub, together)
+    compliance = handmade(
+        asked, {} if given is None else {(face, 0, face, 0): 1.0 / given for face in range(16)}
+    )
+    in_one_cell(monkeypatch)
+    law, cells = (
+        lowfi.run(asked, model, numerics=TIGHT, compliance=each)
+        for model, each in (("springs", None), ("compliant", compliance))
+    )
+    assert (np.abs(law.pad_force).max(axis=(0, 2)) > 100.0).sum() >= 4  # faces in touch
+    assert speeds(cells) == pytest.approx(speeds(law), abs=1e-7)
+    # Control: a spring a thousandth stiffer moves otherwise.
+    other = lowfi.run(on_springs(rub, 1.001 * together), "springs", numerics=TIGHT)
+    assert np.abs(speeds(other) - speeds(law)).max() > 1e-5
+
+
+def pulled(coupling: float):
+    """A payload that does not turn flies onto its +y wall, which pulls the +z wall inwards by
+    ``coupling`` (m/N)."""
+    stout = {"mass": 9.9, "inertia": {"xx": 1e6, "yy": 1e6, "zz": 1e6}}
+    still = {"mass": 1e9, "inertia": {"xx": 1e9, "yy": 1e9, "zz": 1e9}, "mass_centre": {"x": 0.0}}
+    pads = [
+        {
+            "position": (0.0, 0.1, 0.1),
+            "normals": ["+y", "+z"],
+            "length": 0.016,
+            "width": 0.016,
+            "inset": 0.009,
+            "relief": 0.0,
+        }
+    ]
+    asked = on_springs(
+        RUB | {"static": 0.0, "dynamic": 0.0},
+        payload=stout,
+        platform=still,
+        pads=pads,
+        duration=0.006,
+        initial={"velocity": {"x": 1.0, "y": 0.4}},
+        thrust=EFFECTS["thrust"] | {"peak": 0.0},
+        output={"interval": 2e-5},
+    )
+    return asked, handmade(asked, {(0, 0, 0, 0): 1e-7, (1, 0, 1, 0): 1e-7, (0, 0, 1, 0): coupling})
+
+
+def pulled_exactly(coupling: float, time: np.ndarray) -> np.ndarray:
+    """Velocity across (n,2) m/s: two springs in series with a matrix of flexibility, in every state
+    of touch."""
+    flexibility = np.array([[1e-7, coupling], [coupling, 1e-7]])
+
+    def slope(_, state):
+        depth = state[:2] - 1e-4
+        for touching in ([0, 1], [0], [1]):
+            force = np.zeros(2)
+            own = np.ix_(touching, touching)
+            force[touching] = np.linalg.solve(
+                flexibility[own] + np.eye(len(touching)) / STIFFNESS, depth[touching]
+            )
+            free = np.setdiff1d([0, 1], touching)
+            if (force >= 0.0).all() and (depth - flexibility @ force)[free].max(
+                initial=-1.0
+            ) <= 0.0:
+                return np.r_[state[2:], -force / 9.9]
+        return np.r_[state[2:], 0.0, 0.0]
+
+    return (
+        solve_ivp(
+            slope,
+            (0.0, time[-1]),
+            [0.0, 0.0, 0.4, 0.0],
+            t_eval=time,
+            rtol=1e-10,
+            atol=1e-13,
+            max_step=1e-5,
+        )
+        .y[2:]
+        .T
+    )
+
+
+def test_a_wall_pulled_into_touch(monkeypatch):
+    """Pressing one leg brings the other to a pad that stands still with its gap open: found, and
+    pushed off as two springs say."""
+    in_one_cell(monkeypatch)
+    asked, compliance = pulled(-6e-8)
+    run = lowfi.run(asked, numerics=TIGHT, compliance=compliance)
+    assert np.abs(run.pad_force[:, 0]).max() == pytest.approx(
+        0.4 * (9.9 / (1e-7 + 1.0 / STIFFNESS)) ** 0.5, rel=0.3
+    )
+    assert run.velocity[-1, 2] < -0.01
+    assert run.velocity[:, 1:] == pytest.approx(pulled_exactly(-6e-8, run.time), abs=1e-6)
+    # Control: without coupling nothing touches there.
+    asked, compliance = pulled(0.0)
+    free = lowfi.run(asked, numerics=TIGHT, compliance=compliance)
+    assert (
+        not free.pad_force[:, 1].any()
+        and np.abs(free.velocity[:, 2]).max() < 1e-9
+        and free.velocity[-1, 1] < -0.3
+    )
+
+
+@pytest.mark.parametrize("condition", ["phi35", "h4", "h7", "h8", "h9"])
+def test_ledgers_and_momentum(condition):
+    """As the user gets it, with pads that leave the rail's end under load (h7 to h9); residuals
+    fall with the tolerance."""
+    asked, compliance = REFERENCE.condition(condition), reference_walls()
+    coarse, fine = (
+        lowfi.run(asked, numerics=Numerics(relative_tolerance=tolerance), compliance=compliance)
+        for tolerance in (2e-7, 1e-10)
+    )
+    for run in (coarse, fine):
+        assert run.status == "exited"
+        checks = run.checks
+        assert (
+            checks["linear_momentum_error"] <= 1e-12 and checks["angular_momentum_error"] <= 1e-11
+        )
+        assert checks["energy_error"] <= 1e-6 and checks["transverse_energy_error"] <= 1e-4
+        assert checks["friction_power_max"] <= 0.0 and run.cost["limit_used"] <= 1.0 + 1e-9
+    again = lowfi.run(asked, compliance=compliance)
+    assert all(
+        np.array_equal(getattr(again, name), getattr(coarse, name))
+        for name in ("velocity", "rate", "pad_force", "energy")
+    )
+    assert fine.checks["transverse_energy_error"] < 0.1 * coarse.checks["transverse_energy_error"]
+    assert np.degrees(fine.outcome.rate) == pytest.approx(np.degrees(coarse.outcome.rate), abs=0.01)
+    # Control: without the force along the rail the transverse ledger would miss hundreds of times
+    # as much.
+    assert (
+        work_along(asked, compliance, fine)
+        > 1e-2 * np.abs(fine.transverse_energy[:, ledger._STATE].sum(axis=1)).max()
+    )
+
+
+def work_along(scene, compliance, run) -> float:
+    """Most work (J) of the walls along the rail by any time, from the poses of a run."""
+    model, system = pressed(scene, compliance)
+    power = []
+    for k in range(run.time.size):
+        pose = Pose(
+            run.position[k],
+            tuple(run.quaternion[k]),
+            run.platform_position[k],
+            tuple(run.platform_quaternion[k]),
+        )
+        pull = sum(
+            loads.drive(system.compliance, solved(system, model, pose, rail))[0]
+            for rail in range(len(system.compliance.members))
+        )
+        power.append(pull * (run.velocity[k, 0] - run.platform_velocity[k, 0]))
+    return np.abs(cumulative_trapezoid(power, run.time)).max()
+
+
+def rates(scene, compliance) -> np.ndarray:
+    run = lowfi.run(scene, numerics=TIGHT, compliance=compliance)
+    assert run.status == "exited"
+    return np.degrees(run.outcome.rate)
+
+
+@pytest.mark.parametrize("condition", ["phi15", "phi60"])
+def test_mirror_image(condition):
+    """y to -y: the thrust's clock angle and I_xy change their signs, and of the rates (an axial
+    vector) those about x and z."""
+    asked, compliance = REFERENCE.condition(condition), reference_walls()
+    clock = asked.thrust_offset.misalignment.radial
+    change = {
+        "thrust_offset.misalignment.radial": np.pi - clock,
+        "payload.inertia.xy": -asked.payload.inertia.xy,
+    }
+    assert rates(asked.replace(change), compliance) == pytest.approx(
+        rates(asked, compliance) * [-1.0, 1.0, -1.0], abs=1e-6
+    )
+    del change["payload.inertia.xy"]
+    # control
+    assert (
+        np.abs(
+            rates(asked.replace(change), compliance) - rates(asked, compliance) * [-1.0, 1.0, -1.0]
+        ).max()
+        > 0.1
+    )
+
+
+def test_order_of_the_pads():
+    """Pads told backwards, and their walls found anew."""
+    asked = REFERENCE.condition("phi35")
+    backwards = asked.model_copy(update={"pads": asked.pads[::-1]})
+    found = compliance.condense(backwards, 4e-3)
+    assert rates(backwards, found) == pytest.approx(rates(asked, reference_walls()), abs=1e-6)
+    assert models.build(backwards).faces.sign[0] != models.build(asked).faces.sign[0]
+
+
+def test_no_step_above_the_proven_limit():
+    """Under a thousandfold penalty, at a tolerance that lets errors grow to centimetres a second,
+    the limit alone holds the steps, and the motion with them."""
+    stiff = REFERENCE.condition("phi60").replace({"contact.penalty": 1.8e15})
+    run = lowfi.run(
+        stiff,
+        numerics=Numerics(relative_tolerance=1e-2, speed_floor=10.0),
+        compliance=reference_walls(),
+    )
+    assert run.status == "exited" and 0.9 < run.cost["limit_used"] <= 1.0 + 1e-9
+    fine = lowfi.run(stiff, compliance=reference_walls())
+    assert np.degrees(run.outcome.rate) == pytest.approx(np.degrees(fine.outcome.rate), abs=0.1)
+
+
+@pytest.mark.parametrize("condition", ["phi0", "h7", "h9"])
+def test_no_touch_is_missed(condition):
+    """Narrow gaps and long steps: a pad that touches late in the step in which it leaves, or only
+    with an edge, is felt as in short steps. A touch that is missed is worth degrees; the error of
+    the steps, on h7 grown by ten touches, hundredths."""
+    asked = load("sensitive").condition(condition)
+    long, short = (
+        lowfi.run(
+            asked, numerics=Numerics(relative_tolerance=tolerance), compliance=reference_walls()
+        )
+        for tolerance in (2e-7, 1e-9)
+    )
+    assert long.cost["steps"] < 0.4 * short.cost["steps"]
+    assert np.degrees(long.outcome.rate) == pytest.approx(np.degrees(short.outcome.rate), abs=0.1)

@@ -1,0 +1,327 @@
+"""Statics of walls that give way: one potential behind all forces, one solution, and the finite
+elements it came from."""
+
+import numpy as np
+import pytest
+from scipy.sparse.linalg import splu
+
+from tests.lowfi.compliance import (
+    REFERENCE,
+    SMOOTH,
+    add_walls,
+    flexibility_at,
+    forces_of,
+    pressed,
+    reference_walls,
+    relative,
+    seen_from_platform,
+    state_of,
+)
+from tipoff.highfi.contact import surface
+from tipoff.highfi.mesh import facets, pieces
+from tipoff.highfi.numerics import Numerics
+from tipoff.highfi.run import prepare
+from tipoff.highfi.statics import assembly
+from tipoff.kernels import rotation
+from tipoff.lowfi import state as slot
+from tipoff.lowfi.contact.compliant import cells, loads, record, solution, step_limit
+from tipoff.mechanics import model as models
+from tipoff.mechanics.rail_compliance import PATTERNS
+
+CLEARANCE = REFERENCE.contact.clearance
+# What the pads meet: way (m), way across beyond the clearance (m), attitude (rad).
+POSES = {
+    "one leg": (0.035, (8e-6, -1e-4), (0.0, 0.0, 0.0)),
+    "both legs": (0.035, (6e-6, 9e-6), (0.0, 1e-6, -1e-6)),
+    "all faces of a rail, tilted": (0.022, (2e-5, 3e-5), (2e-5, 8e-5, -6e-5)),
+    "rails of both sides": (0.04, (-2e-4, -2e-4), (0.0, 3.1e-3, 2.9e-3)),
+    "front pads over the end": (0.0513, (1e-5, 2e-5), (0.0, -2e-5, 1e-5)),
+    "rear pads over the end": (0.2071, (4e-5, 3e-5), (1e-5, 1e-5, -3e-5)),
+    "rear pads over the begin": (-0.0042, (4e-5, 3e-5), (1e-5, -1e-5, 3e-5)),
+}
+
+
+@pytest.fixture(scope="module")
+def reference():
+    """Found walls, model, records."""
+    compliance = reference_walls()
+    return compliance, *pressed(REFERENCE.replace(SMOOTH), compliance)
+
+
+def pose_of(model, name, base=((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))):
+    travel, beyond, attitude = POSES[name]
+    return relative(model, travel, [CLEARANCE + way for way in beyond], attitude, *base)
+
+
+def solved(system, model, pose, rail, active=None, modes=()):
+    """Number of faces of a rail solved for at ``pose``, which ``system.walls.room`` then holds;
+    ``modes`` are those of the state."""
+    state = np.append(state_of(model, pose), modes)
+    place, turn = seen_from_platform(system.platform, system.payload, state)
+    active = np.ones(len(system.faces), dtype=np.bool_) if active is None else active
+    return solution.solve(system.compliance, system.faces, rail, active, place, turn, state)
+
+
+def energy(system, model, pose, modes=()) -> float:
+    return sum(
+        loads.energy(system.compliance, solved(system, model, pose, rail, None, modes))
+        for rail in range(len(system.compliance.members))
+    )
+
+
+def derivative(system, model, pose, twist, modes=()):
+    """What walls alone add to the derivative of the state at ``pose`` and ``twist``."""
+    state, every = (
+        np.append(state_of(model, pose, twist), modes),
+        np.ones(len(system.faces), dtype=np.bool_),
+    )
+    out = np.zeros(state.size)
+    add_walls(
+        system.compliance,
+        system.friction,
+        system.faces,
+        system.platform,
+        system.payload,
+        every,
+        state,
+        out,
+    )
+    return out
+
+
+def generalised(pose, out):
+    """Generalised forces (12,) of twists, from forces and their moments about the origin."""
+    found = []
+    for first, place, attitude in (
+        (slot.PAYLOAD, pose.place, pose.attitude),
+        (slot.PLATFORM, pose.base_place, pose.base_attitude),
+    ):
+        force, moment = out[first + slot.VELOCITY :][:3], out[first + slot.MOMENT :][:3]
+        about = tuple(moment - np.cross(place, force))
+        found += [force, rotation.unrotate(rotation.matrix(attitude), about)]
+    return np.concatenate(found)
+
+
+BASES = {
+    "in place": ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0)),
+    "moved and turned": ((0.3, -0.2, 0.1), (0.4, -0.3, 0.5)),
+}
+
+
+@pytest.mark.parametrize("base", BASES)
+@pytest.mark.parametrize("name", POSES)
+def test_forces_are_the_gradient_of_the_energy(reference, name, base):
+    """dE = -(forces . twist) - released, for each way either body can move. E is a quadratic
+    between kinks of its slope."""
+    _, model, system = reference
+    pose, h = pose_of(model, name, BASES[base]), 1e-9
+    twists = np.eye(12)
+    out = [derivative(system, model, pose, twist) for twist in twists]
+    forces = generalised(pose, out[0])
+    slopes = np.array(
+        [
+            (
+                energy(system, model, pose.moved(twist, h))
+                - energy(system, model, pose.moved(twist, -h))
+            )
+            / (2.0 * h)
+            for twist in twists
+        ]
+    )
+    released = np.array([each[slot.RELEASED] for each in out])
+    size = np.abs(forces).max()
+    assert size > 20.0
+    assert slopes == pytest.approx(-forces - released, abs=1e-7 * size, rel=0.0)
+    assert (np.abs(released).max() > 0.0) == ("over" in name)
+    # Control: without what a rail softer or stiffer ahead, or bent over its end, does along the way
+    # they would not agree.
+    along = sum(
+        loads.drive(system.compliance, solved(system, model, pose, rail))[0]
+        for rail in range(len(system.compliance.members))
+    )
+    assert abs(along) > 1e-6 * size
+
+
+@pytest.mark.parametrize("name", POSES)
+def test_tangent_bounds_what_the_forces_change_by(reference, name):
+    """Trace of M^-1 T against differences of the forces; the rest, that of the forces' own arms and
+    of the slopes they lean on, is a few thousandths of it."""
+    _, model, system = reference
+    pose, h = pose_of(model, name, BASES["moved and turned"]), 1e-9
+    metric = np.zeros((12, 12))
+    for first, body in ((0, model.payload), (6, model.platform)):
+        metric[first : first + 3, first : first + 3] = np.eye(3) / body.mass
+        metric[first + 3 : first + 6, first + 3 : first + 6] = body.inverse_inertia
+    change = np.zeros((12, 12))
+    for column, twist in enumerate(np.eye(12)):
+        there, back = (pose.moved(twist, sign * h) for sign in (1.0, -1.0))
+        change[:, column] = (
+            generalised(there, derivative(system, model, there, 0.0 * twist))
+            - generalised(back, derivative(system, model, back, 0.0 * twist))
+        ) / (2.0 * h)
+    springs, dampers = step_limit.stiffness_and_damping(
+        system.compliance,
+        system.friction,
+        system.faces,
+        system.platform,
+        system.payload,
+        np.ones(len(system.faces), dtype=np.bool_),
+        state_of(model, pose),
+    )
+    assert springs == pytest.approx(-np.trace(metric @ change), rel=4e-3)
+    assert dampers == 0.0
+
+
+@pytest.mark.parametrize("name", POSES)
+def test_one_solution_whatever_the_first_guess(reference, name):
+    """U = F P(U) by the plain equations; walls with a fresh, a wild and the right first guess
+    agree."""
+    compliance, model, system = reference
+    pose, room = pose_of(model, name), system.compliance.room
+    random = np.random.default_rng(8)
+    flexibility = flexibility_at(compliance, min(max(POSES[name][0], 0.0), compliance.travel[-1]))
+    for rail in range(len(system.compliance.members)):
+        found = []
+        for guess in (0.0, 3e-4 * random.standard_normal(room.displacement.shape), None):
+            if guess is not None:
+                room.displacement[:] = guess
+            count = solved(system, model, pose, rail)
+            faces = room.order[:count]
+            found.append(room.displacement[faces].copy())
+            force = room.force[faces]
+            between = flexibility[np.ix_(faces, range(PATTERNS), faces, range(PATTERNS))]
+            assert found[-1] == pytest.approx(np.einsum("iajb,jb->ia", between, force), abs=1e-17)
+        assert all(np.abs(each - found[0]).max() < 1e-16 for each in found)
+        if "over" not in name:
+            expected = [
+                forces_of(compliance, model, record.CELLS, face, pose, each)
+                for face, each in zip(faces, found[0])
+            ]
+            assert force == pytest.approx(
+                np.array(expected), rel=1e-9, abs=1e-9 * np.abs(force).max()
+            )
+
+
+def test_any_pose_is_solved(reference):
+    """From a graze to millimetres deep, over the ends too, from guesses as wild: the forces are
+    those of the displacements."""
+    _walls, model, system = reference
+    random, room, worst = np.random.default_rng(1), system.compliance.room, 0.0
+    for size in 10.0 ** random.uniform(-7.0, -2.7, 500):
+        offset = random.choice((-1.0, 1.0), 2) * CLEARANCE + size * random.standard_normal(2)
+        pose = relative(
+            model, random.uniform(-0.01, 0.22), offset, 5.0 * size * random.standard_normal(3)
+        )
+        for rail in range(len(system.compliance.members)):
+            room.displacement[:] = size * random.standard_normal(room.displacement.shape)
+            faces = room.order[: solved(system, model, pose, rail)]
+            told = room.force[faces].copy()
+            for face in faces:
+                cells.press(system.compliance, face)
+            worst = max(
+                worst,
+                np.abs(room.force[faces] - told).max(initial=0.0)
+                / max(np.abs(told).max(initial=0.0), 1e-3),
+            )
+    assert worst < 1e-12
+
+
+def pressed_elements(scene, face, travel, aside=0.0, points_per_edge=4):
+    """Force (N) as a function of the depth (m) a crowned pad face is pressed into the rail of
+    elements of 4 mm, ``aside`` (m) of where it stands midway between the rails: penalty at Gauss
+    points of each facet, each one's pressure felt at every other, by Newton's rule with the points
+    that touch."""
+    nominal = models.built(scene).nominal
+    faces = nominal._replace(
+        wall=nominal.wall + np.array(scene.platform.record().mass_centre)[nominal.axis]
+    )
+    axis, across, sign, material = (
+        faces.axis[face],
+        3 - faces.axis[face],
+        faces.sign[face],
+        scene.rail.material,
+    )
+    for rail in pieces.pieces(prepare(scene, Numerics(element_size=4e-3))):
+        wall = np.concatenate(
+            [group for name, group in rail.surfaces.items() if name.startswith("contact")]
+        )
+        wall = wall[surface.in_reach(rail.points[wall], faces, face)]
+        if wall.size:
+            break
+    shape, area = facets.gauss(rail.points[wall], points_per_edge)
+    points = np.einsum("qk,mki->mqi", shape, rail.points[wall])[:, :, [0, across]]
+    local = (points - faces.centre[face, [0, across]] - [travel, aside]) / [
+        faces.half_length[face],
+        faces.half_width[face],
+    ]
+    where, which = np.nonzero((np.abs(local) < 1.0).all(axis=2))
+    spring, crown = (
+        scene.contact.penalty * area[where, which],
+        faces.relief[face] * (local[where, which] ** 4).sum(axis=1),
+    )
+    seen = np.zeros((spring.size, 3 * len(rail.points)))
+    np.put_along_axis(seen, 3 * wall[where] + axis, sign * shape[which], axis=1)
+    operator = assembly.build(
+        rail, material.density, material.youngs_modulus, material.poisson_ratio
+    )
+    free = np.repeat(operator.free, 3)
+    compliance = seen[:, free] @ splu(assembly.sparse(operator)[free][:, free].tocsc()).solve(
+        seen[:, free].T
+    )
+
+    def force(depth):
+        touching, before = crown < depth, None
+        while before is None or (before != touching).any():
+            held = spring * touching
+            moved = np.linalg.solve(
+                np.eye(held.size) + compliance * held, compliance @ (held * (depth - crown))
+            )
+            before, touching = touching, depth - crown > moved
+        return float(held @ (depth - crown - moved))
+
+    return force
+
+
+@pytest.mark.parametrize(
+    "travel, error", [(0.008, 0.05), (0.056, 0.025)], ids=["at a mount", "between mounts"]
+)
+def test_force_is_that_of_the_finite_elements(reference, travel, error):
+    """One pad: pressure in six patterns under ten by ten cells against pressure free to be
+    anything. Nothing is fitted. A mount leaves only the leg's own bending, which knows less of the
+    patterns."""
+    compliance, model, system = reference
+    face, force = 0, pressed_elements(REFERENCE, 0, travel)
+    active = np.arange(len(system.faces)) == face
+    for depth in (2e-6, 5e-6, 1e-5, 2e-5):
+        offset = np.zeros(2)
+        offset[model.faces.axis[face] - 1] = model.faces.sign[face] * (CLEARANCE + depth)
+        pose = relative(model, travel, offset)
+        assert solved(system, model, pose, compliance.rail[face], active) == 1
+        assert system.compliance.room.force[face, 0] == pytest.approx(force(depth), rel=error)
+        # Control: a rigid wall would press back three times as hard, or more.
+        assert forces_of(compliance, model, record.CELLS, face, pose, np.zeros(PATTERNS))[
+            0
+        ] > 3.0 * force(depth)
+
+
+@pytest.mark.parametrize(
+    "aside", [CLEARANCE, -CLEARANCE], ids=["to the free edge", "to the corner"]
+)
+def test_a_pad_aside_meets_a_softer_or_stiffer_leg(reference, aside):
+    """The same as with finite elements under the pad where it really stands, though the walls were
+    found midway between the rails."""
+    compliance, model, system = reference
+    face, travel, depth = 0, 0.056, 2e-5
+    active = np.arange(len(system.faces)) == face
+    axis = model.faces.axis[face]
+
+    def force(way):
+        offset = np.zeros(2)
+        offset[axis - 1], offset[2 - axis] = model.faces.sign[face] * (CLEARANCE + depth), way
+        solved(system, model, relative(model, travel, offset), compliance.rail[face], active)
+        return system.compliance.room.force[face, 0]
+
+    expected = [pressed_elements(REFERENCE, face, travel, way, 16)(depth) for way in (0.0, aside)]
+    change = expected[1] / expected[0] - 1.0
+    assert abs(change) > 0.02  # control: what would be missed
+    assert force(aside) / force(0.0) - 1.0 == pytest.approx(change, abs=0.1 * abs(change))

@@ -1,0 +1,122 @@
+"""An absent effect is not in the compiled kernels."""
+
+import os
+import subprocess
+import sys
+
+import pytest
+
+from tests.lowfi.compliance import reference_walls
+from tipoff import lowfi
+from tipoff.lowfi.compiled import LAWS, compiled_code
+from tipoff.scenes import load
+
+# How the effects that the reference scene lacks are added; a law that sticks stands in the place of
+# the other.
+ADDED = {
+    "gravity": {"gravity.z": -9.80665},
+    "sticking": {
+        "friction": {
+            "law": "sticking",
+            "static": 0.2,
+            "dynamic": 0.2,
+            "stiffness": 1e7,
+            "damping": 1e4,
+        }
+    },
+}
+ON_WALLS = ("compliance", "modes", "thermal")  # effects that need walls found for the scene
+COUNT = """
+import numba
+import numpy as np
+from tipoff.lowfi import state, system
+from tipoff.lowfi.contact import step_limit
+from tipoff.lowfi.dynamics import equations
+from tipoff.mechanics import model
+from tipoff.scenes import load
+from tipoff.scenes.effects.friction import coefficient_over_speed
+@numba.njit
+def call(records, felt, begin, out):
+    equations.derivative(records, felt, None, 0.0, begin, out)
+    step_limit.fastest_rate(records.contact, records.friction, None, records.faces, records.platform,
+                        records.payload, felt, None, begin, 0.0)
+def evaluate(scene):
+    built = model.build(scene)
+    records, begin = system.build(built), state.initial(built)
+    call(records, np.ones(16, dtype=np.bool_), begin, np.empty_like(begin))
+    return len(coefficient_over_speed.signatures)
+reference = load("reference")
+print(evaluate(reference.replace({"friction": None, "platform": None})),
+      evaluate(reference.replace({"platform": None})))
+"""
+
+
+def test_pruned_kernels_know_no_friction(tmp_path):
+    """In a fresh interpreter and cache: without the table nothing compiles the friction law, with
+    it something does."""
+    ran = subprocess.run(
+        [sys.executable, "-c", COUNT],
+        capture_output=True,
+        text=True,
+        timeout=300,
+        env=os.environ | {"NUMBA_CACHE_DIR": str(tmp_path)},
+    )
+    assert ran.returncode == 0, ran.stderr
+    without, with_friction = map(int, ran.stdout.split())
+    assert without == 0 and with_friction > 0
+
+
+@pytest.mark.parametrize("effect", [effect for effect in LAWS if effect not in ON_WALLS])
+def test_one_absent_effect_is_not_compiled(effect):
+    """Read from the machine code: what the scene has is there, what it has not is not, and one
+    change changes nothing else. Without contact there is no friction either."""
+    base = load("reference")
+    present = lowfi.compiled_effects(base)
+    assert present == {name: name not in (*ADDED, *ON_WALLS) for name in LAWS}
+    changed = lowfi.compiled_effects(base.replace(ADDED.get(effect, {effect: None})))
+    also = {"friction"} if effect in ("contact", "sticking") else set()
+    assert changed == {
+        name: not value if name == effect or name in also else value
+        for name, value in present.items()
+    }
+
+
+def test_without_any_effect_nothing_of_them_is_compiled():
+    found = lowfi.compiled_effects(
+        load("reference").replace(
+            dict.fromkeys(("friction", "platform", "contact", "thrust_offset"))
+        )
+    )
+    assert not any(found.values())
+
+
+@pytest.mark.slow
+def test_warm_walls_are_compiled_for_a_warm_scene_only():
+    """A law asks where they stand, walls that give way know it in code of their own."""
+    cold, name = load("reference"), b"5lowfi5walls4warm5_fill"
+    warm, compliance = cold.replace({"thermal.mean": 20.0}), reference_walls()
+    assert lowfi.compiled_effects(warm, compliance=compliance.rigid()) == lowfi.compiled_effects(
+        cold
+    ) | {"thermal": True}
+    assert name in compiled_code(warm, compliance=compliance) and name not in compiled_code(
+        cold, compliance=compliance
+    )
+
+
+def test_walls_that_give_way_stand_in_the_place_of_the_contact_law():
+    """Nothing of the package is in a kernel without them."""
+    scene, name = load("reference"), b"5lowfi5walls"
+    assert lowfi.compiled_effects(scene, compliance=reference_walls()) == lowfi.compiled_effects(
+        scene
+    ) | {"contact": False, "compliance": True}
+    assert name in compiled_code(scene, compliance=reference_walls()) and name not in compiled_code(
+        scene
+    )
+
+
+def test_modes_of_the_rails_are_compiled_where_there_are_any():
+    scene, compliance = load("reference"), reference_walls()
+    without, with_modes = (
+        lowfi.compiled_effects(scene, lowfi.Numerics(modes=count), compliance) for count in (0, 4)
+    )
+    assert with_modes == without | {"modes": True}

@@ -1,0 +1,207 @@
+"""What stage ``paper`` makes of its searches: what the best set leaves its rail with beside the
+rates, and paper.nc."""
+
+import dataclasses
+import re
+
+import numpy as np
+import pytest
+import xarray
+
+from tests.studies.paper.searched import BASE, COUNT, SMALL, page, stub
+from tipoff import lowfi
+from tipoff.lowfi.ensemble import columns
+from tipoff.lowfi.ensemble.batch import Case
+from tipoff.lowfi.numerics import Numerics
+from tipoff.mechanics.outcome import Outcome
+from tipoff.studies import published
+from tipoff.studies.core.settings import Settings
+from tipoff.studies.core.study import Study
+from tipoff.studies.paper import exits, inputs, misfit, results, solutions, told
+from tipoff.studies.paper import stage as paper
+from tipoff.studies.populations import answers
+
+# the paper's conditions by their names in the catalogue
+PHI = ("phi0", "phi15", "phi35", "phi60", "phi90")
+
+
+@pytest.fixture
+def quick(tmp_path, monkeypatch):
+    """A study of two starts whose searches take no time, three of four with admissible points, and
+    its result."""
+    monkeypatch.setattr(solutions, "run", stub(admissible=(3, 1)))
+    study = Study(BASE, tmp_path, Settings(workers=1))
+    return study, paper.run(study, dataclasses.replace(SMALL, starts=2))
+
+
+def _opened(study):
+    with xarray.open_dataset(study.path("paper.nc"), engine="h5netcdf") as found:
+        return found.load()
+
+
+def test_exits_are_those_of_single_runs():
+    """Rates are the bits that a search keeps of its end; the rest is what whole trajectories of the
+    same scenes end with."""
+    shares, launcher = (
+        np.random.default_rng(5).uniform(0.2, 0.8, COUNT),
+        misfit.Launcher(BASE, 1e-5),
+    )
+    left = exits.run(launcher, shares)
+    assert np.degrees(left.rate).tolist() == launcher.rates(shares).tolist()
+    scene, rows = launcher.scene(shares), exits.told(left)["conditions"]
+    for name, row in zip(PHI, rows, strict=True):
+        alone = lowfi.run(
+            scene.condition(name), "springs", numerics=Numerics(relative_tolerance=1e-5)
+        ).outcome
+        across = np.hypot(alone.velocity[1], alone.velocity[2])
+        assert row["status"] == "exited"
+        assert row["lateral_velocity_mm_s"] == pytest.approx(1e3 * across, rel=1e-6)
+        assert row["direction_error_deg"] == pytest.approx(
+            np.degrees(np.arctan2(across, alone.velocity[0])), rel=1e-6
+        )
+        assert [row[f"attitude_{axis}_deg"] for axis in "xyz"] == pytest.approx(
+            np.degrees(alone.exit_attitude).tolist(), rel=1e-6
+        )
+    for item in answers.ALL:  # or conditions that stand in each other's place would not be noticed
+        values = np.array([row[item.name] for row in rows])
+        assert np.min(np.diff(np.sort(values))) > 1e-5 * np.abs(values).max()
+
+
+def test_every_quantity_of_every_condition_is_told(quick):
+    found = quick[1]
+    rows, text = found["exit"]["conditions"], "\n".join(paper.lines(found))
+    assert [row["condition"] for row in rows] == list(published.angles())
+    assert "paper prints rates only" in text and "The paper prints rates only" in page(found)
+    for item in answers.ALL:
+        assert f"<th>{item.label} ({item.unit})</th>" in page(found)
+        line = next(line for line in text.splitlines() if line.strip().startswith(item.label))
+        shown = [
+            float(value) for value in re.findall(r"-?\d[\d.e-]*", line.replace(item.label, ""))
+        ]
+        assert shown == pytest.approx([row[item.name] for row in rows], rel=1e-3)
+
+
+def test_a_condition_that_does_not_settle_has_no_values_and_says_why(quick):
+    """Control: the other four keep theirs."""
+    found, ended = (
+        quick[1],
+        Outcome(
+            0.1, 0.1, [5.0, 0.003, 0.004], [0.0, 0.0, 0.1], 0.005, 0.001, *[[0.0, 0.0, 0.0]] * 6
+        ),
+    )
+    cases = [Case("exited", "", ended, 10, 0.0)] * 5
+    cases[2] = Case("time_limit", "", Outcome(), 10, 0.0)
+    odd = found | {"exit": exits.told(columns.of(cases))}
+    rows = odd["exit"]["conditions"]
+    assert [row["lateral_velocity_mm_s"] for row in rows] == [5.0, 5.0, None, 5.0, 5.0]
+    said = "\n".join(paper.lines(odd))
+    assert "3 (35 deg, time limit)" in said and said.count("time limit") == 1
+    assert re.search(r"lateral velocity +5 +5 +– +5 +5 mm/s", said)
+    assert page(odd).count("time limit") == 1 and page(found).count("time limit") == 0
+
+
+def test_data_hold_what_the_searches_ended_with(quick):
+    study, found = quick
+    data = _opened(study)
+    assert (
+        found["data"] == "paper.nc"
+        and data.attrs["best_search"] == found["best"]
+        and data.sizes["search"] == 4
+    )
+    for place, item in enumerate(found["searches"]):
+        end = data.sel(search=place)
+        assert (float(end.stress), int(end.seed)) == (item["stress"], item["seed"])
+        assert end.rates_deg_s.values.tolist() == item["rates_deg_s"]
+        assert end.changed_deg_s.values.tolist() == item["changed_deg_s"]
+        for unknown in inputs.UNKNOWNS:
+            assert float(end[f"end_{unknown.name}"]) == pytest.approx(
+                unknown.factor * item["values"][unknown.name], rel=1e-14
+            )
+    # or searches in another order would not be noticed
+    assert not np.array_equal(data.rates_deg_s[0], data.rates_deg_s[2])
+    assert (
+        np.column_stack(
+            [data.front_largest_error_deg_s, data.front_largest_negligible_deg_s]
+        ).tolist()
+        == found["front"]
+    )
+    for item in answers.ALL:
+        assert data[f"exit_{item.name}"].values.tolist() == [
+            row[item.name] for row in found["exit"]["conditions"]
+        ]
+
+
+def test_data_hold_every_admissible_point_and_the_search_that_met_it(quick):
+    data = _opened(quick[0])
+    assert data.admissible_search.values.tolist() == [0, 0, 0, 1, 2, 2, 2, 3]
+    for unknown in inputs.UNKNOWNS:
+        shares = [
+            unknown.share(value / unknown.factor)
+            for value in data[f"admissible_{unknown.name}"].values
+        ]
+        assert shares == pytest.approx(2 * [0.4, 0.5, 0.6, 0.4], abs=1e-12)
+
+
+def test_data_explain_themselves(quick):
+    """Every variable has a name in words and, if it is a number, a unit, that of inputs the one
+    they are printed with."""
+    data = _opened(quick[0])
+    for name, variable in data.variables.items():
+        assert variable.attrs["long_name"]
+        assert (
+            variable.attrs["units"] if variable.dtype.kind in "fi" else name in ("axis", "change")
+        )
+    assert (
+        data.end_clearance.attrs["units"] == "mm" and data.end_clearance.attrs["upper_bound"] == 0.5
+    )
+    assert data.end_offset_y.attrs["units"] == "1" and data.end_offset_y.attrs[
+        "long_name"
+    ].endswith("of the clearance")
+    assert (
+        data.change.values.tolist() == list(told.CHANGES) and told.CHANGES[0] == "k = 66000 N/mm^e"
+    )
+    assert data.radial_misalignment.values.tolist() == [0.0, 15.0, 35.0, 60.0, 90.0]
+
+
+def test_no_admissible_point_is_none_in_the_data(tmp_path, monkeypatch):
+    monkeypatch.setattr(solutions, "run", stub(admissible=(0, 0)))
+    study = Study(BASE, tmp_path, Settings(workers=1))
+    paper.run(study, SMALL)
+    data = _opened(study)
+    assert (
+        data.sizes["point"] == 0 and data.sizes["search"] == 2 and np.isfinite(data.end_mass).all()
+    )
+
+
+@pytest.mark.parametrize(
+    "harm", [lambda path: path.unlink(), lambda path: path.write_bytes(path.read_bytes()[:-1])]
+)
+def test_data_that_are_gone_or_damaged_are_made_again_without_a_search(quick, monkeypatch, harm):
+    """Control: with whole data, nothing is written."""
+    study, found = quick
+    monkeypatch.setattr(solutions, "run", lambda *_: pytest.fail("searched again"))
+    before, again = _opened(study), dataclasses.replace(SMALL, starts=2)
+    with monkeypatch.context() as patched:
+        patched.setattr(results, "save", lambda *_: pytest.fail("written again"))
+        assert paper.run(study, again) == found
+    harm(study.path("paper.nc"))
+    paper.run(study, again)
+    assert _opened(study).identical(before)
+
+
+def test_data_are_written_whole_or_not_at_all(quick, monkeypatch):
+    study, _ = quick
+    before = study.path("paper.nc").read_bytes()
+
+    def stops(self, path, **_):
+        path.write_bytes(b"half")
+        raise OSError("disk full")
+
+    monkeypatch.setattr(xarray.Dataset, "to_netcdf", stops)
+    left = exits.run(misfit.Launcher(BASE), np.full(COUNT, 0.5))
+    with pytest.raises(OSError, match="disk full"):
+        results.save(study.path("paper.nc"), [stub()(None, 0.0, 0, None, None)], 0, left)
+    assert (
+        study.path("paper.nc").read_bytes() == before
+        and len(list(study.folder.glob("*paper.nc*"))) == 1
+    )
