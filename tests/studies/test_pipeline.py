@@ -5,7 +5,6 @@ import json
 import time
 
 import pytest
-from tipoff.studies.report.answers import ANSWERS
 from typer.testing import CliRunner
 
 from tipoff.mechanics.trajectory import Trajectory
@@ -13,6 +12,7 @@ from tipoff.scenes import load
 from tipoff.scenes.calibration import Calibration
 from tipoff.studies.ablation import stage as ablation
 from tipoff.studies.cli import app
+from tipoff.studies.registry import QUESTIONS
 from tipoff.studies.report.stage import STAGES
 
 # nearly all of it compiles kernels, side by side with other test files
@@ -256,7 +256,7 @@ def test_page_is_whole_and_self_contained(pipeline):
     page = (pipeline[0] / "report.html").read_text()
     assert [name for name in SECTIONS if f'id="{name}"' not in page] == []
     # studies with targets of their own
-    assert page.count("Not made yet") == len(ANSWERS) and "BROKEN" not in page
+    assert page.count("Not made yet") == len(QUESTIONS) and "BROKEN" not in page
     assert page.count("/*! For license information") <= 1 and 'src="http' not in page
     figures = {path.name for path in (pipeline[0] / "figures").glob("*.png")}
     assert {

@@ -37,7 +37,7 @@ def assert_same(found, expected) -> None:
 
 
 @pytest.mark.parametrize(
-    "condition, walls", [("phi35", False), ("phi35", True)], ids=["springs", "compliant"]
+    "condition, compliance", [("phi35", False), ("phi35", True)], ids=["springs", "compliant"]
 )
 def test_sampling_changes_no_bit(condition, compliance):
     """From a thousand samples to two, to an interval that divides nothing, and to none but the
