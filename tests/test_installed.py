@@ -64,7 +64,7 @@ def python(wheel, tmp_path_factory):
 
 def _run(*command, **options) -> str:
     done = subprocess.run(
-        [str(item) for item in command], capture_output=True, text=True, timeout=300, **options
+        [str(item) for item in command], capture_output=True, text=True, timeout=540, **options
     )
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout
