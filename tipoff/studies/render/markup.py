@@ -1,42 +1,31 @@
-"""The little HTML the report needs: escaped text, tables with units in their heads, numbers of a
-sensible length."""
+"""HTML of text and tables for the sections that are not yet parts of a document."""
 
-import re
 from collections.abc import Iterable, Sequence
 from html import escape
+
+from tipoff.studies.render import table as records
 
 
 class Html(str):
     """Text that is markup already and is not escaped again."""
 
+    def __html__(self) -> str:
+        return self
+
 
 def text(value) -> str:
     """A cell: markup as it is, numbers short, nothing as a dash, all else escaped."""
-    if isinstance(value, Html):
-        return value
-    if value is None:
-        return '<span class="none">–</span>'
-    if isinstance(value, bool):
-        return "yes" if value else "no"
-    if isinstance(value, float):
-        return number(value)
-    return escape(str(value))
+    return Html(records.inline(value if isinstance(value, str) else records.plain(value)))
 
 
 def number(value: float | None, digits: int = 3) -> str:
     """``digits`` significant figures, powers of ten written out."""
-    if value is None:
-        return "–"
-    shown = f"{value:.{digits}g}"
-    if "e" in shown:
-        mantissa, exponent = shown.split("e")
-        return Html(f"{mantissa}·10<sup>{int(exponent)}</sup>")
-    return shown
+    return Html(records.inline(records.number(value, f".{digits}g")))
 
 
 def percent(value: float | None, digits: int = 3) -> str:
     """A fraction as a percentage."""
-    return "–" if value is None else number(100.0 * value, digits)
+    return number(None if value is None else 100.0 * value, digits)
 
 
 def table(
@@ -46,37 +35,9 @@ def table(
     kinds: Sequence[str] | None = None,
     dense: bool = False,
 ) -> Html:
-    """A table; ``kinds`` names a class per row ("good", "bad", "doubt" or ""). Columns after the
-    first are right-aligned where they hold numbers."""
-    body = []
-    for index, row in enumerate(rows):
-        cells = "".join(f"<td{_side(cell)}>{text(cell)}</td>" for cell in row)
-        kind = kinds[index] if kinds else ""
-        body.append(f'<tr class="{kind}">{cells}</tr>' if kind else f"<tr>{cells}</tr>")
-    head = "".join(
-        f"<th>{label if isinstance(label, Html) else escape(label)}</th>" for label in heads
-    )
-    name = f' id="{identity}"' if identity else ""
-    look = ' class="dense"' if dense else ""
-    return Html(
-        f'<div class="wide"><table{name}{look}><thead><tr>{head}</tr></thead>'
-        f"<tbody>{''.join(body)}</tbody></table></div>"
-    )
-
-
-def _side(cell) -> str:
-    """Right-aligned where a cell is a number with little text, such as a unit, behind it."""
-    plain = re.sub(r"<[^>]*>", "", str(cell))
-    numeric = (
-        isinstance(cell, str)
-        and plain[:1] in "+-0123456789–"
-        and len(re.findall("[A-Za-z]", plain)) <= 6
-    )
-    return (
-        ' class="number"'
-        if numeric or (isinstance(cell, (int, float)) and not isinstance(cell, bool))
-        else ""
-    )
+    """A table; see ``table.Table``, which replaces it."""
+    found = records.Table(heads, list(rows), name=identity, kinds=kinds or (), dense=dense)
+    return Html(records.html(found))
 
 
 def section(identity: str, title: str, *parts: str) -> Html:

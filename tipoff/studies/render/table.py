@@ -1,0 +1,215 @@
+"""A table, described once and rendered as HTML, as Markdown and for the terminal."""
+
+import io
+import re
+import shutil
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from numbers import Integral, Real
+from typing import Any
+
+from jinja2 import Environment
+from markupsafe import Markup, escape
+
+_NOTHING = "–"
+
+
+@dataclass(frozen=True)
+class Column:
+    """Head of a column, and how the numbers below it are shown.
+
+    ``unit`` stands in brackets behind the ``title``. A number is multiplied by ``scale`` and shown
+    in ``form``, a format of Python; a whole number is shown as it is.
+    """
+
+    title: str
+    unit: str = ""
+    form: str = ".3g"
+    scale: float = 1.0
+
+    @property
+    def head(self) -> str:
+        """Title and unit."""
+        return f"{self.title} ({self.unit})" if self.unit else self.title
+
+
+@dataclass(frozen=True)
+class Noted:
+    """A cell with a remark behind it, which the page shows in small type."""
+
+    value: Any
+    remark: str
+
+
+@dataclass(frozen=True)
+class Table:
+    """``columns`` by title or as records, and ``rows`` of cells.
+
+    A cell is a number, a sequence of numbers, text, yes or no, None or ``Noted``. ``title`` is the
+    paragraph above the table, ``notes`` are those below it; ``name`` is the id on the page.
+    ``kinds`` holds for each row "good", "bad", "doubt", "best" or "". Words between backticks are
+    code.
+    """
+
+    columns: Sequence[Column | str]
+    rows: Sequence[Sequence[Any]]
+    notes: tuple[str, ...] = ()
+    title: str = ""
+    name: str = ""
+    kinds: Sequence[str] = ()
+    dense: bool = False
+
+    @property
+    def heads(self) -> list[str]:
+        """The head of every column."""
+        return [column.head for column in _records(self)]
+
+
+def number(value: float | None, form: str = ".3g") -> str:
+    """``value`` in a format of Python, without a power of ten below a million; None is a dash."""
+    if value is None:
+        return _NOTHING
+    shown = format(value, form)
+    if form.endswith("g") and "e+" in shown and abs(value) < 1e6:
+        return format(value, form.partition(".")[0] + ".0f")
+    return shown
+
+
+def percent(value: float | None, form: str = ".3g") -> str:
+    """A fraction as a number of percent."""
+    return number(None if value is None else 100.0 * value, form)
+
+
+def span(low: float | None, high: float | None, form: str = ".3g") -> str:
+    """From ``low`` to ``high``; a dash where both are missing."""
+    return (
+        _NOTHING if low is None and high is None else f"{number(low, form)} to {number(high, form)}"
+    )
+
+
+def estimate(row: dict, form: str = ".3g") -> Noted:
+    """The ``value`` of a row with its bounds ``low`` and ``high`` as a remark."""
+    return Noted(row["value"], span(row["low"], row["high"], form))
+
+
+def plain(value: Any, column: Column = Column("")) -> str:
+    """A cell as text."""
+    if value is None:
+        return _NOTHING
+    if isinstance(value, Noted):
+        return f"{plain(value.value, column)} ({value.remark})"
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, Integral):
+        return f"{value:,}"
+    if isinstance(value, Real):
+        return number(column.scale * float(value), column.form)
+    if isinstance(value, (list, tuple)):
+        return ", ".join(plain(part, column) for part in value)
+    return str(value)
+
+
+def markdown(table: Table) -> str:
+    """The table with its title and notes as Markdown."""
+    lines = [_line(table.heads), "|---" * len(table.columns) + "|"]
+    for row, kind in zip(_texts(table), _kinds(table)):
+        lines.append(_line([f"**{row[0]}**", *row[1:]] if kind == "best" else row))
+    return "\n\n".join([*([table.title] if table.title else []), "\n".join(lines), *table.notes])
+
+
+def terminal(table: Table) -> str:
+    """The table with its title and notes as lines of text, as wide as the terminal."""
+    from rich import box
+    from rich.console import Console
+    from rich.table import Table as Grid
+    from rich.text import Text
+
+    grid = Grid(box=box.SIMPLE_HEAD, pad_edge=False)
+    rows = _texts(table)
+    for place, head in enumerate(table.heads):
+        right = all(_numeric(row[place]) for row in rows if row[place])
+        grid.add_column(Text(head), justify="right" if right else "left")
+    for row in rows:
+        grid.add_row(*map(Text, row))
+    stream = io.StringIO()
+    Console(file=stream, width=max(100, shutil.get_terminal_size((160, 24)).columns)).print(grid)
+    drawn = "\n".join(line.rstrip() for line in stream.getvalue().strip("\n").splitlines())
+    return "\n".join([*([table.title] if table.title else []), drawn, *table.notes])
+
+
+def html(table: Table) -> Markup:
+    """The table with its title and notes as HTML; all text is escaped."""
+    rows = [
+        (kind, [_cell(value, column) for value, column in zip(row, _records(table))])
+        for row, kind in zip(table.rows, _kinds(table))
+    ]
+    return Markup(_TEMPLATE.render(table=table, rows=rows))
+
+
+def inline(text: str) -> Markup:
+    """Text as HTML: escaped, with powers of ten written out and code marked."""
+    if hasattr(text, "__html__"):
+        return Markup(text)
+    shown = _POWER.sub(lambda found: f"·10<sup>{int(found[1])}</sup>", str(escape(text)))
+    return Markup(_CODE.sub(r"<code>\1</code>", shown))
+
+
+_POWER = re.compile(r"(?<=\d)e([+-]\d\d+)\b")
+_CODE = re.compile("`([^`]+)`")
+_ENVIRONMENT = Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True)
+_ENVIRONMENT.filters["inline"] = inline
+_TEMPLATE = _ENVIRONMENT.from_string(
+    """
+{% if table.title %}<p>{{ table.title | inline }}</p>{% endif %}
+<div class="wide"><table
+{%- if table.name %} id="{{ table.name }}"{% endif %}
+{%- if table.dense %} class="dense"{% endif %}>
+<thead><tr>{% for head in table.heads %}<th>{{ head | inline }}</th>{% endfor %}</tr></thead>
+<tbody>
+{% for kind, cells in rows %}
+<tr{% if kind %} class="{{ kind }}"{% endif %}>
+{%- for right, cell in cells %}
+<td{% if right %} class="number"{% endif %}>{{ cell }}</td>
+{%- endfor %}
+</tr>
+{% endfor %}
+</tbody></table></div>
+{% for note in table.notes %}<p class="caption">{{ note | inline }}</p>{% endfor %}
+"""
+)
+
+
+def _records(table: Table) -> list[Column]:
+    return [item if isinstance(item, Column) else Column(item) for item in table.columns]
+
+
+def _kinds(table: Table) -> Sequence[str]:
+    return table.kinds or [""] * len(table.rows)
+
+
+def _texts(table: Table) -> list[list[str]]:
+    return [
+        [plain(value, column) for value, column in zip(row, _records(table))] for row in table.rows
+    ]
+
+
+def _line(cells: Iterable[str]) -> str:
+    return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"
+
+
+def _cell(value: Any, column: Column) -> tuple[bool, Markup]:
+    """Whether a cell stands on the right, and what it is on the page."""
+    if hasattr(value, "__html__"):
+        return _numeric(Markup(value).striptags()), Markup(value)
+    if isinstance(value, Noted):
+        right, shown = _cell(value.value, column)
+        return right, shown + Markup(' <span class="small">{}</span>').format(inline(value.remark))
+    if value is None:
+        return True, Markup(f'<span class="none">{_NOTHING}</span>')
+    text = plain(value, column)
+    return not isinstance(value, bool) and _numeric(text), inline(text)
+
+
+def _numeric(text: str) -> bool:
+    """Whether a cell is a number with little text, such as a unit, behind it."""
+    return text[:1] in tuple("+-0123456789–") and len(re.findall("[A-Za-z]", text)) <= 6
