@@ -19,14 +19,14 @@ from tipoff.studies.core.study import Study
 from tipoff.studies.limits import constants, within
 from tipoff.studies.limits import page as pictures
 from tipoff.studies.limits import stage as limits
-from tipoff.studies.limits.inputs import Asked
+from tipoff.studies.limits.inputs import Options
 from tipoff.studies.limits.within import ADVISED
 from tipoff.studies.populations import answers, exceedance
 from tipoff.studies.populations.population import Surrogate
 
 pytest.importorskip("zarr")
 LIMIT, PROBABILITY = 6.0, 0.9
-QUICK = Asked(limits=("6 deg/s",), probability=PROBABILITY, cases=120)
+QUICK = Options(limits=("6 deg/s",), probability=PROBABILITY, cases=120)
 FITTED = Calibration({}, [], [], [], [], [], [], np.zeros((0, 0)), [], {}, [], 0.0)
 PER_UNIT = {
     "misalignment": np.radians(free_flight.RATE_PER_RADIAN),
@@ -184,7 +184,7 @@ def test_limits_that_none_or_every_tolerance_keeps_are_said(study, monkeypatch):
     )
     for others, state in (("scene", "none"), ("zero", "found")):
         found = limits.run(
-            offset, Asked(limits=("2 deg/s",), probability=PROBABILITY, cases=30, others=others)
+            offset, Options(limits=("2 deg/s",), probability=PROBABILITY, cases=30, others=others)
         )
         assert row_of(found, "misalignment")["nominal"]["state"] == state and (
             found["map"] is None
@@ -198,7 +198,7 @@ def test_limits_that_none_or_every_tolerance_keeps_are_said(study, monkeypatch):
         "margin",
         lambda *_: constants.Margin(dict.fromkeys(("x", "y", "z", "total"), 1.0), ""),
     )
-    far = limits.run(offset, Asked(limits=("x=1 deg/s",), probability=PROBABILITY, cases=30))
+    far = limits.run(offset, Options(limits=("x=1 deg/s",), probability=PROBABILITY, cases=30))
     assert row_of(far, "misalignment")["nominal"][
         "state"
     ] == "all" and "every one searched" in " ".join(far["summary"])
@@ -237,11 +237,11 @@ def test_values_are_kept_with_names_units_and_scale(study, found, monkeypatch):
 
 @pytest.mark.parametrize("tolerances, advised", [("advised", 1.0), ("table3", None)])
 def test_the_paper_advises_one_set_alone(study, monkeypatch, tolerances, advised):
-    asked = Asked(limits=("6 deg/s",), probability=PROBABILITY, cases=30, tolerances=tolerances)
+    options = Options(limits=("6 deg/s",), probability=PROBABILITY, cases=30, tolerances=tolerances)
     answering = limits._Answers(
         study,
-        asked,
-        exceedance.limits(asked.limits),
+        options,
+        exceedance.limits(options.limits),
         30,
         Surrogate(study.scene, None, None),
         constants.Margin(None, ""),

@@ -110,10 +110,10 @@ def add(app: typer.Typer) -> None:
 
         def work() -> dict:
             from tipoff.studies.limits import stage
-            from tipoff.studies.limits.inputs import Asked
+            from tipoff.studies.limits.inputs import Options
 
-            asked = Asked(
-                tuple(limit or Asked.limits),
+            options = Options(
+                tuple(limit or Options.limits),
                 probability,
                 confidence,
                 cases,
@@ -124,7 +124,7 @@ def add(app: typer.Typer) -> None:
                 model and model.value,
                 condition,
             )
-            return stage.run(study_of(scene, out, set_, workers=workers), asked)
+            return stage.run(study_of(scene, out, set_, workers=workers), options)
 
         found = guarded(work, json_)
         if not json_:

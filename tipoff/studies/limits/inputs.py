@@ -14,7 +14,7 @@ DRAWS, _MOST_DRAWS = 8, 1000
 
 
 @dataclass(frozen=True)
-class Asked:
+class Options:
     """``limits`` as ``exceedance.limits`` reads them, all of which a case must keep with
     ``probability``, to be shown with ``confidence`` from ``cases`` (None: ten times the fewest);
     the ``tolerances`` that are scaled together, advised or table3; errors that do not vary as in
@@ -33,9 +33,9 @@ class Asked:
     condition: str | None = None
 
 
-def checked(asked: Asked) -> tuple[list[Limit], int]:
+def checked(options: Options) -> tuple[list[Limit], int]:
     """Limits and number of cases. Raises SceneError listing every fault."""
-    return tuple(together(lambda: _limits(asked.limits), lambda: _cases(asked)))
+    return tuple(together(lambda: _limits(options.limits), lambda: _cases(options)))
 
 
 def _limits(texts: tuple[str, ...]) -> list[Limit]:
@@ -48,34 +48,36 @@ def _limits(texts: tuple[str, ...]) -> list[Limit]:
     return found
 
 
-def _cases(asked: Asked) -> int:
+def _cases(options: Options) -> int:
     faults = []
-    if not 0.5 <= asked.probability < 1.0:
+    if not 0.5 <= options.probability < 1.0:
         faults.append(
-            Fault("--probability", "value", f"{asked.probability:g}", "0.5 or more and less than 1")
+            Fault(
+                "--probability", "value", f"{options.probability:g}", "0.5 or more and less than 1"
+            )
         )
-    if not 0.5 <= asked.confidence < 1.0:
+    if not 0.5 <= options.confidence < 1.0:
         faults.append(
-            Fault("--confidence", "value", f"{asked.confidence:g}", "0.5 or more and less than 1")
+            Fault("--confidence", "value", f"{options.confidence:g}", "0.5 or more and less than 1")
         )
-    if asked.draws is not None and asked.model != SPRINGS:
+    if options.draws is not None and options.model != SPRINGS:
         expected = f"none but with --model {SPRINGS}: compliant contact has no fitted constants"
-        faults.append(Fault("--draws", "option", str(asked.draws), expected))
-    elif asked.draws is not None and not 0 <= asked.draws <= _MOST_DRAWS:
-        faults.append(Fault("--draws", "value", str(asked.draws), f"0 to {_MOST_DRAWS}"))
+        faults.append(Fault("--draws", "option", str(options.draws), expected))
+    elif options.draws is not None and not 0 <= options.draws <= _MOST_DRAWS:
+        faults.append(Fault("--draws", "value", str(options.draws), f"0 to {_MOST_DRAWS}"))
     if not faults:
-        needed = order_statistics.runs_needed(asked.probability, asked.confidence)
-        if asked.cases is None:
+        needed = order_statistics.runs_needed(options.probability, options.confidence)
+        if options.cases is None:
             return TIMES_NEEDED * needed
-        if asked.cases >= needed:
-            return asked.cases
+        if options.cases >= needed:
+            return options.cases
         faults.append(
             Fault(
                 "--cases",
                 "value",
-                f"{asked.cases:,}",
+                f"{options.cases:,}",
                 f"{needed:,} or more: with fewer, none above the limits does not show "
-                f"{asked.probability:g} at a confidence of {asked.confidence:g}",
+                f"{options.probability:g} at a confidence of {options.confidence:g}",
             )
         )
     raise SceneError(faults)

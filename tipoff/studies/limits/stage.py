@@ -10,7 +10,6 @@ their intervals, and the surrogate itself, by taking its measured error off ever
 
 import math
 from collections.abc import Callable
-from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
@@ -18,9 +17,10 @@ import numpy as np
 from tipoff.mechanics.models import COMPLIANT
 from tipoff.studies.core.checked import together
 from tipoff.studies.core.progress import Board
+from tipoff.studies.core.stage import Stage
 from tipoff.studies.core.study import Study
 from tipoff.studies.limits import constants, search, within
-from tipoff.studies.limits.inputs import DRAWS, Asked, checked
+from tipoff.studies.limits.inputs import DRAWS, Options, checked
 from tipoff.studies.limits.search import Found
 from tipoff.studies.limits.within import ADVISED, SETS, Cases, Factor
 from tipoff.studies.populations import answers, exceedance, population, spread
@@ -34,21 +34,23 @@ _RAYS = 5  # between the axes of the map of two tolerances
 _REACH = 5.0  # times the tolerances that are scaled together
 
 
-def run(study: Study, asked: Asked = Asked()) -> dict:
+def run(study: Study, options: Options = Options()) -> dict:
     """``rows`` by factor and one of all together, ``map`` of two, ``summary`` in words. Raises
     SceneError for bad input, every fault listed."""
     (limits, cases), _ = together(
-        lambda: checked(asked), lambda: asked.condition and study.condition(asked.condition)
+        lambda: checked(options), lambda: options.condition and study.condition(options.condition)
     )
-    model = population.surrogate(study, asked.model, asked.condition)
-    margin = constants.margin(study, asked.model or COMPLIANT)
+    model = population.surrogate(study, options.model, options.condition)
+    margin = _margin(study, options)
 
     def make() -> tuple[dict, list[Path]]:
         from tipoff.studies.limits import page as pictures
         from tipoff.studies.render.chart import to_files
 
         with Board(NAME, 1) as board:
-            found = _Answers(study, asked, limits, cases, model, margin, board.callback(NAME)).all()
+            found = _Answers(
+                study, options, limits, cases, model, margin, board.callback(NAME)
+            ).all()
             board.finished(NAME, f"{found['evaluations']:,} sets of {cases:,} cases")
         found["summary"] = pictures.summary(found)
         return found, [
@@ -57,25 +59,14 @@ def run(study: Study, asked: Asked = Asked()) -> dict:
             for path in to_files(chart, study.path("figures"))
         ]
 
-    return study.stage(NAME, _key(study, asdict(asked)), make)
+    return STAGE.run(study, options, make)
 
 
-def stored(study: Study) -> dict | None:
-    """The result, if it was made from the present scene, code and settings."""
-    return study.stored(NAME, lambda found: _key(study, found["asked"]))
+def _margin(study: Study, options: Options) -> constants.Margin:
+    return constants.margin(study, options.model or COMPLIANT)
 
 
-def _key(study: Study, asked: dict) -> str:
-    return study.key(
-        __name__,
-        NAME,
-        _plain(asked),
-        constants.margin(study, asked["model"] or COMPLIANT),
-    )
-
-
-def _plain(asked: dict) -> dict:
-    return asked | {"limits": list(asked["limits"])}
+STAGE = Stage(NAME, __name__, Options, _margin)
 
 
 class _Answers:
@@ -84,23 +75,23 @@ class _Answers:
     def __init__(
         self,
         study: Study,
-        asked: Asked,
+        options: Options,
         limits: list[Limit],
         cases: int,
         model: Surrogate,
         margin: constants.Margin,
         report: Callable[[float], None],
     ):
-        self.study, self.asked, self.limits, self.cases, self.margin = (
+        self.study, self.options, self.limits, self.cases, self.margin = (
             study,
-            asked,
+            options,
             limits,
             cases,
             margin,
         )
-        self.model = model if asked.others == "scene" else within.without_errors(model)
+        self.model = model if options.others == "scene" else within.without_errors(model)
         self.factors = within.factors(self.model.scene)
-        allowed = exceedance.allowed(cases, asked.probability, asked.confidence)
+        allowed = exceedance.allowed(cases, options.probability, options.confidence)
         assert allowed is not None  # so many cases were asked for
         self.allowed = allowed
         overrides, self.drawn = (
@@ -109,8 +100,8 @@ class _Answers:
             else constants.draws(
                 study.scene,
                 model.calibration,
-                DRAWS if asked.draws is None else asked.draws,
-                asked.seed,
+                DRAWS if options.draws is None else options.draws,
+                options.seed,
             )
         )
         self.others = [self.model.at(item) for item in overrides]
@@ -122,21 +113,23 @@ class _Answers:
     def all(self) -> dict:
         """The whole result."""
         full = {name: {name: factor.most} for name, factor in self.factors.items()}
-        full[TOGETHER] = {name: _REACH * size for name, size in SETS[self.asked.tolerances].items()}
+        full[TOGETHER] = {
+            name: _REACH * size for name, size in SETS[self.options.tolerances].items()
+        }
         searched = {name: self._search(tolerances) for name, tolerances in full.items()}
         rows = [self._row(name, tolerances, searched[name]) for name, tolerances in full.items()]
         shown = {
             "limits_said": [limit.words for limit in self.limits],
-            "probability": self.asked.probability,
-            "confidence": self.asked.confidence,
+            "probability": self.options.probability,
+            "confidence": self.options.confidence,
             "cases": self.cases,
             "allowed": self.allowed,
-            **population.answering(self.study, self.model, self.asked.condition),
+            **population.answering(self.study, self.model, self.options.condition),
             "constants": {"draws": len(self.others), "drawn": self.drawn},
             "margin": self.margin._asdict(),
         }
         return {
-            "asked": _plain(asdict(self.asked)),
+            "asked": STAGE.plain(self.options),
             "limits": [limit._asdict() for limit in self.limits],
             **shown,
             "rows": rows,
@@ -153,7 +146,9 @@ class _Answers:
         return count
 
     def _of(self, tolerances: dict[str, float], model: Surrogate | None = None) -> Cases:
-        return Cases(self.study, NAME, model or self.model, tolerances, self.cases, self.asked.seed)
+        return Cases(
+            self.study, NAME, model or self.model, tolerances, self.cases, self.options.seed
+        )
 
     def _search(self, tolerances: dict[str, float]) -> Found:
         return search.largest(self._above(self._of(tolerances), self.limits), self.allowed)
@@ -161,7 +156,7 @@ class _Answers:
     def _row(self, name: str, tolerances: dict[str, float], found: Found) -> dict:
         # The paper advises one of the sets, as it stands; of a multiple of its Table 3 it says
         # nothing.
-        advised = 1.0 / _REACH if self.asked.tolerances == "advised" else None
+        advised = 1.0 / _REACH if self.options.tolerances == "advised" else None
         factor = self.factors.get(name) or Factor(
             "all of them together, times", "1", 1.0 / _REACH, 1.0, advised
         )
@@ -198,7 +193,10 @@ class _Answers:
     def _beside(self, values: np.ndarray) -> list[dict]:
         """What every quantity stays below in magnitude with the probability asked for, where the
         rates keep their limits."""
-        settled, share = np.abs(values[np.isfinite(values).all(axis=1)]), (self.asked.probability,)
+        settled, share = (
+            np.abs(values[np.isfinite(values).all(axis=1)]),
+            (self.options.probability,),
+        )
         return [
             {
                 "name": item.name,
@@ -232,7 +230,7 @@ class _Answers:
         if factor.advised is None:
             return None
         count = self._above(self._of(tolerances), self.limits)(factor.advised / factor.most)
-        low, high = exceedance.bounds(count, self.cases, self.asked.confidence)
+        low, high = exceedance.bounds(count, self.cases, self.options.confidence)
         return {
             "tolerance": factor.advised / factor.scale,
             "above": count,

@@ -1,0 +1,78 @@
+"""What every stage repeats: options, key, result file.
+
+A stage of a study is written like this:
+
+    @dataclass(frozen=True)
+    class Options:
+        cases: int = 100
+
+    def run(study: Study, options: Options = Options()) -> dict:
+        ...  # check the options; SceneError for bad input
+
+        def make() -> tuple[dict, list[Path]]:
+            ...
+            return {"asked": STAGE.plain(options), ...}, files  # JSON values, and what was written
+
+        return STAGE.run(study, options, make)
+
+    STAGE = Stage("name", __name__, Options)
+
+``STAGE.stored(study)`` finds a result of the present scene, code and settings, whatever its
+options. ``studies/limits`` is an example, with further ``inputs``.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Generic, TypeVar
+
+from pydantic import TypeAdapter
+
+from tipoff.studies.core.study import Study
+
+OptionsT = TypeVar("OptionsT")
+
+
+def _nothing(study: Study, options: Any) -> None:
+    return None
+
+
+@dataclass(frozen=True)
+class Stage(Generic[OptionsT]):
+    """``name``: of the result file. ``module``: the module (``__name__``) whose code, with all that
+    it imports, makes the result. ``options``: a frozen dataclass of JSON values, paths, tuples and
+    other such dataclasses. ``inputs``: what else the result depends on, as JSON values; it may
+    raise SceneError, OSError, KeyError, TypeError or ValueError where there is none. ``field``:
+    under which the result holds its options.
+    """
+
+    name: str
+    module: str
+    options: type[OptionsT]
+    inputs: Callable[[Study, OptionsT], Any] = _nothing
+    field: str = "asked"
+
+    def plain(self, options: OptionsT) -> Any:
+        """``options`` as JSON values."""
+        return TypeAdapter(self.options).dump_python(options, mode="json")
+
+    def key(self, study: Study, options: OptionsT) -> str:
+        """Digest of all that the result depends on."""
+        inputs = self.inputs(study, options)
+        return study.key(self.module, self.name, self.plain(options), inputs)
+
+    def run(
+        self, study: Study, options: OptionsT, make: Callable[[], tuple[dict, list[Path]]]
+    ) -> dict:
+        """The result: the stored one where nothing changed, else what ``make`` returns, beside the
+        files that it wrote. It holds ``plain(options)`` under ``field``."""
+        return study.stage(self.name, self.key(study, options), make)
+
+    def stored(self, study: Study) -> dict | None:
+        """The result, if it was made from the present scene, code and settings."""
+
+        def key(found: dict) -> str:
+            options = TypeAdapter(self.options).validate_python(found[self.field])
+            return self.key(study, options)
+
+        return study.stored(self.name, key)
