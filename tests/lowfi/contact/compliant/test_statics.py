@@ -259,25 +259,29 @@ def pressed_elements(scene, face, travel, aside=0.0, points_per_edge=4):
         scene.contact.penalty * area[where, which],
         faces.relief[face] * (local[where, which] ** 4).sum(axis=1),
     )
-    seen = np.zeros((spring.size, 3 * len(rail.points)))
-    np.put_along_axis(seen, 3 * wall[where] + axis, sign * shape[which], axis=1)
+    nodes, place = np.unique(wall[where], return_inverse=True)
+    seen = np.zeros((spring.size, nodes.size))
+    np.put_along_axis(seen, place.reshape(len(where), -1), sign * shape[which], axis=1)
     operator = assembly.build(
         rail, material.density, material.youngs_modulus, material.poisson_ratio
     )
+    assert operator.free[nodes].all()
     free = np.repeat(operator.free, 3)
-    compliance = seen[:, free] @ splu(assembly.sparse(operator)[free][:, free].tocsc()).solve(
-        seen[:, free].T
-    )
+    unit = np.zeros((free.size, nodes.size))  # one force at each node that the pad can load
+    unit[3 * nodes + axis, np.arange(nodes.size)] = 1.0
+    moved = np.zeros_like(unit)
+    moved[free] = splu(assembly.sparse(operator)[free][:, free].tocsc()).solve(unit[free])
+    compliance = moved[3 * nodes + axis]
 
     def force(depth):
         touching, before = crown < depth, None
         while before is None or (before != touching).any():
-            held = spring * touching
-            moved = np.linalg.solve(
-                np.eye(held.size) + compliance * held, compliance @ (held * (depth - crown))
+            loading = compliance @ (seen.T * (spring * touching))
+            moved = seen @ np.linalg.solve(
+                np.eye(nodes.size) + loading @ seen, loading @ (depth - crown)
             )
             before, touching = touching, depth - crown > moved
-        return float(held @ (depth - crown - moved))
+        return float((spring * before) @ (depth - crown - moved))
 
     return force
 
