@@ -7,6 +7,7 @@ import time
 import pytest
 from typer.testing import CliRunner
 
+from tests.studies.shown import html
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes import load
 from tipoff.scenes.calibration import Calibration
@@ -293,7 +294,7 @@ def test_blind_conditions_are_judged_beside_what_was_made(pipeline):
     assert (pipeline[0] / "calibration.toml").stat().st_mtime_ns == fitted
     from tipoff.studies.blind import page as blind
 
-    assert "blind2" in blind.draw(kept, None)
+    assert "blind2" in html(blind.draw(kept))
 
 
 @pytest.mark.parametrize("condition", ["phi15", "h1", "nominal"])

@@ -8,19 +8,16 @@ import typer
 
 if TYPE_CHECKING:
     from tipoff.studies.core.study import Study
-    from tipoff.studies.render.chart import Chart, Picture
-    from tipoff.studies.render.markup import Html
-
-    Figure = Callable[[Chart | Picture, str], Html]  # puts a chart and its caption on the page
+    from tipoff.studies.render.document import Part
 
 
 class Parts(NamedTuple):
     """What a study does. ``run`` makes its result; ``stored`` finds it, if it was made from the
-    present scene, code and settings; ``draw`` gives what stands in its section of the page."""
+    present scene, code and settings; ``draw`` gives the parts of its section of the page."""
 
     run: Callable[["Study"], dict]
     stored: Callable[["Study"], dict | None]
-    draw: Callable[[dict, "Figure"], "Html"]
+    draw: Callable[[dict], "list[Part]"]
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
+from tests.studies.shown import html
 from tipoff.files import write_json
 from tipoff.scenes import load
 from tipoff.studies.cli import app
@@ -114,9 +115,9 @@ def test_conditions_and_cases_are_flown_and_kept(tmp_path, uncalibrated, monkeyp
         folder / "flight.json", further | {"asked": further["asked"] | {"vary": "gone.toml"}}
     )
     assert flight.stored(study) is None
-    drawn = section.draw(found, lambda drawing, words: chart.to_html(drawing) + words)
+    drawn = html(section.draw(found))
     assert (
-        'id="chart-flight-miss"' in drawn
+        "<figure>flight-miss</figure>" in drawn
         and "misses by" not in drawn
         and "touch the platform again" in drawn
     )

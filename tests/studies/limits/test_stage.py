@@ -10,6 +10,7 @@ from scipy import stats
 from typer.testing import CliRunner
 
 from tests.studies import free_flight
+from tests.studies.shown import html
 from tipoff.lowfi.ensemble.rows import numbers
 from tipoff.scenes import load
 from tipoff.scenes.calibration import Calibration
@@ -256,7 +257,7 @@ def test_the_paper_advises_one_set_alone(study, monkeypatch, tolerances, advised
 
 
 def test_section_of_the_page(found):
-    shown = pictures.draw(found, lambda chart, words: f"<figure>{chart.name}</figure>")
+    shown = html(pictures.draw(found))
     assert (
         "limits-curves" in shown
         and "limits-map" in shown

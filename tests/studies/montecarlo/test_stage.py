@@ -10,6 +10,7 @@ from scipy.special import j0
 from typer.testing import CliRunner
 
 from tests.studies import free_flight
+from tests.studies.shown import html
 from tipoff.lowfi.ensemble import columns
 from tipoff.scenes import load
 from tipoff.studies.cli import app
@@ -130,7 +131,7 @@ def test_what_does_not_settle_elsewhere_is_said_and_stops_nothing(study, monkeyp
     assert any(
         line == f"too few cases settled to compare: {row['reading']}" for line in found["findings"]
     )
-    assert "1 settled" in pictures.draw(found, lambda *_: "")
+    assert "1 settled" in html(pictures.draw(found))
     monkeypatch.setattr(population, "run", lambda *_: counted(120, slice(None)))
     with pytest.raises(StudyError, match="no case settled"):
         montecarlo.run(study, Asked(cases=120, seed=2, limits=("8 deg/s",)))
@@ -146,7 +147,7 @@ def test_what_does_not_settle_elsewhere_is_said_and_stops_nothing(study, monkeyp
     assert models["both_settled"] == 0 and models["quantities"] == []
     both = found | {"models": models}
     assert (
-        "No case of 120 settled in both models" in pictures.draw(both, lambda *_: "")
+        "No case of 120 settled in both models" in html(pictures.draw(both))
         and len(pictures.charts(both)) == 2
     )
     assert "none settled on both" in montecarlo._findings(both)[-1]
@@ -199,7 +200,7 @@ def test_distance_of_two_samples_is_told_from_chance():
 
 
 def test_section_of_the_page(found):
-    shown = pictures.draw(found, lambda chart, words: f"<figure>{chart.name}</figure>")
+    shown = html(pictures.draw(found))
     assert all(
         words in shown
         for words in (

@@ -2,12 +2,12 @@
 
 import numpy as np
 
+from tests.studies.shown import html
 from tipoff import scenes
 from tipoff.studies import published
 from tipoff.studies.paper import inputs, solutions
 from tipoff.studies.paper import page as section
 from tipoff.studies.paper import stage as paper
-from tipoff.studies.render.markup import Html
 
 BASE = scenes.load("reference")
 COUNT = len(inputs.UNKNOWNS)
@@ -39,4 +39,4 @@ def stub(admissible: tuple[int, ...] = (2, 0)):
 
 def page(found: dict) -> str:
     """The section of a result, with captions in place of its figures."""
-    return section.draw(found, lambda chart, words: Html(words))
+    return html(section.draw(found))

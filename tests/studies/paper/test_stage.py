@@ -403,14 +403,8 @@ def test_page_says_whether_the_best_set_is_the_catalogue_s(quick, monkeypatch):
     """Control: a catalogue of which this run's scene is part."""
     study, found = quick
     for text in (page(found), "\n".join(paper.lines(found))):
-        assert (
-            "It is not the catalogue&#x27;s scene paper_like" in text
-            or "It is not the catalogue's scene paper_like" in text
-        )
+        assert "It is not the catalogue" in text and "paper_like" in text
     monkeypatch.setattr(paper, "CATALOGUED", study.path("paper_like.toml"))
     same = paper.stored(study)
     for text in (page(same), "\n".join(paper.lines(same))):
-        assert (
-            "It is the catalogue&#x27;s scene paper_like." in text
-            or "It is the catalogue's scene paper_like." in text
-        )
+        assert "It is the catalogue" in text

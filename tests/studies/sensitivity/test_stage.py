@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
+from tests.studies.shown import html
 from tipoff.lowfi.ensemble import columns
 from tipoff.lowfi.ensemble.columns import STATUSES
 from tipoff.scenes import load
@@ -16,7 +17,6 @@ from tipoff.studies.core.settings import defaults
 from tipoff.studies.core.study import Study, StudyError, read
 from tipoff.studies.populations import answers, population
 from tipoff.studies.populations.population import Population, Surrogate
-from tipoff.studies.render.markup import Html
 from tipoff.studies.sensitivity import page as section
 from tipoff.studies.sensitivity import stage as sensitivity
 
@@ -116,7 +116,7 @@ def test_the_command(tiny, tmp_path, monkeypatch):
         for name in ("indices", "map", "convergence")
         for kind in ("png", "svg")
     } == {path.name for path in (tmp_path / "out" / "tiny" / "figures").iterdir()}
-    drawn = section.draw(found, lambda chart, words: Html(chart.name))
+    drawn = html(section.draw(found))
     assert "misalignment y" in drawn and "-2.355, -2.554, 2.502" in drawn and "0.71 %" in drawn
     assert (
         sensitivity.stored(Study(load("tiny"), tmp_path / "out" / "tiny", defaults("tiny")))

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
+from tests.studies.shown import html
 from tipoff.scenes import load, moments
 from tipoff.scenes.effects import thrust, thrust_offset
 from tipoff.studies.cli import app
@@ -15,7 +16,6 @@ from tipoff.studies.core.settings import Settings
 from tipoff.studies.core.study import Study, read
 from tipoff.studies.populations import answers, population
 from tipoff.studies.populations.population import Surrogate
-from tipoff.studies.render.markup import Html
 from tipoff.studies.sweeps import burnout, factors, sides
 from tipoff.studies.sweeps import page as sections
 from tipoff.studies.sweeps import stage as sweeps
@@ -208,7 +208,7 @@ def test_the_command_with_contact(tmp_path, monkeypatch):
             and factor["largest"][item.name] == np.nanmax(abs(cases), axis=1).tolist()
         )
         assert f"{item.label} {np.nanmax(abs(cases)):.3g} {item.unit}" in result.stdout
-    page = sections.draw(found, lambda chart, words: Html(chart.name))
+    page = html(sections.draw(found))
     assert all(f"{item.label} ({item.unit})" in page for item in answers.ALL)
     # Thrust above the mass centre turns the front down and the rear up; at 90 deg, alpha from +z
     # towards +y, it does so towards +y.
@@ -217,10 +217,7 @@ def test_the_command_with_contact(tmp_path, monkeypatch):
         "rear +y",
         "front -y",
     )
-    assert (
-        sections.draw(found, lambda chart, words: Html(chart.name)).count("map-thrust_eccentricity")
-        == 1
-    )
+    assert html(sections.draw(found)).count("map-thrust_eccentricity") == 1
     assert {path.name for path in (tmp_path / "tiny" / "figures").iterdir()} == {
         f"{name}.{kind}"
         for name in ("sweep-growth", "sweep-thrust_eccentricity", "map-thrust_eccentricity")

@@ -1,48 +1,41 @@
 """Agreement on conditions drawn by a seed that nobody chose, on the page."""
 
 import math
-from collections.abc import Callable
 
-from tipoff.studies.render.chart import Chart, Picture
-from tipoff.studies.render.markup import Html, caption, fold, paragraph, table
+from tipoff.studies.render.document import Caption, Fold, Part
+from tipoff.studies.render.table import Table
 from tipoff.studies.report import tables
 
 _WORDS = (
-    "Drawn from the distributions “{vary}” with seed {seed}{origin}. Every condition has a floor "
-    "and an "
-    "uncertainty of the reference of its own, by mesh, step and penalty."
+    "Drawn from the distributions “{vary}” with seed {seed}{origin}. Every condition has its own "
+    "floor and its own reference uncertainty, by mesh, step and penalty."
 )
 
 
-def draw(found: dict, figure: Callable[[Chart | Picture, str], Html]) -> Html:
+def draw(found: dict) -> list[Part]:
     """The section."""
+    options, compliant, calibrated = found["asked"], found["compliant"], found["calibrated"]
     origin = (
         ", which follows from the sources and the scene: a change of the code draws others"
-        if found["asked"]["seed"] is None
+        if options["seed"] is None
         else ""
     )
-    words = _WORDS.format(vary=found["asked"]["vary"], seed=found["seed"], origin=origin)
-    compliant, calibrated = found["compliant"], found["calibrated"]
-    return Html(
-        "".join(
-            [
-                paragraph("On compliant contact, nothing fitted: " + tables.summary(compliant)),
-                tables.judged(compliant, "blind-compliant"),
-                caption(words),
-                paragraph("Calibrated springs: " + tables.summary(calibrated)),
-                tables.judged(calibrated, "blind-calibrated"),
-                fold("What was drawn", _drawn(found["conditions"])),
-            ]
-        )
-    )
+    return [
+        "On compliant contact, nothing fitted: " + tables.summary(compliant),
+        tables.judged(compliant, "blind-compliant"),
+        Caption(_WORDS.format(vary=options["vary"], seed=found["seed"], origin=origin)),
+        "Calibrated springs: " + tables.summary(calibrated),
+        tables.judged(calibrated, "blind-calibrated"),
+        Fold("What was drawn", [_drawn(found["conditions"])]),
+    ]
 
 
-def _drawn(conditions: dict) -> Html:
+def _drawn(conditions: dict) -> Table:
     keys = list(dict.fromkeys(key for row in conditions.values() for key in row))
     rows = [
-        (name, *(_value(key, row.get(key)) for key in keys)) for name, row in conditions.items()
+        [name, *(_value(key, row.get(key)) for key in keys)] for name, row in conditions.items()
     ]
-    return table(("condition", *keys), rows, dense=True)
+    return Table(["condition", *keys], rows, dense=True)
 
 
 def _value(key: str, value: float | None) -> str | None:

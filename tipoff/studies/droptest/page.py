@@ -18,9 +18,9 @@ from tipoff.studies.render.chart import (
     Chart,
     Line,
     Panel,
-    Picture,
 )
-from tipoff.studies.render.markup import Html, caption, fold, number, paragraph, table
+from tipoff.studies.render.document import Figure, Fold, Notice, Part
+from tipoff.studies.render.table import Column, Table, estimate, percent
 
 _DASHES = {"x": "-", "y": "--", "z": "-."}
 _LOOKS = ((VERMILION, "s"), (TEAL, "^"), (AMBER, "D"), (NAVY, "v"))
@@ -40,44 +40,35 @@ _CLOUD = (
     "than the symbol. Last: "
     "magnitudes, which need no angle about X."
 )
-_SIMULATED = Html(
-    '<div class="notice">SIMULATED logs, made by a sensor model: they show that the reduction '
-    "works, and say nothing "
-    "of a launcher.</div>"
+_SIMULATED = (
+    "SIMULATED logs, made by a sensor model: they show that the reduction works, and say nothing "
+    "of a launcher."
 )
 
 
-def draw(found: dict, figure: Callable[[Chart | Picture, str], Html]) -> Html:
+def draw(found: dict) -> list[Part]:
     """Everything in the section."""
     rates, cloud = charts(found)
-    notices = [_SIMULATED] if any(row["simulated"] for row in found["tests"]) else []
-    verdict = (line.split(None, 1)[1] for line in found["summary"][-3:])
-    said = "".join(paragraph(f"{words[0].upper()}{words[1:]}.") for words in verdict)
-    share, most = found["regions"][0]["share"], found["cases"]["settled"]
-    shown = (
-        ""
-        if len(found["cases"]["shown_deg_s"]) == most
-        else f", the first {len(found['cases']['shown_deg_s']):,} of {most:,}"
+    verdict = [line.split(None, 1)[1] for line in found["summary"][-3:]]
+    shown, settled = len(found["cases"]["shown_deg_s"]), found["cases"]["settled"]
+    words = _CLOUD.format(
+        share=100.0 * found["regions"][0]["share"],
+        shown="" if shown == settled else f", the first {shown:,} of {settled:,}",
+        vary=found["request"]["vary"],
     )
-    return Html(
-        "".join(
-            [
-                *notices,
-                figure(rates, _RATES),
-                _changes(found),
-                figure(
-                    cloud,
-                    _CLOUD.format(share=100.0 * share, shown=shown, vary=found["request"]["vary"]),
-                ),
-                said,
-                _standing(found),
-                _cases(found["cases"]),
-                _power(found),
-                _budgets(found),
-                _notes(found),
-            ]
-        )
-    )
+    simulated = any(row["simulated"] for row in found["tests"])
+    return [
+        *([Notice(_SIMULATED)] if simulated else []),
+        Figure(rates, _RATES),
+        _changes(found["tests"]),
+        Figure(cloud, words),
+        *(f"{line[0].upper()}{line[1:]}." for line in verdict),
+        _standing(found),
+        _cases(found["cases"]),
+        _power(found["power"]),
+        _budgets(found["tests"]),
+        *_notes(found["tests"]),
+    ]
 
 
 def charts(found: dict) -> tuple[Chart, Chart]:
@@ -199,144 +190,120 @@ def _tests(found: dict, of: Callable) -> list[Line]:
     return lines
 
 
-def _changes(found: dict) -> Html:
-    heads = (
+def _changes(tests: list[dict]) -> Table:
+    heads: tuple[Column | str, ...] = (
         "test",
-        "release (s)",
-        "ignition (s)",
-        "rest, largest (deg/s)",
+        Column("release", "s", ".4f"),
+        Column("ignition", "s", ".4f"),
+        Column("rest, largest", "deg/s", ".2g"),
         "settling rule",
-        *(f"change {axis} (deg/s)" for axis in "xyz"),
+        *(Column(f"change {axis}", "deg/s") for axis in "xyz"),
     )
     rows = [
         (
             row["test"],
-            f"{row['release_s']:.4f}",
-            f"{row['ignition_s']:.4f}",
-            number(row["rest_deg_s"], 2),
+            row["release_s"],
+            row["ignition_s"],
+            row["rest_deg_s"],
             f"{'kept' if row['rest_kept'] else 'broken'} ({row['rest_limit_deg_s']:g} deg/s)",
             *(
-                f"{value:+.3f} ± {sure:.3f}"
-                for value, sure in zip(row["change_deg_s"], row["expanded_uncertainty_deg_s"])
+                f"{value:+.3f} ± {uncertainty:.3f}"
+                for value, uncertainty in zip(
+                    row["change_deg_s"], row["expanded_uncertainty_deg_s"]
+                )
             ),
         )
-        for row in found["tests"]
+        for row in tests
     ]
-    return Html(
-        table(heads, rows)
-        + caption("Settled rate less the rate before ignition, with expanded uncertainties (95 %).")
+    note = "Settled rate less the rate before ignition, with expanded uncertainties (95 %)."
+    return Table(heads, rows, (note,))
+
+
+def _standing(found: dict) -> Table:
+    heads: tuple[Column | str, ...] = (
+        "test",
+        "x, percentile (p)",
+        "y",
+        "z",
+        Column("distance of all three, p", form=".3f"),
+        *MAGNITUDES,
     )
-
-
-def _standing(found: dict) -> Html:
-    heads = ("test", "x, percentile (p)", "y", "z", "distance of all three, p", *MAGNITUDES)
     rows = [
         (
             row["test"],
             *map(_place, row["percentile"], row["p"]),
-            f"{row['p_distance']:.3f}",
+            row["p_distance"],
             *(_place(item["percentile"], item["p"]) for item in row["magnitudes"].values()),
         )
         for row in found["tests"]
     ]
-    return Html(
-        table(heads, rows)
-        + caption(
-            "Percentiles among simulated cases that carry the same errors of measurement, and p by "
-            "rank, (r + 1)/(N + 1): no smaller "
-            f"than {found['together']['smallest_p']:.2g}. Two-sided but for the Mahalanobis "
-            f"distance."
-        )
+    note = (
+        "Percentiles among simulated cases that carry the same errors of measurement, and p by "
+        f"rank, (r + 1)/(N + 1): no smaller than {found['together']['smallest_p']:.2g}. Two-sided "
+        "but for the Mahalanobis distance."
     )
-
-
-def _cases(cases: dict) -> Html:
-    shares = [row["share"] for row in cases["quantiles"][answers.TOTAL_RATE.name]]
-    rows = [
-        (f"{item.label} ({item.unit})", *map(_bounded, cases["quantiles"][item.name]))
-        for item in answers.ALL
-    ]
-    return Html(
-        table(
-            ("simulated cases", *(f"{100.0 * share:.4g} %" for share in shares)), rows, dense=True
-        )
-        + caption(
-            f"What {cases['settled']:,} simulated cases leave their rail with, beside the rates "
-            f"that a log tells: share of cases below "
-            f"the value; in brackets its bounds at {spread.CONFIDENCE:.0%} confidence where the "
-            f"cases are independent and enough."
-        )
-    )
-
-
-def _bounded(row: dict) -> Html:
-    ends = (
-        ""
-        if row["low"] is None and row["high"] is None
-        else f" [{number(row['low'])}, {number(row['high'])}]"
-    )
-    return Html(f"{number(row['value'])}{ends}")
+    return Table(heads, rows, (note,))
 
 
 def _place(share: float, p: float) -> str:
     return f"{100.0 * share:.1f} ({p:.3f})"
 
 
-def _power(found: dict) -> Html:
-    columns = (
-        "passes_one_axis",
-        "passes_three_axes",
-        "passes_in_cloud",
-        "flagged_by_spread",
-        "flagged_in_cloud",
-    )
+def _cases(cases: dict) -> Table:
+    shares = [row["share"] for row in cases["quantiles"][answers.TOTAL_RATE.name]]
     rows = [
-        (
-            f"{row['factor']:.3g}",
-            *(None if row[name] is None else f"{100.0 * row[name]:.2f}" for name in columns),
-        )
-        for row in found["power"]
+        (f"{item.label} ({item.unit})", *map(estimate, cases["quantiles"][item.name]))
+        for item in answers.ALL
     ]
-    heads = (
+    note = (
+        f"What {cases['settled']:,} simulated cases leave their rail with, beside the rates that a "
+        "log tells: share of cases below the value; small: its bounds at "
+        f"{spread.CONFIDENCE:.0%} confidence where the cases are independent and enough."
+    )
+    heads = ["simulated cases", *(f"{percent(share, '.4g')} %" for share in shares)]
+    return Table(heads, rows, (note,), dense=True)
+
+
+def _power(power: list[dict]) -> Table:
+    columns = {
+        "passes_one_axis": "tests inside the range, one axis",
+        "passes_three_axes": "three axes",
+        "passes_in_cloud": "in this cloud",
+        "flagged_by_spread": "flagged by the spread",
+        "flagged_in_cloud": "in this cloud",
+    }
+    heads: tuple[Column | str, ...] = (
         "model's spread over the truth's",
-        "tests inside the range, one axis (%)",
-        "three axes (%)",
-        "in this cloud (%)",
-        "flagged by the spread (%)",
-        "in this cloud (%)",
+        *(Column(title, "%", ".2f", 100.0) for title in columns.values()),
     )
-    return Html(
-        table(heads, rows)
-        + caption(
-            "How often so many tests pass if asked to lie inside the range of so many cases, and "
-            "how often a two-sided 5 % test of "
-            "their spread objects. The row of 1 is exact for any distribution, the others are for "
-            "a normal one (Monte Carlo over the "
-            "range); in this cloud: for a truth that is the simulated cloud, shrunk or blown up "
-            "about its mean."
-        )
+    rows = [(row["factor"], *(row[name] for name in columns)) for row in power]
+    note = (
+        "How often so many tests pass if asked to lie inside the range of so many cases, and how "
+        "often a two-sided 5 % test of their spread objects. The row of 1 is exact for any "
+        "distribution, the others are for a normal one (Monte Carlo over the range); in this "
+        "cloud: for a truth that is the simulated cloud, shrunk or blown up about its mean."
     )
+    return Table(heads, rows, (note,))
 
 
-def _budgets(found: dict) -> Html:
-    names = list(found["tests"][0]["budget_deg_s"])
+def _budgets(tests: list[dict]) -> Fold:
+    names = list(tests[0]["budget_deg_s"])
     rows = [
         (
             row["test"],
             axis,
-            *(number(row["budget_deg_s"][name][place], 2) for name in names),
-            number(row["standard_uncertainty_deg_s"][place], 2),
-            f"{row['coverage_factor'][place]:.2f}",
+            *(row["budget_deg_s"][name][place] for name in names),
+            row["standard_uncertainty_deg_s"][place],
+            row["coverage_factor"][place],
         )
-        for row in found["tests"]
+        for row in tests
         for place, axis in enumerate("xyz")
     ]
-    heads = ("test", "axis", *names, "combined", "k")
-    return fold(
-        "budget of uncertainty, standard uncertainties in deg/s", table(heads, rows, dense=True)
-    )
+    parts = [Column(name, form=".2g") for name in (*names, "combined")]
+    table = Table(["test", "axis", *parts, Column("k", form=".2f")], rows, dense=True)
+    return Fold("budget of uncertainty, standard uncertainties in deg/s", [table])
 
 
-def _notes(found: dict) -> Html:
-    rows = [(row["test"], words) for row in found["tests"] for words in row["notes"]]
-    return table(("test", "what was repaired, left out or doubtful"), rows) if rows else Html("")
+def _notes(tests: list[dict]) -> list[Part]:
+    rows = [(row["test"], words) for row in tests for words in row["notes"]]
+    return [Table(["test", "what was repaired, left out or doubtful"], rows)] if rows else []

@@ -2,7 +2,7 @@
 tables of conditions and cases."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 from tipoff.studies.flight.summary import WORDS, doubts
 from tipoff.studies.populations import answers
@@ -15,9 +15,9 @@ from tipoff.studies.render.chart import (
     Chart,
     Line,
     Panel,
-    Picture,
 )
-from tipoff.studies.render.markup import Html, caption, number, paragraph, table
+from tipoff.studies.render.document import Figure, Part
+from tipoff.studies.render.table import Column, Table, estimate, percent, span
 
 _LOOKS = (
     (NAVY, "-", "o"),
@@ -73,70 +73,64 @@ _BOXES = (
 )
 
 
-def draw(found: dict, figure: Callable[[Chart | Picture, str], Html]) -> Html:
-    """The section; ``figure`` puts a chart and its caption on the page."""
-    many, judged = found["cases"], found["cases"]["quantiles"]
-    rows = [
-        (
-            row["condition"],
-            *(number(row["flown"][name]) if row["flown"] else None for name in _SHOWN),
-            _cone(row["flown"]),
-        )
-        for row in found["conditions"]
+def draw(found: dict) -> list[Part]:
+    """The section."""
+    return [
+        _words(found),
+        *(Figure(*item) for item in charts(found)),
+        _exits(found["conditions"]),
+        _conditions(found),
+        _cases(found["cases"]),
     ]
-    shares = [row["share"] for row in next(iter(judged.values()), [])]
-    return Html(
-        "".join(
-            [
-                paragraph(_words(found)),
-                *(figure(drawing, words) for drawing, words in charts(found)),
-                table(
-                    ("condition", *(WORDS[item.name] for item in answers.ALL)),
-                    _exits(found),
-                    dense=True,
-                ),
-                caption(_EXITS),
-                table(
-                    (
-                        "condition",
-                        *(WORDS[name] for name in _SHOWN),
-                        "x axis from angular momentum (deg)",
-                    ),
-                    rows,
-                    dense=True,
-                ),
-                caption(
-                    " ".join([_BOXES] * (not found["flight"]["no_clearance"]) + [doubts(found)])
-                ),
-                table(
-                    ("quantity", *(f"{100.0 * share:.4g} %" for share in shares)),
-                    [
-                        (WORDS[name], *map(_quantile, quantiles))
-                        for name, quantiles in judged.items()
-                    ],
-                    dense=True,
-                ),
-                caption(
-                    f"{many['counts']['asked']:,} cases, {many['settled']:,} of them flown. Share "
-                    f"of cases below the value; in "
-                    f"brackets its bounds at {many['confidence']:.0%} confidence "
-                    f"({many['bounds']}). {_touching(many)}"
-                ),
-            ]
-        )
+
+
+def _exits(conditions: list[dict]) -> Table:
+    """What every condition leaves its rail with, to four digits: rates of a thousandth of a degree
+    are compared here."""
+    return Table(
+        ["condition", *(Column(WORDS[item.name], form=".4g") for item in answers.ALL)],
+        [_of(row, [item.name for item in answers.ALL]) for row in conditions],
+        (_EXITS,),
+        dense=True,
     )
 
 
-def _exits(found: dict) -> list[tuple]:
-    """What every condition leaves its rail with, to four digits: rates of a thousandth of a degree
-    are compared here."""
-    return [
-        (
-            row["condition"],
-            *(number(row["flown"][item.name], 4) if row["flown"] else None for item in answers.ALL),
-        )
+def _conditions(found: dict) -> Table:
+    rows = [
+        (*_of(row, _SHOWN), _cone(row["flown"]) if row["flown"] else None)
         for row in found["conditions"]
     ]
+    notes = [_BOXES] * (not found["flight"]["no_clearance"]) + [doubts(found)]
+    return Table(
+        ["condition", *(WORDS[name] for name in _SHOWN), "x axis from angular momentum (deg)"],
+        rows,
+        tuple(note for note in notes if note),
+        dense=True,
+    )
+
+
+def _of(row: dict, names: Iterable[str]) -> tuple:
+    return row["condition"], *(row["flown"][name] if row["flown"] else None for name in names)
+
+
+def _cone(flown: dict) -> str:
+    return span(flown["cone_least_deg"], flown["cone_largest_deg"])
+
+
+def _cases(many: dict) -> Table:
+    judged = many["quantiles"]
+    shares = [row["share"] for row in next(iter(judged.values()), [])]
+    note = (
+        f"{many['counts']['asked']:,} cases, {many['settled']:,} of them flown. Share of cases "
+        f"below the value; small: its bounds at {many['confidence']:.0%} confidence "
+        f"({many['bounds']}). {_touching(many)}"
+    )
+    rows = [
+        (WORDS[name], *("never" if row["value"] is None else estimate(row) for row in quantiles))
+        for name, quantiles in judged.items()
+    ]
+    heads = ["quantity", *(f"{percent(share, '.4g')} %" for share in shares)]
+    return Table(heads, rows, (note,), dense=True)
 
 
 def charts(found: dict) -> list[tuple[Chart, str]]:
@@ -311,18 +305,3 @@ def _touching(many: dict) -> str:
         else f" ({100.0 * share['low']:.3g} to {100.0 * share['high']:.3g} %)"
     )
     return f"{share['count']:,} of {share['of']:,} touch the platform again{ends}."
-
-
-def _cone(row: dict | None) -> str | None:
-    return f"{row['cone_least_deg']:.3g} to {row['cone_largest_deg']:.3g}" if row else None
-
-
-def _quantile(row: dict) -> str:
-    if row["value"] is None:
-        return "never"
-    ends = (
-        ""
-        if row["low"] is None and row["high"] is None
-        else f" [{number(row['low'])}, {number(row['high'])}]"
-    )
-    return Html(f"{number(row['value'])}{ends}")

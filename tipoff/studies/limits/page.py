@@ -1,11 +1,7 @@
 """Certified tolerances on the page: a table beside the paper's advice, how often limits are missed
 by tolerance, a map of two."""
 
-from collections.abc import Callable
-from html import escape
-
 from tipoff.studies.limits.search import ALL, FOUND, NONE, SMALL
-from tipoff.studies.montecarlo.page import bounded
 from tipoff.studies.populations import exceedance, population
 from tipoff.studies.render.chart import (
     AMBER,
@@ -16,9 +12,9 @@ from tipoff.studies.render.chart import (
     Chart,
     Line,
     Panel,
-    Picture,
 )
-from tipoff.studies.render.markup import Html, caption, fold, number, paragraph, table
+from tipoff.studies.render.document import Bullets, Figure, Fold, Part
+from tipoff.studies.render.table import Column, Table, estimate, span
 
 _CURVES = (
     "Share of {cases:,} cases above a limit over the tolerance, the same draws at every tolerance. "
@@ -54,7 +50,7 @@ def charts(found: dict) -> list[tuple[Chart, str]]:
     )
 
 
-def draw(found: dict, figure: Callable[[Chart | Picture, str], Html]) -> Html:
+def draw(found: dict) -> list[Part]:
     """What stands in the section."""
     others = "as the scene has them" if found["asked"]["others"] == "scene" else "zero"
     words = _TABLE.format(
@@ -64,26 +60,13 @@ def draw(found: dict, figure: Callable[[Chart | Picture, str], Html]) -> Html:
         **{name: found[name] for name in ("confidence", "cases", "allowed")},
     )
     odd = [f"{row['words']}: {line}" for row in found["rows"] for line in _odd(row, _unit(row))]
-    return Html(
-        "".join(
-            [
-                _said([*found["summary"][:2], *odd]),
-                _table(found),
-                caption(words),
-                *(figure(*each) for each in charts(found)),
-                _beside(found),
-                paragraph(_ADVICE),
-            ]
-        )
-    )
-
-
-def _said(lines: list[str]) -> Html:
-    return Html(
-        "<ul>"
-        + "".join(f"<li>{escape(line[0].upper() + line[1:])}.</li>" for line in lines)
-        + "</ul>"
-    )
+    return [
+        Bullets([*found["summary"][:2], *odd]),
+        _table(found, words),
+        *(Figure(*each) for each in charts(found)),
+        *_beside(found),
+        _ADVICE,
+    ]
 
 
 def _uncertain(found: dict) -> str:
@@ -169,7 +152,7 @@ def extent(answers: list[dict]) -> str:
     return (f"{min(known):.3g} to {max(known):.3g}" if known else "none") + lost
 
 
-def _table(found: dict) -> Html:
+def _table(found: dict, words: str) -> Table:
     heads = (
         "tolerance of",
         "unit",
@@ -184,38 +167,34 @@ def _table(found: dict) -> Html:
     for row in found["rows"]:
         advised, kept = row["advised"], ""
         if advised:
-            kept = (
-                f"{100.0 * (1.0 - advised['high']):.4g} to {100.0 * (1.0 - advised['low']):.4g} %"
-            )
+            kept = span(100.0 * (1.0 - advised["high"]), 100.0 * (1.0 - advised["low"]), ".4g")
         rows.append(
             (
                 row["words"],
                 "" if row["unit"] == "1" else row["unit"],
-                number(advised["tolerance"]) if advised else "",
-                kept,
+                advised["tolerance"] if advised else "",
+                f"{kept} %" if kept else "",
                 value(row["nominal"]),
                 extent(row["constants"]) if row["constants"] else "",
                 *(value(row[key]) if row[key] else "" for key in ("model", "both")),
             )
         )
-    return table(heads, rows)
+    return Table(heads, rows, (words,))
 
 
-def _beside(found: dict) -> Html:
+def _beside(found: dict) -> list[Part]:
     """Every quantity at the certified tolerances."""
     rows = [row for row in found["rows"] if row["beside"]]
     if not rows:
-        return Html("")
-    quantities = [f"{item['label']} ({item['unit']})" for item in rows[0]["beside"]]
-    body = [(row["words"], *(bounded(item) for item in row["beside"])) for row in rows]
-    return fold(
-        "every quantity at the certified tolerances",
-        table(("at the certified tolerance of", *quantities), body, dense=True),
-        caption(
-            f"What each stays below in magnitude in {found['probability']:.4%} of the cases; "
-            f"small: 95 % bounds."
-        ),
+        return []
+    quantities = [Column(item["label"], item["unit"]) for item in rows[0]["beside"]]
+    body = [(row["words"], *map(estimate, row["beside"])) for row in rows]
+    note = (
+        f"What each stays below in magnitude in {found['probability']:.4%} of the cases; small: "
+        "95 % bounds."
     )
+    table = Table(["at the certified tolerance of", *quantities], body, (note,), dense=True)
+    return [Fold("every quantity at the certified tolerances", [table])]
 
 
 def _curves(found: dict) -> Chart:

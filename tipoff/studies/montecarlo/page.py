@@ -1,9 +1,6 @@
 """Random errors on the page: distributions, tails, convergence, what the reading of the table
 changes, and both surrogates."""
 
-from collections.abc import Callable
-from html import escape
-
 import numpy as np
 
 from tipoff.studies.render.chart import (
@@ -15,9 +12,9 @@ from tipoff.studies.render.chart import (
     Chart,
     Line,
     Panel,
-    Picture,
 )
-from tipoff.studies.render.markup import Html, caption, fold, number, paragraph, table
+from tipoff.studies.render.document import Bullets, Figure, Fold, Heading, Part
+from tipoff.studies.render.table import Column, Table, estimate, number, percent, span
 
 _RATES = ("rate_x_deg_s", "rate_y_deg_s", "rate_z_deg_s")
 _LOOKS = {0.5: (NAVY, "-", "o"), 0.95: (VERMILION, "--", "s"), 0.99: (TEAL, "-.", "^")}
@@ -68,25 +65,21 @@ def charts(found: dict) -> list[tuple[Chart, str]]:
     return made
 
 
-def draw(found: dict, figure: Callable[[Chart | Picture, str], Html]) -> Html:
+def draw(found: dict) -> list[Part]:
     """What stands in the section."""
-    said = "".join(f"<li>{escape(line[0].upper() + line[1:])}.</li>" for line in found["findings"])
-    histograms, convergence, *models = [figure(chart, words) for chart, words in charts(found)]
-    return Html(
-        "".join(
-            [
-                f"<ul>{said}</ul>",
-                histograms,
-                _quantities(found),
-                _tails(found),
-                convergence,
-                _readings(found),
-                *models,
-                _apart(found),
-                paragraph(_PAPER),
-            ]
-        )
-    )
+    histograms, convergence, *models = [Figure(*each) for each in charts(found)]
+    return [
+        Bullets(found["findings"]),
+        histograms,
+        _quantities(found),
+        _tails(found),
+        convergence,
+        Heading("Does the reading matter?"),
+        _readings(found),
+        *models,
+        *_apart(found["models"]),
+        _PAPER,
+    ]
 
 
 def _histograms(found: dict) -> Chart:
@@ -204,97 +197,87 @@ def _models(models: dict) -> Chart:
     return Chart("montecarlo-models", panels, columns=3, height=300)
 
 
-def bounded(row: dict, digits: int = 3) -> str:
-    """A quantile with its bounds, small."""
-    ends = ("–" if row[side] is None else f"{row[side]:.{digits}g}" for side in ("low", "high"))
-    return Html(f'{row["value"]:.{digits}g} <span class="small">{" to ".join(ends)}</span>')
-
-
-def _quantities(found: dict) -> Html:
+def _quantities(found: dict) -> Table:
     shares = [row["share"] for row in found["quantities"][0]["quantiles"][1:]]
     rows = []
     for item in found["quantities"]:
-        spread = f"{item['sd']:.4g} ± {item['sd_error']:.1g}"
-        rows.append(
-            (
-                f"{item['label']} ({item['unit']})",
-                f"{found['counts']['asked']:,}",
-                spread,
-                *map(bounded, item["quantiles"][1:]),
-            )
-        )
         first = (
-            map(bounded, item["first"][1:])
+            map(estimate, item["first"][1:])
             if item["first"]
             else ["none settled", *[""] * (len(shares) - 1)]
         )
-        rows.append(("", f"{found['paper_cases']:,}", "", *first))
-    heads = ("quantity", "cases", "sd", *(f"{100.0 * share:g} % below" for share in shares))
-    return Html(table(heads, rows, dense=True) + caption(_BOUNDS))
+        rows += [
+            (
+                f"{item['label']} ({item['unit']})",
+                found["counts"]["asked"],
+                f"{number(item['sd'], '.4g')} ± {number(item['sd_error'], '.1g')}",
+                *map(estimate, item["quantiles"][1:]),
+            ),
+            ("", found["paper_cases"], "", *first),
+        ]
+    below = [f"{percent(share, 'g')} % below" for share in shares]
+    return Table(["quantity", "cases", "sd", *below], rows, (_BOUNDS,), dense=True)
 
 
-def _tails(found: dict) -> Html:
+def _tails(found: dict) -> Table:
     rows = [
         (
             row["limit"],
             f"{row['above']:,} of {row['cases']:,}",
-            number(row["share"]),
-            f"{row['low']:.3g} to {row['high']:.3g}",
+            row["share"],
+            span(row["low"], row["high"]),
         )
         for row in found["tails"]
     ]
-    heads = (
+    heads: tuple[Column | str, ...] = (
         "limit",
         "cases above",
         "probability of being above",
         "95 % bounds (Clopper and Pearson)",
     )
-    return Html(
-        table(heads, rows)
-        + caption(
-            "A rate about an axis counts by its magnitude. A case that did not settle counts as "
-            "above every limit."
-        )
+    note = (
+        "A rate about an axis counts by its magnitude. A case that did not settle counts as above "
+        "every limit."
     )
+    return Table(heads, rows, (note,))
 
 
-def _readings(found: dict) -> Html:
+def _readings(found: dict) -> Table:
     shares, rows = (0.5, 0.95, 0.99, 0.9973), []
     for item in found["readings"]:
         name = item["reading"] + (" (the same, drawn again)" if item["same"] else "")
         if item["rates"] is None:
-            rows.append((name, f"{item['settled'] or 'none'} settled", *[""] * (4 + len(shares))))
+            settled = f"{item['settled'] or 'none'} settled"
+            rows.append((name, settled, *[""] * (4 + len(shares))))
             continue
         *axes, total = item["rates"]
         quantiles = {row["share"]: row for row in total["quantiles"]}
         rows.append(
             (
                 name,
-                *(number(rate["sd"]) for rate in axes),
-                *(bounded(quantiles[share]) for share in shares),
-                number(item["distance"]),
-                number(item["chance"], 2),
+                *(rate["sd"] for rate in axes),
+                *(estimate(quantiles[share]) for share in shares),
+                item["distance"],
+                item["chance"],
             )
         )
-    heads = (
+    heads: tuple[Column | str, ...] = (
         "reading of the paper's Table 3",
         *(f"sd about {axis}" for axis in "xyz"),
-        *(f"total, {100.0 * share:g} % below" for share in shares),
+        *(f"total, {percent(share, 'g')} % below" for share in shares),
         "distance",
-        "by chance",
+        Column("by chance", form=".2g"),
     )
     words = _READINGS.format(cases=found["readings"][0]["cases"])
-    return Html(
-        "<h3>Does the reading matter?</h3>" + table(heads, rows, dense=True) + caption(words)
-    )
+    return Table(heads, rows, (words,), dense=True)
 
 
-def _apart(found: dict) -> Html:
-    if not found["models"]:
-        return Html("")
-    if not found["models"]["quantities"]:
-        return paragraph(f"No case of {found['models']['cases']:,} settled in both models.")
-    heads = (
+def _apart(models: dict | None) -> list[Part]:
+    if not models:
+        return []
+    if not models["quantities"]:
+        return [f"No case of {models['cases']:,} settled in both models."]
+    heads: tuple[Column | str, ...] = (
         "quantity",
         "difference, root mean square",
         "50 % of cases below",
@@ -306,16 +289,14 @@ def _apart(found: dict) -> Html:
         "99 % below, springs",
         "compliant",
     )
-    rows = []
-    for row in found["models"]["quantities"]:
-        sides = [bounded(row[name][place]) for place in (1, 2) for name in ("springs", "compliant")]
-        rows.append(
-            (
-                f"{row['label']} ({row['unit']})",
-                number(row["root_mean_square"]),
-                *map(bounded, row["quantiles"]),
-                number(row["most"]),
-                *sides,
-            )
+    rows = [
+        (
+            f"{row['label']} ({row['unit']})",
+            row["root_mean_square"],
+            *map(estimate, row["quantiles"]),
+            row["most"],
+            *(estimate(row[name][place]) for place in (1, 2) for name in ("springs", "compliant")),
         )
-    return fold("both surrogates on the same draws", table(heads, rows, dense=True))
+        for row in models["quantities"]
+    ]
+    return [Fold("both surrogates on the same draws", [Table(heads, rows, dense=True)])]

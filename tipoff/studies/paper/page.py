@@ -1,8 +1,6 @@
 """The paper's own numbers on the page: its Table 2 and headline beside ours, the inputs that must
 have been, and what they trade."""
 
-from collections.abc import Callable
-
 import numpy as np
 
 from tipoff.studies import published
@@ -17,9 +15,9 @@ from tipoff.studies.render.chart import (
     Chart,
     Line,
     Panel,
-    Picture,
 )
-from tipoff.studies.render.markup import Html, caption, code, fold, number, paragraph, table
+from tipoff.studies.render.document import Figure, Fold, Part
+from tipoff.studies.render.table import Column, Table
 
 _AXES = tuple(zip("xyz", (NAVY, VERMILION, AMBER), ("o", "s", "^")))
 _NINE = ("largest_error_deg_s", "largest error of nine rates, deg/s")
@@ -37,7 +35,7 @@ _AT_EXIT = (
 )
 
 
-def draw(found: dict, figure: Callable[[Chart | Picture, str], Html]) -> Html:
+def draw(found: dict) -> list[Part]:
     """The section."""
     trade, beside = charts(found)
     best = found["searches"][found["best"]]
@@ -56,19 +54,20 @@ def draw(found: dict, figure: Callable[[Chart | Picture, str], Html]) -> Html:
         f"{best['largest_negligible_deg_s']:.2g} deg/s. It is inferred, one of many that would do. "
         f"{in_catalogue(found)}"
     )
-    return Html(
-        paragraph(words)
-        + figure(trade, _TRADED)
-        + paragraph(_verdict(found))
-        + figure(beside, _BESIDE)
-        + _table2(best)
-        + _deviations(best)
-        + _at_exit(found["exit"])
-        + _inputs(found)
-        + fold("Every search", _searches(found))
-        + _headline(found)
-        + paragraph("On the printed numbers: " + " ".join(found["slips"]))
-    )
+    return [
+        words,
+        Figure(trade, _TRADED),
+        _verdict(found),
+        Figure(beside, _BESIDE),
+        _table2(best),
+        *_deviations(best),
+        _at_exit(found["exit"]),
+        _inputs(found["inputs"]),
+        admissible(found),
+        Fold("Every search", [_searches(found["searches"])]),
+        *_headline(found),
+        "On the printed numbers: " + " ".join(found["slips"]),
+    ]
 
 
 _TRADED = (
@@ -213,35 +212,30 @@ def _against(title: str, printed: np.ndarray, ours: np.ndarray) -> Panel:
     return Panel(title, "printed", "found", [Line(ends, ends, "equal", GREY, dash="--"), *points])
 
 
-def _table2(best: dict) -> Html:
+def _table2(best: dict) -> Fold:
     printed, changed = published.sensitivity(), np.array(best["changed_deg_s"])
     nominal = np.array(best["rates_deg_s"])[1:4]
-    rows = []
+    rows: list[tuple] = []
     for place, condition in enumerate(published.SENSITIVE):
         rows.append((str(condition), "baseline", *_pairs(printed.baseline[place], nominal[place])))
         rows += [
             (str(condition), words, *_pairs(printed.changed[place, row], changed[place, row]))
             for row, words in enumerate(told.CHANGES)
         ]
-    return fold(
-        "Table 2, printed and found",
-        table(
-            (
-                "condition",
-                "constant",
-                *(f"{axis}, {kind} (deg/s)" for axis in "xyz" for kind in ("printed", "found")),
-            ),
-            rows,
-            dense=True,
-        ),
-    )
+    rates = [
+        Column(f"{axis}, {kind}", "deg/s", "+.3f")
+        for axis in "xyz"
+        for kind in ("printed", "found")
+    ]
+    table = Table(["condition", "constant", *rates], rows, dense=True)
+    return Fold("Table 2, printed and found", [table])
 
 
-def _pairs(printed: np.ndarray, ours: np.ndarray) -> list[str]:
-    return [f"{value:+.3f}" for pair in zip(printed, ours) for value in pair]
+def _pairs(printed: np.ndarray, ours: np.ndarray) -> list[float]:
+    return [value for pair in zip(printed, ours) for value in pair]
 
 
-def _deviations(best: dict) -> Html:
+def _deviations(best: dict) -> list[Part]:
     """The 54 deviations, printed and ours, and the largest of each axis as a share of its rate."""
     printed = published.sensitivity()
     ours = published.Sensitivity(
@@ -264,42 +258,36 @@ def _deviations(best: dict) -> Html:
         (kind, *(f"{100.0 * share:.2f} %" for share in table_2.largest_relative()))
         for kind, table_2 in (("printed", printed), ("ours", ours))
     ]
-    return Html(
-        paragraph(
-            "Largest deviation by axis as a share of the rate, on conditions 2 and 4; about z that "
-            "of condition 3 is "
-            "nearly zero."
-        )
-        + table(("", "x", "y", "z"), largest)
-        + fold(
-            "54 deviations, printed and ours",
-            table(
-                ("condition", "constant", *(f"{axis}, printed / ours (deg/s)" for axis in "xyz")),
-                rows,
-                dense=True,
-            ),
-        )
-    )
+    heads = ("condition", "constant", *(f"{axis}, printed / ours (deg/s)" for axis in "xyz"))
+    return [
+        Table(
+            ("", "x", "y", "z"),
+            largest,
+            title="Largest deviation by axis as a share of the rate, on conditions 2 and 4; about "
+            "z that of condition 3 is nearly zero.",
+        ),
+        Fold("54 deviations, printed and ours", [Table(heads, rows, dense=True)]),
+    ]
 
 
-def _at_exit(found: dict) -> Html:
+def _at_exit(found: dict) -> Table:
     """What the best set leaves its rail with, by condition; a dash where it did not settle."""
     rows = [
         (
             str(row["condition"]),
-            f"{row['radial_misalignment_deg']:g}",
+            row["radial_misalignment_deg"],
             row["status"].replace("_", " "),
-            *(number(row[item.name]) for item in answers.ALL),
+            *(row[item.name] for item in answers.ALL),
         )
         for row in found["conditions"]
     ]
-    heads = (
+    heads: tuple[Column | str, ...] = (
         "condition",
-        "radial misalignment (deg)",
+        Column("radial misalignment", "deg", "g"),
         "ended",
-        *(f"{item.label} ({item.unit})" for item in answers.ALL),
+        *(Column(item.label, item.unit) for item in answers.ALL),
     )
-    return Html(table(heads, rows, dense=True) + caption(_AT_EXIT.format(**found)))
+    return Table(heads, rows, (_AT_EXIT.format(**found),), dense=True)
 
 
 def _verdict(found: dict) -> str:
@@ -332,98 +320,86 @@ def _verdict(found: dict) -> str:
     )
 
 
-def _headline(found: dict) -> Html:
+def _headline(found: dict) -> list[Part]:
     """Cost of one case in both fidelities, the paper's beside ours."""
     printed, ours = found["headline"], found["ours"]
-    rows: list[tuple[str | None, ...]] = [
+    springs = "springs, calibrated"
+    rows = [
         (
             "the paper",
             "LS-DYNA, 4 million hexahedra",
             f"{printed['high_fidelity_wall_time']} h",
             f"ADAMS, {printed['low_fidelity_wall_time']} s",
-            f"{float(printed['speedup']):,.0f}",
-        )
+            float(printed["speedup"]),
+        ),
+        (
+            f"here, scene {found['scene']}",
+            "explicit finite elements",
+            ours and f"{ours['highfi_wall_s']:.3g} s",
+            f"{springs}, {1e3 * ours['lowfi_wall_s']:.3g} ms" if ours else springs,
+            ours and ours["ratio"],
+        ),
     ]
-    own = (f"here, scene {found['scene']}", "explicit finite elements")
-    if ours:
-        rows.append(
-            (
-                *own,
-                f"{ours['highfi_wall_s']:.3g} s",
-                f"springs, calibrated, {1e3 * ours['lowfi_wall_s']:.3g} ms",
-                f"{ours['ratio']:,.0f}",
-            )
-        )
-    else:
-        rows.append((*own, None, "springs, calibrated", None))
-    shown = table(
-        ("", "flexible rail", "one case", "rigid bodies, one case", "times as fast"), rows
+    heads: tuple[Column | str, ...] = (
+        "",
+        "flexible rail",
+        "one case",
+        "rigid bodies, one case",
+        Column("times as fast", form=",.0f"),
     )
-    return (
-        shown
-        if ours
-        else Html(
-            shown
-            + paragraph(
-                "Ours is not measured yet: ",
-                code(f"make compare SCENE={found['scene']}"),
-                " does it.",
-            )
-        )
-    )
+    missing = f"Ours is not measured yet: `make compare SCENE={found['scene']}` does it."
+    return [Table(heads, rows), "" if ours else missing]
 
 
-def _inputs(found: dict) -> Html:
+def _inputs(found: list[dict]) -> Table:
     rows = [
         (
             item["name"].replace("_", " "),
             item["unit"],
-            number(item["low"]),
-            number(item["high"]),
-            number(item["best"], 4),
-            number(item["from"]),
-            number(item["to"]),
+            item["low"],
+            item["high"],
+            item["best"],
+            item["from"],
+            item["to"],
             item["share"] and f"{100.0 * item['share']:.0f} %",
             item["reason"],
         )
-        for item in found["inputs"]
+        for item in found
     ]
-    heads = (
+    heads: tuple[Column | str, ...] = (
         "input",
         "unit",
         "bound from",
         "to",
-        "best",
+        Column("best", form=".4g"),
         "admissible at least from",
         "to",
         "of the bounds, at least",
         "why these bounds",
     )
-    return Html(table(heads, rows, dense=True) + paragraph(admissible(found)))
+    return Table(heads, rows, dense=True)
 
 
-def _searches(found: dict) -> Html:
+def _searches(found: list[dict]) -> Table:
     rows = [
         (
-            f"{item['seed'] + 1}",
+            item["seed"] + 1,
             "five" if item["stress"] else "three",
-            number(item["largest_error_deg_s"]),
-            number(item["largest_negligible_deg_s"]),
-            number(item["largest_deviation_error_deg_s"]),
-            number(item["misfit"]),
-            str(item["admissible"]),
+            item["largest_error_deg_s"],
+            item["largest_negligible_deg_s"],
+            item["largest_deviation_error_deg_s"],
+            item["misfit"],
+            item["admissible"],
         )
-        for item in found["searches"]
+        for item in found
     ]
-    return table(
-        (
-            "search",
-            "conditions asked",
-            "largest error of nine rates (deg/s)",
-            "largest rate, conditions 1 and 5 (deg/s)",
-            "largest error of 54 deviations (deg/s)",
-            "misfit",
-            "admissible points kept",
-        ),
-        rows,
+    heads: tuple[Column | str, ...] = (
+        "search",
+        "conditions asked",
+        Column("largest error of nine rates", "deg/s"),
+        Column("largest rate, conditions 1 and 5", "deg/s"),
+        Column("largest error of 54 deviations", "deg/s"),
+        "misfit",
+        "admissible points kept",
     )
+    return Table(heads, rows)

@@ -38,6 +38,9 @@ class Bullets:
 
     lines: Sequence[str]
 
+    def __bool__(self) -> bool:
+        return bool(self.lines)
+
     def sentences(self) -> list[str]:
         """The lines as they are shown."""
         return [f"{line[0].upper()}{line[1:].rstrip('.')}." for line in self.lines]
@@ -65,7 +68,7 @@ Part = str | Heading | Caption | Notice | Bullets | Table | Figure | Fold
 
 def html(parts: Sequence[Part], figure: Callable[[Chart | Picture, str], str]) -> Markup:
     """The parts as HTML; ``figure`` renders a chart with its caption as HTML. An empty string
-    renders as nothing."""
+    or list renders as nothing."""
     return Markup("").join(_html(part, figure) for part in parts if part)
 
 
@@ -90,6 +93,8 @@ def _html(part: Part, figure: Callable[[Chart | Picture, str], str]) -> Markup:
             return Markup("<details><summary>{}</summary>{}</details>").format(
                 inline(part.title), html(part.parts, figure)
             )
+        case str() if hasattr(part, "__html__"):
+            return Markup(part)
         case str():
             return Markup("<p>{}</p>").format(inline(part))
 

@@ -87,8 +87,10 @@ def span(low: float | None, high: float | None, form: str = ".3g") -> str:
     )
 
 
-def estimate(row: dict, form: str = ".3g") -> Noted:
-    """The ``value`` of a row with its bounds ``low`` and ``high`` as a remark."""
+def estimate(row: dict, form: str = ".3g") -> Any:
+    """The ``value`` of a row, with its bounds ``low`` and ``high`` as a remark where it has one."""
+    if row["low"] is None and row["high"] is None:
+        return row["value"]
     return Noted(row["value"], span(row["low"], row["high"], form))
 
 

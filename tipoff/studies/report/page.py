@@ -16,6 +16,7 @@ from tipoff.studies.core import machine
 from tipoff.studies.cost import scaling_page
 from tipoff.studies.question import Question
 from tipoff.studies.registry import QUESTIONS
+from tipoff.studies.render import document
 from tipoff.studies.render.chart import Chart, Picture, to_files, to_html
 from tipoff.studies.render.markup import Html, caption, code, number, paragraph, section, table
 from tipoff.studies.render.style import CSS
@@ -132,7 +133,7 @@ class Page:
         return section(
             question.name,
             question.title,
-            question.load().draw(found, self._figure)
+            document.html(question.load().draw(found), self._figure)
             if found
             else self._missing(question.name, question.name),
         )

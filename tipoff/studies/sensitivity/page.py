@@ -1,7 +1,7 @@
 """Which numbers the answer depends on, on the page: the paper's Table 2 beside ours, and Sobol'
 indices of every quantity."""
 
-from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -16,7 +16,8 @@ from tipoff.studies.render.chart import (
     Panel,
     Picture,
 )
-from tipoff.studies.render.markup import Html, caption, fold, number, paragraph, percent, table
+from tipoff.studies.render.document import Bullets, Figure, Fold, Heading, Part
+from tipoff.studies.render.table import Column, Table, span
 
 _RATES = ("rate_x_deg_s", "rate_y_deg_s", "rate_z_deg_s", "rate_deg_s")
 _STILL = 1e-6  # deg/s; the tables are of runs at a relative tolerance of 2e-7
@@ -61,16 +62,12 @@ _TABLE = (
     "0.71 %. Its scene, and so "
     "its rates, are not ours."
 )
-_HEADS = (
-    "condition",
-    "changed",
-    "rates x, y, z (deg/s)",
-    "moved by (deg/s)",
-    "(%)",
-    "paper: rates (deg/s)",
-    "moved by (deg/s)",
-    "(%)",
+_MOVED = (
+    Column("rates x, y, z", "deg/s", ".3f"),
+    Column("moved by", "deg/s", ".2g"),
+    Column("moved by", "%", ".2g", 100.0),
 )
+_HEADS = ("condition", "changed", *_MOVED, replace(_MOVED[0], title="paper: rates"), *_MOVED[1:])
 
 
 def name_of(key: str) -> str:
@@ -93,40 +90,30 @@ def pictures(found: dict) -> list[tuple[Chart | Picture, str]]:
     ]
 
 
-def draw(found: dict, figure: Callable[[Chart | Picture, str], Html]) -> Html:
+def draw(found: dict) -> list[Part]:
     """The section: tables of contact constants, then indices."""
-    drawn = "".join(figure(*item) for item in pictures(found))
-    # What a quantity depends on most is in the map; the words of the command line would only repeat
-    # it.
-    said = "".join(
-        f"<li>{line[0].upper()}{line[1:]}.</li>"
-        for line in found["summary"]
-        if "total index" not in line
-    )
-    tables = "".join(_beside_paper(item, found["paper"]) for item in found["tables"])
-    return Html(
-        "".join(
-            [
-                f"<ul>{said}</ul>",
-                "<h3>Contact constants, one at a time</h3>" if tables else "",
-                tables,
-                "<h3>Everything at once</h3>",
-                drawn,
-                _inputs(found["sobol"]),
-            ]
-        )
-    )
+    # The map shows what a quantity depends on most; the summary would repeat it.
+    lines = [line for line in found["summary"] if "total index" not in line]
+    tables = [_beside_paper(item, found["paper"]) for item in found["tables"]]
+    return [
+        Bullets(lines),
+        *([Heading("Contact constants, one at a time")] if tables else []),
+        *tables,
+        Heading("Everything at once"),
+        *(Figure(*item) for item in pictures(found)),
+        *_inputs(found["sobol"]),
+    ]
 
 
-def _beside_paper(item: dict, paper: dict) -> Html:
+def _beside_paper(item: dict, paper: dict) -> Table:
     """Rows of ours and, where the condition is one of the paper's, its own."""
     theirs = {(row["condition"], row["symbol"], row["raised"]): row for row in paper["rows"]}
-    rows = [
+    rows: list[tuple] = [
         (*_ours(row), *_theirs(theirs.get((row["condition"], row["symbol"], row["raised"]))))
         for row in item["rows"]
     ]
     constants = ", ".join(f"{key} {value:.4g}" for key, value in item["constants_si"].items())
-    widest = [
+    rows += [
         ("largest", "", "", *_moved(item["largest"]), "", *_moved(paper["largest"])),
         ("largest", "clearance", "", *_moved(item["largest_clearance"]), "", "", ""),
     ]
@@ -141,15 +128,8 @@ def _beside_paper(item: dict, paper: dict) -> Html:
         if idle
         else ""
     )
-    return Html(
-        "".join(
-            [
-                paragraph(f"{item['title'].capitalize()}: {item['law']}, SI: {constants}.{words}"),
-                table(_HEADS, rows + widest, dense=True),
-                caption(_TABLE),
-            ]
-        )
-    )
+    title = f"{item['title'].capitalize()}: {item['law']}, SI: {constants}.{words}"
+    return Table(_HEADS, rows, (_TABLE,), title, dense=True)
 
 
 def _ours(row: dict) -> tuple:
@@ -167,9 +147,7 @@ def _theirs(row: dict | None) -> tuple:
 
 
 def _rates(row: dict) -> tuple:
-    return _triple(row["rate_deg_s"], "{:.3f}"), *(
-        _moved(row) if row["raised"] is not None else ("", "")
-    )
+    return row["rate_deg_s"], *(_moved(row) if row["raised"] is not None else ("", ""))
 
 
 def _still(row: dict) -> bool:
@@ -177,73 +155,69 @@ def _still(row: dict) -> bool:
     return row["absolute_deg_s"] is not None and max(map(abs, row["absolute_deg_s"])) < _STILL
 
 
-def _moved(row: dict) -> tuple[str, str]:
+def _moved(row: dict) -> tuple:
     if None not in (row["absolute_deg_s"] or [None]) and _still(row):
         return "0", "0"
-    relative = row["relative"] and [
-        None if value is None else 100.0 * value for value in row["relative"]
-    ]
-    return _triple(row["absolute_deg_s"], "{:.2g}"), _triple(relative, "{:.2g}")
+    return row["absolute_deg_s"], row["relative"]
 
 
-def _triple(values: Sequence | None, form: str) -> str:
-    return (
-        "–"
-        if values is None
-        else ", ".join("–" if value is None else form.format(value) for value in values)
-    )
-
-
-def _inputs(sobol: dict) -> Html:
-    """What varied, how far, and by whose word; what did not."""
+def _inputs(sobol: dict) -> list[Part]:
+    """What varied, how far, and by which provenance; what did not."""
     rows = [
         (
             name_of(item["key"]),
             item["distribution"] + (" factor" if item["factor"] else ""),
-            number(item["nominal"], 4),
-            f"{item['low']:.4g} to {item['high']:.4g}",
+            item["nominal"],
+            span(item["low"], item["high"], ".4g"),
             item["unit"] or "SI",
             item["provenance"],
         )
         for item in sobol["inputs"]
     ]
-    left = "".join(f"<li>{name_of(key)}: {why}</li>" for key, why in sobol["left_out"].items())
+    left = [f"{name_of(key)}: {why}" for key, why in sobol["left_out"].items()]
     spread = [
         (
             item["label"],
-            f"{item['mean']:.3g}",
-            f"{item['sd']:.3g}",
+            item["mean"],
+            item["sd"],
             item["unit"],
-            percent(item["indices"] and sum(item["indices"]["first"])),
+            item["indices"] and sum(item["indices"]["first"]),
         )
         for item in sobol["quantities"]
     ]
-    return Html(
-        "".join(
-            [
-                paragraph(
-                    "A base point with a case that does not settle is left out with all of its "
-                    "cases, so the indices hold for "
-                    f"launches that leave the rail: {sobol['used']:,} of {sobol['base_points']:,} "
-                    f"were used."
-                ),
-                table(("quantity", "mean", "sd", "unit", "sum of first-order indices (%)"), spread),
-                caption(
-                    "The sum is what goes by knowing each input alone; below zero it is error of "
-                    "sampling (see the whiskers)."
-                ),
-                fold(
-                    "what varied",
-                    table(
-                        ("input", "distribution", "nominal", "95 % within", "unit", "provenance"),
-                        rows,
-                        dense=True,
-                    ),
-                    f"<p>Left out:</p><ul>{left}</ul>" if left else "",
-                ),
-            ]
-        )
+    heads = (
+        "quantity",
+        "mean",
+        "sd",
+        "unit",
+        Column("sum of first-order indices", "%", scale=100.0),
     )
+    varied = Table(
+        (
+            "input",
+            "distribution",
+            Column("nominal", form=".4g"),
+            "95 % within",
+            "unit",
+            "provenance",
+        ),
+        rows,
+        dense=True,
+    )
+    return [
+        "A base point with a case that does not settle is left out with all of its cases, so the "
+        f"indices hold for launches that leave the rail: {sobol['used']:,} of "
+        f"{sobol['base_points']:,} were used.",
+        Table(
+            heads,
+            spread,
+            (
+                "The sum is what goes by knowing each input alone; below zero it is error of "
+                "sampling (see the whiskers).",
+            ),
+        ),
+        Fold("what varied", [varied, "Left out:" if left else "", Bullets(left)]),
+    ]
 
 
 def _bars(sobol: dict, rates: list[dict]) -> Picture:

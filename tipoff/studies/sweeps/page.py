@@ -1,21 +1,19 @@
 """How large an error may be, on the page: verdicts beside the paper's, why there is a plateau or
 none, and the figures."""
 
-from collections.abc import Callable
-
 from tipoff.studies.populations import answers
-from tipoff.studies.render.chart import Chart, Picture
-from tipoff.studies.render.markup import Html, caption, fold, number, paragraph, percent, table
+from tipoff.studies.render.document import Caption, Figure, Fold, Heading, Part
+from tipoff.studies.render.table import Column, Table, number, percent, span
 from tipoff.studies.sweeps.figures import pictures
 from tipoff.studies.sweeps.knee import LEVEL, MISFIT
 
 _SHORT = {"rate_x_deg_s": "x", "rate_y_deg_s": "y", "rate_z_deg_s": "z", "rate_deg_s": "total"}
 _RUN = (
-    "thrust, times as long",
+    Column("thrust, times as long", form="g"),
     "cases",
     "did not settle",
-    "exit (ms)",
-    "impulse after the exit (%)",
+    Column("exit", "ms", scale=1e3),
+    Column("impulse after the exit", "%", ".2g", 100.0),
 )
 _VERDICT = (
     "error",
@@ -24,11 +22,11 @@ _VERDICT = (
     "verdict",
     "knee",
     "95 %",
-    "the paper",
+    Column("the paper", form="g"),
     "slope before",
     "after",
-    "misfit (%)",
-    "plateau in resamples (%)",
+    Column("misfit", "%", ".2g", 100.0),
+    Column("plateau in resamples", "%", ".2g", 100.0),
 )
 _METHOD = (
     "A law is chosen by its corrected information criterion; the interval of a knee is 95 %, a "
@@ -54,13 +52,14 @@ _REASON = (
 )
 
 
-def draw(found: dict, figure: Callable[[Chart | Picture, str], Html]) -> Html:
+def draw(found: dict) -> list[Part]:
     """The section: what was run, verdicts, why, then figures."""
-    parts = [_counts(found["launches"])]
-    for launch in found["launches"]:
-        parts += [Html(f"<h3>{_title(launch)}</h3>"), _verdicts(launch), _largest(launch)]
-    parts += [caption(_METHOD), _why(found["launches"])]
-    return Html("".join([*parts, *(figure(*item) for item in pictures(found))]))
+    launches = found["launches"]
+    parts: list[Part] = [_counts(launches)]
+    for launch in launches:
+        parts += [Heading(_title(launch)), _verdicts(launch), _largest(launch)]
+    figures = [Figure(*item) for item in pictures(found)]
+    return [*parts, Caption(_METHOD), *_why(launches), *figures]
 
 
 def _title(launch: dict) -> str:
@@ -69,99 +68,84 @@ def _title(launch: dict) -> str:
     return f"Its thrust {launch['stretch']:g} times as long, with the same impulse"
 
 
-def _counts(launches: list[dict]) -> Html:
-    return table(
+def _counts(launches: list[dict]) -> Table:
+    return Table(
         _RUN,
         [
             (
-                f"{item['stretch']:g}",
-                f"{item['cases']['asked']:,}",
-                f"{item['not_settled']:,}",
-                number(item["exit_s"] and 1e3 * item["exit_s"]),
-                percent(item["share_after_exit"], 2),
+                item["stretch"],
+                item["cases"]["asked"],
+                item["not_settled"],
+                item["exit_s"],
+                item["share_after_exit"],
             )
             for item in launches
         ],
     )
 
 
-def _verdicts(launch: dict) -> Html:
-    return table(
-        _VERDICT,
-        [
-            _verdict(factor, name, bent)
-            for factor in launch["factors"]
-            for name, bent in factor["growth"].items()
-            if bent
-        ],
-        dense=True,
-    )
+def _verdicts(launch: dict) -> Table:
+    rows = [
+        _verdict(factor, name, bent)
+        for factor in launch["factors"]
+        for name, bent in factor["growth"].items()
+        if bent
+    ]
+    return Table(_VERDICT, rows, dense=True)
 
 
 def _verdict(factor: dict, name: str, bent: dict) -> tuple:
-    ends = None if bent["low"] is None else f"{bent['low']:.2f} to {bent['high']:.2f}"
     return (
         f"{factor['label']} ({factor['unit']})",
-        number(factor["departs_from_free_at"]),
+        factor["departs_from_free_at"],
         _SHORT[name],
         bent["verdict"],
-        number(bent["knee"]),
-        ends,
-        f"{factor['paper']:g}",
-        number(bent["slope_before"]),
-        number(bent["slope_after"]),
-        percent(bent["misfit"], 2),
-        percent(bent["plateau_share"], 2),
+        bent["knee"],
+        span(bent["low"], bent["high"], ".2f"),
+        factor["paper"],
+        bent["slope_before"],
+        bent["slope_after"],
+        bent["misfit"],
+        bent["plateau_share"],
     )
 
 
-def _largest(launch: dict) -> Html:
+def _largest(launch: dict) -> Fold:
     """Every quantity at every size, in magnitude."""
-    parts = []
-    for factor in launch["factors"]:
-        rows = [
-            (f"{item.label} ({item.unit})", *map(number, factor["largest"][item.name]))
-            for item in answers.ALL
-        ]
-        heads = (
-            f"{factor['label']} ({factor['unit']})",
-            *(f"{size:g}" for size in factor["sizes"]),
+    parts: list[Part] = [
+        Table(
+            [f"{factor['label']} ({factor['unit']})", *(f"{size:g}" for size in factor["sizes"])],
+            [
+                (f"{item.label} ({item.unit})", *factor["largest"][item.name])
+                for item in answers.ALL
+            ],
+            dense=True,
         )
-        parts.append(table(heads, rows, dense=True))
-    return fold(
-        "largest value of every quantity by size",
-        *parts,
-        caption("Largest magnitude over all directions that settled."),
-    )
+        for factor in launch["factors"]
+    ]
+    note = Caption("Largest magnitude over all directions that settled.")
+    return Fold("largest value of every quantity by size", [*parts, note])
 
 
-def _why(launches: list[dict]) -> Html:
+def _why(launches: list[dict]) -> list[Part]:
     """What the two launches show together, on misalignment, which is the error with a plateau in
     the paper and the first here."""
     if len(launches) < 2 or launches[0]["share_after_exit"] is None:
-        return Html("")
+        return []
     held, freed = sorted(launches, key=lambda item: item["share_after_exit"])
     rises = [
         _late_rise(launch["factors"][0]["largest"]["rate_y_deg_s"]) for launch in (held, freed)
     ]
     free = _late_rise(freed["factors"][0]["free"]["rate_y_deg_s"])
     after = None if free is None else freed["share_after_exit"] * free
-    return Html(
-        "".join(
-            [
-                paragraph(_REASON),
-                paragraph(
-                    f"Here: with {percent(held['share_after_exit'], 2)} % of the impulse after the "
-                    f"exit the largest rate about y changes by "
-                    f"{number(rises[0])} deg/s over the upper half of sizes of the "
-                    f"{held['factors'][0]['label']}; with "
-                    f"{percent(freed['share_after_exit'], 2)} % it changes by {number(rises[1])} "
-                    f"deg/s, and the moment after the exit alone "
-                    f"gives {number(after)}."
-                ),
-            ]
-        )
-    )
+    return [
+        _REASON,
+        f"Here: with {percent(held['share_after_exit'], '.2g')} % of the impulse after the exit "
+        f"the largest rate about y changes by {number(rises[0])} deg/s over the upper half of "
+        f"sizes of the {held['factors'][0]['label']}; with "
+        f"{percent(freed['share_after_exit'], '.2g')} % it changes by {number(rises[1])} deg/s, "
+        f"and the moment after the exit alone gives {number(after)}.",
+    ]
 
 
 def _late_rise(values: list[float | None]) -> float | None:
