@@ -381,25 +381,19 @@ def _inputs(found: list[dict]) -> Table:
 
 
 def _searches(found: list[dict]) -> Table:
+    columns: dict[str, Column | str] = {
+        "largest_error_deg_s": Column("largest error of nine rates", "deg/s"),
+        "largest_negligible_deg_s": Column("largest rate, conditions 1 and 5", "deg/s"),
+        "largest_deviation_error_deg_s": Column("largest error of 54 deviations", "deg/s"),
+        "misfit": "misfit",
+        "admissible": "admissible points kept",
+    }
     rows = [
         (
             item["seed"] + 1,
             "five" if item["stress"] else "three",
-            item["largest_error_deg_s"],
-            item["largest_negligible_deg_s"],
-            item["largest_deviation_error_deg_s"],
-            item["misfit"],
-            item["admissible"],
+            *(item[name] for name in columns),
         )
         for item in found
     ]
-    heads: tuple[Column | str, ...] = (
-        "search",
-        "conditions asked",
-        Column("largest error of nine rates", "deg/s"),
-        Column("largest rate, conditions 1 and 5", "deg/s"),
-        Column("largest error of 54 deviations", "deg/s"),
-        "misfit",
-        "admissible points kept",
-    )
-    return Table(heads, rows)
+    return Table(["search", "conditions asked", *columns.values()], rows)

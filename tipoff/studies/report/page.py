@@ -130,13 +130,9 @@ class Page:
 
     def _study(self, question: Question) -> Html:
         found = self.documents.get(question.name)
-        return section(
-            question.name,
-            question.title,
-            document.html(question.load().draw(found), self._figure)
-            if found
-            else self._missing(question.name, question.name),
-        )
+        shown = found and document.html(question.load().draw(found), self._figure)
+        missing = self._missing(question.name, question.name)
+        return section(question.name, question.title, shown or missing)
 
     def _missing(self, stage: str, target: str) -> Html:
         if reason := self.problems.get(stage):

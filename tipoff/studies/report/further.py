@@ -1,0 +1,199 @@
+"""Tables of docs/results.md: the error of the reference itself, what the same accuracy costs, and
+speeds."""
+
+from pathlib import Path
+
+from tipoff.files import read_json
+from tipoff.studies.bench import reference
+from tipoff.studies.convergence import stage as convergence
+from tipoff.studies.core.study import read
+from tipoff.studies.cost import scaling_page
+from tipoff.studies.render.document import Part, markdown
+from tipoff.studies.render.table import Column, Table, number
+
+
+def details(folder: Path) -> str:
+    """Markdown of the rest: kept promises, what a mesh costs, the error of the reference itself,
+    and speeds."""
+    highfi, lowfi = (read_json(folder / f"{name}.json") for name in ("highfi", "lowfi"))
+    refined, cost = (read(folder / f"{name}.json") for name in ("convergence", "cost_study"))
+    parts: list[Part] = [_promises(highfi, lowfi)]
+    parts += [_cost(cost), _scaling(cost["scaling"])] if cost is not None else []
+    parts += _convergence(refined) if refined is not None else []
+    if (found := reference.stored(folder.parent)) is not None:
+        parts += [_bench(found["rows"])] if found["rows"] else []
+        parts += [_surrogate(found["lowfi"])] if found["lowfi"] else []
+    return markdown(parts)
+
+
+def _cost(found: dict) -> Table:
+    rows = [
+        (
+            f"{row['model']}, {row['numerics']}",
+            row["error_deg_s"],
+            row["wall_s"],
+            row["mesh"],
+            "the yardstick" if row["mesh_error_deg_s"] is None else row["mesh_error_deg_s"],
+            row["mesh_wall_s"],
+            row["ratio"],
+        )
+        for row in found["matched"]
+    ]
+    heads = (
+        "model",
+        Column("error, deg/s", form=".2g"),
+        Column("wall time, ms", form=".2g", scale=1e3),
+        "mesh",
+        Column("its error, deg/s", form=".2g"),
+        "wall time, s",
+        Column("times as long", form=",.0f"),
+    )
+    return Table(
+        heads,
+        rows,
+        title=f"What the same accuracy costs (`make cost`, {found['condition']}): each surrogate, "
+        "and the coarsest mesh that is no less exact.",
+    )
+
+
+def _scaling(found: dict) -> Table:
+    """Exponents over elements and pads, and what all effects cost over none."""
+    over = found["elements"]
+    laws = [
+        (f"{_ends(over)} elements", over),
+        ("the two finest meshes", over["finest"] | {"model": over["model"]}),
+        *((f"{_ends(law)} pads", law) for law in found["pads"]),
+    ]
+    rows = [
+        (words, law["model"], scaling_page.exponent(law["run"]), scaling_page.exponent(law["step"]))
+        for words, law in laws
+    ]
+    prices = "; ".join(f"{item['model']} {item['ratio']:.2f} times" for item in found["effects"])
+    step = (
+        ""
+        if over["fixed_s"] is None
+        else (
+            f"A step of the reference takes {1e6 * over['fixed_s']:.2g} µs on any mesh and "
+            f"{1e9 * over['element_s']:.2g} ns for each element. "
+        )
+    )
+    return Table(
+        ["over", "model", "p of a run", "p of a step"],
+        rows,
+        (f"{step}All effects over none take: {prices}.",),
+        "How time grows (`make cost`, one processor): t = c n^p. Expected over elements: 1 for a "
+        "step, 4/3 for a run, whose steps\nshorten too.",
+    )
+
+
+def _ends(law: dict) -> str:
+    return f"{law['points'][0]['n']:,} to {law['points'][-1]['n']:,}"
+
+
+def _convergence(found: dict) -> list[Part]:
+    sizes = [row for row in found["quantities"] if row["parameter"] == "element size"]
+    heads = [f"{1e3 * size:g} mm" for size in sizes[0]["sizes"]]
+    summary = convergence.summary(
+        found["condition"],
+        found["quantities"],
+        found["penalty"],
+        found["quadrature"],
+        found["coarse_size_m"],
+    )
+    rows = [
+        (
+            f"{row['quantity']}, {row['unit']}",
+            *row["values"],
+            number(row["order"], ".2g"),
+            number(row["uncertainty"], ".2g"),
+        )
+        for row in sizes
+    ]
+    columns = [Column(head, form=".5g") for head in heads]
+    return [
+        f"Error of the reference itself (`make convergence`, {found['condition']}):",
+        "\n".join(f"- {line}" for line in summary + convergence.told(found["ripple"])),
+        Table(["quantity", *columns, "order", f"± at {heads[-1]}"], rows),
+        _changes(found),
+    ]
+
+
+def _changes(found: dict) -> Table:
+    """What penalty stiffness and quadrature change."""
+    changed = [
+        (f"{row['penalty_n_m3']:.3g} N/m³, {row['factor']:g} times the scene's", row)
+        for row in found["penalty"]
+    ] + [
+        (f"{row['points_per_edge']} x {row['points_per_edge']} Gauss points per facet", row)
+        for row in found["quadrature"]
+    ]
+    return Table(
+        [
+            f"{1e3 * found['coarse_size_m']:g} mm elements",
+            Column("settled x, y, z, deg/s", form=".3f"),
+            Column("largest change", form=".2g"),
+        ],
+        [
+            (words, row["settled_rate_deg_s"], row["settled_rate_change_deg_s"])
+            for words, row in changed
+        ],
+    )
+
+
+def _bench(rows: list[dict]) -> Table:
+    first = rows[0]
+    columns: dict[str, Column | str] = {
+        "elements": "elements",
+        "ns_per_element_step": Column("this solver", form=".2f"),
+        "ns_free": Column("without contact", form=".2f"),
+        "ns_one_thread": Column("one thread", form=".2f"),
+        "baseline_ns_per_element_step": Column("SciPy matrix and NumPy", form=".0f"),
+        "ratio": Column("ratio", form=".0f"),
+        "bytes_per_element": Column("bytes per element", form=".0f"),
+        "projected_40_ms_s": Column("40 ms would take, h", form=".2g", scale=1.0 / 3600.0),
+    }
+    return Table(
+        list(columns.values()),
+        [[row[name] for name in columns] for row in rows],
+        title=f"Speed of the reference solver (`make bench`, {first['threads']} threads on "
+        f"{first['hardware']['processor']}), wall ns per element and step with "
+        f"{first['faces_in_contact']} pad faces pressed:",
+    )
+
+
+def _surrogate(found: dict) -> Table:
+    many = found["ensemble"]
+    columns: dict[str, Column | str] = {
+        "error_percent": Column("error, %", form="g"),
+        "cpu_ms": Column("surrogate", form=".3f"),
+        "baseline_cpu_ms": Column("plain Runge-Kutta", form=".3f"),
+        "ratio": Column("ratio", form=".1f"),
+        "run_cpu_ms": Column("with curves", form=".2f"),
+    }
+    return Table(
+        list(columns.values()),
+        [[row[name] for name in columns] for row in found["single"]],
+        title="Speed of the surrogate (`make bench`), processor ms per case on one core at the "
+        f"same error of the settled rate (95th percentile of {found['varied_cases']} varied "
+        f"cases); an ensemble of {many['cases']:,} takes {many['cpu_ms_per_case']:.3f} ms per case "
+        f"at {found['single'][0]['error_percent']:g} %, set-up included:",
+    )
+
+
+def _promises(highfi: dict, lowfi: dict) -> Table:
+    names = {
+        "energy_error": "total energy",
+        "transverse_energy_error": "transverse energy",
+        "linear_momentum_error": "linear momentum",
+        "angular_momentum_error": "angular momentum",
+    }
+    rows = [
+        (title, *(max(condition[name] for condition in found["conditions"]) for name in names))
+        for title, found in (("reference", highfi), ("surrogate", lowfi))
+    ]
+    return Table(
+        ["", *(Column(title, form=".1e") for title in names.values())],
+        rows,
+        title="Largest errors over all conditions, relative as defined in "
+        "`tipoff/mechanics/ledger.py`:",
+    )
