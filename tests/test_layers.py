@@ -272,7 +272,6 @@ LONG = {
     "tipoff/studies/report/page.py": 450,
     "tipoff/highfi/run.py": 450,
     "tests/scenes/test_refusal.py": 440,
-    "tipoff/studies/paper/page.py": 430,
     "tests/studies/paper/test_stage.py": 420,
 }
 

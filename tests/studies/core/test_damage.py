@@ -241,9 +241,10 @@ def test_every_netcdf_result_carries_a_digest(tmp_path):
     """Those that only users read, too: the stages keep the digests of whole files, and who copies
     one file can check it."""
     from tipoff.files import require_whole
-    from tipoff.studies.droptest import analysis, shipped, signals
+    from tipoff.studies.droptest import analysis, signals
+    from tipoff.studies.droptest.sheet import SAMPLES
 
-    drop = analysis.analyse(shipped.sheets()[0])
+    drop = analysis.analyse(SAMPLES[0])
     signals.write(tmp_path / "droptest.nc", [drop._replace(name="a"), drop._replace(name="b")])
     require_whole(tmp_path / "droptest.nc")
     with h5py.File(tmp_path / "droptest.nc") as file:

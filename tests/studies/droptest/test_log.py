@@ -5,12 +5,11 @@ import numpy as np
 import pytest
 
 from tipoff.scenes.faults import SceneError
-from tipoff.studies.droptest import analysis, shipped
+from tipoff.studies.droptest import analysis
 from tipoff.studies.droptest.log import read, runs
+from tipoff.studies.droptest.sheet import SAMPLES
 
-SHEET, TABLE = (
-    path.read_text() for path in (shipped.sheets()[0], shipped.sheets()[0].with_suffix(".csv"))
-)
+SHEET, TABLE = (path.read_text() for path in (SAMPLES[0], SAMPLES[0].with_suffix(".csv")))
 IN_REFERENCE, IN_SETTLED, IN_BURN = 1400, 1720, 1665  # samples
 
 
@@ -76,7 +75,7 @@ def test_units_are_converted_and_a_whole_log_leaves_no_note(tmp_path):
 def test_gaps_of_one_or_two_samples_are_bridged_and_said(tmp_path, rows):
     """The rate changes by less than its noise does to two samples of a hundred."""
     whole, found = (
-        analysis.analyse(shipped.sheets()[0]),
+        analysis.analyse(SAMPLES[0]),
         analysis.analyse(written(tmp_path, rows=rows)),
     )
     assert any("bridged by a straight line" in note for note in found.notes) and not any(
@@ -113,7 +112,7 @@ def test_a_longer_gap_or_clipping_elsewhere_is_left_out_and_said(tmp_path, rows,
     found = analysis.analyse(written(tmp_path, rows=rows))
     assert any(words in note for note in found.notes)
     np.testing.assert_allclose(
-        found.reduced.change, analysis.analyse(shipped.sheets()[0]).reduced.change, atol=1e-12
+        found.reduced.change, analysis.analyse(SAMPLES[0]).reduced.change, atol=1e-12
     )
 
 
@@ -132,7 +131,7 @@ def test_a_temperature_that_is_sampled_slowly_is_interpolated_and_said(tmp_path)
     """Its ramp of 0.05 K/s is rounded to 0.1 K. Control: a rate that is sampled so is refused in
     every window."""
     whole, found = (
-        analysis.analyse(shipped.sheets()[0]),
+        analysis.analyse(SAMPLES[0]),
         analysis.analyse(written(tmp_path, rows=slowly(100, 7))),
     )
     assert np.abs(found.samples.temperature - whole.samples.temperature).max() < 0.11
@@ -161,7 +160,7 @@ def test_small_jitter_is_interpolated_and_said_and_large_is_refused(tmp_path):
 
     found = analysis.analyse(written(tmp_path, rows=jittered(0.2)))
     assert any("jitters by up to" in note and "even grid" in note for note in found.notes)
-    whole = analysis.analyse(shipped.sheets()[0])
+    whole = analysis.analyse(SAMPLES[0])
     assert np.abs(found.reduced.change - whole.reduced.change).max() < whole.reduced.combined.max()
     assert "off an even grid" in refused(written(tmp_path, rows=jittered(0.49)))
 
@@ -244,7 +243,7 @@ def test_without_accelerations_the_sheet_must_say_when(tmp_path):
         "in both windows",
     ):
         assert any(words in note for note in found.notes)
-    whole = analysis.analyse(shipped.sheets()[0])
+    whole = analysis.analyse(SAMPLES[0])
     assert np.abs(found.reduced.change - whole.reduced.change).max() < whole.reduced.combined.max()
 
 
@@ -255,4 +254,4 @@ def test_a_broken_settling_rule_is_said(tmp_path):
     assert any(
         "settling rule broken" in note and "0.1 deg/s allowed" in note for note in found.notes
     )
-    assert not any("settling rule" in note for note in analysis.analyse(shipped.sheets()[0]).notes)
+    assert not any("settling rule" in note for note in analysis.analyse(SAMPLES[0]).notes)

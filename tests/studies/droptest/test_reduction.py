@@ -6,12 +6,12 @@ import pytest
 from scipy.signal import lfilter
 from scipy.stats import binom
 
+from tests.studies.droptest.sensor import Channel, Sensor
 from tests.studies.droptest.synthetic import INTERVAL, QUIET, log, motion, samples, sheet, spans
 from tipoff.scenes.faults import SceneError
 from tipoff.studies.droptest import analysis
 from tipoff.studies.droptest.calibrated import calibrated
 from tipoff.studies.droptest.reduction import reduced
-from tipoff.studies.droptest.sensor import Channel, Sensor
 
 SCALE, SKEW, BIAS_INSTABILITY, G, NOISE = 2e-3, 2e-3, 2e-4, 2e-5, 7e-5
 UNCERTAIN = {

@@ -4,8 +4,9 @@ to what was put in."""
 import numpy as np
 import pytest
 
-from tipoff.studies.droptest import shipped
+from tests.studies.droptest import shipped
 from tipoff.studies.droptest.analysis import analyse
+from tipoff.studies.droptest.sheet import SAMPLES
 
 # What the makers of the logs know and the analysis is not told (deg/s; s of the log).
 TRUE = ([6.684, 1.851, 9.255], [-0.067, 0.598, -1.036], [0.125, 0.156, 4.426])
@@ -16,7 +17,7 @@ RELEASE, IGNITION = 1.25, 1.65
 def test_a_log_is_made_again_bit_for_bit(number):
     """And its true change is the one the analysis is held against."""
     table, sheet, motion = shipped.make(number)
-    path = shipped.sheets()[number]
+    path = SAMPLES[number]
     assert path.read_text() == sheet and path.with_suffix(".csv").read_text() == table
     assert np.degrees(motion.change) == pytest.approx(TRUE[number], abs=5e-4)
     assert (motion.release, motion.ignition) == (RELEASE, IGNITION)
@@ -24,7 +25,7 @@ def test_a_log_is_made_again_bit_for_bit(number):
 
 @pytest.mark.parametrize("number", range(shipped.COUNT))
 def test_a_log_says_that_it_is_simulated_and_gives_its_truth_back(number):
-    path = shipped.sheets()[number]
+    path = SAMPLES[number]
     assert all(
         file.read_text().startswith("# SIMULATED, not measured")
         for file in (path, path.with_suffix(".csv"))
@@ -43,8 +44,8 @@ def test_a_log_says_that_it_is_simulated_and_gives_its_truth_back(number):
 
 def test_truth_is_kept_from_the_analysis():
     """No number of the truth stands in a sheet or in the code that reads it."""
-    folder = shipped.FOLDER.parent
-    texts = [path.read_text() for path in (*shipped.sheets(), *folder.glob("*.py"))]
+    folder = SAMPLES[0].parent.parent
+    texts = [path.read_text() for path in (*SAMPLES, *folder.glob("*.py"))]
     assert not any(
         f"{abs(value):.3f}" in text for text in texts for values in TRUE for value in values
     )

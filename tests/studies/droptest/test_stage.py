@@ -19,7 +19,8 @@ from tipoff.studies.calibration import stage as calibrate
 from tipoff.studies.cli import app
 from tipoff.studies.core.settings import Settings
 from tipoff.studies.core.study import Study, StudyError
-from tipoff.studies.droptest import page, shipped, stage
+from tipoff.studies.droptest import page, stage
+from tipoff.studies.droptest.sheet import SAMPLES
 from tipoff.studies.populations import answers
 from tipoff.studies.render import chart
 
@@ -78,7 +79,7 @@ def test_shipped_logs_from_command_to_page(tmp_path, fitted):
     )
     # what a kill in the middle of writing would leave
     assert not list(data.parent.glob(".droptest.nc*"))
-    for row, path in zip(found["tests"], shipped.sheets()):
+    for row, path in zip(found["tests"], SAMPLES):
         _require_signals(data, row, stage.analyse(path))
     again = call("--cases", 200, "--out", tmp_path, "--json")
     assert json.loads(again.stdout) == found and "nothing changed" in again.stderr
@@ -179,7 +180,7 @@ def test_tests_are_judged_by_the_errors_condition_and_seed_that_are_asked_for(
         'low = "-{0} deg"\nhigh = "{0} deg"\n'
     )
     errors.write_text(lines.format("0.001"))
-    asked = ("--cases", 60, "--out", tmp_path, "--json", shipped.sheets()[0])
+    asked = ("--cases", 60, "--out", tmp_path, "--json", SAMPLES[0])
     paper, narrow, seeded, other = (
         json.loads(call(*asked, *more).stdout)
         for more in (
@@ -245,7 +246,7 @@ def test_bad_logs_are_listed_and_nothing_is_written(tmp_path):
         ("b", ("44.4 ms", "44.4 kg")),
     ):
         (tmp_path / f"{name}.toml").write_text(SHEET.replace(*change))
-    good = shipped.sheets()[0]
+    good = SAMPLES[0]
     result = call(
         *(tmp_path / f"{name}.toml" for name in ("a", "b", "none")),
         good,
@@ -281,7 +282,7 @@ def population(rates, exits=0.0444):
 def test_cases_that_do_not_settle_are_left_out_and_counted_and_too_few_are_refused(tmp_path):
     study, drops = (
         Study(load("reference"), tmp_path, Settings()),
-        [stage.analyse(path) for path in shipped.sheets()[:1]],
+        [stage.analyse(path) for path in SAMPLES[:1]],
     )
     rates = np.random.default_rng(1).normal(0.0, 8.0, (100, 3))
     rates[:30] = np.nan
@@ -309,7 +310,7 @@ def test_verdict_for_models_that_fit_that_are_too_narrow_and_too_wide(tmp_path, 
     large; in its range they are."""
     study, drops = (
         Study(load("reference"), tmp_path, Settings()),
-        [stage.analyse(path) for path in shipped.sheets()],
+        [stage.analyse(path) for path in SAMPLES],
     )
     rates = np.random.default_rng(2).normal(0.0, width, (400, 3))
     found = stage.result(study, drops, population(rates))
@@ -325,7 +326,7 @@ def test_verdict_for_models_that_fit_that_are_too_narrow_and_too_wide(tmp_path, 
 
 
 def test_what_does_not_match_the_scene_is_said(tmp_path):
-    study, drops = Study(load("tiny"), tmp_path, Settings()), [stage.analyse(shipped.sheets()[0])]
+    study, drops = Study(load("tiny"), tmp_path, Settings()), [stage.analyse(SAMPLES[0])]
     found = stage.result(
         study, drops, population(np.random.default_rng(3).normal(0.0, 8.0, (100, 3)), exits=0.012)
     )
@@ -338,4 +339,4 @@ def test_what_does_not_match_the_scene_is_said(tmp_path):
 
 def test_a_sheet_alone_is_no_log(tmp_path):
     with pytest.raises(SceneError, match="valid TOML"):
-        stage.analyse(shipped.sheets()[0].with_suffix(".csv"))
+        stage.analyse(SAMPLES[0].with_suffix(".csv"))

@@ -44,6 +44,8 @@ from tipoff.scenes.units import (
     to_si,
 )
 
+# sheets of the simulated logs that come with the package
+SAMPLES = sorted((Path(__file__).resolve().parent / "logs").glob("*.toml"))
 _Kind = TypeVar("_Kind")
 _Triple = tuple[_Kind, _Kind, _Kind]
 _Matrix = tuple[_Triple[_Kind], _Triple[_Kind], _Triple[_Kind]]

@@ -18,7 +18,7 @@ from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.scene import Scene
 from tipoff.studies.core.checked import together
 from tipoff.studies.core.study import Study, StudyError
-from tipoff.studies.droptest import sheet, shipped, signals
+from tipoff.studies.droptest import sheet, signals
 from tipoff.studies.droptest.analysis import Drop, analyse
 from tipoff.studies.droptest.results import joint, quantiles, row_of, summary
 from tipoff.studies.populations import population
@@ -50,9 +50,7 @@ def run(study: Study, logs: list[Path] | None = None, asked: Asked = Asked()) ->
     Raises SceneError listing every fault of every log and of what varies, StudyError where too few
     cases settle.
     """
-    drops, drawn = together(
-        lambda: _analysed(logs or shipped.sheets()), lambda: _drawn(study, asked)
-    )
+    drops, drawn = together(lambda: _analysed(logs or sheet.SAMPLES), lambda: _drawn(study, asked))
     request = asdict(asked) | {"logs": [str(path.resolve()) for path in logs] if logs else None}
 
     def make() -> tuple[dict, list[Path]]:
@@ -87,7 +85,7 @@ def stored(study: Study) -> dict | None:
 def _key(study: Study, request: dict) -> str:
     """By the paths of the logs, and by what these and the distributions hold now. Raises SceneError
     for a file that is gone or broken."""
-    digests = [_digest(Path(path)) for path in request["logs"] or shipped.sheets()]
+    digests = [_digest(Path(path)) for path in request["logs"] or sheet.SAMPLES]
     asked = Asked(**{name: value for name, value in request.items() if name != "logs"})
     return study.key(__name__, NAME, request, digests, _drawn(study, asked).uncertainty.resolved())
 

@@ -1,5 +1,4 @@
-"""A documented model of an inertial unit, for logs that are simulated and for tests of what reads
-them.
+"""A model of an inertial unit, for logs that are simulated and for tests of what reads them.
 
     gyro    raw = Q[(1 + diag s)(1 + E) R'w + b + G R'f + c (T - T0) + white + flicker]
             (see studies.droptest.calibrated)

@@ -1,29 +1,28 @@
-"""The three logs that come with the package, all SIMULATED; ``python -m studies.droptest.shipped``
-writes them again.
+"""Makes the three logs that come with the package, all SIMULATED;
+``python -m tests.studies.droptest.shipped`` writes them again.
 
 Each is a case of the surrogate on the reference scene with its own contact constants (not the
 calibrated ones), offsets drawn from the catalogue's ``paper`` distributions with a seed that no
-study uses, dropped in ``studies.droptest.tower`` and felt by the unit of
-``studies.droptest.sensor``, whose true errors are those of the sheet plus a draw of their stated
-uncertainties.
+study uses, dropped in ``tower.py`` and measured by the unit of ``sensor.py``. The true errors of
+that unit are those of the sheet plus a draw of their stated uncertainties.
 """
 
 from pathlib import Path
 
 import numpy as np
 
+from tests.studies.droptest import tower
+from tests.studies.droptest.sensor import Channel, Sensor, measured
+from tests.studies.droptest.tower import Motion, Tower
 from tipoff import scenes
 from tipoff.files import write_text
 from tipoff.lowfi.ensemble.rows import Drawn
 from tipoff.scenes import uncertainty
-from tipoff.studies.droptest import tower
-from tipoff.studies.droptest.sensor import Channel, Sensor, measured
-from tipoff.studies.droptest.tower import Motion, Tower
+from tipoff.studies.droptest.sheet import SAMPLES
 
-FOLDER = Path(__file__).resolve().parent / "logs"
 COUNT = 3
 _SEED, _INTERVAL = 20260, 1e-3
-_LABEL = "SIMULATED, not measured: surrogate and sensor model, python -m studies.droptest.shipped"
+_LABEL = "SIMULATED, not measured: surrogate and sensor model"
 # What the sheet states, in its units (degrees). The unit lies with its x axis along the payload's
 # -Y.
 _BIAS, _SCALE, _SKEW = (
@@ -150,17 +149,12 @@ settled = "100 ms"
 """
 
 
-def write(folder: Path = FOLDER) -> None:
+def write(folder: Path = SAMPLES[0].parent) -> None:
     """Write all of them into ``folder``."""
     for number in range(COUNT):
         table, sheet, _ = make(number)
         write_text(folder / f"simulated{number}.csv", table)
         write_text(folder / f"simulated{number}.toml", sheet)
-
-
-def sheets() -> list[Path]:
-    """The sheets that come with the package."""
-    return [FOLDER / f"simulated{number}.toml" for number in range(COUNT)]
 
 
 if __name__ == "__main__":
