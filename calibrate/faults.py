@@ -3,10 +3,11 @@
 from tipoff.calibration.curves import Curves
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.effects import thrust
+from tipoff.scenes.faults import InputError
 from tipoff.scenes.scene import Scene
 
 
-class CalibrationError(ValueError):
+class CalibrationError(InputError):
     """References or a scene nothing can be fitted to; the message lists every fault."""
 
 

@@ -19,12 +19,13 @@ from scipy.linalg import eigh_tridiagonal
 
 from tipoff.highfi.statics.assembly import Operator
 from tipoff.highfi.statics.operator import internal_force
+from tipoff.scenes.faults import InputError
 
 _BATCH = 2048  # classes of elements looked at at once; bounds the memory of an unstructured mesh
 _DIVIDES = 1e-9  # relative error allowed to a requested step that should divide the sample interval
 
 
-class StepError(ValueError):
+class StepError(InputError):
     """The step asked for would be unstable or does not meet the samples."""
 
 

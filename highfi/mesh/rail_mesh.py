@@ -29,6 +29,7 @@ from tipoff.highfi.mesh.cells import (
     kind,
     thickness,
 )
+from tipoff.scenes.faults import InputError
 
 _LISTED = 20  # element numbers printed in one message
 _THIN = 0.25  # of the median: thinner elements set the time step of the whole mesh
@@ -37,7 +38,7 @@ _THIN = 0.25  # of the median: thinner elements set the time step of the whole m
 _SKEW = 0.85
 
 
-class MeshError(ValueError):
+class MeshError(InputError):
     """The mesh cannot be used; the message lists every fault found."""
 
 

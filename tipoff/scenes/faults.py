@@ -19,7 +19,11 @@ class Fault(NamedTuple):
         return f"{self.source}: {self.key}: given {self.given}, expected {self.expected}"
 
 
-class SceneError(ValueError):
+class InputError(ValueError):
+    """Input that cannot be used: a scene, a mesh, a step or curves."""
+
+
+class SceneError(InputError):
     """A scene that cannot be used; ``faults`` lists everything wrong with it."""
 
     def __init__(self, faults: list[Fault]):

@@ -68,8 +68,8 @@ def quantity(option: str, text: str | None, unit: str) -> float | None:
 def guarded(work: Callable[[], dict], as_json: bool = False) -> dict:
     """Run ``work``; turn bad input and failed runs into messages and exit codes."""
     from tipoff.meshes.generator import GmshUnavailable
-    from tipoff.scenes.faults import SceneError
-    from tipoff.studies.core.study import INPUT_FAULTS, StudyError
+    from tipoff.scenes.faults import InputError, SceneError
+    from tipoff.studies.core.study import StudyError
 
     try:
         result = work()
@@ -86,9 +86,7 @@ def guarded(work: Callable[[], dict], as_json: bool = False) -> dict:
         # at once: files are complete at any moment, and a thread that compiles would hold the
         # process for seconds
         os._exit(130)
-    except ValueError as fault:
-        if type(fault).__name__ not in INPUT_FAULTS:
-            raise
+    except InputError as fault:
         stop(f"{type(fault).__name__}: {fault}", 2)
     if as_json:
         print(json.dumps(result, indent=1))

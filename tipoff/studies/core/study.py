@@ -26,8 +26,6 @@ from tipoff.studies.core.settings import Settings
 from tipoff.studies.core.store import Run, Store
 
 FAILED = ("diverged", "refused")
-# by name, for the libraries behind them are heavy
-INPUT_FAULTS = ("MeshError", "StepError", "CalibrationError")
 
 
 class StudyError(RuntimeError):

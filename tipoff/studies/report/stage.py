@@ -9,7 +9,7 @@ from pathlib import Path
 from tipoff import scenes, sources
 from tipoff.files import content_hash, write_text
 from tipoff.mechanics.rail_compliance import digest
-from tipoff.scenes.faults import SceneError
+from tipoff.scenes.faults import InputError
 from tipoff.studies.ablation import stage as ablation
 from tipoff.studies.agreement import stage as compare
 from tipoff.studies.bench import reference
@@ -19,7 +19,7 @@ from tipoff.studies.convergence import stage as convergence
 from tipoff.studies.core.progress import say
 from tipoff.studies.core.settings import defaults
 from tipoff.studies.core.store import Run
-from tipoff.studies.core.study import INPUT_FAULTS, Study, StudyError, read
+from tipoff.studies.core.study import Study, StudyError, read
 from tipoff.studies.cost import stage as cost
 from tipoff.studies.mesh import stage as mesh
 from tipoff.studies.registry import QUESTIONS
@@ -105,12 +105,7 @@ def _made(study: Study) -> dict[str, str]:
         try:
             if stored(study) is None:
                 make(study)
-        except (StudyError, ValueError) as fault:
-            if (
-                not isinstance(fault, (StudyError, SceneError))
-                and type(fault).__name__ not in INPUT_FAULTS
-            ):
-                raise
+        except (StudyError, InputError) as fault:
             reasons[name] = str(fault)
             say(f"{name}: not made\n{fault}")
     return reasons
