@@ -1,19 +1,44 @@
-"""All studies that answer an engineer's question, in the order of their commands and of their
-sections on the page."""
+"""All studies. A study is added here and nowhere else: its command, its result and its section of
+the page follow."""
 
 from tipoff.studies import (
+    ablation,
+    agreement,
+    bench,
     blind,
+    calibration,
+    convergence,
+    cost,
     droptest,
+    ensemble,
     flight,
     limits,
+    mesh,
     montecarlo,
     paper,
+    runs,
     sensitivity,
+    stability,
     sweeps,
+    view,
 )
-from tipoff.studies.question import Question
+from tipoff.studies.question import Contents, Entry, Result, Section
 
-QUESTIONS: tuple[Question, ...] = (
+# In the order of their commands; the report makes their results in this order.
+COMPARISON: tuple[Entry, ...] = (
+    mesh.ENTRY,
+    runs.ENTRY,
+    calibration.ENTRY,
+    agreement.ENTRY,
+    cost.ENTRY,
+    stability.ENTRY,
+    ablation.ENTRY,
+    convergence.ENTRY,
+    view.ENTRY,
+)
+ON_DEMAND: tuple[Entry, ...] = (runs.SINGLE, ensemble.ENTRY)
+# Those that answer an engineer's question.
+QUESTIONS: tuple[Entry, ...] = (
     blind.QUESTION,
     sensitivity.QUESTION,
     sweeps.QUESTION,
@@ -23,3 +48,40 @@ QUESTIONS: tuple[Question, ...] = (
     droptest.QUESTION,
     paper.QUESTION,
 )
+BENCHMARKS: tuple[Entry, ...] = (bench.ENTRY,)
+
+# Sections in the order a reader asks; those of all further studies follow.
+_FIRST = (
+    "mesh",
+    "compliance",
+    "thrust",
+    "figure6",
+    "contact-forces",
+    "energy",
+    "stress",
+    "calibration",
+    "agreement-section",
+    "growth-section",
+    "speedup",
+    "rails",
+    "cost",
+    "convergence",
+    "bench",
+    "stability",
+    "ablation",
+)
+
+
+def _loaded() -> list[Contents]:
+    return [entry.load() for entry in (*COMPARISON, *BENCHMARKS, *ON_DEMAND, *QUESTIONS)]
+
+
+def results() -> list[Result]:
+    """The results of all studies."""
+    return [result for contents in _loaded() for result in contents.results]
+
+
+def sections() -> list[Section]:
+    """The sections of all studies, in the order of the page."""
+    found = {section.anchor: section for item in _loaded() for section in item.sections}
+    return [found[anchor] for anchor in dict.fromkeys((*_FIRST, *found))]

@@ -14,8 +14,8 @@ from tipoff.scenes import load
 from tipoff.studies.bench import reference
 from tipoff.studies.bench.csr_loop import CsrLoop
 from tipoff.studies.cli import app
-from tipoff.studies.report.figures import Runs
 from tipoff.studies.report.page import Page
+from tipoff.studies.runs.figures import Runs
 
 
 def test_yardstick_is_central_differences_on_the_assembled_matrix():

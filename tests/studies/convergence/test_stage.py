@@ -13,16 +13,18 @@ from typer.testing import CliRunner
 from tests.studies.synthetic import flight
 from tipoff import scenes
 from tipoff.scenes.faults import SceneError
+from tipoff.studies import registry
 from tipoff.studies.cli import app
 from tipoff.studies.convergence import stage as convergence
+from tipoff.studies.convergence.page import draw
 from tipoff.studies.convergence.ripple import Ripple
 from tipoff.studies.core import store as store_module
 from tipoff.studies.core.settings import Settings, defaults
 from tipoff.studies.core.study import Study, StudyError
 from tipoff.studies.cost import timing
 from tipoff.studies.report import stage as report
-from tipoff.studies.report.figures import Runs
 from tipoff.studies.report.page import Page
+from tipoff.studies.runs.figures import Runs
 
 SURROGATE_ERROR = 1.2  # deg/s
 NOMINAL_PENALTY = scenes.load("tiny").contact.penalty
@@ -325,11 +327,11 @@ def test_stored_result_counts_only_while_nothing_changed(study):
 def test_page_shows_the_study_only_where_there_is_one(study):
     found = convergence.run(study)
     page = Page(study.scene, study.folder, {"convergence": found}, Runs({}, {}, {}), {})
-    shown = page._convergence()
+    shown = draw(page)
     assert 'id="convergence"' in shown and 'id="chart-convergence"' in shown
     assert all(f"{line[1:]}." in shown for line in found["summary"])
     assert study.path("figures/convergence.png").is_file()
-    assert Page(study.scene, study.folder, {}, Runs({}, {}, {}), {})._convergence() == ""
+    assert draw(Page(study.scene, study.folder, {}, Runs({}, {}, {}), {})) == ""
 
 
 def test_page_without_a_settled_run_has_no_figure(study, asked):
@@ -337,7 +339,7 @@ def test_page_without_a_settled_run_has_no_figure(study, asked):
     page = Page(
         study.scene, study.folder, {"convergence": convergence.run(study)}, Runs({}, {}, {}), {}
     )
-    assert "chart-convergence" not in page._convergence() and page.pictures == []
+    assert "chart-convergence" not in draw(page) and page.pictures == []
 
 
 def test_command_prints_the_summary_or_the_result(tmp_path, asked):
@@ -368,7 +370,8 @@ def test_command_refuses_an_unknown_condition(tmp_path, asked):
 
 
 def test_report_takes_up_a_study_that_is_there(study, monkeypatch):
-    monkeypatch.setattr(report, "STAGES", {name: lambda _: None for name in report.STAGES})
+    shown = [item for item in registry.results() if item.stored is not None]
+    monkeypatch.setattr(report, "results", lambda: shown)
     page = study.path("report.html")
     report.run(study)
     assert 'id="convergence"' not in page.read_text()

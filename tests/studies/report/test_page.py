@@ -8,15 +8,20 @@ import pytest
 
 from tests.studies.synthetic import flight
 from tipoff import scenes
+from tipoff.studies import registry
 from tipoff.studies.agreement import rails_page
+from tipoff.studies.agreement.page import _starred
+from tipoff.studies.calibration.page import calibration
 from tipoff.studies.core.settings import defaults
 from tipoff.studies.core.study import Study
+from tipoff.studies.cost.page import picture as cost_picture
 from tipoff.studies.render.chart import Chart, Line, Panel, to_files, to_html
 from tipoff.studies.render.markup import number, table
-from tipoff.studies.report import figures, inputs, stage, tables
-from tipoff.studies.report.figures import Runs
+from tipoff.studies.report import inputs, stage
 from tipoff.studies.report.page import Page
 from tipoff.studies.report.promises import promises
+from tipoff.studies.runs import figures
+from tipoff.studies.runs.figures import Runs
 from tipoff.studies.runs.stage import row
 
 
@@ -62,8 +67,8 @@ def test_text_from_a_scene_is_escaped():
 
 
 def test_a_star_leaves_powers_of_ten_as_they_are():
-    assert "10<sup>-9</sup>*</td>" in table(("a",), [(tables._starred(number(1e-9), False),)])
-    assert tables._starred(number(0.5), True) == "0.5"
+    assert "10<sup>-9</sup>*</td>" in table(("a",), [(_starred(number(1e-9), False),)])
+    assert _starred(number(0.5), True) == "0.5"
 
 
 def test_chart_is_drawn_twice(tmp_path):
@@ -218,7 +223,7 @@ def test_front_of_the_best_counts_errors_below_the_band_as_the_band():
             "pareto": pareto,
         }
 
-    chart = figures.cost_picture(
+    chart = cost_picture(
         {
             "band_deg_s": 0.04,
             "points": [
@@ -244,8 +249,8 @@ def test_front_of_the_best_counts_errors_below_the_band_as_the_band():
 def test_a_study_the_scene_gives_no_occasion_for_stops_nothing(tmp_path, monkeypatch):
     """A scene that says nothing of a flight. Control: without being asked for, it is a target that
     is named."""
-    monkeypatch.setattr(stage, "STAGES", {name: lambda _: None for name in stage.STAGES})
-    monkeypatch.setattr(stage, "OPTIONAL", ("flight",))
+    flight_alone = [item for item in registry.results() if item.name == "flight"]
+    monkeypatch.setattr(stage, "results", lambda: flight_alone)
     study = Study(
         scenes.load("tiny").replace({"flight": None}), tmp_path / "tiny", defaults("tiny")
     )
@@ -278,7 +283,7 @@ def test_calibration_shows_intervals_and_what_is_not_told():
         "conditions": ["phi15"],
         "objective": 1.0,
     }
-    shown = tables.calibration(document)
+    shown = calibration(document)
     assert (
         ">350 to 450<" in shown and ">not told<" in shown and "Model error is not in them" in shown
     )

@@ -3,8 +3,8 @@ drift are real figures."""
 
 import pytest
 
-from tipoff.studies.report.tables import stability
 from tipoff.studies.stability import contacts, guides, thrusts
+from tipoff.studies.stability.page import stability
 
 CASES = {**contacts.CASES, **guides.CASES, **thrusts.CASES}
 # which takes seconds, and is run with the pipeline

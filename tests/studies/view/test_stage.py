@@ -21,9 +21,9 @@ from tipoff.mechanics.trajectory import Trajectory
 from tipoff.studies.cli import app
 from tipoff.studies.core.settings import defaults
 from tipoff.studies.core.study import Study
-from tipoff.studies.report.figures import Runs
 from tipoff.studies.report.page import Page
 from tipoff.studies.runs import stress_page as section
+from tipoff.studies.runs.figures import Runs
 from tipoff.studies.runs.stage import row
 from tipoff.studies.view import frames, vtk_files
 from tipoff.studies.view import stage as view
@@ -228,18 +228,17 @@ def test_page_shows_peaks_and_says_what_would_show_more(viewed):
         Runs({}, {}, {}),
         {},
     )
-    shown = page._stress()
+    shown = section.draw(page)
     assert 'id="stress"' in shown and "+y +z" in shown and "503 MPa" in shown and ">3.98<" in shown
     assert "make view SCENE=tiny" in shown and "notice" not in shown
     page.documents["view"] = [found]
     assert (
-        "make view" not in page._stress()
-        and "make pictures" in page._stress()
-        and found["collection"] in page._stress()
+        "make view" not in section.draw(page)
+        and "make pictures" in section.draw(page)
+        and found["collection"] in section.draw(page)
     )
-    assert (
-        "make highfi SCENE=tiny"
-        in Page(study.scene, study.folder, {}, Runs({}, {}, {}), {})._stress()
+    assert "make highfi SCENE=tiny" in section.draw(
+        Page(study.scene, study.folder, {}, Runs({}, {}, {}), {})
     )
 
 

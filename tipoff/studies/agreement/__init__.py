@@ -1,1 +1,31 @@
 """How far two trajectories are apart, what that is judged by, and how long it means anything."""
+
+from tipoff.studies.agreement import command
+from tipoff.studies.question import Contents, Entry, Result, Section
+
+
+def _load() -> Contents:
+    from tipoff.studies.agreement import (
+        growth_page,
+        other_rails,
+        page,
+        rails_page,
+        speed_page,
+        stage,
+    )
+
+    return Contents(
+        (
+            Result("agreement", stage.run),
+            Result("rails", stored=lambda study: other_rails.beside(study.folder)),
+        ),
+        (
+            Section("agreement-section", "Agreement", page.draw),
+            Section("growth-section", "Growth of 1 µm", growth_page.draw),
+            Section("speedup", "Speed", speed_page.draw),
+            Section("rails", "Other rails", rails_page.draw),
+        ),
+    )
+
+
+ENTRY = Entry(command.add, _load)

@@ -2,10 +2,14 @@
 for comparing curves."""
 
 from html import escape
+from typing import TYPE_CHECKING
 
 from tipoff.mechanics.models import FINITE_ELEMENTS
 from tipoff.studies.render.chart import NAVY, VERMILION, Chart, Line, Panel
-from tipoff.studies.render.markup import Html, caption, number, table
+from tipoff.studies.render.markup import Html, caption, number, section, table
+
+if TYPE_CHECKING:
+    from tipoff.studies.report.page import Page
 
 WORDS = (
     "Largest separation of the body rates from those of twins whose clearance differs by ±1 µm. "
@@ -26,6 +30,16 @@ _LEGEND = (
 _SHOWN = 1e-4  # of the gate; nothing below matters to a comparison
 _LOOKS = ((NAVY, 5.0, "-", 0.35), (VERMILION, 1.5, "-", 1.0))
 _MARKERS = "Do"
+
+
+def draw(page: "Page") -> Html:
+    """The section, where anything touches; agreement reminds of its own stage."""
+    found = (page.documents.get("agreement") or {}).get("growth")
+    if not found:
+        return Html("")
+    return section(
+        "growth-section", "How 1 µm grows", page.figure(picture(found), WORDS), tables(found)
+    )
 
 
 def picture(found: list[dict]) -> Chart:

@@ -1,8 +1,13 @@
 """Agreement on other rails: scenes whose results lie beside those of the page, each calibrated and
 judged by itself."""
 
-from tipoff.studies.render.markup import Html, caption, number, paragraph
+from typing import TYPE_CHECKING
+
+from tipoff.studies.render.markup import Html, caption, number, paragraph, section
 from tipoff.studies.render.markup import table as drawn
+
+if TYPE_CHECKING:
+    from tipoff.studies.report.page import Page
 
 HEADS = (
     "scene",
@@ -14,6 +19,12 @@ HEADS = (
     "largest settled error (deg/s)",
     "reference not converged",
 )
+
+
+def draw(page: "Page") -> Html:
+    """The section, where other scenes have results beside these."""
+    found = page.documents.get("rails")
+    return section("rails", "Other rails", table(found)) if found else Html("")
 
 
 def rows(found: list[dict]) -> list[tuple]:

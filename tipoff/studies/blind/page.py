@@ -2,9 +2,9 @@
 
 import math
 
+from tipoff.studies.agreement.page import judged, summary
 from tipoff.studies.render.document import Caption, Fold, Part
 from tipoff.studies.render.table import Table
-from tipoff.studies.report import tables
 
 _WORDS = (
     "Drawn from the distributions “{vary}” with seed {seed}{origin}. Every condition has its own "
@@ -21,11 +21,11 @@ def draw(found: dict) -> list[Part]:
         else ""
     )
     return [
-        "On compliant contact, nothing fitted: " + tables.summary(compliant),
-        tables.judged(compliant, "blind-compliant"),
+        "On compliant contact, nothing fitted: " + summary(compliant),
+        judged(compliant, "blind-compliant"),
         Caption(_WORDS.format(vary=options["vary"], seed=found["seed"], origin=origin)),
-        "Calibrated springs: " + tables.summary(calibrated),
-        tables.judged(calibrated, "blind-calibrated"),
+        "Calibrated springs: " + summary(calibrated),
+        judged(calibrated, "blind-calibrated"),
         Fold("What was drawn", [_drawn(found["conditions"])]),
     ]
 

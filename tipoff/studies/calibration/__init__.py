@@ -1,1 +1,22 @@
 """The surrogate's contact taken from the finite elements: rail compliance, constants of springs."""
+
+from tipoff.studies.calibration import command
+from tipoff.studies.question import Contents, Entry, Result, Section
+
+
+def _load() -> Contents:
+    from tipoff.studies.calibration import compliance, compliance_page, page, stage
+
+    return Contents(
+        (
+            Result("compliance", compliance.run),
+            Result("calibration", stage.run),
+        ),
+        (
+            Section("compliance", "Compliance", compliance_page.draw),
+            Section("calibration", "Calibration", page.draw),
+        ),
+    )
+
+
+ENTRY = Entry(command.add, _load)

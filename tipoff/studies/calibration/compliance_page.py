@@ -1,11 +1,16 @@
 """Rail compliance on the page: how far a wall gives way under a pad, and what pressing one wall
 does to the other."""
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from tipoff.studies.render.chart import AMBER, GREY, NAVY, TEAL, VERMILION, Chart, Line, Panel
-from tipoff.studies.render.markup import Html, number
+from tipoff.studies.render.markup import Html, number, section
 from tipoff.studies.render.markup import table as markup_table
+
+if TYPE_CHECKING:
+    from tipoff.studies.report.page import Page
 
 WORDS = (
     "Static displacement of a wall of the rail, averaged over the face of a rear pad, per force "
@@ -18,6 +23,21 @@ _DIRECT, _CROSS = (NAVY, VERMILION, TEAL), (AMBER, GREY)
 # The legs of a symmetric section give way alike: the first line is broad and pale, so that the next
 # shows on it.
 _LOOKS = ((5.0, "-", 0.35), (1.5, "-", 1.0), (1.5, ":", 1.0))  # width, dash, opacity
+
+
+def draw(page: "Page") -> Html:
+    """The section; nothing for a scene without contact."""
+    found = page.documents.get("compliance") or {}
+    if not found.get("under_a_pad"):
+        return Html("")
+    return section(
+        "compliance",
+        "Rail compliance",
+        page.figure(
+            picture(found["under_a_pad"]), WORDS.format(size=1e3 * found["element_size_m"])
+        ),
+        table(found["under_a_pad"]),
+    )
 
 
 def picture(found: dict) -> Chart:

@@ -65,8 +65,13 @@ def quantity(option: str, text: str | None, unit: str) -> float | None:
     return value
 
 
-def guarded(work: Callable[[], dict], as_json: bool = False) -> dict:
-    """Run ``work``; turn bad input and failed runs into messages and exit codes."""
+def guarded(
+    work: Callable[[], dict],
+    as_json: bool = False,
+    lines: Callable[[dict], list[str]] | None = None,
+) -> dict:
+    """Run ``work`` and print its result, as JSON or as the ``lines`` it has for a reader; turn bad
+    input and failed runs into messages and exit codes."""
     from tipoff.meshes.generator import GmshUnavailable
     from tipoff.scenes.faults import InputError, SceneError
     from tipoff.studies.core.study import StudyError
@@ -92,6 +97,8 @@ def guarded(work: Callable[[], dict], as_json: bool = False) -> dict:
         print(json.dumps(result, indent=1))
     if failed := result.get("failed"):
         stop("failed:\n  " + "\n  ".join(failed), 1)
+    if lines is not None and not as_json:
+        print("\n".join(lines(result)))
     return result
 
 

@@ -49,6 +49,12 @@ Conditions = Annotated[
         help="Named condition of the scene, repeatable; default: all.",
     ),
 ]
+RefinedCondition = Annotated[
+    str | None,
+    typer.Option(
+        "--condition", metavar="NAME", help="Named condition; default: the first refined one."
+    ),
+]
 _COMPLIANT = (
     "compliant (default): rigid bodies on the rail's static compliance, condensed from "
     "the finite elements; "

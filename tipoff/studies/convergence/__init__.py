@@ -1,1 +1,16 @@
 """Error of the reference itself: quantities over ever finer meshes, and what they tend to."""
+
+from tipoff.studies.convergence import command
+from tipoff.studies.question import Contents, Entry, Result, Section
+
+
+def _load() -> Contents:
+    from tipoff.studies.convergence import page, stage
+
+    return Contents(
+        (Result("convergence", stage.run, stage.stored),),
+        (Section("convergence", "Convergence", page.draw),),
+    )
+
+
+ENTRY = Entry(command.add, _load)

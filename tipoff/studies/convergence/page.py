@@ -1,14 +1,29 @@
 """The reference's own error as the page shows it: settled rates over element size, and tables of
 what was refined or changed."""
 
+from typing import TYPE_CHECKING
+
 from tipoff.studies.render.chart import AXIS_COLOURS, GREY, Chart, Line, Panel
-from tipoff.studies.render.markup import Html, caption, fold, number, table
+from tipoff.studies.render.markup import Html, caption, fold, number, section, table
+
+if TYPE_CHECKING:
+    from tipoff.studies.report.page import Page
 
 WORDS = (
     "Condition {condition}. Settled rates over element size; between the dotted lines lies what "
     "the three finest meshes still "
     "leave open at the finest."
 )
+
+
+def draw(page: "Page") -> Html:
+    """The section. Nothing without its result, and no reminder either: it takes minutes to make."""
+    found = page.documents.get("convergence")
+    if not found:
+        return Html("")
+    chart = picture(found)
+    drawn = page.figure(chart, WORDS.format(condition=found["condition"])) if chart.panels else ""
+    return section("convergence", "Error of the reference itself", drawn, tables(found))
 
 
 def picture(document: dict) -> Chart:

@@ -11,7 +11,7 @@ from tipoff.studies.core.study import Study, StudyError
 _OWNERS = {"--calibration": SPRINGS, "--modes": COMPLIANT, "--checkpoint-every": FINITE_ELEMENTS}
 
 
-class Asked(NamedTuple):
+class Options(NamedTuple):
     """A model by ``name``, None where none was named; the file of a ``calibration`` of springs; how
     many ``modes`` of each rail vibrate on compliant contact."""
 
@@ -25,23 +25,23 @@ class Asked(NamedTuple):
         return self.name or COMPLIANT
 
 
-def require(asked: Asked, **others: object) -> None:
+def require(options: Options, **others: object) -> None:
     """Raises SceneError, every fault listed, for an unknown name and for options of another model
-    than the one ``asked`` for; ``others`` are further options by the name of their parameter, None
+    than that of the ``options``; ``others`` are further options by the name of their parameter, None
     where they were not given."""
-    if asked.model not in MODELS:
-        raise SceneError([Fault("--model", "name", asked.model, f"one of {', '.join(MODELS)}")])
-    given: dict[str, object] = {"--calibration": asked.calibration, "--modes": asked.modes}
+    if options.model not in MODELS:
+        raise SceneError([Fault("--model", "name", options.model, f"one of {', '.join(MODELS)}")])
+    given: dict[str, object] = {"--calibration": options.calibration, "--modes": options.modes}
     given |= {f"--{name.replace('_', '-')}": value for name, value in others.items()}
     faults = [
         Fault(
             option,
             "option",
             str(value),
-            f"none with --model {asked.model}: it belongs to {_OWNERS[option]}",
+            f"none with --model {options.model}: it belongs to {_OWNERS[option]}",
         )
         for option, value in given.items()
-        if value is not None and _OWNERS[option] != asked.model
+        if value is not None and _OWNERS[option] != options.model
     ]
     if faults:
         raise SceneError(faults)

@@ -1,1 +1,16 @@
 """What a run takes, how that grows, and which model to choose for an accuracy or a time."""
+
+from tipoff.studies.cost import command
+from tipoff.studies.question import Contents, Entry, Result, Section
+
+
+def _load() -> Contents:
+    from tipoff.studies.cost import page, stage
+
+    return Contents(
+        (Result("cost_study", stage.run),),
+        (Section("cost", "Cost", page.draw),),
+    )
+
+
+ENTRY = Entry(command.add, _load)

@@ -29,7 +29,7 @@ from tipoff.studies.ensemble import summary
 
 
 @dataclass(frozen=True)
-class Asked:
+class Options:
     """What ``tipoff ensemble`` is given beside the scene; None: as the file of distributions says,
     or the default."""
 
@@ -42,37 +42,37 @@ class Asked:
     tolerance: float = 1e-2
     scheduler: str | None = None
     workers: int | None = None
-    model: models.Asked = models.Asked()
+    model: models.Options = models.Options()
 
 
-def request(study: Study, asked: Asked) -> Ensemble:
-    """The ensemble that is ``asked`` for. Raises SceneError for bad input, before any rail
+def request(study: Study, options: Options) -> Ensemble:
+    """The ensemble that the ``options`` describe. Raises SceneError for bad input, before any rail
     compliance is found, and StudyError where no model is named and the agreement table rejects the
     default."""
-    fitted = constants(asked.model.calibration)
+    fitted = constants(options.model.calibration)
     changed = {
         name: value
         for name in ("cases", "seed", "sampling")
-        if (value := getattr(asked, name)) is not None
+        if (value := getattr(options, name)) is not None
     }
-    if asked.table is not None:
+    if options.table is not None:
         if changed:
             expected = "nothing, since the table lists its cases"
             raise SceneError(
                 [Fault("--table", name, str(value), expected) for name, value in changed.items()]
             )
-        source: Any = TableFile(asked.table)
+        source: Any = TableFile(options.table)
     else:
-        source = Drawn(uncertainty.load(asked.vary, study.scene, **changed))
+        source = Drawn(uncertainty.load(options.vary, study.scene, **changed))
     try:
-        numerics = Numerics(relative_tolerance=asked.tolerance, modes=asked.model.modes or 0)
+        numerics = Numerics(relative_tolerance=options.tolerance, modes=options.model.modes or 0)
     except ValueError as fault:
-        given = f"{asked.tolerance:g}, {asked.model.modes}"
+        given = f"{options.tolerance:g}, {options.model.modes}"
         raise SceneError([Fault("--tolerance, --modes", "numerics", given, str(fault))]) from None
-    if asked.store is not None and asked.store.exists() and not asked.store.is_dir():
-        raise SceneError([Fault("--store", "path", str(asked.store), "a folder")])
-    models.require_accepted(study, asked.model.name)
-    springs = asked.model.model == SPRINGS
+    if options.store is not None and options.store.exists() and not options.store.is_dir():
+        raise SceneError([Fault("--store", "path", str(options.store), "a folder")])
+    models.require_accepted(study, options.model.name)
+    springs = options.model.model == SPRINGS
     found = (
         study.rigid_rails(study.scene)
         if springs
@@ -81,12 +81,12 @@ def request(study: Study, asked: Asked) -> Ensemble:
     return Ensemble(study.scene, source, fitted, numerics, found)
 
 
-def run(study: Study, asked: Asked) -> dict:
+def run(study: Study, options: Options) -> dict:
     """Run what the store lacks; the summary, also written as ``ensemble.json``. Raises StudyError
     when the run cannot go on."""
-    ensemble = request(study, asked)
+    ensemble = request(study, options)
     try:
-        store = ensemble.store(path := _path(study, asked, ensemble))
+        store = ensemble.store(path := _path(study, options, ensemble))
         ensemble.case(0)  # compiles, or loads the kernels from disk, before any clock runs
         began, processor = time.perf_counter(), time.process_time()
         with Board("ensemble", 1) as board:
@@ -95,8 +95,8 @@ def run(study: Study, asked: Asked) -> dict:
             new = fill(
                 ensemble,
                 store,
-                asked.workers,
-                asked.scheduler,
+                options.workers,
+                options.scheduler,
                 lambda stored: report(stored / store.asked),
             )
             wall, spent = time.perf_counter() - began, time.process_time() - processor
@@ -110,16 +110,16 @@ def run(study: Study, asked: Asked) -> dict:
         "cases": new,
         "wall_s": wall,
         "peak_memory_bytes": 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss,
-        "scheduler": asked.scheduler,
+        "scheduler": options.scheduler,
     }
-    if new and not asked.scheduler:
+    if new and not options.scheduler:
         cost["cpu_ms_per_case"] = 1e3 * spent / new
     found = {
         "stage": "ensemble",
         "scene": study.scene.name,
         "store": str(path),
         **said,
-        "agreement": _agreement(study, asked),
+        "agreement": _agreement(study, options),
         "run": cost,
         "hardware": machine.describe(),
     }
@@ -127,20 +127,24 @@ def run(study: Study, asked: Asked) -> dict:
     return found
 
 
-def _agreement(study: Study, asked: Asked) -> str:
+def _agreement(study: Study, options: Options) -> str:
     return kept.words(
-        study, asked.model.model, None, asked.model.calibration is not None, asked.model.modes or 0
+        study,
+        options.model.model,
+        None,
+        options.model.calibration is not None,
+        options.model.modes or 0,
     )
 
 
-def _path(study: Study, asked: Asked, ensemble: Ensemble) -> Path:
+def _path(study: Study, options: Options, ensemble: Ensemble) -> Path:
     """The store: where it was asked for, else one of its own for every ensemble."""
-    return asked.store or study.path(f"ensemble-{ensemble.key[:8]}")
+    return options.store or study.path(f"ensemble-{ensemble.key[:8]}")
 
 
-def case(study: Study, asked: Asked, number: int) -> dict:
+def case(study: Study, options: Options, number: int) -> dict:
     """One case run alone, and whether its store, if there is one, holds the same bits."""
-    ensemble = request(study, asked)
+    ensemble = request(study, options)
     if not 0 <= number < ensemble.source.asked:
         raise SceneError(
             [Fault("--case", "number", str(number), f"0 to {ensemble.source.asked - 1}")]
@@ -155,7 +159,7 @@ def case(study: Study, asked: Asked, number: int) -> dict:
         **found.outcome._asdict(),
         "stored": None,
     }
-    path = _path(study, asked, ensemble)
+    path = _path(study, options, ensemble)
     if path.exists():
         try:
             store = ensemble.store(path)

@@ -1,1 +1,16 @@
 """The rails as the reference will use them."""
+
+from tipoff.studies.mesh import command
+from tipoff.studies.question import Contents, Entry, Result, Section
+
+
+def _load() -> Contents:
+    from tipoff.studies.mesh import page, stage
+
+    return Contents(
+        (Result("mesh", stage.run),),
+        (Section("mesh", "Mesh", page.draw),),
+    )
+
+
+ENTRY = Entry(command.add, _load)

@@ -45,6 +45,11 @@ def section(identity: str, title: str, *parts: str) -> Html:
     return Html(f'<section id="{identity}"><h2>{escape(title)}</h2>{"".join(parts)}</section>')
 
 
+def joined(*parts: str) -> Html:
+    """Markup one after the other."""
+    return Html("".join(parts))
+
+
 def paragraph(*parts: str) -> Html:
     """A paragraph; plain strings are escaped."""
     return Html("<p>" + "".join(text(part) for part in parts) + "</p>")

@@ -11,13 +11,13 @@ from pathlib import Path
 from tipoff.files import read_json, write_text
 from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS
 from tipoff.studies.agreement import growth_page, rails_page
+from tipoff.studies.agreement.other_rails import beside
 from tipoff.studies.agreement.verdicts import CONVERGED_DEG_S
 from tipoff.studies.convergence import equal_accuracy
 from tipoff.studies.core.study import read
 from tipoff.studies.render.document import Part, markdown
 from tipoff.studies.render.table import Column, Table, number, percent
 from tipoff.studies.report import further
-from tipoff.studies.report.stage import beside
 
 _ROOT = Path(__file__).resolve().parents[3]
 _TITLE = """# Further results on the reference scene

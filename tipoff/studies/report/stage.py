@@ -2,50 +2,18 @@
 what is there already: the error of the reference, a benchmark, and the studies that answer an
 engineer's questions."""
 
-from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 
-from tipoff import scenes, sources
+from tipoff import sources
 from tipoff.files import content_hash, write_text
-from tipoff.mechanics.rail_compliance import digest
 from tipoff.scenes.faults import InputError
-from tipoff.studies.ablation import stage as ablation
 from tipoff.studies.agreement import stage as compare
-from tipoff.studies.bench import reference
-from tipoff.studies.calibration import compliance
-from tipoff.studies.calibration import stage as calibrate
-from tipoff.studies.convergence import stage as convergence
 from tipoff.studies.core.progress import say
-from tipoff.studies.core.settings import defaults
 from tipoff.studies.core.store import Run
-from tipoff.studies.core.study import Study, StudyError, read
-from tipoff.studies.cost import stage as cost
-from tipoff.studies.mesh import stage as mesh
-from tipoff.studies.registry import QUESTIONS
+from tipoff.studies.core.study import Study, StudyError
+from tipoff.studies.question import Result
+from tipoff.studies.registry import results
 from tipoff.studies.runs import stage as runs
-from tipoff.studies.stability import stage as stability
-from tipoff.studies.view import stage as view
-
-STAGES: dict[str, Callable[[Study], dict]] = {
-    "mesh": mesh.run,
-    "highfi": lambda study: runs.run(study, "highfi"),
-    "lowfi": lambda study: runs.run(study, "lowfi"),
-    compliance.NAME: compliance.run,
-    "calibration": calibrate.run,
-    "agreement": compare.run,
-    cost.NAME: cost.run,
-    "stability": stability.run,
-    "ablation": ablation.run,
-}
-
-
-def optional() -> dict[str, tuple[Callable[[Study], dict], Callable[[Study], dict | None]]]:
-    """Studies that the page shows if they were made: how each is made, and how it is found."""
-    parts = {item.name: item.load() for item in QUESTIONS}
-    return {convergence.NAME: (convergence.run, convergence.stored)} | {
-        name: (item.run, item.stored) for name, item in parts.items()
-    }
 
 
 def run(study: Study, every: bool = False) -> dict:
@@ -54,21 +22,16 @@ def run(study: Study, every: bool = False) -> dict:
     occasion for says so on the page."""
     documents: dict[str, dict | None] = {}
     problems: dict[str, str] = {}
-    for name, stage in STAGES.items():
+    known = results()
+    for name, make_result, stored in known:
+        if make_result is None or stored is not None:
+            continue
         try:
-            documents[name] = stage(study)
+            documents[name] = make_result(study)
         except StudyError as fault:
             documents[name], problems[name] = None, str(fault)
-    absent = _made(study) if every else {}
-    there = (
-        {
-            convergence.NAME: convergence.stored(study),
-            "bench": reference.stored(study.folder.parent),
-            "view": view.stored(study),
-        }
-        | {item.name: item.load().stored(study) for item in QUESTIONS}
-        | {"rails": beside(study.folder)}
-    )
+    absent = _made(study, known) if every else {}
+    there = {name: stored(study) for name, _, stored in known if stored is not None}
 
     def make() -> tuple[dict, list[Path]]:
         from tipoff.studies.report.page import Page
@@ -97,11 +60,13 @@ def run(study: Study, every: bool = False) -> dict:
     return study.stage("report", key, make)
 
 
-def _made(study: Study) -> dict[str, str]:
-    """Make every optional study without a present result; why not, by name, where the scene or its
+def _made(study: Study, known: list[Result]) -> dict[str, str]:
+    """Make every optional result that is not present; why not, by name, where the scene or its
     settings do not allow it."""
     reasons = {}
-    for name, (make, stored) in optional().items():
+    for name, make, stored in known:
+        if make is None or stored is None:
+            continue
         try:
             if stored(study) is None:
                 make(study)
@@ -109,29 +74,6 @@ def _made(study: Study) -> dict[str, str]:
             reasons[name] = str(fault)
             say(f"{name}: not made\n{fault}")
     return reasons
-
-
-def beside(folder: Path) -> list[dict]:
-    """Agreement and constants of the catalogue's scenes with other rails or pads whose folders lie
-    beside ``folder``, made from the present code."""
-    found, own = [], digest(scenes.load(folder.name)) if folder.name in scenes.catalog() else None
-    for path in sorted(folder.parent.glob("*/agreement.json")):
-        name, size = path.parent.name, (read(path) or {}).get("element_size_m")
-        if name not in scenes.catalog() or digest(scenes.load(name)) == own or size is None:
-            continue
-        other = Study(scenes.load(name), path.parent, replace(defaults(name), element_size=size))
-        if agreement := compare.stored(other):
-            calibration = read(other.path("calibration.json"))
-            assert calibration is not None  # with which the agreement was found
-            found.append(
-                {
-                    "name": name,
-                    "element_size_m": size,
-                    "agreement": agreement,
-                    "constants": calibration["constants"],
-                }
-            )
-    return found
 
 
 def _failed(documents: dict, problems: dict[str, str]) -> list[str]:
@@ -145,10 +87,10 @@ def _failed(documents: dict, problems: dict[str, str]) -> list[str]:
 
 
 def _trajectories(study: Study, documents: dict):
-    from tipoff.studies.report.figures import Runs
+    from tipoff.studies.runs.figures import Runs
 
     asked = [runs.requests(study, fidelity) for fidelity in ("highfi", "lowfi")]
-    if documents["agreement"]:
+    if documents.get("agreement"):
         plain, calibrated, *_ = compare.rungs(study)
         asked += [
             {name: rung.ask(study, name) for name in study.conditions}

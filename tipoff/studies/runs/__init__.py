@@ -1,1 +1,26 @@
 """Every condition of a scene in either model, and single runs."""
+
+from tipoff.studies.question import Contents, Entry, Result, Section
+from tipoff.studies.runs import command
+
+
+def _load() -> Contents:
+    from tipoff.studies.runs import page, stage, stress_page
+
+    return Contents(
+        (
+            Result("highfi", lambda study: stage.run(study, "highfi")),
+            Result("lowfi", lambda study: stage.run(study, "lowfi")),
+        ),
+        (
+            Section("thrust", "Thrust", page.thrust),
+            Section("figure6", "Curves", page.curves),
+            Section("contact-forces", "Contact", page.contact),
+            Section("energy", "Energy", page.energy),
+            Section("stress", "Stress", stress_page.draw),
+        ),
+    )
+
+
+ENTRY = Entry(command.add, _load)
+SINGLE = Entry(command.add_run)

@@ -14,24 +14,24 @@ from tipoff.studies.runs.stage import row
 
 
 def run(
-    study: Study, condition: str, asked: models.Asked = models.Asked(), quiet: bool = False
+    study: Study, condition: str, options: models.Options = models.Options(), quiet: bool = False
 ) -> dict:
     """The run's result as a stage would hold it; prints it unless ``quiet``. Raises SceneError for
     an unreadable calibration and for options of another model, StudyError where no model is named
     and the agreement table rejects the default on ``condition``."""
-    fitted, scene = constants(asked.calibration), study.condition(condition)
-    if asked.model == FINITE_ELEMENTS:
+    fitted, scene = constants(options.calibration), study.condition(condition)
+    if options.model == FINITE_ELEMENTS:
         return _made(study, condition, study.highfi(condition), quiet)
-    if asked.model == SPRINGS:
+    if options.model == SPRINGS:
         return _made(study, condition, study.lowfi(condition, fitted), quiet)
-    models.require_accepted(study, asked.name, condition)
+    models.require_accepted(study, options.name, condition)
     # checks the number before the rail compliance is found
-    vibrating = study.lowfi(condition, modes=asked.modes or 0)
+    vibrating = study.lowfi(condition, modes=options.modes or 0)
     if scene.contact is None:
         return _made(study, condition, vibrating, quiet)
     found = study.rail_compliance(scene, judged=False)
     return _made(
-        study, condition, study.lowfi(condition, compliance=found, modes=asked.modes or 0), quiet
+        study, condition, study.lowfi(condition, compliance=found, modes=options.modes or 0), quiet
     )
 
 

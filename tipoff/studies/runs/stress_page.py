@@ -5,10 +5,22 @@ import base64
 import math
 from html import escape
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from tipoff.studies.render.markup import Html, caption, code, number, paragraph, section, table
 
+if TYPE_CHECKING:
+    from tipoff.studies.report.page import Page
+
 _MIME = {".png": "image/png", ".webp": "image/webp"}
+
+
+def draw(page: "Page") -> Html:
+    """Peak stresses of all conditions, and pictures of those that `make view` was made for."""
+    rows = page.rows()["highfi"]
+    if not rows:
+        return section("stress", "Stress of the rails", page.missing("highfi", "highfi"))
+    return shown(rows, page.documents.get("view") or [], page.folder, page.scene.name)
 
 
 def shown(rows: list[dict], views: list[dict], folder: Path, scene: str) -> Html:

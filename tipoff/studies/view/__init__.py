@@ -1,2 +1,16 @@
 """A run to look at: VTK files of its frames for ParaView, and pictures of them where pyvista is
 installed."""
+
+from tipoff.studies.question import Contents, Entry, Result
+from tipoff.studies.view import command
+
+
+def _load() -> Contents:
+    from tipoff.studies.view import stage
+
+    return Contents(
+        (Result("view", stored=stage.stored),),
+    )
+
+
+ENTRY = Entry(command.add, _load)

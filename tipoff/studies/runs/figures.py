@@ -1,4 +1,4 @@
-"""The figures of the report, from trajectories and result files."""
+"""Figures of the trajectories of both models."""
 
 from collections.abc import Mapping
 from types import MappingProxyType
@@ -7,12 +7,10 @@ from typing import NamedTuple
 import numpy as np
 
 from tipoff.mechanics import ledger
-from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.effects import thrust_law
 from tipoff.scenes.scene import Scene
 from tipoff.studies.convergence.contact_loads import by_pad
-from tipoff.studies.cost import choice
 from tipoff.studies.render.chart import (
     AMBER,
     AXIS_COLOURS,
@@ -175,121 +173,3 @@ def energy_ledgers(runs: Runs, condition: str) -> Chart:
                 )
             )
     return Chart("energy-ledgers", panels, columns=2, height=290)
-
-
-def cost_picture(cost: dict) -> Chart:
-    """Errors of the settled rates and of the curves against wall time, one line per model, with the
-    band of the reference's own uncertainty and the front of the best; and the part of the
-    surrogate's error that a tighter tolerance can buy off."""
-    looks = (("s", "-"), ("^", ":"), ("o", "--"), ("v", "-."), ("D", "-"), ("o", ":"), ("x", ""))
-    models = dict.fromkeys(point["model"] for point in cost["points"])
-    look = {
-        model: (colour, *rest)
-        for model, colour, rest in zip(
-            models, (NAVY, GREY, AMBER, TEAL, VERMILION, NAVY, NAVY), looks
-        )
-    }
-    band = (cost["band_deg_s"], "the reference's own uncertainty") if cost["band_deg_s"] else None
-    settled = [
-        point
-        | {
-            "error_deg_s": cost["band_deg_s"]
-            if point["error_deg_s"] is None
-            else point["error_deg_s"]
-        }
-        for point in cost["points"]
-    ]
-    curves = [
-        point | {"curve_error": point["curve_error"] and 100.0 * point["curve_error"]}
-        for point in cost["points"]
-    ]
-    panels = []
-    for title, points, error, label, shaded in (
-        (
-            "settled rates, against the finest mesh",
-            settled,
-            "error_deg_s",
-            "error of the settled rates (deg/s)",
-            band,
-        ),
-        (
-            "curves of the rates, against the finest mesh",
-            curves,
-            "curve_error",
-            "rate L2 (%)",
-            None,
-        ),
-        (
-            "settled rates, of which time integration",
-            cost["points"],
-            "integration_error_deg_s",
-            "error of the settled rates (deg/s)",
-            None,
-        ),
-    ):
-        lines = [
-            _cost_line(
-                [p for p in points if p["model"] == model and (p[error] or 0.0) > 0.0],
-                error,
-                model,
-                *style,
-            )
-            for model, style in look.items()
-        ]
-        front = [_front(cost)] if shaded else []
-        shown = [line for line in front + lines if len(line.x)]
-        panels.append(Panel(title, "wall time of one run (s)", label, shown, True, shaded))
-    return Chart("cost", [panel for panel in panels if panel.lines], columns=3, height=380)
-
-
-def _front(cost: dict) -> Line:
-    """Steps from each of the best to the next: errors below the band count as the band."""
-    best = sorted(
-        (p["wall_s"], p["trusted_deg_s"])
-        for p in choice.trusted(cost["points"], cost["band_deg_s"])
-        if p["pareto"]
-    )
-    walls, errors = [wall for wall, _ in best], [error for _, error in best]
-    return Line(
-        [
-            wall
-            for pair in zip(walls, [*walls[1:], max(p["wall_s"] for p in cost["points"])])
-            for wall in pair
-        ],
-        [error for error in errors for _ in range(2)],
-        "front of the best",
-        "#000000",
-        3.0,
-        "-",
-        opacity=0.25,
-    )
-
-
-def _cost_line(
-    points: list[dict], error: str, model: str, colour: str, marker: str, dash: str
-) -> Line:
-    """One model; tolerances are labelled only where they matter, in the panel of the time
-    integration, and once for all models, numbers of modes wherever they are varied."""
-    varied = any(point["modes"] for point in points)
-    labels = [
-        str(point["modes"])
-        if varied
-        else point["numerics"].split(",")[0].removeprefix("tolerance ")
-        for point in points
-    ]
-    if (
-        model != FINITE_ELEMENTS
-        and not varied
-        and (error != "integration_error_deg_s" or model != COMPLIANT)
-    ):
-        labels = [""] * len(labels)
-    return Line(
-        [p["wall_s"] for p in points],
-        [p[error] for p in points],
-        model,
-        colour,
-        1.6,
-        dash,
-        marker=marker,
-        labels=tuple(labels),
-    )

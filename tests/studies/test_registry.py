@@ -1,0 +1,144 @@
+"""A study of one's own: a folder and one entry of the registry are all it takes."""
+
+import importlib
+import json
+import sys
+
+import pytest
+import typer
+from typer.testing import CliRunner
+
+from tipoff import scenes
+from tipoff.studies import registry
+from tipoff.studies.core.settings import defaults
+from tipoff.studies.core.study import Study
+from tipoff.studies.report import stage as report
+
+STAGE = """
+from dataclasses import dataclass
+
+from tipoff.scenes.faults import Fault, SceneError
+from tipoff.studies.core.stage import Stage
+
+
+@dataclass(frozen=True)
+class Options:
+    times: int = 2
+
+
+def run(study, options=Options()):
+    if options.times < 1:
+        raise SceneError([Fault("--times", "value", str(options.times), "1 or more")])
+
+    def make():
+        mass = options.times * study.scene.payload.mass
+        return {"asked": STAGE.plain(options), "mass_kg": mass}, []
+
+    return STAGE.run(study, options, make)
+
+
+STAGE = Stage("heavier", "tipoff.studies.core.stage", Options)
+"""
+PAGE = """
+def draw(found):
+    return [f"It weighs {found['mass_kg']:g} kg."]
+"""
+COMMAND = '''
+from pathlib import Path
+
+from tipoff.studies.commands.asked import guarded, study_of
+from tipoff.studies.commands.options import Json, Out, SceneName, Set
+
+
+def add(app):
+    @app.command()
+    def heavier(
+        scene: SceneName = "reference",
+        out: Out = Path("out"),
+        set_: Set = None,
+        times: int = 2,
+        json_: Json = False,
+    ):
+        """A payload that is heavier."""
+
+        def work():
+            from heavier import stage
+
+            return stage.run(study_of(scene, out, set_), stage.Options(times))
+
+        guarded(work, json_, lambda found: [f"{found['mass_kg']:g} kg"])
+'''
+ENTRY = """
+from heavier import command
+from tipoff.studies.question import Parts, Question
+
+
+def _load():
+    from heavier import page, stage
+
+    return Parts(stage.run, stage.STAGE.stored, page.draw)
+
+
+QUESTION = Question("heavier", "A heavier payload", "Heavier", command.add, _load)
+"""
+
+
+@pytest.fixture
+def entry(tmp_path, monkeypatch):
+    folder = tmp_path / "code" / "heavier"
+    folder.mkdir(parents=True)
+    texts = {"stage": STAGE, "page": PAGE, "command": COMMAND, "__init__": ENTRY}
+    for name, text in texts.items():
+        (folder / f"{name}.py").write_text(text)
+    monkeypatch.syspath_prepend(str(folder.parent))
+    yield importlib.import_module("heavier").QUESTION
+    for name in [name for name in sys.modules if name.partition(".")[0] == "heavier"]:
+        del sys.modules[name]
+
+
+@pytest.fixture
+def study(tmp_path):
+    return Study(scenes.load("tiny"), tmp_path / "out" / "tiny", defaults("tiny"))
+
+
+def call(entry, study, *arguments):
+    app = typer.Typer()
+    app.callback()(lambda: None)
+    entry.add_command(app)
+    place = ["--scene", "tiny", "--out", str(study.folder.parent)]
+    return CliRunner().invoke(app, ["heavier", *place, *arguments], catch_exceptions=False)
+
+
+def test_a_new_study_has_a_command_a_result_and_a_section(entry, study, monkeypatch):
+    monkeypatch.setattr(registry, "QUESTIONS", (*registry.QUESTIONS, entry))
+    assert [item.anchor for item in registry.sections()][-1] == "heavier"
+    # the comparison of both models takes minutes
+    own = [item for item in registry.results() if item.name == "heavier"]
+    monkeypatch.setattr(report, "results", lambda: own)
+    page, mass = study.path("report.html"), 3.0 * study.scene.payload.mass
+
+    report.run(study)
+    assert "make heavier SCENE=tiny" in page.read_text()
+
+    assert call(entry, study, "--times", "3").stdout == f"{mass:g} kg\n"
+    written = json.loads(study.path("heavier.json").read_text())
+    assert written["asked"] == {"times": 3} and written["mass_kg"] == mass
+
+    report.run(study)
+    shown = page.read_text()
+    assert 'href="#heavier"' in shown and f"It weighs {mass:g} kg." in shown
+
+
+def test_the_report_makes_it_with_every(entry, study, monkeypatch):
+    monkeypatch.setattr(report, "results", lambda: list(entry.load().results))
+    monkeypatch.setattr(registry, "QUESTIONS", (entry,))
+    report.run(study, every=True)
+    assert (
+        f"It weighs {2.0 * study.scene.payload.mass:g} kg." in study.path("report.html").read_text()
+    )
+
+
+def test_bad_options_are_bad_input(entry, study):
+    found = call(entry, study, "--times", "0")
+    assert found.exit_code == 2 and "expected 1 or more" in found.stderr
+    assert not study.folder.exists()

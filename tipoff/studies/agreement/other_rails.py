@@ -1,0 +1,33 @@
+"""Agreement on other rails: what lies beside the folder of a scene."""
+
+from dataclasses import replace
+from pathlib import Path
+
+from tipoff import scenes
+from tipoff.mechanics.rail_compliance import digest
+from tipoff.studies.agreement import stage as compare
+from tipoff.studies.core.settings import defaults
+from tipoff.studies.core.study import Study, read
+
+
+def beside(folder: Path) -> list[dict]:
+    """Agreement and constants of the catalogue's scenes with other rails or pads whose folders lie
+    beside ``folder``, made from the present code."""
+    found, own = [], digest(scenes.load(folder.name)) if folder.name in scenes.catalog() else None
+    for path in sorted(folder.parent.glob("*/agreement.json")):
+        name, size = path.parent.name, (read(path) or {}).get("element_size_m")
+        if name not in scenes.catalog() or digest(scenes.load(name)) == own or size is None:
+            continue
+        other = Study(scenes.load(name), path.parent, replace(defaults(name), element_size=size))
+        if agreement := compare.stored(other):
+            calibration = read(other.path("calibration.json"))
+            assert calibration is not None  # with which the agreement was found
+            found.append(
+                {
+                    "name": name,
+                    "element_size_m": size,
+                    "agreement": agreement,
+                    "constants": calibration["constants"],
+                }
+            )
+    return found

@@ -1,0 +1,56 @@
+"""``tipoff bench``."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from tipoff.studies.commands.asked import guarded
+from tipoff.studies.commands.options import (
+    Json,
+    Out,
+)
+
+
+def add(app: typer.Typer) -> None:
+    """Put the command under ``app``."""
+    app.command()(bench)
+
+
+def bench(
+    out: Out = Path("out"),
+    element_size: Annotated[
+        list[float] | None,
+        typer.Option(
+            "--element-size",
+            metavar="MM",
+            min=0.05,
+            help="Element size in mm, repeatable; default: 2, 1 and 0.5.",
+        ),
+    ] = None,
+    repeats: Annotated[
+        int, typer.Option(metavar="N", min=1, help="Timed repeats; the median counts.")
+    ] = 5,
+    steps: Annotated[
+        int | None,
+        typer.Option(metavar="N", min=1, help="Steps of a timed piece; default: by size."),
+    ] = None,
+    cases: Annotated[
+        int, typer.Option(metavar="N", min=1, help="Cases of the surrogate's ensemble.")
+    ] = 2000,
+    json_: Json = False,
+) -> None:
+    """Speed of the reference solver against a SciPy matrix and NumPy on the same mesh, and of the
+    surrogate against plain Runge-Kutta at the same error; writes bench/highfi.json and
+    bench/lowfi.json."""
+
+    def work() -> dict:
+        from tipoff.studies.bench import reference, surrogate
+
+        sizes = tuple(1e-3 * size for size in element_size) if element_size else reference.SIZES
+        return {
+            **reference.run(out, sizes, repeats, steps),
+            "surrogate": surrogate.run(out, cases=cases, repeats=repeats),
+        }
+
+    guarded(work, json_)

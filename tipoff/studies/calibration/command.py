@@ -1,0 +1,108 @@
+"""``tipoff calibrate``."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from tipoff.studies.commands.asked import guarded, quantity, study_of
+from tipoff.studies.commands.options import (
+    ElementSize,
+    Json,
+    Out,
+    SceneName,
+    Set,
+    SurrogateName,
+    Workers,
+)
+
+
+def add(app: typer.Typer) -> None:
+    """Put the command under ``app``."""
+    app.command()(calibrate)
+
+
+def calibrate(
+    scene: SceneName = "reference",
+    out: Out = Path("out"),
+    set_: Set = None,
+    reference: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--reference",
+            metavar="[NAME=]FILE",
+            help="Curves of condition NAME in a CSV file, in place of finite elements; repeatable.",
+        ),
+    ] = None,
+    condition: Annotated[
+        str | None,
+        typer.Option(
+            "--condition",
+            metavar="NAME",
+            help="Condition of a file without NAME; default: the scene itself.",
+        ),
+    ] = None,
+    settled_from: Annotated[
+        str | None,
+        typer.Option(
+            "--settled-from",
+            metavar="TIME",
+            help="Start of the 2 ms whose means are the settled values; default: the last 2 ms of "
+            "a file.",
+        ),
+    ] = None,
+    model: Annotated[
+        SurrogateName | None,
+        typer.Option("--model", help="Calibrate this model alone; default: both."),
+    ] = None,
+    element_size: ElementSize = None,
+    workers: Workers = None,
+    json_: Json = False,
+) -> None:
+    """Take the surrogate's contact from the finite elements; writes compliance.json,
+    calibration.json and calibration.toml.
+
+    Compliant contact takes the rail's compliance from statics, without a run of the reference;
+    springs are fitted to the reference's curves. --model compliant or --model springs does one of
+    both.
+
+    Curves of another code or of a test may take the place of the reference; curves/ then receives
+    both files:
+
+      tipoff calibrate --reference phi15=test15.csv --reference phi60=test60.csv --settled-from "44 ms"
+
+    A file has the columns time, velocity_x (inertial, along the rail), rate_x, rate_y and rate_z
+    (inertial, in payload body axes), from ignition on, at any instants, with units in the header,
+    rate_x \\[deg/s], or in the second line. Other columns are ignored.
+    """
+
+    def work() -> dict:
+        from tipoff.scenes.faults import Fault, SceneError
+        from tipoff.studies.calibration import stage
+
+        start = quantity("--settled-from", settled_from, "s")
+        files = stage.named(reference or [], condition, start)
+        study = study_of(scene, out, set_, element_size=element_size, workers=workers)
+        if files and model is SurrogateName.compliant:
+            raise SceneError(
+                [
+                    Fault(
+                        "--reference",
+                        "option",
+                        "given",
+                        "none with --model compliant: curves are for springs",
+                    )
+                ]
+            )
+        return (
+            stage.from_files(study, files, start)
+            if files
+            else stage.of_models(study, model and model.value)
+        )
+
+    def lines(found: dict) -> list[str]:
+        from tipoff.studies.calibration import stage
+
+        return stage.lines(found, Path(out) / found["scene"])
+
+    guarded(work, json_, lines)

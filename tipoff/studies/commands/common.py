@@ -1,0 +1,32 @@
+"""The command of a stage that takes the common options only."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import typer
+
+from tipoff.studies.commands.asked import guarded, study_of
+from tipoff.studies.commands.options import ElementSize, Json, Out, SceneName, Set, Workers
+
+if TYPE_CHECKING:
+    from tipoff.studies.core.study import Study
+
+
+def add(app: typer.Typer, name: str, summary: str, run: Callable[["Study"], dict]) -> None:
+    """Put a command under ``app``: its ``name``, its help in a ``summary``, and what it runs."""
+
+    def command(
+        scene: SceneName = "reference",
+        out: Out = Path("out"),
+        set_: Set = None,
+        element_size: ElementSize = None,
+        workers: Workers = None,
+        json_: Json = False,
+    ) -> None:
+        guarded(
+            lambda: run(study_of(scene, out, set_, element_size=element_size, workers=workers)),
+            json_,
+        )
+
+    app.command(name, help=summary)(command)

@@ -1,0 +1,43 @@
+"""``tipoff convergence``."""
+
+from pathlib import Path
+
+import typer
+
+from tipoff.studies.commands.asked import guarded, study_of
+from tipoff.studies.commands.options import (
+    ElementSize,
+    Json,
+    Out,
+    RefinedCondition,
+    SceneName,
+    Set,
+    Workers,
+)
+
+
+def add(app: typer.Typer) -> None:
+    """Put the command under ``app``."""
+    app.command()(convergence)
+
+
+def convergence(
+    scene: SceneName = "reference",
+    out: Out = Path("out"),
+    set_: Set = None,
+    condition: RefinedCondition = None,
+    element_size: ElementSize = None,
+    workers: Workers = None,
+    json_: Json = False,
+) -> None:
+    """Error of the reference itself: meshes, steps, penalty, quadrature; takes minutes; writes
+    convergence.json."""
+
+    def work() -> dict:
+        from tipoff.studies.convergence import stage
+
+        return stage.run(
+            study_of(scene, out, set_, element_size=element_size, workers=workers), condition
+        )
+
+    guarded(work, json_, lambda found: found["summary"])

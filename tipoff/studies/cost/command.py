@@ -1,0 +1,28 @@
+"""``tipoff cost``."""
+
+from typing import TYPE_CHECKING
+
+import typer
+
+from tipoff.studies.commands import common
+
+if TYPE_CHECKING:
+    from tipoff.studies.core.study import Study
+
+
+def add(app: typer.Typer) -> None:
+    """Put the command under ``app``."""
+    common.add(
+        app,
+        "cost",
+        "What accuracy costs in time, and how it grows with elements, pads, effects; writes "
+        "cost.json and cost_study.json.",
+        run,
+    )
+
+
+def run(study: "Study") -> dict:
+    """The result of the stage."""
+    from tipoff.studies.cost import stage
+
+    return stage.run(study)

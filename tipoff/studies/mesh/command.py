@@ -1,0 +1,36 @@
+"""``tipoff mesh``."""
+
+from pathlib import Path
+
+import typer
+
+from tipoff.studies.commands.asked import guarded, study_of
+from tipoff.studies.commands.options import (
+    ElementSize,
+    Json,
+    Out,
+    SceneName,
+    Set,
+)
+
+
+def add(app: typer.Typer) -> None:
+    """Put the command under ``app``."""
+    app.command()(mesh)
+
+
+def mesh(
+    scene: SceneName = "reference",
+    out: Out = Path("out"),
+    set_: Set = None,
+    element_size: ElementSize = None,
+    json_: Json = False,
+) -> None:
+    """Mesh the rails: elements, nodes, named surfaces, quality; writes mesh.json and mesh.vtu."""
+
+    def work() -> dict:
+        from tipoff.studies.mesh import stage
+
+        return stage.run(study_of(scene, out, set_, element_size=element_size))
+
+    guarded(work, json_)

@@ -1,0 +1,164 @@
+"""``tipoff highfi``, ``tipoff lowfi`` and ``tipoff run``."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from tipoff.studies.commands.asked import guarded, quantity, study_of
+from tipoff.studies.commands.options import (
+    CalibrationFile,
+    CheckpointEvery,
+    Conditions,
+    ElementSize,
+    Json,
+    Model,
+    Modes,
+    Out,
+    Resume,
+    SceneName,
+    Set,
+    Workers,
+)
+
+if TYPE_CHECKING:
+    from tipoff.studies.core.study import Study
+
+
+def add(app: typer.Typer) -> None:
+    """Put the commands that run every condition under ``app``."""
+    app.command()(highfi)
+    app.command()(lowfi)
+
+
+def add_run(app: typer.Typer) -> None:
+    """Put the command of a single run under ``app``."""
+    app.command()(run)
+
+
+def highfi(
+    scene: SceneName = "reference",
+    out: Out = Path("out"),
+    set_: Set = None,
+    condition: Conditions = None,
+    element_size: ElementSize = None,
+    workers: Workers = None,
+    checkpoint_every: CheckpointEvery = None,
+    resume: Resume = True,
+    json_: Json = False,
+) -> None:
+    """Run the finite-element reference on every condition; writes highfi.json and a netCDF file
+    each."""
+
+    def study() -> "Study":
+        return study_of(
+            scene,
+            out,
+            set_,
+            condition,
+            element_size,
+            workers,
+            checkpoint_every,
+            resume,
+        )
+
+    _run("highfi", study, json_)
+
+
+def lowfi(
+    scene: SceneName = "reference",
+    out: Out = Path("out"),
+    set_: Set = None,
+    condition: Conditions = None,
+    workers: Workers = None,
+    json_: Json = False,
+) -> None:
+    """Run the surrogate, model compliant, on every condition; writes lowfi.json and a netCDF file
+    each."""
+    _run("lowfi", lambda: study_of(scene, out, set_, condition, workers=workers), json_)
+
+
+def _run(fidelity: str, study: Callable[[], "Study"], as_json: bool) -> None:
+    def work() -> dict:
+        from tipoff.studies.runs import stage
+
+        return stage.run(study(), fidelity)
+
+    guarded(work, as_json)
+
+
+def run(
+    scene: SceneName = "reference",
+    out: Out = Path("out"),
+    set_: Set = None,
+    condition: Annotated[
+        str, typer.Option("--condition", metavar="NAME", help="Named condition.")
+    ] = "nominal",
+    model: Model = None,
+    modes: Modes = None,
+    calibration: CalibrationFile = None,
+    accuracy: Annotated[
+        str | None,
+        typer.Option(
+            "--accuracy",
+            metavar="RATE",
+            help="Error of the settled rates to be kept, "
+            '"0.1 deg/s": takes the cheapest model that make cost found so exact.',
+        ),
+    ] = None,
+    budget: Annotated[
+        str | None,
+        typer.Option(
+            "--budget",
+            metavar="TIME",
+            help='Wall time to be kept, "2 s": takes the '
+            "most exact model that make cost found so fast.",
+        ),
+    ] = None,
+    element_size: ElementSize = None,
+    checkpoint_every: CheckpointEvery = None,
+    resume: Resume = True,
+    json_: Json = False,
+) -> None:
+    """Run one condition in one model and print what the payload leaves with.
+
+    The answer names its model and, where tipoff compare measured it, its error. The rail's
+    compliance is found once per rail and pads. --accuracy and --budget choose a model from what
+    tipoff cost measured.
+
+      tipoff run --condition phi35
+      tipoff run --condition phi35 --model finite-elements
+      tipoff run --condition h4 --accuracy "0.1 deg/s"
+    """
+
+    def work() -> dict:
+        from tipoff.scenes.faults import Fault, SceneError
+        from tipoff.studies.core import models
+        from tipoff.studies.runs import single
+
+        options = models.Options(model and model.value, calibration, modes)
+        study = study_of(
+            scene,
+            out,
+            set_,
+            [condition],
+            element_size,
+            checkpoint_every=checkpoint_every,
+            resume=resume,
+        )
+        if accuracy is None and budget is None:
+            models.require(options, checkpoint_every=checkpoint_every)
+            return single.run(study, condition, options, quiet=json_)
+        given = {"--model": model, "--calibration": calibration, "--modes": modes}
+        if wrong := [name for name, value in given.items() if value is not None]:
+            raise SceneError(
+                [
+                    Fault(name, "option", "given", "none: --accuracy and --budget choose the model")
+                    for name in wrong
+                ]
+            )
+        limits = quantity("--accuracy", accuracy, "deg/s"), quantity("--budget", budget, "s")
+        return single.chosen(study, condition, *limits, quiet=json_)
+
+    guarded(work, json_)

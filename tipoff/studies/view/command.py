@@ -1,0 +1,72 @@
+"""``tipoff view``."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from tipoff.studies.commands.asked import guarded, study_of
+from tipoff.studies.commands.options import (
+    ElementSize,
+    Json,
+    Out,
+    RefinedCondition,
+    SceneName,
+    Set,
+)
+
+
+def add(app: typer.Typer) -> None:
+    """Put the command under ``app``."""
+    app.command()(view)
+
+
+def view(
+    scene: SceneName = "reference",
+    out: Out = Path("out"),
+    set_: Set = None,
+    condition: RefinedCondition = None,
+    frames: Annotated[
+        int,
+        typer.Option(
+            "--frames", metavar="N", min=2, help="Instants to write, evenly over the run."
+        ),
+    ] = 60,
+    exaggeration: Annotated[
+        float | None,
+        typer.Option(
+            "--exaggeration",
+            metavar="X",
+            min=1e-6,
+            help="Factor of the rail's deformation in pictures; default: one that shows it.",
+        ),
+    ] = None,
+    element_size: ElementSize = None,
+    json_: Json = False,
+) -> None:
+    """Stress and motion of one condition to look at; writes view/CONDITION/ with run.pvd, and
+    pictures where pyvista is installed.
+
+    Open run.pvd in ParaView. Rails and payload are there as seen from the platform, undeformed:
+    "Warp By Vector" with the array "displacement (m)" and a scale of some hundreds shows how the
+    rails give way; colour by "von Mises stress (Pa)" or "contact pressure (Pa)", and play.
+
+      tipoff view --condition phi60 --frames 120
+      tipoff view --scene my_launcher.toml --element-size 4 --exaggeration 500
+
+    Pictures (peak.png, ejection.webp) need pyvista, which `make pictures` installs; the files for
+    ParaView need nothing more.
+    """
+
+    def work() -> dict:
+        from tipoff.studies.view import stage
+
+        return stage.run(
+            study_of(scene, out, set_, element_size=element_size), condition, frames, exaggeration
+        )
+
+    def lines(found: dict) -> list[str]:
+        folder = Path(out) / found["scene"]
+        return [f"{folder / path}" for path in (found["collection"], *found["pictures"].values())]
+
+    guarded(work, json_, lines)
