@@ -188,9 +188,7 @@ def test_stress_is_judged_on_patches_and_never_at_its_peak(tmp_path, monkeypatch
         None,
     )
     assert peak["order"] < 0.0 and "mesh-dependent" in peak["method"]
-    shown = Page(
-        study.scene, study.folder, {"convergence": found}, Runs({}, {}, {}), {}
-    )._convergence()
+    shown = draw(Page(study.scene, study.folder, {"convergence": found}, Runs({}, {}, {}), {}))
     assert "patch stress below 1 kHz" in shown and "mesh-dependent" in shown
 
 
@@ -221,9 +219,7 @@ def test_ripple_of_both_meshes_beside_that_of_a_single_point(study):
         == "ripple of a constant contact force at 750 Hz, at which facets of 8 mm are crossed: 0.5 "
         "%"
     )
-    shown = Page(
-        study.scene, study.folder, {"convergence": found}, Runs({}, {}, {}), {}
-    )._convergence()
+    shown = draw(Page(study.scene, study.folder, {"convergence": found}, Runs({}, {}, {}), {}))
     assert "ripple of a constant contact force where facets are crossed" in shown
 
 
