@@ -164,7 +164,7 @@ class Loop:
             m.thrust_offset,
             m.penalty,
             m.friction,
-            m.gravity,
+            m.body_force,
             self.state,
             self.active,
         )
@@ -308,12 +308,12 @@ class Loop:
             m.thrust_offset,
             self.steps * self.stepping.dt_s,
         )
-        kick_bodies(m.payload, s.frame, s.drive, m.gravity, state, pose, thrust, step)
+        kick_bodies(m.payload, s.frame, s.drive, m.body_force, state, pose, thrust, step)
         kick_nodes(
             s.rail.inverse_mass,
             state.velocity,
             state.resistance,
-            pull_on_nodes(m.gravity, pose),
+            pull_on_nodes(m.body_force, pose),
             step,
         )
 

@@ -20,8 +20,8 @@ from tipoff.lowfi.system import BACK, NUMBER, SIDE_MIDDLE, SIDE_REACH, System, b
 from tipoff.mechanics import model as models
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.scenes.effects import contact as law
+from tipoff.scenes.effects.body_force import acceleration
 from tipoff.scenes.effects.friction import coefficient_over_speed, require_two_step
-from tipoff.scenes.effects.gravity import acceleration
 from tipoff.scenes.effects.thrust_law import magnitude
 from tipoff.scenes.scene import Scene
 

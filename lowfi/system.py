@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from tipoff.mechanics.model import Model
+from tipoff.scenes.effects.body_force import BodyForce
 from tipoff.scenes.effects.contact import HuntCrossley, Impact, Linear
 from tipoff.scenes.effects.friction import Friction
-from tipoff.scenes.effects.gravity import Gravity
 from tipoff.scenes.effects.sticking import Sticking
 from tipoff.scenes.effects.thrust_law import Thrust
 from tipoff.scenes.effects.thrust_offset import ThrustOffset
@@ -79,7 +79,7 @@ class System(NamedTuple):
     compliance: "Compliance | None"
     friction: Friction | None
     sticking: Sticking | None
-    gravity: Gravity | None
+    gravity: BodyForce | None
     ledger: bool | None
 
 
@@ -108,7 +108,7 @@ def build(
         compliance,
         _if(model.friction, Friction),
         _if(model.friction, Sticking),
-        model.gravity,
+        model.body_force,
         True if ledger else None,
     )
 

@@ -6,7 +6,7 @@ import pytest
 from tests.scenes.support import CONTACT, FRICTION, small
 from tipoff.mechanics import model
 from tipoff.scenes import load, parse
-from tipoff.scenes.effects import gravity
+from tipoff.scenes.effects.body_force import BodyForce, acceleration
 from tipoff.scenes.effects.initial import Initial
 
 PLATFORM = {
@@ -27,13 +27,13 @@ RECORDS = {
     "contact": ("contact", "penalty"),
     "friction": ("friction",),
     "platform": ("platform",),
-    "gravity": ("gravity",),
+    "gravity": ("body_force",),
 }
 
 
 def test_every_effect_absent_is_none():
     found = model.build(parse(small()))
-    for name in ("thrust_offset", "contact", "penalty", "friction", "platform", "gravity"):
+    for name in ("thrust_offset", "contact", "penalty", "friction", "platform", "body_force"):
         assert getattr(found, name) is None, name
     assert found.initial == Initial()
     assert found.initial == Initial(*[(0.0, 0.0, 0.0)] * 6)
@@ -47,7 +47,7 @@ def test_every_effect_present_is_a_record():
         found.penalty,
         found.friction,
         found.platform,
-        found.gravity,
+        found.body_force,
     )
 
 
@@ -71,9 +71,9 @@ def test_friction_needs_contact():
     assert model.build(parse(small(friction=FRICTION))).friction is None
 
 
-def test_absent_gravity_pulls_nothing():
-    assert gravity.acceleration(None) == (0.0, 0.0, 0.0)
-    assert gravity.acceleration(gravity.Gravity(1.0, 2.0, 3.0)) == (1.0, 2.0, 3.0)
+def test_no_body_force_accelerates_nothing():
+    assert acceleration(None) == (0.0, 0.0, 0.0)
+    assert acceleration(BodyForce(1.0, 2.0, 3.0)) == (1.0, 2.0, 3.0)
 
 
 def test_line_of_action():

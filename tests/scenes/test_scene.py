@@ -9,7 +9,7 @@ from pydantic import ValidationError
 
 from tests.scenes.support import CONTACT, FRICTION, small
 from tipoff.scenes import SceneError, load, parse
-from tipoff.scenes.scene import EFFECTS
+from tipoff.scenes.effects.registry import EFFECTS
 
 
 def test_text_carries_units_and_a_number_is_si():
@@ -182,9 +182,9 @@ def test_nested_and_dotted_conditions_mean_the_same():
 
 
 def test_absent_effects():
-    assert parse(small()).absent_effects() == list(EFFECTS)
+    assert parse(small()).absent_effects() == [effect.key for effect in EFFECTS]
     assert parse(small(contact=CONTACT)).absent_effects() == [
-        name for name in EFFECTS if name != "contact"
+        effect.key for effect in EFFECTS if effect.key != "contact"
     ]
 
 

@@ -11,6 +11,7 @@ from tests.studies.shown import html
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes import load
 from tipoff.scenes.calibration import Calibration
+from tipoff.scenes.effects import friction
 from tipoff.studies.ablation import stage as ablation
 from tipoff.studies.cli import app
 from tipoff.studies.registry import QUESTIONS, results
@@ -73,7 +74,7 @@ def pipeline(tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
         # Each effect taken away is one more kernel to compile; one of them shows that the stage
         # works.
-        patch.setattr(ablation, "EFFECTS", ("friction",))
+        patch.setattr(ablation, "EFFECTS", (friction.EFFECT,))
         first = CliRunner().invoke(app, arguments, catch_exceptions=False)
         started = time.monotonic()
         second = CliRunner().invoke(app, arguments, catch_exceptions=False)

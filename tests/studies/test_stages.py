@@ -10,7 +10,7 @@ from tipoff import scenes
 from tipoff.files import write_json
 from tipoff.highfi.compiled import LAWS as highfi_laws
 from tipoff.lowfi.compiled import LAWS as lowfi_laws
-from tipoff.scenes.scene import EFFECTS
+from tipoff.scenes.effects.registry import EFFECTS
 from tipoff.studies.ablation import stage as ablation
 from tipoff.studies.agreement import stage as compare
 from tipoff.studies.core import machine
@@ -42,10 +42,11 @@ def test_ablation_takes_every_effect_away_once():
     lines = ablation.variants(scene)
     everything = scene.replace(lines["all effects"])
     assert everything.absent_effects() == []
-    for effect in EFFECTS:
+    effects = [effect.key for effect in EFFECTS]
+    for effect in effects:
         assert scene.replace(lines[f"without {effect}"]).absent_effects() == [effect]
     assert scene.replace(lines["as the scene asks"]).hash == scene.hash
-    assert len(scene.replace(lines["no effect"]).absent_effects()) == len(EFFECTS) == 9
+    assert len(scene.replace(lines["no effect"]).absent_effects()) == len(effects) == 9
     assert "without friction" not in ablation.variants(scene.replace({"friction": None}))
     assert "without thermal" not in ablation.variants(
         scene.replace({"rail.material.expansion": None})
@@ -57,8 +58,8 @@ def test_ablation_takes_every_effect_away_once():
         "mass_offset",
         "initial",
         "rail.damping",
-    } == set(EFFECTS)
-    assert set(highfi_laws) | {"mass_offset", "initial", "thermal"} == set(EFFECTS)
+    } == set(effects)
+    assert set(highfi_laws) | {"mass_offset", "initial", "thermal"} == set(effects)
 
 
 def test_surrogate_is_timed_by_turns(monkeypatch, tmp_path):

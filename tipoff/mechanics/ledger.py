@@ -1,7 +1,7 @@
 """The two energy ledgers of a run, and how well they close. Both fidelities fill the same entries
 (J, at each sample).
 
-    residual = E(0) + thrust + gravity - (kinetic + strain + contact_stored + contact_damping + friction
+    residual = E(0) + thrust + body force - (kinetic + strain + contact_stored + contact_damping + friction
                                           + structural_damping + released + contact_axial)
 
 E(0) is kinetic + strain + contact_stored at ignition. The **total** ledger has ``contact_axial`` =
@@ -16,10 +16,13 @@ platform flies by at 7.5 km/s, the energy of that flight is no scale for anythin
 import numpy as np
 
 from tipoff.mechanics import promises
+from tipoff.scenes.effects.registry import EFFECTS
 
+# the entry for the work of the body forces; results keep the name of the one effect that makes them
+(BODY_FORCE,) = (effect.key for effect in EFFECTS if effect.is_body_force)
+WORK = ("thrust", BODY_FORCE)
 ENTRIES = (
-    "thrust",
-    "gravity",
+    *WORK,
     "kinetic",
     "strain",
     "contact_stored",
@@ -30,7 +33,7 @@ ENTRIES = (
     "contact_axial",
 )
 _STATE = [ENTRIES.index(name) for name in ("kinetic", "strain", "contact_stored")]
-_WORK = [ENTRIES.index(name) for name in ("thrust", "gravity")]
+_WORK = [ENTRIES.index(name) for name in WORK]
 _SPENT = [i for i in range(len(ENTRIES)) if i not in _WORK]
 
 

@@ -11,9 +11,9 @@ from typing import NamedTuple
 import numpy as np
 
 from tipoff.scenes.body import tensor
-from tipoff.scenes.effects import contact, thrust, thrust_offset
+from tipoff.scenes.effects import contact, registry, thrust, thrust_offset
+from tipoff.scenes.effects.body_force import BodyForce
 from tipoff.scenes.effects.friction import Friction
-from tipoff.scenes.effects.gravity import Gravity
 from tipoff.scenes.effects.initial import Initial
 from tipoff.scenes.effects.platform import Platform
 from tipoff.scenes.effects.sticking import Sticking
@@ -89,7 +89,7 @@ class Model(NamedTuple):
     penalty: float | None
     friction: Friction | Sticking | None
     platform: Platform | None
-    gravity: Gravity | None
+    body_force: BodyForce | None
     thermal: Thermal | None
     initial: Initial
     thrust_arm: float
@@ -162,7 +162,7 @@ def built(scene: Scene, known: Built | None = None) -> Built:
                 else None
             ),
             platform=platform,
-            gravity=scene.gravity.record() if scene.gravity else None,
+            body_force=registry.body_force(scene),
             thermal=old.model.thermal
             if (old := kept("rail", "thermal"))
             else scene.thermal.record(scene.rail)

@@ -7,7 +7,7 @@ The scale is the largest momentum of the payload or of the whole. What acts in a
 their impulses round where they cancel, and so do moments about the origin of forces along lines
 near it: both sizes go into the smallest scale that can tell whether the promise is kept
 (``mechanics.promises``). Momenta are sums over the steps, each rounded by half a unit in the last
-place at most. Where a force is constant, as gravity is, all of these errors have one sign, so n
+place at most. Where a force is constant, all of these errors have one sign, so n
 steps may add n eps / 2 of the momentum.
 """
 

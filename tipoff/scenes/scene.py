@@ -30,6 +30,7 @@ from tipoff.scenes.effects.gravity import GravityTable
 from tipoff.scenes.effects.initial import InitialTable
 from tipoff.scenes.effects.mass_offset import MassOffsetTable
 from tipoff.scenes.effects.platform import PlatformTable
+from tipoff.scenes.effects.registry import EFFECTS
 from tipoff.scenes.effects.thermal import ThermalTable
 from tipoff.scenes.effects.thrust import MeasuredTable, ThrustTable
 from tipoff.scenes.effects.thrust_offset import ThrustOffsetTable
@@ -40,17 +41,6 @@ from tipoff.scenes.tables import MOST_SAMPLES, AgreementTable, OutputTable, PadT
 from tipoff.scenes.units import Duration
 
 CATALOG = reading.CATALOG
-EFFECTS = (
-    "thrust_offset",
-    "mass_offset",
-    "initial",
-    "contact",
-    "friction",
-    "platform",
-    "gravity",
-    "thermal",
-    "rail.damping",
-)
 NOMINAL = "nominal"  # the scene itself, named like a condition
 _BESIDE = ("conditions", "agreement", "provenance")
 # what comes after the exit changes nothing before it
@@ -187,7 +177,7 @@ class Scene(Table):
 
     def absent_effects(self) -> list[str]:
         """Dotted keys of the effect tables this scene does not have."""
-        return [key for key in EFFECTS if attrgetter(key)(self) is None]
+        return [effect.key for effect in EFFECTS if attrgetter(effect.key)(self) is None]
 
 
 def parse(

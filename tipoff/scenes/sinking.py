@@ -22,7 +22,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tipoff.scenes import moments
-from tipoff.scenes.effects import thrust
+from tipoff.scenes.effects import registry, thrust
 
 _STRAIN = 0.01  # of a pad's shortest side
 _THOUSAND = 1e3  # between N and kN, and between m and mm
@@ -48,11 +48,8 @@ def load(scene) -> float:
     """Largest static load (N) of one pad face across the axis, see the module docstring."""
     peak = float(thrust.peak(scene.thrust.record(), scene.duration))
     tilt = scene.thrust_offset.misalignment.axial if scene.thrust_offset is not None else 0.0
-    weight = (
-        scene.payload.mass * float(np.hypot(scene.gravity.y, scene.gravity.z))
-        if scene.gravity is not None
-        else 0.0
-    )
+    force = registry.body_force(scene)
+    weight = scene.payload.mass * float(np.hypot(force.y, force.z)) if force is not None else 0.0
     places = [pad.position[0] for pad in scene.pads]
     between = max(max(places) - min(places), max(pad.length for pad in scene.pads))
     return abs(peak * np.sin(tilt)) + weight + float(moments.transverse(scene, {}, peak)) / between

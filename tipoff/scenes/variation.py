@@ -13,7 +13,8 @@ from pydantic import TypeAdapter, ValidationError
 from pydantic.fields import FieldInfo
 
 from tipoff.scenes import overrides as keys
-from tipoff.scenes.scene import EFFECTS, Scene
+from tipoff.scenes.effects.registry import EFFECTS
+from tipoff.scenes.scene import Scene
 from tipoff.scenes.table import Table
 
 _TABLES = {
@@ -22,7 +23,7 @@ _TABLES = {
     "rail",
     "thrust",
     "output",
-    *(key for key in EFFECTS if "." not in key),
+    *(effect.key for effect in EFFECTS if "." not in effect.key),
 }
 _CONTEXT = {"bare_numbers_are_si": True}
 

@@ -17,6 +17,7 @@ import numpy as np
 from pydantic import Field, ValidationInfo, field_validator
 
 from tipoff.kernels.jit import njit
+from tipoff.scenes.effects.effect import Effect
 from tipoff.scenes.table import Table
 from tipoff.scenes.units import (
     ContactDamping,
@@ -27,6 +28,8 @@ from tipoff.scenes.units import (
     PositiveNumber,
     parse,
 )
+
+EFFECT = Effect("contact")
 
 
 class _ContactTable(Table):

@@ -17,10 +17,13 @@ from typing import Annotated, Any, Literal, NamedTuple
 from pydantic import BeforeValidator, Field, ValidationInfo, field_validator
 
 from tipoff.kernels.jit import njit
+from tipoff.scenes.effects.effect import Effect
 from tipoff.scenes.effects.sticking import StickingTable
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.table import Table
 from tipoff.scenes.units import NonNegativeNumber, PositiveVelocity
+
+EFFECT = Effect("friction")
 
 
 class TwoStepTable(Table):

@@ -1,10 +1,11 @@
 """Uniform gravity: every body is accelerated by g, ``F = m g``. Absent table: no body force."""
 
-from typing import NamedTuple
-
-from tipoff.kernels.jit import njit
+from tipoff.scenes.effects.body_force import BodyForce
+from tipoff.scenes.effects.effect import Effect
 from tipoff.scenes.table import Table
 from tipoff.scenes.units import Acceleration
+
+EFFECT = Effect("gravity", {"gravity.z": "-9.81 m/s**2"}, is_body_force=True)
 
 
 class GravityTable(Table):
@@ -14,22 +15,6 @@ class GravityTable(Table):
     y: Acceleration = 0.0
     z: Acceleration = 0.0
 
-    def record(self) -> "Gravity":
+    def body_force(self) -> BodyForce:
         """Kernel record."""
-        return Gravity(self.x, self.y, self.z)
-
-
-class Gravity(NamedTuple):
-    """Kernel record: acceleration in inertial axes (m/s2)."""
-
-    x: float
-    y: float
-    z: float
-
-
-@njit
-def acceleration(gravity):
-    """Acceleration (m/s2) as a tuple; zero where the effect is absent."""
-    if gravity is not None:
-        return (gravity.x, gravity.y, gravity.z)
-    return (0.0, 0.0, 0.0)
+        return BodyForce(self.x, self.y, self.z)

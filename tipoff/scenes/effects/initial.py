@@ -7,8 +7,11 @@ in the body's own axes.
 
 from typing import NamedTuple
 
+from tipoff.scenes.effects.effect import Effect
 from tipoff.scenes.table import Table
 from tipoff.scenes.units import Angle, Length, Rate, Velocity
+
+EFFECT = Effect("initial", {"initial.position.y": "20 um"})
 
 
 class Displacement(Table):

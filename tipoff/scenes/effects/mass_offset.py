@@ -8,8 +8,17 @@ Absent table: the centres coincide.
 
 import math
 
+from tipoff.scenes.effects.effect import Effect
 from tipoff.scenes.table import Table
 from tipoff.scenes.units import Angle, NonNegativeLength
+
+EFFECT = Effect(
+    "mass_offset",
+    {
+        "mass_offset.eccentricity.axial": "0.1 mm",
+        "mass_offset.eccentricity.radial": "120 deg",
+    },
+)
 
 
 class Eccentricity(Table):

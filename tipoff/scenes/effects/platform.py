@@ -9,9 +9,12 @@ from typing import NamedTuple
 import numpy as np
 
 from tipoff.scenes.body import InertiaTensor, tensor
+from tipoff.scenes.effects.effect import Effect
 from tipoff.scenes.effects.initial import Displacement
 from tipoff.scenes.table import Table
 from tipoff.scenes.units import Mass
+
+EFFECT = Effect("platform")
 
 
 class PlatformTable(Table):

@@ -11,10 +11,20 @@ from typing import NamedTuple
 
 from pydantic import ValidationInfo, field_validator
 
+from tipoff.scenes.effects.effect import Effect
 from tipoff.scenes.table import Table
 from tipoff.scenes.units import DampingRatio, Frequency
 
 _ROUNDING = 1e-12  # of a bound: a ratio that lies on it may have been computed
+
+
+EFFECT = Effect(
+    "rail.damping",
+    {
+        "rail.damping.ratios": [0.01, 0.01],
+        "rail.damping.frequencies": ["500 Hz", "5 kHz"],
+    },
+)
 
 
 class Damping(NamedTuple):

@@ -16,12 +16,16 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tipoff.scenes.effects.effect import Effect
 from tipoff.scenes.table import Table
 from tipoff.scenes.units import Number, TemperatureChange, TemperatureGradient
 
 # of which every [thermal] is a sum: a free strain, its gradients along x, y and z, and the strain
 # of the platform
 FIELDS = 5
+
+
+EFFECT = Effect("thermal", {"thermal.mean": "5 K", "thermal.gradient.y": "20 K/m"})
 
 
 class GradientTable(Table):

@@ -8,9 +8,18 @@ Absent table: a centred axial force.
 import math
 from typing import NamedTuple
 
+from tipoff.scenes.effects.effect import Effect
 from tipoff.scenes.effects.mass_offset import Eccentricity
 from tipoff.scenes.table import Table
 from tipoff.scenes.units import Angle
+
+EFFECT = Effect(
+    "thrust_offset",
+    {
+        "thrust_offset.misalignment.axial": "0.1 deg",
+        "thrust_offset.misalignment.radial": "35 deg",
+    },
+)
 
 
 class Misalignment(Table):

@@ -11,34 +11,18 @@ so that what else the machine does meets each alike.
 import importlib
 import statistics
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from tipoff.mechanics.trajectory import Trajectory
-from tipoff.scenes.scene import EFFECTS, Scene
+from tipoff.scenes.effects.registry import EFFECTS
+from tipoff.scenes.scene import Scene
 from tipoff.studies.core import machine
 from tipoff.studies.core.store import Run
 from tipoff.studies.core.study import Study
 from tipoff.studies.cost.timing import timed, warm_up
 
-ADDED: dict[str, dict[str, Any]] = {
-    "thrust_offset": {
-        "thrust_offset.misalignment.axial": "0.1 deg",
-        "thrust_offset.misalignment.radial": "35 deg",
-    },
-    "mass_offset": {
-        "mass_offset.eccentricity.axial": "0.1 mm",
-        "mass_offset.eccentricity.radial": "120 deg",
-    },
-    "initial": {"initial.position.y": "20 um"},
-    "gravity": {"gravity.z": "-9.81 m/s**2"},
-    "thermal": {"thermal.mean": "5 K", "thermal.gradient.y": "20 K/m"},
-    "rail.damping": {
-        "rail.damping.ratios": [0.01, 0.01],
-        "rail.damping.frequencies": ["500 Hz", "5 kHz"],
-    },
-}
+ADDED = {effect.key: effect.example for effect in EFFECTS if effect.example}
 
 
 def variants(scene: Scene) -> dict[str, dict]:
@@ -50,7 +34,7 @@ def variants(scene: Scene) -> dict[str, dict]:
         if effect != "thermal" or scene.rail.material.expansion is not None
     }
     everything = {key: value for effect in absent for key, value in added.get(effect, {}).items()}
-    present = [effect for effect in EFFECTS if effect not in absent or effect in added]
+    present = [effect.key for effect in EFFECTS if effect.key not in absent or effect.key in added]
     lines = {"all effects": everything}
     for effect in present:
         kept = {key: value for key, value in everything.items() if not key.startswith(f"{effect}.")}

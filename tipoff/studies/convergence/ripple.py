@@ -22,6 +22,7 @@ from tipoff.highfi.dynamics.step_size import choose
 from tipoff.highfi.dynamics.system import build
 from tipoff.highfi.run import Loop
 from tipoff.highfi.state.threads import processors
+from tipoff.scenes.effects.registry import EFFECTS
 from tipoff.scenes.scene import Scene
 
 HARMONICS = 3
@@ -79,7 +80,7 @@ def pressing(scene: Scene) -> Scene:
         "thrust_offset": {"misalignment": {"axial": np.pi / 2.0, "radial": np.pi / 4.0}},
         "duration": 1.0,
         "initial": {"position": {"y": gap, "z": gap}},
-        "gravity": None,
+        **{effect.key: None for effect in EFFECTS if effect.is_body_force},
         "output.interval": _INTERVAL,
     }
     return scene.replace(changes | ({"friction": _FRICTIONLESS} if scene.friction else {}))

@@ -11,6 +11,7 @@ from tipoff.lowfi.ensemble.columns import Columns
 from tipoff.lowfi.ensemble.rows import Drawn
 from tipoff.scenes import uncertainty
 from tipoff.scenes.effects.flight import FlightTable
+from tipoff.scenes.effects.registry import body_forces
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.scene import Scene
 from tipoff.scenes.variation import Variations
@@ -114,9 +115,10 @@ def _require(scenes: dict[str, Scene]) -> None:
         if scene.flight is None
     ]
     faults += [
-        Fault(name, "gravity", "a table", "none beside [flight]: scene axes in orbit fall freely")
+        Fault(name, key, "a table", "none beside [flight]: scene axes in orbit fall freely")
         for name, scene in scenes.items()
-        if scene.flight and scene.gravity
+        if scene.flight
+        for key in body_forces(scene)
     ]
     if faults:
         raise SceneError(faults)

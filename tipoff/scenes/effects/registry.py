@@ -1,0 +1,44 @@
+"""The effects a scene can have or lack, in the order in which results list them.
+
+A new effect is one file in this folder, an entry here and a field of ``Scene``.
+"""
+
+from operator import attrgetter
+
+from tipoff.scenes.effects import (
+    contact,
+    friction,
+    gravity,
+    initial,
+    mass_offset,
+    platform,
+    structural_damping,
+    thermal,
+    thrust_offset,
+)
+from tipoff.scenes.effects.body_force import BodyForce
+from tipoff.scenes.effects.effect import Effect
+
+EFFECTS: tuple[Effect, ...] = (
+    thrust_offset.EFFECT,
+    mass_offset.EFFECT,
+    initial.EFFECT,
+    contact.EFFECT,
+    friction.EFFECT,
+    platform.EFFECT,
+    gravity.EFFECT,
+    thermal.EFFECT,
+    structural_damping.EFFECT,
+)
+
+
+def body_forces(scene) -> dict[str, BodyForce]:
+    """The body forces of ``scene`` by the key of their effect."""
+    tables = {e.key: attrgetter(e.key)(scene) for e in EFFECTS if e.is_body_force}
+    return {key: table.body_force() for key, table in tables.items() if table is not None}
+
+
+def body_force(scene) -> BodyForce | None:
+    """The sum of the body forces of ``scene``, None where it has none."""
+    forces = body_forces(scene)
+    return BodyForce(*map(sum, zip(*forces.values()))) if forces else None
