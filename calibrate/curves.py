@@ -12,9 +12,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tipoff.calibration import columns
 from tipoff.mechanics.outcome import SETTLE_WINDOW
 from tipoff.mechanics.trajectory import Trajectory
+from tipoff.scenes import csv_file
 from tipoff.scenes.faults import Fault, SceneError
 
 COLUMNS = {
@@ -71,7 +71,7 @@ class Curves(NamedTuple):
             raise SceneError(
                 [Fault(str(path), "file", error.strerror or str(error), "a readable CSV file")]
             ) from error
-        found, faults = columns.read(str(path), data, COLUMNS)
+        found, faults = csv_file.quantities(path, COLUMNS, data)
         if "time" in found:
             faults += _time_faults(str(path), found["time"], settled_from)
         if faults:

@@ -1,6 +1,5 @@
 """Cases of an ensemble from a CSV file, held as columns of numbers."""
 
-import csv
 import hashlib
 import json
 from array import array
@@ -12,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
+from tipoff.scenes import csv_file, units
 from tipoff.scenes import overrides as keys
-from tipoff.scenes import units
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.scene import Scene
 
@@ -31,44 +30,36 @@ class TableFile:
 
     def __init__(self, path: str | Path):
         self._odd: dict[int, dict[str, str]] = {}
-        try:
-            with open(path, newline="", encoding="utf-8-sig") as stream:
-                lines: Iterator[list[str]] = filter(None, csv.reader(stream, strict=True))
-                self.keys = _header(str(path), next(lines, []))
-                self._columns = [array("d") for _ in self.keys]
-                wanted = [keys.unit(Scene, key) for key in self.keys]
-                second = next(lines, [])
-                readers: list[Callable[[str], float]]
-                if units.are_units(second):
-                    readers = [
-                        partial(_number, factor)
-                        for factor in _factors(str(path), self.keys, wanted, second)
-                    ]
-                else:
-                    readers = [partial(_quantity, unit) for unit in wanted]
-                    lines = chain([second] if second else [], lines)
-                for line in lines:
-                    self._append(line, readers)
-        except (OSError, UnicodeDecodeError, csv.Error) as error:
-            raise SceneError(
-                [Fault(str(path), "file", str(error), "a readable CSV file")]
-            ) from error
+        rows: Iterator[list[str]] = (row for _, row in csv_file.lines(path))
+        self.keys = _header(str(path), next(rows, []))
+        self._columns = [array("d") for _ in self.keys]
+        wanted = [keys.unit(Scene, key) for key in self.keys]
+        second = next(rows, [])
+        readers: list[Callable[[str], float]]
+        if units.are_units(second):
+            factors = _factors(str(path), self.keys, wanted, second)
+            readers = [partial(_number, factor) for factor in factors]
+        else:
+            readers = [partial(_quantity, unit) for unit in wanted]
+            rows = chain([second] if second else [], rows)
+        for row in rows:
+            self._append(row, readers)
         self.asked = len(self._columns[0])
         digest = hashlib.sha256(json.dumps([self.keys, list(self._odd.items())]).encode())
         for column in self._columns:
             digest.update(column)
         self.identity = {"table": digest.hexdigest(), "cases": self.asked}
 
-    def _append(self, line: list[str], readers: list[Callable[[str], float]]) -> None:
+    def _append(self, row: list[str], readers: list[Callable[[str], float]]) -> None:
         number, odd = len(self._columns[0]), {}
         for key, column, read, text in zip(
-            self.keys, self._columns, readers, chain(line, repeat(_TOO_FEW))
+            self.keys, self._columns, readers, chain(row, repeat(_TOO_FEW))
         ):
             column.append(value := read(text))
             if value != value and text.strip():
                 odd[key] = text.strip()
-        if len(line) > len(self.keys):
-            odd[_TOO_MANY] = ", ".join(line[len(self.keys) :])
+        if len(row) > len(self.keys):
+            odd[_TOO_MANY] = ", ".join(row[len(self.keys) :])
         if odd:
             self._odd[number] = odd
 
@@ -105,14 +96,14 @@ def _factors(
     path: str, names: list[str], wanted: list[str | None], units_given: list[str]
 ) -> list[float]:
     """Factors to SI, NaN for a key that holds no number."""
-    faults, factors = [], []
+    faults: list[Fault] = []
+    factors = []
     for name, unit, text in zip(names, wanted, chain(units_given, repeat(""))):
-        try:
-            factors.append(
-                np.nan if unit is None else units.to_si(f"1 {text}", unit or "dimensionless")
-            )
-        except ValueError as error:
-            faults.append(Fault(path, name, repr(text), str(error)))
+        factor = np.nan
+        if unit is not None:
+            factor, wrong = csv_file.factor_to_si(path, name, text, unit or "dimensionless")
+            faults += wrong
+        factors.append(factor)
     if faults:
         raise SceneError(faults)
     return factors

@@ -400,7 +400,7 @@ CURVES = {
     "negative times": ("time_s,force_N\n-1,0\n1,5\n", "not negative"),
     "nan": ("time_s,force_N\n0,nan\n1,5\n", "finite"),
     "nan time": ("time_s,force_N\n0,1\nnan,5\n2,1\n", "finite"),
-    "text": ("time_s,force_N\n0,a\n1,5\n", "two numbers"),
+    "text": ("time_s,force_N\n0,a\n1,5\n", "finite number"),
     "one column": ("time_s,force_N\n0\n1\n", "two numbers"),
     "three columns": ("time_s,force_N\n0,1,2\n1,5,2\n", "two numbers"),
     "no header": ("0,1\n1,5\n", "header"),

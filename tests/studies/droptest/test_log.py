@@ -174,8 +174,8 @@ def test_what_is_wrong_with_a_table_is_listed(tmp_path):
             tmp_path, rows=lambda cells: changed(100, 1, 2, "x")(changed(7, 1, 3, "1.0.0")(cells))
         )
     )
-    assert "2 faults" in message and "sample 8" in message and "sample 101" in message
-    assert "one column of this name" in refused(written(tmp_path, SHEET.replace('"gx"', '"wx"')))
+    assert "2 faults" in message and "line 10" in message and "line 103" in message
+    assert "no such column" in refused(written(tmp_path, SHEET.replace('"gx"', '"wx"')))
     assert "no_such" in refused(written(tmp_path, SHEET.replace("simulated0.csv", "no_such.csv")))
 
 

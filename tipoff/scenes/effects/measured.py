@@ -1,12 +1,16 @@
 """A measured thrust curve: reading, checking, and its least-squares Gaussian fit."""
 
-import csv
 import math
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 import scipy  # its parts load when they are first used
+
+from tipoff.scenes import csv_file
+from tipoff.scenes.faults import SceneError
+
+_HEADER = ["time_s", "force_N"]
 
 
 class MeasuredCurve(NamedTuple):
@@ -32,32 +36,26 @@ def read_curve(path: str | Path) -> MeasuredCurve:
     """Read a CSV with header ``time_s,force_N``. Raises ValueError naming everything that is wrong
     with the table."""
     try:
-        # Spreadsheets put a byte-order mark in front of UTF-8, which "utf-8-sig" takes away.
-        with open(path, newline="", encoding="utf-8-sig") as stream:
-            rows = list(csv.reader(stream))
-    except OSError as error:
-        raise ValueError(f"a readable CSV file ({error.strerror})") from error
-    except (UnicodeDecodeError, csv.Error) as error:
-        raise ValueError(f"a CSV file of text ({error})") from error
-    if not rows or [cell.strip() for cell in rows[0]] != ["time_s", "force_N"]:
-        raise ValueError("a CSV whose header is time_s,force_N")
-    try:
-        data = [(float(time), float(force)) for time, force in filter(None, rows[1:])]
-    except ValueError as error:
-        raise ValueError(f"two numbers in every row ({error})") from error
-    time, force = np.array(data, dtype=float).reshape(-1, 2).T
-    wrong = []
+        table = list(csv_file.lines(path))
+    except SceneError as error:
+        raise ValueError(f"{error.faults[0].expected} ({error.faults[0].given})") from error
+    if not table or [cell.strip() for cell in table[0][1]] != _HEADER:
+        raise ValueError(f"a CSV whose header is {','.join(_HEADER)}")
+    if long := [number for number, row in table[1:] if len(row) != 2]:
+        raise ValueError(f"two numbers in every row (line {long[0]} has another count)")
+    (time, wrong_times), (force, wrong_forces) = (
+        csv_file.numbers(str(path), name, place, table[1:]) for place, name in enumerate(_HEADER)
+    )
+    wrong = [f"{f.expected} ({f.key}: {f.given})" for f in wrong_times + wrong_forces]
     if time.size < 2:
         wrong.append("at least two rows")
-    if not (np.isfinite(time).all() and np.isfinite(force).all()):
-        wrong.append("finite numbers only")
     if (time < 0.0).any():
         wrong.append("times that are not negative")
     if (np.diff(time[np.isfinite(time)]) <= 0.0).any():
         wrong.append("times in increasing order")
     if wrong:
         raise ValueError("a curve with " + ", ".join(wrong))
-    return MeasuredCurve(np.ascontiguousarray(time), np.ascontiguousarray(force))
+    return MeasuredCurve(time, force)
 
 
 def fit_gaussian(curve: MeasuredCurve) -> GaussianFit:

@@ -8,13 +8,12 @@ them. A temperature, which drifts in seconds, is interpolated over gaps of any l
 leaves a note; anything worse is a fault.
 """
 
-import csv
-import math
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
+from tipoff.scenes.csv_file import lines, numbers, places
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.units import to_si
 from tipoff.studies.droptest import sheet as sheets
@@ -25,7 +24,6 @@ _BRIDGED = 2  # samples that a straight line may stand for
 _JITTER = 0.01  # of an interval: less is the rounding of a clock, and left as it is
 _UNEVEN = 0.45  # of an interval: more, and it is not clear which instant a sample belongs to
 _FEWEST = 100
-_SHOWN = 5
 
 
 class Log(NamedTuple):
@@ -72,40 +70,18 @@ def read(path: str | Path) -> tuple[Sheet, Log]:
 
 def _table(path: Path, wanted: list[str]) -> dict[str, np.ndarray]:
     """The wanted columns (n,) by name; an empty cell is NaN."""
-    try:
-        with open(path, newline="", encoding="utf-8-sig") as stream:
-            rows = list(
-                csv.reader(line for line in stream if line.strip() and not line.startswith("#"))
-            )
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
-        raise SceneError([Fault(str(path), "file", str(error), "a readable CSV file")]) from error
-    head = [cell.strip() for cell in rows[0]] if rows else []
-    if missing := [name for name in wanted if head.count(name) != 1]:
-        given = f"columns {', '.join(head) or 'none'}"
-        raise SceneError(
-            [Fault(str(path), name, given, "one column of this name") for name in missing]
-        )
-    places, faults = [head.index(name) for name in wanted], []
-    data = np.full((len(rows) - 1, len(wanted)), np.nan)
-    for number, row in enumerate(rows[1:]):
-        try:
-            data[number] = [
-                float(row[place]) if row[place].strip() else math.nan for place in places
-            ]
-        except (ValueError, IndexError):
-            faults.append(
-                Fault(
-                    str(path),
-                    f"sample {number + 1}",
-                    ",".join(row)[:80],
-                    f"a number in each of {', '.join(wanted)}",
-                )
-            )
+    rows = [(number, [cell.strip() for cell in row]) for number, row in lines(path, comment="#")]
+    where, faults = places(str(path), rows[0][1] if rows else [], wanted)
+    found = {}
+    for name, place in where.items():
+        found[name], wrong = numbers(str(path), name, place, rows[1:], gaps=True)
+        faults += wrong
     if faults:
-        raise SceneError(faults[:_SHOWN])
-    if len(data) < _FEWEST:
-        raise SceneError([Fault(str(path), "file", f"{len(data)} samples", f"at least {_FEWEST}")])
-    return dict(zip(wanted, data.T))
+        raise SceneError(faults)
+    if len(rows) - 1 < _FEWEST:
+        given = f"{len(rows) - 1} samples"
+        raise SceneError([Fault(str(path), "file", given, f"at least {_FEWEST}")])
+    return found
 
 
 def _even(sheet: Sheet, source: str, values: dict[str, np.ndarray]) -> Log:

@@ -1,0 +1,148 @@
+"""Tables of numbers in CSV files: lines, columns, units and cells. All faults of a table are found
+in one pass.
+
+A table has a header. The unit of a column stands in brackets after its name, ``rate_x [deg/s]``, or
+in the second line. Columns that are not wanted are ignored.
+"""
+
+import csv
+import io
+import re
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+import numpy as np
+
+from tipoff.scenes import units
+from tipoff.scenes.faults import Fault, SceneError
+
+Line = tuple[int, list[str]]  # its number in the file, and its cells
+_HEAD = re.compile(r"\s*(.*?)\s*(?:[\[(]\s*(.*?)\s*[\])])?\s*")
+_SHOWN = 5  # lines with one fault that are listed; the rest is counted
+
+
+def lines(
+    path: str | Path, data: bytes | None = None, comment: str | None = None
+) -> Iterator[Line]:
+    """Lines of a CSV file that are not blank and do not begin with ``comment``, one after another.
+    ``data`` is the content of the file where the caller has read it.
+
+    Raises SceneError for a file that cannot be read, is not text, or is not CSV.
+    """
+    try:
+        # Spreadsheets put a byte-order mark in front of UTF-8. "utf-8-sig" removes it.
+        with (
+            open(path, newline="", encoding="utf-8-sig")
+            if data is None
+            else io.StringIO(data.decode("utf-8-sig"), newline="")
+        ) as stream:
+            text: Iterable[str] = stream
+            if comment is not None:  # an empty line in its place keeps the numbers of the others
+                text = ("\n" if line.startswith(comment) else line for line in stream)
+            reader = csv.reader(text, strict=True)
+            for row in reader:
+                if len(row) > 1 or (row and row[0].strip()):
+                    yield reader.line_num, row
+    except OSError as error:
+        given = error.strerror or str(error)
+        raise SceneError([Fault(str(path), "file", given, "a readable CSV file")]) from error
+    except (UnicodeDecodeError, csv.Error) as error:
+        raise SceneError([Fault(str(path), "file", str(error), "a CSV file of text")]) from error
+
+
+def quantities(
+    path: str | Path, wanted: dict[str, str], data: bytes | None = None
+) -> tuple[dict[str, np.ndarray], list[Fault]]:
+    """Columns (n,) in SI by name, and the faults of the file (see ``lines`` for ``data``).
+    ``wanted`` gives the SI unit of each column by name. A column with a fault is left out."""
+    try:
+        table = [line for line in lines(path, data) if any(map(str.strip, line[1]))]
+    except SceneError as error:
+        return {}, error.faults
+    heads = [_head(cell) for cell in table[0][1]] if table else []
+    second = [cell.strip() for cell in table[1][1]] if len(table) > 1 else []
+    body = table[2 if units.are_units(second) else 1 :]
+    found, faults = places(str(path), [name for name, _ in heads], wanted)
+    arrays = {}
+    for name, place in found.items():
+        unit = heads[place][1]
+        if unit is None and units.are_units(second):
+            unit = _cell(second, place)
+        values, wrong = numbers(str(path), name, place, body)
+        factor, problems = factor_to_si(str(path), name, unit, wanted[name])
+        if not problems + wrong:
+            arrays[name] = values * factor
+        faults += problems + wrong
+    return arrays, faults
+
+
+def places(
+    source: str, header: list[str], wanted: Iterable[str]
+) -> tuple[dict[str, int], list[Fault]]:
+    """The place of each wanted column in the header, and a fault for each that is not there exactly
+    once."""
+    shown = ", ".join(filter(None, header)) or "nothing"
+    found, faults = {}, []
+    for name in wanted:
+        if header.count(name) == 1:
+            found[name] = header.index(name)
+        else:
+            given = "twice" if name in header else "no such column"
+            faults.append(Fault(source, name, given, f"once in the header, which has {shown}"))
+    return found, faults
+
+
+def numbers(
+    source: str, name: str, place: int, table: list[Line], gaps: bool = False
+) -> tuple[np.ndarray, list[Fault]]:
+    """The column (n,) ``name`` as it is written, and its faults: cells that hold no finite number.
+
+    With ``gaps`` an empty cell becomes NaN, and NaN and inf are no faults.
+    """
+    values = np.full(len(table), np.nan)
+    wrong: dict[str, list[int]] = {}
+    for index, (number, row) in enumerate(table):
+        text = _cell(row, place)
+        try:
+            values[index] = float(text)
+        except ValueError:
+            sound = gaps and not text and place < len(row)
+        else:
+            sound = gaps or np.isfinite(values[index])
+        if not sound:
+            wrong.setdefault(repr(text) if text else "nothing", []).append(number)
+    expected = "a number" if gaps else "a finite number in each line"
+    return values, [
+        Fault(source, name, f"{text} in {_listed(where)}", expected)
+        for text, where in wrong.items()
+    ]
+
+
+def factor_to_si(
+    source: str, name: str, unit: str | None, wanted: str
+) -> tuple[float, list[Fault]]:
+    """Factor from ``unit`` to the SI unit ``wanted`` of the column ``name``, or NaN with a fault."""
+    if not unit and wanted != "dimensionless":
+        return np.nan, [
+            Fault(source, name, "no unit", f'the unit of the column, such as "{wanted}"')
+        ]
+    try:
+        return units.to_si(f"1 {unit or ''}", wanted), []
+    except ValueError as error:
+        return np.nan, [Fault(source, name, repr(unit), str(error))]
+
+
+def _head(cell: str) -> tuple[str, str | None]:
+    """Name and unit of a column."""
+    found = _HEAD.fullmatch(" ".join(cell.split()))  # a quoted cell may hold line breaks
+    assert found is not None
+    return found[1], found[2]
+
+
+def _cell(row: list[str], place: int) -> str:
+    return row[place].strip() if place < len(row) else ""
+
+
+def _listed(where: list[int]) -> str:
+    more = [f"and {len(where) - _SHOWN} more"] if len(where) > _SHOWN else []
+    return f"line{'s' if len(where) > 1 else ''} " + ", ".join([*map(str, where[:_SHOWN]), *more])
