@@ -1,15 +1,13 @@
 """Calibrated surrogate constants: values with their evidence, as a TOML file. Data only; the fit
 itself is in ``calibrate``."""
 
-import json
-import math
 import tomllib
 from dataclasses import asdict, dataclass, field
-from numbers import Integral, Real
 from pathlib import Path
 
 import numpy as np
 
+from tipoff import toml
 from tipoff.files import DamageError, is_sealed, require_whole, sealed
 from tipoff.scenes.scene import Scene
 
@@ -55,15 +53,8 @@ class Calibration:
         """Write TOML with its digest, atomically. Raises ValueError for a NaN (an interval without
         an end is inf)."""
         tables = asdict(self) | {"information": np.asarray(self.information).tolist()}
-        plain = {key: value for key, value in tables.items() if not isinstance(value, dict)}
-        nested = {key: value for key, value in tables.items() if isinstance(value, dict)}
-        lines = [f"{key} = {_toml(value)}" for key, value in plain.items()]
-        for name, table in nested.items():
-            lines += ["", f"[{name}]"] + [
-                f"{_toml(key)} = {_toml(value)}" for key, value in table.items()
-            ]
         with sealed(path) as temporary:
-            temporary.write_text("\n".join(lines) + "\n", encoding="utf-8", newline="\n")
+            temporary.write_text(toml.dumps(tables), encoding="utf-8", newline="\n")
 
     @classmethod
     def load(cls, path: str | Path) -> "Calibration":
@@ -83,24 +74,3 @@ class Calibration:
             ) from fault
         except (ValueError, TypeError, KeyError) as error:
             raise ValueError(f"{path}: not a calibration file ({error})") from error
-
-
-def _toml(value) -> str:
-    if isinstance(value, (bool, np.bool_)):
-        return "true" if value else "false"
-    if isinstance(value, Integral):
-        return str(int(value))
-    if isinstance(value, Real):
-        if math.isnan(value):
-            raise ValueError("a calibration holds NaN")
-        return repr(float(value))
-    if isinstance(value, str):
-        # JSON's escapes are TOML's
-        return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
-    if isinstance(value, (list, tuple)):
-        return "[" + ", ".join(_toml(item) for item in value) + "]"
-    if isinstance(value, dict):
-        return (
-            "{ " + ", ".join(f"{_toml(key)} = {_toml(item)}" for key, item in value.items()) + " }"
-        )
-    raise TypeError(f"cannot write {type(value).__name__} as TOML")
