@@ -72,33 +72,32 @@ def ensemble(
     cases: Sequence[Mapping[str, Any]] | Uncertainty | str | Path = "paper",
     model: str = COMPLIANT,
     *,
-    count: int | None = None,
-    seed: int | None = None,
     compliance: RailCompliance | None = None,
     calibration: Calibration | None = None,
     workers: int | None = None,
     store: str | Path | None = None,
-    **numerics: Any,
+    **options: Any,
 ) -> "xarray.Dataset":
     """Run ``scene`` once for each of ``cases`` in a surrogate ``model``.
 
-    ``cases``: rows of dotted overrides as in ``Scene.replace``; or distributions, by the name or
-    path of their file, of which ``count`` cases are drawn with a ``seed`` (default: as the file
-    says). ``store`` is a folder that keeps results, so that an interrupted ensemble goes on. The
-    rest is as in ``run``. Raises SceneError, StoreError or ValueError.
+    ``cases`` are rows of dotted overrides as in ``Scene.replace``; or distributions, by the name or
+    path of their file. ``options`` are ``count`` and ``seed``, which replace those of this file,
+    and the numerics of ``run``. ``workers`` is the number of processes. ``store`` is a folder that
+    keeps results, so that an interrupted ensemble continues. The rest is as in ``run``. Raises
+    SceneError, StoreError or ValueError.
     """
     from tipoff import lowfi
 
     _require(scene, model, SURROGATES)
+    drawn = {"cases": options.pop("count", None), "seed": options.pop("seed", None)}
+    drawn = {key: value for key, value in drawn.items() if value is not None}
     if isinstance(cases, (str, Path)):
-        changed = {"cases": count, "seed": seed}
-        changed = {key: value for key, value in changed.items() if value is not None}
-        cases = uncertainty.load(cases, scene, **changed)
-    elif count is not None or seed is not None:
+        cases = uncertainty.load(cases, scene, **drawn)
+    elif drawn:
         raise SceneError(
             [Fault(scene.name, "count, seed", "given", "none: the cases are listed already")]
         )
-    chosen = lowfi.Numerics(**numerics)
+    chosen = lowfi.Numerics(**options)
     known = _pressed(scene, model, compliance)
     return lowfi.run_many(
         scene,
