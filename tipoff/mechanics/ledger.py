@@ -18,8 +18,8 @@ import numpy as np
 from tipoff.mechanics import promises
 from tipoff.scenes.effects.registry import EFFECTS
 
-# the entry for the work of the body forces; results keep the name of the one effect that makes them
-(BODY_FORCE,) = (effect.key for effect in EFFECTS if effect.is_body_force)
+# One entry holds the work of all body forces. It has the name of the first one.
+BODY_FORCE = next(effect.key for effect in EFFECTS if effect.is_body_force)
 WORK = ("thrust", BODY_FORCE)
 ENTRIES = (
     *WORK,

@@ -8,8 +8,7 @@ class Effect(NamedTuple):
 
     ``key`` is the dotted key of the effect's table in a scene. ``example`` holds small overrides
     that add the effect to a scene; None where the values depend on the scene. The table of
-    an effect that ``is_body_force`` has a method ``body_force`` (``effects.body_force``), and the
-    energy ledger has an entry ``key`` for the work of this force.
+    an effect that ``is_body_force`` has a method ``body_force`` (``effects.body_force``).
     """
 
     key: str
