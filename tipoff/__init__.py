@@ -4,8 +4,8 @@
 >>> scene = tipoff.load("reference")
 >>> tipoff.run(scene.condition("phi35")).outcome.rate  # rad/s
 
-What stands in ``__all__`` is the way in; it is imported when it is used first. The parts behind it
-are packages of their own: ``tipoff.scenes``, ``tipoff.highfi``, ``tipoff.lowfi`` and others.
+The names in ``__all__`` are imported at their first use. The packages behind them are
+``tipoff.scenes``, ``tipoff.highfi``, ``tipoff.lowfi`` and others.
 """
 
 from typing import TYPE_CHECKING, Any
@@ -47,7 +47,7 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    """A name of the front, imported now: the command answers ``--help`` without it."""
+    """Import a name of the front at its first use, so that ``--help`` is fast."""
     if name in __all__:
         from tipoff import front
 

@@ -1,13 +1,13 @@
-"""Files that are never half written, and that carry the digest of what they hold.
+"""Files that are written atomically and contain a digest of their content.
 
-Every file is written beside its final name, flushed to disk, then renamed. A file that is read back
+A file is written under a temporary name, flushed to disk, then renamed. A file that is read back
 ends with the bytes::
 
     # sha-256 <hexadecimal digest of every byte before this line>
 
-a line that TOML reads as a comment, and which readers of HDF5, netCDF and zip pass over. A JSON
-file holds the digest under the key ``sha256`` instead: that of the canonical JSON of all its other
-keys, so that another layout of the same content is no damage.
+a line that is a comment in TOML, and that readers of HDF5, netCDF and zip ignore. A JSON file has
+the digest under the key ``sha256`` instead: that of the canonical JSON of all its other keys, so
+that it does not depend on the layout.
 """
 
 import glob
@@ -31,8 +31,8 @@ _DIFFERS = "does not fit the digest it carries (damaged, or edited)"
 
 
 class DamageError(ValueError):
-    """A file that does not fit the digest it carries, or carries none; ``reason`` goes on with a
-    sentence that its path begins."""
+    """A file without a digest or with another content; ``reason`` follows the path in a
+    sentence."""
 
     def __init__(self, path: str | Path, reason: str):
         self.reason = reason
@@ -61,8 +61,7 @@ def replacing(path: str | Path) -> Iterator[Path]:
 
 
 def discard(path: str | Path) -> None:
-    """Remove ``path`` if it is there, and what a kill in the middle of ``replacing`` left beside
-    it."""
+    """Remove ``path`` if it is there, and the temporary files of an interrupted ``replacing``."""
     path = Path(path)
     path.unlink(missing_ok=True)
     for leftover in path.parent.glob(f".{glob.escape(path.name)}.*{glob.escape(path.suffix)}"):
@@ -77,7 +76,7 @@ def write_text(path: str | Path, text: str) -> None:
 
 @contextmanager
 def sealed(path: str | Path) -> Iterator[Path]:
-    """As ``replacing``, for a file that is read back: its digest is appended as its last line."""
+    """As ``replacing``; the digest is appended as the last line."""
     with replacing(path) as temporary:
         yield temporary
         with open(temporary, "rb") as stream:
@@ -90,16 +89,16 @@ def require_whole(path: str | Path) -> None:
     """Raises DamageError unless the file is as ``sealed`` left it, FileNotFoundError or another
     OSError where it cannot be read."""
     content = memoryview(Path(path).read_bytes())
-    told = _LINE.fullmatch(content[-_LENGTH:])
-    if told is None:
+    last = _LINE.fullmatch(content[-_LENGTH:])
+    if last is None:
         raise DamageError(path, _CARRIES_NONE)
-    if hashlib.sha256(content[:-_LENGTH]).hexdigest().encode() != told[1]:
+    if hashlib.sha256(content[:-_LENGTH]).hexdigest().encode() != last[1]:
         raise DamageError(path, _DIFFERS)
 
 
 def is_sealed(path: str | Path) -> bool:
-    """Whether any line of the file begins as the line of a digest does. Raises OSError where the
-    file cannot be read."""
+    """Whether any line of the file begins like the line of a digest. Raises OSError where the file
+    cannot be read."""
     return any(line.startswith(_MARK) for line in Path(path).read_bytes().splitlines())
 
 
@@ -127,19 +126,19 @@ def read_json(path: str | Path) -> dict[str, Any]:
 
 
 def with_digest(value: Mapping[str, Any]) -> dict[str, Any]:
-    """``value`` with the digest of its content, in place of one that it has."""
+    """``value`` with the digest of its content; an existing one is replaced."""
     rest = {key: item for key, item in value.items() if key != KEY}
     # keys are text only once they were JSON
     return rest | {KEY: content_hash(json.loads(json.dumps(rest, allow_nan=False)))}
 
 
 def fits_digest(value: Mapping[str, Any]) -> bool:
-    """Whether ``value``, as read from JSON, has the content of which it carries the digest."""
+    """Whether the content of ``value``, as read from JSON, has the digest in it."""
     return value.get(KEY) == content_hash({key: item for key, item in value.items() if key != KEY})
 
 
 def tell(text: str) -> None:
-    """One line on standard error, from packages that know nothing of the progress of studies."""
+    """Print one line on standard error."""
     print(text, file=sys.stderr, flush=True)
 
 

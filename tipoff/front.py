@@ -115,7 +115,7 @@ def compliance(scene: Scene, element_size: float | None = None) -> RailComplianc
     """Rail compliance under the pads of ``scene`` from the statics of its finite elements, of
     ``element_size`` (m), else on the coarsest mesh that is within 1 % of the reference's own.
 
-    Takes seconds to a minute, once for a rail and its pads: it is kept in the cache folder of the
+    Takes seconds to a minute, once for a rail and its pads: it is stored in the cache folder of the
     user, beside the compiled kernels. Raises SceneError or MeshError.
     """
     from tipoff.calibration import rail_compliance
@@ -147,17 +147,18 @@ def calibrate(
 
 
 def compare(reference: Trajectory, surrogate: Trajectory) -> "Difference":
-    """How far ``surrogate`` is from ``reference``, two runs of one condition, by every metric of the
-    agreement table."""
+    """Differences of ``surrogate`` from ``reference``, two runs of one condition, by every metric of
+    the agreement table."""
     from tipoff.studies.agreement import metrics
 
     return metrics.compare(reference, surrogate)
 
 
-def _pressed(scene: Scene, model: str, known: RailCompliance | None) -> RailCompliance | None:
-    """What pads press on: rail compliance, or warm rigid rails where springs meet these."""
-    if known is not None or scene.contact is None:
-        return known
+def _pressed(scene: Scene, model: str, given: RailCompliance | None) -> RailCompliance | None:
+    """The rail compliance that ``model`` needs; rigid walls with a thermal offset for springs at warm
+    rails."""
+    if given is not None or scene.contact is None:
+        return given
     if model == COMPLIANT:
         return compliance(scene)
     return compliance(scene).rigid() if scene.thermal is not None else None

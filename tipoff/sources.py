@@ -27,7 +27,7 @@ _DOCUMENTED = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
 
 
 def cache_folder() -> Path:
-    """Where compiled kernels and digests of sources are kept: ``NUMBA_CACHE_DIR`` if it is set, else
+    """Folder of compiled kernels and digests of sources: ``NUMBA_CACHE_DIR`` if it is set, else
     ``tipoff`` in the user's caches."""
     chosen = os.environ.get("NUMBA_CACHE_DIR")
     caches = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache"))
@@ -35,7 +35,7 @@ def cache_folder() -> Path:
 
 
 class Source(NamedTuple):
-    """What counts of one file."""
+    """The code and the imports of one file."""
 
     code: str  # hexadecimal SHA-256 of its syntax tree without docstrings
     imports: tuple[str, ...]  # dotted names, of modules or of names in modules
@@ -85,8 +85,8 @@ def _module(name: str) -> str | None:
 
 @functools.cache
 def _source(module: str) -> Source:
-    """What counts of the file of ``module``. It is kept beside the kernels under the digest of the
-    file, for reading the syntax of all files takes a second."""
+    """The source of ``module``. It is stored beside the kernels under the digest of the file, since
+    parsing all files takes a second."""
     file = path(module)
     assert file is not None
     content = file.read_bytes()

@@ -1,4 +1,4 @@
-"""The file of walls, and which scenes it serves."""
+"""The file of rail compliance, and which scenes it serves."""
 
 from dataclasses import replace
 
@@ -60,8 +60,8 @@ def test_warm_walls_are_saved_too_and_older_files_know_of_none(compliance, tmp_p
     "model, wrong, words",
     [
         ("springs", lambda compliance: None, "given no walls"),
-        ("compliant", lambda compliance: compliance, "know of no temperature"),
-        ("springs", lambda compliance: compliance.rigid(), "know of no temperature"),
+        ("compliant", lambda compliance: compliance, "without thermal offset"),
+        ("springs", lambda compliance: compliance.rigid(), "without thermal offset"),
     ],
 )
 def test_a_warm_scene_asks_for_walls_that_know_of_it(compliance, model, wrong, words):
@@ -104,7 +104,7 @@ def test_damaged_and_foreign_files_are_refused(compliance, tmp_path, damage):
     compliance.save(path)
     RailCompliance.load(path)
     damage(path)
-    with pytest.raises(ValueError, match="not a file of walls"):
+    with pytest.raises(ValueError, match="not a file of rail compliance"):
         RailCompliance.load(path)
 
 
@@ -119,7 +119,9 @@ def test_arrays_that_do_not_belong_together_are_refused(compliance, tmp_path):
         {"flexibility": gap},
     ):
         replace(compliance, **change).save(tmp_path / "walls.npz")
-        with pytest.raises(ValueError, match="not a file of walls.*expected finite numbers"):
+        with pytest.raises(
+            ValueError, match="not a file of rail compliance.*expected finite numbers"
+        ):
             RailCompliance.load(tmp_path / "walls.npz")
     with pytest.raises(FileNotFoundError):
         RailCompliance.load(tmp_path / "none.npz")

@@ -27,8 +27,8 @@ _Function = TypeVar("_Function", bound=Callable[..., object])
 
 
 class Compiler(Protocol):
-    """A decorator that makes a kernel of a function, bare or with options. A kernel is called as
-    the function is, and tells of its compilation besides."""
+    """A decorator that makes a kernel of a function, bare or with options. A kernel is called like
+    the function and has the attributes of a Numba dispatcher."""
 
     @overload
     def __call__(self, function: _Function, /) -> "Dispatcher[_Function]": ...
@@ -44,7 +44,7 @@ def kernel_digest(module: str) -> str:
 
 
 class KernelCacheLocator(_CacheLocator):
-    """Where Numba keeps the compiled kernels of a module, and by what it tells them apart."""
+    """Where Numba stores the compiled kernels of a module, and how it distinguishes them."""
 
     def __init__(self, function: FunctionType):
         self._digest = kernel_digest(function.__module__)
@@ -65,11 +65,11 @@ class KernelCacheLocator(_CacheLocator):
         return str(self._place)
 
     def get_source_stamp(self) -> str:
-        """What a stored kernel must have been compiled from."""
+        """Digest of the code that a stored kernel must come from."""
         return self._digest
 
     def get_disambiguator(self) -> str:
-        """Tells functions of one name in one module apart."""
+        """Distinguishes functions of one name in one module."""
         return self._code
 
 
@@ -83,9 +83,9 @@ def _digest_of_code(code: CodeType) -> str:
     return hashlib.sha256(repr(parts).encode()).hexdigest()[:8]
 
 
-# Kernels are compiled as parts of those that call them, each time from code that was optimised
-# before. At level 3 the first pass turns vectors of states into scalars, which the next one does
-# not mend: the surrogate then takes half as long again.
+# A kernel is compiled again inside each kernel that calls it, from code that is already optimised.
+# At level 3 the first pass splits vectors of states into scalars, and the next pass does not undo
+# it: the surrogate then takes half as long again.
 if "NUMBA_OPT" not in os.environ:
     _settings.OPT = type(_settings.OPT)("max")
 
@@ -110,11 +110,10 @@ else:
 
 
 def machine_code(kernel, arguments: tuple) -> bytes:
-    """Object code of ``kernel`` for the types of ``arguments``, the very code that runs: what it
-    does not name, it cannot call.
+    """Object code of ``kernel`` for the types of ``arguments``: the code that runs.
 
-    Read from the disk cache, since Numba keeps no copy of code once it is loaded. Raises
-    RuntimeError without a cache.
+    It is read from the disk cache, since Numba keeps no copy of loaded code. Raises RuntimeError
+    without a cache.
     """
     signature = tuple(numba.typeof(argument) for argument in arguments)
     kernel.compile(signature)
@@ -127,9 +126,9 @@ def machine_code(kernel, arguments: tuple) -> bytes:
 
 
 def contains(code: bytes, function) -> bool:
-    """Whether object ``code`` holds the compiled ``function``, called or inlined: Numba leaves one
-    symbol for each, in which module and name stand with their lengths, so that no other name can be
-    taken for it."""
+    """Whether object ``code`` holds the compiled ``function``, called or inlined. Numba leaves one
+    symbol for each function, with the lengths of its module and name, so that the match is
+    exact."""
     python = function.py_func
     parts = (*python.__module__.split("."), *python.__qualname__.split("."))
     return ("NumbaEnv" + "".join(f"{len(part)}{part}" for part in parts) + "B").encode() in code

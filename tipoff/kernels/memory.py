@@ -10,9 +10,9 @@ _CACHE_LINE = 64  # bytes
 def zeros(shape: tuple[int, ...], order: Literal["C", "F"] = "C") -> np.ndarray:
     """Zeros (float64) of ``shape``."""
     size = 8 * int(np.prod(shape))
-    room = np.zeros(size + _CACHE_LINE, dtype=np.uint8)
-    start = -room.ctypes.data % _CACHE_LINE
-    return room[start : start + size].view(np.float64).reshape(shape, order=order)
+    space = np.zeros(size + _CACHE_LINE, dtype=np.uint8)
+    start = -space.ctypes.data % _CACHE_LINE
+    return space[start : start + size].view(np.float64).reshape(shape, order=order)
 
 
 def aligned(array: np.ndarray) -> np.ndarray:

@@ -1,15 +1,15 @@
-"""The inertial frame a run is solved in: it moves with the platform's mass centre as that moves at
+"""The inertial frame a run is solved in. Its velocity is that of the platform's mass centre at
 ignition.
 
-Newton's laws are the same in every frame that moves uniformly. Arithmetic is not: at 7.5 km/s
-millimetres per second are the last digits of a velocity, and a step control that compares errors
-with speeds sees no error at all. So both fidelities solve
+Rounding depends on the frame: at 7.5 km/s, millimetres per second are the last digits of a
+velocity, and a step control that compares errors with speeds finds no error. So both solvers
+integrate
 
     r' = r - r_0 - V t,    v' = v - V,      r_0 the payload's displacement at ignition, V the platform's velocity then
 
-and give places and velocities back in the scene's own axes. Forces, rates, attitudes and times are
-the same in both. Ledgers and momenta are those of the moving frame, where kinetic energy is what
-thrust and contact make of it. Rails that are fixed in space define their frame: r_0 and V are zero.
+and return positions and velocities in scene axes. Forces, rates, attitudes and times are the same
+in both frames. Ledgers and momenta are those of the moving frame. Where the rails are fixed in
+space, r_0 and V are zero.
 """
 
 from typing import NamedTuple
@@ -47,7 +47,7 @@ def start(model) -> Start:
     """Both bodies at ignition."""
     origin, velocity = frame(model)
     first, zero = model.initial, np.zeros(3)
-    # The difference first: a large displacement leaves no trace in a small one.
+    # The difference is taken first, so that a large displacement costs no digits.
     place = np.add(model.payload.mass_centre, np.subtract(first.position, origin))
     platform_place, platform_velocity = (
         (zero, zero)

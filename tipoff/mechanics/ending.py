@@ -1,8 +1,7 @@
-"""What a time loop learns of exit, settled window and jam, step by step: one book for both
-fidelities.
+"""Exit, settled window and jam of a run, found step by step. Both solvers use this module.
 
-A loop feeds its book after every step, from its own interpolant, so what becomes of a payload does
-not hang on when the motion is sampled. The definitions are those of ``mechanics.outcome``.
+A time loop updates an array, the book, after every step from its own interpolant. So the outcome
+does not depend on the sampling interval. The definitions are those of ``mechanics.outcome``.
 """
 
 import numpy as np
@@ -15,24 +14,30 @@ from tipoff.mechanics.outcome import JAM_DURATION, SETTLE_WINDOW, Outcome, windo
 # (rad/s) from here on.
 PLACE, SPEED, ATTITUDE, SPIN, BODY = 0, 3, 6, 10, 13
 ROW_SIZE = 2 * BODY
-# Slots of a book. Instants (s), infinite until they are known: the exit, the begin of the settled
-# window, the end of it or of a jam, after which nothing is left to learn, the one since when the
-# payload is slow. At the last look: how far the rearmost trailing edge is past the rail end (m),
-# and by how much the axial speed exceeds the jam speed (m/s), both NaN before a first look.
-# Integrals over the window so far of velocity (m) and rate (rad). Rows at the exit, at the last
-# look and at the one before.
+# Slots of a book. Times (s), infinite until they are found:
+#   EXIT        the exit
+#   WINDOW      start of the settled window
+#   DONE        end of the settled window or of a jam, when the outcome is complete
+#   SLOW_SINCE  time from which on the payload is slow
+# At the last step, NaN before the first one:
+#   PAST        distance of the rearmost trailing edge beyond the rail end (m)
+#   EXCESS      axial speed minus jam speed (m/s)
+# Integrals over the part of the window that is done:
+#   WAY, ANGLE  of velocity (m) and of rate (rad)
+# Rows:
+#   AT_EXIT, NOW, BEFORE   at the exit, at the last step, at the step before it
 EXIT, WINDOW, DONE, SLOW_SINCE, PAST, EXCESS, WAY, ANGLE, AT_EXIT = 0, 1, 2, 3, 4, 5, 6, 9, 12
 NOW, BEFORE = AT_EXIT + ROW_SIZE, AT_EXIT + 2 * ROW_SIZE
 BOOK_SIZE = AT_EXIT + 3 * ROW_SIZE
-# s after which a run ends when nothing is left to learn: time for one more sample, if samples are
-# so close that a record of them tells of the settled window.
+# s from DONE to the end of a run, so that one more sample follows the settled window where samples
+# are close
 AFTER = 1e-3
 _ROUNDING = 1e-12  # relative: a scene that ends with the window holds all of it
 
 
 @kernel
 def reset(book):
-    """Bring a book (BOOK_SIZE,) of any past to the begin of a run."""
+    """Set a book (BOOK_SIZE,) to the start of a run."""
     book[:] = 0.0
     book[EXIT] = book[WINDOW] = book[DONE] = book[SLOW_SINCE] = np.inf
     book[PAST] = book[EXCESS] = np.nan
@@ -40,19 +45,19 @@ def reset(book):
 
 @inlined
 def watched_from(marks):
-    """Instant (s) from which on a slow payload may be jammed."""
+    """Time (s) from which on a slow payload counts as jammed."""
     return 0.0 if marks.constant_thrust else marks.spent_thrust
 
 
 @inlined
 def leave(book, at, marks):
-    """The last trailing edge passes the rail end ``at`` (s)."""
+    """Enter the exit ``at`` (s): the last trailing edge passes the rail end."""
     book[EXIT], book[WINDOW] = at, window_start(at, marks)
 
 
 @kernel
 def axial_speed(row):
-    """X velocity (m/s) of the payload's mass centre as seen from the platform, in its axes."""
+    """X velocity (m/s) of the payload's mass centre relative to the platform, in platform axes."""
     base = row[BODY:]
     axis = rotation.matrix(
         (base[ATTITUDE], base[ATTITUDE + 1], base[ATTITUDE + 2], base[ATTITUDE + 3])
@@ -68,8 +73,8 @@ def axial_speed(row):
 
 @inlined
 def look_at_speed(book, excess, at, crossing):
-    """The axial speed exceeds the jam speed by ``excess`` (m/s) ``at`` (s), and passed it at
-    ``crossing`` (s) if it did so since the last look."""
+    """Enter that the axial speed exceeds the jam speed by ``excess`` (m/s) ``at`` (s). ``crossing``
+    (s) is the time at which it passed the jam speed, if it did so in this step."""
     if excess < 0.0 and book[SLOW_SINCE] == np.inf:
         book[SLOW_SINCE] = crossing
     if (at if excess < 0.0 else crossing) - book[SLOW_SINCE] >= JAM_DURATION:
@@ -81,14 +86,14 @@ def look_at_speed(book, excess, at, crossing):
 
 @inlined
 def part_in_window(book, began, ended):
-    """Begin and end (s) of the part of a step that lies in the settled window; not in this order
-    where none does."""
+    """Start and end (s) of the part of a step inside the settled window; the end is the smaller one
+    where the step is outside."""
     return max(began, book[WINDOW]), min(ended, book[WINDOW] + SETTLE_WINDOW)
 
 
 @inlined
 def count(book, row, duration):
-    """Add to the integrals that velocity and rate are those of ``row`` for ``duration`` (s)."""
+    """Add velocity and rate of ``row``, times ``duration`` (s), to the integrals."""
     for i in range(3):
         book[WAY + i] += duration * row[SPEED + i]
         book[ANGLE + i] += duration * row[SPIN + i]
@@ -96,7 +101,7 @@ def count(book, row, duration):
 
 @inlined
 def close(book, now):
-    """See whether the settled window is over ``now`` (s)."""
+    """Enter the end of the settled window if it is over ``now`` (s)."""
     end = book[WINDOW] + SETTLE_WINDOW
     if now >= end * (1.0 - _ROUNDING):
         book[DONE] = end
@@ -110,8 +115,8 @@ def is_over(book, now):
 
 @inlined
 def is_left_out(book, time, interval):
-    """Whether a sample at ``time`` (s) is not taken any more: it comes late, or one ``interval``
-    (s) before it was the last."""
+    """Whether the sample at ``time`` (s) is left out: it is too late, or the sample one ``interval``
+    (s) earlier was the last one."""
     return time > book[DONE] + AFTER or time - interval >= book[DONE]
 
 

@@ -1,16 +1,15 @@
-"""The two energy ledgers of a run, and how well they close. Both fidelities fill the same entries
-(J, at each sample).
+"""The two energy ledgers of a run and their residuals. Both solvers fill the same entries (J, at
+each sample).
 
     residual = E(0) + thrust + body force - (kinetic + strain + contact_stored + contact_damping + friction
                                           + structural_damping + released + contact_axial)
 
 E(0) is kinetic + strain + contact_stored at ignition. The **total** ledger has ``contact_axial`` =
-0. In the **transverse** ledger the axial part is taken out of every entry: each force's X component
-times the X velocity of the mass centre of the body it acts on (payload, or platform with rails);
-the kinetic entry loses M V_x^2 / 2 of each body. What the normal contact forces do along X then has
-no other entry and stands in ``contact_axial``. So 500 J of axial motion cannot hide the 1 mJ that
-decides the rates. Both are kept in the frame a run is solved in (``mechanics.comoving``): where the
-platform flies by at 7.5 km/s, the energy of that flight is no scale for anything.
+0. The **transverse** ledger omits the axial part of every entry: the X component of each force
+times the X velocity of the mass centre of its body (payload, or platform with rails), and
+M V_x^2 / 2 of each body in the kinetic entry. Its ``contact_axial`` is the axial work of the normal
+contact forces. So 500 J of axial motion do not hide the 1 mJ that decides the rates. Both ledgers
+are those of the frame a run is solved in (``mechanics.comoving``).
 """
 
 import numpy as np
@@ -44,13 +43,14 @@ def residual(entries: np.ndarray) -> np.ndarray:
 
 
 def terms(entries: np.ndarray) -> float:
-    """Size (J) of what is summed, and so of what rounds: the largest sum of absolute entries."""
+    """Size (J) of the terms that are summed, which decides the rounding: the largest sum of absolute
+    entries."""
     return float(np.abs(entries).sum(axis=1).max())
 
 
 def total_error(entries: np.ndarray, promised: promises.Promises = promises.RIGID) -> float:
-    """Largest residual over max(|work|, largest kinetic energy), at least what rounding of the
-    ``terms`` leaves to be told of what is ``promised``."""
+    """Largest residual over max(|work|, largest kinetic energy). The scale is bounded below by
+    ``promises.scale``."""
     work = np.abs(entries[:, _WORK].sum(axis=1)).max()
     largest = max(work, entries[:, ENTRIES.index("kinetic")].max())
     scale = promises.scale(largest, terms(entries), promised.energy_error, promised.rounding)
@@ -63,8 +63,8 @@ def transverse_error(
     promised: promises.Promises = promises.RIGID,
 ) -> float:
     """Largest residual over the largest sum of non-axial kinetic, strain and stored contact energy.
-    Its entries are differences of those of the ``total`` ledger, if given, and round as these
-    do."""
+    The entries are differences of those of the ``total`` ledger, if given, and have its
+    rounding."""
     size = terms(entries if total is None else total)
     scale = promises.scale(
         np.abs(entries[:, _STATE].sum(axis=1)).max(),

@@ -1,5 +1,4 @@
-"""What kernels of both fidelities are given: constant records made once from a scene, None where an
-effect is absent.
+"""Constant records of a scene for the kernels of both solvers; None where an effect is absent.
 
 Places on the payload are measured from its *actual* mass centre in body axes; places on the rail
 from the platform's mass centre at ignition (the scene origin when the platform is fixed), in
@@ -21,7 +20,7 @@ from tipoff.scenes.effects.thermal import Thermal
 from tipoff.scenes.rail import SectionTable
 from tipoff.scenes.scene import Scene
 
-# Tables of a scene whose records may be kept.
+# Tables of a scene whose records can be reused.
 _REUSED = (
     "payload",
     "pads",
@@ -64,10 +63,9 @@ class Faces(NamedTuple):
 
 
 class Plate(NamedTuple):
-    """What bounds every wall besides the ends of the rail: its thickness (m); the leg (m), which no
-    wall is wider than; and where each face stands across the rail when it is centred, across (f,) m
-    in platform axes. A rail given as a file that does not say its thickness or leg is taken to have
-    those of the built-in section."""
+    """Bounds of the walls across the rail: thickness (m) of the walls, leg (m), which is their
+    largest width, and the position of each centred face across the rail, across (f,) m in platform
+    axes. A rail from a file without thickness or leg gets those of the built-in section."""
 
     thickness: float
     leg: float
@@ -108,18 +106,18 @@ def build(scene: Scene) -> Model:
     return built(scene).model
 
 
-def built(scene: Scene, known: Built | None = None) -> Built:
-    """Records of ``scene``; those that come from the very tables of a ``known`` scene are taken
-    from there."""
+def built(scene: Scene, earlier: Built | None = None) -> Built:
+    """Records of ``scene``. Records of tables that ``scene`` shares with an ``earlier`` scene are
+    reused."""
     same = (
-        {name for name in _REUSED if getattr(known.scene, name) is getattr(scene, name)}
-        if known
+        {name for name in _REUSED if getattr(earlier.scene, name) is getattr(scene, name)}
+        if earlier
         else set()
     )
 
     def kept(*names: str) -> Built | None:
-        """What is known, where it comes from these very tables."""
-        return known if same.issuperset(names) else None
+        """The earlier records, if they come from these same tables."""
+        return earlier if same.issuperset(names) else None
 
     offset = scene.mass_offset.eccentricity.offset() if scene.mass_offset else (0.0, 0.0, 0.0)
     platform = (
@@ -179,9 +177,9 @@ def built(scene: Scene, known: Built | None = None) -> Built:
     )
 
 
-def _payload(scene: Scene, offset: tuple, known: Payload | None) -> Payload:
-    if known is not None:
-        return known._replace(mass_centre=offset)
+def _payload(scene: Scene, offset: tuple, earlier: Payload | None) -> Payload:
+    if earlier is not None:
+        return earlier._replace(mass_centre=offset)
     inertia = tensor(scene.payload.inertia)
     return Payload(scene.payload.mass, inertia, np.linalg.inv(inertia), offset)
 
@@ -210,7 +208,7 @@ def _faces(scene: Scene, platform: Platform | None) -> Faces:
             across = 3 - axis
             centre = corner.copy()
             centre[across] -= np.sign(corner[across]) * pad.inset
-            # a shim, where the walls of a file stand off the pads by another clearance
+            # a shim, where the walls of a file have another distance from the pads
             centre[axis] += sign * (gap - clearance)
             wall = corner[axis] + sign * gap - origin[axis]
             rows.append(

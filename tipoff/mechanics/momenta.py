@@ -1,14 +1,13 @@
-"""How well a run keeps linear and angular momentum, in the frame it is solved in
+"""Errors of linear and angular momentum of a run, in the frame it is solved in
 (``mechanics.comoving``).
 
     error = largest |change of a sum of momenta - impulse from outside| / scale
 
-The scale is the largest momentum of the payload or of the whole. What acts in a run are forces;
-their impulses round where they cancel, and so do moments about the origin of forces along lines
-near it: both sizes go into the smallest scale that can tell whether the promise is kept
+The scale is the largest momentum of the payload or of the whole system. Impulses round where they
+cancel, and so do their moments about the origin; both sizes enter the lower bound of the scale
 (``mechanics.promises``). Momenta are sums over the steps, each rounded by half a unit in the last
-place at most. Where a force is constant, all of these errors have one sign, so n
-steps may add n eps / 2 of the momentum.
+place at most. Under a constant force these errors have one sign, so n steps may add n eps / 2 of
+the momentum.
 """
 
 import numpy as np

@@ -1,5 +1,5 @@
-"""What became of an ejection: exit, settled velocity and rate, jam. One home for the definitions,
-used by both fidelities.
+"""The outcome of an ejection: exit, settled velocity and rate, jam. Both solvers use these
+definitions.
 
 * **Exit**: first instant at which the trailing edge of the last pad face is past the rail end.
 * **Settled window**: 2 ms from the later of exit + 1 ms and thrust below 0.1 % of its peak; settled
@@ -7,7 +7,7 @@ used by both fidelities.
 * **Jammed**: after thrust fell below 1 % of its peak, or under constant thrust, relative axial
   speed below the friction transition speed (10 mm/s where friction has none) for 5 ms.
 
-All of it is read from the steps of a run (``mechanics.ending``), whatever is sampled.
+All of it is found from the steps of a run (``mechanics.ending``), whatever the sampling interval.
 """
 
 from typing import NamedTuple
@@ -60,8 +60,8 @@ class Outcome(NamedTuple):
 
 
 class Milestones(NamedTuple):
-    """What a scene fixes beforehand: thrust below 0.1 % and 1 % of its peak (s), the jam speed
-    (m/s), whether thrust is constant."""
+    """Values that the scene alone determines: times (s) from which on the thrust is below 0.1 % and
+    1 % of its peak, the jam speed (m/s), whether the thrust is constant."""
 
     settled_thrust: float
     spent_thrust: float
@@ -70,7 +70,7 @@ class Milestones(NamedTuple):
 
 
 def milestones(scene: Scene, model) -> Milestones:
-    """Instants and speed that decide what becomes of a run of ``scene``."""
+    """Milestones of a run of ``scene``."""
     settled, spent = thrust.burnouts(model.thrust, (1e-3, 1e-2), scene.duration)
     return Milestones(
         settled_thrust=settled,
@@ -107,8 +107,8 @@ def window_start(exit_at, marks):
 
 
 def pressed_at_ignition(faces, forces: np.ndarray) -> str:
-    """A warning that names the pads on which there are ``forces`` (f,3) N before anything moves, or
-    nothing."""
+    """A warning that names the pads with ``forces`` (f,3) N at ignition; empty where there are
+    none."""
     pads = sorted(set(faces.pad[(forces != 0.0).any(axis=1)].tolist()))
     return (
         f"initial interference: pads {', '.join(map(str, pads))} press on the rail at ignition"
@@ -118,9 +118,9 @@ def pressed_at_ignition(faces, forces: np.ndarray) -> str:
 
 
 def strike(faces, face: int, how: str, depth: float, place: float, time: float) -> str:
-    """Why a run ends at a pad that meets a wall where no contact is modelled: what it does
-    (``how``), with the penetration ``depth`` (m), the middle of the face standing at X = ``place``
-    (m, as the scene counts it at ignition), at ``time`` (s)."""
+    """Message of a run that ends because a pad meets a wall where no contact is modelled. ``how``
+    says what the pad does, ``depth`` (m) is its penetration, ``place`` (m) the X of the middle of
+    the face in scene axes at ignition, ``time`` in s."""
     name = f"{'+' if faces.sign[face] > 0.0 else '-'}{'xyz'[faces.axis[face]]}"
     return (
         f"pad {faces.pad[face]} {how} of its rail with its face {name}, {depth * 1e3:.4g} mm "

@@ -1,14 +1,13 @@
-"""What every run promises of its balances, one home for both fidelities and the report, and what of
-it a run broke.
+"""The largest errors of its balances that a run may have (its promises), and which of them a run
+exceeds.
 
-An error is a residual over a scale. Sums of large terms are wrong by their rounding, whatever the
-scale is that remains of them: a scene in which nothing moves across the rail has a transverse scale
-that is itself rounding. So the scale is at least
+An error is a residual over a scale. A sum of large terms has their rounding error, however small
+the sum is: a scene without transverse motion has a transverse scale that is only rounding. So the
+scale is at least
 
     rounding * (size of the terms) / promise
 
-the smallest one on which numbers of sixteen digits can tell whether the promise is kept. It hides
-nothing: below it a kept promise and a broken one look alike.
+On a smaller scale, double precision cannot distinguish a kept promise from a broken one.
 """
 
 from collections.abc import Mapping
@@ -40,8 +39,8 @@ class Promises(NamedTuple):
     rounding: float
 
     def loosened(self, factor: float) -> "Promises":
-        """What remains of the promise of both ledgers at a tolerance ``factor`` times the one they
-        are made for: as much more, a tenth at most; a tighter tolerance promises no more."""
+        """The promises of both ledgers at ``factor`` times the default tolerance: ``factor`` times as
+        large, at most a tenth. A smaller tolerance leaves them as they are."""
         factor = max(factor, 1.0)
         return self._replace(
             energy_error=min(self.energy_error * factor, _LOOSEST),
@@ -57,19 +56,19 @@ CHECKS = tuple(_WORDS)
 
 
 def scale(largest: float, terms: float, promise: float, rounding: float = ROUNDING) -> float:
-    """What a residual is divided by: the ``largest`` value of the quantity, at least what its
-    ``terms`` leave to be told of a ``promise``, all in one unit."""
+    """Scale of a residual: the ``largest`` value of the quantity, but at least the bound of the
+    module docstring; all in one unit."""
     return max(largest, rounding * terms / promise)
 
 
 def relative(residual: float, over: float) -> float:
-    """``residual`` over a scale; where there is no scale nothing moves, and the residual is zero
-    too."""
+    """``residual`` over a scale. A scale of zero means that nothing moves: the residual is returned
+    as it is."""
     return float(residual / over) if over > 0.0 else float(residual)
 
 
 def broken(checks: Mapping[str, float], promised: Promises) -> str:
-    """The promises that ``checks`` do not keep, in words; nothing where all are kept."""
+    """Text that lists the promises that ``checks`` do not keep; empty where all are kept."""
     return "; ".join(
         f"{words} is off by {checks[name]:.3g} of its scale, promised is "
         f"{getattr(promised, name):.3g}"

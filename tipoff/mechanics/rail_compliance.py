@@ -1,25 +1,24 @@
-"""How the walls of a rail give way under the pads: data found once for a rail and its pads, which
-the rigid surrogate can stand on.
+"""Static compliance of the rails under the pads: condensed once from the finite elements, used by
+the surrogate as compliant contact.
 
-On pad face i, with xi along the rail and eta across it in [-1, 1], a pressure p moves the wall away
-from the payload by u::
+On pad face i, with xi along the rail and eta across it in [-1, 1], a pressure p displaces the wall
+away from the payload by u::
 
     u_i = sum_a U_ia phi_a(xi, eta),   P_jb = integral over face j of p phi_b dA,   U_ia = sum_jb F_iajb(travel) P_jb
     phi = 1, xi, eta, xi^2, xi eta, eta^2
 
-F is symmetric and positive definite: the flexibility of linear statics, at every place the pads
-come to. Near an end of the rail a face keeps the last place where all of it has a wall under it,
-and xi goes on from there.
+F is the flexibility of linear statics, symmetric and positive definite, at every station along the
+rail. Near an end of the rail a face keeps the last station where all of it has a wall under it, and
+xi continues beyond.
 
-Of this the lowest modes of the rail, mass-normalised and of frequencies omega_m, bring a part;
-without it statics has the rest::
+The lowest modes of the rail, mass-normalised and of frequencies omega_m, are a part of it. The rest
+is static::
 
     U = F_res P + W q,   F_res = F - sum_m W_m W_m' / omega_m^2,   W_iam(travel) the displacement in mode m
 
-F_res is positive semidefinite, for it is what the other modes would bring. Where the rail is warm
-(``scenes.effects.thermal``) its walls stand away from their places before anything presses them, by
-T = sum_t amount_t warm_t of the same patterns, on top of which comes U; walls known to be warm and
-rigid have no F.
+F_res is positive semidefinite: it is the part of the other modes. A warm rail
+(``scenes.effects.thermal``) has the thermal offset T = sum_t amount_t warm_t of the same patterns,
+to which U is added. Warm and rigid walls have T but no F.
 """
 
 import hashlib
@@ -41,7 +40,7 @@ MODES = 20  # of each rail, kept beside its compliance
 PATTERNS = 6  # phi: all products of powers of xi and eta up to the second degree
 POWERS = np.array([[0, 0], [1, 0], [0, 1], [2, 0], [1, 1], [0, 2]])  # of xi and eta
 
-# of the largest eigenvalue of F: what the modes' own accuracy may take from an eigenvalue of zero
+# of the largest eigenvalue of F: error of an eigenvalue of zero by the accuracy of the modes
 _ROUNDING = 1e-9
 
 # Means over a face of products of two patterns: the mean of xi^n is 1 / (n + 1) for even n.
@@ -56,7 +55,7 @@ class RailCompliance:
     along xi and eta, negative where eta runs against the axis; frequency (r,n) rad/s of the lowest
     modes of each rail, ascending, and their shape W (s,f,p,n) 1/kg^0.5; made_for, digest of the
     rail and pads; warm (t,s,f,p) m away from the payload under one of each field of temperature,
-    None where nobody asked. Rigid walls have None for their flexibility."""
+    or None. Rigid walls have no flexibility (None)."""
 
     travel: np.ndarray
     flexibility: np.ndarray | None
@@ -69,8 +68,8 @@ class RailCompliance:
 
     def cubic(self, modes: int = 0) -> tuple[np.ndarray, np.ndarray]:
         """Flexibility (s-1,f,f,p,p,4) without the part of the first ``modes``, and their shapes
-        (s-1,f,n,p,4), between stations: coefficients of the rising powers of the way (m) from the
-        one before. Raises ValueError as ``residual`` does."""
+        (s-1,f,n,p,4), between stations: coefficients of the rising powers of the distance (m) from
+        the one before. Raises ValueError as ``residual`` does."""
         if modes not in self._cubics:
             flexibility, shape = (
                 cubic(self.travel, table)
@@ -103,7 +102,7 @@ class RailCompliance:
         )
         if not (lowest >= -_ROUNDING * largest).all():
             raise ValueError(
-                f"modes: given {modes} that give way more than the whole wall, expected modes of "
+                f"modes: given {modes} with more compliance than the wall has, expected modes of "
                 f"the same rail"
             )
         return rest
@@ -114,7 +113,7 @@ class RailCompliance:
         return self.flexibility
 
     def __getstate__(self) -> dict:
-        """What goes to another process: not what it can make by itself."""
+        """The fields, for another process; derived arrays are made again there."""
         return {field.name: getattr(self, field.name) for field in fields(self)}
 
     @cached_property
@@ -140,24 +139,22 @@ class RailCompliance:
         return (GRAM @ self._flexibility().transpose(0, 1, 3, 2, 4) @ GRAM)[..., 0, 0]
 
     def rigid(self) -> "RailCompliance":
-        """The same walls for a contact law to stand on: where they are when they are warm, and
-        nothing of how they give way."""
+        """The same walls without flexibility: the thermal offset alone, for springs."""
         return replace(self, flexibility=None)
 
     def moved(self, amounts: np.ndarray) -> np.ndarray:
-        """W (s,f,p) m by ``amounts`` (t,) of the fields of temperature."""
+        """Thermal offset T (s,f,p) m under ``amounts`` (t,) of the fields of temperature."""
         assert self.warm is not None
         return np.tensordot(amounts, self.warm, 1)
 
     def restricted(self, patterns: int = PATTERNS, coupled: bool = True) -> "RailCompliance":
-        """The same walls with the first so many patterns of pressure and displacement by load only,
-        and, unless ``coupled``, each face by itself, without modes then, which faces have in
-        common: what a simpler model knows of them."""
+        """The compliance of a simpler model: the first ``patterns`` only, and, unless ``coupled``,
+        without the coupling between faces and without modes."""
         kept = np.arange(PATTERNS) < patterns
-        known = self._flexibility()
-        blocks = (GRAM @ known.transpose(0, 1, 3, 2, 4) @ GRAM)[..., kept, :][..., kept]
+        full = self._flexibility()
+        blocks = (GRAM @ full.transpose(0, 1, 3, 2, 4) @ GRAM)[..., kept, :][..., kept]
         inverse = np.linalg.inv(GRAM[np.ix_(kept, kept)])
-        flexibility = np.zeros_like(known)
+        flexibility = np.zeros_like(full)
         flexibility[:, :, :patterns, :, :patterns] = (inverse @ blocks @ inverse).transpose(
             0, 1, 3, 2, 4
         )
@@ -169,8 +166,8 @@ class RailCompliance:
         return replace(self, flexibility=flexibility, frequency=frequency, shape=shape)
 
     def require(self, scene: Scene) -> None:
-        """Raises SceneError where ``scene`` has another rail or other pads than these walls were
-        found for, or a temperature of which they do not know."""
+        """Raises SceneError where ``scene`` has another rail or other pads than this compliance was
+        made for, or a temperature while this has no thermal offset."""
         if self.made_for != digest(scene):
             raise SceneError(
                 [
@@ -178,7 +175,7 @@ class RailCompliance:
                         scene.name,
                         "rail",
                         "another rail, or other pads",
-                        "those the walls were found for: find them anew",
+                        "those of this compliance: make it again",
                     )
                 ]
             )
@@ -188,8 +185,8 @@ class RailCompliance:
                     Fault(
                         scene.name,
                         "thermal",
-                        "walls that know of no temperature",
-                        "walls found for warm rails: find them anew",
+                        "a compliance without thermal offset",
+                        "a compliance for warm rails: make it again",
                     )
                 ]
             )
@@ -204,8 +201,8 @@ class RailCompliance:
 
     @classmethod
     def load(cls, path: str | Path) -> "RailCompliance":
-        """Read what ``save`` wrote. Raises FileNotFoundError, or ValueError for a foreign file or
-        one that its digest does not fit."""
+        """Read what ``save`` wrote. Raises FileNotFoundError, or ValueError for a foreign or damaged
+        file."""
         try:
             require_whole(path)
             with np.load(path, allow_pickle=False) as found:
@@ -217,10 +214,10 @@ class RailCompliance:
             compliance = cls(**arrays | {"made_for": str(arrays["made_for"])})
             compliance._require_whole()
         except DamageError as fault:
-            raise ValueError(f"{path}: not a file of walls: it {fault.reason}") from fault
+            raise ValueError(f"{path}: not a file of rail compliance: it {fault.reason}") from fault
         # TypeError: a lone array
         except (zipfile.BadZipFile, zlib.error, KeyError, EOFError, TypeError, ValueError) as error:
-            raise ValueError(f"{path}: not a file of walls ({error})") from error
+            raise ValueError(f"{path}: not a file of rail compliance ({error})") from error
         return compliance
 
     def _require_whole(self) -> None:
@@ -249,22 +246,22 @@ class RailCompliance:
 
 
 def model_of(scene: Scene, compliance: RailCompliance | None) -> str:
-    """The surrogate that ``scene`` has on ``walls``: springs on rigid ones or on none. Without
-    contact both are one, the default."""
+    """The surrogate model that ``scene`` gets with ``compliance``: springs without it or on rigid
+    walls. Without contact both models are the same, and the default is returned."""
     flexible = compliance is not None and compliance.flexibility is not None
     return COMPLIANT if flexible or scene.contact is None else SPRINGS
 
 
 def require_modes(source: str, compliance: RailCompliance | None, modes: int) -> None:
-    """Raises SceneError, naming ``source``, where ``walls`` do not have so many ``modes``."""
-    if compliance is not None and modes > (known := compliance.frequency.shape[1]):
+    """Raises SceneError, naming ``source``, where ``compliance`` has fewer ``modes``."""
+    if compliance is not None and modes > (most := compliance.frequency.shape[1]):
         raise SceneError(
             [
                 Fault(
                     source,
                     "numerics.modes",
                     str(modes),
-                    f"at most {known}, the modes this rail compliance holds",
+                    f"at most {most}, the modes this rail compliance holds",
                 )
             ]
         )
@@ -272,7 +269,7 @@ def require_modes(source: str, compliance: RailCompliance | None, modes: int) ->
 
 def cubic(travel: np.ndarray, values: np.ndarray) -> np.ndarray:
     """Cubic spline (s-1,...,4) through ``values`` (s,...) at ``travel`` (s,) m: coefficients of the
-    rising powers of the way (m) from the station before."""
+    rising powers of the distance (m) from the station before."""
     from scipy.interpolate import CubicSpline
 
     if not values.size:
@@ -281,10 +278,10 @@ def cubic(travel: np.ndarray, values: np.ndarray) -> np.ndarray:
 
 
 def digest(scene: Scene) -> str:
-    """Hexadecimal digest of what walls depend on. The clearance is not part of it:
-    it moves pads over a leg by a hundredth of its width."""
+    """Hexadecimal digest of what the compliance depends on. The clearance is not part of it: it
+    moves pads across a leg by a hundredth of its width."""
     described = scene.model_dump(mode="json", include={"rail", "pads"})
     described["rail"] |= scene.rail.contents()
     described["rail"].pop("damping", None)  # statics
-    described["rail"]["material"].pop("expansion", None)  # found for one of each field
+    described["rail"]["material"].pop("expansion", None)  # the offset is per unit of each field
     return content_hash(described)

@@ -71,7 +71,7 @@ def _versions() -> dict[str, str]:
 
 def versions() -> dict[str, str]:
     """Versions of the libraries a result depends on."""
-    # Looked up once: reading the metadata anew takes longer than a whole run of the surrogate.
+    # Read once: reading the metadata takes longer than a run of the surrogate.
     return dict(_versions())
 
 
@@ -81,16 +81,16 @@ class Trajectory:
     energy ledgers.
 
     Arrays have the samples first: time (n,) s, vectors (n,3), quaternions (n,4), pad_force (n,f,3)
-    N, ledgers (n, len(ledger.ENTRIES)) J. ``checks`` holds the kept promises (dimensionless),
+    N, ledgers (n, len(ledger.ENTRIES)) J. ``checks`` holds the errors of the balances (1),
     ``cost`` wall_s, compile_s, steps, dt_s and what a model adds, ``scene`` the resolved inputs. A
     diverged or refused run has no settled values.
 
-    A run with flexible rails also says what they bear. ``stress``: peak_stress_pa, the largest von
+    A run with flexible rails also has their stress. ``stress``: peak_stress_pa, the largest von
     Mises stress, at peak_stress_place_m (scene axes, undeformed) of peak_stress_rail at
     peak_stress_time_s; yield_strength_pa or None; largest_strain, largest_rotation_rad; warnings,
-    words about what these make doubtful; patch_places_m of the w patches whose mean stress in
-    platform axes is ``wall_stress`` (n,w,6) Pa. A rigid rail has none: None, and no patches; nor
-    does a run that diverged say how strong its rails must be.
+    text on what these make doubtful; patch_places_m of the w patches whose mean stress in
+    platform axes is ``wall_stress`` (n,w,6) Pa. A rigid rail and a run that diverged have None and no
+    patches.
 
     ``model`` is one of ``mechanics.models.MODELS``. Raises ValueError for another one, for an
     unknown status, arrays that do not fit each other, and any NaN or inf, naming where it is.
@@ -230,13 +230,12 @@ class Trajectory:
                 f"{path}: not a whole trajectory file: it {fault.reason}; make it again"
             ) from fault
         except (OSError, KeyError, TypeError, ValueError, RuntimeError) as error:
-            # What HDF5 says of a foreign file depends on what it lacks.
+            # the error that HDF5 raises for a foreign file depends on the file
             raise OSError(f"{path}: not a whole trajectory file ({error})") from error
 
 
 def _is_finite(plain: dict) -> bool:
-    """Whether every number of nested dicts and lists is finite, asked of the encoder that will
-    write them."""
+    """Whether every number of nested dicts and lists is finite, as the JSON encoder sees it."""
     try:
         json.dumps(plain, allow_nan=False)
     except ValueError:

@@ -18,9 +18,9 @@ class Calibration:
 
     ``constants`` are dotted overrides in SI, applied to a scene by ``apply``. ``parameters`` name
     the fitted coordinates (with ``values``, their 95 % ``intervals``, infinite where the curves do
-    not tell and without model error, ``lower``, ``upper`` bounds and ``justification``);
+    not determine them and without model error, ``lower``, ``upper`` bounds and ``justification``);
     ``information`` is the matrix (p,p) of the scaled parameters; ``weak_directions`` describe what
-    the curves cannot tell; ``residuals`` are per condition.
+    the curves do not determine; ``residuals`` are per condition.
     """
 
     constants: dict[str, float]
@@ -58,9 +58,8 @@ class Calibration:
 
     @classmethod
     def load(cls, path: str | Path) -> "Calibration":
-        """Read what ``save`` wrote, or what a user did, whose file need not have a digest. Raises
-        FileNotFoundError, or ValueError for a foreign file or one that does not fit the digest it
-        has."""
+        """Read what ``save`` or a user wrote; the file of a user needs no digest. Raises
+        FileNotFoundError, or ValueError for a foreign or damaged file."""
         try:
             if is_sealed(path):
                 require_whole(path)

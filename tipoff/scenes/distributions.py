@@ -1,5 +1,4 @@
-"""How an uncertain number is spread: one table per distribution, with its quantile function
-``ppf``::
+"""Distributions of uncertain numbers: one table each, with its quantile function ``ppf``::
 
     x = F^-1(u), u uniform in (0, 1):   normal  m + s z(u)     Rayleigh  s sqrt(-2 ln(1 - u))     z = Phi^-1
     truncated normal, a < x < b:        redraw  m + s z(A + u (B - A)), A = Phi((a - m)/s), B = Phi((b - m)/s)

@@ -1,5 +1,5 @@
-"""Bad input is reported at once and whole: every fault with file, key, what was given and what is
-expected."""
+"""Faults of input. All of them are reported at once, each with file, key, the given value and the
+expected one."""
 
 from typing import Any, NamedTuple
 
@@ -33,7 +33,7 @@ class SceneError(InputError):
 
 
 def within(key: str, given: str, expected: str) -> PydanticCustomError:
-    """A fault of ``key`` of a table, for a validator that sees the table as a whole."""
+    """A fault of ``key``, for a validator of the whole table."""
     return PydanticCustomError(
         "within", "{expected}", {"key": key, "given": given, "expected": expected}
     )
@@ -42,7 +42,7 @@ def within(key: str, given: str, expected: str) -> PydanticCustomError:
 # Pydantic puts the chosen variant into the location: ("thrust", "gaussian", "width") is the key
 # thrust.width.
 _VARIANTS = ("thrust", "contact", "friction", "rail")
-# variants chosen by the presence of a key, which the user may not have meant
+# variants that the presence of a key chooses
 _FILED = (("rail", "mesh"), ("rail", "geometry"))
 _WORDS = {
     "extra_forbidden": "no such key",

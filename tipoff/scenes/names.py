@@ -1,4 +1,4 @@
-"""Names of scenes and conditions: results are filed under them, so they are names of files on every
+"""Names of scenes and conditions. Results are filed under them, so each is a valid file name on every
 system."""
 
 import re
@@ -10,7 +10,7 @@ _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,63}")
 
 
 def of_scene(name: str) -> str:
-    """``name``, if a scene may have it. Raises ValueError saying what is expected."""
+    """``name``, if it is valid for a scene. Raises ValueError with what is expected."""
     if not _NAME.fullmatch(name):
         raise ValueError(
             f"{EXPECTED}; a scene file without this key is called by the name of the file"
@@ -19,14 +19,14 @@ def of_scene(name: str) -> str:
 
 
 def faults(conditions: Iterable[Any]) -> list[tuple[str, str, str]]:
-    """Faults (key, given, expected) of the names of ``conditions``: each must be a name, and not
-    that of another one on a disk that does not tell upper from lower case."""
+    """Faults (key, given, expected) of the names of ``conditions``: each must be valid, and differ
+    from the others in more than upper and lower case."""
     found: list[tuple[str, str, str]] = []
-    known: dict[str, str] = {}
+    seen: dict[str, str] = {}
     for name in conditions:
         if not (isinstance(name, str) and _NAME.fullmatch(name)):
             found.append(("conditions", repr(name), EXPECTED))
-        elif (other := known.setdefault(name.lower(), name)) != name:
+        elif (other := seen.setdefault(name.lower(), name)) != name:
             found.append(
                 (
                     "conditions",

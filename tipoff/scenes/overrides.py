@@ -57,12 +57,12 @@ def _unit(annotation: Any) -> str | None:
         return ""
     if get_origin(annotation) not in (Annotated, Union, UnionType):
         return None
-    known = [
+    stated = [
         item.json_schema_extra["unit"]
         for item in get_args(annotation)
         if getattr(item, "json_schema_extra", None)
     ]
-    found = known + [_unit(item) for item in get_args(annotation)]
+    found = stated + [_unit(item) for item in get_args(annotation)]
     return next((item for item in found if item is not None), None)
 
 

@@ -1,5 +1,5 @@
-"""Values that pass validation and yet are probably a slip, of units or of what was taken over from
-another scene: warned about by field name, never changed."""
+"""Warnings about values that are valid but probably wrong, for example in their unit. Each names its
+fields; no value is changed."""
 
 import itertools
 import math
@@ -15,10 +15,10 @@ _DENSITY = (10.0, 20_000.0)
 _EXPANSION = 1e-4  # 1/K: polymers; metals expand by a third of it at most
 _FREE_STRAIN = 5e-3  # 200 K in aluminium, whose constants have changed by then
 
-# Of the inertia that a box of even density has: three times is all mass at the corners, which
-# nothing exceeds; a third is all of it within 0.58 of each side.
+# Of the inertia of a box of uniform density. Three times is all mass at the corners, the largest
+# value; a third is all mass within 0.58 of each side.
 _LEAST, _MOST = 1.0 / 3.0, 3.0
-# times, of a free end of a rail against the middle of its widest gap between two mounts
+# ratio of the compliance of a free end of a rail to that of its widest gap between two mounts
 _SOFTER = 8.0
 
 
@@ -48,8 +48,7 @@ def warnings(scene) -> list[str]:
 
 
 def of_all_conditions(scene) -> list[str]:
-    """Messages on a scene, and on its conditions where they name keys that no message before
-    does."""
+    """Messages on a scene, and those on its conditions that name other keys."""
     found: dict[str, str] = {}
     for name in (None, *scene.conditions):
         for words in scene.warnings if name is None else scene.condition(name).warnings:
@@ -60,13 +59,12 @@ def of_all_conditions(scene) -> list[str]:
 
 
 def _of_inertia(scene) -> list[str]:
-    """Moments of inertia that a body of that mass cannot have, or hardly has, in a box of sides a,
-    b and c.
+    """Moments of inertia that are impossible or implausible for a body of this mass in a box of
+    sides a, b and c.
 
-    A body of even density has I_xx = m (b^2 + c^2) / 12, and none has more than three times that:
-    the mean of (y - y_c)^2 over mass between two planes b apart is at most b^2 / 4 (Popoviciu).
-    Without ``payload.size`` the body reaches as far as its pads do, across the axis no further,
-    along it perhaps.
+    A body of uniform density has I_xx = m (b^2 + c^2) / 12, and no body has more than three times
+    that: the mean of (y - y_c)^2 over mass between two planes b apart is at most b^2 / 4
+    (Popoviciu). Without ``payload.size`` the box is that of the pads, and may be longer along X.
     """
     payload, wrong = scene.payload, []
     pads = [2.0 * max(abs(pad.position[axis]) for pad in scene.pads) for axis in range(3)]
@@ -97,11 +95,11 @@ def _of_inertia(scene) -> list[str]:
 
 
 def _of_mounts(rail) -> list[str]:
-    """A free end of a built-in rail that is far softer than the rail between two of its mounts.
+    """A free end of a built-in rail that is far more compliant than the rail between two mounts.
 
-    The tip of a cantilever of length a gives way by F a^3 / (3 E I), the middle of a span g clamped
-    at both ends by F g^3 / (192 E I): 64 (a / g)^3 times as much. Without such a gap the mounts
-    together count as the span.
+    The deflection is F a^3 / (3 E I) at the tip of a cantilever of length a, and F g^3 / (192 E I)
+    in the middle of a span g clamped at both ends: a ratio of 64 (a / g)^3. Without such a span all
+    mounts together count as one.
     """
     if not isinstance(rail, SectionTable) or not rail.mounts:
         return []
@@ -114,8 +112,8 @@ def _of_mounts(rail) -> list[str]:
             found.append(
                 f"rail.mounts, rail.start, rail.end: {1e3 * free:.4g} mm at the {end} end are not "
                 f"held, plausible up to "
-                f"{1e3 * allowed:.4g} mm; they give way {64.0 * (free / gap) ** 3:.3g} times as "
-                f"far as between mounts"
+                f"{1e3 * allowed:.4g} mm; their compliance is {64.0 * (free / gap) ** 3:.3g} times "
+                f"that between mounts"
             )
     return found
 

@@ -1,9 +1,8 @@
-"""Where values come from: free text under dotted keys. Of a key speaks its own text, else that of
-the innermost table around it.
+"""Provenance of values: free text under dotted keys. The text of a key is its own, else that of the
+innermost table around it.
 
-What is overridden is no longer what the text spoke of. The key is then the user's, unless its
-provenance is given anew. A table around it passes its text on to what else it holds, and says
-itself that a part is the user's.
+An overridden key gets the text "user", unless a new provenance is given. The table around it passes
+its text on to its other keys, and its own text then ends with ", in part user".
 """
 
 from collections.abc import Iterable, Mapping
@@ -21,8 +20,8 @@ def overridden(
     given: Mapping[str, str],
 ) -> dict[str, str]:
     """Provenance by dotted key of a scene written as ``raw`` after ``changes``: which dotted keys
-    were set, and True for those that were dropped. ``stated`` is what was known before, ``given``
-    what comes with the changes."""
+    were set, and True for those that were dropped. ``stated`` is the provenance before, ``given``
+    that of the changes."""
     found = {**stated, **given}
     for key, dropped in changes.items():
         if key.partition(".")[0] in _NO_QUANTITIES:
@@ -35,14 +34,14 @@ def overridden(
             _pass_on(found, raw, key)
             if not dropped:
                 found[key] = USER
-        # a table inside the one that is spoken of had a text of its own
+        # a table inside had a text of its own
         elif of(found, key) != text:
             found[key] = text
     return found
 
 
 def of(texts: Mapping[str, str], key: str) -> str | None:
-    """What ``texts`` say of a dotted key or of the innermost table around it; None without."""
+    """The text of a dotted key or of the innermost table around it; None without."""
     parts = key.split(".")
     return next(
         (
@@ -55,7 +54,7 @@ def of(texts: Mapping[str, str], key: str) -> str | None:
 
 
 def _pass_on(found: dict[str, str], raw: Any, key: str) -> None:
-    """Give the text of each table around ``key`` to all beside the way to it."""
+    """Give the text of each table around ``key`` to its other keys."""
     text, table, path = None, raw, ""
     for part, following in zip(parts := key.split("."), parts[1:]):
         path, table = f"{path}.{part}" if path else part, _inside(table, part)

@@ -1,12 +1,11 @@
-"""``[rail]``: the built-in L section, a mesh of the user's own, or a solid of the user's own that
-is meshed here.
+"""``[rail]``: the built-in L section, a mesh of the user, or a solid of the user that is meshed here.
 
-Presence of ``mesh`` or ``geometry`` is the switch. Such a file stands in scene axes (m, origin at
-the nominal mass centre at ignition, +X to the open end), its walls one ``clearance`` off the pads.
-The surrogate sees none of it: ``start`` and ``end`` say where the walls begin and end, pads and
-clearance where they stand; the reference refuses a file that says otherwise (``highfi.rail.fit``).
-``damping`` (``scenes.effects.structural_damping``), which any kind of rail may have, is felt by the
-reference and by modes of the rails (``scenes.effects.flexibility``).
+The key ``mesh`` or ``geometry`` selects a file. It is in scene axes (m, origin at the nominal mass
+centre at ignition, +X to the open end), with the walls one ``clearance`` off the pads. The
+surrogate does not use the file: ``start`` and ``end`` give the ends of the walls, pads and
+clearance their distance. The reference refuses a file that differs from them (``highfi.rail.fit``).
+Any kind of rail may have a ``damping`` (``scenes.effects.structural_damping``), which acts in the
+reference and on the modes of compliant contact.
 """
 
 import hashlib
@@ -58,8 +57,8 @@ class Span(Table):
 
 
 class MaterialTable(Table):
-    """``[rail.material]``: isotropic linear elasticity; ``expansion`` (1/K) is what ``[thermal]``
-    asks for, and nothing else."""
+    """``[rail.material]``: isotropic linear elasticity; only ``[thermal]`` needs ``expansion``
+    (1/K)."""
 
     density: Density
     youngs_modulus: Pressure
@@ -69,8 +68,7 @@ class MaterialTable(Table):
 
 
 class _RailTable(Table):
-    """What every rail has: the stretch of X (m) in which its walls stand, its material, and its
-    damping, if it has any."""
+    """Keys of every rail: start and end of its walls along X (m), material, damping."""
 
     GIVEN_BY: ClassVar[str]
     start: Length
@@ -81,13 +79,11 @@ class _RailTable(Table):
     _forward = field_validator("end")(_beyond_start)
 
     def contents(self) -> dict[str, str]:
-        """The keys that name files, each with the digest of what its file holds: what a result
-        depends on."""
+        """The keys that name files, each with the digest of the content of its file."""
         return {}
 
     def gap(self, clearance: float) -> float:
-        """Distance (m) of the walls from the pads as drawn, in a scene of that clearance (m): here
-        walls follow the clearance."""
+        """Distance (m) of the walls from the pads in a scene with this clearance (m)."""
         return clearance
 
 
@@ -124,10 +120,10 @@ class SectionTable(_RailTable):
 class _FileTable(_RailTable):
     """A rail given by a file.
 
-    ``clearance`` (m) is the one the file was drawn for; a scene of another one has shims of the
-    difference under its pads. ``thickness`` (m) of its walls and ``leg`` (m), how far they reach
-    unsupported, are what the bounds of a calibration scale with, and where a wall ends for a pad
-    that comes from behind or from beside (``mechanics.model.Plate``).
+    ``clearance`` (m) is the one of the file; a scene with another one has shims of the difference
+    under its pads. ``thickness`` (m) of the walls and ``leg`` (m), their unsupported width, scale
+    the bounds of a calibration and bound the walls for a pad that comes from behind or from the
+    side (``mechanics.model.Plate``).
     """
 
     clearance: NonNegativeLength | None = None
@@ -144,21 +140,20 @@ class _FileTable(_RailTable):
         return hashlib.sha256(self.path().read_bytes()).hexdigest()
 
     def is_as_found(self) -> bool:
-        """Whether the file still holds what it held when the scene was read, under which results
-        are filed."""
+        """Whether the file is the same as when the scene was read."""
         return self._digest_now() == self._digest
 
     def path(self) -> Path:
-        """Where the file lies."""
+        """Path of the file."""
         return Path(getattr(self, self.GIVEN_BY))
 
     def contents(self) -> dict[str, str]:
-        """The digest of the file, as it was when the scene was read."""
+        """The digest of the file when the scene was read."""
         return {self.GIVEN_BY: self._digest}
 
     def gap(self, clearance: float) -> float:
-        """Distance (m) of the walls from the pads as drawn: a file does not follow the clearance of
-        the scene."""
+        """Distance (m) of the walls from the pads in the file, whatever the clearance of the
+        scene."""
         return clearance if self.clearance is None else self.clearance
 
 
@@ -180,7 +175,7 @@ class MeshTable(_FileTable):
 
 
 class BoxTable(Table):
-    """A box between two corners in scene axes (m), flat where they agree."""
+    """A box between two corners in scene axes (m); it is flat where they are equal."""
 
     low: tuple[Length, Length, Length]
     high: tuple[Length, Length, Length]

@@ -1,9 +1,9 @@
-"""Scene files: TOML on disk to one nested mapping, a file that ``extends`` another merged over it.
+"""Reading scene files: TOML to one nested mapping. A file that ``extends`` another is merged over it.
 
-In a file that extends another, a table set to ``"absent"`` drops the inherited one, and a
-``[thrust]`` of another kind, a ``[contact]`` of another law or a ``[rail]`` given by a file
-replaces the inherited table instead of mixing with it. What it sets is the user's
-(``scenes.provenance``), unless it says otherwise in a ``[provenance]`` of its own.
+In such a file, a table set to ``"absent"`` drops the inherited one. A ``[thrust]`` of another kind,
+a ``[contact]`` of another law and a ``[rail]`` given by a file replace the inherited table. The
+provenance of what the file sets is "user" (``scenes.provenance``), unless its own ``[provenance]``
+differs.
 """
 
 import tomllib
@@ -42,8 +42,8 @@ def _known() -> str:
 
 
 def _inherit(path: Path, user_file: str, chain: tuple[Path, ...]) -> dict:
-    """``path`` merged over what it extends. Faults of an inherited file name the file the user
-    gave, and that file."""
+    """``path`` merged over the file that it extends. A fault of an inherited file names this file
+    and the one the user gave."""
     key = "file" if not chain else "extends"
     if path.resolve() in chain:
         raise SceneError(
@@ -67,13 +67,13 @@ def _inherit(path: Path, user_file: str, chain: tuple[Path, ...]) -> dict:
     if not base_path.is_file():
         raise SceneError([Fault(user_file, "extends", repr(base), _known())])
     inherited = _inherit(base_path, user_file, (*chain, path.resolve()))
-    # results are filed by name: a variation may not pass for what it varies
+    # results are filed by name: a variation needs a name of its own
     inherited.pop("name", None)
     merged = _merged(inherited, raw)
-    known, given = (overrides.texts(table.get("provenance")) for table in (inherited, raw))
-    if known is not None and given is not None:
+    stated, given = (overrides.texts(table.get("provenance")) for table in (inherited, raw))
+    if stated is not None and given is not None:
         merged["provenance"] = provenance.overridden(
-            known, merged, dict(_changes(inherited, raw)), given
+            stated, merged, dict(_changes(inherited, raw)), given
         )
     return merged
 
@@ -114,7 +114,7 @@ def _changes(base: dict, extra: dict, prefix: str = "") -> Iterator[tuple[str, b
     """Dotted keys that ``_merged`` sets or, marked True, drops."""
     for key, value in extra.items():
         if isinstance(value, dict) and value:
-            inherited = known if isinstance(known := base.get(key), dict) else {}
+            inherited = table if isinstance(table := base.get(key), dict) else {}
             if inherited and _other_choice(key, inherited, value):
                 yield f"{prefix}{key}", True
                 inherited = {}

@@ -1,5 +1,5 @@
-"""What the tables beside the physics may say: conditions have names of files, roles name
-conditions, provenance quantities."""
+"""Checks of the tables beside the physics: names of conditions, roles of conditions, keys of
+provenance."""
 
 from typing import Any
 
@@ -21,7 +21,7 @@ def faults(raw: dict[str, Any], scene_type: type) -> list[tuple[str, str, str]]:
         for name in members
         if name not in conditions
     ]
-    # A held-out condition that was fitted would call a fit a prediction.
+    # a fitted condition is no test of a prediction
     found += [
         ("agreement.held_out", repr(name), "a condition that is not fitted")
         for name in lists.get("held_out", [])

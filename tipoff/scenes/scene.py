@@ -1,5 +1,5 @@
-"""The scene: one immutable, validated description that feeds both fidelities. Presence of a table
-is the switch.
+"""The scene: an immutable, validated description of an ejection for both solvers. An effect is on
+where its table is present.
 
 >>> scene = load("reference")
 >>> scene.replace({"thrust_offset.misalignment.axial": "0.3 deg"}).condition("phi35")
@@ -43,7 +43,7 @@ from tipoff.scenes.units import Duration
 CATALOG = reading.CATALOG
 NOMINAL = "nominal"  # the scene itself, named like a condition
 _BESIDE = ("conditions", "agreement", "provenance")
-# what comes after the exit changes nothing before it
+# the flight after the exit does not change the ejection
 _NOT_PHYSICS = {"name", "description", "flight", *_BESIDE}
 
 
@@ -111,7 +111,7 @@ class Scene(Table):
         lost = keys.apply_all(raw, overrides, Scene)
         _mark(raw, overrides)
         scene, faults = _validated(raw, True)
-        # else they stay as they were found sound
+        # the other tables were valid before and have not changed
         if any(key.split(".")[0] in _BESIDE for key in overrides):
             faults = faults + _beside_faults(raw, True, faults)
         if scene is None or lost or faults:
@@ -127,20 +127,20 @@ class Scene(Table):
         if name == NOMINAL and name not in self.conditions:
             return self
         if name not in self.conditions:
-            known = ", ".join(self.conditions) or "none are defined"
-            raise SceneError([Fault(self._source, "conditions", repr(name), f"one of {known}")])
+            names = ", ".join(self.conditions) or "none are defined"
+            raise SceneError([Fault(self._source, "conditions", repr(name), f"one of {names}")])
         return self.replace(self.conditions[name])
 
     def given(self, key: str) -> Any:
-        """What was written under a dotted ``key``, before it was read as a quantity; None where
-        nothing was."""
+        """The input under a dotted ``key`` as it was written, with its unit; None where there is
+        none."""
         found: Any = self._raw
         for part in key.split("."):
             found = found.get(part) if isinstance(found, dict) else None
         return found
 
     def physics(self) -> dict:
-        """The resolved physical inputs in SI, without names and roles: what a result depends on."""
+        """The physical inputs in SI that a result depends on, without names and roles."""
         found = self.model_dump(mode="json", exclude=_NOT_PHYSICS)
         if self.thermal is None:
             found["rail"]["material"].pop("expansion", None)
@@ -153,8 +153,8 @@ class Scene(Table):
 
     @cached_property
     def hash(self) -> str:
-        """SHA-256 of the physical inputs. A file counts by what it holds, a measured thrust by its
-        points, not by where it lies."""
+        """SHA-256 of the physical inputs. A file counts by its content and a measured thrust by its
+        points, not by its path."""
         physics = self.physics()
         physics["rail"] |= self.rail.contents()
         points: list[list[float]] = []
@@ -169,8 +169,8 @@ class Scene(Table):
         return plausibility.warnings(self)
 
     def agrees(self) -> bool:
-        """Whether tables that were each found sound are so together: rails can follow a
-        temperature, where there is one, and the sampling interval fits the duration."""
+        """Whether tables that are each valid fit each other: rails have an expansion where there is
+        a temperature, and the sampling interval fits the duration."""
         return (
             self.thermal is None or self.rail.material.expansion is not None
         ) and self.output.fits(self.duration)
@@ -251,9 +251,9 @@ def _tables(raw: Any) -> list[tuple[str, dict]]:
     )
 
 
-def _beside_faults(raw: dict, bare_numbers_are_si: bool, known: _Faults) -> _Faults:
-    """What is wrong in conditions, agreement and provenance, apart from the ``known`` faults of the
-    scene itself."""
+def _beside_faults(raw: dict, bare_numbers_are_si: bool, reported: _Faults) -> _Faults:
+    """Faults in conditions, agreement and provenance, without those in ``reported``, the faults of
+    the scene itself."""
     found = []
     for name, table in _tables(raw.get("conditions")):
         varied = keys.plain({key: item for key, item in raw.items() if key not in _BESIDE})
@@ -261,12 +261,11 @@ def _beside_faults(raw: dict, bare_numbers_are_si: bool, known: _Faults) -> _Fau
         found += [
             (f"conditions.{name}.{key}", given, expected)
             for key, given, expected in faults
-            if (key, given, expected) not in known
+            if (key, given, expected) not in reported
         ]
-    # A misspelt key that was set is known by its own name, and need not be told by that of its
-    # provenance too.
+    # A misspelt key that was set is reported already, and not again for its provenance.
     return found + [
         fault
         for fault in roles.faults(raw, Scene)
-        if not (known and fault[1] == repr(provenance.USER))
+        if not (reported and fault[1] == repr(provenance.USER))
     ]

@@ -1,19 +1,18 @@
-"""How far a pad sinks into its wall under the static load of a scene: what shows a stiffness in the
-wrong unit.
+"""How far a pad sinks into its wall under the static load of a scene. A large sink shows a stiffness
+in the wrong unit.
 
-The load is the most that one face can be asked to bear at rest: the thrust's peak across the axis
-and the weight, both on that face alone, and the couple that holds the thrust's moment M about the
-mass centre over the distance L of the outermost pads::
+The load is the largest static load of one face: the peak of the thrust across the axis and the
+weight, both on this face alone, and the force of the couple that balances the thrust's moment M
+about the mass centre over the distance L of the outermost pads::
 
     F = P sin t + m |g_yz| + M / L
 
-    springs     p = (F / k)^(1 / e)          interface of finite elements and compliant walls     p = F / (k_p A)
+    springs     p = (F / k)^(1 / e)          finite elements and compliant contact     p = F / (k_p A)
 
-A is the smallest face of a pad, pressed flat. Springs, which stand for rail and contact, may sink
-up to the clearance: the play would mean nothing if a wall gave way as far. Where the play is small,
-and right so, 1 % of a pad's shortest side may take its place, a strain beyond which any metal
-yields. The interface is a layer of asperities and coating beside a rail that bends: a tenth of
-that.
+A is the area of the smallest face. Springs stand for rail and contact together, and may sink up to
+the clearance. Where the clearance is smaller, the limit is 1 % of the shortest side of a pad, a
+strain at which any metal yields. The penalty stands for asperities and coating alone, beside a rail
+that bends: a tenth of that.
 """
 
 from collections.abc import Iterator
@@ -40,7 +39,7 @@ class _Spring(NamedTuple):
     share_in_words: str
 
     def sink(self, load: float, factor: float = 1.0) -> float:
-        """Sink (m) under a load (N), with ``factor`` times the stiffness."""
+        """Sink (m) under a load (N), at ``factor`` times the stiffness."""
         return (load / (factor * self.value * self.area)) ** (1.0 / self.exponent)
 
 

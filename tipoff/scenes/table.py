@@ -1,5 +1,4 @@
-"""Base of every table of a scene file: frozen, strict about unknown keys, never silently default on
-a misspelling."""
+"""Base of every table of a scene file: frozen, and an unknown key is a fault."""
 
 from collections.abc import Sized
 from typing import Any
@@ -10,8 +9,7 @@ from pydantic import BaseModel, ConfigDict, ValidationInfo, model_validator
 class Table(BaseModel):
     """One table of a scene; fields are SI floats after validation.
 
-    A table that is written but empty is refused: its presence would switch something on that has no
-    value.
+    An empty table is refused: its presence would switch on an effect without values.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -19,8 +17,7 @@ class Table(BaseModel):
     @model_validator(mode="before")
     @classmethod
     def _not_empty(cls, data: Any, info: ValidationInfo) -> Any:
-        # Only input is judged (it comes with a context), not the defaults that the program makes
-        # itself. A table with required keys is left to the list of what is missing.
+        # Input has a context, a default has none. A table with required keys lists the missing ones.
         optional = not any(field.is_required() for field in cls.model_fields.values())
         if data == {} and optional and info.context is not None:
             raise ValueError("at least one key, or no such table")
@@ -28,14 +25,13 @@ class Table(BaseModel):
 
 
 def is_absent(value: Any) -> bool:
-    """Keeps a key that came later out of what is written where it is not used, so that older scenes
-    keep their hash."""
+    """For ``exclude_if`` of a new key: scenes that do not use it keep their hash."""
     return value is None
 
 
 def at_least_one(items: Sized) -> Sized:
-    """Pydantic validator of a list that may not be empty; its own min_length also counts items that
-    are refused."""
+    """Pydantic validator of a list that may not be empty. Its own min_length would also report lists
+    whose items are refused."""
     if len(items) == 0:
         raise ValueError("at least one of them")
     return items

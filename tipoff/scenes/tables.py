@@ -1,5 +1,4 @@
-"""The small tables every scene has: payload, pads, output, and what the agreement study fits and
-scores."""
+"""The small tables of every scene: payload, pads, output, agreement."""
 
 import math
 from typing import Annotated, Literal
@@ -57,8 +56,7 @@ class PadTable(Table):
 
 
 class OutputTable(Table):
-    """``[output]``: sampling interval of every result (s). What becomes of a payload does not hang
-    on it."""
+    """``[output]``: sampling interval of every result (s). The outcome does not depend on it."""
 
     interval: PositiveTime = 5e-5
 
@@ -74,9 +72,8 @@ class OutputTable(Table):
 
 
 class AgreementTable(Table):
-    """``[agreement]``: conditions that are fitted, those only scored, those that give the floor and
-    the refinement error; and up to which relative L2 of the rates and error of a settled rate
-    (rad/s) a surrogate is said to agree."""
+    """``[agreement]``: conditions that are fitted, held out, used for the floor, and refined; and the
+    limits of agreement: relative L2 of the rates (1) and error of a settled rate (rad/s)."""
 
     fitted: tuple[str, ...] = ()
     held_out: tuple[str, ...] = ()

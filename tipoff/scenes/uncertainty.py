@@ -1,5 +1,5 @@
-"""What varies in an ensemble: distributions under dotted keys, the number of cases, a seed and a
-way of sampling, from a TOML file::
+"""Inputs of an ensemble from a TOML file: distributions under dotted keys, number of cases, seed,
+sampling method::
 
     cases = 1000
     seed = 1
@@ -10,8 +10,8 @@ way of sampling, from a TOML file::
     mean = "0 deg"
     sd = "0.033 deg"
 
-A scene says what is nominal, this file what is not certain about it.
-Quantities carry the dimension the scene asks for under that key.
+A scene has the nominal values, this file their uncertainty. Quantities have the dimension of their
+key in the scene.
 """
 
 from collections.abc import Mapping
@@ -50,7 +50,7 @@ class Uncertainty(NamedTuple):
     vary: dict[str, Distribution]
 
     def resolved(self) -> dict:
-        """What the numbers of a case depend on, in SI, as written into result files."""
+        """The inputs of the sampling in SI, as written into result files."""
         return self._asdict() | {
             "vary": {
                 key: item.model_dump(mode="json", exclude={"provenance"})
@@ -69,14 +69,14 @@ def load(name_or_path: str | Path, scene: Scene, **changed: Any) -> Uncertainty:
     if path.suffix != ".toml":
         path = CATALOG / f"{name_or_path}.toml"
         if not path.is_file():
-            known = ", ".join(sorted(item.stem for item in CATALOG.glob("*.toml")))
+            names = ", ".join(sorted(item.stem for item in CATALOG.glob("*.toml")))
             raise SceneError(
                 [
                     Fault(
                         str(name_or_path),
                         "vary",
                         "an unknown name",
-                        f"a path to a .toml file or one of {known}",
+                        f"a path to a .toml file or one of {names}",
                     )
                 ]
             )
@@ -102,8 +102,7 @@ def parse(
         raise SceneError(faults)
     varied = {key: item for key, item in found.items() if item is not None}
     try:
-        # One draw as a trial: it finds what no single key shows, such as a pad that the scene does
-        # not have.
+        # A scene of the medians shows faults that no single key does, such as a pad that is absent.
         scene.replace({key: float(item.ppf(np.array(0.5))) for key, item in varied.items()})
     except SceneError as error:
         raise SceneError(

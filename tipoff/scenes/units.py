@@ -24,7 +24,7 @@ _QUANTITY = re.compile(
 
 
 def named(unit: str) -> str:
-    """What a field in ``unit`` should hold, in words."""
+    """Text of what a field in ``unit`` should hold."""
     return (
         "a number" if unit == "dimensionless" else f'a quantity in {unit}, for example "1 {unit}"'
     )
@@ -67,7 +67,7 @@ def _radians(quantity: pint.Quantity) -> object:
 
 
 def are_units(cells: Iterable[str]) -> bool:
-    """Whether a line of a table names units: no cell is a value, and some cell says something."""
+    """Whether a line of a table names units: no cell is a value, and not all are empty."""
     texts = [text.strip() for text in cells if text.strip()]
     return bool(texts) and not any(text[0] in "+-.0123456789" or text == "absent" for text in texts)
 
@@ -80,7 +80,7 @@ def parse(value: Any, unit: str, bare_numbers_are_si: bool) -> float:
     """
     if isinstance(value, str):
         return to_si(value, unit)
-    # abstract types are slow to ask
+    # checks of abstract types are slow
     if type(value) is not float and (isinstance(value, bool) or not isinstance(value, Real)):
         raise ValueError(named(unit))
     if not math.isfinite(value):

@@ -1,9 +1,9 @@
 """Many variations of one scene, fast: only what a row of overrides changes is validated again.
 
-What ``Variations.of`` answers has the same tables as ``Scene.replace``. The first row with certain
-keys is validated by tables; the next rows with the same keys by single numbers, where no rule of a
-table ties one number to another. A row that anything is wrong with goes through ``replace`` itself,
-so that the faults are the same too.
+``Variations.of`` returns the same tables as ``Scene.replace``. The first row with certain keys is
+validated by tables. The next rows with the same keys are validated by single numbers, where no rule
+of a table depends on several of them. A row with a fault goes through ``replace``, so that the
+faults are the same too.
 """
 
 from collections.abc import Mapping
@@ -29,7 +29,7 @@ _CONTEXT = {"bare_numbers_are_si": True}
 
 
 class _Leaf(NamedTuple):
-    """Where a number stands in a scene that may be written over, and what it must be."""
+    """A number of a scene that is overwritten: its table, its name, its validator."""
 
     values: dict
     name: str
@@ -42,22 +42,22 @@ class Variations:
     def __init__(self, scene: Scene):
         self.scene = scene
         self._adapters: dict[Any, TypeAdapter] = {}
-        self._known: dict[tuple, tuple[Scene, list[_Leaf]] | None] = {}
+        self._prepared: dict[tuple, tuple[Scene, list[_Leaf]] | None] = {}
 
     def of(self, row: Mapping[str, Any]) -> Scene:
-        """The scene with the overrides of ``row``, to be read before the next call. Raises
+        """The scene with the overrides of ``row``. It is overwritten by the next call. Raises
         SceneError as ``Scene.replace`` does."""
         names = tuple(row)
-        if (known := self._known.get(names)) is None:
+        if (prepared := self._prepared.get(names)) is None:
             scene = self._by_tables(row)
-            if names not in self._known:
-                self._known[names] = (
+            if names not in self._prepared:
+                self._prepared[names] = (
                     self._leaves(names, self._by_tables(row))
                     if scene._raw is self.scene._raw
                     else None
                 )
             return scene
-        scene, leaves = known
+        scene, leaves = prepared
         try:
             values = [
                 leaf.adapter.validate_python(value, context=_CONTEXT)
@@ -102,8 +102,8 @@ class Variations:
         return self._adapters[key]
 
     def _leaves(self, names: tuple[str, ...], scene: Scene) -> tuple[Scene, list[_Leaf]] | None:
-        """``scene``, made for this purpose, and its numbers under ``names``; None where one is more
-        than a free number."""
+        """``scene``, a copy to be overwritten, and its numbers under ``names``; None where one of them
+        is not a free number."""
         leaves = []
         for name in names:
             *path, last = name.split(".")
@@ -132,7 +132,6 @@ class Variations:
 
 
 def _free(kind: type[Table], whole: bool = False) -> bool:
-    """Whether no rule of a table of this kind, but that it may not be empty, looks at its
-    values."""
+    """Whether a table of this kind has no rule on its values, except that it may not be empty."""
     rules = kind.__pydantic_decorators__
     return whole or (not rules.field_validators and set(rules.model_validators) <= {"_not_empty"})

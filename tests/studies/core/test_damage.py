@@ -179,7 +179,7 @@ def test_damaged_walls_are_found_again(study, monkeypatch, capsys):
         flip(path, int(min(place, path.stat().st_size - 1)))
         assert study.rail_compliance(scene).hash == known.hash and len(calls) == number + 2
         assert (
-            f"{path}: not a file of walls" in (told := capsys.readouterr().err)
+            f"{path}: not a file of rail compliance" in (told := capsys.readouterr().err)
             and "found again" in told
         )
 

@@ -9,7 +9,7 @@ towards R, roll turns Y towards Z::
 
 The target lies ``range`` along the launch axis from the payload's nominal mass centre, at rest in
 orbit axes at exit, and then falls freely like everything else. Constants: WGS 84 (NIMA TR8350.2),
-equatorial radius. The ejection feels nothing of this table, and no result of it depends on it.
+equatorial radius. The ejection does not depend on this table.
 """
 
 import math
@@ -31,7 +31,7 @@ _ORBIT_FROM_LEVEL = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]
 class FlightTable(Table):
     """``[flight]``: orbit by altitude (m) or mean_motion (rad/s); azimuth, elevation and roll of
     the launch axis (rad); range of the target (m); duration (s) of the flight, one orbit where
-    absent; pointing_limit (rad), an error whose time is asked. ``body`` is the size (m) of the
+    absent; pointing_limit (rad), a pointing error whose time is found. ``body`` is the size (m) of the
     payload without its pads, ``payload.size`` where absent; ``envelope`` lists boxes that the
     platform lies in, in scene axes at ignition, to which built-in rails are added."""
 

@@ -8,8 +8,8 @@ With s = |v| the sliding speed, v_s the static and v_d the dynamic transition sp
     mu(s) = mu_d                                                    s >= v_d
 
 The first branch is the cubic step from -mu_s at -v_s to mu_s at v_s. The force is ``-mu(s) N v/s``.
-Absent table: none. Beside it stands ``law = "sticking"`` (``scenes.effects.sticking``), under which
-nothing creeps.
+Absent table: none. The other law is ``law = "sticking"`` (``scenes.effects.sticking``), which does
+not creep.
 """
 
 from typing import Annotated, Any, Literal, NamedTuple
@@ -29,8 +29,7 @@ EFFECT = Effect("friction")
 class TwoStepTable(Table):
     """``[friction]``: coefficients (dimensionless) and transition speeds (m/s)."""
 
-    # The law of every table that names none; left out of what is written, so that such a scene
-    # keeps its hash.
+    # The default law. It is not written, so that scenes without this key keep their hash.
     law: Literal["two-step"] = Field("two-step", exclude=True)
     static: NonNegativeNumber
     dynamic: NonNegativeNumber
@@ -50,7 +49,7 @@ class TwoStepTable(Table):
 
 
 def require_two_step(scene) -> None:
-    """For a solver that knows no other law. Raises SceneError where ``scene`` asks for one."""
+    """For a solver that has no other law. Raises SceneError where ``scene`` has one."""
     if scene.friction is not None and scene.friction.law != "two-step":
         raise SceneError(
             [
@@ -58,7 +57,7 @@ def require_two_step(scene) -> None:
                     scene.name,
                     "friction.law",
                     repr(scene.friction.law),
-                    "'two-step', the one law this solver knows",
+                    "'two-step', the only law of this solver",
                 )
             ]
         )
@@ -84,8 +83,8 @@ class Friction(NamedTuple):
 
 @njit
 def coefficient_over_speed(friction, speed):
-    """mu(s)/s (s/m) at sliding speed ``speed`` >= 0 (m/s): finite at rest, so the force needs no
-    direction there."""
+    """mu(s)/s (s/m) at sliding speed ``speed`` >= 0 (m/s): finite at rest, where the slip
+    has no direction."""
     if speed <= friction.static_speed:
         ratio = speed / friction.static_speed
         return 0.5 * friction.static * (3.0 - ratio * ratio) / friction.static_speed

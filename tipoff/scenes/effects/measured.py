@@ -83,7 +83,7 @@ def fit_gaussian(curve: MeasuredCurve) -> GaussianFit:
     except RuntimeError as error:
         raise ValueError("a curve that a Gaussian fits (least squares did not converge)") from error
     peak, centre, width = float(peak), float(centre), abs(float(width))
-    # A flat curve is fitted perfectly by an endless Gaussian, which would push long after the burn.
+    # The best fit of a flat curve is an endless Gaussian, with thrust long after the burn.
     if not time[0] <= centre <= time[-1] or width > 0.5 * (time[-1] - time[0]):
         raise ValueError(
             f"a curve that a Gaussian fits (found centre {centre:.4g} s, width {width:.4g} s, "

@@ -1,12 +1,12 @@
-"""Coulomb friction that truly sticks: a touching face is held by spring and damper until they bear
-mu_s N, or slides under mu_d N.
+"""Coulomb friction with stick: a touching face is held by a spring and a damper up to mu_s N, or
+slides under mu_d N.
 
-    held      F = -k xi - c u         while |F| <= mu_s N        (xi: way of the face from its anchor, u: slip velocity)
+    held      F = -k xi - c u         while |F| <= mu_s N        (xi: displacement from the anchor, u: slip velocity)
     sliding   F = -mu_d N u/|u|       until |u| <= the capture speed
 
-``lowfi.contact.stick_slip`` says where one becomes the other. The spring stands for the tangential compliance of
-one pad face, so a held face gives by F/k but does not creep. On springs alone the payload would
-ring: 2 sqrt(k m), m the mass a face carries, damps that critically. Sources: Cundall and Strack,
+``lowfi.contact.stick_slip`` has the transitions. The spring is the tangential compliance of one pad
+face: a held face moves by F/k but does not creep. A damping of 2 sqrt(k m), m the mass per face, is
+critical. Sources: Cundall and Strack,
 Geotechnique 29 (1979) 47 (spring and slider); Karnopp, J. Dyn. Syst. Meas. Control 107 (1985) 100
 (a band about rest).
 """

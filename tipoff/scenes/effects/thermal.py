@@ -1,15 +1,14 @@
-"""Rails warmed unevenly before launch: a temperature linear in place, which does not change in the
-milliseconds of a launch.
+"""Rails at an uneven temperature: linear in position, and constant during a launch.
 
-With T the change of temperature since the rails were mounted free of stress, X_m the middle of
-their length on the payload's axis, alpha the coefficient of expansion and s the strain of the
-platform that carries the mounts::
+T is the change of temperature since the rails were mounted free of stress, X_m the middle of their
+length on the payload's axis, alpha the coefficient of expansion and s the strain of the platform
+that carries the mounts::
 
     T = mean + gradient . (X - X_m),      free strain alpha T in every direction,      mounts moved by s (X - X_m)
 
-So rails on the sunny side, 0.2 m from those in the shade and 20 K warmer, have a gradient of 0.1
-K/mm, and a platform that warms with its rails and expands as they do has s = alpha mean and leaves
-them free of stress. Absent table: rails as they were mounted.
+Example: rails that are 20 K warmer than those at a distance of 0.2 m have a gradient of 0.1 K/mm. A
+platform with the temperature and the expansion of its rails has s = alpha mean, and the rails stay
+free of stress. Absent table: T = 0.
 """
 
 from typing import NamedTuple
@@ -20,7 +19,7 @@ from tipoff.scenes.effects.effect import Effect
 from tipoff.scenes.table import Table
 from tipoff.scenes.units import Number, TemperatureChange, TemperatureGradient
 
-# of which every [thermal] is a sum: a free strain, its gradients along x, y and z, and the strain
+# every [thermal] is a sum of these: a free strain, its gradients along x, y and z, and the strain
 # of the platform
 FIELDS = 5
 
@@ -52,7 +51,7 @@ class ThermalTable(Table):
 
 
 class Thermal(NamedTuple):
-    """Plain record: amounts (FIELDS,), how much there is of each of the fields: free strain at X_m
+    """Plain record: amounts (FIELDS,) of each of the fields: free strain at X_m
     (1), its gradients (1/m), strain of the platform (1); ``middle``, X_m in scene axes (m)."""
 
     amounts: np.ndarray
@@ -60,5 +59,5 @@ class Thermal(NamedTuple):
 
 
 def fields(points: np.ndarray, middle: float) -> np.ndarray:
-    """One of each of the four fields of free strain (n,4) at ``points`` (n,3) m in scene axes."""
+    """Unit values of the four fields of free strain (n,4) at ``points`` (n,3) m in scene axes."""
     return np.column_stack([np.ones(len(points)), np.subtract(points, [middle, 0.0, 0.0])])

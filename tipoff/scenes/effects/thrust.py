@@ -4,8 +4,8 @@
 
 A pulse cut at ``n`` widths keeps erf(n / sqrt 2) of its impulse; ``rescale`` restores it. A
 measured curve is used point by point, or through its least-squares Gaussian fit; ``describe`` says
-which, with the fit, its residual and both impulses. The law itself is in ``thrust_law``, whose
-names are also found here.
+which, with the fit, its residual and both impulses. The law is in ``thrust_law``; its names are
+exported here too.
 """
 
 import math
@@ -102,33 +102,32 @@ class _ThrustTable(Table):
         raise NotImplementedError
 
     def requested(self) -> float:
-        """Impulse (N s) that the scene asks for."""
+        """Impulse (N s) of the table."""
         raise NotImplementedError
 
     def describe(self, duration: float) -> dict[str, float | str]:
-        """What pushes, for results and report: numbers in SI by name, and ``text`` that says it in
-        one sentence.
+        """The thrust for results and report: numbers in SI by name, and a sentence, ``text``.
 
-        ``impulse_requested_Ns`` is what the scene asks for, ``impulse_delivered_Ns`` what acts in
+        ``impulse_requested_Ns`` is the impulse of the table, ``impulse_delivered_Ns`` the one within
         0..``duration`` (s).
         """
         record = self.record()
-        asked, given = self.requested(), impulse(record, duration)
+        requested, delivered = self.requested(), impulse(record, duration)
         text = (
-            f"{self.kind}, {self.usage()}; impulse requested {asked:.7g} N s, delivered in the "
-            f"scene {given:.7g} N s"
+            f"{self.kind}, {self.usage()}; impulse requested {requested:.7g} N s, delivered in the "
+            f"scene {delivered:.7g} N s"
         )
         return {
             "kind": self.kind,
             "peak_N": peak(record, duration),
-            "impulse_requested_Ns": asked,
-            "impulse_delivered_Ns": given,
+            "impulse_requested_Ns": requested,
+            "impulse_delivered_Ns": delivered,
             **self.details(),
             "text": text,
         }
 
     def usage(self) -> str:
-        """How the table is turned into F(t), in words."""
+        """Text on how the table becomes F(t)."""
         return "used as given"
 
     def details(self) -> dict[str, float | str]:
@@ -140,8 +139,7 @@ class _PulsedTable(_ThrustTable):
     """Gaussians, cut at ``cutoff`` widths before the first begins and after the last ends (absent:
     not cut).
 
-    ``rescale`` raises each pulse by the share of it that the cut takes away, so that the impulse
-    stays as asked.
+    ``rescale`` raises each pulse by the share that the cut removes, so that the impulse stays.
     """
 
     cutoff: PositiveNumber | None = None

@@ -1,4 +1,4 @@
-"""The law of the thrust: kernel records, F(t), and what an integrator must know of it.
+"""The law of the thrust: kernel records, F(t), and the data of it that an integrator needs.
 
 F(t) = sum_i P_i exp(-(t - t_i)^2 / (2 s_i^2))   begin <= t <= end,   or a piecewise linear curve
 """
@@ -91,8 +91,7 @@ def sample(thrust: Thrust, time: np.ndarray) -> np.ndarray:
 
 
 def corners(thrust: Thrust, duration: float) -> np.ndarray:
-    """Sorted times (s) inside (0, duration) where F or its slope jumps: an integrator must stop
-    there."""
+    """Sorted times (s) inside (0, duration) where F or its slope jumps: a step must end there."""
     times = (
         np.array([thrust.pulses.begin, thrust.pulses.end])
         if thrust.pulses is not None
@@ -102,7 +101,7 @@ def corners(thrust: Thrust, duration: float) -> np.ndarray:
 
 
 def shortest_feature(thrust: Thrust) -> float:
-    """Time scale (s) no step may jump over: the narrowest pulse width, or the shortest segment of a
+    """Time scale (s) that steps must resolve: the narrowest pulse width, or the shortest segment of a
     curve."""
     if thrust.pulses is not None:
         return float(thrust.pulses.widths.min())
@@ -147,7 +146,7 @@ def burnouts(thrust: Thrust, fractions: tuple[float, ...], duration: float) -> t
     """For each fraction the earliest time (s) after which thrust stays below this share of its
     peak; ``duration`` if that is later.
 
-    The last grid point above is found first, then the crossing behind it by bisection to the last
+    The last grid point above is found first, then the crossing after it, by bisection to the last
     bit.
     """
     time, force = _grid(thrust, duration)

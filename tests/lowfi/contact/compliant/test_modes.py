@@ -171,6 +171,6 @@ def test_rails_that_nothing_touches_take_no_time():
 
 def test_walls_and_modes_of_different_rails_are_refused():
     compliance = reference_walls()
-    with pytest.raises(ValueError, match="give way more than the whole wall"):
+    with pytest.raises(ValueError, match="^modes: given"):
         replace(compliance, shape=3.0 * compliance.shape).residual(1)
     assert compliance.residual(0) is compliance.flexibility
