@@ -121,7 +121,7 @@ def numbers(
 def factor_to_si(
     source: str, name: str, unit: str | None, wanted: str
 ) -> tuple[float, list[Fault]]:
-    """Factor from ``unit`` to the SI unit ``wanted`` of the column ``name``, or NaN with a fault."""
+    """Factor from ``unit`` to the SI unit ``wanted`` of the column ``name``; NaN with a fault."""
     if not unit and wanted != "dimensionless":
         return np.nan, [
             Fault(source, name, "no unit", f'the unit of the column, such as "{wanted}"')

@@ -1,5 +1,5 @@
-"""Warnings about values that are valid but probably wrong, for example in their unit. Each names its
-fields; no value is changed."""
+"""Warnings about values that are valid but probably wrong, for example in their unit. Each names
+its fields; no value is changed."""
 
 import itertools
 import math

@@ -1,4 +1,4 @@
-"""``[rail]``: the built-in L section, a mesh of the user, or a solid of the user that is meshed here.
+"""``[rail]``: the built-in L section, a mesh of the user, or a solid of the user, meshed here.
 
 The key ``mesh`` or ``geometry`` selects a file. It is in scene axes (m, origin at the nominal mass
 centre at ignition, +X to the open end), with the walls one ``clearance`` off the pads. The

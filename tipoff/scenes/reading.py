@@ -1,4 +1,5 @@
-"""Reading scene files: TOML to one nested mapping. A file that ``extends`` another is merged over it.
+"""Reading scene files: TOML to one nested mapping. A file that ``extends`` another is merged over
+it.
 
 In such a file, a table set to ``"absent"`` drops the inherited one. A ``[thrust]`` of another kind,
 a ``[contact]`` of another law and a ``[rail]`` given by a file replace the inherited table. The

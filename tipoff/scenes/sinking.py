@@ -1,5 +1,5 @@
-"""How far a pad sinks into its wall under the static load of a scene. A large sink shows a stiffness
-in the wrong unit.
+"""How far a pad sinks into its wall under the static load of a scene. A large sink shows a
+stiffness in the wrong unit.
 
 The load is the largest static load of one face: the peak of the thrust across the axis and the
 weight, both on this face alone, and the force of the couple that balances the thrust's moment M

@@ -17,7 +17,7 @@ class Table(BaseModel):
     @model_validator(mode="before")
     @classmethod
     def _not_empty(cls, data: Any, info: ValidationInfo) -> Any:
-        # Input has a context, a default has none. A table with required keys lists the missing ones.
+        # Input has a context, a default has none. A table with required keys reports those.
         optional = not any(field.is_required() for field in cls.model_fields.values())
         if data == {} and optional and info.context is not None:
             raise ValueError("at least one key, or no such table")
