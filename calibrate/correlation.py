@@ -1,13 +1,12 @@
-"""How many samples of a curve tell as much as one, since neighbours repeat each other.
+"""Correlation time of a curve: the number of samples that count as one independent sample.
 
     tau = 1 + 2 max_m sum_{k = 1}^{m} rho_k        rho_k = sum_i x_i x_{i+k} / sum_i x_i^2
 
-the integrated autocorrelation time in samples, rho_k the autocorrelation at a lag of k; n samples
-count as n / tau. The sum goes up to the lag that makes most of it. One up to the first rho_k below
-zero would take a slow error under a quick one, a rail that rings, for noise of the quick one's
-kind: the curve would seem to tell anew with every swing. The price is that a largest sum errs
-upwards: a single curve of white noise has a tau of about 1.6, so that intervals come out wider,
-never narrower, than they had to be.
+This is the integrated autocorrelation time in samples, rho_k the autocorrelation at a lag of k; n
+samples count as n / tau. The sum ends at the lag m that makes it largest. A sum up to the first
+negative rho_k would miss a slow error below a fast one, such as a vibrating rail, and give too many
+independent samples. The largest sum is biased upwards: a curve of white noise has a tau of about
+1.6. So intervals are too wide rather than too narrow.
 """
 
 from collections.abc import Sequence

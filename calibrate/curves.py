@@ -1,9 +1,8 @@
-"""What a fit needs to know of a reference: v_x and body rates over time, and the settled values;
-from a run or from a CSV file.
+"""Curves of a reference for a fit: v_x and body rates over time, and the settled values, from a run
+or from a CSV file.
 
-A file says nothing of positions, so its exit is not known. The settled window of 2 ms then ends
-with the record, or begins where the user says; settled values are means over it, as
-``mechanics.outcome`` defines them.
+A file has no positions, and so no exit. Its settled window of 2 ms ends with the record, or starts
+at a time given by the user. Settled values are means over the window (``mechanics.outcome``).
 """
 
 import hashlib
@@ -24,15 +23,15 @@ COLUMNS = {
     "rate_y": "rad/s",
     "rate_z": "rad/s",
 }
-# s; a touch lasts milliseconds, and the settled window must hold samples of its own
+# s; a pad contact lasts milliseconds, and the settled window needs several samples
 LONGEST_STEP = 0.5 * SETTLE_WINDOW
-_ROUNDING = 1e-9  # s; a record of exactly the window counts as one
+_ROUNDING = 1e-9  # s; a record as long as the window is accepted
 
 
 class Curves(NamedTuple):
     """From ignition to the end of the settled window: time (n,) s, inertial v_x in scene axes (n,)
     m/s, inertial rates in body axes (n,3) rad/s; start of the window (s), means over it of the
-    rates (3,) rad/s; where the curves come from, in words."""
+    rates (3,) rad/s; text on the source of the curves."""
 
     time: np.ndarray
     velocity: np.ndarray

@@ -1,5 +1,5 @@
-"""What stands beside calibrated constants: residuals per condition, open directions, and what they
-were found from."""
+"""Evidence of calibrated constants: residuals per condition, weak directions, intervals,
+provenance."""
 
 import math
 
@@ -13,7 +13,7 @@ from tipoff.calibration.parameters import Parameter
 from tipoff.calibration.search import Found, Plan
 from tipoff.scenes.scene import Scene
 
-_ON_BOUND = 1e-3  # share of the bounds within which a value counts as lying on one
+_ON_BOUND = 1e-3  # share of the bounds; a value so close to a bound counts as on it
 _NOTHING = 1e-12  # rounding of the information matrix, of its largest eigenvalue
 
 
@@ -35,8 +35,8 @@ def weak_directions(
     shares: np.ndarray,
     matrix: np.ndarray,
 ) -> list[str]:
-    """Sentences: what the curves cannot tell, what was held for that reason, and what they pushed
-    to a bound.
+    """Sentences on weak directions, on parameters that are held for that reason, and on values at a
+    bound.
 
     ``matrix`` is the information on free and held parameters together, in this order.
     """
@@ -47,7 +47,7 @@ def weak_directions(
     for index, item in enumerate(held, start=count):
         left, alone = information.left_alone(matrix, index), matrix[index, index]
         ratio = left / largest if largest > 0.0 else 0.0
-        told = (
+        reason = (
             "at these constants it has no effect"
             if ratio < _NOTHING
             else (
@@ -56,7 +56,7 @@ def weak_directions(
                 f"{ratio:.1e} of the largest eigenvalue"
             )
         )
-        sentences.append(f"{item.name} held at {item.read(scene):.4g} {item.unit}: {told}")
+        sentences.append(f"{item.name} held at {item.read(scene):.4g} {item.unit}: {reason}")
     for item, share, bound in zip(free, shares, _on_bound(shares)):
         if bound:
             side = "lower" if share < 0.5 else "upper"
@@ -73,18 +73,18 @@ def intervals(
 ) -> tuple[list[list[float]], float]:
     """Interval of every free parameter (SI), and the number of independent residuals these rest on.
 
-    Without ends where the curves do not tell: in a weak direction, on a bound, or with an interval
-    wider than the bounds, over which no linear theory holds.
+    Infinite where the curves do not determine the parameter: in a weak direction, on a bound, or with
+    an interval wider than the bounds, where linear theory is not valid.
     """
     curves = [curve for part in parts for curve in (part.velocity, *part.rate.T)]
     count = sum(map(independent, curves))
     # the objective, to which the matrix belongs
     squares = sum(float(part.vector() @ part.vector()) for part in parts) / len(parts)
     half = half_widths(matrix, squares, count, [item.vector for item in information.weak(matrix)])
-    told = (half < 0.5) & ~_on_bound(shares)
+    determined = (half < 0.5) & ~_on_bound(shares)
     return [
-        [item.value(share - width), item.value(share + width)] if known else [-math.inf, math.inf]
-        for item, share, width, known in zip(free, shares.tolist(), half.tolist(), told)
+        [item.value(share - width), item.value(share + width)] if bounded else [-math.inf, math.inf]
+        for item, share, width, bounded in zip(free, shares.tolist(), half.tolist(), determined)
     ], count
 
 
@@ -102,7 +102,7 @@ def provenance(
     evaluations: int,
     count: float,
 ) -> dict[str, str]:
-    """Where the constants come from, in words and hashes."""
+    """Text and hashes on the source of the constants."""
     assert scene.contact is not None  # or there was nothing to fit
     exponent = constants.get("contact.exponent", 1.0)
     ends = "; ".join(

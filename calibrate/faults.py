@@ -1,4 +1,4 @@
-"""What makes a calibration impossible, said before any search."""
+"""Checks of the input of a calibration, before the search."""
 
 from tipoff.calibration.curves import Curves
 from tipoff.mechanics.trajectory import Trajectory
@@ -8,7 +8,7 @@ from tipoff.scenes.scene import Scene
 
 
 class CalibrationError(InputError):
-    """References or a scene nothing can be fitted to; the message lists every fault."""
+    """References or a scene that cannot be used for a fit; the message lists every fault."""
 
 
 def check(scene: Scene, references: dict[str, Trajectory | Curves]) -> None:
@@ -22,16 +22,16 @@ def check(scene: Scene, references: dict[str, Trajectory | Curves]) -> None:
         faults.append(
             "contact: given no table, expected one: without contact there is nothing to fit"
         )
-    asked = list(scene.agreement.fitted)
+    fitted = list(scene.agreement.fitted)
     if not references:
         faults.append(
             f"references: given none, expected one for each of "
-            f"{', '.join(asked) or 'the fitted conditions'}"
+            f"{', '.join(fitted) or 'the fitted conditions'}"
         )
     if all(isinstance(reference, Trajectory) for reference in references.values()):
         faults += [
             f"references: {name} is missing, expected every condition of agreement.fitted"
-            for name in asked
+            for name in fitted
             if references and name not in references
         ]
     for name, reference in references.items():
@@ -45,7 +45,7 @@ def check(scene: Scene, references: dict[str, Trajectory | Curves]) -> None:
 
 
 def _unfit(scene: Scene, reference: Trajectory | Curves) -> list[str]:
-    """Why a reference has no settled rate that a run of ``scene`` could be compared with."""
+    """Reasons why the settled rate of a reference cannot be compared with a run of ``scene``."""
     if isinstance(reference, Trajectory):
         return (
             []

@@ -1,10 +1,9 @@
-"""What the data know about the parameters: the information matrix J'J, and the directions it leaves
-open.
+"""Information of the data on the parameters: the matrix J'J and its weak directions.
 
-J is the Jacobian of the weighted residuals after the parameters' shares (0..1 of their bounds), so
-an eigenvalue is how much the objective grows, to second order, per unit of a direction, and
-eigenvalues of different parameters can be compared. The smallest change of a direction that the
-objective would notice as a relative ``noise`` is sqrt(noise^2 / eigenvalue).
+J is the Jacobian of the weighted residuals with respect to the parameters' shares (0..1 of their
+bounds). An eigenvalue is the second-order growth of the objective per unit of its direction. A
+change of sqrt(noise^2 / eigenvalue) along a direction changes the objective as much as a relative
+``noise``.
 """
 
 from collections.abc import Callable
@@ -14,8 +13,8 @@ import numpy as np
 
 # Large against the surrogate's tolerance (1e-6), small against the width of a basin (about 0.1).
 DIFFERENCE_STEP = 1e-3
-# A direction that can move by a tenth of its bounds for 0.5 % of the curves' amplitude is not told
-# by curves fitted to some percent.
+# Curves that are fitted to some percent do not determine a direction in which a tenth of the bounds
+# changes them by 0.5 % of their amplitude.
 WEAK_EIGENVALUE = (0.005 / 0.1) ** 2
 WEAK_RATIO = 1e-3
 
@@ -40,8 +39,7 @@ def information(matrix: np.ndarray) -> np.ndarray:
 
 
 class Weak(NamedTuple):
-    """A direction the data hardly see: its eigenvalue, that over the largest, and the unit vector
-    (p,)."""
+    """A weak direction: its eigenvalue, the ratio to the largest one, and the unit vector (p,)."""
 
     eigenvalue: float
     ratio: float
@@ -49,7 +47,7 @@ class Weak(NamedTuple):
 
 
 def weak(matrix: np.ndarray) -> list[Weak]:
-    """Every eigenvector of an information matrix (p,p) the data hardly see, weakest first."""
+    """The weak directions of an information matrix (p,p), weakest first."""
     values, vectors = np.linalg.eigh(matrix)
     values = np.maximum(values, 0.0)
     ratios = values / values[-1] if values[-1] > 0.0 else values
@@ -84,8 +82,7 @@ def left_alone(matrix: np.ndarray, index: int) -> float:
 
 
 def combination(vector: np.ndarray, names: list[str]) -> str:
-    """A unit vector in words: shares of the bounds, largest first, without what is below a tenth of
-    it."""
+    """Text of a unit vector: shares of the bounds, largest first, without components below 0.1."""
     vector = vector if vector[np.argmax(np.abs(vector))] > 0.0 else -vector
     order = np.argsort(-np.abs(vector), kind="stable")
     terms = [f"{vector[i]:+.2f} {names[i]}" for i in order if abs(vector[i]) >= 0.1]

@@ -1,16 +1,14 @@
-"""Intervals of fitted parameters, from the information matrix J'J and the scatter r'r of what the
-fit leaves.
+"""Intervals of fitted parameters, from the information matrix J'J and the sum r'r of the squared
+residuals.
 
     s^2 = r'r / (n - p)        V = s^2 (J'J)^-1        half width  t(0.975; n - p) sqrt(V_ii)
 
 This is the linear theory of least squares (Seber and Wild, Nonlinear Regression, 1989, section
-5.1). ``n`` counts independent residuals: a curve sampled twice as often is no second experiment. A
-curve of n samples counts as n / tau, tau the correlation time of its residuals in samples
-(``calibration.correlation``).
+5.1). ``n`` counts independent residuals: a curve of n samples counts as n / tau, tau the
+correlation time of its residuals in samples (``calibration.correlation``).
 
-A direction the data leave open has no interval, and none is made up: parameters with a part in it
-get an infinite one. What the model cannot do is taken for scatter here. It shifts the constants,
-which no interval of this kind can know: model error is not in them.
+A parameter with a component in a weak direction has an infinite interval. Model error counts as
+scatter here, but it also shifts the constants; these intervals do not contain that shift.
 """
 
 from collections.abc import Sequence
@@ -21,7 +19,7 @@ import scipy  # its parts load when they are first used
 from tipoff.calibration.correlation import correlation_time
 
 LEVEL = 0.95
-ROUNDING = 1e-10  # of the largest eigenvalue: what differences leave where there is nothing
+ROUNDING = 1e-10  # of the largest eigenvalue: rounding of differences where there is no information
 # of a unit vector, from which on a parameter belongs to a direction, as in
 # ``information.combination``
 PART = 0.1

@@ -1,4 +1,4 @@
-"""How far the surrogate is from the reference on all conditions at once, as one residual vector.
+"""Difference of the surrogate from the reference on all conditions, as one residual vector.
 
     J = 1/n sum_conditions [ L2(rate)^2 + (50 L2(v_x))^2 + (|dw_s| / |w_s,ref|)^2 ]
 
@@ -49,7 +49,7 @@ class Target(NamedTuple):
 
 
 def target(scene: Scene, reference: Curves) -> Target:
-    """What a condition asks for."""
+    """The target of a condition."""
     time, velocity, rate, settled = (
         reference.time,
         reference.velocity,
@@ -125,8 +125,8 @@ class Objective:
     evaluations.
 
     ``over`` applies a function to every condition, in order: ``map``, or that of a pool of threads,
-    since the surrogate's kernels release the interpreter. No bit of the result depends on the
-    choice. ``walls`` are rigid ones, where the rails are warm.
+    since the surrogate's kernels release the interpreter. The result has the same bits with both.
+    ``compliance`` is rigid, where the rails are warm.
     """
 
     def __init__(

@@ -1,15 +1,15 @@
-"""The constants a fit may move: their physical meaning, bounds, and how they become overrides of a
-scene. One table, one place.
+"""The parameters of a fit: their physical meaning, their bounds, and the overrides of a scene that
+they make.
 
-A stiffness k in N/m^e cannot be compared between exponents, so the fit moves the elastic force at
-the reference penetration p_r = 0.02 mm (loads of 60 to 180 N press a rail of 3e-8 to 1e-7 m/N by 2
+Stiffnesses k in N/m^e of different exponents are not comparable, so the fit varies the elastic
+force at the reference penetration p_r = 0.02 mm (loads of 60 to 180 N press a rail of 3e-8 to 1e-7 m/N by 2
 to 18 um) and k follows::
 
     F_r = k p_r^e        B_r = c s(p_r/d),  s(x) = x^2 (3 - 2 x)
 
-B_r is IMPACT's damping coefficient at p_r. While p << d the law holds c and d only through c/d^2,
-so d stays at the scene's value and only B_r moves; ``held`` lists d again, for the information
-matrix to show that the curves would not have told it. Bounds scale with the rail: a pad load P
+B_r is IMPACT's damping coefficient at p_r. For p << d the law depends on c and d only through
+c/d^2, so d keeps the scene's value and the fit varies B_r. ``held`` lists d, so that the
+information matrix shows how little the curves determine it. Bounds scale with the rail: a pad load P
 bends a leg (thickness t, length a) by about P a^2/(E t^3), the scale of a cantilever plate.
 """
 
@@ -26,7 +26,7 @@ REFERENCE_PENETRATION = 2e-5  # m
 # Softest and stiffest static compliance of the reference rail (1e-7 m/N between mounts, 3e-8 at
 # one) over a^2/(E t^3).
 _SOFT, _STIFF = 1.25, 4.2
-_MARGIN = 10.0  # between the scale of a static estimate and what a point contact may need in impact
+_MARGIN = 10.0  # factor from a static estimate to the range of a point contact in impact
 
 
 @dataclass(frozen=True)
@@ -59,7 +59,7 @@ class Parameter:
 
 
 def free(scene: Scene) -> list[Parameter]:
-    """What the fit of ``scene`` moves: the constants of its contact law, and friction if it has
+    """The parameters of the fit of ``scene``: the constants of its contact law, and friction if it has
     any."""
     found = {
         "impact": [_force, _exponent, _damping],

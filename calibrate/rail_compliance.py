@@ -1,14 +1,14 @@
-"""The rail's compliance under the pads, condensed from the finite elements, and the mesh that is
-fine enough for it.
+"""The rail's compliance under the pads, condensed from the finite elements, and the element size that
+it needs.
 
-On a mesh of size h the compliance falls short of the converged one by about c h: the edges of a
-clamped strip are singular. So from the change between 2h and h follows how far h is from the
-reference's own mesh, of size r::
+On a mesh of size h the compliance is too small by about c h: the edges of a clamped strip are
+singular. So the change between 2h and h gives the difference of h from the reference's mesh, of
+size r::
 
     |C(2h) - C(h)| = c h        |C(h) - C(r)| = c (h - r)
 
 The coarsest of the meshes 2r and r that is within ``ACCURACY`` of the reference's own mesh is
-taken. Rails from a mesh file have one mesh at every size.
+taken. A rail from a mesh file has only one mesh.
 """
 
 import time
@@ -44,9 +44,9 @@ def compliance(
 def kept(
     scene: Scene, folder: Path, element_size: float, say: Callable[[str], None] | None = None
 ) -> RailCompliance:
-    """The same in elements of ``element_size`` (m), read from ``folder`` if it was left there for
-    this rail, these pads and this code, else found and left there. ``say`` is told what takes
-    time."""
+    """The same in elements of ``element_size`` (m), read from ``folder`` if it is stored there for
+    this rail, these pads and this code, else made and stored there. ``say`` gets messages on what
+    takes time."""
     path, say = kept_file(scene, folder, element_size), say or (lambda _: None)
     try:
         return RailCompliance.load(path)
@@ -66,7 +66,7 @@ def kept(
 
 
 def kept_file(scene: Scene, folder: Path, element_size: float) -> Path:
-    """Where ``kept`` leaves it."""
+    """The file of ``kept``."""
     key = content_hash(digest(scene), element_size, sources.digest(__name__))
     return folder / f"compliance-{key[:8]}.npz"
 

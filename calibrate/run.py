@@ -1,4 +1,4 @@
-"""One calibration: what is free, the search, and the record with its evidence."""
+"""One calibration: free parameters, search, and the record with its evidence."""
 
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
@@ -33,7 +33,7 @@ def run(
 
     ``numerics`` are the surrogate's (lowfi.Numerics), ``progress`` is called with the fraction
     done, ``plan`` sizes the search; the same seed gives the same bits, however many ``workers`` run
-    conditions side by side. A warm scene asks for its rigid ``walls`` (``lowfi.run``). Raises
+    conditions in parallel. A warm scene needs its rigid ``compliance`` (``lowfi.run``). Raises
     CalibrationError for references that are missing, did not exit, are too short or do not turn,
     SceneError for an unknown condition.
     """

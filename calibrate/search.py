@@ -1,12 +1,10 @@
-"""Search of a rough sum of squares on the unit cube: look everywhere, follow the best basins,
-polish where each ends.
+"""Global minimum of a sum of squares with small jumps on the unit cube.
 
-1. Sobol' points (scrambled by the seed) and the scene's own constants: which basins are there.
-2. CMA-ES (Hansen) from the best points that are apart from each other: it steps over jumps at which
-   a gradient would stop.
-3. Trust-region least squares from where each ended: the digits CMA-ES would take long for. A jump
-   ends it early, without harm. Starts that meet in one point are the evidence that there is one
-   basin.
+1. Sobol' points (scrambled by the seed) and the scene's own constants find the basins.
+2. CMA-ES (Hansen) from the best points that are apart from each other crosses jumps that would stop
+   a gradient method.
+3. Trust-region least squares from the end of each converges faster than CMA-ES near the minimum.
+   Starts that end in one point show that there is one basin.
 """
 
 from collections.abc import Callable
@@ -73,7 +71,7 @@ def search(
 
 
 def evaluations(parameters: int, plan: Plan | None = None) -> int:
-    """How many a search takes, about."""
+    """Approximate number of evaluations of a search."""
     plan = plan or Plan()
     return plan.points + 1 + plan.starts * (plan.evaluations + plan.polish * (2 * parameters + 1))
 

@@ -1,5 +1,4 @@
-"""Bricks of a grid: cells between planes across the three axes, of which only those that are metal
-become elements."""
+"""Hexahedra of a grid: the cells between planes across the three axes that lie in metal."""
 
 from collections.abc import Sequence
 

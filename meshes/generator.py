@@ -1,8 +1,8 @@
 """The mesh generator gmsh, opened for one model at a time. Only solids drawn in CAD need it.
 
-Its wheel brings the mesher but not the graphics libraries it is linked against, so on a machine
-without a desktop `import gmsh` fails with a loader error. This file imports nothing else, so that
-any Python can read what it asks for.
+Its wheel does not contain the graphics libraries that it is linked against, so on a machine without
+a desktop `import gmsh` fails with a loader error. This file imports nothing else, so that any Python
+can read the list of packages.
 """
 
 import contextlib
@@ -14,14 +14,14 @@ SYSTEM_INSTALL = "apt-get install --no-install-recommends " + " ".join(SYSTEM_PA
 
 
 class GmshUnavailable(RuntimeError):
-    """gmsh does not load on this machine; the message says what is missing and what mends it, in
-    one line."""
+    """gmsh does not load on this machine; the message, one line, names the missing part and the
+    remedy."""
 
 
 def load():
     """The module gmsh. Raises GmshUnavailable where it does not load."""
     try:
-        import gmsh  # here and not above: nothing but a solid needs gmsh's graphics libraries
+        import gmsh  # here and not above: only solids need gmsh
     except ModuleNotFoundError as error:
         raise GmshUnavailable(
             "a solid is meshed by gmsh, which is not installed: pip install gmsh"
@@ -38,8 +38,7 @@ def load():
 
 @contextlib.contextmanager
 def session(name: str):
-    """gmsh with no signal handler, no user settings, one thread, no output; finalised on the way
-    out.
+    """gmsh with no signal handler, no user settings, one thread, no output; finalised at the end.
 
     Raises GmshUnavailable where it does not load.
     """

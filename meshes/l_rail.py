@@ -5,10 +5,10 @@ each corner (sign_y, sign_z) = (+-1, +-1). Its outer corner edge is at |y| = inn
 thickness, |z| = inner_corner_z + thickness, and its inner walls |y| = inner_corner_y and |z| =
 inner_corner_z face the payload.
 
-A grid gives the rail of the (+,+) corner. The other three are that mesh with signs changed, so that
-the four are mirror images bit for bit and a symmetric scene has a symmetric answer; their elements
-are then numbered along the axes again, which restores the orientation that a reflection reverses. A
-section of rectangles needs no mesh generator; one makes the same mesh in the tests.
+A grid gives the rail of the (+,+) corner. The other three are mirror images of it with the same
+bits, so that a symmetric scene has a symmetric result; their elements are numbered along the axes
+again, since a reflection reverses their orientation. A section of rectangles needs no mesh
+generator; one makes the same mesh in the tests.
 """
 
 import itertools
@@ -35,8 +35,7 @@ _INWARD_Y, _INWARD_Z, _OUTWARD_Y, _OUTWARD_Z = (
     [0, 3, 2, 1],
 )
 _TOUCH = 1e-9  # m: two coordinates closer than this are the same plane
-# of the element size: layers all along the rail have one length where that length is no further
-# from it
+# of the element size: largest deviation from it of a layer length that all layers have
 _EVEN = 0.1
 
 
@@ -128,7 +127,7 @@ def _check(geometry: LRailGeometry, element_size: float) -> None:
 
 
 def _grid_lines(*borders: float) -> list[float]:
-    """The borders in order, those that coincide taken once."""
+    """The borders in order, without duplicates."""
     lines = sorted(borders)
     return lines[:1] + [right for left, right in itertools.pairwise(lines) if right - left > _TOUCH]
 

@@ -2,12 +2,12 @@
 gmsh.
 
 A solid whose faces are all plane and parallel to the axes is a set of bricks: the planes of its
-faces cut space into cells, each of which is metal or not. A solid with the same section from end to
-end along X is its section in quadrilaterals, drawn out in layers. Any other solid is filled with
-tetrahedra of twice the size asked for, each split into four hexahedra at the centres of its edges
-and faces; such elements are skewed, which costs steps and makes thin walls too stiff. Where
-tetrahedra are asked for they have ten nodes, about ``element_size`` apart, and edges that follow
-curved faces.
+faces divide space into cells, each of which is metal or not. A solid with one section along X is
+meshed as an extrusion of this section in quadrilaterals. Any other solid is filled with tetrahedra
+of twice the element size, each split into four hexahedra at the centres of its edges and faces;
+such elements are skewed, which shortens the step and makes thin walls too stiff. Quadratic
+tetrahedra, on request, have ten nodes, about ``element_size`` apart, and edges that follow curved
+faces.
 """
 
 from pathlib import Path
@@ -18,7 +18,7 @@ from tipoff.meshes import bricks, generator
 
 _SAME = 1e-9  # m: two planes closer than this are one
 _TIE = 1e-6  # divisions
-_PROBES = 9  # points of an edge looked at to see whether it bends
+_PROBES = 9  # points of an edge at which its curvature is tested
 _TETRAHEDRON = [0, 1, 2, 3, 4, 5, 6, 7, 9, 8]  # nodes of gmsh's quadratic tetrahedron in VTK order
 
 
@@ -29,7 +29,7 @@ def build(
     file, whatever its length unit.
 
     ``planes`` (p,3) m: places along x, y and z at which elements should have borders. Bricks have
-    them at all of these, a section drawn out at those along x, tetrahedra at none. Raises
+    them at all of these, an extruded section at those along x, tetrahedra at none. Raises
     ValueError for a file without a solid that gmsh can read, GmshUnavailable where gmsh does not
     load.
     """
@@ -50,8 +50,8 @@ def build(
             if tetrahedra:
                 return _tetrahedra(gmsh, element_size)
             return (
-                _drawn_out(gmsh, element_size, planes)
-                if _is_drawn_out(gmsh)
+                _extruded(gmsh, element_size, planes)
+                if _is_extruded(gmsh)
                 else _split_tetrahedra(gmsh, element_size)
             )
         except Exception as fault:  # gmsh knows no other class
@@ -92,16 +92,17 @@ def _bricks(
     return bricks.filled([_divided(line, element_size) for line in lines], metal)
 
 
-def _different(solid: np.ndarray, asked: np.ndarray) -> np.ndarray:
-    """Places of the solid's own planes and of those asked for inside it, in order, those that
-    coincide taken once."""
-    places = np.sort(np.concatenate([solid, asked[(asked > solid.min()) & (asked < solid.max())]]))
+def _different(solid: np.ndarray, requested: np.ndarray) -> np.ndarray:
+    """Positions of the solid's own planes and of the requested ones inside it, in order, without
+    duplicates."""
+    inside = (requested > solid.min()) & (requested < solid.max())
+    places = np.sort(np.concatenate([solid, requested[inside]]))
     return places[np.append(True, np.diff(places) > _SAME)]
 
 
 def _divisions(line: np.ndarray, element_size: float) -> np.ndarray:
-    """Elements in each interval. Halves go down however the places are rounded, so that symmetric
-    solids are cut symmetrically."""
+    """Elements in each interval. Halves are rounded down whatever the rounding of positions, so
+    that symmetric solids get symmetric meshes."""
     return np.maximum(1, np.ceil(np.diff(line) / element_size - 0.5 - _TIE).astype(int))
 
 
@@ -110,7 +111,7 @@ def _divided(line: np.ndarray, element_size: float) -> np.ndarray:
     return bricks.divided(line, _divisions(line, element_size))
 
 
-def _is_drawn_out(gmsh) -> bool:
+def _is_extruded(gmsh) -> bool:
     """Whether every edge runs along X from one end to the other, or lies in one of the two end
     planes."""
     x = _vertices(gmsh, 3, -1)[:, 0]
@@ -127,7 +128,7 @@ def _is_drawn_out(gmsh) -> bool:
     return True
 
 
-def _drawn_out(gmsh, element_size: float, planes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _extruded(gmsh, element_size: float, planes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     x = _different(_vertices(gmsh, 3, -1)[:, 0], planes[:, 0])
     stations = _divided(x, element_size)
     ends = [

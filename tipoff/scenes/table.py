@@ -30,8 +30,8 @@ def is_absent(value: Any) -> bool:
 
 
 def at_least_one(items: Sized) -> Sized:
-    """Pydantic validator of a list that may not be empty. Its own min_length would also report lists
-    whose items are refused."""
+    """Pydantic validator of a list that may not be empty. Its own min_length would also
+    report lists whose items are refused."""
     if len(items) == 0:
         raise ValueError("at least one of them")
     return items

@@ -72,8 +72,8 @@ class OutputTable(Table):
 
 
 class AgreementTable(Table):
-    """``[agreement]``: conditions that are fitted, held out, used for the floor, and refined; and the
-    limits of agreement: relative L2 of the rates (1) and error of a settled rate (rad/s)."""
+    """``[agreement]``: conditions that are fitted, held out, used for the floor, and refined;
+    and the limits of agreement: relative L2 of the rates (1) and error of a settled rate (rad/s)."""
 
     fitted: tuple[str, ...] = ()
     held_out: tuple[str, ...] = ()

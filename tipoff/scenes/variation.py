@@ -102,8 +102,8 @@ class Variations:
         return self._adapters[key]
 
     def _leaves(self, names: tuple[str, ...], scene: Scene) -> tuple[Scene, list[_Leaf]] | None:
-        """``scene``, a copy to be overwritten, and its numbers under ``names``; None where one of them
-        is not a free number."""
+        """``scene``, a copy to be overwritten, and its numbers under ``names``; None where one of
+        them is not a free number."""
         leaves = []
         for name in names:
             *path, last = name.split(".")

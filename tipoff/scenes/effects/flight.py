@@ -31,8 +31,8 @@ _ORBIT_FROM_LEVEL = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]
 class FlightTable(Table):
     """``[flight]``: orbit by altitude (m) or mean_motion (rad/s); azimuth, elevation and roll of
     the launch axis (rad); range of the target (m); duration (s) of the flight, one orbit where
-    absent; pointing_limit (rad), a pointing error whose time is found. ``body`` is the size (m) of the
-    payload without its pads, ``payload.size`` where absent; ``envelope`` lists boxes that the
+    absent; pointing_limit (rad), a pointing error whose time is found. ``body`` is the size (m)
+    of the payload without its pads, ``payload.size`` where absent; ``envelope`` lists boxes that the
     platform lies in, in scene axes at ignition, to which built-in rails are added."""
 
     altitude: PositiveLength | None = None
