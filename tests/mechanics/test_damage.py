@@ -107,7 +107,7 @@ def test_one_flipped_bit_anywhere_is_refused_or_changed_nothing(tmp_path, name):
     [
         lambda content: content[:-1],
         lambda content: content + b"\n",
-        lambda content: content[:-100],
+        lambda content: content[: len(content) // 2],
         lambda content: content[:100] + content[101:],
     ],
     ids=["cut", "longer", "halved", "a byte less"],
