@@ -1,5 +1,8 @@
 """The list of effects is all that the program knows of them: one more entry is one more effect."""
 
+import re
+from pathlib import Path
+
 import pytest
 
 from tests.scenes.support import small
@@ -53,3 +56,11 @@ def test_a_new_effect_is_listed_where_it_is_absent():
 
 def test_names_of_the_ledger_stay():
     assert ledger.WORK == ("thrust", "gravity") and ledger.ENTRIES[:3] == (*ledger.WORK, "kinetic")
+
+
+def test_an_effect_is_named_in_its_file_the_registry_and_the_scene():
+    package = Path(registry.__file__).parents[2]
+    folders = ("scenes", "mechanics", "calibration", "meshes", "kernels")
+    paths = [path for folder in folders for path in (package / folder).rglob("*.py")]
+    named = {path.name for path in paths if re.search(r"\bgravity\b", path.read_text())}
+    assert named == {"gravity.py", "registry.py", "scene.py"}

@@ -147,7 +147,7 @@ def test_the_fit_recovers_a_gaussian(tmp_path, use):
     assert json.loads(json.dumps(said, allow_nan=False)) == said
 
 
-def test_a_poor_fit_is_told(tmp_path):
+def test_a_poor_fit_is_reported(tmp_path):
     """A square push has no Gaussian shape: the residual says so, and the two impulses differ."""
     time = np.linspace(0.0, 0.04, 161)
     force = np.where(np.abs(time - 0.02) < 0.01 - 1e-9, 1e3, 0.0)

@@ -1,6 +1,6 @@
-"""The effects a scene can call for: one file each, with its table (units), its kernel record, its
-law and its null meaning.
+"""The effects of a scene: one file each, with its table (units), its kernel record, its law and the
+meaning of an absent table. ``registry`` lists them.
 
-The record of an absent effect is ``None``. Kernels take each record as an argument, so Numba prunes
-what is absent.
+The record of an absent effect is ``None``. Kernels take each record as an argument, so that Numba
+removes the code of an absent effect.
 """
