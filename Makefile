@@ -113,9 +113,11 @@ hooks: $(CHECKED) ## format, lint and types before each commit
 	.venv/bin/pre-commit install
 
 test: $(READY) ## the tests, without the slow ones
+	.venv/bin/python -m tests.warm
 	.venv/bin/python -m pytest -m "not slow" --numprocesses=auto --dist=loadfile
 
 test-slow: $(READY) ## every test
+	.venv/bin/python -m tests.warm
 	.venv/bin/python -m pytest --numprocesses=auto --dist=loadfile
 
 clean: ## remove results and caches; the environment stays

@@ -12,17 +12,20 @@ ONLY_SLOW = {"X8"}
 def marked(source: str) -> dict[str, bool]:
     """Cases that the tests of a file are marked with, and whether one of them is not slow."""
     found: dict[str, bool] = {}
-    for node in ast.parse(source).body:
-        if isinstance(node, ast.FunctionDef):
-            marks = [ast.unparse(mark) for mark in node.decorator_list]
-        elif isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "pytestmark":
-            marks = [ast.unparse(node.value)]
-        else:
-            continue
-        for mark in marks:
-            if case := re.fullmatch(r"pytest\.mark\.case\('(\w+)'\)", mark):
-                fast = "pytest.mark.slow" not in marks
-                found[case[1]] = found.get(case[1], False) or fast
+    tree = ast.parse(source)
+    of_module = [
+        ast.unparse(mark)
+        for node in tree.body
+        if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "pytestmark"
+        for mark in (node.value.elts if isinstance(node.value, ast.List) else [node.value])
+    ]
+    for node in tree.body:
+        if isinstance(node, ast.FunctionDef) and node.name.startswith("test"):
+            marks = of_module + [ast.unparse(mark) for mark in node.decorator_list]
+            for mark in marks:
+                if case := re.fullmatch(r"pytest\.mark\.case\('(\w+)'\)", mark):
+                    fast = "pytest.mark.slow" not in marks
+                    found[case[1]] = found.get(case[1], False) or fast
     return found
 
 

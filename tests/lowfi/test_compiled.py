@@ -8,7 +8,9 @@ import pytest
 
 from tests.lowfi.compliance import reference_walls
 from tipoff import lowfi
+from tipoff.kernels.jit import contains
 from tipoff.lowfi.compiled import LAWS, compiled_code
+from tipoff.lowfi.contact.compliant import thermal_offset
 from tipoff.scenes import load
 
 # How the effects that the reference scene lacks are added; a law that sticks stands in the place of
@@ -25,7 +27,9 @@ ADDED = {
         }
     },
 }
-ON_WALLS = ("compliance", "modes", "thermal")  # effects that need walls found for the scene
+ON_RAILS = ("compliance", "modes", "thermal")  # effects that need the compliance of the rails
+FOUND = ("friction", "sticking")  # the time loops without the others are compiled here alone
+PACKAGE = b"6tipoff5lowfi7contact9compliant"  # as machine code names it
 COUNT = """
 import numba
 import numpy as np
@@ -51,6 +55,7 @@ print(evaluate(reference.replace({"friction": None, "platform": None})),
 """
 
 
+@pytest.mark.slow
 def test_pruned_kernels_know_no_friction(tmp_path):
     """In a fresh interpreter and cache: without the table nothing compiles the friction law, with
     it something does."""
@@ -66,13 +71,20 @@ def test_pruned_kernels_know_no_friction(tmp_path):
     assert without == 0 and with_friction > 0
 
 
-@pytest.mark.parametrize("effect", [effect for effect in LAWS if effect not in ON_WALLS])
+@pytest.mark.parametrize(
+    "effect",
+    [
+        pytest.param(effect, marks=[] if effect in FOUND else pytest.mark.slow)
+        for effect in LAWS
+        if effect not in ON_RAILS
+    ],
+)
 def test_one_absent_effect_is_not_compiled(effect):
     """Read from the machine code: what the scene has is there, what it has not is not, and one
     change changes nothing else. Without contact there is no friction either."""
     base = load("reference")
     present = lowfi.compiled_effects(base)
-    assert present == {name: name not in (*ADDED, *ON_WALLS) for name in LAWS}
+    assert present == {name: name not in (*ADDED, *ON_RAILS) for name in LAWS}
     changed = lowfi.compiled_effects(base.replace(ADDED.get(effect, {effect: None})))
     also = {"friction"} if effect in ("contact", "sticking") else set()
     assert changed == {
@@ -81,6 +93,7 @@ def test_one_absent_effect_is_not_compiled(effect):
     }
 
 
+@pytest.mark.slow
 def test_without_any_effect_nothing_of_them_is_compiled():
     found = lowfi.compiled_effects(
         load("reference").replace(
@@ -91,27 +104,25 @@ def test_without_any_effect_nothing_of_them_is_compiled():
 
 
 @pytest.mark.slow
-def test_warm_walls_are_compiled_for_a_warm_scene_only():
-    """A law asks where they stand, walls that give way know it in code of their own."""
-    cold, name = load("reference"), b"5lowfi5walls4warm5_fill"
-    warm, compliance = cold.replace({"thermal.mean": 20.0}), reference_walls()
+def test_temperature_is_compiled_for_a_warm_scene_only():
+    """A contact law asks where the warm walls stand; compliant contact has code of its own."""
+    cold, compliance = load("reference"), reference_walls()
+    warm = cold.replace({"thermal.mean": 20.0})
     assert lowfi.compiled_effects(warm, compliance=compliance.rigid()) == lowfi.compiled_effects(
         cold
     ) | {"thermal": True}
-    assert name in compiled_code(warm, compliance=compliance) and name not in compiled_code(
-        cold, compliance=compliance
-    )
+    assert contains(compiled_code(warm, compliance=compliance), thermal_offset._fill)
+    assert not contains(compiled_code(cold, compliance=compliance), thermal_offset._fill)
 
 
-def test_walls_that_give_way_stand_in_the_place_of_the_contact_law():
-    """Nothing of the package is in a kernel without them."""
-    scene, name = load("reference"), b"5lowfi5walls"
+def test_compliant_contact_stands_in_the_place_of_the_contact_law():
+    """Nothing of its package is in a kernel without it."""
+    scene = load("reference")
     assert lowfi.compiled_effects(scene, compliance=reference_walls()) == lowfi.compiled_effects(
         scene
     ) | {"contact": False, "compliance": True}
-    assert name in compiled_code(scene, compliance=reference_walls()) and name not in compiled_code(
-        scene
-    )
+    assert PACKAGE in compiled_code(scene, compliance=reference_walls())
+    assert PACKAGE not in compiled_code(scene)
 
 
 def test_modes_of_the_rails_are_compiled_where_there_are_any():

@@ -2,7 +2,9 @@
 second call that does nothing."""
 
 import json
+import os
 import time
+from pathlib import Path
 
 import pytest
 from typer.testing import CliRunner
@@ -16,8 +18,9 @@ from tipoff.studies.ablation import stage as ablation
 from tipoff.studies.cli import app
 from tipoff.studies.registry import QUESTIONS, results
 
-# nearly all of it compiles kernels, side by side with other test files
-pytestmark = pytest.mark.timeout(1500)
+# Minutes of runs and compilation. With the folder of a report that was made already, in
+# TIPOFF_REPORT, nothing is computed again.
+pytestmark = [pytest.mark.slow, pytest.mark.timeout(1500)]
 
 ROW = {
     "condition",
@@ -69,12 +72,14 @@ SECTIONS = (
 @pytest.fixture(scope="module")
 def pipeline(tmp_path_factory):
     """(folder of results, outcome of the first call, outcome of the second, seconds it took)."""
-    out = tmp_path_factory.mktemp("out")
+    made = os.environ.get("TIPOFF_REPORT")
+    out = Path(made).resolve() if made else tmp_path_factory.mktemp("out")
     arguments = ["report", "--scene", "tiny", "--out", str(out)]
     with pytest.MonkeyPatch.context() as patch:
         # Each effect taken away is one more kernel to compile; one of them shows that the stage
         # works.
-        patch.setattr(ablation, "EFFECTS", (friction.EFFECT,))
+        if not made:
+            patch.setattr(ablation, "EFFECTS", (friction.EFFECT,))
         first = CliRunner().invoke(app, arguments, catch_exceptions=False)
         started = time.monotonic()
         second = CliRunner().invoke(app, arguments, catch_exceptions=False)

@@ -6,6 +6,10 @@ import pytest
 from tipoff.studies.stability import contacts, guides, thrusts
 from tipoff.studies.stability.page import stability
 
+# The scenes of the table compile kernels of their own. `make report` computes the table, and the
+# same cases are tests of the surrogate in tests/lowfi.
+pytestmark = pytest.mark.slow
+
 CASES = {**contacts.CASES, **guides.CASES, **thrusts.CASES}
 # which takes seconds, and is run with the pipeline
 CHEAP = [name for name in CASES if name != "turning_platform"]
