@@ -24,6 +24,7 @@ def fitted() -> Calibration:
     return calibration.run(scene(), own_curves(), plan=SMALL)
 
 
+@pytest.mark.case("O42")
 def test_recovers_known_constants_from_a_wrong_start(fitted):
     """Data and model are the same code, so the residual can vanish and the constants come back as
     far as the curves know them.
