@@ -1,13 +1,13 @@
-"""The moment that a thrust beside the mass centre leaves a payload with, for many cases at once.
+"""Moment impulse of a thrust beside the mass centre, for arrays of cases.
 
-Thrust along the unit vector f through the point r, from the mass centre, turns a free payload by
-the moment impulse::
+Thrust along the unit vector f through the point r, from the mass centre, gives a free payload the
+moment impulse::
 
     L = J (r x f),   J = integral of F dt
     f = (cos t, sin t cos p, sin t sin p),   r = (-arm, e sin a - m sin b, e cos a - m cos b)
 
 with misalignment t at p, thrust eccentricity e at a and mass eccentricity m at b: the angles of
-``scenes.effects``, here of arrays.
+``scenes.effects``, here as arrays.
 """
 
 from collections.abc import Mapping
@@ -50,6 +50,5 @@ def moment_impulses(scene, inputs: Inputs, impulse: np.ndarray | float) -> np.nd
 
 
 def transverse(scene, inputs: Inputs, impulse: np.ndarray | float) -> np.ndarray:
-    """Size (n,) or () of the part of the moment impulse across the axis, |L_yz| in N m s: what
-    turns a payload against its rails."""
+    """Size (n,) or () of the part of the moment impulse across the axis, |L_yz| in N m s."""
     return np.hypot(*np.moveaxis(moment_impulses(scene, inputs, impulse)[..., 1:], -1, 0))

@@ -1,5 +1,5 @@
-"""Dotted keys such as ``thrust_offset.misalignment.axial`` or ``pads.0.relief``: set, dropped, and
-checked against the tables."""
+"""Dotted keys such as ``thrust_offset.misalignment.axial`` or ``pads.0.relief``: setting, dropping
+and checking them."""
 
 from collections.abc import Iterator, Mapping
 from types import UnionType
@@ -28,7 +28,7 @@ def dotted(table: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, An
 
 
 def texts(table: Any) -> dict[str, Any] | None:
-    """A ``[provenance]`` under dotted keys, none where it is absent; None where it is no table."""
+    """A ``[provenance]`` by dotted key, empty where it is absent; None where it is no table."""
     if table is None or is_drop(table):
         return {}
     return dict(dotted(table)) if isinstance(table, Mapping) else None
@@ -78,17 +78,16 @@ def _inside(annotation: Any, part: str) -> list:
 
 
 def is_drop(value: Any) -> bool:
-    """Whether ``value`` asks for a table or key to be left out."""
+    """Whether ``value`` drops a table or key."""
     return value is None or (isinstance(value, str) and value == "absent")
 
 
 def apply_all(
     raw: dict, overrides: Mapping[str, Any], table_type: type
 ) -> list[tuple[str, str, str]]:
-    """Apply overrides in place; faults (key, given, expected) of keys that lead nowhere.
+    """Apply overrides in place; returns faults (key, given, expected) of keys that do not exist.
 
-    A misspelt key that is set is found by the validation of ``table_type``; one that is dropped
-    only here.
+    The validation of ``table_type`` finds a misspelt key that is set, but not one that is dropped.
     """
     faults = []
     for key, value in overrides.items():
@@ -100,11 +99,10 @@ def apply_all(
 
 
 def apply(raw: dict, key: str, value: Any) -> tuple[str, str, str] | None:
-    """Set one dotted key in place, or drop it; returns (key, given, expected) when it leads
-    nowhere.
+    """Set one dotted key in place, or drop it; returns (key, given, expected) when it does not
+    exist.
 
-    A table that loses its last key is dropped with it: an empty table would be present without
-    meaning anything.
+    A table that loses its last key is dropped with it, since an empty table is a fault.
     """
     head, _, rest = key.partition(".")
     return _apply_inside(raw, head, rest, key, value)

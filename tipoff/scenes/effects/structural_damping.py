@@ -37,8 +37,8 @@ class Damping(NamedTuple):
 class DampingTable(Table):
     """``[rail.damping]``: two frequencies (Hz), ascending, and the damping ratio at each.
 
-    Neither alpha nor beta may be negative, or some mode would gain energy: with q = f2 / f1 that
-    asks for z1 / q <= z2 <= q z1.
+    Neither alpha nor beta may be negative, or a mode would gain energy. With q = f2 / f1 this
+    requires z1 / q <= z2 <= q z1.
     """
 
     frequencies: tuple[Frequency, Frequency]
