@@ -1,10 +1,11 @@
 """Where a payload goes after its exit: what it misses its target by, where it points, and how far
 it keeps from the platform.
 
-Nothing acts but gravity, from the exit on. The settled velocity and rate are taken to hold from
-there, so thrust that is left at the exit counts as delivered; moments by gravity, drag and light
-are left out. The target is where ``scenes.effects.flight`` puts it, and the miss is measured when
-the payload passes the plane through it across the launch axis, in orbit axes.
+From the exit on, all bodies fall freely. The settled velocity and rate are taken to hold from
+there, so thrust that is left at the exit counts as delivered. Moments by the gradient of the
+Earth's attraction, by drag and by light are left out. The target is that of
+``scenes.effects.flight``. The miss is measured when the payload passes the plane through the target
+across the launch axis, in orbit axes.
 """
 
 from collections.abc import Callable, Sequence
