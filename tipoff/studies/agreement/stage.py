@@ -17,8 +17,9 @@ from tipoff.studies.agreement import growth, metrics, verdicts
 from tipoff.studies.agreement.verdicts import Context, Spread, spread
 from tipoff.studies.calibration import stage as calibrate
 from tipoff.studies.core.progress import Board
+from tipoff.studies.core.stage import Stage
 from tipoff.studies.core.store import Run
-from tipoff.studies.core.study import Study, read, require_success
+from tipoff.studies.core.study import Study, require_success
 from tipoff.studies.cost.timing import speedups
 
 _SIMPLER = {
@@ -82,7 +83,6 @@ def run(study: Study) -> dict:
     compliant surrogate, ``simpler`` walls, ``stiffer`` penalty."""
     study.fitted()
     _, calibrated, on_walls, modal = ladder = rungs(study)
-    assert calibrated.calibration is not None
     gates = verdicts.gates(study.scene)
 
     def make() -> tuple[dict, list[Path]]:
@@ -117,21 +117,15 @@ def run(study: Study) -> dict:
             **dict(zip(("speedup", "speedup_compliant"), _speedups(study, [calibrated, on_walls]))),
         }, []
 
-    return study.stage("agreement", _key(study, calibrated.calibration.constants), make)
+    return STAGE.run(study, None, make)
 
 
-def stored(study: Study) -> dict | None:
-    """The result, if it was made from the present scene, code, settings and calibration."""
-    calibration = read(study.path("calibration.json"))
-    return (
-        study.stored("agreement", lambda _: _key(study, calibration["constants"]))
-        if calibration
-        else None
-    )
+def _inputs(study: Study, _: None) -> list:
+    return [calibrate.constants(study), verdicts.gates(study.scene)]
 
 
-def _key(study: Study, constants: dict) -> str:
-    return study.key(__name__, constants, verdicts.gates(study.scene))
+STAGE = Stage("agreement", __name__, inputs=_inputs)
+stored = STAGE.stored
 
 
 def rows(study: Study, rung: Rung, highfi: dict[str, Trajectory], context: Context) -> list[dict]:

@@ -20,8 +20,9 @@ from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.scene import NOMINAL
 from tipoff.studies.calibration import compliance, forecast
 from tipoff.studies.core.progress import Board, say
+from tipoff.studies.core.stage import Stage
 from tipoff.studies.core.store import Run
-from tipoff.studies.core.study import Study, StudyError, require_success
+from tipoff.studies.core.study import Study, StudyError, read, require_success
 
 FILE = "calibration.toml"
 
@@ -29,20 +30,20 @@ FILE = "calibration.toml"
 def run(study: Study) -> dict:
     """The calibration as plain values, beside ``calibration.toml``."""
     names = study.fitted()
-    asked = _asked(study)
+    requested = _requested(study)
 
     def make() -> tuple[dict, list[Path]]:
         from tipoff import calibration
 
-        say(f"  {forecast.calibration(study, asked)}")
-        references = dict(zip(names, study.store.fill("highfi", asked)))
+        say(f"  {forecast.calibration(study, requested)}")
+        references = dict(zip(names, study.store.fill("highfi", requested)))
         require_success(references, "calibrate")
         try:
             return _fitted(study, references, study.path(FILE))
         except calibration.CalibrationError as fault:
             raise StudyError(f"cannot calibrate: {fault}") from None
 
-    return study.stage("calibration", _key(study), make)
+    return STAGE.run(study, None, make)
 
 
 def of_models(study: Study, model: str | None = None) -> dict:
@@ -56,17 +57,24 @@ def of_models(study: Study, model: str | None = None) -> dict:
     return found | ({"springs": run(study)} if model != COMPLIANT else {})
 
 
-def stored(study: Study) -> dict | None:
-    """The result, if it was made from the present scene, code and settings."""
-    return study.stored("calibration", lambda _: _key(study))
-
-
-def _asked(study: Study) -> list[Run]:
+def _requested(study: Study) -> list[Run]:
     return [study.highfi(name) for name in study.fitted()]
 
 
-def _key(study: Study) -> str:
-    return study.key(__name__, [item.key for item in _asked(study)])
+def _inputs(study: Study, _: None) -> list[str]:
+    return [item.key for item in _requested(study)]
+
+
+STAGE = Stage("calibration", __name__, inputs=_inputs)
+stored = STAGE.stored
+
+
+def constants(study: Study) -> dict:
+    """Constants of the last calibration, which may be out of date. Raises KeyError without one."""
+    found = read(study.path("calibration.json"))
+    if found is None:
+        raise KeyError("calibration.json")
+    return found["constants"]
 
 
 def named(

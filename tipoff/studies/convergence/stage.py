@@ -22,6 +22,7 @@ from tipoff.studies.convergence import contact_loads, equal_accuracy, ripple, st
 from tipoff.studies.convergence.extrapolation import Estimate, estimate
 from tipoff.studies.convergence.quantities import RATE, quantities, settled_rate
 from tipoff.studies.core.progress import Board
+from tipoff.studies.core.stage import Stage
 from tipoff.studies.core.store import Run
 from tipoff.studies.core.study import Study, require_success
 from tipoff.studies.cost.timing import speedups
@@ -88,17 +89,11 @@ def run(study: Study, condition: str | None = None) -> dict:
             + ([equal_accuracy.sentence(equal)] if equal else []),
         }, []
 
-    return study.stage(NAME, _key(study, name), make)
+    return STAGE.run(study, name, make)
 
 
-def stored(study: Study) -> dict | None:
-    """The result, if it was made from the present scene, code and settings: the report shows it and
-    makes none."""
-    return study.stored(NAME, lambda found: _key(study, found["condition"]))
-
-
-def _key(study: Study, name: str) -> str:
-    return study.key(__name__, NAME, name)
+STAGE = Stage(NAME, __name__, str, field="condition")
+stored = STAGE.stored
 
 
 def _finished(study: Study, title: str, asked: list[Run]) -> list[Trajectory]:

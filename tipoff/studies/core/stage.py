@@ -24,13 +24,11 @@ options. ``studies/limits`` is an example, with further ``inputs``.
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Generic, TypeVar
+from typing import Any
 
 from pydantic import TypeAdapter
 
 from tipoff.studies.core.study import Study
-
-OptionsT = TypeVar("OptionsT")
 
 
 def _nothing(study: Study, options: Any) -> None:
@@ -38,41 +36,38 @@ def _nothing(study: Study, options: Any) -> None:
 
 
 @dataclass(frozen=True)
-class Stage(Generic[OptionsT]):
+class Stage:
     """``name``: of the result file. ``module``: the module (``__name__``) whose code, with all that
-    it imports, makes the result. ``options``: a frozen dataclass of JSON values, paths, tuples and
-    other such dataclasses. ``inputs``: what else the result depends on, as JSON values; it may
-    raise SceneError, OSError, KeyError, TypeError or ValueError where there is none. ``field``:
-    under which the result holds its options.
+    it imports, makes the result. ``options``: their type, a frozen dataclass of JSON values, paths,
+    tuples and other such dataclasses; None where there is nothing to choose. ``inputs``:
+    what else the result depends on, as JSON values; it may raise SceneError, OSError, KeyError,
+    TypeError or ValueError where there is none. ``field``: under which the result holds its options.
     """
 
     name: str
     module: str
-    options: type[OptionsT]
-    inputs: Callable[[Study, OptionsT], Any] = _nothing
+    options: Any = None
+    inputs: Callable[[Study, Any], Any] = _nothing
     field: str = "asked"
 
-    def plain(self, options: OptionsT) -> Any:
+    def plain(self, options: Any) -> Any:
         """``options`` as JSON values."""
         return TypeAdapter(self.options).dump_python(options, mode="json")
 
-    def key(self, study: Study, options: OptionsT) -> str:
+    def key(self, study: Study, options: Any) -> str:
         """Digest of all that the result depends on."""
         inputs = self.inputs(study, options)
         return study.key(self.module, self.name, self.plain(options), inputs)
 
-    def run(
-        self, study: Study, options: OptionsT, make: Callable[[], tuple[dict, list[Path]]]
-    ) -> dict:
+    def run(self, study: Study, options: Any, make: Callable[[], tuple[dict, list[Path]]]) -> dict:
         """The result: the stored one where nothing changed, else what ``make`` returns, beside the
-        files that it wrote. It holds ``plain(options)`` under ``field``."""
+        files that it wrote. It holds ``plain(options)`` under ``field``, unless there are none."""
         return study.stage(self.name, self.key(study, options), make)
 
     def stored(self, study: Study) -> dict | None:
         """The result, if it was made from the present scene, code and settings."""
 
         def key(found: dict) -> str:
-            options = TypeAdapter(self.options).validate_python(found[self.field])
-            return self.key(study, options)
+            return self.key(study, TypeAdapter(self.options).validate_python(found.get(self.field)))
 
         return study.stored(self.name, key)

@@ -24,10 +24,12 @@ from tipoff.studies.ablation import stage as ablation
 from tipoff.studies.agreement import verdicts
 from tipoff.studies.agreement.metrics import compare
 from tipoff.studies.agreement.stage import Rung, refined, rungs
+from tipoff.studies.calibration import stage as calibrate
 from tipoff.studies.core import machine
 from tipoff.studies.core.progress import Board
+from tipoff.studies.core.stage import Stage
 from tipoff.studies.core.store import Run
-from tipoff.studies.core.study import Study, read
+from tipoff.studies.core.study import Study
 from tipoff.studies.cost import choice, scaling
 from tipoff.studies.cost.timing import timed, warm_up
 
@@ -67,23 +69,15 @@ def run(study: Study) -> dict:
             "hardware": machine.describe(),
         }, [path]
 
-    return study.stage(
-        NAME,
-        _key(study, next(rung.calibration for rung in ladder if rung.calibration).constants),
-        make,
-    )
+    return STAGE.run(study, None, make)
 
 
-def stored(study: Study) -> dict | None:
-    """The result, if it was made from the present scene, code, settings and calibration."""
-    calibration = read(study.path("calibration.json"))
-    return (
-        study.stored(NAME, lambda _: _key(study, calibration["constants"])) if calibration else None
-    )
+def _inputs(study: Study, _: None) -> list:
+    return [_condition(study), calibrate.constants(study)]
 
 
-def _key(study: Study, constants: dict) -> str:
-    return study.key(__name__, _condition(study), constants)
+STAGE = Stage(NAME, __name__, inputs=_inputs)
+stored = STAGE.stored
 
 
 def _condition(study: Study) -> str:
