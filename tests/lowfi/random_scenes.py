@@ -12,6 +12,7 @@ import numpy as np
 from hypothesis import HealthCheck, Phase, given, seed, settings
 from hypothesis import strategies as st
 
+from tests.lowfi.support import with_neutral_effects
 from tipoff.kernels import rotation
 from tipoff.scenes import parse
 from tipoff.scenes.body import InertiaTensor, tensor
@@ -169,7 +170,7 @@ def raw_scenes(draw, kind: str, lossless: bool = False) -> dict:
 
 def scene_of(raw: dict) -> Scene:
     """The validated scene."""
-    return parse(raw, bare_numbers_are_si=True)
+    return parse(with_neutral_effects(raw), bare_numbers_are_si=True)
 
 
 def transformed(raw: dict, matrix: np.ndarray) -> dict:

@@ -1,4 +1,8 @@
-"""Small scenes for the surrogate's tests: one body, few pads, one effect. SI numbers."""
+"""Small scenes for the surrogate's tests: one body, few pads, one effect. SI numbers.
+
+Each set of effects that are present is one more kernel, which takes half a minute to compile. So
+effects that a scene does not need are present without strength.
+"""
 
 from tests import turning
 from tipoff import lowfi, scenes
@@ -21,6 +25,9 @@ RAIL = {
     "end": 100.0,
     "material": {"density": 2810.0, "youngs_modulus": 72e9, "poisson_ratio": 0.33},
 }
+CENTRED = {"eccentricity": {"axial": 0.0}}
+WEIGHTLESS = {"x": 0.0, "y": 0.0, "z": 0.0}
+SMOOTH = {"static": 0.0, "dynamic": 0.0, "static_speed": 1e-3, "dynamic_speed": 2e-3}
 ONE_PAD = [{"position": (0.0, 0.0, -0.1), "normals": ["-z"]}]
 
 
@@ -37,6 +44,17 @@ def corners(x: float = 0.1, y: float = 0.1, z: float = 0.1, normals=("y", "z")) 
     ]
 
 
+def with_neutral_effects(raw: dict) -> dict:
+    """The tables of a scene with those of absent effects, without strength. With a Gaussian
+    thrust they are those of the reference scene, which has no gravity, elsewhere all."""
+    neutral = {"thrust_offset": CENTRED}
+    if raw["thrust"]["kind"] != "gaussian":
+        neutral["gravity"] = WEIGHTLESS
+    if raw.get("contact"):
+        neutral["friction"] = SMOOTH
+    return neutral | raw
+
+
 def scene(
     duration: float,
     interval: float,
@@ -47,8 +65,8 @@ def scene(
     thrust: dict | None = None,
     **tables,
 ) -> scenes.Scene:
-    """A scene whose fixed rails are so long that nothing leaves them, without thrust unless
-    ``thrust`` says otherwise."""
+    """A scene whose fixed rails are so long that nothing leaves them, without thrust, offset of the
+    thrust, gravity and friction unless ``thrust`` or ``tables`` give them."""
     none = {"kind": "constant", "force": 0.0, "duration": duration}
     raw = {
         "name": "test",
@@ -60,7 +78,7 @@ def scene(
         "output": {"interval": interval},
         **tables,
     }
-    return scenes.parse(raw, bare_numbers_are_si=True)
+    return scenes.parse(with_neutral_effects(raw), bare_numbers_are_si=True)
 
 
 def numerics(tolerance: float) -> lowfi.Numerics:

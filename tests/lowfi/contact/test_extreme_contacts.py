@@ -220,7 +220,6 @@ def test_light_payload_on_a_heavy_platform(tolerance):
             # catalogue's.
             friction={"static": 0.0, "dynamic": 0.0, "static_speed": 0.01, "dynamic_speed": 0.02},
             thrust={"kind": "gaussian", "peak": 0.0, "width": 1e-3, "centre": 1e-3},
-            thrust_offset={"eccentricity": {"axial": 0.0}},
             initial={"velocity": {"y": v}},
         ),
         "springs",

@@ -8,7 +8,6 @@ import pytest
 
 from tests.exact import friction as exact
 from tests.lowfi.contact.test_friction import on_slope as smoothed_on_slope
-from tests.lowfi.dynamics.test_free_bodies import CENTRED
 from tests.lowfi.support import G, corners, numerics, scene
 from tipoff import highfi, lowfi
 from tipoff.lowfi import oracle
@@ -63,7 +62,6 @@ def on_slope(
             contact=GROUND,
             friction=grip,
             thrust=thrust,
-            thrust_offset=CENTRED,
             initial={"velocity": {downhill: speed}, "position": {"z": -sunk}},
             gravity={downhill: G * math.sin(angle), "z": -G * math.cos(angle)},
         ),

@@ -21,13 +21,12 @@ STEEL = {"density": 2810.0, "youngs_modulus": 72e9, "poisson_ratio": 0.33}
 RAIL = {"start": -1.0, "end": 0.1, "material": STEEL}
 # One pad, whose trailing edge is 0.1 m behind the mass centre and 0.1 m above it.
 PAD = [{"position": (-0.092, 0.0, 0.1), "normals": ["+z"], "length": 0.016}]
-STILL = {"x": 0.0, "y": 0.0, "z": 0.0}
 FINE = Numerics(relative_tolerance=1e-11, speed_floor=1e-6)
 
 
 def free(duration: float, interval: float, **tables):
     """A body on a fixed rail that nothing touches; all these scenes are of one kernel."""
-    return scene(duration, interval, mass=10.0, pads=PAD, rail=RAIL, **{"gravity": STILL} | tables)
+    return scene(duration, interval, mass=10.0, pads=PAD, rail=RAIL, **tables)
 
 
 def assert_same(found, expected) -> None:

@@ -11,9 +11,6 @@ from tests.exact.thrust import kept_by_cut
 from tests.lowfi.support import numerics, scene
 from tipoff import lowfi
 
-# a table without effect, so that all these scenes share one compiled kernel
-CENTRED = {"eccentricity": {"axial": 0.0}}
-
 
 def spin(inertia: tuple, rate: tuple, duration: float, tolerance: float, interval: float = 0.01):
     """A free body with principal ``inertia`` (kg m2) started at ``rate`` (rad/s, body axes)."""
@@ -22,7 +19,6 @@ def spin(inertia: tuple, rate: tuple, duration: float, tolerance: float, interva
             duration,
             interval,
             inertia=dict(zip(("xx", "yy", "zz"), inertia)),
-            thrust_offset=CENTRED,
             initial={"velocity": {"x": 1.0}, "rate": dict(zip("xyz", rate))},
         ),
         "springs",
@@ -209,7 +205,7 @@ def test_no_pulse_is_jumped_over(width, tolerance):
     """J/m = 5 m/s, whether the Gaussian lasts 20 us or half a second."""
     thrust = {"kind": "gaussian", "impulse": 100.0, "width": width, "centre": 0.8}
     run = lowfi.run(
-        scene(1.6, 0.01, thrust=thrust, thrust_offset=CENTRED),
+        scene(1.6, 0.01, thrust=thrust),
         "springs",
         numerics=lowfi.Numerics(relative_tolerance=tolerance),
     )
@@ -228,7 +224,7 @@ def test_steps_stop_at_the_corners_of_the_thrust(tolerance):
     """12.5 kN for 8.3 ms, seen every 1 ms: 103.75 N s, 5.1875 m/s."""
     push = {"kind": "constant", "force": 12500.0, "start": 0.00123, "duration": 0.0083}
     run = lowfi.run(
-        scene(0.02, 0.001, thrust=push, thrust_offset=CENTRED),
+        scene(0.02, 0.001, thrust=push),
         "springs",
         numerics=numerics(tolerance),
     )
@@ -258,7 +254,7 @@ def test_cut_gaussian(rescale, speed, tolerance):
         "rescale": rescale,
     }
     run = lowfi.run(
-        scene(0.05, 1e-3, thrust=thrust, thrust_offset=CENTRED),
+        scene(0.05, 1e-3, thrust=thrust),
         "springs",
         numerics=lowfi.Numerics(relative_tolerance=tolerance),
     )
