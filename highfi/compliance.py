@@ -1,19 +1,18 @@
-"""Static compliance of the rail walls along the track of the pads, from the stiffness of the
-reference.
+"""Compliance of the rail walls along the track of the pads, from the stiffness of the reference.
 
     C_iajb = 1/(A_i A_j) integral over faces i and j of phi_a n_i . K^-1 . n_j phi_b
     F_ij = G_i^-1 C_ij G_j^-1,   G_i = 1/A_i integral phi_a phi_b dA
 
 C is the displacement of the wall under pad face i, averaged with pattern a, caused by the pressure
 pattern b under face j: with the pattern 1 the mean displacement under a unit force. F is the
-flexibility of ``mechanics.rail_compliance``: displacement and pressure are both taken for the polynomials phi
-nearest to them. K is that of the whole rail, clamped at its mounts, so faces on one rail press each
-other's walls too. Inertia is left out. Both are symmetric (Maxwell and Betti). Beside them stands
-where uneven temperature brings the same walls (``highfi.statics.thermal``), for one of each field of which
-[thermal] is a sum.
+flexibility of ``mechanics.rail_compliance``: displacement and pressure are both approximated by the
+polynomials phi. K is that of the whole rail, clamped at its mounts, so a face also displaces the
+walls of the other faces on its rail. Inertia is left out. Both are symmetric (Maxwell and Betti). The
+thermal displacement of the same walls (``statics.thermal``) is computed for one of each field of
+which [thermal] is a sum.
 
-The modes psi_m of the same rail (``highfi.statics.vibration``) are seen under the faces in the same
-patterns, so that a full set of them makes up C::
+The modes psi_m of the same rail (``statics.vibration``) are averaged under the faces with the same
+patterns, so that a full set of them gives C::
 
     V_iam = 1/A_i integral over face i of phi_a n_i . psi_m,   W = G^-1 V,   C = sum_m V_m V_m' / omega_m^2
 """
@@ -46,21 +45,19 @@ _SINGULAR = 1e-6
 
 
 class Compliance(NamedTuple):
-    """travel (s,) m of the payload along X since ignition; matrix (s,f,p,f,p) m/N between f pad
-    faces and p patterns, zero between faces on different rails; gram (s,f,p,p), zero where a face
-    has no wall; rail (f,) the number of the rail under each, -1 without; half (f,2) m, half the
-    size of each face along xi and eta, negative where eta runs against the axis; frequency (r,n)
-    rad/s of the modes of each rail and their shape V (s,f,p,n) 1/kg^0.5; warm (s,f,p,t) m, the mean
-    displacement away from the payload, by pattern, of one of each of the t fields of temperature.
+    """Compliance at s stations between f pad faces with p patterns each, and n modes of r rails.
     Near an end of the rail a face stays at the last place where all of it is on the rail."""
 
-    travel: np.ndarray
-    matrix: np.ndarray
-    gram: np.ndarray
-    rail: np.ndarray
-    half: np.ndarray
-    frequency: np.ndarray
-    shape: np.ndarray
+    travel: np.ndarray  # (s,) m of the payload along X since ignition
+    matrix: np.ndarray  # (s,f,p,f,p) m/N, zero between faces on different rails
+    gram: np.ndarray  # (s,f,p,p), zero where a face has no wall
+    rail: np.ndarray  # (f,) number of the rail under each face, -1 without
+    half: (
+        np.ndarray
+    )  # (f,2) m, half size along xi and eta, negative where eta runs against the axis
+    frequency: np.ndarray  # (r,n) rad/s
+    shape: np.ndarray  # (s,f,p,n) 1/kg^0.5, V
+    # (s,f,p,t) m, mean displacement away from the payload by one of each of the t thermal fields
     warm: np.ndarray
 
 
@@ -164,7 +161,7 @@ def of_mesh(
         grams = np.array([patch.gram for patch in patches.found] + [np.zeros((patterns, patterns))])
         for number, signs in zip(places, images):
             gram += grams[number]
-            # an image is warmer where its y and z say
+            # the fields linear in y and z change sign with the image
             warm += heated[number] * np.r_[1.0, signs, 1.0]
             matrix += between[
                 number[:, :, None, None, None],
@@ -178,14 +175,14 @@ def of_mesh(
                 rail_of[here] = len(frequencies)
                 frequencies.append(frequency)
     return Compliance(
-        stations,
-        matrix,
-        gram,
-        rail_of,
-        half,
-        np.array(frequencies).reshape(len(frequencies), modes),
-        shape,
-        warm,
+        travel=stations,
+        matrix=matrix,
+        gram=gram,
+        rail=rail_of,
+        half=half,
+        frequency=np.array(frequencies).reshape(len(frequencies), modes),
+        shape=shape,
+        warm=warm,
     )
 
 

@@ -1,5 +1,4 @@
-"""Numerical choices of the finite-element reference: what may be refined without changing the
-scene."""
+"""Numerical parameters of the finite-element reference: mesh, quadrature and step."""
 
 import math
 from dataclasses import asdict, dataclass
@@ -7,17 +6,13 @@ from dataclasses import asdict, dataclass
 
 @dataclass(frozen=True)
 class Numerics:
-    """Mesh, quadrature and step of one run.
+    """Mesh, quadrature and step of one run. Raises ValueError outside their ranges."""
 
-    ``element_size`` (m); ``quadrature``: Gauss points per facet edge (None: so many that points lie
-    about 1 mm apart, between 2 and 8); ``safety``: fraction of the critical step; ``step`` (s): a
-    step asked for, refused above the limit.
-    """
-
-    element_size: float = 0.004
+    element_size: float = 0.004  # m
+    # Gauss points per facet edge; None: points about 1 mm apart, between 2 and 8 per edge
     quadrature: int | None = None
-    safety: float = 0.9
-    step: float | None = None
+    safety: float = 0.9  # fraction of the critical step
+    step: float | None = None  # s, requested; refused above the limit
 
     def __post_init__(self):
         faults = []

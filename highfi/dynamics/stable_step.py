@@ -21,12 +21,12 @@ from tipoff.highfi.statics.assembly import Operator
 from tipoff.highfi.statics.operator import internal_force
 from tipoff.scenes.faults import InputError
 
-_BATCH = 2048  # classes of elements looked at at once; bounds the memory of an unstructured mesh
+_BATCH = 2048  # classes of elements treated at once; bounds the memory of an unstructured mesh
 _DIVIDES = 1e-9  # relative error allowed to a requested step that should divide the sample interval
 
 
 class StepError(InputError):
-    """The step asked for would be unstable or does not meet the samples."""
+    """The requested step would be unstable or does not divide the sampling interval."""
 
 
 class FrequencyBound(NamedTuple):

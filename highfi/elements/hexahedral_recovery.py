@@ -1,13 +1,13 @@
-"""Strain anywhere in the elements from the displacement of their corners, incompatible modes
+"""Strain anywhere in eight-node hexahedra from the displacement of their corners, incompatible modes
 included.
 
     du/dX = sum over corners of u_a (x) grad N_a + sum over bubbles of a_i (x) grad P_i,      a = -H^-1 L u
     grad N_a = J^-1 dN_a/dxi,       grad P_i = (det J0 / det J) 4 (1 - 2 xi_i) J0^-1 e_i
 
-with J at the point, J0 at the centre, and the condensed amplitudes a of ``highfi.elements.hexahedron``: the
-same modes that the stiffness was condensed with, so the stress does the work the element's forces
-do. At the centre the bubbles have no gradient. Elsewhere they carry the bending: at the corners of
-a wall one element thick, where the centre knows nothing of it. Stress is the strain times the law.
+with J at the point, J0 at the centre, and the condensed amplitudes a of ``elements.hexahedron``. The
+modes are those the stiffness was condensed with, so the stress does the same work as the element's
+forces. At the centre the bubbles have no gradient. Elsewhere they carry the bending, for instance at
+the corners of a wall one element thick. Stress is the law times the strain.
 
 Source: Taylor, Beresford, Wilson, Int. J. Numer. Methods Eng. 10 (1976) 1211-1219; Wilson, Static
 and Dynamic Analysis of Structures (2002), chapter 6, on stresses recovered with the incompatible

@@ -52,7 +52,7 @@ def elasticity(youngs_modulus: float, poisson_ratio: float) -> np.ndarray:
     """Isotropic stiffness (6,6) in Pa.
 
     Raises ValueError unless youngs_modulus > 0 and -1 < poisson_ratio < 0.5, outside which the
-    material would give out energy.
+    material would be unstable.
     """
     if not (youngs_modulus > 0.0 and np.isfinite(youngs_modulus)):
         raise ValueError(f"Young's modulus must be positive and finite, got {youngs_modulus!r} Pa")
@@ -111,7 +111,7 @@ def stiffness(corners: np.ndarray, law: np.ndarray) -> np.ndarray:
 
 def expansion(corners: np.ndarray, law: np.ndarray) -> np.ndarray:
     """Condensed loads (c,24,8) in N of a free strain that is one at each corner in turn: f - L^T
-    H^-1 f_a, since bubbles feel it too."""
+    H^-1 f_a, since it loads the bubbles too."""
     cells = basis(corners)
     strain, stress = kinematics(cells), law[:, :3].sum(axis=1)
     direct, own_load = (

@@ -1,11 +1,11 @@
-"""Strain anywhere in ten-node tetrahedra from the displacement of their nodes: what
-``highfi.elements.hexahedral_recovery`` is to hexahedra.
+"""Strain anywhere in ten-node tetrahedra from the displacement of their nodes; see
+``elements.hexahedral_recovery`` for hexahedra.
 
     du/dX = sum over nodes of u_a (x) grad N_a,      grad N_a = J^-1 dN_a/dxi
 
-No mode is condensed, so the law does not enter. Between straight edges J is constant and strain
+No mode is condensed, so the strain does not depend on the law. Between straight edges J is constant and strain
 linear; von Mises stress, strain and rotation are norms, hence convex, and largest at a corner.
-Between curved edges the middle of one may be worse.
+Between curved edges they may be larger at the middle of one.
 """
 
 import numpy as np
@@ -32,8 +32,8 @@ def strain_matrix(nodes: np.ndarray, law: np.ndarray, local: np.ndarray) -> np.n
     """Matrix (p,6,30) 1/m from the displacement of the nodes, node * 3 + component, to the strain
     at p points; see ``gradients``.
 
-    Strain is ordered xx, yy, zz, xy, yz, zx, shear in engineering measure. ``law`` is that of
-    hexahedra and not looked at.
+    Strain is ordered xx, yy, zz, xy, yz, zx, shear in engineering measure. ``law`` is
+    not used; it is an argument of the function for hexahedra.
     """
     return hexahedron.strain_matrix(gradients(nodes, local))
 

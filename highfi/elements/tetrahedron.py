@@ -3,9 +3,9 @@ Hooke's law.
 
     K = sum over points of w det J B^T C B,      m_a = m integral(N_a^2) / sum over b of integral(N_b^2)
 
-Where edges are straight B is linear and J constant, so four points integrate exactly; curved
-elements take fourteen, since J B then has degree three, which a rule must meet for the patch test.
-Both rules have positive weights: no energy is ever negative. Row sums of the consistent mass are
+Where edges are straight B is linear and J constant, so four points integrate exactly. Curved
+elements take fourteen: J B then has degree three, and the patch test requires its exact integral.
+Both rules have positive weights, so no energy is negative. Row sums of the consistent mass are
 negative at the corners (-1/20 of the element's mass each), with which no explicit step is stable;
 the diagonal scaled to the right total is positive for every element whose Jacobian is.
 

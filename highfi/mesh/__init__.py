@@ -1,1 +1,1 @@
-"""The rail mesh as data, checked, and what is derived from it: facets, pieces, finer meshes."""
+"""Rail mesh as data: its checks, facets, separate solids and refinement."""

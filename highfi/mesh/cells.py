@@ -1,5 +1,4 @@
-"""The two kinds of element a rail may be made of, 8-node hexahedra and 10-node tetrahedra: their
-numbering and their quality.
+"""Numbering and quality of the two kinds of element: 8-node hexahedra and 10-node tetrahedra.
 
 A hexahedron is checked at its corners, where J = e1 . (e2 x e3) with e the three edges that leave a
 corner. In a tetrahedron det J is a cubic polynomial, which lies between the smallest and the
@@ -17,17 +16,16 @@ from tipoff.highfi.elements import tetrahedron
 
 
 class Kind(NamedTuple):
-    """``name`` of the elements and ``facets`` of their faces in messages; their names ``cell`` and
-    ``facet`` in meshio; ``faces`` (f,k) nodes of each face, corners first and counter-clockwise
-    seen from outside; ``edges`` (b,2) corners; ``thickness``: what sets the step."""
+    """A kind of element."""
 
-    name: str
-    facets: str
-    cell: str
-    facet: str
+    name: str  # in messages
+    facets: str  # name of its faces in messages
+    cell: str  # name in meshio
+    facet: str  # name of its faces in meshio
+    # (f,k) nodes of each face, corners first, counter-clockwise seen from outside
     faces: np.ndarray
-    edges: np.ndarray
-    thickness: str
+    edges: np.ndarray  # (b,2) corners
+    thickness: str  # name of the length that limits the step
 
 
 HEXAHEDRON = Kind(

@@ -1,5 +1,5 @@
-"""Facets of the rail's surfaces, bilinear ones of four corners and quadratic ones of six nodes:
-places, normals, Gauss points.
+"""Control points, normals, shape functions and Gauss points of facets: bilinear ones of four corners
+and quadratic ones of six nodes.
 
 A quadratic triangle may bulge beyond its nodes. It lies in the convex hull of its six Bernstein
 control points: the corners and, for each edge, 2 m - (a + b) / 2 with m the node between a and b
@@ -17,7 +17,7 @@ _DEGREE = {3: 2, 6: 4, 12: 6, 16: 8, 19: 9, 25: 10, 33: 12, 42: 14, 61: 17, 73: 
 INSIDE = 1e-6  # how far outside its facet, in local coordinates, a point may seem to lie
 _NEWTON = 20
 _ARRIVED = 1e-14  # in local coordinates, a step that changes nothing
-_FAR = 3.0  # local coordinates beyond which the way back to the facet is not looked for
+_FAR = 3.0  # local coordinates beyond which the way back to the facet is not searched
 
 
 def control(nodes_per_facet: int) -> np.ndarray | None:

@@ -1,9 +1,9 @@
-"""Ten-node tetrahedra cut into eight by halving their edges, and the triangles on them into four.
+"""Refinement of ten-node tetrahedra: each is cut into eight, and each triangle on them into four.
 
 New nodes lie at the quadratic map of quarters of the barycentric coordinates, so curved walls keep
-the shape the file gave them. A node is known by its integer weights on those of its element (in
-units of 1/8, i (i - 2) for a corner and 2 i j for a middle with coordinates i/4, j/4), which are
-the same from every element that shares it. The octahedron left in the middle is cut along its
+the shape of the file. A node is identified by its integer weights on those of its element (in units
+of 1/8, i (i - 2) for a corner and 2 i j for a middle with coordinates i/4, j/4), which are the same
+in every element that shares it. The octahedron left in the middle is cut along its
 shortest diagonal, which keeps elements from becoming flatter with every cut (Bey, Computing 55
 (1995) 355-378).
 """
@@ -25,8 +25,8 @@ _TRIANGLES = [(0, 3, 5), (3, 1, 4), (5, 4, 2), (3, 4, 5)]
 
 
 def halved(mesh: RailMesh) -> RailMesh:
-    """``mesh`` with two elements along every edge of each; warnings speak of the elements of the
-    file and stay."""
+    """``mesh`` with two elements along every edge of each; warnings stay: they give the
+    elements of the file."""
     # One random number per node makes a sum of weights a name of the point, whichever element it is
     # seen from; it may wrap around.
     names = np.random.default_rng(0).integers(1, 2**63, len(mesh.points), dtype=np.uint64)

@@ -1,5 +1,4 @@
-"""The separate solids of a mesh, and which of them are mirror images of one another, so that one
-solution serves them all."""
+"""Separate solids of a mesh, and the mirror images among them, for which one solution is enough."""
 
 from itertools import product
 
@@ -32,8 +31,8 @@ def distinct(mesh: RailMesh) -> list[tuple[RailMesh, list[np.ndarray]]]:
     each one's images of it, its own first."""
     found: list[tuple[RailMesh, list[np.ndarray]]] = []
     for piece in pieces(mesh):
-        for known, images in found:
-            if (signs := _mirror(known, piece)) is not None:
+        for first, images in found:
+            if (signs := _mirror(first, piece)) is not None:
                 images.append(signs)
                 break
         else:
@@ -51,12 +50,12 @@ def _part(mesh: RailMesh, own: np.ndarray) -> RailMesh:
     return RailMesh(mesh.points[inside], number[mesh.cells[inside[mesh.cells[:, 0]]]], surfaces)
 
 
-def _mirror(known: RailMesh, other: RailMesh) -> np.ndarray | None:
-    """Signs of y and z that turn the points of ``known`` into those of ``other``, bit for bit and
+def _mirror(first: RailMesh, other: RailMesh) -> np.ndarray | None:
+    """Signs of y and z that turn the points of ``first`` into those of ``other``, bit for bit and
     numbered alike; None without."""
     groups = [
-        (known.cells, other.cells),
-        *((known.surfaces[name], other.surfaces[name]) for name in known.surfaces),
+        (first.cells, other.cells),
+        *((first.surfaces[name], other.surfaces[name]) for name in first.surfaces),
     ]
     # A reflection reverses the order of the nodes of an element.
     if not all(
@@ -64,4 +63,4 @@ def _mirror(known: RailMesh, other: RailMesh) -> np.ndarray | None:
     ):
         return None
     signs = (np.array([1.0, *pair]) for pair in product((1.0, -1.0), repeat=2))
-    return next((each for each in signs if np.array_equal(known.points * each, other.points)), None)
+    return next((each for each in signs if np.array_equal(first.points * each, other.points)), None)

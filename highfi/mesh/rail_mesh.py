@@ -1,5 +1,4 @@
-"""The rail mesh as plain arrays, read from any file meshio knows and checked before anything is
-computed with it.
+"""Rail mesh as plain arrays, read from a file with meshio and checked.
 
 A mesh needs 8-node hexahedra or 10-node tetrahedra, at least one named group of their faces that
 starts with `contact` (the walls pads touch) and one named `mount` (fixed to the platform). Nodes
@@ -62,7 +61,7 @@ def read(source) -> RailMesh:
     """Check and convert a meshio mesh, or the path of a file meshio can read.
 
     Points no element uses are dropped. Raises MeshError for a file that meshio does not read, and
-    with one line per fault: no elements of a known kind, two kinds or others beside them, missing
+    with one line per fault: no elements of a supported kind, two kinds or others beside them, missing
     surfaces, facets that are not on the boundary of the solid or appear twice, inverted elements.
     """
     mesh = source if isinstance(source, meshio.Mesh) else _opened(Path(source))
@@ -130,22 +129,21 @@ def listed(elements: np.ndarray) -> str:
 
 
 def _opened(path: Path) -> meshio.Mesh:
-    said = io.StringIO()
+    output = io.StringIO()
     try:
         # meshio prints what is wrong with a file, and then asks the whole program to exit.
-        with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
+        with contextlib.redirect_stdout(output), contextlib.redirect_stderr(output):
             return meshio.read(path)
     # each format's reader fails in its own way on damaged bytes
     except (Exception, SystemExit) as fault:
-        why = " ".join(said.getvalue().split()) or f"{type(fault).__name__}: {fault}"
+        why = " ".join(output.getvalue().split()) or f"{type(fault).__name__}: {fault}"
         raise MeshError(f"{path} cannot be used: meshio does not read it ({why})") from fault
 
 
 def _kinds(mesh: meshio.Mesh) -> list[Kind]:
-    """Kinds of element in a file; where there is none, the one that its faults are told in terms
-    of."""
+    """Kinds of element in a file; hexahedra where there is none."""
     types = {block.type for block in mesh.cells}
-    return [known for known in KINDS.values() if known.cell in types] or [HEXAHEDRON]
+    return [each for each in KINDS.values() if each.cell in types] or [HEXAHEDRON]
 
 
 def _elements(mesh: meshio.Mesh, wanted: Kind) -> np.ndarray:
@@ -167,7 +165,7 @@ def _named_facets(mesh: meshio.Mesh, wanted: Kind) -> dict[str, np.ndarray]:
                 if dimension == 2:
                     groups.setdefault(name, []).append(facets[physical[index] == tag])
         for name, members in mesh.cell_sets.items():
-            # A format that gives both (gmsh 4.1) says the same thing twice.
+            # A format that gives both (gmsh 4.1) gives the same group twice.
             if name not in mesh.field_data and members[index] is not None:
                 groups.setdefault(name, []).append(
                     facets[np.asarray(members[index], dtype=np.int64)]
@@ -184,10 +182,10 @@ def _content_faults(
     mesh: meshio.Mesh, found: list[Kind], elements: int, surfaces: dict[str, np.ndarray]
 ) -> list[str]:
     faults = []
-    known = {kind.cell for kind in KINDS.values()}
+    supported = {kind.cell for kind in KINDS.values()}
     names = [kind.name for kind in KINDS.values()]
     other = sorted(
-        {block.type for block in mesh.cells if block.dim == 3 and block.type not in known}
+        {block.type for block in mesh.cells if block.dim == 3 and block.type not in supported}
     )
     if other:
         faults.append(f"solid elements other than {' and '.join(names)}: {', '.join(other)}")
@@ -246,13 +244,13 @@ def _warnings(points: np.ndarray, cells: np.ndarray) -> tuple[str, ...]:
     thin = slivers(points, cells)
     warnings = []
     if len(thin):
-        worst = thin[np.argmin(across[thin])]
-        longest = edge_lengths(points, cells[worst : worst + 1]).max()
+        thinnest = thin[np.argmin(across[thin])]
+        longest = edge_lengths(points, cells[thinnest : thinnest + 1]).max()
         warnings.append(
             f"slivers: elements {listed(thin)}; shortest {kind(cells).thickness} "
-            f"{across[worst]:.3g} m in element {worst + 1} "
-            f"(aspect ratio {longest / across[worst]:.3g}), so a run takes about "
-            f"{np.median(across) / across[worst]:.3g} times the steps that the rest of the mesh "
+            f"{across[thinnest]:.3g} m in element {thinnest + 1} "
+            f"(aspect ratio {longest / across[thinnest]:.3g}), so a run takes about "
+            f"{np.median(across) / across[thinnest]:.3g} times the steps that the rest of the mesh "
             f"needs"
         )
     return (*warnings, *_skewed(points, cells))

@@ -1,10 +1,10 @@
-"""Elements split evenly, so that the mesh of a file can be refined like one that is made here.
+"""Uniform refinement of a mesh from a file.
 
-Tetrahedra are halved (``highfi.mesh.halve``) as often as it takes. Each hexahedron becomes n x n x n of
-them at equal distances of its own coordinates: points lie at the trilinear map of the corners, and
-curved walls keep the facets the file gave them. A point is known by its integer weights on the
-corners (in units of 1/n^3), which are the same from every element that shares it, so neighbours are
-joined without comparing places.
+Tetrahedra are halved (``mesh.halve``) repeatedly. Each hexahedron becomes n x n x n of them at equal
+distances of its own coordinates: points lie at the trilinear map of the corners, and curved walls
+keep the facets of the file. A point is identified by its integer weights on the corners (in units of
+1/n^3). They are the same in every element that shares it, so neighbours are joined without comparing
+places.
 """
 
 import math
@@ -33,8 +33,8 @@ def to_size(mesh: RailMesh, element_size: float) -> RailMesh:
 
 
 def split(mesh: RailMesh, parts: int) -> RailMesh:
-    """Hexahedra with ``parts`` elements along every edge of each in ``mesh``; warnings speak of the
-    file's elements and stay."""
+    """Hexahedra with ``parts`` elements along every edge of each in ``mesh``; warnings stay:
+    they give the elements of the file."""
     if parts == 1:
         return mesh
     # One random number per node makes a sum of weights a name of the point, whichever element it is

@@ -1,1 +1,1 @@
-"""The rail of a scene: its mesh, whether both fit, and the memory a run takes."""
+"""Mesh of a scene's rails, its check against the scene, and the memory check."""

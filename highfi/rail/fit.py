@@ -1,8 +1,7 @@
-"""Whether a rail given as a file and its scene speak of the same walls.
+"""Check that the walls of a rail file are those of its scene.
 
-A file has the last word in the reference, the scene in the surrogate, which never reads it. So the
-walls of a file must end where the scene says that they do, lie under every pad face, and stand off
-it by the clearance they were drawn for, to a micrometre.
+The reference uses the file, the surrogate only the scene. So the walls of a file must end where the
+scene says, lie under every pad face, and have the clearance of the scene from it, to a micrometre.
 """
 
 import numpy as np
@@ -18,8 +17,8 @@ _SAME = 1e-6  # m: below what a rail is made to, above the rounding of any mesh 
 
 
 def check_fit(scene: Scene, mesh: RailMesh) -> None:
-    """Raise SceneError with every place where a mesh of the user's own and the scene speak of
-    different walls."""
+    """Raise SceneError with every difference between the walls of a mesh or CAD file and those of the
+    scene."""
     if isinstance(scene.rail, SectionTable) or scene.contact is None:
         return
     facets = np.concatenate(
@@ -40,18 +39,18 @@ def _end_faults(rail: MeshTable | GeometryTable, corners: np.ndarray) -> list[tu
     return [
         (
             key,
-            f"{said:.9g} m",
+            f"{stated:.9g} m",
             f"{found:.9g} m, where the contact surfaces of {rail.path().name} end",
         )
-        for key, (said, found) in ends.items()
-        if abs(said - found) > _SAME
+        for key, (stated, found) in ends.items()
+        if abs(stated - found) > _SAME
     ]
 
 
 def _wall_faults(
     scene: Scene, rail: MeshTable | GeometryTable, clearance: float, corners: np.ndarray
 ) -> list[tuple[str, str, str]]:
-    """Pad faces over no wall, and walls that do not stand one clearance off them."""
+    """Pad faces without a wall, and walls with another clearance than the scene's."""
     model, drawn = scene_model.build(scene), rail.gap(clearance)
     faces, file = model.faces, rail.path().name
     seen = corners - np.array(model.platform.mass_centre if model.platform else (0.0, 0.0, 0.0))

@@ -1,5 +1,5 @@
-"""Refusal of a mesh that the memory of this process cannot hold, before it is made where its size
-can be foretold."""
+"""Memory check: a mesh that does not fit into the memory of this process is refused, before it is made
+where its size can be predicted."""
 
 from tipoff.highfi.mesh.rail_mesh import RailMesh
 from tipoff.highfi.rail import memory_estimate
@@ -48,7 +48,7 @@ def check_mesh(scene: Scene, element_size: float, mesh: RailMesh) -> None:
         return
     elements, nodes = mesh.cells.shape
     needed = memory_estimate.of_mesh(elements, nodes, elements)
-    if needed > left:  # as if no two elements were alike; only then is it worth while to count them
+    if needed > left:  # an estimate as if no two elements were equal; count the classes only now
         needed = memory_estimate.of_mesh(elements, nodes, len(assembly.shape_classes(mesh)[1]))
     if needed > left:
         raise _too_large(

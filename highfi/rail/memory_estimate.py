@@ -1,12 +1,12 @@
-"""Memory that a run will take, estimated before it starts, against what this process can still get.
+"""Estimate of the memory that a run takes, and the memory that this process can still get.
 
     bytes = FIXED + PER_ELEMENT elements
 
 Measured as the largest resident set of mesh, set-up and run of the reference rails: 154,880
 elements take 0.35 GB beyond the 0.2 GB of the interpreter with its libraries, 1.24 million 2.7 GB,
-4.05 million 8.7 GB. Most of it is the mesh generator's and gone before the first step. An element
-of a mesh in which no two are alike has a matrix of its own besides, three times while matrices are
-put together.
+4.05 million 8.7 GB. The mesh generator takes most of it and frees it before the first step. In a
+mesh without equal elements every element also has a matrix of its own, stored three times during the
+assembly.
 """
 
 from pathlib import Path
@@ -14,8 +14,8 @@ from pathlib import Path
 FIXED = 6e7  # compiled kernels and what else does not grow with the mesh
 PER_ELEMENT = 2300
 _PER_MESHED = 1200  # once the mesh is there, per element of eight nodes
-_COPIES = 3  # of the matrices of all elements, while they are put together
-_UNLIMITED = 2**60  # what a control group without a limit says is beyond this
+_COPIES = 3  # of the matrices of all elements, during the assembly
+_UNLIMITED = 2**60  # a control group without a limit gives a number above this
 
 
 def of_section(elements: int) -> float:
@@ -31,8 +31,8 @@ def of_mesh(elements: int, nodes: int, shapes: int) -> float:
 
 
 def available(system: Path = Path("/")) -> int | None:
-    """Bytes this process can still get, the least of what the machine and its control group leave;
-    None where neither says."""
+    """Bytes this process can still get, the smaller of what the machine and its control group
+    leave; None where both are unknown."""
     found = [_of_machine(system), *_of_groups(system)]
     return min((value for value in found if value is not None), default=None)
 

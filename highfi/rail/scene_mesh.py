@@ -1,5 +1,5 @@
-"""The mesh of a scene's rail: the built-in L section, a mesh of the user's own, or a solid of the
-user's own filled here."""
+"""Mesh of a scene's rails: of the built-in L section, from a mesh file, or from a solid in a CAD
+file."""
 
 from dataclasses import replace
 
@@ -49,7 +49,7 @@ def make_mesh(scene: Scene, element_size: float) -> RailMesh:
         raise MeshError(f"{scene.rail.path()} has changed since the scene was read")
     if isinstance(scene.rail, GeometryTable):
         return with_steps(along_x(read(_meshed(scene.rail, element_size))), scene.rail.material)
-    # first, since it speaks of the file's own element numbers
+    # before the split, because its messages give the element numbers of the file
     mesh = with_steps(read(scene.rail.path()), scene.rail.material)
     return along_x(split.to_size(mesh, element_size))
 
@@ -87,8 +87,7 @@ def _meshed(rail: GeometryTable, element_size: float) -> meshio.Mesh:
 
 
 def with_steps(mesh: RailMesh, material) -> RailMesh:
-    """``mesh`` with a warning, where it has slivers, that says which step (s) they force on all
-    other elements."""
+    """``mesh``; where it has slivers, with a warning that gives the step (s) they require."""
     thin = slivers(mesh.points, mesh.cells)
     if not len(thin):
         return mesh

@@ -24,20 +24,15 @@ _BATCH = 2048  # classes integrated at once; bounds the memory of an unstructure
 
 
 class Operator(NamedTuple):
-    """Linear elastic operator of e elements with k nodes each in c shape classes over n nodes.
+    """Linear elastic operator of e elements with k nodes each in c shape classes over n nodes."""
 
-    cells (e,k) node numbers and shape_class (e,), unsigned so that no index needs a test for a
-    negative one; stiffness (c,3k,3k) N/m, degrees of freedom node * 3 + component; node_mass (c,k)
-    kg that one element brings to its nodes; mass (n,) kg, their sum at each node; free (n,) False
-    where the node is fixed.
-    """
-
-    cells: np.ndarray
-    shape_class: np.ndarray
-    stiffness: np.ndarray
-    node_mass: np.ndarray
-    mass: np.ndarray
-    free: np.ndarray
+    # Indices are unsigned, so that none needs a test for a negative one.
+    cells: np.ndarray  # (e,k) node numbers
+    shape_class: np.ndarray  # (e,)
+    stiffness: np.ndarray  # (c,3k,3k) N/m, degrees of freedom node * 3 + component
+    node_mass: np.ndarray  # (c,k) kg, share of one element in the mass of its nodes
+    mass: np.ndarray  # (n,) kg
+    free: np.ndarray  # (n,) False where the node is fixed
 
 
 def build(

@@ -1,10 +1,9 @@
-"""Kernel: internal force of the elastic solid, f = K u, one element at a time without an assembled
-matrix.
+"""Internal force of the elastic solid, f = K u, element by element without an assembled matrix.
 
 A matrix of one class of hexahedra (4.6 kB) stays in the first-level cache; an assembled sparse
 matrix would stream 1.9 kB per node from memory. Each node is moved relative to the first one: a
-rigid translation then gives exactly no force, and an eighth of the products is saved. Either kind
-of element has its loop written out, so that it has the length its compiler needs to know.
+rigid translation then gives exactly no force, and an eighth of the products is saved. Each kind
+of element has its own loop, so that the compiler knows its length.
 """
 
 import numpy as np
@@ -36,8 +35,8 @@ def internal_force(displacement, cells, shape_class, stiffness, force_out):
 def add_internal_force(
     displacement, cells, shape_class, stiffness, force_out, first, last, element_force
 ):
-    """Add the share of elements ``first`` to ``last`` to ``force_out``; ``element_force`` is room
-    for one, 24 or 30 numbers.
+    """Add the share of elements ``first`` to ``last`` to ``force_out``; ``element_force`` is
+    workspace for one, 24 or 30 numbers.
 
     Deterministic: elements are added in their order, and sums keep the order written, whatever the
     vector width.

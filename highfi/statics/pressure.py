@@ -20,13 +20,12 @@ _SAME = 1e-9  # m: what is narrower holds no pressure
 
 
 class Pressed(NamedTuple):
-    """Patterns of one pad face: gram (p,p), integral of phi_a phi_b dA / A over the part of the
-    face (area A) that has a wall, the first entry its share; node (q,k) numbers and load (p,q,k),
-    which is to be added up."""
+    """Pressure patterns of one pad face."""
 
+    # (p,p) integral of phi_a phi_b dA / A over the part of the face (area A) that has a wall
     gram: np.ndarray
-    node: np.ndarray
-    load: np.ndarray
+    node: np.ndarray  # (q,k) node numbers
+    load: np.ndarray  # (p,q,k), to be summed over q
 
 
 def pressed(

@@ -1,14 +1,13 @@
-"""Where an uneven temperature holds the rails: the static thermo-elastic solution before ignition.
+"""Thermal displacement of the rails: the static thermo-elastic solution before ignition.
 
     K u = f,    f = integral B' D m e dV,    m = (1, 1, 1, 0, 0, 0),    u = s (X - X_m) at the mounts
 
 with the free strain e and the strain s of the platform of ``scenes.effects.thermal``, and the
-elements of the dynamics, whose bubbles feel e too. The rails are linear: what moves them after
-ignition is seen from u as it is from the undeformed rails without [thermal], so the time loop does
-not know of it. Only contact does, whose walls stand at X + u, and stresses, which are those of D
-(strain - m e). Their von Mises part does not feel m e; left out of them is what the bubbles would
-add on account of e, at most the stress of the difference of temperature within an element, which
-falls with its size. Nodes keep their mass at X.
+elements of the dynamics, whose bubbles e loads too. The rails are linear: their motion after ignition
+is the same from u as from the undeformed rails without [thermal], so the time loop does not use u.
+Contact does, with walls at X + u, and so do stresses, which are D (strain - m e). Their von Mises part
+does not depend on m e. The share of the bubbles by e is left out of them: at most the stress of the
+temperature difference within an element, which falls with its size. Nodes keep their mass at X.
 
 Source: Timoshenko and Goodier, Theory of Elasticity, 3rd ed. 1970, chapter 13.
 """

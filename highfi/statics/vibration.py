@@ -15,7 +15,7 @@ def modes(
     stiffness: csc_array, mass: np.ndarray, solve: Callable[[np.ndarray], np.ndarray], count: int
 ) -> tuple[np.ndarray, np.ndarray]:
     """Frequencies (n,) rad/s, ascending, and shapes (d,n) 1/kg^0.5 of the lowest ``count`` modes
-    over d freedoms that nothing holds, of ``stiffness`` (d,d) N/m and ``mass`` (d,) kg; ``solve``
+    over d free degrees of freedom, of ``stiffness`` (d,d) N/m and ``mass`` (d,) kg; ``solve``
     answers the displacement (m) under a load (N).
 
     Raises ValueError where there are not so many.
@@ -25,7 +25,7 @@ def modes(
         raise ValueError(f"modes: given {count!r}, expected 0 to {freedoms}")
     if count == 0:
         return np.zeros(0), np.zeros((freedoms, 0))
-    if 2 * count > freedoms:  # more than an iteration can tell apart
+    if 2 * count > freedoms:  # more than the iteration can separate
         root = np.sqrt(mass)
         squares, shapes = eigh(
             stiffness.toarray() / root / root[:, None], subset_by_index=(0, count - 1)
