@@ -1,4 +1,4 @@
-"""Which effects the compiled time loop of a scene really contains, read from its machine code."""
+"""Which effects the compiled time loop of a scene contains, read from its machine code."""
 
 from tipoff.highfi.contact import facet
 from tipoff.highfi.dynamics import damping, loads
@@ -30,5 +30,5 @@ def compiled_effects(scene: Scene, numerics: Numerics | None = None) -> dict[str
     numerics = numerics or Numerics()
     system = build(scene, numerics, prepare(scene, numerics))
     loop = Loop(scene, system, choose(system, scene, numerics))
-    code = machine_code(advance, (*loop.arguments(), *loop.followed(), loop.team, 0, 0, 0, 1e-9))
+    code = machine_code(advance, (*loop.arguments(), loop.book, loop.team, 0, 0, 0))
     return {effect: contains(code, law) for effect, law in LAWS.items()}

@@ -1,4 +1,4 @@
-"""One run of the reference: set-up, the sampled time loop, and the Trajectory it leaves."""
+"""One run of the finite-element reference: set-up, the sampled time loop, and its Trajectory."""
 
 import threading
 import time as clock
@@ -8,14 +8,13 @@ from pathlib import Path
 
 import numpy as np
 
-from tipoff.highfi.contact.pads import FASTEST_APPROACH
-from tipoff.highfi.contact.surface import magnification
 from tipoff.highfi.dynamics import ending, observe, samples
 from tipoff.highfi.dynamics.checkpoint import Checkpoint, restore
-from tipoff.highfi.dynamics.loads import pull_on_nodes, thrust_load
+from tipoff.highfi.dynamics.loads import body_force_in_frame, thrust_load
 from tipoff.highfi.dynamics.step import advance, evaluate, kick_bodies
 from tipoff.highfi.dynamics.step_size import Stepping, choose
 from tipoff.highfi.dynamics.system import System, build, initial_state
+from tipoff.highfi.faults import fault
 from tipoff.highfi.mesh.rail_mesh import RailMesh
 from tipoff.highfi.numerics import Numerics
 from tipoff.highfi.rail.fit import check_fit
@@ -23,8 +22,8 @@ from tipoff.highfi.rail.memory_check import check_before, check_mesh
 from tipoff.highfi.rail.scene_mesh import geometry, make_mesh
 from tipoff.highfi.state import records
 from tipoff.highfi.state.nodes import kick_nodes
-from tipoff.highfi.state.pose import seen_from_frame
-from tipoff.highfi.state.threads import gather, processors
+from tipoff.highfi.state.pose import pose_in_frame
+from tipoff.highfi.state.threads import processors, team_of
 from tipoff.highfi.stress import monitor, peak
 from tipoff.kernels import rotation
 from tipoff.mechanics import comoving, ledger, models, outcome
@@ -34,11 +33,9 @@ from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.effects.friction import require_two_step
 from tipoff.scenes.scene import Scene
 
-_STOP_RATIO = 0.1  # of the transverse scale: a run that loses so much energy is not a result
 _ELEMENTS_PER_THREAD = 4000
-# steps at most from one look at the balances to the next, at samples or between
-_STEPS_PER_LOOK = 250
-_REPORT_EVERY = 20  # looks from one report of progress to the next
+_STEPS_PER_CHECK = 250  # at most, from one check of the balances to the next
+_REPORT_EVERY = 20  # checks from one report of progress to the next
 _ROUNDING = 1e-9
 _MESHES: dict[tuple, RailMesh] = {}
 _MESH_LOCK = threading.Lock()
@@ -78,14 +75,15 @@ def run(
     """Solve ``scene`` with flexible rails until the settled window is complete, a jam, or the
     scene's duration.
 
-    ``progress`` is called with the fraction of the duration done. ``threads`` share the run, unless
-    said otherwise as many as there are processors and elements enough for; the result does not hang
-    on their number. With the path of a ``checkpoint`` the run is kept there every
-    ``checkpoint_every`` seconds (wall clock), and the file stays; with ``resume`` it goes on from
-    that file if there is one, to the same bits, and its cost is that of all parts. ``observer`` is
-    called with the loop at every sample, the first one at ignition; it may read all and must change
-    nothing. Raises SceneError, MeshError, StepError or CheckpointError before any stepping; what
-    goes wrong later is the status of the result.
+    ``progress`` is called with the fraction of the duration done. ``threads`` share the run (None:
+    as many as there are processors, and elements enough for them); the result does not depend on
+    their number. The run is written to the file ``checkpoint`` every ``checkpoint_every`` seconds
+    (wall clock), and the file stays. With ``resume`` the run continues from that file if there is
+    one, to the same bits, and its cost is that of all parts. ``observer`` is called with the loop
+    at every sample, the first one at ignition; it may read everything and must change nothing.
+
+    Raises SceneError, MeshError, StepError or CheckpointError before the first step. A later
+    failure is the status of the result.
     """
     if resume and checkpoint is None:
         raise ValueError(
@@ -94,7 +92,7 @@ def run(
     numerics = numerics or Numerics()
     began, cpu = clock.perf_counter(), clock.thread_time()
     system = build(scene, numerics, prepare(scene, numerics))
-    loop = Loop(scene, system, choose(system, scene, numerics), threads or _worth_while(system))
+    loop = Loop(scene, system, choose(system, scene, numerics), threads or _threads_for(system))
     kept = (
         Checkpoint(checkpoint, checkpoint_every, loop, numerics) if checkpoint is not None else None
     )
@@ -104,7 +102,7 @@ def run(
     compiled = clock.perf_counter()
     if saved is not None:
         restore(loop, saved)
-    loop.march(progress, kept, observer)
+    loop.integrate(progress, kept, observer)
     elements = int(system.operator.cells.shape[0])
     cost = {
         "wall_s": (compiling - began) + loop.wall,
@@ -119,8 +117,8 @@ def run(
     return loop.trajectory(cost, numerics)
 
 
-def _worth_while(system: System) -> int:
-    """Threads that a mesh can keep busy: with less to do they would mostly wait for each other."""
+def _threads_for(system: System) -> int:
+    """Threads that a mesh can keep busy: on a smaller mesh they would mostly wait for each other."""
     return max(1, min(processors(), len(system.operator.cells) // _ELEMENTS_PER_THREAD))
 
 
@@ -129,49 +127,51 @@ class Loop:
 
     def __init__(self, scene: Scene, system: System, stepping: Stepping, threads: int = 1):
         self.scene, self.system, self.stepping = scene, system, stepping
-        self.team, self.pool = gather(threads), ThreadPoolExecutor(threads)
+        self.team, self.pool = team_of(threads), ThreadPoolExecutor(threads)
         self.state, self.active = initial_state(system)
+        self.exit, self.book = ending.build(system)
         self.walls = np.unique(system.surface.facets)
-        self.marks = outcome.milestones(scene, system.model)
-        self.last, self.most = (
-            scene.output.last(scene.duration),
-            int(scene.duration / stepping.dt_s * (1.0 + _ROUNDING)),
-        )
-        self.exit, self.ending = ending.build(system)
-        self.wall, self.cpu, self.looks = 0.0, 0.0, 0
-        self.steps, self.damping, self.scale, self.other_cpu, self.message = 0, 0.0, 0.0, 0.0, ""
-        self.rows: list[np.ndarray] = []
+        self.milestones = outcome.milestones(scene, system.model)
+        self.last = scene.output.last(scene.duration)
+        self.most = int(scene.duration / stepping.dt_s * (1.0 + _ROUNDING))  # steps
+        self.wall, self.cpu, self.other_cpu = 0.0, 0.0, 0.0  # s
+        self.steps, self.checks = 0, 0  # done
+        self.damping = 0.0  # largest step * friction damping / mass of a node
+        self.scale = 0.0  # J, largest transverse energy
+        self.message = ""  # why the run stopped
+        # At every sample:
+        self.rows: list[np.ndarray] = []  # see ``observe``
         self.work: list[np.ndarray] = []
-        self.forces: list[np.ndarray] = []
-        self.gauges: list[np.ndarray] = []
-        self.watch, self.worst = (
-            monitor.build(system, scene.rail.material, stepping.steps_per_sample, threads),
-            peak.nothing(),
+        self.forces: list[np.ndarray] = []  # N, of the faces
+        self.gauges: list[np.ndarray] = []  # Pa
+        self.monitor = monitor.build(
+            system, scene.rail.material, stepping.steps_per_sample, threads
         )
+        self.peak = peak.no_peak()
 
-    def arguments(self) -> tuple:
-        """Records the kernels take, in their order."""
+    def constants(self) -> records.Constants:
+        """Constant records of the kernels."""
         s, m = self.system, self.system.model
-        return (
-            s.rail,
-            s.surface,
-            s.faces,
-            m.payload,
-            s.frame,
-            s.drive,
-            m.thrust.pulses,
-            m.thrust.curve,
-            m.thrust_offset,
-            m.penalty,
-            m.friction,
-            m.body_force,
-            self.state,
-            self.active,
+        return records.Constants(
+            rail=s.rail,
+            surface=s.surface,
+            faces=s.faces,
+            payload=m.payload,
+            frame=s.frame,
+            drive=s.drive,
+            thrust=m.thrust,
+            thrust_offset=m.thrust_offset,
+            penalty=m.penalty,
+            friction=m.friction,  # type: ignore[arg-type]  # sticking is refused by prepare
+            body_force=m.body_force,
+            exit=self.exit,
+            milestones=self.milestones,
+            dt=self.stepping.dt_s,
         )
 
-    def followed(self) -> tuple:
-        """Records by which the kernels follow the payload off the rail, in their order."""
-        return self.exit, self.marks, self.ending
+    def arguments(self) -> tuple[records.Constants, records.State, records.Active]:
+        """Records that most kernels take, in their order."""
+        return self.constants(), self.state, self.active
 
     def begin(self) -> None:
         """First forces, velocities set back to -1/2 so that they pass through the given ones at t =
@@ -179,39 +179,24 @@ class Loop:
 
         Compiles the kernels.
         """
-        s, m = self.system, self.system.model
-        evaluate(
-            s.rail,
-            s.surface,
-            s.faces,
-            m.payload,
-            s.frame,
-            m.penalty,
-            m.friction,
-            self.state,
-            self.active,
-            self.team,
-            self.stepping.dt_s,
-        )
+        evaluate(*self.arguments(), self.team)
         self._kick(-0.5 * self.stepping.dt_s)
-        ending.begin(self.exit, m.payload, s.frame, self.state, self.marks, self.ending.book)
+        ending.begin(self.constants(), self.state, self.book)
         self.advance_steps(0)
-        self._look(keep=True)
+        self._check(keep=True)
 
-    def march(self, progress, kept: Checkpoint | None = None, observer=None) -> None:
-        """Advance look by look until something ends the run."""
+    def integrate(self, progress, kept: Checkpoint | None = None, observer=None) -> None:
+        """Advance check by check until something ends the run."""
         began, cpu = clock.perf_counter() - self.wall, clock.thread_time() - self.cpu
         if observer:
             observer(self)
         while self._goes_on():
             taken = len(self.rows)
-            self._advance_one_look()
+            self._advance_to_check()
             if observer and len(self.rows) > taken:
                 observer(self)
-            if progress and self.looks % _REPORT_EVERY == 0:
-                end = min(
-                    self.most * self.stepping.dt_s, self.ending.book[WINDOW] + outcome.SETTLE_WINDOW
-                )
+            if progress and self.checks % _REPORT_EVERY == 0:
+                end = min(self.most * self.stepping.dt_s, self.book[WINDOW] + outcome.SETTLE_WINDOW)
                 progress(min(1.0, self.steps * self.stepping.dt_s / end))
             self.wall, self.cpu = clock.perf_counter() - began, clock.thread_time() - cpu
             if kept:
@@ -222,42 +207,34 @@ class Loop:
         if self.message or self.steps >= self.most:
             return False
         interval = self.scene.output.interval
-        return self.ending.book[DONE] == np.inf or not is_left_out(
-            self.ending.book, len(self.rows) * interval, interval
+        return self.book[DONE] == np.inf or not is_left_out(
+            self.book, len(self.rows) * interval, interval
         )
 
     def advance_one_sample(self) -> None:
         """Step to the next sample and take it; less where something goes wrong before."""
         taken = len(self.rows)
         while len(self.rows) == taken and not self.message:
-            self._advance_one_look()
+            self._advance_to_check()
 
-    def _advance_one_look(self) -> None:
-        """Step to the next sample, or not so far where that is long, and look at the balances
+    def _advance_to_check(self) -> None:
+        """Step to the next sample, or part of the way where that is long, and check the balances
         there."""
         there, left = (
             self.stepping.steps_per_sample - self.steps % self.stepping.steps_per_sample,
             self.most - self.steps,
         )
-        count = min(there, _STEPS_PER_LOOK, left if left > 0 else there)
+        count = min(there, _STEPS_PER_CHECK, left if left > 0 else there)
         self.advance_steps(count)
-        self.looks += 1
-        self._look(keep=count == there)
+        self.checks += 1
+        self._check(keep=count == there)
 
     def advance_steps(self, count: int) -> None:
         """``count`` steps, by all threads of the team."""
 
         def part(thread):
             began = clock.thread_time()
-            damping = advance(
-                *self.arguments(),
-                *self.followed(),
-                self.team,
-                thread,
-                self.steps,
-                count,
-                self.stepping.dt_s,
-            )
+            damping = advance(*self.arguments(), self.book, self.team, thread, self.steps, count)
             return damping, clock.thread_time() - began
 
         others = [self.pool.submit(part, thread) for thread in range(1, self.team.size)]
@@ -265,29 +242,29 @@ class Loop:
         self.other_cpu += sum(other.result()[1] for other in others)
         self.steps += count
 
-    def _look(self, keep: bool) -> None:
-        """See whether the run may go on, and ``keep`` what is seen as a sample."""
+    def _check(self, keep: bool) -> None:
+        """Check whether the run may go on, and ``keep`` a sample."""
         state, step = self.state, self.stepping.dt_s
         before = observe.moving(state)
         self._kick(step)
         row = observe.sample(self.system, self.team, state, before, observe.moving(state))
         observe.restore(state, before)
-        self.message = self._fault(row)
+        self.message = fault(self, row)
         if keep and np.isfinite(row).all():
             self.rows.append(row)
             self.work.append(state.work.copy())
             self.forces.append(
                 state.face_force @ rotation.matrices(state.platform.quaternion[None])[0].T
             )
-            self._watch()
+            self._monitor_stress()
 
-    def _watch(self) -> None:
+    def _monitor_stress(self) -> None:
         """Stresses at the sample just taken."""
-        if self.watch.patch is not None:
-            self.gauges.append(monitor.gauge(self.watch, self.deformed()))
-        if (len(self.rows) - 1) % self.watch.every == 0:
-            monitor.look(
-                self.watch, self.deformed(), self.steps * self.stepping.dt_s, self.worst, self.pool
+        if self.monitor.patch is not None:
+            self.gauges.append(monitor.gauge(self.monitor, self.deformed()))
+        if (len(self.rows) - 1) % self.monitor.every == 0:
+            monitor.scan(
+                self.monitor, self.deformed(), self.steps * self.stepping.dt_s, self.peak, self.pool
             )
 
     def deformed(self) -> np.ndarray:
@@ -298,87 +275,13 @@ class Loop:
 
     def _kick(self, step: float) -> None:
         """Advance the velocities alone, over ``step`` (s), by the present forces."""
-        s, m, state = self.system, self.system.model, self.state
-        pose = seen_from_frame(state, m.payload, s.frame)
-        thrust = thrust_load(
-            state,
-            s.drive,
-            m.thrust.pulses,
-            m.thrust.curve,
-            m.thrust_offset,
-            self.steps * self.stepping.dt_s,
-        )
-        kick_bodies(m.payload, s.frame, s.drive, m.body_force, state, pose, thrust, step)
-        kick_nodes(
-            s.rail.inverse_mass,
-            state.velocity,
-            state.resistance,
-            pull_on_nodes(m.body_force, pose),
-            step,
-        )
-
-    def _fault(self, row: np.ndarray) -> str:
-        """Why the run must stop here, or nothing."""
-        now = f"at {self.steps * self.stepping.dt_s:.6g} s"
-        if not (np.isfinite(row).all() and np.isfinite(self.state.work).all()):
-            return f"a value became infinite {now}"
-        _, transverse = samples.ledgers(
-            np.array([*self.rows[:1], row]), np.array([*self.work[:1], self.state.work])
-        )
-        self.scale = max(self.scale, transverse[-1, 2:5].sum())
-        if self.active.struck.any():
-            return self._strike()
-        loss, work = abs(ledger.residual(transverse)[-1]), abs(self.state.work[records.THRUST])
-        # Rounding of the large axial work is no fault while nothing has moved sideways yet.
-        if loss > _STOP_RATIO * self.scale + 1e-11 * work:
-            return (
-                f"transverse energy is off by {loss:.3g} J, its scale being {self.scale:.3g} J, "
-                f"{now}"
-            )
-        if (
-            self.system.model.penalty is not None
-            and (speed := self._approach_speed()) > FASTEST_APPROACH
-        ):
-            return (
-                f"payload and rails approach at up to {speed:.3g} m/s, contact search allows "
-                f"{FASTEST_APPROACH:g} m/s, {now}"
-            )
-        if self.stepping.used() + 0.5 * self.damping > 1.0:
-            return (
-                f"friction damps nodes faster than the step of {self.stepping.dt_s:.4g} s can "
-                f"follow, {now}; lower safety"
-            )
-        return ""
-
-    def _strike(self) -> str:
-        """What met an edge of a wall first, where and when."""
-        face = int(
-            max(
-                np.flatnonzero(self.active.struck[:, 0]),
-                key=lambda struck: self.active.struck[struck, 2],
-            )
-        )
-        depth, x, since = self.active.struck[face]
-        time = (self.steps - since) * self.stepping.dt_s
-        return outcome.strike(
-            self.system.model.faces,
-            face,
-            "strikes an edge or the back",
-            depth,
-            x + self.system.origin[0],
-            time,
-        )
-
-    def _approach_speed(self) -> float:
-        """Bound (m/s) of the speed across the rail at which any pad and any point of a wall can
-        approach each other now."""
-        state, payload = self.state, self.system.model.payload
-        spin = np.linalg.norm(payload.inverse_inertia, 2) * np.linalg.norm(state.payload.spin)
-        reach = np.linalg.norm(self.system.faces.centre, axis=1).max()
-        turn = rotation.matrices(state.platform.quaternion[None])[0]
-        across = (state.payload.velocity @ turn)[1:]
-        nodes = np.linalg.norm(state.velocity[self.walls, 1:] - across, axis=1).max()
-        return float(magnification(self.system.surface) * nodes + spin * reach)
+        constants, state = self.constants(), self.state
+        pose = pose_in_frame(state, constants.payload, constants.frame)
+        thrust = thrust_load(constants, state, self.steps * constants.dt)
+        kick_bodies(constants, state, pose, thrust, step)
+        acceleration = body_force_in_frame(constants.body_force, pose)
+        inverse_mass = constants.rail.inverse_mass
+        kick_nodes(inverse_mass, state.velocity, state.resistance, acceleration, step)
 
     def _motion(self) -> outcome.Motion:
         return samples.motion(
@@ -387,20 +290,20 @@ class Loop:
 
     def _stress(self) -> dict:
         return monitor.record(
-            self.watch, self.system, self.worst, self.scene.rail.material.yield_strength
+            self.monitor, self.system, self.peak, self.scene.rail.material.yield_strength
         )
 
     def _broken(self, checks: dict[str, float]) -> str:
-        """The promises that the run broke, and what helps, or nothing. It is not run again with
-        smaller steps: that is for who pays for it to decide."""
+        """The accuracy limits that the run exceeded, and what helps, or nothing. A run is never
+        repeated with smaller steps: its cost is the user's decision."""
         words = broken(checks, FINITE_ELEMENTS)
         return f"{words}; lower safety or element_size" if words else ""
 
     def trajectory(self, cost: dict, numerics: Numerics) -> Trajectory:
-        """The result of the samples taken so far."""
+        """The result of the samples so far."""
         rows, moved = np.array(self.rows), self._motion()
         total, transverse = samples.ledgers(rows, np.array(self.work))
-        status, result = ending.found(self.system, self.ending.book)
+        status, result = ending.found(self.system, self.book)
         forces = np.array(self.forces)
         linear, angular = samples.momentum_errors(
             rows, moved, self.system.model.payload.mass, forces, self.steps

@@ -1,29 +1,20 @@
-"""Contact of one crowned, rigid pad face with the Gauss points of one facet of a wall; see
-``contact`` for the law.
+"""Contact force between one crowned, rigid pad face and the Gauss points of one facet of a wall;
+see ``pads`` for the law.
 
-Everything is in frame axes unless said otherwise. A facet has four corners or the six nodes of a
-quadratic triangle; which of them is known when a run is compiled, so that loops over nodes have a
-known length.
+Everything is in frame axes unless stated otherwise. A facet has four corners or the six nodes of a
+quadratic triangle. Each run is compiled for one of the two, so that loops over nodes have a constant
+length.
 """
 
 from typing import NamedTuple
 
 import numpy as np
 
-from tipoff.highfi.state.records import (
-    BORDER,
-    DAMPING_RATIO,
-    FRICTION_FORCE,
-    FRICTION_MOMENT,
-    GAINED,
-    MOMENT,
-    MOMENT_ON_RAIL,
-    NODES,
-    NORMAL_FORCE,
-    STORED,
-)
+from tipoff.highfi.state.pose import Pose
+from tipoff.highfi.state.records import Active, Surface
 from tipoff.kernels import rotation
 from tipoff.kernels.jit import inlined, kernel
+from tipoff.mechanics.model import Faces
 from tipoff.scenes.effects.friction import coefficient_over_speed
 
 # of the half face: nearer its middle no point can have left or entered over the edge within a step
@@ -31,16 +22,33 @@ _BORDER = 0.95
 
 
 class Touch(NamedTuple):
-    """The part of Rail and State that contact reads and writes: the whole records would be costly
-    to compile. ``load`` is that of the group of faces at hand."""
+    """What contact of one group of faces reads and writes: the whole records would be costly to
+    compile."""
 
-    points: np.ndarray
-    inverse_mass: np.ndarray
-    displacement: np.ndarray
-    velocity: np.ndarray
-    contact: np.ndarray
-    load: np.ndarray
-    face_force: np.ndarray
+    points: np.ndarray  # (n,3) m, Surface.places
+    inverse_mass: np.ndarray  # (n,) 1/kg
+    displacement: np.ndarray  # (n,3) m
+    velocity: np.ndarray  # (n,3) m/s
+    contact: np.ndarray  # (n,3) N
+    face_force: np.ndarray  # (f,3) N
+    load: np.void  # LOAD of the group
+    group: int
+    surface: Surface
+    faces: Faces
+    active: Active
+    pose: Pose
+    penalty: float  # N/m3
+    dt: float  # s
+
+
+class _Point(NamedTuple):
+    """A Gauss point under a face."""
+
+    face: int
+    facet: int
+    q: int  # its number in the facet
+    xi: float  # its place on the face, from -1 to 1 along X
+    eta: float  # and across
 
 
 @inlined
@@ -72,42 +80,48 @@ def _nodes(surface, control, facet):
 
 
 @inlined
-def _from_centre(touch, node, pose):
+def _from_centre(touch, node):
     """Deformed place (m) of a node from the payload's mass centre."""
+    centre = touch.pose.centre
     return (
-        touch.points[node, 0] + touch.displacement[node, 0] - pose.centre[0],
-        touch.points[node, 1] + touch.displacement[node, 1] - pose.centre[1],
-        touch.points[node, 2] + touch.displacement[node, 2] - pose.centre[2],
+        touch.points[node, 0] + touch.displacement[node, 0] - centre[0],
+        touch.points[node, 1] + touch.displacement[node, 1] - centre[1],
+        touch.points[node, 2] + touch.displacement[node, 2] - centre[2],
     )
 
 
 @inlined
-def _height(touch, faces, face, row, node, pose):
+def _height(touch, face, row, node):
     """Outward height (m) of a node over the uncrowned plane of the face; negative inside. ``row``
     of the pose's rotation."""
-    place = rotation.dot(row, _from_centre(touch, node, pose))
+    faces = touch.faces
+    place = rotation.dot(row, _from_centre(touch, node))
     return faces.sign[face] * (place - faces.centre[face, faces.axis[face]])
 
 
 @inlined
-def lowest(touch, surface, control, faces, face, facet, pose):
+def lowest(touch, control, face, facet):
     """Smallest outward height (m) of the facet's control points over the uncrowned plane of the
     face; negative inside."""
-    axis, nodes = faces.axis[face], _nodes(surface, control, facet)
+    axis, nodes, turn = (
+        touch.faces.axis[face],
+        _nodes(touch.surface, control, facet),
+        touch.pose.turn,
+    )
     # Only one row of the rotation is needed.
-    row = (pose.turn[axis], pose.turn[3 + axis], pose.turn[6 + axis])
+    row = (turn[axis], turn[3 + axis], turn[6 + axis])
     least = np.inf
     if control is None:
         for node in range(4):
-            least = min(least, _height(touch, faces, face, row, nodes[node], pose))
+            least = min(least, _height(touch, face, row, nodes[node]))
     if control is not None:
         heights = (
-            _height(touch, faces, face, row, nodes[0], pose),
-            _height(touch, faces, face, row, nodes[1], pose),
-            _height(touch, faces, face, row, nodes[2], pose),
-            _height(touch, faces, face, row, nodes[3], pose),
-            _height(touch, faces, face, row, nodes[4], pose),
-            _height(touch, faces, face, row, nodes[5], pose),
+            _height(touch, face, row, nodes[0]),
+            _height(touch, face, row, nodes[1]),
+            _height(touch, face, row, nodes[2]),
+            _height(touch, face, row, nodes[3]),
+            _height(touch, face, row, nodes[4]),
+            _height(touch, face, row, nodes[5]),
         )
         for point in range(6):
             height = 0.0
@@ -118,22 +132,22 @@ def lowest(touch, surface, control, faces, face, facet, pose):
 
 
 @inlined
-def _in_payload(touch, node, pose):
-    return rotation.unrotate(pose.turn, _from_centre(touch, node, pose))
+def _in_payload(touch, node):
+    return rotation.unrotate(touch.pose.turn, _from_centre(touch, node))
 
 
 @inlined
-def _places(touch, control, nodes, pose):
+def _places(touch, control, nodes):
     """Places (m) of the nodes of a facet in payload axes, followed by zeros where it has only
     four."""
     fifth, sixth = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
     if control is not None:
-        fifth, sixth = _in_payload(touch, nodes[4], pose), _in_payload(touch, nodes[5], pose)
+        fifth, sixth = _in_payload(touch, nodes[4]), _in_payload(touch, nodes[5])
     return (
-        _in_payload(touch, nodes[0], pose),
-        _in_payload(touch, nodes[1], pose),
-        _in_payload(touch, nodes[2], pose),
-        _in_payload(touch, nodes[3], pose),
+        _in_payload(touch, nodes[0]),
+        _in_payload(touch, nodes[1]),
+        _in_payload(touch, nodes[2]),
+        _in_payload(touch, nodes[3]),
         fifth,
         sixth,
     )
@@ -183,19 +197,27 @@ def _local(faces, face, y):
 
 
 @inlined
-def is_off(touch, surface, faces, face, facet, q, pose):
+def is_off(touch, face, facet, q):
     """Whether a Gauss point lies outside the border of the face."""
-    places = _places(touch, surface.control, _nodes(surface, surface.control, facet), pose)
-    xi, eta, _ = _local(faces, face, _blend(surface, q, places))
+    surface = touch.surface
+    places = _places(touch, surface.control, _nodes(surface, surface.control, facet))
+    xi, eta, _ = _local(touch.faces, face, _blend(surface, q, places))
     return abs(xi) > 1.0 or abs(eta) > 1.0
 
 
 @inlined
-def press(touch, surface, faces, face, facet, group, penalty, friction, active, pose, dt):
+def _penetration(faces, face, xi, eta, height):
+    """Penetration (m) of a point into the crowned face."""
+    return -height - faces.relief[face] * (xi * xi * xi * xi + eta * eta * eta * eta)
+
+
+@inlined
+def press(touch, friction, face, facet):
     """Forces between a face and all Gauss points of a facet."""
+    surface, faces, pose = touch.surface, touch.faces, touch.pose
     nodes = _nodes(surface, surface.control, facet)
     places, velocities, pressed = (
-        _places(touch, surface.control, nodes, pose),
+        _places(touch, surface.control, nodes),
         _velocities(touch, surface.control, nodes),
         False,
     )
@@ -203,64 +225,40 @@ def press(touch, surface, faces, face, facet, group, penalty, friction, active, 
         y = _blend(surface, q, places)
         xi, eta, height = _local(faces, face, y)
         if height < 0.0 and abs(xi) <= 1.0 and abs(eta) <= 1.0:
-            penetration = -height - faces.relief[face] * (xi * xi * xi * xi + eta * eta * eta * eta)
+            penetration = _penetration(faces, face, xi, eta, height)
             if 0.0 < penetration < surface.thickness:
                 pressed = True
+                point = _Point(face=face, facet=facet, q=q, xi=xi, eta=eta)
                 arm = rotation.rotate(pose.turn, y)
                 slide = _sliding_velocity(pose, arm, _blend(surface, q, velocities))
-                weight = penalty * surface.area[facet, q]
+                weight = touch.penalty * surface.area[facet, q]
                 energy = 0.5 * weight * penetration * penetration
-                touch.load[STORED] += energy
+                touch.load.stored += energy
                 if max(abs(xi), abs(eta)) > _BORDER:
-                    _mind_the_edge(
-                        touch,
-                        faces,
-                        face,
-                        facet,
-                        q,
-                        surface,
-                        group,
-                        active,
-                        pose,
-                        xi,
-                        eta,
-                        slide,
-                        energy,
-                        dt,
-                    )
-                g = _gradient(faces, face, pose, xi, eta)
+                    _note_edge_point(touch, point, slide, energy)
+                g = _gradient(touch, point)
                 push = weight * penetration
-                drag = _friction_on_payload(
-                    friction, touch, surface, nodes, q, g, arm, push, slide, active
-                )
-                _apply_pair(
-                    touch,
-                    surface,
-                    nodes,
-                    q,
-                    face,
-                    pose,
-                    arm,
-                    (push * g[0], push * g[1], push * g[2]),
-                    drag,
-                )
+                drag = _friction_on_payload(friction, touch, point, nodes, g, arm, push, slide)
+                on_rail = (push * g[0], push * g[1], push * g[2])
+                _apply_pair(touch, point, nodes, arm, on_rail, drag)
     if pressed:
-        _note_nodes(surface, nodes, group, active)
+        _note_nodes(touch, nodes)
 
 
 @kernel
-def probe(touch, surface, faces, face, facet, pose):
+def probe(touch, face, facet):
     """Of the Gauss points of a facet that are under a face: largest penetration (m) inside the
     wall, and largest of all."""
+    surface = touch.surface
     places, inside, behind = (
-        _places(touch, surface.control, _nodes(surface, surface.control, facet), pose),
+        _places(touch, surface.control, _nodes(surface, surface.control, facet)),
         0.0,
         0.0,
     )
     for q in range(surface.shape.shape[0]):
-        xi, eta, height = _local(faces, face, _blend(surface, q, places))
+        xi, eta, height = _local(touch.faces, face, _blend(surface, q, places))
         if abs(xi) <= 1.0 and abs(eta) <= 1.0:
-            penetration = -height - faces.relief[face] * (xi * xi * xi * xi + eta * eta * eta * eta)
+            penetration = _penetration(touch.faces, face, xi, eta, height)
             behind = max(behind, penetration)
             if penetration < surface.thickness:
                 inside = max(inside, penetration)
@@ -268,15 +266,16 @@ def probe(touch, surface, faces, face, facet, pose):
 
 
 @inlined
-def _gradient(faces, face, pose, xi, eta):
+def _gradient(touch, point):
     """Outward gradient of the height over the crowned face."""
+    faces, face, xi, eta = touch.faces, point.face, point.xi, point.eta
     slope_x = 4.0 * faces.relief[face] * xi * xi * xi / faces.half_length[face]
     slope_across = 4.0 * faces.relief[face] * eta * eta * eta / faces.half_width[face]
     if faces.axis[face] == 1:
         gradient = (slope_x, faces.sign[face], slope_across)
     else:
         gradient = (slope_x, slope_across, faces.sign[face])
-    return rotation.rotate(pose.turn, gradient)
+    return rotation.rotate(touch.pose.turn, gradient)
 
 
 @inlined
@@ -292,49 +291,52 @@ def _sliding_velocity(pose, arm, rail):
 
 
 @inlined
-def _mind_the_edge(
-    touch, faces, face, facet, q, surface, group, active, pose, xi, eta, slide, energy, dt
-):
-    """Remember a loaded point near the border of its face, where it may leave, or may just have
-    come over the edge."""
-    if _came_over_the_edge(faces, face, xi, eta, rotation.unrotate(pose.turn, slide), dt):
+def _note_edge_point(touch, point, slide, energy):
+    """Store a loaded point near the edge of its face: it may leave, or may just have come over the
+    edge."""
+    active, group = touch.active, touch.group
+    if _came_over_the_edge(touch, point, rotation.unrotate(touch.pose.turn, slide)):
         # The point was outside the face a step ago: it meets a pressed face at once, and its energy
         # was never worked in.
-        touch.load[GAINED] += energy
-    k = surface.groups.first_point[group] + active.count[group, BORDER]
-    active.point[k, 0], active.point[k, 1] = facet, q
-    active.face[k] = face
-    active.energy[k] = energy
-    active.count[group, BORDER] += 1
+        touch.load.gained += energy
+    k = touch.surface.groups.first_point[group] + active.point_count[group]
+    noted = active.edge_point[k]
+    noted.face, noted.facet, noted.gauss_point = point.face, point.facet, point.q
+    noted.energy = energy
+    active.point_count[group] += 1
 
 
 @inlined
-def _came_over_the_edge(faces, face, xi, eta, slide, dt):
+def _came_over_the_edge(touch, point, slide):
     """Whether the point lay outside the face one step ago; ``slide`` in payload axes, opposite to
     the point's own motion."""
-    before_xi = xi + dt * slide[0] / faces.half_length[face]
-    before_eta = eta + dt * slide[3 - faces.axis[face]] / faces.half_width[face]
+    faces, face, dt = touch.faces, point.face, touch.dt
+    before_xi = point.xi + dt * slide[0] / faces.half_length[face]
+    before_eta = point.eta + dt * slide[3 - faces.axis[face]] / faces.half_width[face]
     return abs(before_xi) > 1.0 or abs(before_eta) > 1.0
 
 
 @inlined
-def _note_nodes(surface, nodes, group, active):
+def _note_nodes(touch, nodes):
+    surface, active, group = touch.surface, touch.active, touch.group
     for corner in range(_size(surface.control)):
         node = nodes[corner]
         if not active.seen[node]:
             active.seen[node] = True
-            active.node[surface.groups.first_node[group] + active.count[group, NODES]] = node
-            active.count[group, NODES] += 1
+            active.node[surface.groups.first_node[group] + active.node_count[group]] = node
+            active.node_count[group] += 1
 
 
 @inlined
-def _friction_on_payload(friction, touch, surface, nodes, q, g, arm, push, slide, active):
+def _friction_on_payload(friction, touch, point, nodes, g, arm, push, slide):
     """Friction force (N) on the payload; zero and not compiled when ``friction`` is None.
 
-    Also sums its moment and, at each node, its share and the damping (N s/m) it brings.
+    Also sums its moment and, at each node, its share and the damping (N s/m) it brings. ``g``:
+    gradient of the height; ``push`` (N): normal force over its length.
     """
     drag = (0.0, 0.0, 0.0)
     if friction is not None:
+        surface, active = touch.surface, touch.active
         size = np.sqrt(rotation.dot(g, g))
         along = rotation.dot(slide, g) / (size * size)
         t = (slide[0] - along * g[0], slide[1] - along * g[1], slide[2] - along * g[2])
@@ -342,43 +344,45 @@ def _friction_on_payload(friction, touch, surface, nodes, q, g, arm, push, slide
         drag = (-damping * t[0], -damping * t[1], -damping * t[2])
         moment = rotation.cross(arm, drag)
         for i in range(3):
-            touch.load[FRICTION_FORCE + i] += drag[i]
-            touch.load[FRICTION_MOMENT + i] += moment[i]
+            touch.load.friction_force[i] += drag[i]
+            touch.load.friction_moment[i] += moment[i]
         for corner in range(_size(surface.control)):
-            node, weight = nodes[corner], surface.shape[q, corner]
-            active.node_damping[node] += surface.spread[q, corner] * damping
+            node, weight = nodes[corner], surface.shape[point.q, corner]
+            active.node_damping[node] += surface.spread[point.q, corner] * damping
             for i in range(3):
                 active.drag[node, i] += weight * drag[i]
     return drag
 
 
 @inlined
-def _apply_pair(touch, surface, nodes, q, face, pose, arm, on_rail, drag):
+def _apply_pair(touch, point, nodes, arm, on_rail, drag):
     """One force on the rail and its opposite on the payload, both at ``arm`` from the payload's
     mass centre."""
+    surface, centre, load = touch.surface, touch.pose.centre, touch.load
     total = (drag[0] - on_rail[0], drag[1] - on_rail[1], drag[2] - on_rail[2])
     for corner in range(_size(surface.control)):
-        node, weight = nodes[corner], surface.shape[q, corner]
+        node, weight = nodes[corner], surface.shape[point.q, corner]
         for i in range(3):
             touch.contact[node, i] += weight * total[i]
     moment = rotation.cross(arm, total)
     about_origin = rotation.cross(
-        (arm[0] + pose.centre[0], arm[1] + pose.centre[1], arm[2] + pose.centre[2]), total
+        (arm[0] + centre[0], arm[1] + centre[1], arm[2] + centre[2]), total
     )
     for i in range(3):
-        touch.load[NORMAL_FORCE + i] -= on_rail[i]
-        touch.load[MOMENT + i] += moment[i]
-        touch.load[MOMENT_ON_RAIL + i] -= about_origin[i]
-        touch.face_force[face, i] += total[i]
+        load.normal_force[i] -= on_rail[i]
+        load.moment[i] += moment[i]
+        load.moment_on_rail[i] -= about_origin[i]
+        touch.face_force[point.face, i] += total[i]
 
 
-@kernel
-def rate_damping(touch, surface, friction, group, active, dt):
+@inlined
+def rate_damping(touch, friction):
     """Largest step * damping / mass of a node, for the stability check."""
     if friction is not None:
-        first = surface.groups.first_node[group]
-        for k in range(first, first + active.count[group, NODES]):
+        active, load = touch.active, touch.load
+        first = touch.surface.groups.first_node[touch.group]
+        for k in range(first, first + active.node_count[touch.group]):
             node = active.node[k]
-            touch.load[DAMPING_RATIO] = max(
-                touch.load[DAMPING_RATIO], dt * active.node_damping[node] * touch.inverse_mass[node]
+            load.damping_ratio = max(
+                load.damping_ratio, touch.dt * active.node_damping[node] * touch.inverse_mass[node]
             )

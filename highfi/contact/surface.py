@@ -1,4 +1,4 @@
-"""Gauss points of the rail walls, and for each pad face the facets it can meet."""
+"""Gauss points of the rail walls, and for each pad face the facets it can touch."""
 
 import numpy as np
 from scipy.sparse import coo_array
@@ -42,25 +42,25 @@ def build(
         clamped,
     )
     return Surface(
-        points,
-        facets,
-        shape,
-        _spread(shape),
-        area,
-        first,
-        reach,
-        smallest[reach],
-        longest,
-        geometry.control(facets.shape[1]),
-        groups,
-        _border(np.einsum("qk,mki->mqi", shape, nodes), found, faces),
-        thickness,
+        places=points,
+        facets=facets,
+        shape=shape,
+        spread=_spread(shape),
+        area=area,
+        first=first,
+        reach=reach,
+        start=smallest[reach],
+        longest=longest,
+        control=geometry.control(facets.shape[1]),
+        groups=groups,
+        border=_border(np.einsum("qk,mki->mqi", shape, nodes), found, faces),
+        thickness=thickness,
     )
 
 
 def _border(points: np.ndarray, found: list[np.ndarray], faces) -> np.ndarray:
     """Smallest and largest X and place across the rail (f,4) of the Gauss ``points`` (m,q,3) m of
-    the facets ``found`` for each face; nothing is between them where there is no facet."""
+    the facets ``found`` for each face; from infinity to minus infinity without facets."""
     border = np.tile([np.inf, -np.inf], (len(found), 2))
     for row, group, axis in zip(border, found, faces.axis):
         if group.size:
@@ -70,8 +70,8 @@ def _border(points: np.ndarray, found: list[np.ndarray], faces) -> np.ndarray:
 
 
 def group_faces(nodes: list[np.ndarray], points: list[int], clamped: np.ndarray) -> Groups:
-    """Groups of faces, each of which can meet these ``nodes`` and has so many Gauss ``points``
-    before it."""
+    """Groups of faces, from the ``nodes`` that each face can touch and the number of Gauss
+    ``points`` within its reach."""
     face = np.repeat(np.arange(len(nodes)), [part.size for part in nodes])
     node = np.concatenate(nodes)
     size = len(nodes) + node.max(initial=0) + 1
@@ -83,12 +83,14 @@ def group_faces(nodes: list[np.ndarray], points: list[int], clamped: np.ndarray)
     own = [np.unique(np.concatenate([nodes[each] for each in faces])) for faces in members]
     held = [np.intersect1d(part, clamped) for part in own]
     return Groups(
-        np.concatenate(members),
-        _starts(members),
-        np.concatenate(held),
-        _starts(held),
-        _starts(own)[:-1],
-        np.cumsum([0, *(sum(points[each] for each in faces) for faces in members)])[:-1],
+        face=np.concatenate(members),
+        first_face=_starts(members),
+        clamped=np.concatenate(held),
+        first_clamped=_starts(held),
+        first_node=_starts(own)[:-1],
+        first_point=np.cumsum([0, *(sum(points[each] for each in faces) for faces in members)])[
+            :-1
+        ],
     )
 
 
@@ -123,7 +125,7 @@ def in_reach(nodes: np.ndarray, faces, face: int) -> np.ndarray:
 
 
 def _spread(shape: np.ndarray) -> np.ndarray:
-    """|N_a| sum over b of |N_b| (q,k), see ``limits``; the shape functions themselves where none is
+    """|N_a| sum over b of |N_b| (q,k), see ``step_limit``; the shape functions themselves where none is
     negative."""
     return (
         np.abs(shape) * np.abs(shape).sum(axis=1, keepdims=True) if (shape < 0.0).any() else shape

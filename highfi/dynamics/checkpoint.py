@@ -1,15 +1,14 @@
-"""A run in progress on disk, so that one which is killed goes on from there and ends with the same
-bits.
+"""Checkpoints: a run in progress as a file, from which a killed run continues to the same bits.
 
-A checkpoint holds everything of a Loop that evolves, found by exclusion: whatever a Loop is not
-built from. The file is one line of text and a NumPy archive of plain arrays, no code::
+A checkpoint holds everything of a Loop that evolves, that is all but ``CONSTANT``. The file is one
+line of text and a NumPy archive of plain arrays, no code::
 
     tipoff checkpoint <FORMAT> <SHA-256 of all that follows>
-    <.npz: ``header``, JSON that says which run this is, and one array per evolving value, by its dotted name>
+    <.npz: ``header``, JSON that identifies the run, and one array per evolving value, by its dotted name>
 
-It is taken between two steps, replaced atomically, and read only by a run of the same scene,
-numerics, program and constant arrays. The processor is not asked for: on another kind the run goes
-on, but its last bits are those of both.
+It is written between two steps, replaced atomically, and read only by a run of the same scene,
+numerics, program and constant arrays. The processor is not compared: on another kind the run
+continues, but its last bits may differ.
 """
 
 import hashlib
@@ -27,7 +26,7 @@ from tipoff import sources
 from tipoff.files import content_hash, replacing
 from tipoff.mechanics.trajectory import versions
 
-FORMAT = 3
+FORMAT = 4
 # What a Loop is built from.
 CONSTANT = (
     "scene",
@@ -35,12 +34,12 @@ CONSTANT = (
     "stepping",
     "team",
     "pool",
-    "marks",
+    "milestones",
     "exit",
     "last",
     "most",
     "walls",
-    "watch",
+    "monitor",
 )
 _LINE = re.compile(rb"tipoff checkpoint (\d+) ([0-9a-f]{64})")
 _OTHER = {
@@ -62,8 +61,7 @@ class CheckpointError(RuntimeError):
 
 
 class Checkpoint:
-    """The checkpoint at ``path`` of one run, written when ``every`` seconds (wall clock) have gone
-    by since the last one."""
+    """The checkpoint at ``path`` of one run, written every ``every`` seconds (wall clock)."""
 
     def __init__(self, path: str | Path, every: float, loop, numerics):
         if not every >= 0.0:
@@ -71,23 +69,21 @@ class Checkpoint:
                 f"checkpoint_every: given {every!r}, expected a time of zero or more (s)"
             )
         self.path, self.every, self.due = Path(path), every, time.monotonic() + every
-        constant = dict(enumerate(loop.arguments()[:-2])) | {"dt_s": loop.stepping.dt_s}
         self.header = {
             "scene": loop.scene.hash,
             "numerics": numerics.as_dict(),
             "program": content_hash(sources.digest("tipoff.highfi"), versions()),
-            "system": digest(arrays(constant)),
+            "system": digest(arrays({"constants": loop.constants()})),
         }
 
     def keep(self, loop) -> None:
-        """Write ``loop`` as it stands, if it is time."""
+        """Write ``loop`` as it is now, if it is time."""
         if time.monotonic() >= self.due:
             self.write(loop)
             self.due = time.monotonic() + self.every
 
     def write(self, loop) -> None:
-        """Write ``loop`` as it stands, atomically. Raises OSError on a full disk, which could not
-        take the result either."""
+        """Write ``loop`` as it is now, atomically. Raises OSError, for instance on a full disk."""
         archive = io.BytesIO()
         np.savez(
             archive,
@@ -111,14 +107,14 @@ class Checkpoint:
             return None
         except OSError as fault:
             raise CheckpointError(self.path, f"cannot be read ({fault.strerror})") from fault
-        told = _LINE.fullmatch(line)
-        if told is None:
+        match = _LINE.fullmatch(line)
+        if match is None:
             raise CheckpointError(self.path, "is no checkpoint, or damaged in its first line")
-        if int(told[1]) != FORMAT:
+        if int(match[1]) != FORMAT:
             raise CheckpointError(
-                self.path, f"has format {int(told[1])}, this program reads {FORMAT}"
+                self.path, f"has format {int(match[1])}, this program reads {FORMAT}"
             )
-        if hashlib.sha256(content).hexdigest().encode() != told[2]:
+        if hashlib.sha256(content).hexdigest().encode() != match[2]:
             raise CheckpointError(self.path, "is damaged or was cut short")
         with np.load(io.BytesIO(content), allow_pickle=False) as archive:
             saved = dict(archive)
@@ -132,12 +128,12 @@ class Checkpoint:
 
 
 def restore(loop, saved: dict[str, np.ndarray]) -> None:
-    """Put ``saved`` into a loop that has begun; arrays are filled where they lie, because kernels
-    want them aligned."""
+    """Put ``saved`` into a loop that has begun; arrays are filled in place, because kernels need them
+    aligned."""
     for name, value in evolving(loop).items():
         if isinstance(value, list):
             setattr(loop, name, list(saved[name]))
-        elif isinstance(value, tuple):
+        elif isinstance(value, (tuple, np.ndarray)):
             for key, array in arrays({name: value}):
                 array[...] = saved[key]
         else:
@@ -145,7 +141,7 @@ def restore(loop, saved: dict[str, np.ndarray]) -> None:
 
 
 def evolving(loop) -> dict[str, Any]:
-    """What changes as the loop marches: records, lists of samples, numbers and text, by name."""
+    """What changes during a run: records, lists of samples, numbers and text, by name."""
     return {name: value for name, value in vars(loop).items() if name not in CONSTANT}
 
 
@@ -168,13 +164,13 @@ def digest(named: Iterable[tuple[str, np.ndarray]]) -> str:
     return found.hexdigest()
 
 
-def _difference(saved: Any, asked: Any) -> str:
+def _difference(saved: Any, requested: Any) -> str:
     """The fields that differ, in words; nothing for digests."""
-    if not isinstance(asked, dict):
+    if not isinstance(requested, dict):
         return ""
     changed = [
         f"{name} {saved.get(name)}, not {value}"
-        for name, value in asked.items()
+        for name, value in requested.items()
         if saved.get(name) != value
     ]
     return f" ({', '.join(changed)})"

@@ -1,16 +1,15 @@
-"""Internal force of the rails and the motion of their nodes, by whichever kernel the mesh allows,
-shared among threads.
+"""Elastic force of the rails and the motion of their nodes, shared among threads.
 
-On an extruded mesh each thread sweeps over its own chunks of pencils: a chunk moves, and the force
-of a chunk follows as soon as all it hangs on has moved, while that is still in the cache. Chunks
-that hang on another thread's wait for the barrier. A general mesh is cut into slabs along X:
+On an extruded mesh each thread takes its own chunks of columns. A chunk moves, and the force of a
+chunk follows once all chunks it depends on have moved, while they are still in the cache. Chunks
+that depend on another thread's wait for the barrier. Any other mesh is cut into slabs along X:
 elements of two even slabs share no node, nor do those of two odd ones.
 """
 
 from tipoff.highfi.dynamics.damping import add_damping
-from tipoff.highfi.extruded.kernel import pencil_force
-from tipoff.highfi.state.nodes import hold, move_nodes, turning
-from tipoff.highfi.state.threads import meet
+from tipoff.highfi.extruded.kernel import column_force
+from tipoff.highfi.state.nodes import hold, move_nodes, sum_turning
+from tipoff.highfi.state.threads import barrier
 from tipoff.highfi.statics.operator import add_internal_force
 from tipoff.kernels.jit import kernel
 
@@ -20,19 +19,19 @@ def elastic_force(rail, displacement, force, turn, team):
     """Set ``force`` (n,3) to K u (N), and ``turn`` (b,3) to each block's part of the sum of u x K u
     (N m); one thread's work."""
     for chunk in range(turn.shape[0]):
-        _force_of_chunk(rail.pencils, displacement, force, chunk, turn, team.lanes[0])
+        _force_of_chunk(rail.columns, displacement, force, chunk, turn, team.lanes[0])
     _force_of_elements(rail.elements, rail, displacement, force, turn, team.lanes[0])
 
 
 @kernel
-def _force_of_chunk(pencils, displacement, force, chunk, turn, lanes):
-    if pencils is not None:
-        pencil_force(
-            pencils,
+def _force_of_chunk(columns, displacement, force, chunk, turn, lanes):
+    if columns is not None:
+        column_force(
+            columns,
             displacement.T,
             force.T,
-            pencils.chunks[chunk],
-            pencils.chunks[chunk + 1],
+            columns.chunks[chunk],
+            columns.chunks[chunk + 1],
             lanes,
             turn[chunk],
         )
@@ -58,7 +57,9 @@ def _force_of_elements(elements, rail, displacement, force, turn, lanes):
 @kernel
 def _turn_blocks(rail, displacement, force, turn, first, step, lanes):
     for block in range(first, turn.shape[0], step):
-        turning(displacement, force, rail.blocks[block], rail.blocks[block + 1], lanes, turn[block])
+        sum_turning(
+            displacement, force, rail.blocks[block], rail.blocks[block + 1], lanes, turn[block]
+        )
 
 
 @kernel
@@ -66,7 +67,13 @@ def hold_blocks(rail, state, first, step):
     """Move the resistance of clamped nodes into ``state.clamping``, every ``step`` blocks from
     ``first`` on."""
     for block in range(first, state.clamping.shape[0], step):
-        hold(rail, state.resistance, rail.held[block], rail.held[block + 1], state.clamping[block])
+        hold(
+            rail,
+            state.resistance,
+            rail.first_clamped[block],
+            rail.first_clamped[block + 1],
+            state.clamping[block],
+        )
 
 
 @kernel
@@ -74,40 +81,45 @@ def move_and_load(rail, frame, state, team, thread, dt):
     """Kick and drift all nodes, then set the elastic part of the new forces; every thread of
     ``team`` takes a part of it.
 
-    On return all places are up to date; forces are once ``finish_load`` has been called and the
-    team has met again.
+    On return all places are up to date; forces are so after ``finish_load`` and one more barrier.
     """
-    _sweep_pencils(rail.pencils, rail, frame, state, team, thread, dt)
+    _sweep_columns(rail.columns, rail, frame, state, team, thread, dt)
     _move_blocks(rail.elements, rail, frame, state, team, thread, dt)
-    meet(team)
+    barrier(team)
 
 
 @kernel
 def finish_load(rail, state, team, thread, dt):
     """What could not be computed before all nodes had moved."""
-    _load_borders(rail.pencils, rail, state, team, thread, dt)
+    _load_borders(rail.columns, rail, state, team, thread, dt)
     _load_slabs(rail.elements, rail, state, team, thread, dt)
 
 
 @kernel
-def _share(pencils, team, thread):
+def _share(columns, team, thread):
     """First and last chunk of a thread."""
-    chunks = pencils.chunks.size - 1
+    chunks = columns.chunks.size - 1
     return chunks * thread // team.size, chunks * (thread + 1) // team.size
 
 
 @kernel
-def _load_chunk(pencils, rail, state, chunk, lanes, dt):
-    _force_of_chunk(pencils, state.displacement, state.resistance, chunk, state.turning, lanes)
+def _load_chunk(columns, rail, state, chunk, lanes, dt):
+    _force_of_chunk(columns, state.displacement, state.resistance, chunk, state.turning, lanes)
     _damp(rail.damping, rail, state, chunk, dt, lanes)
-    hold(rail, state.resistance, rail.held[chunk], rail.held[chunk + 1], state.clamping[chunk])
+    hold(
+        rail,
+        state.resistance,
+        rail.first_clamped[chunk],
+        rail.first_clamped[chunk + 1],
+        state.clamping[chunk],
+    )
 
 
 @kernel
 def _damp(damping, rail, state, block, dt, lanes):
     if damping is not None:
         add_damping(damping, state.history, rail, state, block, dt, lanes)
-        turning(
+        sum_turning(
             state.displacement,
             state.resistance,
             rail.blocks[block],
@@ -118,25 +130,25 @@ def _damp(damping, rail, state, block, dt, lanes):
 
 
 @kernel
-def _sweep_pencils(pencils, rail, frame, state, team, thread, dt):
-    if pencils is not None:
-        first, last = _share(pencils, team, thread)
+def _sweep_columns(columns, rail, frame, state, team, thread, dt):
+    if columns is not None:
+        first, last = _share(columns, team, thread)
         following = first
         for chunk in range(first, last):
             move_nodes(rail, frame, state, dt, rail.blocks[chunk], rail.blocks[chunk + 1])
-            while following < last and pencils.highest[following] <= chunk:
-                if pencils.lowest[following] >= first:
-                    _load_chunk(pencils, rail, state, following, team.lanes[thread], dt)
+            while following < last and columns.highest[following] <= chunk:
+                if columns.lowest[following] >= first:
+                    _load_chunk(columns, rail, state, following, team.lanes[thread], dt)
                 following += 1
 
 
 @kernel
-def _load_borders(pencils, rail, state, team, thread, dt):
-    if pencils is not None:
-        first, last = _share(pencils, team, thread)
+def _load_borders(columns, rail, state, team, thread, dt):
+    if columns is not None:
+        first, last = _share(columns, team, thread)
         for chunk in range(first, last):
-            if pencils.lowest[chunk] < first or pencils.highest[chunk] >= last:
-                _load_chunk(pencils, rail, state, chunk, team.lanes[thread], dt)
+            if columns.lowest[chunk] < first or columns.highest[chunk] >= last:
+                _load_chunk(columns, rail, state, chunk, team.lanes[thread], dt)
 
 
 @kernel
@@ -164,7 +176,7 @@ def _load_slabs(elements, rail, state, team, thread, dt):
                     elements.slabs[slab + 1],
                     lanes.reshape(lanes.size),
                 )
-            meet(team)
+            barrier(team)
         _turn_blocks(
             rail, state.displacement, state.resistance, state.turning, thread, team.size, lanes
         )

@@ -1,20 +1,18 @@
-"""Exit, settled window and jam of the reference, from every step of the time loop.
+"""Exit, settled window and jam of the reference, updated at every step of the time loop.
 
-A step brings places from n to n + 1 by the velocities at n + 1/2, which hold all through it. So the
-distance past the rail end is taken as linear in a step, speeds and rates as linear from one half
-step to the next, and the integral of a step is its length times the velocity in its middle: the
-order of the scheme itself, two.
+A step takes places from n to n + 1 with the velocities at n + 1/2. So the distance past the rail end
+is linear in a step, speeds and rates are linear from one half step to the next, and the integral over
+a step is its length times the velocity in its middle. All of this is of order two, like the scheme.
 """
-
-from typing import NamedTuple
 
 import numpy as np
 
 from tipoff.highfi.dynamics import samples
 from tipoff.highfi.dynamics.system import System
 from tipoff.highfi.state.pose import triple
+from tipoff.highfi.state.records import Exit
 from tipoff.kernels import rotation
-from tipoff.kernels.jit import kernel
+from tipoff.kernels.jit import inlined, kernel
 from tipoff.mechanics import ending as books
 from tipoff.mechanics.ending import (
     AT_EXIT,
@@ -34,32 +32,20 @@ from tipoff.mechanics.ending import (
 from tipoff.mechanics.outcome import Outcome
 
 
-class Ending(NamedTuple):
-    """Evolving: the book (``mechanics.ending``)."""
-
-    book: np.ndarray
-
-
-class Exit(NamedTuple):
-    """Constant: trailing edges (f,3) m of the pads in body axes, and X (m) of the rail end from the
-    frame's origin."""
-
-    edges: np.ndarray
-    rail_end: float
-
-
-def build(system: System) -> tuple[Exit, Ending]:
-    """What a run needs to follow its payload off the rail."""
+def build(system: System) -> tuple[Exit, np.ndarray]:
+    """What a run needs to follow its payload off the rail: the place of the exit, and the book
+    (``mechanics.ending``) at the beginning."""
     edges = system.faces.centre.copy()
     edges[:, 0] -= system.faces.half_length
     book = np.zeros(books.BOOK_SIZE)
     books.reset(book)
-    return Exit(edges, float(system.model.rail_end + system.body_offset[0])), Ending(book)
+    rail_end = float(system.model.rail_end + system.body_offset[0])
+    return Exit(edges=edges, rail_end=rail_end), book
 
 
 def found(system: System, book: np.ndarray) -> tuple[str, Outcome]:
-    """Status and outcome of a run with this book. The book tells of the frame's origin, an outcome
-    of the platform's mass centre."""
+    """Status and outcome of a run with this book. The book has places of the frame's origin, an
+    outcome those of the platform's mass centre."""
     moved, whole = (
         samples.motion(book[None, AT_EXIT : AT_EXIT + ROW_SIZE], 0.0, system.body_offset),
         book.copy(),
@@ -71,30 +57,31 @@ def found(system: System, book: np.ndarray) -> tuple[str, Outcome]:
     return books.found(whole)
 
 
-@kernel
-def begin(exit_, payload, frame, state, marks, book):
-    """First look, at ignition, with the velocities of half a step before."""
-    _fill(payload, frame, state, book, 0.0)
-    book[PAST] = _past(exit_, book)
+@inlined
+def begin(constants, state, book):
+    """Begin the ``book`` at ignition, with the velocities of half a step before."""
+    _fill(constants.frame, constants, state, book, 0.0)
+    book[PAST] = _past(constants.exit, book)
     _keep(book)
     if book[PAST] > 0.0:
-        _leave(book, 1.0, 0.0, marks)
+        _leave(book, 1.0, 0.0, constants.milestones)
 
 
-@kernel
-def follow(exit_, payload, frame, state, marks, book, began, dt):
-    """Bring the book up to date with the step of ``dt`` (s) from ``began`` (s) on: places are those
-    of its end."""
+@inlined
+def follow(constants, state, book, began):
+    """Bring the ``book`` up to date with the step from ``began`` (s) on: places are those of its
+    end."""
     if book[DONE] < np.inf:
         return
-    _fill(payload, frame, state, book, 0.5)
-    past = _past(exit_, book)
+    dt, marks = constants.dt, constants.milestones
+    _fill(constants.frame, constants, state, book, 0.5)
+    past = _past(constants.exit, book)
     if book[EXIT] == np.inf:
         if past > 0.0:
             share = book[PAST] / (book[PAST] - past)
             _leave(book, share, began + share * dt, marks)
         else:
-            _look_at_speed(book, marks, began, dt)
+            _check_speed(book, marks, began, dt)
     if book[EXIT] < np.inf:
         low, high = books.part_in_window(book, began, began + dt)
         if high > low:
@@ -110,11 +97,11 @@ def _keep(book):
         book[BEFORE + i] = book[NOW + i]
 
 
-@kernel
-def _fill(payload, frame, state, book, share):
+@inlined
+def _fill(frame, constants, state, book, share):
     """Places now, and velocities and rates of half a step ago, for which attitudes are taken
     ``share`` of a step back."""
-    _fill_body(state.payload, payload.inverse_inertia, book[NOW:], book[BEFORE:], share)
+    _fill_body(state.payload, constants.payload.inverse_inertia, book[NOW:], book[BEFORE:], share)
     base = NOW + BODY
     if frame is not None:
         _fill_body(state.platform, frame.inverse_inertia, book[base:], book[BEFORE + BODY :], share)
@@ -189,7 +176,7 @@ def _leave(book, share, at, marks):
 
 
 @kernel
-def _look_at_speed(book, marks, began, dt):
+def _check_speed(book, marks, began, dt):
     """The axial speed half way through the step."""
     at, start = began + 0.5 * dt, books.watched_from(marks)
     if at >= start:

@@ -1,4 +1,4 @@
-"""Loads other than contact: thrust, gravity, and the work all of them do.
+"""Loads other than contact: thrust and body force, and the work of all loads.
 
 Work is counted in halves around each kick, ``dt/2 f(n) v(n-1/2)`` before and ``dt/2 f(n) v(n+1/2)``
 after: with the kinetic energy ``v(n-1/2) M v(n+1/2) / 2`` the balance of central differences is
@@ -7,27 +7,17 @@ then an identity for every force, and the ledgers show only what is not conserva
 
 from tipoff.highfi.contact.pads import friction_power
 from tipoff.highfi.state.pose import body_matrix, body_rate, triple
-from tipoff.highfi.state.records import (
-    CONTACT_AXIAL,
-    FRICTION,
-    FRICTION_AXIAL,
-    FRICTION_FORCE,
-    GRAVITY,
-    GRAVITY_AXIAL,
-    NORMAL_FORCE,
-    THRUST,
-    THRUST_AXIAL,
-)
+from tipoff.highfi.state.records import AXIAL, TOTAL
 from tipoff.kernels import rotation
-from tipoff.kernels.jit import kernel
+from tipoff.kernels.jit import inlined, kernel
 from tipoff.scenes.effects.thrust import magnitude
 
 
 @kernel
-def line_of_action(drive, offset):
+def line_of_action(arm, offset):
     """Thrust direction and arm in body axes; axial through the mass centre when ``offset`` is
     None."""
-    line = ((1.0, 0.0, 0.0), (-drive.arm, 0.0, 0.0))
+    line = ((1.0, 0.0, 0.0), (-arm, 0.0, 0.0))
     if offset is not None:
         line = _offset_line(offset)
     return line
@@ -38,17 +28,34 @@ def _offset_line(offset):
     return offset.direction, offset.arm
 
 
-@kernel
-def thrust_load(state, drive, pulses, curve, offset, time):
+@inlined
+def thrust_load(constants, state, time):
     """Thrust force (N), moment about the payload's mass centre (N m) and point of application (m),
     in inertial axes."""
-    direction, arm = line_of_action(drive, offset)
+    direction, arm = line_of_action(constants.drive.arm, constants.thrust_offset)
     turn = body_matrix(state.payload)
-    push = magnitude(pulses, curve, time)
+    push = magnitude(constants.thrust.pulses, constants.thrust.curve, time)
     force = rotation.rotate(turn, (push * direction[0], push * direction[1], push * direction[2]))
     lever = rotation.rotate(turn, arm)
     p = state.payload.position
     return force, rotation.cross(lever, force), (p[0] + lever[0], p[1] + lever[1], p[2] + lever[2])
+
+
+@kernel
+def body_force_in_frame(body_force, pose):
+    """Acceleration (m/s2) by the body force in frame axes; zero without one."""
+    acceleration = (0.0, 0.0, 0.0)
+    if body_force is not None:
+        acceleration = rotation.unrotate(pose.frame, triple(body_force))
+    return acceleration
+
+
+@kernel
+def accelerate(body_force, body, dt):
+    """Advance the velocity of a rigid body over ``dt`` by the body force."""
+    if body_force is not None:
+        for i in range(3):
+            body.velocity[i] += dt * body_force[i]
 
 
 @kernel
@@ -58,70 +65,45 @@ def axial_velocity_of_platform(state, frame, base):
     return (frame.mass * state.platform.velocity[0] + momentum[0]) / frame.total_mass
 
 
-@kernel
-def add_work(
-    rail,
-    surface,
-    payload,
-    frame,
-    drive,
-    friction,
-    gravity,
-    state,
-    active,
-    pose,
-    thrust,
-    half,
-    ahead,
-):
-    """Add half a step of work, total and axial, at the velocities of ``pose``
-    and those of the nodes once kicked over ``ahead`` (s)."""
+@inlined
+def add_work(constants, state, active, pose, thrust, ahead):
+    """Add half a step of work, total and axial, at the velocities of ``pose`` and those of the
+    nodes once kicked over ``ahead`` (s)."""
+    half, load, v = 0.5 * constants.dt, state.load[0], state.payload.velocity
+    total, axial = state.work[TOTAL], state.work[AXIAL]
     force, moment, _point = thrust
-    work, v = state.work, state.payload.velocity
-    rate = body_rate(state.payload, payload.inverse_inertia)
-    work[THRUST] += half * (rotation.dot(force, v) + rotation.dot(moment, rate))
-    work[THRUST_AXIAL] += half * force[0] * v[0]
-    normal = rotation.rotate(pose.frame, _slot(state.load, NORMAL_FORCE))[0]
-    drag = rotation.rotate(pose.frame, _slot(state.load, FRICTION_FORCE))[0]
-    work[CONTACT_AXIAL] += half * normal * v[0]
-    work[FRICTION_AXIAL] -= half * drag * v[0]
-    pull = pull_on_nodes(gravity, pose)
-    work[FRICTION] -= half * friction_power(
-        rail, surface, state, active, pose, friction, pull, ahead
+    rate = body_rate(state.payload, constants.payload.inverse_inertia)
+    total.thrust += half * (rotation.dot(force, v) + rotation.dot(moment, rate))
+    axial.thrust += half * force[0] * v[0]
+    normal = rotation.rotate(pose.frame, triple(load.normal_force))[0]
+    drag = rotation.rotate(pose.frame, triple(load.friction_force))[0]
+    axial.contact_axial += half * normal * v[0]
+    axial.friction -= half * drag * v[0]
+    acceleration = body_force_in_frame(constants.body_force, pose)
+    total.friction -= half * friction_power(
+        constants.friction, constants, state, active, pose, acceleration, ahead
     )
-    _platform_work(frame, drive, state, pose.frame, thrust, normal, drag, half)
-    _gravity_work(payload, frame, gravity, state, pose.frame, half)
+    _platform_work(constants.frame, constants, state, pose.frame, thrust, (normal, drag))
+    _body_force_work(constants.body_force, constants, state, pose.frame)
 
 
-@kernel
-def pull_on_nodes(gravity, pose):
-    """Gravity in frame axes (m/s2)."""
-    pull = (0.0, 0.0, 0.0)
-    if gravity is not None:
-        pull = rotation.unrotate(pose.frame, (gravity.x, gravity.y, gravity.z))
-    return pull
-
-
-@kernel
-def _slot(values, first):
-    return (values[first], values[first + 1], values[first + 2])
-
-
-@kernel
-def _platform_work(frame, drive, state, base, thrust, normal, drag, half):
+@inlined
+def _platform_work(frame, constants, state, base, thrust, contact):
+    """``contact`` (N): normal force and friction on the payload along X."""
     if frame is not None:
-        axial = axial_velocity_of_platform(state, frame, base)
-        state.work[CONTACT_AXIAL] -= half * normal * axial
-        state.work[FRICTION_AXIAL] += half * drag * axial
-        if drive.reacts_on_platform:
+        half, total, axial = 0.5 * constants.dt, state.work[TOTAL], state.work[AXIAL]
+        velocity = axial_velocity_of_platform(state, frame, base)
+        axial.contact_axial -= half * contact[0] * velocity
+        axial.friction += half * contact[1] * velocity
+        if constants.drive.reacts_on_platform:
             force, _, point = thrust
             lever = _from_origin(state, point)
             rate = body_rate(state.platform, frame.inverse_inertia)
             work = rotation.dot(force, state.platform.velocity) + rotation.dot(
                 rotation.cross(lever, force), rate
             )
-            state.work[THRUST] -= half * work
-            state.work[THRUST_AXIAL] -= half * force[0] * axial
+            total.thrust -= half * work
+            axial.thrust -= half * force[0] * velocity
 
 
 @kernel
@@ -130,35 +112,33 @@ def _from_origin(state, point):
     return (point[0] - p[0], point[1] - p[1], point[2] - p[2])
 
 
-@kernel
-def _gravity_work(payload, frame, gravity, state, base, half):
-    if gravity is not None:
-        v = state.payload.velocity
-        g = (gravity.x, gravity.y, gravity.z)
+@inlined
+def _body_force_work(body_force, constants, state, base):
+    if body_force is not None:
+        half, mass, v = 0.5 * constants.dt, constants.payload.mass, state.payload.velocity
+        g = triple(body_force)
         momentum = rotation.rotate(base, triple(state.rail_momentum))
-        state.work[GRAVITY] += half * (
-            payload.mass * rotation.dot(g, v) + rotation.dot(g, momentum)
-        )
-        state.work[GRAVITY_AXIAL] += half * payload.mass * g[0] * v[0]
-        _platform_gravity_work(frame, g, state, base, half)
+        state.work[TOTAL].gravity += half * (mass * rotation.dot(g, v) + rotation.dot(g, momentum))
+        state.work[AXIAL].gravity += half * mass * g[0] * v[0]
+        _body_force_work_on_platform(constants.frame, half, g, state, base)
 
 
-@kernel
-def _platform_gravity_work(frame, g, state, base, half):
+@inlined
+def _body_force_work_on_platform(frame, half, g, state, base):
     if frame is not None:
-        state.work[GRAVITY] += half * frame.mass * rotation.dot(g, state.platform.velocity)
-        state.work[GRAVITY_AXIAL] += (
+        state.work[TOTAL].gravity += half * frame.mass * rotation.dot(g, state.platform.velocity)
+        state.work[AXIAL].gravity += (
             half * frame.total_mass * g[0] * axial_velocity_of_platform(state, frame, base)
         )
 
 
-@kernel
-def add_external_impulse(payload, frame, drive, gravity, state, pose, thrust, reaction, dt):
+@inlined
+def add_external_impulse(frame, constants, state, pose, thrust, reaction, dt):
     """Impulse and moment of impulse (about the scene origin) of everything outside the counted
     system.
 
-    Thrust counts unless the free platform takes its reaction; the ground's reaction counts when the
-    platform is fixed.
+    Thrust counts unless the free platform takes its reaction; the ground's ``reaction``, force and
+    moment, counts when the platform is fixed.
     """
     force, _, point = thrust
     if frame is None:
@@ -166,13 +146,19 @@ def add_external_impulse(payload, frame, drive, gravity, state, pose, thrust, re
         _add(state.impulse, force, rotation.cross(point, force), dt)
         _add(state.impulse, ground, ground_moment, -dt)
     if frame is not None:
-        if not drive.reacts_on_platform:
+        if not constants.drive.reacts_on_platform:
             _add(state.impulse, force, rotation.cross(point, force), dt)
-    if gravity is not None:
-        g = (gravity.x, gravity.y, gravity.z)
-        _add_weight(state.impulse, g, payload.mass, triple(state.payload.position), dt)
+    _add_body_force(constants.body_force, constants, state, pose, dt)
+
+
+@inlined
+def _add_body_force(body_force, constants, state, pose, dt):
+    if body_force is not None:
+        g, drive = triple(body_force), constants.drive
+        payload = triple(state.payload.position)
+        _add_weight(state.impulse, g, constants.payload.mass, payload, dt)
         _add_weight(state.impulse, g, drive.moving_mass, _centre_of_rails(drive, state, pose), dt)
-        _add_platform_weight(frame, state, g, dt)
+        _add_platform_weight(constants.frame, state, g, dt)
 
 
 @kernel

@@ -1,11 +1,11 @@
-"""One sample of a run: places, velocities, energies and momenta *at* time n, from velocities at n -
-1/2 and n + 1/2.
+"""Samples of a run: places, velocities, energies and momenta *at* time n, from velocities at n - 1/2
+and n + 1/2.
 
     v(n) = (v(n-1/2) + v(n+1/2)) / 2,     kinetic energy = v(n-1/2) M v(n+1/2) / 2
 
 The second form makes kinetic plus strain energy an exact invariant of central differences for a
-linear system. Plain NumPy: a sample is taken once in a hundred steps, and another kernel would only
-take time to compile.
+linear system. Plain NumPy: a sample is taken once in a hundred steps, so a kernel would only cost
+compilation.
 """
 
 from typing import NamedTuple
@@ -25,15 +25,15 @@ SAMPLE_SIZE = 42
 
 
 class Moving(NamedTuple):
-    """Copy of everything a kick changes."""
+    """Copy of everything that a kick changes."""
 
-    velocity: np.ndarray
-    spin: np.ndarray
-    platform_velocity: np.ndarray
-    platform_spin: np.ndarray
-    nodes: np.ndarray
-    rail_momentum: np.ndarray
-    impulse: np.ndarray
+    velocity: np.ndarray  # (3,) m/s, of the payload
+    spin: np.ndarray  # (3,) kg m2/s, of the payload
+    platform_velocity: np.ndarray  # (3,) m/s
+    platform_spin: np.ndarray  # (3,) kg m2/s
+    nodes: np.ndarray  # (n,3) m/s
+    rail_momentum: np.ndarray  # (3,) kg m/s
+    impulse: np.ndarray  # (6,) N s, N m s
 
 
 def moving(state: records.State) -> Moving:
@@ -84,7 +84,7 @@ def sample(system, team, state: records.State, before: Moving, after: Moving) ->
         )
     row[IMPULSE : IMPULSE + 6] = middle.impulse
     row[KINETIC], row[AXIAL_KINETIC] = _kinetic(system, turn, base, before, after)
-    row[STRAIN], row[CONTACT] = _strain(system.rail, state, team), state.load[records.STORED]
+    row[STRAIN], row[CONTACT] = _strain(system.rail, state, team), float(state.load[0]["stored"])
     row[LINEAR : LINEAR + 3], row[ANGULAR : ANGULAR + 3] = _momenta(system, state, base, middle)
     return row
 

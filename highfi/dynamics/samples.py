@@ -34,49 +34,24 @@ def motion(samples: np.ndarray, interval: float, body_offset: np.ndarray) -> Mot
 
 
 def ledgers(samples: np.ndarray, work: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Total and transverse ledger (n, len(ENTRIES)) J of samples and accumulated work (n,
-    WORK_SIZE)."""
-    zero = np.zeros(len(samples))
-    kinetic, axial = samples[:, observe.KINETIC], samples[:, observe.AXIAL_KINETIC]
-    strain, stored = samples[:, observe.STRAIN], samples[:, observe.CONTACT]
-    w = {
-        name: work[:, getattr(records, name)]
-        for name in (
-            "THRUST",
-            "GRAVITY",
-            "FRICTION",
-            "STRUCTURAL_DAMPING",
-            "RELEASED",
-            "THRUST_AXIAL",
-            "GRAVITY_AXIAL",
-            "FRICTION_AXIAL",
-            "CONTACT_AXIAL",
-        )
-    }
-    total = {
-        "thrust": w["THRUST"],
-        "gravity": w["GRAVITY"],
-        "kinetic": kinetic,
-        "strain": strain,
-        "contact_stored": stored,
-        "friction": w["FRICTION"],
-        "structural_damping": w["STRUCTURAL_DAMPING"],
-        "released": w["RELEASED"],
-    }
-    # Structural damping acts between parts of one body, platform with rails: it has no resultant,
-    # and so no axial part.
-    across = total | {
-        "thrust": w["THRUST"] - w["THRUST_AXIAL"],
-        "gravity": w["GRAVITY"] - w["GRAVITY_AXIAL"],
-        "kinetic": kinetic - axial,
-        "friction": w["FRICTION"] - w["FRICTION_AXIAL"],
-        "contact_axial": w["CONTACT_AXIAL"],
-    }
+    """Total and transverse ledger (n, len(ENTRIES)) J of samples and accumulated work (n,2) WORK.
 
-    def table(entries: dict[str, np.ndarray]) -> np.ndarray:
-        return np.stack([entries.get(name, zero) for name in ledger.ENTRIES], axis=1)
-
-    return table(total), table(across)
+    Structural damping acts between parts of one body, platform with rails: it has no resultant, and
+    so no axial part.
+    """
+    book = work.view(float).reshape(len(samples), 2, len(ledger.ENTRIES))
+    total, across = book[:, records.TOTAL].copy(), book[:, records.TOTAL] - book[:, records.AXIAL]
+    kinetic, strain, stored, contact = (
+        ledger.ENTRIES.index(name)
+        for name in ("kinetic", "strain", "contact_stored", "contact_axial")
+    )
+    for table in (total, across):
+        table[:, kinetic] = samples[:, observe.KINETIC]
+        table[:, strain] = samples[:, observe.STRAIN]
+        table[:, stored] = samples[:, observe.CONTACT]
+    across[:, kinetic] -= samples[:, observe.AXIAL_KINETIC]
+    across[:, contact] = book[:, records.AXIAL, contact]
+    return total, across
 
 
 def momentum_errors(

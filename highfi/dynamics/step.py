@@ -1,7 +1,7 @@
-"""The time loop: explicit central differences (leapfrog) for rail nodes, payload and platform
+"""Time integration: explicit central differences (leapfrog) for rail nodes, payload and platform
 together.
 
-At time n places and forces are known and velocities stand at n - 1/2. One step is: kick ``v += dt
+At time n places and forces are known and velocities are those of n - 1/2. One step is: kick ``v += dt
 f/m``, drift (``pose``), forces::
 
     rail node   w += dt f / m                    f = -K u - damping + contact
@@ -16,46 +16,42 @@ moment about the undeformed places, both sums need the dense nodal arrays for u 
 holds for the part of structural damping (``damping``) that is proportional to K; the part
 proportional to mass is summed node by node.
 
-Nodes are moved and loaded, and contact is searched, by all threads of the team; the first one moves
-the bodies before.
+All threads of the team move and load nodes and search contact; before that the first one moves the
+bodies.
 """
 
 from tipoff.highfi.contact.pads import collect_contact, contact_forces
 from tipoff.highfi.dynamics.damping import begin_damping, collect_damping
 from tipoff.highfi.dynamics.elastic import elastic_force, finish_load, hold_blocks, move_and_load
 from tipoff.highfi.dynamics.ending import follow
-from tipoff.highfi.dynamics.loads import add_external_impulse, add_work, pull_on_nodes, thrust_load
-from tipoff.highfi.state.pose import drift_body, seen_from_frame, small_turn, triple
-from tipoff.highfi.state.records import (
-    DAMPING_RATIO,
-    FRAME_VELOCITY,
-    FRICTION_FORCE,
-    MOMENT,
-    MOMENT_ON_RAIL,
-    NORMAL_FORCE,
-    PULL,
-    RATE,
-    TURN,
+from tipoff.highfi.dynamics.loads import (
+    accelerate,
+    add_external_impulse,
+    add_work,
+    body_force_in_frame,
+    thrust_load,
 )
-from tipoff.highfi.state.threads import deal, meet
+from tipoff.highfi.state.pose import drift_body, pose_in_frame, small_turn, triple
+from tipoff.highfi.state.threads import barrier, reset_queue
 from tipoff.kernels import rotation
-from tipoff.kernels.jit import kernel
+from tipoff.kernels.jit import inlined, kernel
 
 
 @kernel
-def evaluate(rail, surface, faces, payload, frame, penalty, friction, state, active, team, dt):
+def evaluate(constants, state, active, team):
     """All forces at the present places of rails at rest in their frame, by one thread."""
+    rail = constants.rail
     elastic_force(rail, state.displacement, state.resistance, state.turning, team)
     begin_damping(state.history, state)
     hold_blocks(rail, state, 0, 1)
-    pose = seen_from_frame(state, payload, frame)
-    deal(team)
-    contact_forces(rail, surface, faces, frame, penalty, friction, state, active, pose, team, dt)
-    collect(surface, penalty, rail, state, active)
+    pose = pose_in_frame(state, constants.payload, constants.frame)
+    reset_queue(team)
+    contact_forces(constants.penalty, constants, state, active, pose, team)
+    collect(constants.penalty, constants, state, active)
 
 
-@kernel
-def collect(surface, penalty, rail, state, active):
+@inlined
+def collect(penalty, constants, state, active):
     """Sum up: ``state.reaction``, and contact into the resistance."""
     state.reaction[:] = 0.0
     for part in range(state.turning.shape[0]):
@@ -64,7 +60,12 @@ def collect(surface, penalty, rail, state, active):
             state.reaction[3 + i] += state.clamping[part, 3 + i] - state.turning[part, i]
     collect_damping(state.history, state)
     if penalty is not None:
-        collect_contact(rail, surface, state, active)
+        collect_contact(constants.rail, constants.surface, state, active)
+
+
+@kernel
+def _sum(a, b):
+    return (a[0] + b[0], a[1] + b[1], a[2] + b[2])
 
 
 @kernel
@@ -72,101 +73,76 @@ def _less(a, b):
     return (a[0] - b[0], a[1] - b[1], a[2] - b[2])
 
 
-@kernel
-def kick_bodies(payload, frame, drive, gravity, state, pose, thrust, dt):
+@inlined
+def kick_bodies(constants, state, pose, thrust, dt):
     """Advance all velocities but those of the nodes over ``dt`` by the present forces; counts the
     external impulse."""
-    load, total, moment = state.load, state.reaction[:3], state.reaction[3:]
-    on_rail = (
-        -load[NORMAL_FORCE] - load[FRICTION_FORCE],
-        -load[NORMAL_FORCE + 1] - load[FRICTION_FORCE + 1],
-        -load[NORMAL_FORCE + 2] - load[FRICTION_FORCE + 2],
-    )
-    # What the rails pass on to the frame, in inertial axes.
-    force = rotation.rotate(
-        pose.frame, (on_rail[0] - total[0], on_rail[1] - total[1], on_rail[2] - total[2])
-    )
-    couple = rotation.rotate(
-        pose.frame,
-        (
-            load[MOMENT_ON_RAIL] - moment[0],
-            load[MOMENT_ON_RAIL + 1] - moment[1],
-            load[MOMENT_ON_RAIL + 2] - moment[2],
-        ),
-    )
-    add_external_impulse(payload, frame, drive, gravity, state, pose, thrust, (force, couple), dt)
-    pull = pull_on_nodes(gravity, pose)
+    load, total, moment = state.load[0], triple(state.reaction), triple(state.reaction[3:])
+    n, f = load.normal_force, load.friction_force
+    on_rail = (-n[0] - f[0], -n[1] - f[1], -n[2] - f[2])
+    # Force and moment of the rails on the frame, in inertial axes.
+    force = rotation.rotate(pose.frame, _less(on_rail, total))
+    couple = rotation.rotate(pose.frame, _less(load.moment_on_rail, moment))
+    add_external_impulse(constants.frame, constants, state, pose, thrust, (force, couple), dt)
+    acceleration = body_force_in_frame(constants.body_force, pose)
     for i in range(3):
-        state.rail_momentum[i] += dt * (total[i] + drive.moving_mass * pull[i])
-    _kick_payload(payload, gravity, state, pose, thrust, dt)
-    _kick_platform(frame, drive, gravity, state, force, couple, thrust, dt)
+        state.rail_momentum[i] += dt * (total[i] + constants.drive.moving_mass * acceleration[i])
+    _kick_payload(constants, state, pose, thrust, dt)
+    _kick_platform(constants.frame, constants, state, (force, couple), thrust, dt)
 
 
-@kernel
-def _kick_payload(payload, gravity, state, pose, thrust, dt):
-    load, body = state.load, state.payload
-    contact = rotation.rotate(
-        pose.frame,
-        (
-            load[NORMAL_FORCE] + load[FRICTION_FORCE],
-            load[NORMAL_FORCE + 1] + load[FRICTION_FORCE + 1],
-            load[NORMAL_FORCE + 2] + load[FRICTION_FORCE + 2],
-        ),
-    )
-    moment = rotation.rotate(pose.frame, (load[MOMENT], load[MOMENT + 1], load[MOMENT + 2]))
+@inlined
+def _kick_payload(constants, state, pose, thrust, dt):
+    load, body = state.load[0], state.payload
+    contact = rotation.rotate(pose.frame, _sum(load.normal_force, load.friction_force))
+    moment = rotation.rotate(pose.frame, triple(load.moment))
     for i in range(3):
-        body.velocity[i] += dt * (contact[i] + thrust[0][i]) / payload.mass
+        body.velocity[i] += dt * (contact[i] + thrust[0][i]) / constants.payload.mass
         body.spin[i] += dt * (moment[i] + thrust[1][i])
-    _fall(gravity, body, dt)
+    accelerate(constants.body_force, body, dt)
 
 
-@kernel
-def _kick_platform(frame, drive, gravity, state, force, couple, thrust, dt):
+@inlined
+def _kick_platform(frame, constants, state, rails, thrust, dt):
+    """``rails``: force (N) and moment (N m) of the rails on the frame, in inertial axes."""
     if frame is not None:
-        body = state.platform
+        body, (force, couple) = state.platform, rails
         back = (0.0, 0.0, 0.0)
         turn = (0.0, 0.0, 0.0)
-        if drive.reacts_on_platform:
+        if constants.drive.reacts_on_platform:
             point, push = thrust[2], thrust[0]
             back = (-push[0], -push[1], -push[2])
             turn = rotation.cross(_less(point, triple(body.position)), back)
         for i in range(3):
             body.velocity[i] += dt * (force[i] + back[i]) / frame.mass
             body.spin[i] += dt * (couple[i] + turn[i])
-        _fall(gravity, body, dt)
+        accelerate(constants.body_force, body, dt)
 
 
-@kernel
-def _fall(gravity, body, dt):
-    if gravity is not None:
-        body.velocity[0] += dt * gravity.x
-        body.velocity[1] += dt * gravity.y
-        body.velocity[2] += dt * gravity.z
-
-
-@kernel
-def drift_bodies(payload, frame, drive, gravity, state, pose, dt):
-    """Advance the places of the bodies over ``dt``; fills ``state.motion`` for the nodes."""
-    pull = pull_on_nodes(gravity, pose)
+@inlined
+def drift_bodies(constants, state, pose):
+    """Advance the places of the bodies over a step; fills ``state.motion`` for the nodes."""
+    dt, acceleration = constants.dt, body_force_in_frame(constants.body_force, pose)
     for i in range(3):
-        state.motion[PULL + i] = pull[i]
-    drift_body(state.payload, payload.inverse_inertia, dt)
+        state.motion.acceleration[i] = acceleration[i]
+    drift_body(state.payload, constants.payload.inverse_inertia, dt)
     for i in range(3):
         state.rail_moment[i] += dt * state.rail_momentum[i]
-    _drift_frame(drive, frame, state, pose, dt)
+    _drift_frame(constants.frame, constants.drive, state, pose, dt)
 
 
 @kernel
-def _drift_frame(drive, frame, state, pose, dt):
+def _drift_frame(frame, drive, state, pose, dt):
     if frame is not None:
+        motion = state.motion
         velocity = rotation.unrotate(pose.frame, triple(state.platform.velocity))
         rate = rotation.unrotate(pose.frame, drift_body(state.platform, frame.inverse_inertia, dt))
         turn = small_turn(rate, dt)
         for i in range(3):
-            state.motion[FRAME_VELOCITY + i], state.motion[RATE + i] = velocity[i], rate[i]
+            motion.velocity[i], motion.rate[i] = velocity[i], rate[i]
             state.rail_moment[i] -= dt * drive.moving_mass * velocity[i]
         for i in range(9):
-            state.motion[TURN + i] = turn[i]
+            motion.turn[i] = turn[i]
         moment, momentum = (
             rotation.rotate(turn, triple(state.rail_moment)),
             rotation.rotate(turn, triple(state.rail_momentum)),
@@ -177,87 +153,35 @@ def _drift_frame(drive, frame, state, pose, dt):
 
 
 @kernel
-def advance(
-    rail,
-    surface,
-    faces,
-    payload,
-    frame,
-    drive,
-    pulses,
-    curve,
-    offset,
-    penalty,
-    friction,
-    gravity,
-    state,
-    active,
-    exit_,
-    marks,
-    ending,
-    team,
-    thread,
-    first_step,
-    steps,
-    dt,
-):
+def advance(constants, state, active, book, team, thread, first_step, steps):
     """Take ``steps`` steps from step number ``first_step``, as one ``thread`` of ``team``; all its
     threads must be called.
 
-    Returns the largest step * friction damping / mass met; the book of ``ending`` is told of each
-    step. On entry and on return forces are those of the present places and work is counted up to
-    the present time.
+    Returns the largest step * friction damping / mass of a node. ``book`` (``mechanics.ending``)
+    follows the payload off the rail. On entry and on return forces are those of the present places
+    and work is counted up to the present time.
     """
+    rail, frame, dt = constants.rail, constants.frame, constants.dt
     damping = 0.0
     for n in range(first_step, first_step + steps):
         if thread == 0:
-            pose = seen_from_frame(state, payload, frame)
-            thrust = thrust_load(state, drive, pulses, curve, offset, n * dt)
-            kick_bodies(payload, frame, drive, gravity, state, pose, thrust, dt)
-            pose = seen_from_frame(state, payload, frame)
-            add_work(
-                rail,
-                surface,
-                payload,
-                frame,
-                drive,
-                friction,
-                gravity,
-                state,
-                active,
-                pose,
-                thrust,
-                0.5 * dt,
-                dt,
-            )
-            drift_bodies(payload, frame, drive, gravity, state, pose, dt)
-            follow(exit_, payload, frame, state, marks, ending.book, n * dt, dt)
-            deal(team)
-        meet(team)
+            pose = pose_in_frame(state, constants.payload, frame)
+            thrust = thrust_load(constants, state, n * dt)
+            kick_bodies(constants, state, pose, thrust, dt)
+            pose = pose_in_frame(state, constants.payload, frame)
+            add_work(constants, state, active, pose, thrust, dt)
+            drift_bodies(constants, state, pose)
+            follow(constants, state, book, n * dt)
+            reset_queue(team)
+        barrier(team)
         move_and_load(rail, frame, state, team, thread, dt)
-        pose = seen_from_frame(state, payload, frame)
-        contact_forces(
-            rail, surface, faces, frame, penalty, friction, state, active, pose, team, dt
-        )
+        pose = pose_in_frame(state, constants.payload, frame)
+        contact_forces(constants.penalty, constants, state, active, pose, team)
         finish_load(rail, state, team, thread, dt)
-        meet(team)
+        barrier(team)
         if thread == 0:
-            collect(surface, penalty, rail, state, active)
-            thrust = thrust_load(state, drive, pulses, curve, offset, (n + 1) * dt)
-            add_work(
-                rail,
-                surface,
-                payload,
-                frame,
-                drive,
-                friction,
-                gravity,
-                state,
-                active,
-                pose,
-                thrust,
-                0.5 * dt,
-                0.0,
-            )
-            damping = max(damping, state.load[DAMPING_RATIO])
+            collect(constants.penalty, constants, state, active)
+            thrust = thrust_load(constants, state, (n + 1) * dt)
+            add_work(constants, state, active, pose, thrust, 0.0)
+            damping = max(damping, state.load[0].damping_ratio)
     return damping

@@ -1,4 +1,4 @@
-"""The critical step of the coupled system: rail, penalty contact, payload.
+"""Critical step of the coupled system: rail, penalty contact, payload.
 
 Contact adds G k G' to the stiffness, where a column of G is the gap of one Gauss point. In the mass
 metric
@@ -28,9 +28,9 @@ With C = alpha M + beta K of the rail, and friction c at the nodes, a step is st
 where c of a node is bounded by the same sum with each point's damping in place of its area. Every
 term grows with lambda_rail, so its upper bound alone decides, however the damping ratio runs below
 it. The first two make the limit of a run: that of w^2 = lambda_rail + lambda_contact with the ratio
-(alpha + beta lambda_rail) / 2w. The third is watched during the run. Rail frequencies are those of
-a rail whose mounts stand still: a free platform may raise them by the share m_rail / m_platform,
-which is left to the safety factor.
+(alpha + beta lambda_rail) / 2w. The third is checked during the run. Rail frequencies are those of
+a rail whose mounts do not move: a free platform may raise them by the share m_rail / m_platform,
+which the safety factor covers.
 """
 
 import numpy as np

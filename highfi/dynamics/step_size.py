@@ -1,8 +1,8 @@
-"""The step of a run: the largest one below the limit that lands on every sample, and is the same
-for every sampling interval of whole times ``RASTER``.
+"""Step of a run: the largest one below the limit that divides the sampling interval. It is the same
+for all sampling intervals that are multiples of ``RASTER``.
 
-The limit comes from the assembled rail, whose highest frequency lies well below that of its worst
-element.
+The limit comes from the assembled rail, whose highest frequency is well below the highest one of its
+elements.
 """
 
 from dataclasses import asdict, dataclass
@@ -24,23 +24,22 @@ _ROUNDING = 1e-9
 
 @dataclass(frozen=True)
 class Stepping:
-    """``dt_s`` the step, ``dt_limit_s`` the critical step with contact and damping,
-    ``dt_element_s`` what it would be by the elements' own frequencies, ``safety`` asked for,
-    ``steps_per_sample``, ``damping_ratio`` at the highest frequency."""
+    """Step of a run and its limits."""
 
-    dt_s: float
-    dt_limit_s: float
-    dt_element_s: float
-    safety: float
+    dt_s: float  # the step
+    dt_limit_s: float  # critical step with contact and damping
+    dt_element_s: float  # critical step by the frequencies of single elements
+    safety: float  # requested fraction of the critical step
     steps_per_sample: int
-    damping_ratio: float
+    damping_ratio: float  # at the highest frequency
 
     def as_dict(self) -> dict:
+        """Plain values, as written into results."""
         return asdict(self)
 
     def used(self) -> float:
-        """What the step takes of the stability condition in ``limits``, where the critical step
-        takes 1."""
+        """Share of the stability condition in ``step_limit`` that the step uses; the critical step
+        uses 1."""
         return used(self.dt_s, self.dt_limit_s, self.damping_ratio)
 
 
@@ -48,7 +47,7 @@ def choose(system: System, scene: Scene, numerics: Numerics) -> Stepping:
     """Step of a run. Raises StepError when ``numerics.step`` is above the limit."""
     contact = contact_frequency_squared(system)
     by_elements = stable_step.element_bound(system.operator)
-    # A rail held everywhere has no frequency of its own.
+    # A rail whose nodes are all clamped has no frequency.
     assembled = (
         stable_step.operator_bound(system.operator).upper
         if system.operator.free.any()
@@ -60,12 +59,12 @@ def choose(system: System, scene: Scene, numerics: Numerics) -> Stepping:
     divided = interval if numerics.step else _divided(interval, numerics.safety * limit)
     step = stable_step.choose_step(limit, numerics.safety, divided, numerics.step)
     return Stepping(
-        step,
-        limit,
-        by_elements,
-        numerics.safety,
-        round(interval / step),
-        damping_ratio(damping, assembled, contact),
+        dt_s=step,
+        dt_limit_s=limit,
+        dt_element_s=by_elements,
+        safety=numerics.safety,
+        steps_per_sample=round(interval / step),
+        damping_ratio=damping_ratio(damping, assembled, contact),
     )
 
 

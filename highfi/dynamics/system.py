@@ -1,12 +1,11 @@
-"""From a scene and its mesh to the arrays of the loop: operator, surfaces, the rigid part of a free
-platform, initial state."""
+"""Constants and initial state of a run, from a scene and its mesh."""
 
 from typing import NamedTuple
 
 import numpy as np
 
 from tipoff.highfi.contact import surface
-from tipoff.highfi.extruded import mesh as pencils
+from tipoff.highfi.extruded import mesh as extruded
 from tipoff.highfi.mesh.rail_mesh import RailMesh
 from tipoff.highfi.numerics import Numerics
 from tipoff.highfi.state import records
@@ -25,27 +24,21 @@ _SAME = 1e-9  # m: two places closer than this are the same
 
 
 class System(NamedTuple):
-    """Constant records of one run.
-
-    ``number`` (n,) of each mesh node in the nodal arrays; ``moving_mass`` kg of the nodal arrays,
-    zero where clamped; ``origin`` (3,) m: the frame's origin at ignition in scene axes;
-    ``body_offset`` (3,) m from it to the platform's mass centre; ``warm`` (n,3) m: displacement by
-    temperature of the nodal arrays, None where the scene has none.
-    """
+    """Constant records of one run, whatever its step."""
 
     model: scene_model.Model
     mesh: RailMesh
     operator: assembly.Operator
-    number: np.ndarray
+    number: np.ndarray  # (n,) of each mesh node in the nodal arrays
     rail: records.Rail
-    moving_mass: np.ndarray
+    moving_mass: np.ndarray  # kg, of the nodal arrays, zero where clamped
     surface: records.Surface
     faces: scene_model.Faces
-    frame: records.Frame | None
+    frame: records.Frame | None  # None: fixed platform
     drive: records.Drive
-    origin: np.ndarray
-    body_offset: np.ndarray
-    warm: np.ndarray | None
+    origin: np.ndarray  # (3,) m, the frame's origin at ignition in scene axes
+    body_offset: np.ndarray  # (3,) m, from the frame's origin to the platform's mass centre
+    warm: np.ndarray | None  # (n,3) m, thermal displacement of the nodal arrays, or None
 
 
 def build(scene: Scene, numerics: Numerics, mesh: RailMesh) -> System:
@@ -72,21 +65,25 @@ def build(scene: Scene, numerics: Numerics, mesh: RailMesh) -> System:
     gauss = surface.build(
         surfaces, places, faces, numerics.points_per_edge(), rail.clamped, model.plate.thickness
     )
-    drive = records.Drive(model.thrust_arm, model.reacts_on_platform, float(moving.sum()))
+    drive = records.Drive(
+        arm=model.thrust_arm,
+        reacts_on_platform=model.reacts_on_platform,
+        moving_mass=float(moving.sum()),
+    )
     return System(
-        model,
-        mesh,
-        operator,
-        number,
-        rail,
-        masses,
-        gauss,
-        faces,
-        frame,
-        drive,
-        origin,
-        offset,
-        warm,
+        model=model,
+        mesh=mesh,
+        operator=operator,
+        number=number,
+        rail=rail,
+        moving_mass=masses,
+        surface=gauss,
+        faces=faces,
+        frame=frame,
+        drive=drive,
+        origin=origin,
+        body_offset=offset,
+        warm=warm,
     )
 
 
@@ -104,9 +101,9 @@ def _rail(
     points: np.ndarray, operator: assembly.Operator, damping: Damping | None
 ) -> tuple[records.Rail, np.ndarray]:
     """Nodal arrays in the loop's own numbering, and the number (n,) of each mesh node in it."""
-    found = pencils.find(points, operator)
+    found = extruded.find(points, operator)
     columns, number = found if found else (None, along_x(points))
-    size = -(-(number.max() + 1) // pencils.LANES) * pencils.LANES
+    size = -(-(number.max() + 1) // extruded.LANES) * extruded.LANES
     place, mass, inverse = zeros((size, 3), order="F"), zeros((size,)), zeros((size,))
     place[number], mass[number] = points, operator.mass
     inverse[number[operator.free]] = 1.0 / operator.mass[operator.free]
@@ -114,20 +111,28 @@ def _rail(
     if columns is None:
         elements, blocks = (
             general_elements(points, operator, number),
-            np.append(np.arange(0, size, pencils.CHUNK), size),
+            np.append(np.arange(0, size, extruded.CHUNK), size),
         )
     else:
         blocks = columns.chunks * columns.stride
     clamped = np.sort(number[~operator.free])
-    held = np.searchsorted(clamped, blocks)
-    return records.Rail(
-        place, mass, inverse, clamped, held, columns, elements, blocks, damping
-    ), number
+    rail = records.Rail(
+        points=place,
+        mass=mass,
+        inverse_mass=inverse,
+        clamped=clamped,
+        first_clamped=np.searchsorted(clamped, blocks),
+        columns=columns,
+        elements=elements,
+        blocks=blocks,
+        damping=damping,
+    )
+    return rail, number
 
 
 def along_x(points: np.ndarray) -> np.ndarray:
-    """Number (n,) of each node of a mesh of any shape: those near each other along X come together,
-    so that they meet in the cache."""
+    """Number (n,) of each node of a mesh of any shape: neighbours along X come together, so that
+    they share cache lines."""
     number = np.empty(len(points), dtype=np.int64)
     x, y, z = np.round(points / _SAME).T
     number[np.lexsort((z, y, x))] = np.arange(len(points))
@@ -152,7 +157,10 @@ def general_elements(
     order = np.lexsort((cells.min(axis=1), slab))
     slabs = np.searchsorted(slab[order], np.arange(slab.max() + 2))
     return records.Elements(
-        cells[order].astype(np.uint32), operator.shape_class[order], operator.stiffness, slabs
+        cells=cells[order].astype(np.uint32),
+        shape_class=operator.shape_class[order],
+        stiffness=operator.stiffness,
+        slabs=slabs,
     )
 
 
@@ -177,7 +185,10 @@ def _rigid_part(scene, platform, points, moving) -> tuple[records.Frame, np.ndar
                 )
             ]
         )
-    return records.Frame(mass, np.linalg.inv(inertia), platform.mass), centre
+    frame = records.Frame(
+        mass=mass, inverse_inertia=np.linalg.inv(inertia), total_mass=platform.mass
+    )
+    return frame, centre
 
 
 def _parallel_axis(arm: np.ndarray) -> np.ndarray:
@@ -189,15 +200,18 @@ def initial_state(system: System) -> tuple[records.State, records.Active]:
     """State at ignition, in the frame of ``mechanics.comoving``; velocities are still at t = 0."""
     model, first, start = system.model, system.model.initial, comoving.start(system.model)
     payload = records.Body(
-        start.place, start.velocity, np.array(rotation.exponential(first.attitude)), np.zeros(3)
+        position=start.place,
+        velocity=start.velocity,
+        quaternion=np.array(rotation.exponential(first.attitude)),
+        spin=np.zeros(3),
     )
     turn = rotation.matrices(payload.quaternion[None])[0]
     payload.spin[:] = turn @ (model.payload.inertia @ np.array(first.rate))
     platform = records.Body(
-        np.subtract(system.origin, comoving.frame(model).origin),
-        np.zeros(3),
-        np.array([1.0, 0.0, 0.0, 0.0]),
-        np.zeros(3),
+        position=np.subtract(system.origin, comoving.frame(model).origin),
+        velocity=np.zeros(3),
+        quaternion=np.array([1.0, 0.0, 0.0, 0.0]),
+        spin=np.zeros(3),
     )
     nodes = system.rail.points.shape
     velocity = zeros(nodes, order="F")
@@ -208,52 +222,56 @@ def initial_state(system: System) -> tuple[records.State, records.Active]:
         velocity[system.number] = platform.velocity + np.cross(
             rate, system.rail.points[system.number]
         )
-    count = system.faces.axis.size
-    parts, groups = system.rail.blocks.size - 1, system.surface.groups.first_face.size - 1
+    blocks, groups = system.rail.blocks.size - 1, system.surface.groups.first_face.size - 1
     state = records.State(
-        payload,
-        platform,
-        zeros(nodes, order="F"),
-        velocity,
-        zeros(nodes, order="F"),
-        np.zeros(nodes),
-        np.zeros((parts, 3)),
-        np.zeros((parts, 6)),
-        np.zeros(6),
-        np.zeros(records.MOTION_SIZE),
-        system.moving_mass @ velocity,
-        system.moving_mass @ system.rail.points,
-        np.zeros(records.LOAD_SIZE),
-        np.zeros((groups, records.LOAD_SIZE)),
-        np.zeros(records.WORK_SIZE),
-        np.zeros(6),
-        np.zeros((count, 3)),
-        _history(system.rail, nodes, parts),
+        payload=payload,
+        platform=platform,
+        displacement=zeros(nodes, order="F"),
+        velocity=velocity,
+        resistance=zeros(nodes, order="F"),
+        contact=np.zeros(nodes),
+        turning=np.zeros((blocks, 3)),
+        clamping=np.zeros((blocks, 6)),
+        reaction=np.zeros(6),
+        motion=records.Motion(
+            velocity=np.zeros(3), turn=np.zeros(9), rate=np.zeros(3), acceleration=np.zeros(3)
+        ),
+        rail_momentum=system.moving_mass @ velocity,
+        rail_moment=system.moving_mass @ system.rail.points,
+        load=np.zeros(1, records.LOAD),
+        loads=np.zeros(groups, records.LOAD),
+        work=np.zeros(2, records.WORK),
+        impulse=np.zeros(6),
+        face_force=np.zeros((system.faces.axis.size, 3)),
+        history=_history(system.rail, nodes, blocks),
     )
-    room, size = surface.capacity(system.surface), nodes[0]
-    active = records.Active(
-        np.zeros((groups, 2), dtype=np.int64),
-        np.zeros((room, 2), dtype=np.int64),
-        np.zeros(room, dtype=np.int64),
-        np.zeros(room),
-        np.zeros(np.unique(system.surface.facets).size, dtype=np.int64),
-        np.zeros(size, dtype=np.bool_),
-        np.zeros(nodes),
-        np.zeros(size),
-        np.zeros(count, dtype=np.int64),
-        np.full(count, records.UNKNOWN),
-        np.zeros((count, 3)),
-    )
-    return state, active
+    return state, _active(system, groups)
 
 
-def _history(rail: records.Rail, nodes: tuple[int, ...], parts: int) -> records.History | None:
+def _active(system: System, groups: int) -> records.Active:
+    """No contact yet."""
+    nodes, faces = len(system.rail.points), system.faces.axis.size
+    return records.Active(
+        point_count=np.zeros(groups, dtype=np.int64),
+        node_count=np.zeros(groups, dtype=np.int64),
+        edge_point=np.zeros(surface.capacity(system.surface), records.EDGE_POINT),
+        node=np.zeros(np.unique(system.surface.facets).size, dtype=np.int64),
+        seen=np.zeros(nodes, dtype=np.bool_),
+        drag=np.zeros((nodes, 3)),
+        node_damping=np.zeros(nodes),
+        wait=np.zeros(faces, dtype=np.int64),
+        side=np.full(faces, records.UNKNOWN),
+        struck=np.zeros(faces, records.STRUCK),
+    )
+
+
+def _history(rail: records.Rail, nodes: tuple[int, ...], blocks: int) -> records.History | None:
     if rail.damping is None:
         return None
     return records.History(
         elastic=zeros(nodes, order="F"),
         displacement=zeros(nodes, order="F"),
         force=zeros(nodes, order="F"),
-        drag=np.zeros((parts, 6)),
-        loss=np.zeros(parts),
+        drag=np.zeros((blocks, 6)),
+        loss=np.zeros(blocks),
     )

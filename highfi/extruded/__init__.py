@@ -1,1 +1,1 @@
-"""The internal force of an extruded mesh, section point by section point."""
+"""Internal force of an extruded mesh, column by column."""

@@ -1,14 +1,13 @@
-"""Mirror pairs among the neighbours of a pencil: what a section has of symmetry need not be
-multiplied twice.
+"""Mirror symmetry of a section: neighbours of a column that share their stiffness.
 
 Let neighbours at (+dy, dz) and (-dy, dz) have the same numbers but for the sign of those that
 couple y with another direction, as on any even piece of a section. Then ``a u(+) +- a u(-) = a
-(u(+) +- u(-))``: one product for the two, and additions cost next to nothing beside products on
-processors that have pipes for both. Four neighbours mirrored in y and z need one product for the
-four; what lies on a mirror plane itself has no odd numbers. A pencil inside a regular section needs
+(u(+) +- u(-))``: one product for the two, and one addition, which costs almost nothing beside a
+product on processors with parallel units. Four neighbours mirrored in y and z need one product for
+the four. A neighbour on a mirror plane has no odd numbers. A column inside a regular section needs
 36 products instead of 9 x 14.
 
-The numbers of one neighbour are D xx yy yz zy zz, L the same and O xy xz yx zx, as in ``pencils``.
+The numbers of one neighbour are D xx yy yz zy zz, L the same and O xy xz yx zx, as in ``mesh``.
 """
 
 from itertools import pairwise, product
@@ -36,14 +35,15 @@ def odd(number: int, axis: int) -> bool:
 
 
 class Kind(NamedTuple):
-    """A group of neighbours: ``folded`` axes in which they are each other's mirrors (members in the
-    order +, -; for both ++, -+, +-, --), ``numbers`` of them that are not zero."""
+    """A kind of group of neighbours that are mirror images of one another."""
 
+    # axes of the mirrors; members are in the order +, -; for both axes ++, -+, +-, --
     folded: tuple[int, ...]
-    numbers: tuple[int, ...]
+    numbers: tuple[int, ...]  # those that are not zero
 
     @property
     def members(self) -> int:
+        """Neighbours in a group."""
         return 2 ** len(self.folded)
 
 
@@ -68,30 +68,28 @@ KINDS = (
 )
 
 
-# How many groups of each kind the commonest pencils have: inside a section, on a side along y, on a
+# How many groups of each kind the commonest columns have: inside a section, on a side along y, on a
 # side along z.
 PATTERNS = ((1, 1, 0, 1, 0, 1, 0, 0, 0), (0, 0, 2, 0, 0, 0, 2, 0, 0), (0, 0, 0, 0, 2, 0, 0, 2, 0))
 
 
 class Groups(NamedTuple):
-    """Groups of all pencils one after the other, in the order of KINDS within each: counts (s,
-    kinds); members, their pencils; numbers, N/m; first_member (s,) and first_number (s,) of each
-    pencil; pattern (s,) its place among PATTERNS, or their number."""
+    """Groups of s columns one after the other, in the order of KINDS within each column."""
 
-    pattern: np.ndarray
-    counts: np.ndarray
-    members: np.ndarray
-    numbers: np.ndarray
-    first_member: np.ndarray
-    first_number: np.ndarray
+    pattern: np.ndarray  # (s,) index in PATTERNS, or its length for any other pattern
+    counts: np.ndarray  # (s, kinds) groups of each kind
+    members: np.ndarray  # first nodes of the neighbours
+    numbers: np.ndarray  # N/m
+    first_member: np.ndarray  # (s,) place in ``members`` of the first one of each column
+    first_number: np.ndarray  # (s,) place in ``numbers`` of the first one of each column
 
 
 def fold(
     first: np.ndarray, neighbour: np.ndarray, offsets: np.ndarray, numbers: np.ndarray
 ) -> Groups:
-    """Groups of the neighbours (q,) of each pencil, those of pencil i from ``first[i]`` on.
+    """Groups of the neighbours (q,) of each column, those of column i from ``first[i]`` on.
 
-    ``offsets`` (q,2) m: place of the neighbour in the section less that of the pencil; ``numbers``
+    ``offsets`` (q,2) m: place of the neighbour in the section less that of the column; ``numbers``
     (q,14) N/m.
     """
     limit, places = (
@@ -126,7 +124,7 @@ def fold(
 
 
 def _groups(at: dict, numbers: np.ndarray, limit: float) -> list[list]:
-    """For each kind the groups (members, numbers) of one pencil, ``at`` being its neighbours by
+    """For each kind the groups (members, numbers) of one column, ``at`` being its neighbours by
     offset."""
     left = dict(at)
     found: list[list] = [[] for _ in KINDS]

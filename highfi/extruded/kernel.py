@@ -1,14 +1,17 @@
-"""Internal force of an extruded mesh, pencil by pencil: three sums over the neighbouring pencils,
-then a filter along the layers.
+"""Internal force of an extruded mesh: for each column three sums over the neighbouring columns, then
+a filter along the layers.
 
     d = sum D u,  l = sum L u,  o = sum O u,      f(k) = d(k) + (l - o)(k-1) + (l + o)(k+1)
 
-The nine sums of 16 layers stay in vector registers while the neighbours stream by, folded where
-they mirror each other (see ``folding``), and so does what the filter needs of the 16 layers before.
-Numba does not keep them there from a loop in Python, so that this one is written as LLVM code; a
-processor with narrower vectors splits them.
+The nine sums of 16 layers stay in vector registers during the loop over the neighbours, and so does
+what the filter needs of the 16 layers before. Neighbours that are mirror images are folded into one
+(see ``folding``). Numba does not keep the sums in registers in a loop in Python, so this loop is
+written as LLVM code. A processor with narrower vectors splits them.
 """
 
+from typing import NamedTuple
+
+import numpy as np
 from llvmlite import ir
 from numba import types
 from numba.core import cgutils
@@ -28,44 +31,62 @@ _TARGETS = tuple(
 )
 
 
-class _Sweep:
-    """Code that sets the force of one pencil. Pointers and indices are LLVM values; see
-    ``_pencil``."""
+class _Arrays(NamedTuple):
+    """Flat arrays that one column reads and writes; pointers to them in the code written here."""
 
-    def __init__(self, builder, pointers, indices):
-        self.builder, self.code = builder, Vectors(builder)
-        (
-            self.values,
-            self.members,
-            self.numbers,
-            self.counts,
-            self.weights,
-            self.force,
-            self.lanes,
-        ) = pointers
-        self.kind, self.first_member, self.first_number, self.base, self.layers, self.plane = (
-            indices
-        )
+    values: np.ndarray  # (3 * plane,) m, displacement
+    members: np.ndarray  # see ``folding.Groups``
+    numbers: np.ndarray
+    counts: np.ndarray
+    weights: np.ndarray  # share of D in each layer, then WIDTH zeros
+    force: np.ndarray  # (3 * plane,) N
+    lanes: np.ndarray  # (3 * WIDTH,) N m, sums of u x f
+
+
+class _Place(NamedTuple):
+    """Where one column lies in the arrays."""
+
+    pattern: int  # index in PATTERNS
+    kind: int  # its first entry in ``counts``
+    first_member: int
+    first_number: int
+    base: int  # its first node
+    layers: int  # its padded length
+    plane: int  # nodes of all columns
+
+
+class _Sweep:
+    """Writes the code that sets the force of one column. Fields of ``arrays`` are LLVM pointers,
+    those of ``place`` LLVM integers."""
+
+    def __init__(self, builder, arrays: _Arrays, place: _Place):
+        self.builder, self.code, self.arrays, self.place = builder, Vectors(builder), arrays, place
         self.held = [[self.code.variable() for _ in range(_HALVES)] for _ in range(_SUMS)]
         self.below, self.pending, self.turning = (
             [self.code.variable() for _ in range(3)] for _ in range(3)
         )
 
     def write(self, pattern):
-        """All layers; the numbers of groups are known beforehand where there is a ``pattern``."""
+        """All layers; with a ``pattern`` the numbers of groups are constants of the code."""
         self._clear(self.below, self.pending, self.turning)
         start, step = ir.Constant(INTEGER, 0), ir.Constant(INTEGER, LANES)
-        with cgutils.for_range_slice(self.builder, start, self.layers, step, INTEGER) as (layer, _):
+        with cgutils.for_range_slice(self.builder, start, self.place.layers, step, INTEGER) as (
+            layer,
+            _,
+        ):
             self._clear(*self.held)
             self._add_groups(layer, pattern)
             self._finish(layer)
         self._store(
-            [self.builder.load(part) for part in self.pending], self.code.plus(self.layers, -WIDTH)
+            [self.builder.load(part) for part in self.pending],
+            self.code.plus(self.place.layers, -WIDTH),
         )
         for component, turning in enumerate(self.turning):
             place = ir.Constant(INTEGER, WIDTH * component)
-            total = self.builder.fadd(self.code.read(self.lanes, place), self.builder.load(turning))
-            self.code.write(total, self.lanes, place)
+            total = self.builder.fadd(
+                self.code.read(self.arrays.lanes, place), self.builder.load(turning)
+            )
+            self.code.write(total, self.arrays.lanes, place)
 
     def _clear(self, *variables):
         for parts in variables:
@@ -73,12 +94,12 @@ class _Sweep:
                 self.builder.store(ZERO, part)
 
     def _add_groups(self, layer, pattern):
-        code, member, number = self.code, self.first_member, self.first_number
+        code, member, number = self.code, self.place.first_member, self.place.first_number
         for k, group in enumerate(KINDS):
             count = (
                 ir.Constant(INTEGER, pattern[k])
                 if pattern
-                else code.number(self.counts, code.plus(self.kind, k))
+                else code.number(self.arrays.counts, code.plus(self.place.kind, k))
             )
             if pattern:
                 for index in range(pattern[k]):
@@ -95,20 +116,21 @@ class _Sweep:
         code, builder = self.code, self.builder
         at = builder.add(member, code.times(index, group.members))
         starts = [
-            builder.add(code.number(self.members, code.plus(at, m)), layer)
+            builder.add(code.number(self.arrays.members, code.plus(at, m)), layer)
             for m in range(group.members)
         ]
         own = builder.add(number, code.times(index, len(group.numbers)))
         for component in range(3):
-            rows = [builder.add(start, code.times(self.plane, component)) for start in starts]
+            rows = [builder.add(start, code.times(self.place.plane, component)) for start in starts]
             factors = {
-                n: code.spread(code.number(self.numbers, code.plus(own, k)))
+                n: code.spread(code.number(self.arrays.numbers, code.plus(own, k)))
                 for k, n in enumerate(group.numbers)
                 if PLACES[n][1] == component
             }
             for half in range(_HALVES):
                 folded = self._fold(
-                    group, [code.read(self.values, code.plus(row, WIDTH * half)) for row in rows]
+                    group,
+                    [code.read(self.arrays.values, code.plus(row, WIDTH * half)) for row in rows],
                 )
                 for n, factor in factors.items():
                     total, value = (
@@ -144,7 +166,8 @@ class _Sweep:
         """One component of the eight forces that waited and of the next eight."""
         code, add = self.code, self.builder.fadd
         weights = [
-            code.read(self.weights, code.plus(layer, WIDTH * half)) for half in range(_HALVES)
+            code.read(self.arrays.weights, code.plus(layer, WIDTH * half))
+            for half in range(_HALVES)
         ]
         own, even, odds = (
             [self.builder.load(part) for part in self.held[3 * k + component]] for k in range(3)
@@ -167,15 +190,17 @@ class _Sweep:
 
     def _store(self, force, layer, void=None):
         """Store eight forces and add their u x f, but not where ``void``."""
-        code, at = self.code, self.builder.add(self.base, layer)
-        rows = [self.builder.add(at, code.times(self.plane, component)) for component in range(3)]
-        places = [self.builder.gep(self.values, [row]) for row in rows]
+        code, at = self.code, self.builder.add(self.place.base, layer)
+        rows = [
+            self.builder.add(at, code.times(self.place.plane, component)) for component in range(3)
+        ]
+        places = [self.builder.gep(self.arrays.values, [row]) for row in rows]
         if void:
-            nothing = self.builder.gep(self.weights, [self.layers])
+            nothing = self.builder.gep(self.arrays.weights, [self.place.layers])
             places = [self.builder.select(void, nothing, place) for place in places]
         values = [code.read(place, ir.Constant(INTEGER, 0)) for place in places]
         for component, (j, k) in enumerate(((1, 2), (2, 0), (0, 1))):
-            code.write(force[component], self.force, rows[component])
+            code.write(force[component], self.arrays.force, rows[component])
             total = code.multiply_add(
                 values[j], force[k], self.builder.load(self.turning[component])
             )
@@ -186,68 +211,31 @@ class _Sweep:
 
 
 @intrinsic
-def _pencil(
-    typing,
-    values,
-    members,
-    numbers,
-    counts,
-    weights,
-    force,
-    lanes,
-    pattern,
-    kind,
-    member,
-    number,
-    base,
-    layers,
-    plane,
-):
-    """Force of a pencil of ``layers`` nodes from number ``base`` on, without what the end layers
-    alone have; its sum of u x f is added to the rows of ``lanes``.
-
-    It has ``counts[kind + k]`` groups of each kind, their members from ``member`` and their numbers
-    from ``number`` on; ``weights`` are the layers' parts of d, then WIDTH zeros. Arrays are flat:
-    values and force (3 * plane), lanes (3 * WIDTH). No bounds are checked. The commonest patterns
-    of groups have code of their own, without loops over them.
-    """
-    size = types.intp
-    signature = types.void(
-        values,
-        members,
-        numbers,
-        counts,
-        weights,
-        force,
-        lanes,
-        size,
-        size,
-        size,
-        size,
-        size,
-        size,
-        size,
-    )
+def _column(typing, arrays, place):
+    """Force of one column, without the odd block of its end layers; its sum of u x f is added to
+    the rows of ``arrays.lanes``. No bounds are checked. The commonest patterns of groups have code
+    of their own, without loops over the groups."""
+    signature = types.void(arrays, place)
 
     def generate(context, builder, signature, arguments):
-        arrays = (
-            context.make_array(kind)(context, builder, value=value)
-            for kind, value in zip(signature.args, arguments[:7])
+        kinds, given = signature.args[0].types, cgutils.unpack_tuple(builder, arguments[0])
+        pointers = _Arrays(
+            *(
+                context.make_array(kind)(context, builder, value=value).data
+                for kind, value in zip(kinds, given)
+            )
         )
-        pointers = [array.data for array in arrays]
-        sweep = _Sweep(builder, pointers, arguments[8:])
-        anything, after = (
-            builder.append_basic_block("anything"),
-            builder.append_basic_block("after"),
-        )
-        switch = builder.switch(arguments[7], anything)
-        for place, pattern in enumerate(PATTERNS):
+        at = _Place(*cgutils.unpack_tuple(builder, arguments[1]))
+        sweep = _Sweep(builder, pointers, at)
+        other, after = (builder.append_basic_block(name) for name in ("other", "after"))
+        switch = builder.switch(at.pattern, other)
+        for number, pattern in enumerate(PATTERNS):
             block = builder.append_basic_block("pattern")
-            switch.add_case(ir.Constant(INTEGER, place), block)
+            switch.add_case(ir.Constant(INTEGER, number), block)
             builder.position_at_end(block)
             sweep.write(pattern)
             builder.branch(after)
-        builder.position_at_end(anything)
+        builder.position_at_end(other)
         sweep.write(None)
         builder.branch(after)
         builder.position_at_end(after)
@@ -257,11 +245,11 @@ def _pencil(
 
 
 @kernel
-def pencil_force(pencils, displacement, force, first, last, lanes, turn):
+def column_force(columns, displacement, force, first, last, lanes, turn):
     """Set the part of ``force`` (N) at section points ``first`` to ``last`` to that of K u, both
-    (3, s * stride) in rows, and ``turn`` (3,) to their sum of u x K u (N m). ``lanes``: room for
-    (3, WIDTH) numbers on a cache line."""
-    groups, plane = pencils.groups, displacement.shape[1]
+    (3, s * stride) in rows, and ``turn`` (3,) to their sum of u x K u (N m). ``lanes``:
+    workspace of (3, WIDTH) numbers on a cache line."""
+    groups, plane = columns.groups, displacement.shape[1]
     kinds, counts = groups.counts.shape[1], groups.counts.reshape(groups.counts.size)
     values, forces, flat = (
         displacement.reshape(displacement.size),
@@ -270,43 +258,46 @@ def pencil_force(pencils, displacement, force, first, last, lanes, turn):
     )
     flat[:] = 0.0
     turn[:] = 0.0
+    arrays = _Arrays(
+        values=values,
+        members=groups.members,
+        numbers=groups.numbers,
+        counts=counts,
+        weights=columns.weights,
+        force=forces,
+        lanes=flat,
+    )
     for point in range(first, last):
-        _pencil(
-            values,
-            groups.members,
-            groups.numbers,
-            counts,
-            pencils.weights,
-            forces,
-            flat,
-            groups.pattern[point],
-            point * kinds,
-            groups.first_member[point],
-            groups.first_number[point],
-            point * pencils.stride,
-            pencils.stride,
-            plane,
+        place = _Place(
+            pattern=groups.pattern[point],
+            kind=point * kinds,
+            first_member=groups.first_member[point],
+            first_number=groups.first_number[point],
+            base=point * columns.stride,
+            layers=columns.stride,
+            plane=plane,
         )
-        _add_ends(pencils, point, displacement, force, turn)
+        _column(arrays, place)
+        _add_ends(columns, point, displacement, force, turn)
     for component in range(3):
         for lane in range(WIDTH):
             turn[component] += flat[WIDTH * component + lane]
 
 
 @kernel
-def _add_ends(pencils, point, displacement, force, turn):
+def _add_ends(columns, point, displacement, force, turn):
     """The end layers have, with opposite signs, the odd block E as well; what the filter left
     beyond them is no force."""
-    base, layers = point * pencils.stride, pencils.layers
+    base, layers = point * columns.stride, columns.layers
     x, y, z, far_x, far_y, far_z = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-    for q in range(pencils.first[point], pencils.first[point + 1]):
-        node = pencils.neighbour[q]
+    for q in range(columns.first[point], columns.first[point + 1]):
+        node = columns.neighbour[q]
         far = node + layers - 1
         xy, xz, yx, zx = (
-            pencils.ends[q, 0],
-            pencils.ends[q, 1],
-            pencils.ends[q, 2],
-            pencils.ends[q, 3],
+            columns.ends[q, 0],
+            columns.ends[q, 1],
+            columns.ends[q, 2],
+            columns.ends[q, 3],
         )
         x += xy * displacement[1, node] + xz * displacement[2, node]
         y += yx * displacement[0, node]
@@ -317,7 +308,7 @@ def _add_ends(pencils, point, displacement, force, turn):
     _add_force(displacement, force, base, (x, y, z), turn)
     _add_force(displacement, force, base + layers - 1, (-far_x, -far_y, -far_z), turn)
     for component in range(3):
-        for node in range(base + layers, base + pencils.stride):
+        for node in range(base + layers, base + columns.stride):
             force[component, node] = 0.0
 
 

@@ -1,5 +1,5 @@
-"""An extruded mesh as pencils: every section point carries one column of nodes at equal distances
-along X.
+"""Stiffness of an extruded mesh by columns: every section point carries one column of nodes at
+equal distances along X.
 
 In a section of s points with n layers the stiffness couples a layer to itself and its two
 neighbours only. Its 3x3 blocks between two section points are the same in every layer, and the
@@ -9,8 +9,8 @@ mirror symmetry of a layer leaves 14 numbers of them::
     f(0) = (D/2 + E) u(0) + (L + O) u(1),    f(n-1) = (D/2 - E) u(n-1) + (L - O) u(n-2)
 
 The element matrix enters through these numbers alone, so a better element costs nothing. Neighbours
-that mirror each other share them, see ``folding``. Nodes are numbered point by point with the
-layers contiguous, each pencil padded to whole vectors; the padding has no mass and no force.
+that are mirror images share them, see ``folding``. Nodes are numbered point by point with the
+layers contiguous, each column padded to whole vectors; the padding has no mass and no force.
 """
 
 import itertools
@@ -30,27 +30,23 @@ _SAME = 1e-9  # m: two places closer than this are the same
 _ODD = 1e-9  # relative size of the blocks that the mirror symmetry forbids
 
 
-class Pencils(NamedTuple):
-    """groups of neighbours, members by the number of their first node, with D, L and O; for the end
-    layers first (s+1,), neighbour (q,) number of the first node and ends (q,4) N/m, E xy xz yx zx;
-    weights (stride + LANES,) of D in each layer; layers n and stride, the padded length of a
-    pencil; chunks (c+1,) first pencil of each bundle that is worked on at once, with the lowest
-    (c,) chunk that it hangs on, and the highest (c,) that it or one before does."""
+class Columns(NamedTuple):
+    """An extruded mesh of s columns in c chunks, and the stiffness between them."""
 
-    groups: Groups
-    first: np.ndarray
-    neighbour: np.ndarray
-    ends: np.ndarray
-    weights: np.ndarray
-    layers: int
-    stride: int
-    chunks: np.ndarray
-    lowest: np.ndarray
-    highest: np.ndarray
+    groups: Groups  # neighbours of each column with D, L and O; members by their first node
+    first: np.ndarray  # (s+1,) place in ``neighbour`` of the first one of each column
+    neighbour: np.ndarray  # (q,) first node of each neighbour
+    ends: np.ndarray  # (q,4) N/m, E xy xz yx zx of the end layers
+    weights: np.ndarray  # (stride + LANES,) share of D in each layer
+    layers: int  # nodes of a column
+    stride: int  # its padded length
+    chunks: np.ndarray  # (c+1,) first column of each chunk, the columns that are processed together
+    lowest: np.ndarray  # (c,) lowest chunk that each chunk depends on
+    highest: np.ndarray  # (c,) highest chunk that each chunk, or one before it, depends on
 
 
-def find(points: np.ndarray, operator: Operator) -> tuple[Pencils, np.ndarray] | None:
-    """Pencils of a mesh (points (n,3) m) and the new number (n,) of each node, or None where it is
+def find(points: np.ndarray, operator: Operator) -> tuple[Columns, np.ndarray] | None:
+    """Columns of a mesh (points (n,3) m) and the new number (n,) of each node, or None where it is
     not an even extrusion."""
     if operator.cells.shape[1] != 8:
         return None
@@ -77,17 +73,17 @@ def find(points: np.ndarray, operator: Operator) -> tuple[Pencils, np.ndarray] |
         np.minimum.reduceat(chunk_of, starts),
         np.maximum.accumulate(np.maximum.reduceat(chunk_of, starts)),
     )
-    columns = Pencils(
-        groups,
-        first.astype(np.int64),
-        other.astype(np.int64) * stride,
-        numbers[:, -4:].copy(),
-        _weights(layers, stride),
-        layers,
-        stride,
-        chunks,
-        lowest,
-        highest,
+    columns = Columns(
+        groups=groups,
+        first=first.astype(np.int64),
+        neighbour=other.astype(np.int64) * stride,
+        ends=numbers[:, -4:].copy(),
+        weights=_weights(layers, stride),
+        layers=layers,
+        stride=stride,
+        chunks=chunks,
+        lowest=lowest,
+        highest=highest,
     )
     return columns, rank[point] * stride + layer
 
@@ -102,7 +98,7 @@ def _weights(layers: int, stride: int) -> np.ndarray:
 
 
 def _chunks(own: np.ndarray, other: np.ndarray, stride: int) -> np.ndarray:
-    """First pencil (c+1,) of chunks of about CHUNK nodes; none holds pencils of two rails."""
+    """First column (c+1,) of chunks of about CHUNK nodes; no chunk holds columns of two rails."""
     sections = own[-1] + 1
     apart = (
         np.flatnonzero(
@@ -122,8 +118,8 @@ def _chunks(own: np.ndarray, other: np.ndarray, stride: int) -> np.ndarray:
 
 
 def _near_together(sections: int, pairs: list[tuple[int, int]]) -> np.ndarray:
-    """New number (s,) of each section point: neighbours close to each other, so that they meet in
-    the cache (Cuthill and McKee)."""
+    """New number (s,) of each section point: neighbours close to each other, so that they
+    share cache lines (Cuthill and McKee)."""
     rows, columns = np.array(pairs).T
     graph = csr_array((np.ones(len(pairs)), (rows, columns)), shape=(sections, sections))
     rank = np.empty(sections, dtype=np.int64)

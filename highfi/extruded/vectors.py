@@ -10,7 +10,7 @@ ZERO = ir.Constant(VECTOR, [0.0] * WIDTH)
 
 
 class Vectors:
-    """Writes instructions at the place where ``builder`` stands."""
+    """Writes instructions at the position of ``builder``."""
 
     def __init__(self, builder):
         self.builder = builder

@@ -1,1 +1,1 @@
-"""What the time loop works on: arrays, poses, passes over the nodes, threads."""
+"""Records of the time loop, poses, loops over the nodes, threads."""

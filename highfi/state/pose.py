@@ -1,4 +1,4 @@
-"""Where the payload is as seen from the frame, and how bodies and frame move over one step.
+"""Pose of the payload in frame axes, and the drift of bodies and frame over one step.
 
 With R the frame's rotation, r its origin, w = R' x_dot a node's inertial velocity in frame axes and
 Q = R(n+1)' R(n), the exact free drift x(n+1) = x(n) + dt x_dot reads in frame axes::
@@ -19,23 +19,24 @@ from tipoff.kernels.jit import kernel
 
 
 class Pose(NamedTuple):
-    """The payload in frame axes: rotation (nine numbers) to frame axes, mass centre (m), velocity
-    (m/s), angular velocity (rad/s); and the frame's own rotation."""
+    """The payload in frame axes, and the frame's own rotation."""
 
-    turn: tuple
-    centre: tuple
-    velocity: tuple
-    rate: tuple
-    frame: tuple
+    turn: tuple  # (9,) rotation of the payload
+    centre: tuple  # (3,) m, its mass centre
+    velocity: tuple  # (3,) m/s
+    rate: tuple  # (3,) rad/s
+    frame: tuple  # (9,) rotation of the frame to inertial axes
 
 
 @kernel
 def triple(a):
+    """The first three numbers of an array."""
     return (a[0], a[1], a[2])
 
 
 @kernel
 def body_matrix(body):
+    """Rotation matrix (nine numbers) of a body, to inertial axes."""
     q = body.quaternion
     return rotation.matrix((q[0], q[1], q[2], q[3]))
 
@@ -61,8 +62,8 @@ def frame_matrix(platform_state, frame):
 
 
 @kernel
-def seen_from_frame(state, payload, frame):
-    """Pose of the payload in frame axes at this instant, with the half-step velocities at hand."""
+def pose_in_frame(state, payload, frame):
+    """Pose of the payload at this instant, with the velocities of the half step."""
     base = frame_matrix(state.platform, frame)
     turn = body_matrix(state.payload)
     relative = _transpose_product(base, turn)
@@ -73,11 +74,11 @@ def seen_from_frame(state, payload, frame):
     )
     rate = rotation.angular_velocity(turn, payload.inverse_inertia, triple(state.payload.spin))
     return Pose(
-        relative,
-        rotation.unrotate(base, separation),
-        rotation.unrotate(base, triple(state.payload.velocity)),
-        rotation.unrotate(base, rate),
-        base,
+        turn=relative,
+        centre=rotation.unrotate(base, separation),
+        velocity=rotation.unrotate(base, triple(state.payload.velocity)),
+        rate=rotation.unrotate(base, rate),
+        frame=base,
     )
 
 

@@ -1,218 +1,229 @@
-"""Arrays the time loop works on: what is constant (Rail, Surface, Frame, Drive) and what evolves
-(State, Active).
+"""Arrays of the time loop: what is constant in a run (Constants) and what evolves (State, Active).
 
-All places and nodal vectors are in the axes of the platform-fixed frame, whose origin is the mass
+All places and nodal vectors are in the axes of the platform-fixed frame. Its origin is the mass
 centre of the platform's *rigid part* (platform without the moving rail nodes); for a fixed platform
 it is the scene origin. Nodal arrays are (n,3) with contiguous columns: one component of all nodes
 after the other, as vector instructions want them.
+
+Sizes: n nodes, e elements, b blocks of nodes, m facets of k nodes, q Gauss points of a facet, f pad
+faces, g groups of faces.
 """
 
 from typing import NamedTuple
 
 import numpy as np
 
-from tipoff.highfi.extruded.mesh import Pencils
+from tipoff.highfi.extruded.mesh import Columns
+from tipoff.mechanics.ledger import ENTRIES
+from tipoff.mechanics.model import Faces, Payload
+from tipoff.mechanics.outcome import Milestones
+from tipoff.scenes.effects.friction import Friction
 from tipoff.scenes.effects.structural_damping import Damping
+from tipoff.scenes.effects.thrust_law import Thrust
+from tipoff.scenes.effects.thrust_offset import ThrustOffset
 
 
 class Elements(NamedTuple):
-    """Constant: a mesh of any shape. cells (e,k) and shape_class (e,), stiffness (c,3k,3k) N/m as
-    in ``assembly.Operator``; slabs (s+1,) first element of each slab along X, of which no two with
-    one between them share a node."""
+    """Elements of a mesh of any shape."""
 
-    cells: np.ndarray
-    shape_class: np.ndarray
-    stiffness: np.ndarray
+    cells: np.ndarray  # (e,k) node numbers
+    shape_class: np.ndarray  # (e,) row of ``stiffness``
+    stiffness: np.ndarray  # (c,3k,3k) N/m, see ``assembly.Operator``
+    # (s+1,) first element of each slab along X; slabs with one between them share no node
     slabs: np.ndarray
 
 
 class Rail(NamedTuple):
-    """Constant: points (n,3) m; mass (n,) kg; inverse_mass (n,) 1/kg, zero where clamped; clamped
-    (k,) node numbers in ascending order, held (b+1,) the first of them in each block; either
-    pencils, of an extruded mesh, or elements, the other one None; blocks (b+1,) first node of each
-    run of nodes that is worked on at once, the nodes of a chunk of pencils; damping, None where the
-    scene has none."""
+    """Nodes of the rails and their elasticity, which is given by columns or by elements."""
 
-    points: np.ndarray
-    mass: np.ndarray
-    inverse_mass: np.ndarray
-    clamped: np.ndarray
-    held: np.ndarray
-    pencils: Pencils | None
-    elements: Elements | None
-    blocks: np.ndarray
+    points: np.ndarray  # (n,3) m, undeformed places
+    mass: np.ndarray  # (n,) kg
+    inverse_mass: np.ndarray  # (n,) 1/kg, zero where clamped
+    clamped: np.ndarray  # (h,) numbers of the clamped nodes, ascending
+    first_clamped: np.ndarray  # (b+1,) place in ``clamped`` of the first one of each block
+    columns: Columns | None  # of an extruded mesh
+    elements: Elements | None  # of any other mesh
+    blocks: np.ndarray  # (b+1,) first node of each block, the nodes that are processed together
     damping: Damping | None
 
 
 class Groups(NamedTuple):
-    """Constant: groups of pad faces of which no two can meet the same node. face (f,) group by
-    group, the first of each in first_face (g+1,); clamped (w,) nodes that pads can meet, the first
-    of each group in first_clamped (g+1,); first_node (g,) and first_point (g,): where the part of a
-    group begins in the lists of Active."""
+    """Groups of pad faces: faces of different groups never touch the same node."""
 
-    face: np.ndarray
-    first_face: np.ndarray
-    clamped: np.ndarray
-    first_clamped: np.ndarray
-    first_node: np.ndarray
-    first_point: np.ndarray
+    face: np.ndarray  # (f,) numbers of the faces, group by group
+    first_face: np.ndarray  # (g+1,) place in ``face`` of the first one of each group
+    clamped: np.ndarray  # (w,) clamped nodes within reach of pads, group by group
+    first_clamped: np.ndarray  # (g+1,) place in ``clamped`` of the first one of each group
+    first_node: np.ndarray  # (g,) where the part of a group begins in ``Active.node``
+    first_point: np.ndarray  # (g,) where the part of a group begins in ``Active.edge_point``
 
 
 class Surface(NamedTuple):
-    """Constant: places (n,3) m of the nodes before any load, which are the rail's points but where
-    it is warm; facets (m,k) node numbers, four corners or the six nodes of a triangle; shape (q,k)
-    functions at the Gauss points, and what bounds their products, ``spread`` (q,k), see ``limits``;
-    area (m,q) m2 per point; for face f the facets it can meet are ``reach[first[f]:first[f+1]]``,
-    sorted by their smallest X ``start`` (m); ``longest`` facet extent along X (m); control (6,6):
-    control points of a triangle from its nodes, None for facets of four corners, which need none;
-    border (f,4) m: smallest and largest X of the Gauss points that a face can meet, and the same
-    across the rail; thickness (m) of the walls."""
+    """Facets of the rail walls and their Gauss points."""
 
-    places: np.ndarray
-    facets: np.ndarray
-    shape: np.ndarray
-    spread: np.ndarray
-    area: np.ndarray
-    first: np.ndarray
-    reach: np.ndarray
-    start: np.ndarray
-    longest: float
-    control: np.ndarray | None
+    places: np.ndarray  # (n,3) m, nodes before any load: ``Rail.points`` and thermal displacement
+    facets: np.ndarray  # (m,k) node numbers: four corners, or the six nodes of a triangle
+    shape: np.ndarray  # (q,k) shape functions at the Gauss points
+    spread: np.ndarray  # (q,k) bound of their products, see ``step_limit``
+    area: np.ndarray  # (m,q) m2 of each Gauss point
+    first: np.ndarray  # (f+1,) place in ``reach`` of the first facet of each face
+    reach: np.ndarray  # facets that each face can touch, in the order of ``start``
+    start: np.ndarray  # m, smallest X of each facet in ``reach``
+    longest: float  # m, longest facet along X
+    control: np.ndarray | None  # (6,6) control points of a triangle; None for four corners
     groups: Groups
+    # (f,4) m, smallest and largest X of the Gauss points that a face can touch, then across the rail
     border: np.ndarray
-    thickness: float
+    thickness: float  # m, of the walls
 
 
 class Frame(NamedTuple):
-    """Constant: rigid part of the free platform. mass (kg), inverse_inertia (3,3), total_mass with
-    rails (kg)."""
+    """Rigid part of the free platform."""
 
-    mass: float
-    inverse_inertia: np.ndarray
-    total_mass: float
+    mass: float  # kg
+    inverse_inertia: np.ndarray  # (3,3) 1/(kg m2)
+    total_mass: float  # kg, with the rails
 
 
 class Drive(NamedTuple):
-    """Constant: thrust arm behind the nominal centre (m), whether the platform takes the reaction;
-    mass of the moving nodes (kg)."""
+    """How thrust acts on payload and platform."""
 
-    arm: float
+    arm: float  # m, from the nominal mass centre back to the point of thrust
     reacts_on_platform: bool
-    moving_mass: float
+    moving_mass: float  # kg, of the nodes that are not clamped
+
+
+class Exit(NamedTuple):
+    """What the payload must pass."""
+
+    edges: np.ndarray  # (f,3) m, trailing edges of the pads in body axes
+    rail_end: float  # m, X of the rail end from the frame's origin
+
+
+class Constants(NamedTuple):
+    """All that is constant in a run; an effect that the scene lacks is None."""
+
+    rail: Rail
+    surface: Surface
+    faces: Faces
+    payload: Payload
+    frame: Frame | None  # None: fixed platform
+    drive: Drive
+    thrust: Thrust
+    thrust_offset: ThrustOffset | None
+    penalty: float | None  # N/m3, contact pressure over penetration
+    friction: Friction | None
+    body_force: tuple | None  # (3,) m/s2, acceleration in inertial axes
+    exit: Exit
+    milestones: Milestones
+    dt: float  # s
 
 
 class Body(NamedTuple):
-    """Evolving: a rigid body. position (3) m, velocity (3) m/s at the half step, quaternion (4),
-    spin (3) angular momentum about its mass centre in inertial axes at the half step."""
+    """A rigid body."""
 
-    position: np.ndarray
-    velocity: np.ndarray
-    quaternion: np.ndarray
-    spin: np.ndarray
+    position: np.ndarray  # (3,) m
+    velocity: np.ndarray  # (3,) m/s at the half step
+    quaternion: np.ndarray  # (4,)
+    spin: np.ndarray  # (3,) kg m2/s at the half step, about the mass centre, inertial axes
+
+
+class Motion(NamedTuple):
+    """What nodes need of the frame in the next drift, in frame axes."""
+
+    velocity: np.ndarray  # (3,) m/s, of the frame
+    turn: np.ndarray  # (9,) rotation of the frame over the step, less the identity
+    rate: np.ndarray  # (3,) rad/s, of the frame
+    acceleration: np.ndarray  # (3,) m/s2, of the body force
 
 
 class History(NamedTuple):
-    """Evolving, with structural damping only: what one step leaves to the next. elastic (n,3) N: K
-    u; displacement (n,3) m; force (n,3) N: what damping adds to the resistance; and of each block
-    drag (b,6): force and moment, about the frame's origin and at the undeformed places, of the part
-    proportional to mass (N, N m); loss (b,) J: energy taken over the step."""
+    """What structural damping keeps from one step to the next."""
 
-    elastic: np.ndarray
-    displacement: np.ndarray
-    force: np.ndarray
+    elastic: np.ndarray  # (n,3) N, K u
+    displacement: np.ndarray  # (n,3) m
+    force: np.ndarray  # (n,3) N, what damping adds to the resistance
+    # (b,6) N and N m, force and moment about the frame's origin of the part proportional to mass
     drag: np.ndarray
-    loss: np.ndarray
+    loss: np.ndarray  # (b,) J, energy taken over the step
 
 
 class State(NamedTuple):
-    """Evolving. displacement (n,3) m; velocity (n,3) m/s: *inertial* nodal velocity at the half
-    step, resolved in frame axes; resistance (n,3) N: K u and damping minus contact, zero where
-    clamped; contact (n,3) N on its way into it, else zero; turning (b,3) N m: parts of the sum of u
-    x resistance before contact; clamping (b,6) parts of its force (N) and moment about the frame's
-    origin (N m) on the clamped nodes; reaction (6): force and moment about the frame's origin of
-    minus the resistance of all moving nodes (N, N m); motion: what nodes need of frame and gravity
-    in the next drift, see MOTION; rail_momentum (3) = sum of m w and rail_moment (3) = sum of m (X
-    + u) over moving nodes (kg m/s, kg m); load: see LOAD, and loads (g,LOAD_SIZE) those of each
-    group of faces; work: see WORK; impulse (6) of external forces and moments about the scene
-    origin (N s, N m s); face_force (f,3) N on the payload in frame axes; history, None without
-    damping."""
+    """Bodies, nodes and sums over them."""
 
     payload: Body
     platform: Body
-    displacement: np.ndarray
-    velocity: np.ndarray
-    resistance: np.ndarray
-    contact: np.ndarray
-    turning: np.ndarray
-    clamping: np.ndarray
-    reaction: np.ndarray
-    motion: np.ndarray
-    rail_momentum: np.ndarray
-    rail_moment: np.ndarray
-    load: np.ndarray
-    loads: np.ndarray
-    work: np.ndarray
-    impulse: np.ndarray
-    face_force: np.ndarray
-    history: History | None
+    displacement: np.ndarray  # (n,3) m
+    velocity: np.ndarray  # (n,3) m/s at the half step, *inertial*, resolved in frame axes
+    resistance: np.ndarray  # (n,3) N, K u and damping minus contact, zero where clamped
+    contact: np.ndarray  # (n,3) N, on its way into the resistance, else zero
+    turning: np.ndarray  # (b,3) N m, sum of u x resistance before contact
+    clamping: np.ndarray  # (b,6) N and N m, resistance of the clamped nodes and its moment
+    reaction: np.ndarray  # (6,) N and N m, minus the resistance of all moving nodes and its moment
+    motion: Motion
+    rail_momentum: np.ndarray  # (3,) kg m/s, sum of m w over the moving nodes
+    rail_moment: np.ndarray  # (3,) kg m, sum of m (X + u) over the moving nodes
+    load: np.ndarray  # (1,) LOAD, contact of all faces
+    loads: np.ndarray  # (g,) LOAD, contact of each group
+    work: np.ndarray  # (2,) WORK since ignition, see TOTAL and AXIAL
+    impulse: np.ndarray  # (6,) N s and N m s, external, about the scene origin
+    face_force: np.ndarray  # (f,3) N on the payload in frame axes
+    history: History | None  # None without structural damping
 
 
 class Active(NamedTuple):
-    """Evolving: where contact is now. count (g,2): border points and nodes of each group in use;
-    point (k,2) facet and Gauss point, face (k,) and energy (k,) J stored of loaded points near the
-    border of their face; node (m,) numbers of the nodes that carry load; seen (n,) whether a node
-    is among them; drag (n,3) N: their shares of the friction on the payload in frame axes;
-    node_damping (n,) N s/m that friction brings to them; wait (f,) steps for which a face cannot
-    touch; side (f,): whether a face was over its wall when last looked at, see OVER; struck (f,3):
-    penetration (m) and X (m) of a face that struck an edge of its wall, and steps since then."""
+    """Where contact is now."""
 
-    count: np.ndarray  # type: ignore[assignment]  # a tuple's own count() is not wanted
-    point: np.ndarray
-    face: np.ndarray
-    energy: np.ndarray
-    node: np.ndarray
-    seen: np.ndarray
-    drag: np.ndarray
-    node_damping: np.ndarray
-    wait: np.ndarray
-    side: np.ndarray
-    struck: np.ndarray
+    point_count: np.ndarray  # (g,) entries of ``edge_point`` in use, of each group
+    node_count: np.ndarray  # (g,) entries of ``node`` in use, of each group
+    edge_point: np.ndarray  # EDGE_POINT, loaded Gauss points near the edge of their face
+    node: np.ndarray  # numbers of the nodes that carry load
+    seen: np.ndarray  # (n,) whether a node is among them
+    drag: np.ndarray  # (n,3) N, their share of the friction on the payload, frame axes
+    node_damping: np.ndarray  # (n,) N s/m, damping of the nodes by friction
+    wait: np.ndarray  # (f,) steps for which a face cannot touch
+    side: np.ndarray  # (f,) whether a face was over its wall when last checked: OVER, AWAY, UNKNOWN
+    struck: np.ndarray  # (f,) STRUCK
 
 
-# Values of Active.side: in front of its wall, away from it or behind it, not looked at yet.
+# Values of Active.side: in front of its wall, away from it or behind it, not checked yet.
 OVER, AWAY, UNKNOWN = 0, 1, 2
-# Slots of Active.count.
-BORDER, NODES = 0, 1
 
-# Slots of State.load: contact on the payload in frame axes. GAINED is the energy (J) of points that
-# came under a pressed face over its edge in this step, less that of points that left so.
-(
-    NORMAL_FORCE,
-    FRICTION_FORCE,
-    MOMENT,
-    MOMENT_ON_RAIL,
-    FRICTION_MOMENT,
-    STORED,
-    DAMPING_RATIO,
-    GAINED,
-) = 0, 3, 6, 9, 12, 15, 16, 17
-LOAD_SIZE = 18
+# Contact on the payload in frame axes.
+LOAD = np.dtype(
+    [
+        ("normal_force", float, 3),  # N
+        ("friction_force", float, 3),  # N
+        ("moment", float, 3),  # N m, about the payload's mass centre
+        ("moment_on_rail", float, 3),  # N m, about the frame's origin
+        ("friction_moment", float, 3),  # N m, about the payload's mass centre
+        ("stored", float),  # J
+        ("damping_ratio", float),  # largest step * friction damping / mass of a node
+        # J, energy of points that came under a pressed face over its edge in this step, less that
+        # of points that left so
+        ("gained", float),
+    ]
+)
 
-# Slots of State.motion, in frame axes: the frame's velocity (m/s), its turn over the step less one
-# (nine numbers), its rate (rad/s), gravity (m/s2).
-FRAME_VELOCITY, TURN, RATE, PULL = 0, 3, 12, 15
-MOTION_SIZE = 18
+# Work (J) by the entries of the energy ledger; state entries stay zero. Rows of State.work: all of
+# it, and the part that is axial motion.
+WORK = np.dtype([(name, float) for name in ENTRIES])
+TOTAL, AXIAL = 0, 1
 
-# Slots of State.work (J).
-(
-    THRUST,
-    GRAVITY,
-    FRICTION,
-    RELEASED,
-    THRUST_AXIAL,
-    GRAVITY_AXIAL,
-    FRICTION_AXIAL,
-    CONTACT_AXIAL,
-    STRUCTURAL_DAMPING,
-) = range(9)
-WORK_SIZE = 9
+EDGE_POINT = np.dtype(
+    [
+        ("face", np.int64),
+        ("facet", np.int64),
+        ("gauss_point", np.int64),
+        ("energy", float),  # J, stored
+    ]
+)
+
+# A face that struck an edge or the back of a wall; zero before that.
+STRUCK = np.dtype(
+    [
+        ("depth", float),  # m
+        ("x", float),  # m, of the middle of the face
+        ("steps", float),  # since then
+    ]
+)

@@ -1,7 +1,7 @@
-"""Threads that share one run: they take the same steps side by side and meet at barriers.
+"""Threads that share one run: barrier and work queue.
 
-The barrier spins, because a step lasts tens of microseconds; a thread that waits for long offers
-its processor to others.
+All threads take the same steps. The barrier spins, because a step lasts tens of microseconds; a
+thread that waits for long yields its processor.
 """
 
 import os
@@ -17,22 +17,21 @@ from tipoff.highfi.extruded.mesh import LANES
 from tipoff.kernels.jit import kernel
 from tipoff.kernels.memory import zeros
 
-_ROUND, _ARRIVED, _TICKET = 0, 8, 16  # a cache line apart
-_PATIENCE = 4000  # looks at the barrier before the processor is offered to others
+_ROUND, _ARRIVED, _NEXT = 0, 8, 16  # a cache line apart
+_SPINS = 4000  # before a waiting thread yields its processor
 
 
 class Team(NamedTuple):
-    """``size`` threads, the ``counters`` of their barrier and of their tickets, and room of its own
-    for each: (4, LANES) ``lanes``, which also hold the forces of one element."""
+    """Threads of one run."""
 
     size: int
-    counters: np.ndarray
-    lanes: np.ndarray
+    counters: np.ndarray  # of the barrier and of the work queue
+    lanes: np.ndarray  # (size, 4, LANES) workspace of each thread; also the forces of one element
 
 
-def gather(size: int) -> Team:
-    """A team of ``size`` threads, none of them at work yet."""
-    return Team(size, np.zeros(24, dtype=np.int64), zeros((size, 4, LANES)))
+def team_of(size: int) -> Team:
+    """A team of ``size`` threads."""
+    return Team(size=size, counters=np.zeros(24, dtype=np.int64), lanes=zeros((size, 4, LANES)))
 
 
 def processors() -> int:
@@ -47,7 +46,7 @@ def _element(context, builder, signature, arguments):
 
 @intrinsic
 def _add_one(typing, counters, index):
-    """counters[index] += 1 in one piece; returns the value before."""
+    """counters[index] += 1, atomic; returns the value before."""
 
     def generate(context, builder, signature, arguments):
         place = _element(context, builder, signature, arguments)
@@ -58,7 +57,7 @@ def _add_one(typing, counters, index):
 
 @intrinsic
 def _read(typing, counters, index):
-    """counters[index] as other threads left it, with all they wrote before."""
+    """counters[index], atomic; what other threads wrote before it is visible."""
 
     def generate(context, builder, signature, arguments):
         return builder.load_atomic(_element(context, builder, signature, arguments), "seq_cst", 8)
@@ -68,7 +67,7 @@ def _read(typing, counters, index):
 
 @intrinsic
 def _write(typing, counters, index, value):
-    """counters[index] = value, and all written before it, for every thread that reads it."""
+    """counters[index] = value, atomic; what was written before is visible with it."""
 
     def generate(context, builder, signature, arguments):
         builder.store_atomic(
@@ -80,8 +79,8 @@ def _write(typing, counters, index, value):
 
 
 @intrinsic
-def _let_others_run(typing):
-    """Offer the processor to other threads, where the system has a call for it."""
+def _yield_processor(typing):
+    """Let other threads run, where the system has a call for it."""
 
     def generate(context, builder, signature, arguments):
         if os.name == "posix":
@@ -97,7 +96,7 @@ def _let_others_run(typing):
 
 
 @kernel
-def meet(team):
+def barrier(team):
     """Wait until every thread of the team is here."""
     if team.size > 1:
         counters = team.counters
@@ -105,21 +104,21 @@ def meet(team):
         if _add_one(counters, _ARRIVED) == team.size - 1:
             _write(counters, _ARRIVED, 0)
             _write(counters, _ROUND, now + 1)
-        looks = 0
+        spins = 0
         while _read(counters, _ROUND) == now:
-            looks += 1
-            if looks > _PATIENCE:
-                _let_others_run()
+            spins += 1
+            if spins > _SPINS:
+                _yield_processor()
 
 
 @kernel
-def deal(team):
-    """Let tickets start from zero again; one thread calls this where no other one takes any before
-    they have met."""
-    _write(team.counters, _TICKET, 0)
+def reset_queue(team):
+    """Number the pieces of work from zero again; one thread calls this, and a barrier comes before
+    any thread takes a piece."""
+    _write(team.counters, _NEXT, 0)
 
 
 @kernel
 def take(team):
-    """The number of the next piece of work that no thread has taken yet."""
-    return _add_one(team.counters, _TICKET)
+    """Number of the next piece of work that no thread has taken yet."""
+    return _add_one(team.counters, _NEXT)

@@ -1,13 +1,13 @@
-"""A strain gauge on each contact wall: the mean stress over a square of 4 mm, which a finer mesh
-brings nearer to one value.
+"""Strain gauges, one on each contact wall: the mean stress over a square patch of 4 mm, which
+converges as the mesh is refined.
 
-The stress at a sharp corner or at the border of a clamp has no such value: it grows with every
-refinement. So the patches lie on the track of the pads, in the middle of the last free span: of the
-places farther from any clamp and from the ends than those beside them, and at least half as far as
-the farthest, the one nearest to the open end, where the last pads press. They depend on the scene
-and on where the mesh is clamped, never on its elements: 4 x 4 points at the middles of squares of 1
-mm, each seen from the element behind the wall (``highfi.elements.hexahedral_recovery``,
-``highfi.elements.tetrahedral_recovery``).
+The stress at a sharp corner or at the border of a clamp does not converge. So the patches lie on the
+track of the pads, in the middle of the last free span. Candidates are the places farther from any
+clamp and from the ends than their neighbours, and at least half as far as the farthest one; the
+candidate nearest to the open end is taken, where the last pads press. Patches depend on the scene and
+on where the mesh is clamped, never on its elements: 4 x 4 points at the middles of squares of 1 mm,
+each evaluated in the element behind the wall (``elements.hexahedral_recovery``,
+``elements.tetrahedral_recovery``).
 """
 
 from typing import NamedTuple
@@ -26,12 +26,11 @@ _RECOVERY = {8: hexahedral_recovery, 10: tetrahedral_recovery}  # by the nodes o
 
 
 class Patch(NamedTuple):
-    """Constant: centre (w,3) m of the patches in the axes of the points they were found with; node
-    (w,k) numbers in the nodal arrays and matrix (w,6,3k) Pa/m, from the displacement of those nodes
-    to the mean stress, padded with zeros to the largest k."""
+    """Patches of w walls."""
 
-    centre: np.ndarray
-    node: np.ndarray
+    centre: np.ndarray  # (w,3) m, in the axes of the points they were found with
+    node: np.ndarray  # (w,k) numbers in the nodal arrays
+    # (w,6,3k) Pa/m, from the displacement of those nodes to the mean stress, padded with zeros
     matrix: np.ndarray
 
 
@@ -39,7 +38,7 @@ def find(
     mesh: RailMesh, faces, points: np.ndarray, law: np.ndarray, number: np.ndarray
 ) -> Patch | None:
     """Patches of a mesh whose points (n,3) m are in the axes of ``faces.wall``; None where no pad
-    has a wall, or no station room for a patch on each.
+    has a wall, or no station has space for a patch on each.
 
     ``law`` (6,6) Pa; ``number`` (n,) of each node in the nodal arrays.
     """

@@ -1,9 +1,8 @@
-"""Displacement gradients at the corners of hexahedra, and the worst of them (``highfi.stress.peak``),
-found in one pass.
+"""Displacement gradients at the corners of hexahedra, and their peaks (``stress.peak``), in one pass.
 
-A corner's gradient is that of ``highfi.elements.hexahedral_recovery``, bubbles included: differences along the edges,
-turned by what the element's class has at that corner, and the amplitudes of the bubbles, which are
-products of its class with the displacement.
+A corner's gradient is that of ``elements.hexahedral_recovery``, bubbles included: differences along
+the edges times the slopes of the element's class at that corner, and the amplitudes of the bubbles,
+which are products of matrices of its class with the displacement.
 """
 
 from typing import NamedTuple
@@ -16,24 +15,22 @@ from tipoff.kernels.jit import inlined, kernel
 from tipoff.kernels.memory import aligned
 
 CORNERS = 8
-STEPS = 8.0  # that a look at an element costs: 180 against 25 ns, one thread each
+STEPS = 8.0  # that a scan of an element costs: 180 against 25 ns, one thread each
 _BATCH = 2048  # classes at once; bounds the memory of an unstructured mesh
 _LANES = 16  # the nine amplitudes, padded to whole vectors
-# Places in the room for one element; flat arrays, because the compiler must see that they lie
-# apart.
+# Places in the workspace of one element; one flat array, so that the compiler sees that they do not
+# overlap.
 AT, ALONG, BUBBLES, GRADIENT, SQUARES, SIZE = 0, 24, 96, 112, 184, 208
 
 
 class Recovery(NamedTuple):
-    """Constant: cells (e,8) numbers in the nodal arrays; shape_class (e,); for each class amplitude
-    (c,24*16) of the bubbles, nine of 16 in use, slope and bubble (c,3*3*8) 1/m: of local coordinate
-    and of bubble i along j at each corner."""
+    """Elements in c shape classes, and what makes gradients of their displacement."""
 
-    cells: np.ndarray
-    shape_class: np.ndarray
-    amplitude: np.ndarray
-    slope: np.ndarray
-    bubble: np.ndarray
+    cells: np.ndarray  # (e,8) numbers in the nodal arrays
+    shape_class: np.ndarray  # (e,)
+    amplitude: np.ndarray  # (c,24*16) of the bubbles, nine of 16 in use
+    slope: np.ndarray  # (c,3*3*8) 1/m, of local coordinate i along j at each corner
+    bubble: np.ndarray  # (c,3*3*8) 1/m, of bubble i along j at each corner
 
 
 def build(
@@ -52,7 +49,13 @@ def build(
         for start in range(0, len(corners), _BATCH)
     ]
     amplitude, slope, bubble = (aligned(np.concatenate(part)) for part in zip(*parts))
-    return Recovery(number[hexes].astype(np.uint32), shape_class, amplitude, slope, bubble)
+    return Recovery(
+        cells=number[hexes].astype(np.uint32),
+        shape_class=shape_class,
+        amplitude=amplitude,
+        slope=slope,
+        bubble=bubble,
+    )
 
 
 def _of_classes(corners: np.ndarray, law: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -69,67 +72,68 @@ def _of_classes(corners: np.ndarray, law: np.ndarray) -> tuple[np.ndarray, np.nd
 
 
 @kernel
-def find(displacement, recovery, worst, room, first, last):
-    """Raise ``worst`` to what elements ``first`` to ``last`` have under displacement (n,3) m;
-    ``room`` (SIZE,) for one of them."""
+def find(displacement, recovery, peak, space, first, last):
+    """Raise ``peak`` to what elements ``first`` to ``last`` have under displacement (n,3) m;
+    ``space`` (SIZE,) is workspace."""
     u = displacement.T
     for e in range(first, last):
-        _gradients(u, recovery, room, e)
-        if measure(room, worst.square, GRADIENT, SQUARES, CORNERS) > 0:
-            note(room, worst, e, SQUARES, CORNERS)
+        _gradients(u, recovery, space, e)
+        if measure(space, peak.square, GRADIENT, SQUARES, CORNERS) > 0:
+            note(space, peak, e, SQUARES, CORNERS)
 
 
 @kernel
-def gradients(displacement, recovery, room, first, last, out):
+def gradients(displacement, recovery, space, first, last, out):
     """Fill ``out`` (last - first, 72) with displacement gradients of elements ``first`` to
     ``last``: component, axis, corner."""
     u = displacement.T
     for e in range(first, last):
-        _gradients(u, recovery, room, e)
+        _gradients(u, recovery, space, e)
         for j in range(72):
-            out[e - first, j] = room[GRADIENT + j]
+            out[e - first, j] = space[GRADIENT + j]
 
 
 @inlined
-def _gradients(u, recovery, room, e):
+def _gradients(u, recovery, space, e):
     """GRADIENT: displacement gradient at each corner of element ``e``."""
     c = recovery.shape_class[e]
     for i in range(3):
-        _gather(u[i], recovery.cells[e], room, i)
-    _bubbles(recovery.amplitude[c], room)
+        _gather(u[i], recovery.cells[e], space, i)
+    _bubbles(recovery.amplitude[c], space)
     for i in range(3):
-        _gradient(recovery.slope[c], recovery.bubble[c], room, i)
+        _gradient(recovery.slope[c], recovery.bubble[c], space, i)
 
 
 @inlined
-def _gather(u, nodes, room, i):
+def _gather(u, nodes, space, i):
     """AT + 8 i: displacement along i of the corners, from that of the first one; ALONG + 24 i: its
     differences along the edges of each local axis, at each corner."""
     first = u[nodes[0]]
     b, c, d, e = u[nodes[1]] - first, u[nodes[2]] - first, u[nodes[3]] - first, u[nodes[4]] - first
     f, g, h = u[nodes[5]] - first, u[nodes[6]] - first, u[nodes[7]] - first
-    _row(room, AT + 8 * i, 0.0, b, c, d, e, f, g, h)
-    _row(room, ALONG + 24 * i, b, b, c - d, c - d, f - e, f - e, g - h, g - h)
-    _row(room, ALONG + 24 * i + 8, d, c - b, c - b, d, h - e, g - f, g - f, h - e)
-    _row(room, ALONG + 24 * i + 16, e, f - b, g - c, h - d, e, f - b, g - c, h - d)
+    _row(space, AT + 8 * i, (0.0, b, c, d, e, f, g, h))
+    _row(space, ALONG + 24 * i, (b, b, c - d, c - d, f - e, f - e, g - h, g - h))
+    _row(space, ALONG + 24 * i + 8, (d, c - b, c - b, d, h - e, g - f, g - f, h - e))
+    _row(space, ALONG + 24 * i + 16, (e, f - b, g - c, h - d, e, f - b, g - c, h - d))
 
 
 @inlined
-def _row(room, n, a, b, c, d, e, f, g, h):
-    room[n], room[n + 1], room[n + 2], room[n + 3] = a, b, c, d
-    room[n + 4], room[n + 5], room[n + 6], room[n + 7] = e, f, g, h
+def _row(space, n, values):
+    """Eight ``values`` from place ``n`` on."""
+    for k in range(8):
+        space[n + k] = values[k]
 
 
 @inlined
-def _bubbles(amplitude, room):
+def _bubbles(amplitude, space):
     """BUBBLES: amplitudes of the bubbles, component * 3 + bubble."""
     for j in range(_LANES):
-        room[BUBBLES + j] = 0.0
+        space[BUBBLES + j] = 0.0
     for k in range(1, 8):
-        x, y, z = room[AT + k], room[AT + 8 + k], room[AT + 16 + k]
+        x, y, z = space[AT + k], space[AT + 8 + k], space[AT + 16 + k]
         n = 3 * _LANES * k
         for j in range(_LANES):
-            room[BUBBLES + j] += (
+            space[BUBBLES + j] += (
                 amplitude[n + j] * x
                 + amplitude[n + _LANES + j] * y
                 + amplitude[n + 2 * _LANES + j] * z
@@ -137,11 +141,11 @@ def _bubbles(amplitude, room):
 
 
 @inlined
-def _gradient(slope, bubble, room, i):
+def _gradient(slope, bubble, space, i):
     """GRADIENT + 24 i: slope of displacement i along each axis, at each corner."""
-    x, y, z = room[BUBBLES + 3 * i], room[BUBBLES + 3 * i + 1], room[BUBBLES + 3 * i + 2]
+    x, y, z = space[BUBBLES + 3 * i], space[BUBBLES + 3 * i + 1], space[BUBBLES + 3 * i + 2]
     for j in range(24):
         k = ALONG + 24 * i + (j & 7)
-        room[GRADIENT + 24 * i + j] = (
-            room[k] * slope[j] + room[k + 8] * slope[24 + j] + room[k + 16] * slope[48 + j]
+        space[GRADIENT + 24 * i + j] = (
+            space[k] * slope[j] + space[k + 8] * slope[24 + j] + space[k + 16] * slope[48 + j]
         ) + (x * bubble[j] + y * bubble[24 + j] + z * bubble[48 + j])

@@ -1,5 +1,5 @@
-"""The worst node of all elements, as an evolving record: von Mises stress, strain and rotation of a
-displacement gradient.
+"""Peaks of von Mises stress, strain and rotation over all elements, from the displacement gradients
+at their nodes.
 
 With G the displacement gradient at a node of an element, e its symmetric and w its antisymmetric
 part, and g the shear modulus, Hooke's law leaves of the equivalent stress::
@@ -9,8 +9,8 @@ part, and g the shear modulus, Hooke's law leaves of the equivalent stress::
     strain^2 = sum e_ij^2  (no principal strain is larger)
     rotation^2 = wyz^2 + wzx^2 + wxy^2  (rad^2)
 
-Stresses of the elements that meet at a node are not averaged: the worst one counts, as it does
-where strength is judged.
+Stresses of the elements that meet at a node are not averaged: the largest one counts, as usual where
+strength is assessed.
 """
 
 from typing import NamedTuple
@@ -22,34 +22,33 @@ from tipoff.kernels.jit import inlined
 STRESS, STRAIN, ROTATION = 0, 1, 2
 
 
-class Worst(NamedTuple):
-    """Evolving: largest square (3,) of STRESS over the shear modulus, STRAIN, ROTATION; where
-    (3,2), element and its node; when (3,) s."""
+class Peak(NamedTuple):
+    """Evolving: largest STRESS, STRAIN and ROTATION so far."""
 
-    square: np.ndarray
-    place: np.ndarray
-    time: np.ndarray
+    square: np.ndarray  # (3,) squares, that of the stress over the shear modulus
+    place: np.ndarray  # (3,2) element and its node
+    time: np.ndarray  # (3,) s
 
 
-def nothing() -> Worst:
-    """No element looked at yet."""
-    return Worst(np.zeros(3), np.zeros((3, 2), dtype=np.int64), np.zeros(3))
+def no_peak() -> Peak:
+    """No element seen yet."""
+    return Peak(square=np.zeros(3), place=np.zeros((3, 2), dtype=np.int64), time=np.zeros(3))
 
 
 @inlined
-def measure(room, known, gradient, squares, nodes):
+def measure(space, limit, gradient, squares, nodes):
     """Squares of STRESS, STRAIN, ROTATION at each of the ``nodes`` of an element, put from
-    ``squares`` on in ``room``; returns how many of them are above those ``known``.
+    ``squares`` on in the workspace ``space``; returns how many of them are above ``limit`` (3,).
 
     ``gradient``: where the nine components begin, each a row of all nodes, component * 3 + axis.
-    Places are numbers written in the caller, so that every loop has a length its compiler knows.
+    Places are constants of the caller, so that the compiler knows the length of every loop.
     """
-    above, stress_known, strain_known, rotation_known = 0, known[0], known[1], known[2]
+    above, stress_limit, strain_limit, rotation_limit = 0, limit[0], limit[1], limit[2]
     for k in range(nodes):
         n = gradient + k
-        xx, xy, xz = room[n], room[n + nodes], room[n + 2 * nodes]
-        yx, yy, yz = room[n + 3 * nodes], room[n + 4 * nodes], room[n + 5 * nodes]
-        zx, zy, zz = room[n + 6 * nodes], room[n + 7 * nodes], room[n + 8 * nodes]
+        xx, xy, xz = space[n], space[n + nodes], space[n + 2 * nodes]
+        yx, yy, yz = space[n + 3 * nodes], space[n + 4 * nodes], space[n + 5 * nodes]
+        zx, zy, zz = space[n + 6 * nodes], space[n + 7 * nodes], space[n + 8 * nodes]
         a, b, c = xy + yx, yz + zy, zx + xz
         shear = a * a + b * b + c * c
         stress = (
@@ -58,23 +57,23 @@ def measure(room, known, gradient, squares, nodes):
         )
         strain = xx * xx + yy * yy + zz * zz + 0.5 * shear
         rotation = 0.25 * ((xy - yx) * (xy - yx) + (yz - zy) * (yz - zy) + (zx - xz) * (zx - xz))
-        room[squares + k], room[squares + nodes + k], room[squares + 2 * nodes + k] = (
+        space[squares + k], space[squares + nodes + k], space[squares + 2 * nodes + k] = (
             stress,
             strain,
             rotation,
         )
-        above += (stress > stress_known) + (strain > strain_known) + (rotation > rotation_known)
+        above += (stress > stress_limit) + (strain > strain_limit) + (rotation > rotation_limit)
     return above
 
 
 @inlined
-def note(room, worst, e, squares, nodes):
-    """Raise ``worst`` to the squares that ``measure`` left in ``room`` for element ``e``."""
+def note(space, peak, e, squares, nodes):
+    """Raise ``peak`` to the squares that ``measure`` put into ``space`` for element ``e``."""
     for what in range(3):
         for k in range(nodes):
-            if room[squares + nodes * what + k] > worst.square[what]:
-                worst.square[what], worst.place[what, 0], worst.place[what, 1] = (
-                    room[squares + nodes * what + k],
+            if space[squares + nodes * what + k] > peak.square[what]:
+                peak.square[what], peak.place[what, 0], peak.place[what, 1] = (
+                    space[squares + nodes * what + k],
                     e,
                     k,
                 )

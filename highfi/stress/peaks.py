@@ -1,15 +1,14 @@
-"""The worst node of all elements of a mesh, whichever kind they are of: one kernel for each, chosen
-by the nodes of an element."""
+"""Peaks and displacement gradients of a mesh of either kind of element: one kernel for each kind."""
 
 import math
 
 import numpy as np
 
 from tipoff.highfi.stress import hexahedral_peaks, tetrahedral_peaks
-from tipoff.highfi.stress.peak import Worst
+from tipoff.highfi.stress.peak import Peak
 
 _KERNELS = {8: hexahedral_peaks, 10: tetrahedral_peaks}  # by the nodes of an element
-SIZE = max(kernels.SIZE for kernels in _KERNELS.values())  # room for one element
+SIZE = max(kernels.SIZE for kernels in _KERNELS.values())  # workspace of one element
 
 Recovery = hexahedral_peaks.Recovery | tetrahedral_peaks.Recovery
 
@@ -29,28 +28,28 @@ def build(
 def find(
     displacement: np.ndarray,
     recovery: Recovery,
-    worst: Worst,
-    room: np.ndarray,
+    peak: Peak,
+    space: np.ndarray,
     first: int,
     last: int,
 ) -> None:
-    """Raise ``worst`` to what elements ``first`` to ``last`` have under displacement (n,3) m;
-    ``room`` (SIZE,) for one of them."""
-    _KERNELS[recovery.cells.shape[1]].find(displacement, recovery, worst, room, first, last)
+    """Raise ``peak`` to what elements ``first`` to ``last`` have under displacement (n,3) m;
+    ``space`` (SIZE,) is workspace."""
+    _KERNELS[recovery.cells.shape[1]].find(displacement, recovery, peak, space, first, last)
 
 
 def gradients(
-    displacement: np.ndarray, recovery: Recovery, room: np.ndarray, first: int, last: int
+    displacement: np.ndarray, recovery: Recovery, space: np.ndarray, first: int, last: int
 ) -> np.ndarray:
     """Displacement gradients (last - first,k,3,3) at the nodes of elements ``first`` to ``last``:
     component, axis."""
     nodes = recovery.cells.shape[1]
     found = np.empty((last - first, 9 * nodes))
-    _KERNELS[nodes].gradients(displacement, recovery, room, first, last, found)
+    _KERNELS[nodes].gradients(displacement, recovery, space, first, last, found)
     return found.reshape(-1, 3, 3, nodes).transpose(0, 3, 1, 2)
 
 
 def samples_between(recovery: Recovery, steps_per_sample: int, share: float) -> int:
-    """Samples from one look at all elements to the next, such that looks take no more than
+    """Samples from one scan of all elements to the next, such that scans take no more than
     ``share`` of a run."""
     return math.ceil(_KERNELS[recovery.cells.shape[1]].STEPS / (share * steps_per_sample))

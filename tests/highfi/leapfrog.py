@@ -11,14 +11,14 @@ from tipoff.highfi.statics.operator import internal_force
 from tipoff.kernels.jit import njit
 
 
-def march(operator, displacement, velocity, step, steps, watched=(0, 0)):
+def integrate(operator, displacement, velocity, step, steps, watched=(0, 0)):
     """Advance displacement and velocity, both (n,3), in place; velocity lags by half a step.
 
     Returns the displacement (steps+1,) of the watched (node, component), and the invariant (steps,)
     of case O14, v(n+1/2)' M v(n+1/2) / 2 + u(n)' K u(n+1) / 2.
     """
     inverse_mass = np.where(operator.free, 1.0 / operator.mass, 0.0)
-    return _march(
+    return _integrate(
         displacement,
         velocity,
         step,
@@ -34,7 +34,7 @@ def march(operator, displacement, velocity, step, steps, watched=(0, 0)):
 
 
 @njit
-def _march(
+def _integrate(
     displacement,
     velocity,
     step,

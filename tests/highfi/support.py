@@ -112,10 +112,10 @@ def begun(scene=None, numerics: Numerics = COARSE, threads: int = 1) -> Loop:
 
 
 def stopped(samples: int, scene=None, numerics: Numerics = COARSE) -> Loop:
-    """A loop that has marched for ``samples`` samples after the first one."""
+    """A loop integrated for ``samples`` samples after the first one."""
     loop = begun(scene, numerics)
     with suppress(Stopped):
-        loop.march(None, _StopAt(samples))
+        loop.integrate(None, _StopAt(samples))
     return loop
 
 

@@ -98,13 +98,13 @@ def test_stress_is_that_of_the_held_rail():
     strain = 1e-4
     free = begun(tiny(thermal__mean=strain / EXPANSION, thermal__platform_strain=strain))
     modulus = free.scene.rail.material.youngs_modulus
-    assert np.sqrt(free.worst.square[0]) * free.watch.shear_modulus < 1e-6 * modulus * strain
+    assert np.sqrt(free.peak.square[0]) * free.monitor.shear_modulus < 1e-6 * modulus * strain
     assert np.abs(free.gauges[0]).max() < 1e-6 * modulus * strain
     held = begun(tiny(thermal__mean=strain / EXPANSION))
     gauges = hexahedral_recovery.von_mises(held.gauges[0])
     assert 0.1 * modulus * strain < gauges.max() < 2.0 * modulus * strain
     # Control: with the free expansion left in, the gauges of rails free of stress would show it.
-    assert np.abs(free.watch.free).max() > modulus * strain
+    assert np.abs(free.monitor.free).max() > modulus * strain
 
 
 def test_a_bow_that_closes_the_clearance_is_warned_about():

@@ -65,7 +65,7 @@ def rail(elements, length, clamped):
     )
 
 
-def march(loop):
+def integrate(loop):
     """Samples until the scene's duration: rows, and the force (N) on the payload along y."""
     loop.begin()
     for _ in range(loop.last):
@@ -83,7 +83,7 @@ def strike(elements, stiffness, safety=0.9, speed=3.0):
     """
     penalty = stiffness * MODULUS * elements / LENGTH
     rod, numerics = rail(elements, LENGTH, clamped=False), Numerics(safety=safety)
-    rows, force = march(loop_on(scene(WALL, speed, penalty, 150e-6, INTERVAL), rod, numerics))
+    rows, force = integrate(loop_on(scene(WALL, speed, penalty, 150e-6, INTERVAL), rod, numerics))
     assert force[-1] == 0.0
     time = INTERVAL * np.arange(force.size) - GAP / speed
     impulse = rows[-1, observe.LINEAR + 1] - WALL * rows[-1, observe.VELOCITY + 1]
@@ -142,7 +142,9 @@ def test_body_bounces_off_a_linear_pad(stiffness, answer, safety):
     flight = GAP / speed + 1.2 * answer
     interval = flight / 1000
     ground, numerics = rail(1, WIDTH, clamped=True), Numerics(safety=safety)
-    rows, force = march(loop_on(scene(mass, speed, penalty, flight, interval), ground, numerics))
+    rows, force = integrate(
+        loop_on(scene(mass, speed, penalty, flight, interval), ground, numerics)
+    )
     place, velocity = rows[:, observe.POSITION + 1] - GAP, rows[-1, observe.VELOCITY + 1]
     # It flies straight before and after, so both ends of the contact are known exactly.
     duration = interval * (len(rows) - 1) - place[-1] / velocity - GAP / speed

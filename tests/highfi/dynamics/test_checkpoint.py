@@ -16,7 +16,7 @@ from tests.highfi.support import COARSE, Stopped, begun, stopped, tiny
 from tipoff import highfi
 from tipoff.highfi import Numerics
 from tipoff.highfi.dynamics.checkpoint import CONSTANT, Checkpoint, arrays, digest, restore
-from tipoff.highfi.state.records import Active, Body, State
+from tipoff.highfi.state.records import Active, Body, Motion, State
 from tipoff.mechanics.trajectory import Trajectory
 
 pytestmark = pytest.mark.case("X20")
@@ -82,11 +82,11 @@ def test_any_sample_is_a_place_to_stop(tmp_path, samples):
     kept.write(first)
     restore(second, kept.read())
     assert len(second.rows) == samples + 1 and second.wall == first.wall
-    second.march(None)
+    second.integrate(None)
     assert_same(second.trajectory({"steps": second.steps}, COARSE), whole())
 
 
-def test_pencils_go_on_to_the_same_bits(tmp_path):
+def test_columns_go_on_to_the_same_bits(tmp_path):
     """The finer mesh is extruded and uses the other elastic kernel, whose arrays have nodes of no
     element between the rails."""
     scene, numerics = (
@@ -99,9 +99,9 @@ def test_pencils_go_on_to_the_same_bits(tmp_path):
     restore(second, kept.read())
     results = []
     for loop in (first, second):
-        loop.march(None)
+        loop.integrate(None)
         results.append(loop.trajectory({"steps": loop.steps}, numerics))
-    assert first.system.rail.pencils is not None and np.abs(results[0].pad_force).max() > 1.0
+    assert first.system.rail.columns is not None and np.abs(results[0].pad_force).max() > 1.0
     assert_same(*results)
 
 
@@ -111,25 +111,27 @@ def test_every_evolving_array_is_in_the_file(tmp_path):
     kept = Checkpoint(tmp_path / "run", 0.0, loop, COARSE)
     kept.write(loop)
     saved = kept.read()
-    bodies = [name for name in State._fields if isinstance(getattr(loop.state, name), Body)]
+    records = [
+        name for name in State._fields if isinstance(getattr(loop.state, name), Body | Motion)
+    ]
     expected = {
-        f"state.{body}.{name}": getattr(getattr(loop.state, body), name)
-        for body in bodies
-        for name in Body._fields
+        f"state.{record}.{name}": getattr(getattr(loop.state, record), name)
+        for record in records
+        for name in getattr(loop.state, record)._fields
     }
     assert loop.state.history is None  # no structural damping
     expected |= {
         f"state.{name}": getattr(loop.state, name)
         for name in State._fields
-        if name not in (*bodies, "history")
+        if name not in (*records, "history")
     }
     expected |= {f"active.{name}": getattr(loop.active, name) for name in Active._fields}
-    assert len(bodies) == 2
+    assert len(records) == 3
     assert {name.partition(".")[0] for name in saved} == set(vars(loop)) - set(CONSTANT)
     for name, array in expected.items():
         assert saved[name].dtype == array.dtype
         np.testing.assert_array_equal(saved[name], array, err_msg=name)
-    assert loop.active.count.max() > 0
+    assert loop.active.node_count.max() > 0
 
 
 def test_what_is_left_out_does_not_change():
@@ -138,11 +140,11 @@ def test_what_is_left_out_does_not_change():
     system = {"system": loop.system._replace(mesh=None, operator=None)}
     before, others = (
         digest(arrays(system | {"exit": loop.exit})),
-        (loop.marks, loop.stepping, loop.last, loop.most),
+        (loop.milestones, loop.stepping, loop.last, loop.most),
     )
-    loop.march(None)
+    loop.integrate(None)
     assert digest(arrays(system | {"exit": loop.exit})) == before
-    assert (loop.marks, loop.stepping, loop.last, loop.most) == others
+    assert (loop.milestones, loop.stepping, loop.last, loop.most) == others
     # A scene is frozen; a team and a pool of threads are not of the run.
     assert set(CONSTANT) == {
         "scene",
@@ -150,12 +152,12 @@ def test_what_is_left_out_does_not_change():
         "stepping",
         "team",
         "pool",
-        "marks",
+        "milestones",
         "exit",
         "last",
         "most",
         "walls",
-        "watch",
+        "monitor",
     }
 
 
@@ -170,7 +172,7 @@ found.save(sys.argv[2])
 
 
 def test_killed_again_and_again_it_ends_with_the_same_bits(tmp_path):
-    """SIGKILL at seeded moments, first of the set-up, then of the march; each life begins where the
+    """SIGKILL at seeded moments, first of the set-up, then of the integration; each life begins where the
     file of the last one ends."""
     whole()  # compiles what the children load
     moments, path, result = random.Random(20), tmp_path / "run", tmp_path / "result.nc"

@@ -104,7 +104,7 @@ def test_bad_arguments_are_refused(tmp_path):
 
 def test_nothing_is_written_before_it_is_time(tmp_path):
     loop = begun()
-    loop.march(None, Checkpoint(tmp_path / "run", 3600.0, loop, COARSE))
+    loop.integrate(None, Checkpoint(tmp_path / "run", 3600.0, loop, COARSE))
     assert not list(tmp_path.iterdir())
 
 

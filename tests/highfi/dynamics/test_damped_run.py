@@ -19,7 +19,7 @@ ENTRY = ledger.ENTRIES.index("structural_damping")
 
 def finished(loop):
     """The result of a loop that has begun."""
-    loop.march(None)
+    loop.integrate(None)
     return loop.trajectory({}, COARSE)
 
 
@@ -95,7 +95,7 @@ def test_a_rail_that_turns_with_its_frame_is_not_damped():
 
 
 @pytest.mark.case("X20")
-@pytest.mark.parametrize("kernel", ["pencils", "elements"])
+@pytest.mark.parametrize("kernel", ["columns", "elements"])
 def test_threads_and_a_resume_do_not_change_a_bit(tmp_path, kernel):
     """The second part of the run that is resumed is carried by another number of threads."""
     whole, other, half, second = (
@@ -127,8 +127,8 @@ def test_threads_and_a_resume_do_not_change_a_bit(tmp_path, kernel):
 @pytest.mark.case("X20")
 def test_a_resume_that_forgets_the_step_before_is_seen(tmp_path):
     """Control: with the history left as a run begins, the resumed run goes another way."""
-    expected = finished(test_kernels.begun("pencils", **DAMPED))
-    half, second = (test_kernels.begun("pencils", **DAMPED) for _ in range(2))
+    expected = finished(test_kernels.begun("columns", **DAMPED))
+    half, second = (test_kernels.begun("columns", **DAMPED) for _ in range(2))
     for _ in range(45):
         half.advance_one_sample()
     kept = Checkpoint(tmp_path / "run", 0.0, half, test_kernels.NUMERICS)

@@ -18,10 +18,10 @@ def begun(kernel: str, threads: int = 1, **overrides) -> Loop:
     that they are extruded."""
     scene = tiny(duration="9 ms", contact__clearance="0.05 mm", **overrides)
     system = build(scene, NUMERICS, highfi.prepare(scene, NUMERICS))
-    assert system.rail.pencils is not None
+    assert system.rail.columns is not None
     if kernel == "elements":
         elements = general_elements(system.mesh.points, system.operator, system.number)
-        system = system._replace(rail=system.rail._replace(pencils=None, elements=elements))
+        system = system._replace(rail=system.rail._replace(columns=None, elements=elements))
     loop = Loop(scene, system, choose(system, scene, NUMERICS), threads)
     loop.begin()
     return loop
@@ -30,19 +30,19 @@ def begun(kernel: str, threads: int = 1, **overrides) -> Loop:
 def run(kernel: str, threads: int = 1):
     """The result of such a run."""
     loop = begun(kernel, threads)
-    loop.march(None)
+    loop.integrate(None)
     return loop.trajectory({}, NUMERICS)
 
 
-def test_pencils_and_elements_carry_the_same_run():
-    pencils, elements = run("pencils"), run("elements")
-    assert np.abs(pencils.pad_force).max() > 1.0
-    assert np.abs(pencils.rate - elements.rate).max() <= 1e-9 * np.abs(elements.rate).max()
-    assert pencils.checks["transverse_energy_error"] <= 1e-3
+def test_columns_and_elements_carry_the_same_run():
+    columns, elements = run("columns"), run("elements")
+    assert np.abs(columns.pad_force).max() > 1.0
+    assert np.abs(columns.rate - elements.rate).max() <= 1e-9 * np.abs(elements.rate).max()
+    assert columns.checks["transverse_energy_error"] <= 1e-3
 
 
 @pytest.mark.case("X20")
-@pytest.mark.parametrize("kernel", ["pencils", "elements"])
+@pytest.mark.parametrize("kernel", ["columns", "elements"])
 def test_threads_do_not_change_a_bit(kernel):
     """Three threads cut the four rails where no rail ends, so that shares hang on each other."""
     alone = run(kernel)

@@ -31,7 +31,7 @@ def test_sampling_changes_no_bit():
         assert_same(other, fine)
 
 
-def test_an_interval_that_divides_nothing():
+def test_an_interval_that_divides_no_peak():
     """The step divides it, and so is another one, by less than one in the steps of 50 us: what then
     differs is the error of the scheme, of which that changes little."""
     whole, other = (
@@ -98,41 +98,41 @@ def test_a_jam_is_found_with_few_samples(interval):
     found = highfi.run(tiny(thrust__peak="5 N", output__interval=interval), COARSE)
     spent = 4.5e-3 + 1.5e-3 * np.sqrt(2.0 * np.log(100.0))
     assert found.status == "jammed" and found.outcome.exit_time is None
-    # to the next look
+    # to the next check
     assert (
         0.0 <= found.cost["steps"] * found.cost["dt_s"] - (spent + 5e-3) < 250 * found.cost["dt_s"]
     )
 
 
 class _StopAt:
-    """In the place of a run's checkpoint: ends the run after a number of looks."""
+    """In the place of a run's checkpoint: ends the run after a number of checks."""
 
-    def __init__(self, looks: int):
-        self.looks = looks
+    def __init__(self, checks: int):
+        self.checks = checks
 
     def keep(self, loop) -> None:
-        if loop.looks >= self.looks:
+        if loop.checks >= self.checks:
             raise Stopped
 
 
-@pytest.mark.parametrize("looks", [60, 133, 145])
-def test_a_resume_between_samples_goes_on_to_the_same_bits(tmp_path, looks):
+@pytest.mark.parametrize("checks", [60, 133, 145])
+def test_a_resume_between_samples_goes_on_to_the_same_bits(tmp_path, checks):
     """Before the exit, and twice in the settled window, whose sums are in the file. Control:
     without them the means are others."""
     scene = tiny(output__interval="25 ms")
     first, second, poor = (begun(scene) for _ in range(3))
     with pytest.raises(Stopped):
-        first.march(None, _StopAt(looks))
-    assert len(first.rows) == 1 and first.steps == 250 * looks and first.ending.book[DONE] == np.inf
+        first.integrate(None, _StopAt(checks))
+    assert len(first.rows) == 1 and first.steps == 250 * checks and first.book[DONE] == np.inf
     kept = Checkpoint(tmp_path / "run", 0.0, first, COARSE)
     kept.write(first)
     saved = kept.read()
     restore(second, saved)
-    restore(poor, saved | {"ending.book": begun(scene).ending.book})
+    restore(poor, saved | {"book": begun(scene).book})
     results = []
     for loop in (first, second, poor):
-        loop.march(None)
+        loop.integrate(None)
         results.append(loop.trajectory(loop.stepping.as_dict(), COARSE))
     assert_same(results[1], results[0])
     assert results[0].outcome == highfi.run(scene, COARSE).outcome
-    assert looks < 133 or results[2].outcome != results[0].outcome
+    assert checks < 133 or results[2].outcome != results[0].outcome

@@ -6,7 +6,7 @@ import pytest
 
 from tests.exact import elasticity
 from tests.highfi.blocks import ALUMINIUM, block, highest_mode
-from tests.highfi.leapfrog import march
+from tests.highfi.leapfrog import integrate
 from tipoff.highfi.dynamics import stable_step
 from tipoff.highfi.statics import assembly
 
@@ -34,7 +34,7 @@ def random_state(operator, scale=1e-6):
 def test_invariant_of_the_scheme_does_not_drift(operator, highest, ratio):
     displacement, velocity = random_state(operator)
     step = ratio * stable_step.critical_step(highest[0])
-    _, invariant = march(operator, displacement, velocity, step, 1_000_000)
+    _, invariant = integrate(operator, displacement, velocity, step, 1_000_000)
     assert np.abs(invariant / invariant[0] - 1.0).max() < 1e-12
 
 
@@ -44,7 +44,7 @@ def test_growth_above_the_critical_step(operator, highest):
     assert elasticity.leapfrog_growth(1.01) == pytest.approx(1.326584, abs=1e-6)
     displacement, velocity = shape.copy(), np.zeros_like(shape)
     node, component = np.unravel_index(np.argmax(np.abs(shape)), shape.shape)
-    trace, _ = march(
+    trace, _ = integrate(
         operator,
         displacement,
         velocity,
@@ -71,7 +71,9 @@ def test_loop_that_does_not_ask_blows_up(operator, highest, ratio):
     largest = {}
     for factor in (ratio, 0.999):
         displacement, velocity = random_state(operator)
-        march(operator, displacement, velocity, factor * stable_step.critical_step(highest[0]), 200)
+        integrate(
+            operator, displacement, velocity, factor * stable_step.critical_step(highest[0]), 200
+        )
         largest[factor] = np.abs(displacement).max()
     assert largest[0.999] < 1e-3
     assert largest[ratio] > 1.0

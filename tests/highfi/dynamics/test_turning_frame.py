@@ -64,13 +64,13 @@ def ejected(safety: float, turn=None, bodies=BODIES):
     system = build(TURNING, numerics, highfi.prepare(TURNING, numerics))
     loop = Loop(TURNING, system, choose(system, TURNING, numerics))
     # what is left of the thrust does not keep the payload from settling
-    loop.marks = loop.marks._replace(settled_thrust=0.0)
+    loop.milestones = loop.milestones._replace(settled_thrust=0.0)
     for body in (getattr(loop.state, name) for name in bodies if turn):
         body.quaternion[:] = rotation.product(turn, tuple(body.quaternion))
         for vector in (body.position, body.velocity, body.spin):
             vector[:] = turning.turned(vector, turn)
     loop.begin()
-    loop.march(None)
+    loop.integrate(None)
     return loop.trajectory({"steps": loop.steps}, numerics)
 
 

@@ -13,7 +13,7 @@ import pytest
 
 from tests.exact import elasticity
 from tests.highfi.blocks import block
-from tests.highfi.leapfrog import march
+from tests.highfi.leapfrog import integrate
 from tipoff.highfi.statics import assembly
 
 LENGTH, LAYERS = 0.5, 100
@@ -41,7 +41,7 @@ def test_standing_wave_has_the_discrete_frequency(mode, hertz, courant):
     # v(-1/2) of a cosine in time: u(-1) = u(1) = cos(w dt) u(0).
     velocity = displacement * (1.0 - math.cos(2.0 * math.pi * exact * step)) / step
     steps = round(20.0 / (exact * step))
-    trace, _ = march(operator, displacement, velocity, step, steps, (int(np.argmax(along)), 0))
+    trace, _ = integrate(operator, displacement, velocity, step, steps, (int(np.argmax(along)), 0))
     # u(n+1) + u(n-1) = 2 cos(w dt) u(n) for a single frequency; least squares over the whole
     # record.
     cosine = 0.5 * (trace[2:] + trace[:-2]) @ trace[1:-1] / (trace[1:-1] @ trace[1:-1])
@@ -75,5 +75,5 @@ def test_step_travels_exactly_at_unit_courant_number():
 
     step = SPACING / SPEED
     displacement, velocity = step_at(front), (step_at(front) - step_at(front - 1)) / step
-    march(operator, displacement, velocity, step, steps)
+    integrate(operator, displacement, velocity, step, steps)
     assert np.abs(displacement - step_at(front + steps)).max() < 1e-12

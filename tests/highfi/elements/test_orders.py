@@ -6,7 +6,7 @@ import pytest
 from tests.exact import elasticity
 from tests.highfi import cylinder
 from tests.highfi.blocks import ALUMINIUM, block, modes
-from tests.highfi.leapfrog import driven, march
+from tests.highfi.leapfrog import driven, integrate
 from tipoff.highfi.dynamics import stable_step
 from tipoff.highfi.elements import hexahedron
 from tipoff.highfi.statics import assembly
@@ -72,7 +72,7 @@ def test_order_in_time():
             for _ in range(steps):
                 next(times)
         else:
-            march(operator, displacement, velocity, end / steps, steps)
+            integrate(operator, displacement, velocity, end / steps, steps)
         return abs(displacement[node] / shape[node] - np.cos(2.25 * np.pi))
 
     errors = [error(halvings, True) for halvings in range(4)]

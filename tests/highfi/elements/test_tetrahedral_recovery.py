@@ -19,7 +19,7 @@ from tipoff.highfi.elements import (
 from tipoff.highfi.mesh.rail_mesh import RailMesh
 from tipoff.highfi.statics import assembly
 from tipoff.highfi.stress import peaks
-from tipoff.highfi.stress.peak import ROTATION, STRAIN, STRESS, nothing
+from tipoff.highfi.stress.peak import ROTATION, STRAIN, STRESS, no_peak
 
 LAW = hexahedron.elasticity(72e9, 0.33)
 
@@ -41,12 +41,12 @@ def prepared(mesh, law=LAW):
 
 
 def found(mesh, displacement, law=LAW):
-    """Worst nodes of ``mesh``."""
-    worst, room = nothing(), np.zeros(peaks.SIZE)
+    """Peaks of ``mesh``."""
+    peak, space = no_peak(), np.zeros(peaks.SIZE)
     peaks.find(
-        np.asfortranarray(displacement), prepared(mesh, law), worst, room, 0, len(mesh.cells)
+        np.asfortranarray(displacement), prepared(mesh, law), peak, space, 0, len(mesh.cells)
     )
-    return worst
+    return peak
 
 
 @pytest.mark.case("O9")

@@ -1,4 +1,5 @@
-"""The pencil kernel against the element kernel on the same mesh, and meshes it must leave alone."""
+"""The kernel of extruded meshes against the element kernel on the same mesh, and meshes that are not
+extruded."""
 
 from dataclasses import replace
 
@@ -7,8 +8,8 @@ import pytest
 
 from tests.highfi.blocks import ALUMINIUM, block
 from tipoff.highfi.extruded import folding
-from tipoff.highfi.extruded import mesh as pencils
-from tipoff.highfi.extruded.kernel import pencil_force
+from tipoff.highfi.extruded import mesh as extruded
+from tipoff.highfi.extruded.kernel import column_force
 from tipoff.highfi.mesh.rail_mesh import read
 from tipoff.highfi.statics import assembly
 from tipoff.highfi.statics.operator import internal_force
@@ -30,7 +31,7 @@ def groups_of(mesh):
     """Places (s,2) of the section points, and how many products and how many folded groups each has
     per layer."""
     operator = assembly.build(mesh, **ALUMINIUM)
-    columns, number = pencils.find(mesh.points, operator)
+    columns, number = extruded.find(mesh.points, operator)
     places = np.zeros((number.max() // columns.stride + 1, 2))
     places[number // columns.stride] = mesh.points[:, 1:]
     counts = columns.groups.counts
@@ -41,17 +42,19 @@ def groups_of(mesh):
 
 
 def both_forces(mesh):
-    """Internal force (n,3) of one random displacement by pencils and by elements."""
+    """Internal force (n,3) of one random displacement by columns and by elements."""
     operator = assembly.build(mesh, **ALUMINIUM)
-    columns, number = pencils.find(mesh.points, operator)
+    columns, number = extruded.find(mesh.points, operator)
     displacement = np.random.default_rng(3).standard_normal(mesh.points.shape)
     expected = np.empty_like(displacement)
     internal_force(displacement, operator.cells, operator.shape_class, operator.stiffness, expected)
-    size = -(-(number.max() + 1) // pencils.LANES) * pencils.LANES
+    size = -(-(number.max() + 1) // extruded.LANES) * extruded.LANES
     padded, force = np.zeros((3, size)), np.zeros((3, size))
     padded[:, number] = displacement.T
     turn = np.zeros(3)
-    pencil_force(columns, padded, force, 0, columns.first.size - 1, zeros((3, pencils.LANES)), turn)
+    column_force(
+        columns, padded, force, 0, columns.first.size - 1, zeros((3, extruded.LANES)), turn
+    )
     assert (
         np.abs(turn - np.cross(displacement, expected).sum(axis=0)).max()
         <= 1e-12 * np.abs(displacement * expected).sum()
@@ -68,7 +71,7 @@ def both_forces(mesh):
         pytest.param(block((40, 3, 4), (0.6, 0.03, 0.04)), id="cantilever"),
     ],
 )
-def test_pencils_give_the_force_of_the_elements(mesh):
+def test_columns_give_the_force_of_the_elements(mesh):
     force, number, expected = both_forces(mesh)
     assert np.abs(force[:, number].T - expected).max() <= 1e-13 * np.abs(expected).max()
 
@@ -103,4 +106,4 @@ def test_uneven_and_distorted_meshes_are_left_to_the_element_kernel():
     points = bent.points.copy()
     points[len(points) // 2, 1] += 1e-3
     for mesh in (uneven, replace(bent, points=points)):
-        assert pencils.find(mesh.points, assembly.build(mesh, **ALUMINIUM)) is None
+        assert extruded.find(mesh.points, assembly.build(mesh, **ALUMINIUM)) is None

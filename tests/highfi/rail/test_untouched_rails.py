@@ -102,7 +102,7 @@ def test_on_a_free_platform_it_cannot_be_left_out(condition):
     assert len(unused) == 2
     loops.append(Loop(scene, build(scene, numerics, stiffened(mesh, unused)), stepping))
     loops[1].begin()
-    loops[1].march(None)
+    loops[1].integrate(None)
     rates = [np.array(loop.trajectory({}, numerics).outcome.rate) for loop in loops]
     change = np.abs(rates[1] - rates[0]).max() / np.abs(rates[0]).max()
     waiting = np.radians(FLOOR) * max(off.values()) / 1e-6 / np.abs(rates[0]).max()

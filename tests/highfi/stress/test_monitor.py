@@ -11,7 +11,7 @@ from tipoff.highfi.dynamics.system import build
 from tipoff.highfi.elements import hexahedral_recovery, hexahedron
 from tipoff.highfi.numerics import Numerics
 from tipoff.highfi.stress import gauge, monitor, peaks
-from tipoff.highfi.stress.peak import ROTATION, STRAIN, STRESS, nothing
+from tipoff.highfi.stress.peak import ROTATION, STRAIN, STRESS, no_peak
 
 LAW = hexahedron.elasticity(72e9, 0.33)
 
@@ -102,10 +102,10 @@ def test_any_number_of_threads_finds_the_same_corner(threads):
     moved = 1e-6 * np.random.default_rng(7).standard_normal((2, *single.state.displacement.shape))
     for loop in (several, single):
         for time, displacement in enumerate(moved):
-            monitor.look(
-                loop.watch, np.asfortranarray(displacement), float(time), loop.worst, loop.pool
+            monitor.scan(
+                loop.monitor, np.asfortranarray(displacement), float(time), loop.peak, loop.pool
             )
-    for found, expected in zip(several.worst, single.worst):
+    for found, expected in zip(several.peak, single.peak):
         np.testing.assert_array_equal(found, expected)
 
 
@@ -116,12 +116,12 @@ def test_strain_and_rotation_of_a_distorted_mesh():
     points = mesh.points + 1e-3 * np.random.default_rng(8).uniform(-1.0, 1.0, mesh.points.shape)
     gradient = 1e-4 * np.random.default_rng(9).standard_normal((3, 3))
     count = len(points)
-    classes, worst = np.arange(len(mesh.cells), dtype=np.uint32), nothing()
+    classes, peak = np.arange(len(mesh.cells), dtype=np.uint32), no_peak()
     found = peaks.build(points, mesh.cells, classes, LAW, np.arange(count))
     peaks.find(
         np.asfortranarray(points @ gradient.T),
         found,
-        worst,
+        peak,
         np.zeros(peaks.SIZE),
         0,
         len(mesh.cells),
@@ -133,11 +133,11 @@ def test_strain_and_rotation_of_a_distorted_mesh():
         )
         @ LAW
     )
-    assert LAW[3, 3] * np.sqrt(worst.square[STRESS]) == pytest.approx(
+    assert LAW[3, 3] * np.sqrt(peak.square[STRESS]) == pytest.approx(
         hexahedral_recovery.von_mises(stress), rel=1e-10
     )
-    assert np.sqrt(worst.square[STRAIN]) == pytest.approx(np.linalg.norm(even), rel=1e-10)
-    assert np.sqrt(worst.square[ROTATION]) == pytest.approx(
+    assert np.sqrt(peak.square[STRAIN]) == pytest.approx(np.linalg.norm(even), rel=1e-10)
+    assert np.sqrt(peak.square[ROTATION]) == pytest.approx(
         np.linalg.norm(odd) / np.sqrt(2.0), rel=1e-10
     )
 

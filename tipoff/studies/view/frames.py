@@ -46,8 +46,8 @@ class Camera:
 
     def __init__(self, loop):
         self.system, mesh = loop.system, loop.system.mesh
-        self._shear, self._lame = loop.watch.shear_modulus, loop.watch.lame
-        self._recovery, self._room = loop.watch.recovery, np.zeros(peaks.SIZE)
+        self._shear, self._lame = loop.monitor.shear_modulus, loop.monitor.lame
+        self._recovery, self._room = loop.monitor.recovery, np.zeros(peaks.SIZE)
         self._meeting = np.bincount(mesh.cells.ravel(), minlength=len(mesh.points))
         self._walls = np.unique(
             np.concatenate(

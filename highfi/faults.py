@@ -1,0 +1,71 @@
+"""Reasons to stop a run: lost energy, a struck edge, a speed or friction beyond the method's range."""
+
+import numpy as np
+
+from tipoff.highfi.contact.pads import FASTEST_APPROACH
+from tipoff.highfi.contact.surface import magnification
+from tipoff.highfi.dynamics import samples
+from tipoff.highfi.state.records import TOTAL
+from tipoff.kernels import rotation
+from tipoff.mechanics import ledger, outcome
+
+_STOP_RATIO = 0.1  # of the transverse scale: a run that loses so much energy is not a result
+
+
+def fault(loop, row: np.ndarray) -> str:
+    """Why a ``run.Loop`` must stop at the sample ``row``, or nothing; raises its energy scale."""
+    now = f"at {loop.steps * loop.stepping.dt_s:.6g} s"
+    if not (np.isfinite(row).all() and np.isfinite(loop.state.work.view(float)).all()):
+        return f"a value became infinite {now}"
+    _, transverse = samples.ledgers(
+        np.array([*loop.rows[:1], row]), np.array([*loop.work[:1], loop.state.work])
+    )
+    loop.scale = max(loop.scale, transverse[-1, 2:5].sum())
+    if loop.active.struck["depth"].any():
+        return _strike(loop)
+    loss, work = abs(ledger.residual(transverse)[-1]), abs(loop.state.work["thrust"][TOTAL])
+    # Rounding of the large axial work is no fault while nothing has moved sideways yet.
+    if loss > _STOP_RATIO * loop.scale + 1e-11 * work:
+        return (
+            f"transverse energy is off by {loss:.3g} J, its scale being {loop.scale:.3g} J, {now}"
+        )
+    if loop.system.model.penalty is not None:
+        if (speed := _approach_speed(loop)) > FASTEST_APPROACH:
+            return (
+                f"payload and rails approach at up to {speed:.3g} m/s, contact search allows "
+                f"{FASTEST_APPROACH:g} m/s, {now}"
+            )
+    if loop.stepping.used() + 0.5 * loop.damping > 1.0:
+        return (
+            f"friction damps nodes faster than the step of {loop.stepping.dt_s:.4g} s can "
+            f"follow, {now}; lower safety"
+        )
+    return ""
+
+
+def _strike(loop) -> str:
+    """The face that struck an edge of a wall first, where and when."""
+    struck = loop.active.struck
+    face = int(max(np.flatnonzero(struck["depth"]), key=lambda each: struck["steps"][each]))
+    depth, x, since = struck[face]
+    time = (loop.steps - since) * loop.stepping.dt_s
+    return outcome.strike(
+        loop.system.model.faces,
+        face,
+        "strikes an edge or the back",
+        depth,
+        x + loop.system.origin[0],
+        time,
+    )
+
+
+def _approach_speed(loop) -> float:
+    """Bound (m/s) of the speed across the rail at which any pad and any point of a wall can approach
+    each other now."""
+    state, payload = loop.state, loop.system.model.payload
+    spin = np.linalg.norm(payload.inverse_inertia, 2) * np.linalg.norm(state.payload.spin)
+    reach = np.linalg.norm(loop.system.faces.centre, axis=1).max()
+    turn = rotation.matrices(state.platform.quaternion[None])[0]
+    across = (state.payload.velocity @ turn)[1:]
+    nodes = np.linalg.norm(state.velocity[loop.walls, 1:] - across, axis=1).max()
+    return float(magnification(loop.system.surface) * nodes + spin * reach)
