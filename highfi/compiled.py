@@ -9,6 +9,7 @@ from tipoff.highfi.numerics import Numerics
 from tipoff.highfi.run import Loop, prepare
 from tipoff.highfi.state import nodes
 from tipoff.kernels.jit import contains, machine_code
+from tipoff.mechanics.ledger import BODY_FORCE
 from tipoff.scenes.effects.friction import coefficient_over_speed
 from tipoff.scenes.scene import Scene
 
@@ -17,7 +18,7 @@ from tipoff.scenes.scene import Scene
 LAWS = {
     "contact": facet.press,
     "friction": coefficient_over_speed,
-    "gravity": loads._add_weight,
+    BODY_FORCE: loads._add_weight,
     "platform": nodes._move_in_frame,
     "rail.damping": damping._damp_component,
     "thrust_offset": loads._offset_line,

@@ -118,16 +118,18 @@ def _body_force_work(body_force, constants, state, base):
         half, mass, v = 0.5 * constants.dt, constants.payload.mass, state.payload.velocity
         g = triple(body_force)
         momentum = rotation.rotate(base, triple(state.rail_momentum))
-        state.work[TOTAL].gravity += half * (mass * rotation.dot(g, v) + rotation.dot(g, momentum))
-        state.work[AXIAL].gravity += half * mass * g[0] * v[0]
+        state.work[TOTAL].body_force += half * (
+            mass * rotation.dot(g, v) + rotation.dot(g, momentum)
+        )
+        state.work[AXIAL].body_force += half * mass * g[0] * v[0]
         _body_force_work_on_platform(constants.frame, half, g, state, base)
 
 
 @inlined
 def _body_force_work_on_platform(frame, half, g, state, base):
     if frame is not None:
-        state.work[TOTAL].gravity += half * frame.mass * rotation.dot(g, state.platform.velocity)
-        state.work[AXIAL].gravity += (
+        state.work[TOTAL].body_force += half * frame.mass * rotation.dot(g, state.platform.velocity)
+        state.work[AXIAL].body_force += (
             half * frame.total_mass * g[0] * axial_velocity_of_platform(state, frame, base)
         )
 

@@ -14,9 +14,10 @@ from typing import NamedTuple
 import numpy as np
 
 from tipoff.highfi.extruded.mesh import Columns
-from tipoff.mechanics.ledger import ENTRIES
+from tipoff.mechanics.ledger import BODY_FORCE, ENTRIES
 from tipoff.mechanics.model import Faces, Payload
 from tipoff.mechanics.outcome import Milestones
+from tipoff.scenes.effects.body_force import BodyForce
 from tipoff.scenes.effects.friction import Friction
 from tipoff.scenes.effects.structural_damping import Damping
 from tipoff.scenes.effects.thrust_law import Thrust
@@ -113,7 +114,7 @@ class Constants(NamedTuple):
     thrust_offset: ThrustOffset | None
     penalty: float | None  # N/m3, contact pressure over penetration
     friction: Friction | None
-    body_force: tuple | None  # (3,) m/s2, acceleration in inertial axes
+    body_force: BodyForce | None
     exit: Exit
     milestones: Milestones
     dt: float  # s
@@ -207,7 +208,7 @@ LOAD = np.dtype(
 
 # Work (J) by the entries of the energy ledger; state entries stay zero. Rows of State.work: all of
 # it, and the part that is axial motion.
-WORK = np.dtype([(name, float) for name in ENTRIES])
+WORK = np.dtype([("body_force" if name == BODY_FORCE else name, float) for name in ENTRIES])
 TOTAL, AXIAL = 0, 1
 
 EDGE_POINT = np.dtype(

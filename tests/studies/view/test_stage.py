@@ -16,7 +16,7 @@ from tipoff import scenes
 from tipoff.highfi import Numerics
 from tipoff.highfi.dynamics.step import evaluate
 from tipoff.highfi.stress import monitor
-from tipoff.highfi.stress.peak import STRESS, nothing
+from tipoff.highfi.stress.peak import STRESS, no_peak
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.studies.cli import app
 from tipoff.studies.core.settings import defaults
@@ -145,10 +145,10 @@ def test_contact_pressure_comes_to_the_force_on_the_pads(size, off):
 
 def test_camera_sees_the_stress_that_the_run_is_watched_for(touching):
     loop, frame = touching
-    worst = nothing()
-    monitor.look(loop.watch, loop.state.displacement, 0.0, worst, loop.pool)
+    worst = no_peak()
+    monitor.scan(loop.monitor, loop.state.displacement, 0.0, worst, loop.pool)
     assert frame.worst.max() == pytest.approx(
-        loop.watch.shear_modulus * np.sqrt(worst.square[STRESS]), rel=1e-12
+        loop.monitor.shear_modulus * np.sqrt(worst.square[STRESS]), rel=1e-12
     )
     assert frame.worst.argmax() == worst.place[STRESS, 0]
     still = frames.Camera(first := begun()).take(first)
