@@ -267,7 +267,6 @@ def test_doctor_needs_only_the_standard_library():
 LONG = {
     "tipoff/lowfi/dynamics/events.py": 600,
     "tipoff/lowfi/dynamics/integrate.py": 580,
-    "tipoff/highfi/run.py": 450,
     "tests/scenes/test_refusal.py": 440,
     "tests/studies/paper/test_stage.py": 420,
 }
