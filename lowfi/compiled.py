@@ -4,34 +4,35 @@ from tipoff.kernels.jit import contains, machine_code
 from tipoff.lowfi.contact import springs, stick_slip, thermal_offset
 from tipoff.lowfi.contact.compliant import modes, solution
 from tipoff.lowfi.dynamics import equations
-from tipoff.lowfi.dynamics.integrate import Sampling, march
+from tipoff.lowfi.dynamics.integrate import integrate
+from tipoff.lowfi.dynamics.loop import Sampling
 from tipoff.lowfi.numerics import Numerics
 from tipoff.lowfi.run import Run
+from tipoff.mechanics.ledger import BODY_FORCE
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.scenes.effects.friction import coefficient_over_speed
 from tipoff.scenes.scene import Scene
 
-# A function that only this effect calls. Mass offset and initial state are numbers without code,
-# and so is the damping of rails that vibrate; compliant contact has the temperature in its own
-# code.
+# A function that only this effect calls. Mass offset, initial state and damping of rails are numbers
+# without code; compliant contact has the temperature in its own code.
 LAWS = {
     "contact": springs.load,
     "compliance": solution.solve,
-    "modes": modes.swing,
+    "modes": modes.vibrate,
     "friction": coefficient_over_speed,
     "sticking": stick_slip.traction,
-    "gravity": equations._weigh,
+    BODY_FORCE: equations._add_body_force,
     "platform": springs._relative_turn,
     "thrust_offset": equations._offset_line,
-    "thermal": thermal_offset.stand,
+    "thermal": thermal_offset.offset_and_slope,
 }
 
 
 def compiled_effects(
     scene: Scene, numerics: Numerics | None = None, compliance: RailCompliance | None = None
 ) -> dict[str, bool]:
-    """For each effect with code of its own, whether the kernel compiled for ``scene``, on compliant
-    ``walls`` or springs, contains it."""
+    """For each effect with code of its own, whether the kernel compiled for ``scene``, with
+    compliant contact or springs, contains it."""
     code = compiled_code(scene, numerics, compliance)
     return {effect: contains(code, law) for effect, law in LAWS.items()}
 
@@ -43,7 +44,7 @@ def compiled_code(
     begun = Run(scene, numerics or Numerics(), compliance)
     sampling = Sampling(begun.interval, begun.last, 0, begun.whole)
     return machine_code(
-        march,
+        integrate,
         (
             begun.system,
             begun.plan,

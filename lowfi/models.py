@@ -1,5 +1,4 @@
-"""The two models of the surrogate, ``compliant`` and ``springs``: whether what a run is given
-belongs to its model."""
+"""The two models of the surrogate, ``compliant`` and ``springs``: the options that each takes."""
 
 from tipoff.lowfi.numerics import Numerics
 from tipoff.mechanics.models import COMPLIANT, SURROGATES
@@ -16,9 +15,8 @@ def require(
     calibration: Calibration | None,
     numerics: Numerics | None,
 ) -> None:
-    """Raises SceneError, every fault listed, where ``model`` is unknown, lacks what it needs, or is
-    given what belongs to the other one. Without contact both models are the same and need
-    nothing."""
+    """Raises SceneError, every fault listed, where ``model`` is unknown, lacks what it needs, or has
+    options of the other one. Without contact both models are the same and need nothing."""
     if model not in SURROGATES:
         raise SceneError(
             [Fault(scene.name, "model", repr(model), f"one of {', '.join(SURROGATES)}")]

@@ -21,8 +21,8 @@ class Numerics:
     inertia.
 
     A run whose energy ledgers do not close as promised is run again at a tenth of the tolerance.
-    The promises are those of the default; at a looser tolerance, asked for because it is faster,
-    they are looser in proportion (``promises_of``).
+    The promises are those of the default; at a looser, faster tolerance they are looser in
+    proportion (``promises_of``).
     """
 
     relative_tolerance: float = 2e-7

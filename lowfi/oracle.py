@@ -1,12 +1,12 @@
-"""The same physics written a second time, plainly: fixed-step Runge-Kutta of order four on Newton's
-and Euler's equations.
+"""An independent implementation of the same physics: fixed-step Runge-Kutta of order four on
+Newton's and Euler's equations.
 
     m v' = F,    I w' = M - w x I w    (w and M in body axes, M about the body's own mass centre),    q' = q w / 2
 
-It shares only the laws in ``scenes.effects``, the table of warm walls (``lowfi.contact.thermal_offset``) and the
-rotations with the fast path: other state variables, another integrator, no events, no error
-control, and it goes on where a pad strikes an edge of a wall. Tests hold the fast path against it;
-benchmarks take it as the baseline.
+It shares only the laws in ``scenes.effects``, the thermal offset
+(``lowfi.contact.thermal_offset``) and the rotations with the fast solver: other state variables,
+another integrator, no events, no error control, and it continues where a pad strikes an edge of a
+wall. Tests compare the fast solver with it; benchmarks take it as the baseline.
 """
 
 from typing import NamedTuple
@@ -30,15 +30,25 @@ _SIZE = 2 * _BODY
 
 
 class Samples(NamedTuple):
-    """time (n,) s; position, velocity (n,3) scene axes; quaternion (n,4); rate (n,3) body axes;
-    number of right-hand sides."""
+    """Motion of the payload at n samples."""
 
-    time: np.ndarray
-    position: np.ndarray
-    velocity: np.ndarray
-    quaternion: np.ndarray
-    rate: np.ndarray
-    evaluations: int
+    time: np.ndarray  # (n,) s
+    position: np.ndarray  # (n, 3) m, scene axes
+    velocity: np.ndarray  # (n, 3) m/s, scene axes
+    quaternion: np.ndarray  # (n, 4)
+    rate: np.ndarray  # (n, 3) rad/s, body axes
+    evaluations: int  # of the right-hand side
+
+
+class Motion(NamedTuple):
+    """Motion of a body at one instant."""
+
+    place: tuple  # m, scene axes
+    velocity: tuple  # m/s, scene axes
+    quaternion: tuple
+    body_rate: tuple  # rad/s, body axes
+    turn: tuple  # nine numbers of the rotation matrix
+    rate: tuple  # rad/s, scene axes
 
 
 def solve(
@@ -49,7 +59,7 @@ def solve(
     compliance: RailCompliance | None = None,
 ) -> Samples:
     """Motion of the payload of ``scene`` with ``steps_per_sample`` equal steps between samples, to
-    the scene's duration; a warm scene asks for rigid ``walls``."""
+    the scene's duration; a warm scene needs a rigid ``compliance``."""
     interval = interval or scene.output.interval
     samples = samples if samples is not None else round(scene.duration / interval)
     job, rows = prepared(scene, steps_per_sample, samples, interval, compliance)
@@ -74,7 +84,7 @@ def prepared(
     """Arguments of ``integrate`` but the last, and the last: rows (samples + 1, 26) of which only
     the first is filled.
 
-    Raises SceneError for the law of friction that sticks.
+    Raises SceneError for friction that sticks.
     """
     require_two_step(scene)
     model = models.build(scene)
@@ -82,7 +92,7 @@ def prepared(
     rows = np.zeros((samples + 1, _SIZE))
     rows[0] = _start(model)
     return (
-        build(model, bow=thermal_offset.under_pads(scene, model, compliance)),
+        build(model, thermal_offset=thermal_offset.under_pads(scene, model, compliance)),
         model.payload.inertia,
         platform_inertia,
         interval / steps_per_sample,
@@ -135,50 +145,27 @@ def integrate(system, inertia, platform_inertia, dt, steps_per_sample, rows):
 @inlined
 def slope(system, inertia, platform_inertia, time, state, out):
     """Time derivative ``out`` of ``state`` (26,)."""
-    r, v, q, w = _parts(state, 0)
-    R, V, Q, W = _parts(state, _BODY)
-    turn, frame = rotation.matrix(q), rotation.matrix(Q)
-    spin, frame_spin = rotation.rotate(turn, w), rotation.rotate(frame, W)
-    force, moment = thrust(system.thrust, system.thrust_offset, time, turn)
-    # The wrench on the platform about its own mass centre: what acts on the payload, reversed,
+    body, base = _motion(state, 0), _motion(state, _BODY)
+    r, R = body.place, base.place
+    force, moment = thrust(system.thrust, system.thrust_offset, time, body.turn)
+    # The wrench on the platform about its own mass centre: the reverse of that on the payload,
     # where it acts.
-    given = system.reacts_on_platform
-    F = (-force[0], -force[1], -force[2]) if given else (0.0, 0.0, 0.0)
-    M = _reversed(force, moment, r, R) if given else (0.0, 0.0, 0.0)
-    place = rotation.unrotate(frame, (r[0] - R[0], r[1] - R[1], r[2] - R[2]))
-    x, y, z = _column(frame, turn, 0), _column(frame, turn, 1), _column(frame, turn, 2)
+    reacts = system.reacts_on_platform
+    F = (-force[0], -force[1], -force[2]) if reacts else (0.0, 0.0, 0.0)
+    M = _reversed(force, moment, r, R) if reacts else (0.0, 0.0, 0.0)
+    place = rotation.unrotate(base.turn, (r[0] - R[0], r[1] - R[1], r[2] - R[2]))
+    x = _column(base.turn, body.turn, 0)
+    y, z = _column(base.turn, body.turn, 1), _column(base.turn, body.turn, 2)
     axes = (x[0], y[0], z[0], x[1], y[1], z[1], x[2], y[2], z[2])
     for i in range(system.faces.shape[0]):
-        push, arm = touch(
-            system.contact,
-            system.friction,
-            system.faces[i],
-            system.rail_start,
-            system.rail_end,
-            place,
-            axes,
-            (r, v, turn, spin),
-            (R, V, frame, frame_spin),
-        )
+        push, arm = pad_contact(system.contact, system, system.faces[i], place, axes, body, base)
         if push[0] != 0.0 or push[1] != 0.0 or push[2] != 0.0:
             twist = rotation.cross(arm, push)
             force, moment = _sum(force, push), _sum(moment, twist)
             F, M = _sum(F, (-push[0], -push[1], -push[2])), _sum(M, _reversed(push, twist, r, R))
-    fall = acceleration(system.gravity)
-    _newton_euler(
-        system.payload.mass,
-        inertia,
-        system.payload.inverse_inertia,
-        turn,
-        q,
-        v,
-        w,
-        force,
-        moment,
-        fall,
-        out[:_BODY],
-    )
-    _platform(system.platform, platform_inertia, frame, Q, V, W, F, M, fall, out[_BODY:])
+    fall = acceleration(system.body_force)
+    _newton_euler(system.payload, inertia, body, (force, moment), fall, out[:_BODY])
+    _platform(system.platform, platform_inertia, base, (F, M), fall, out[_BODY:])
 
 
 @inlined
@@ -188,29 +175,28 @@ def _column(frame, turn, i):
 
 
 @inlined
-def _platform(platform, inertia, frame, Q, V, W, F, M, fall, out):
+def _platform(platform, inertia, motion, wrench, fall, out):
     if platform is None:
         for j in range(_BODY):
             out[j] = 0.0
     if platform is not None:
-        _newton_euler(
-            platform.mass, inertia, platform.inverse_inertia, frame, Q, V, W, F, M, fall, out
-        )
+        _newton_euler(platform, inertia, motion, wrench, fall, out)
 
 
 @inlined
-def _newton_euler(mass, inertia, inverse, turn, q, v, w, force, moment, fall, out):
+def _newton_euler(body, inertia, motion, wrench, fall, out):
+    w, (force, moment) = motion.body_rate, wrench
     h = (
         inertia[0, 0] * w[0] + inertia[0, 1] * w[1] + inertia[0, 2] * w[2],
         inertia[1, 0] * w[0] + inertia[1, 1] * w[1] + inertia[1, 2] * w[2],
         inertia[2, 0] * w[0] + inertia[2, 1] * w[1] + inertia[2, 2] * w[2],
     )
-    gyro, body_moment = rotation.cross(w, h), rotation.unrotate(turn, moment)
-    turning = rotation.product(q, (0.0, 0.5 * w[0], 0.5 * w[1], 0.5 * w[2]))
+    gyro, body_moment = rotation.cross(w, h), rotation.unrotate(motion.turn, moment)
+    turning = rotation.product(motion.quaternion, (0.0, 0.5 * w[0], 0.5 * w[1], 0.5 * w[2]))
     for i in range(3):
-        out[i], out[3 + i], out[10 + i] = v[i], force[i] / mass + fall[i], 0.0
+        out[i], out[3 + i], out[10 + i] = motion.velocity[i], force[i] / body.mass + fall[i], 0.0
         for j in range(3):
-            out[10 + i] += inverse[i, j] * (body_moment[j] - gyro[j])
+            out[10 + i] += body.inverse_inertia[i, j] * (body_moment[j] - gyro[j])
     for i in range(4):
         out[6 + i] = turning[i]
 
@@ -228,7 +214,7 @@ def thrust(record, offset, time, turn):
 
 
 @inlined
-def touch(laws, friction, face, rail_start, rail_end, place, axes, payload, platform):
+def pad_contact(laws, system, face, place, axes, body, base):
     """Force (N) of one face on the payload and its arm from the payload's mass centre (m), scene
     axes.
 
@@ -238,21 +224,20 @@ def touch(laws, friction, face, rail_start, rail_end, place, axes, payload, plat
     if laws is not None:
         c = rotation.rotate(axes, (face[0], face[1], face[2]))
         x = (place[0] + c[0], place[1] + c[1], place[2] + c[2])
-        away, slope = _bowed(laws.bow, face, x[0])
+        away, slope = _thermal_offset(laws.thermal_offset, face, x[0])
         p = face[3] * x[1] + face[4] * x[2] - face[5] - away
         side = (x[1] if face[3] == 0.0 else x[2]) - face[SIDE_MIDDLE]
         if (
             0.0 < p < face[BACK]
-            and rail_start <= x[0] <= rail_end
+            and system.rail_start <= x[0] <= system.rail_end
             and abs(side) <= face[SIDE_REACH]
         ):
-            r, v, turn, spin = payload
-            R, V, frame, frame_spin = platform
-            arm = rotation.rotate(turn, (face[0], face[1], face[2]))
+            r, v, R, V = body.place, body.velocity, base.place, base.velocity
+            arm = rotation.rotate(body.turn, (face[0], face[1], face[2]))
             d = (r[0] + arm[0] - R[0], r[1] + arm[1] - R[1], r[2] + arm[2] - R[2])
-            a, b = rotation.cross(spin, arm), rotation.cross(frame_spin, d)
+            a, b = rotation.cross(body.rate, arm), rotation.cross(base.rate, d)
             u = rotation.unrotate(
-                frame,
+                base.turn,
                 (v[0] + a[0] - V[0] - b[0], v[1] + a[1] - V[1] - b[1], v[2] + a[2] - V[2] - b[2]),
             )
             n = (-slope, face[3], face[4])
@@ -261,9 +246,9 @@ def touch(laws, friction, face, rail_start, rail_end, place, axes, payload, plat
             normal = max(0.0, elastic + damping)
             off = closing / rotation.dot(n, n)
             slip = (u[0] - off * n[0], u[1] - off * n[1], u[2] - off * n[2])
-            drag = normal * _drag(friction, slip)
+            drag = normal * _drag(system.friction, slip)
             force = rotation.rotate(
-                frame,
+                base.turn,
                 (
                     -normal * n[0] - drag * slip[0],
                     -normal * n[1] - drag * slip[1],
@@ -274,10 +259,10 @@ def touch(laws, friction, face, rail_start, rail_end, place, axes, payload, plat
 
 
 @inlined
-def _bowed(bow_, face, x):
-    """How far (m) the wall stands away at ``x`` (m), and its slope."""
-    if bow_ is not None:
-        return thermal_offset.stand(bow_, int(face[NUMBER]), x)
+def _thermal_offset(offset, face, x):
+    """Thermal offset (m) of the wall at ``x`` (m), and its slope."""
+    if offset is not None:
+        return thermal_offset.offset_and_slope(offset, int(face[NUMBER]), x)
     return 0.0, 0.0
 
 
@@ -302,10 +287,16 @@ def _sum(a, b):
 
 
 @inlined
-def _parts(state, first):
-    return (
-        (state[first], state[first + 1], state[first + 2]),
-        (state[first + 3], state[first + 4], state[first + 5]),
-        (state[first + 6], state[first + 7], state[first + 8], state[first + 9]),
-        (state[first + 10], state[first + 11], state[first + 12]),
+def _motion(state, first):
+    """Motion of the body whose slots begin at ``first``."""
+    quaternion = (state[first + 6], state[first + 7], state[first + 8], state[first + 9])
+    turn = rotation.matrix(quaternion)
+    body_rate = (state[first + 10], state[first + 11], state[first + 12])
+    return Motion(
+        place=(state[first], state[first + 1], state[first + 2]),
+        velocity=(state[first + 3], state[first + 4], state[first + 5]),
+        quaternion=quaternion,
+        body_rate=body_rate,
+        turn=turn,
+        rate=rotation.rotate(turn, body_rate),
     )

@@ -7,20 +7,9 @@ import numpy as np
 
 from tipoff.lowfi import state, system
 from tipoff.lowfi.contact import thermal_offset, wall_ends
-from tipoff.lowfi.contact.compliant import record as wall_record
+from tipoff.lowfi.contact.compliant import record as compliance_record
 from tipoff.lowfi.dynamics import audit, balance, integrate, local_error, plan
-from tipoff.lowfi.dynamics.integrate import (
-    EVALUATIONS,
-    EVENTS,
-    LIMIT,
-    LIMIT_USED,
-    NOW,
-    REJECTED,
-    STEPS,
-    STRIKING,
-    TAKEN,
-    Sampling,
-)
+from tipoff.lowfi.dynamics.loop import Sampling
 from tipoff.lowfi.dynamics.sample import SAMPLE_SIZE
 from tipoff.lowfi.models import require
 from tipoff.lowfi.numerics import Numerics, promises_of
@@ -40,8 +29,7 @@ _REASONS = {
     integrate.OUT_OF_STEPS: "the step budget is spent (numerics.maximum_steps)",
     integrate.LOST_ENERGY: "a tenth of the energy is lost or came from nothing",
 }
-# at a tenth of the tolerance each, while that makes the ledgers' errors smaller by half at least
-_RERUNS = 4
+_RERUNS = 4  # at a tenth of the tolerance each, while that halves the errors of the ledgers
 
 
 def run(
@@ -56,13 +44,13 @@ def run(
     """Solve ``scene`` with rigid bodies until the settled window is complete, a jam, or the scene's
     duration.
 
-    The ``model`` is ``compliant``: pads press on the rail compliance ``walls``
-    (``calibrate.compliance``) through the penalty of the reference; or ``springs``: the scene's
-    contact law at each pad face, with the constants of a ``calibration`` if one is given, on rigid
-    ``walls`` where the rails are warm. ``progress`` is called with the fraction of the duration
-    done. A run whose ledgers do not close as promised is run again at tighter tolerances, as
-    message and cost say; one that keeps breaking a promise is diverged. Raises SceneError, every
-    fault listed, before any stepping; what goes wrong later is the status of the result.
+    The ``model`` is ``compliant``: pads press on the rail ``compliance`` (``tipoff.compliance``)
+    through the penalty of the reference; or ``springs``: the scene's contact law at each pad face,
+    with the constants of a ``calibration`` if one is given, and a rigid ``compliance`` where the
+    rails are warm. ``progress`` is called with the fraction of the duration done. A run whose
+    ledgers do not close as promised is run again at tighter tolerances, as message and cost report;
+    one that keeps breaking a promise is diverged. Raises SceneError, every fault listed, before the
+    first step; a later failure is the status of the result.
     """
     require(scene, model, compliance, calibration, numerics)
     return solved(scene, calibration, numerics, progress, compliance)
@@ -75,20 +63,20 @@ def solved(
     progress: Callable[[float], None] | None = None,
     compliance: RailCompliance | None = None,
 ) -> Trajectory:
-    """``run`` without its check that options belong to a model: the model is the one that ``walls``
-    make."""
+    """``run`` without its check of the options: the model follows from ``compliance``."""
     began, cpu = clock.perf_counter(), clock.thread_time()
     scene = calibration.apply(scene) if calibration else scene
-    known = len(integrate.march.overloads)
+    compiled = len(integrate.integrate.overloads)
     setting_up = clock.perf_counter()
     run_ = Run(scene, numerics or Numerics(), compliance)
     run_.begin()
-    compile_s = clock.perf_counter() - setting_up if len(integrate.march.overloads) > known else 0.0
+    is_new = len(integrate.integrate.overloads) > compiled
+    compile_s = clock.perf_counter() - setting_up if is_new else 0.0
     compile_cpu = clock.thread_time()
-    marching = clock.perf_counter()
-    run_.march(progress)
+    integrating = clock.perf_counter()
+    run_.integrate(progress)
     run_ = improved(run_, progress)
-    kernel_s = clock.perf_counter() - marching
+    kernel_s = clock.perf_counter() - integrating
     result = run_.trajectory()
     result.cost.update(
         wall_s=clock.perf_counter() - began - compile_s, compile_s=compile_s, kernel_s=kernel_s
@@ -98,8 +86,8 @@ def solved(
 
 
 def improved(first: "Run", progress: Callable[[float], None] | None = None) -> "Run":
-    """``first``, which has marched, or the same scene run again with smaller steps, because its
-    ledgers call for them."""
+    """``first``, which has been integrated, or the same scene run again with smaller steps where its
+    ledgers need them."""
     best, numerics = first, first.numerics
     for reruns in range(1, _RERUNS + 1):
         if (
@@ -110,9 +98,9 @@ def improved(first: "Run", progress: Callable[[float], None] | None = None) -> "
             break
         numerics = numerics.tightened()
         finer = Run(first.scene, first.numerics, first.compliance, numerics)
-        finer.reruns, finer.discarded = reruns, best.discarded + int(best.loop.count[STEPS])
+        finer.reruns, finer.discarded = reruns, best.discarded + int(best.loop.counts.steps)
         finer.begin()
-        finer.march(progress)
+        finer.integrate(progress)
         usage, best = best.usage(), finer
         if finer.usage() > 0.5 * usage and not usage == np.inf:
             break
@@ -120,9 +108,9 @@ def improved(first: "Run", progress: Callable[[float], None] | None = None) -> "
 
 
 class Run:
-    """State of a run in progress and its samples, up to number ``end`` as far as is known; one that
-    is ``whole`` goes on to the end of the scene although nothing is left to learn of exit and jam.
-    It keeps the promises of ``numerics``, with the steps of ``finer`` ones if given."""
+    """State of a run in progress and its samples, the last with number ``end``; one that is
+    ``whole`` goes on to the end of the scene also when exit and jam are settled. It keeps the
+    promises of ``numerics``, with the steps of ``finer`` ones if given."""
 
     reruns, discarded = 0, 0  # runs of the scene before this one, and their steps
 
@@ -133,12 +121,8 @@ class Run:
         compliance: RailCompliance | None = None,
         finer: Numerics | None = None,
     ):
-        self.scene, self.numerics, self.compliance, self.promised = (
-            scene,
-            numerics,
-            compliance,
-            promises_of(numerics),
-        )
+        self.scene, self.numerics, self.compliance = scene, numerics, compliance
+        self.promised = promises_of(numerics)
         self.used = used = finer or numerics
         self.model = model = models.build(scene)
         self.marks = outcome.milestones(scene, model)
@@ -149,8 +133,8 @@ class Run:
         self.tolerance = local_error.tolerance(used, self.promised, reach)
         self.system = system.build(
             model,
-            compliance=wall_record.under_pads(scene, model, compliance, numerics.modes),
-            bow=thermal_offset.under_pads(scene, model, compliance),
+            compliance=compliance_record.under_pads(scene, model, compliance, numerics.modes),
+            thermal_offset=thermal_offset.under_pads(scene, model, compliance),
         )
         self.loop = integrate.ready(self.system, state.initial(model), plan.first_step(self.plan))
         self.rows, self.forces = (
@@ -163,8 +147,8 @@ class Run:
         """Take the first sample; compiles the kernels, or loads them from disk."""
         self._advance(0)
 
-    def march(self, progress) -> None:
-        """Advance, some samples at a time, until something ends the run."""
+    def integrate(self, progress) -> None:
+        """Advance, some samples at a time, to the end of the run."""
         stride = max(1, round(_STRIDE / self.interval))
         while self.taken <= self.end and not self.message:
             self._advance(min(self.taken - 1 + stride, self.end))
@@ -172,9 +156,9 @@ class Run:
                 progress(self.taken / (self.end + 1))
 
     def _advance(self, number: int) -> None:
-        """Take samples up to ``number``, fewer where nothing is left to learn."""
+        """Take samples up to ``number``, fewer where exit or jam end the run."""
         sampling = Sampling(self.interval, self.last, number, self.whole)
-        status = integrate.march(
+        status = integrate.integrate(
             self.system,
             self.plan,
             self.tolerance,
@@ -184,29 +168,28 @@ class Run:
             self.rows,
             self.forces,
         )
-        self.taken = int(self.loop.count[TAKEN])
+        self.taken = int(self.loop.counts.samples)
         if status == integrate.STRUCK:
             self.message = self._strike()
         elif status in _REASONS:
-            self.message = f"{_REASONS[status]}, at {self.loop.clock[NOW]:.6g} s"
+            self.message = f"{_REASONS[status]}, at {self.loop.clock.now:.6g} s"
         elif status == integrate.ENDED:
             self.end = self.taken - 1
 
     def _strike(self) -> str:
-        """What met the edge of a wall, where and when."""
-        face = int(self.loop.count[STRIKING])
-        return wall_ends.strike(
-            self.model, face, self.system.faces[face], self.loop.after[face], self.loop.clock[NOW]
-        )
+        """Which face struck an edge of a wall, where and when."""
+        face = int(self.loop.counts.striking_face)
+        surveyed, time = self.loop.after[face], float(self.loop.clock.now)
+        return wall_ends.strike(self.model, face, self.system.faces[face], surveyed, time)
 
     def usage(self) -> float:
         """Largest share that a ledger uses of half of what is promised of it at the ends of
         steps."""
-        return float(audit.usage(self.loop.audit, self.tolerance.total, self.tolerance.across))
+        return float(audit.usage(self.loop.audit, self.tolerance.total, self.tolerance.transverse))
 
     def lost_energy(self) -> bool:
         """Whether the run stopped because a tenth of its energy was lost."""
-        return bool(self.loop.audit[audit.LOST] != 0.0)
+        return bool(self.loop.audit.failed)
 
     def judged(self) -> tuple[str, outcome.Outcome]:
         """Status and outcome of the run so far, in the frame it is solved in."""
@@ -244,7 +227,7 @@ class Run:
         )
 
     def _again(self) -> str:
-        """That smaller steps than asked for were taken, or nothing."""
+        """Report of smaller steps than requested, or nothing."""
         if not self.reruns:
             return ""
         times = "once" if self.reruns == 1 else f"{self.reruns} times"
@@ -254,18 +237,18 @@ class Run:
         )
 
     def _cost(self) -> dict[str, float]:
-        """Counts; dt_limit_s is the smallest proven limit met while anything touched, limit_used
+        """Counts; dt_limit_s is the smallest proven limit in contact, limit_used
         the largest step over its limit. Where the scene was run again, how often, and the steps of
         the runs before."""
-        clock_, count = self.loop.clock, self.loop.count
-        steps, limit = int(count[STEPS]), float(clock_[LIMIT])
+        clock_, counts = self.loop.clock, self.loop.counts
+        steps, limit = int(counts.steps), float(clock_.limit)
         cost = {
             "steps": steps,
-            "rhs_evaluations": int(count[EVALUATIONS]),
-            "rejected": int(count[REJECTED]),
-            "events": int(count[EVENTS]),
-            "dt_s": float(clock_[NOW]) / max(steps, 1),
-            "limit_used": float(clock_[LIMIT_USED]),
+            "rhs_evaluations": int(counts.evaluations),
+            "rejected": int(counts.rejected),
+            "events": int(counts.events),
+            "dt_s": float(clock_.now) / max(steps, 1),
+            "limit_used": float(clock_.limit_used),
         }
         again = {"reruns": self.reruns, "discarded_steps": self.discarded} if self.reruns else {}
         return cost | again | ({"dt_limit_s": limit} if np.isfinite(limit) else {})

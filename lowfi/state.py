@@ -1,15 +1,15 @@
-"""The state vector: where each quantity stands, and the motion of a body read from it.
+"""The state vector: the slot of each quantity, and the motion of a body.
 
 Each body has place r, velocity v, quaternion q and the *total* angular momentum about the scene
 origin::
 
     A = r x m v + h,      h = R I R' w,      w = R I^-1 R' (A - r x m v)
 
-Explicit Runge-Kutta methods keep linear invariants to rounding. The sums of m v and of A over both
-bodies, less the impulse and its moment from outside, are such invariants when every internal force
-acts as a pair at one common point; a wrong pair still shows. The work entries behind them are
-quadratures: the same method integrates them, so that both ledgers close to its accuracy. Behind all
-that stand the modes of the rails, where there are any (``lowfi.contact.compliant.modes``).
+Explicit Runge-Kutta methods conserve linear invariants to rounding. The sums of m v and of A over
+both bodies, less the impulse and its moment from outside, are such invariants when every internal
+force acts as a pair at one common point; a wrong pair still shows. The work entries after them are
+quadratures: the same method integrates them, so both ledgers close to its accuracy. The modes of
+the rails come last, where there are any (``lowfi.contact.compliant.modes``).
 """
 
 from typing import NamedTuple
@@ -30,8 +30,8 @@ DYNAMIC_SIZE = 26  # what the equations of motion depend on, besides modes
 (
     THRUST,
     THRUST_AXIAL,
-    GRAVITY,
-    GRAVITY_AXIAL,
+    BODY_FORCE,
+    BODY_FORCE_AXIAL,
     FRICTION,
     FRICTION_AXIAL,
     DAMPING,
@@ -45,13 +45,12 @@ STATE_SIZE = 48
 
 
 class Motion(NamedTuple):
-    """A body now: place of its mass centre (m), velocity (m/s), rotation matrix (nine numbers),
-    angular velocity (rad/s), all in scene axes."""
+    """Motion of a body at one instant, in scene axes."""
 
-    place: tuple
-    velocity: tuple
-    turn: tuple
-    rate: tuple
+    place: tuple  # m, mass centre
+    velocity: tuple  # m/s, of the mass centre
+    turn: tuple  # nine numbers of the rotation matrix
+    rate: tuple  # rad/s, angular velocity
 
 
 @inlined
@@ -64,8 +63,8 @@ def copy(source, target, size):
 
 @inlined
 def modal_size(compliance):
-    """How many numbers the modes of ``walls`` add to the state: all amplitudes q (kg^0.5 m), rail
-    by rail, then all their rates."""
+    """How many numbers the modes of ``compliance`` add to the state: all amplitudes q (kg^0.5 m),
+    rail by rail, then all their rates."""
     size = 0
     if compliance is not None:
         size = _modal_size(compliance.modes)
@@ -82,7 +81,7 @@ def _modal_size(modes):
 
 @inlined
 def copy_all(source, target, modal):
-    """Copy a state with ``modal`` numbers of modes behind it."""
+    """Copy a state with ``modal`` numbers of modes after it."""
     copy(source, target, STATE_SIZE)
     for j in range(STATE_SIZE, STATE_SIZE + modal):
         target[j] = source[j]
@@ -90,11 +89,13 @@ def copy_all(source, target, modal):
 
 @inlined
 def triple(values, first):
+    """Three numbers from slot ``first`` on."""
     return (values[first], values[first + 1], values[first + 2])
 
 
 @inlined
 def quaternion(state, body):
+    """Quaternion of the body whose slots begin at ``body``."""
     first = body + QUATERNION
     return (state[first], state[first + 1], state[first + 2], state[first + 3])
 
@@ -138,12 +139,8 @@ def normalise(state):
 
 def initial(model: Model) -> np.ndarray:
     """State (STATE_SIZE,) at ignition, in the frame of ``mechanics.comoving``."""
-    state, first, payload, platform = (
-        np.zeros(STATE_SIZE),
-        model.initial,
-        model.payload,
-        model.platform,
-    )
+    state, first = np.zeros(STATE_SIZE), model.initial
+    payload, platform = model.payload, model.platform
     start = comoving.start(model)
     _fill(
         state,

@@ -1,8 +1,7 @@
-"""What the kernels of the surrogate are given: the scene's records, cut down to what a rigid run
-reads.
+"""Records of a scene as the kernels of the surrogate take them.
 
-Faces are one table, because every array in a record makes each kernel that passes the record on
-longer to compile.
+Faces are one table, because every array in a record makes each kernel that takes the record longer
+to compile.
 """
 
 from typing import TYPE_CHECKING, NamedTuple
@@ -19,13 +18,13 @@ from tipoff.scenes.effects.thrust_offset import ThrustOffset
 
 if TYPE_CHECKING:
     from tipoff.lowfi.contact.compliant.record import Compliance
-    from tipoff.lowfi.contact.thermal_offset import Bow
+    from tipoff.lowfi.contact.thermal_offset import ThermalOffset
 
 # Columns of the table of faces: centre in payload body axes (m); outward normal's y and z and the
-# wall's distance along it (m), in platform axes; half the length (m); its own number; and where the
-# wall ends (``lowfi.contact.wall_ends``): how far (m) the middle of the face may be beyond an end of the rail,
-# where it stands across the rail when centred (m, platform axes), how far from there it may be (m),
-# the thickness of the wall (m), and how deep (m) its edge may come over that of the wall.
+# wall's distance along it (m), in platform axes; half the length (m); its own number; and for the
+# ends of the wall (``lowfi.contact.wall_ends``): how far (m) the middle of the face may be beyond an
+# end of the rail, its place across the rail when centred (m, platform axes), how far from there it
+# may be (m), the thickness of the wall (m), and how deep (m) its edge may pass that of the wall.
 (
     CENTRE,
     NORMAL_Y,
@@ -40,83 +39,79 @@ if TYPE_CHECKING:
     ROUND,
     FACE_SIZE,
 ) = (0, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13)
-# m: the edges of pads and walls are no sharper, and no gap of theirs is known better
-ROUNDED = 1e-6
-LAST_STRIP = 0.01  # of half a face: what is left over a wall that gives way when the face leaves it
+ROUNDED = 1e-6  # m: edges of pads and walls are no sharper, and no gap is more accurate
+LAST_STRIP = 0.01  # of half a face: what is still over a compliant wall when the face leaves it
 
 
 class Body(NamedTuple):
-    """Mass (kg) and inverse inertia (3,3) about the mass centre (1/(kg m2))."""
+    """A rigid body."""
 
-    mass: float
-    inverse_inertia: np.ndarray
+    mass: float  # kg
+    inverse_inertia: np.ndarray  # (3, 3) 1/(kg m2), about the mass centre, in body axes
 
 
 class Contact(NamedTuple):
-    """The one law a scene uses, the others None, and where the walls it acts at stand if they are
-    warm, else None."""
+    """The one contact law of a scene; the other laws are None."""
 
     impact: Impact | None
     hunt_crossley: HuntCrossley | None
     linear: Linear | None
-    bow: "Bow | None"
+    thermal_offset: "ThermalOffset | None"  # of the walls, None where they are not warm
 
 
 class System(NamedTuple):
-    """All records of one run; None where an effect, or the ledger, is absent. faces (f, FACE_SIZE);
-    rail_start and rail_end (m) as in ``Model``. Where walls give way they stand in the place of the
-    contact law."""
+    """All records of one run; None where an effect is absent."""
 
     payload: Body
-    platform: Body | None
-    faces: np.ndarray
-    rail_start: float
-    rail_end: float
+    platform: Body | None  # None where the rails are fixed
+    faces: np.ndarray  # (f, FACE_SIZE)
+    rail_start: float  # m, X of the rear end
+    rail_end: float  # m, X of the open end
     thrust: Thrust
-    reacts_on_platform: bool
+    reacts_on_platform: bool  # whether the platform takes the reaction of the thrust
     thrust_offset: ThrustOffset | None
-    contact: Contact | None
-    compliance: "Compliance | None"
-    friction: Friction | None
-    sticking: Sticking | None
-    gravity: BodyForce | None
-    ledger: bool | None
+    contact: Contact | None  # contact springs
+    compliance: "Compliance | None"  # compliant contact, instead of contact springs
+    has_contact: bool  # of either kind
+    # True with a compliance, else None: a small argument by which functions are pruned
+    is_compliant: bool | None
+    friction: Friction | None  # two-step law
+    sticking: Sticking | None  # stick-slip law
+    body_force: BodyForce | None
+    ledger: bool | None  # True where work, losses and impulses are integrated
 
 
 def build(
     model: Model,
     ledger: bool = True,
     compliance: "Compliance | None" = None,
-    bow: "Bow | None" = None,
+    thermal_offset: "ThermalOffset | None" = None,
 ) -> System:
-    """Records of ``model`` as the kernels take them, with a contact law at rigid walls, straight or
-    with a ``bow``, or with ``walls`` that give way. Without a ``ledger`` no work, loss or impulse
-    is integrated."""
-    contact = (
-        Contact(*model.contact, bow) if model.contact is not None and compliance is None else None
-    )
+    """Records of ``model``: contact springs at rigid walls, with a ``thermal_offset`` or without,
+    or compliant contact with a ``compliance``. Without a ``ledger`` no work, loss or impulse is
+    integrated."""
+    contact, friction = None, model.friction
+    if model.contact is not None and compliance is None:
+        contact = Contact(*model.contact, thermal_offset)
     return System(
-        _body(model.payload),
-        _body(model.platform) if model.platform is not None else None,
-        _table(model, compliance),
-        float(model.rail_start),
-        float(model.rail_end),
-        model.thrust,
-        model.reacts_on_platform,
-        model.thrust_offset,
-        contact,
-        compliance,
-        _if(model.friction, Friction),
-        _if(model.friction, Sticking),
-        model.body_force,
-        True if ledger else None,
+        payload=_body(model.payload),
+        platform=_body(model.platform) if model.platform is not None else None,
+        faces=_table(model, compliance),
+        rail_start=float(model.rail_start),
+        rail_end=float(model.rail_end),
+        thrust=model.thrust,
+        reacts_on_platform=model.reacts_on_platform,
+        thrust_offset=model.thrust_offset,
+        contact=contact,
+        compliance=compliance,
+        has_contact=contact is not None or compliance is not None,
+        is_compliant=True if compliance is not None else None,
+        # a field for each law, so that only the law in use is compiled
+        friction=friction if isinstance(friction, Friction) else None,
+        sticking=friction if isinstance(friction, Sticking) else None,
+        body_force=model.body_force,
+        ledger=True if ledger else None,
     )
-
-
-def _if(record, kind: type):
-    """``record`` if it is of this kind: each law of friction has a field of its own, so that only
-    it is compiled."""
-    return record if isinstance(record, kind) else None
 
 
 def _body(record) -> Body:

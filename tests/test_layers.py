@@ -265,8 +265,6 @@ def test_doctor_needs_only_the_standard_library():
 
 # Files that are longer than they should be. None may grow, and no other one may join them.
 LONG = {
-    "tipoff/lowfi/dynamics/events.py": 600,
-    "tipoff/lowfi/dynamics/integrate.py": 580,
     "tests/scenes/test_refusal.py": 440,
     "tests/studies/paper/test_stage.py": 420,
 }

@@ -7,14 +7,15 @@ turning is in it)::
     p = n . x - wall,     p_dot = n . u,     F = -N n - mu(s)/s N (u - p_dot n),     N = max(0, raw)
 
 ``raw`` is the law in ``scenes.effects.contact``. Where walls are warm, p and n are those of
-``lowfi.contact.thermal_offset``. The rail's reach is not tested here but in ``lowfi.dynamics.events``.
+``lowfi.contact.thermal_offset``. ``lowfi.contact.wall_ends`` has the ends
+of the walls.
 """
 
 from typing import NamedTuple
 
 from tipoff.kernels import rotation
 from tipoff.kernels.jit import inlined
-from tipoff.lowfi.contact.thermal_offset import stand
+from tipoff.lowfi.contact.thermal_offset import offset_and_slope
 from tipoff.lowfi.state import velocity_at
 from tipoff.lowfi.system import NORMAL_Y, NORMAL_Z, NUMBER, WALL
 from tipoff.scenes.effects import contact as law
@@ -22,17 +23,15 @@ from tipoff.scenes.effects.friction import coefficient_over_speed
 
 
 class Load(NamedTuple):
-    """What a touching face feels: its point (m), normal and friction force on the payload (N), slip
-    velocity (m/s), all in scene axes; penetration rate (m/s), elastic part and raw normal force
-    (N)."""
+    """Load of a touching face on the payload; vectors in scene axes."""
 
-    point: tuple
-    normal: tuple
-    drag: tuple
-    slip: tuple
-    closing: float
-    elastic: float
-    raw: float
+    point: tuple  # m, where it acts
+    normal: tuple  # N, normal force
+    drag: tuple  # N, two-step friction
+    slip: tuple  # m/s, slip velocity
+    closing: float  # m/s, penetration rate
+    elastic: float  # N, elastic part of the normal force
+    raw: float  # N, normal force before it is cut off at zero
 
 
 @inlined
@@ -102,15 +101,15 @@ def _seen_from_platform(body, base, place, spin):
 
 
 @inlined
-def approach(bow, face, place, turn, drift, swing):
-    """Rate (m/s) of the penetration of ``face``, from the rates of the pose; without a ``bow`` the
-    pose itself is not asked for."""
+def approach(offset, face, place, turn, drift, swing):
+    """Rate (m/s) of the penetration of ``face``, from the rates of the pose; the pose itself is
+    needed only with a thermal ``offset``."""
     y = drift[1] + swing[3] * face[0] + swing[4] * face[1] + swing[5] * face[2]
     z = drift[2] + swing[6] * face[0] + swing[7] * face[1] + swing[8] * face[2]
     rate = face[NORMAL_Y] * y + face[NORMAL_Z] * z
-    if bow is not None:
+    if offset is not None:
         x = drift[0] + swing[0] * face[0] + swing[1] * face[1] + swing[2] * face[2]
-        rate -= stand(bow, int(face[NUMBER]), along(face, place, turn))[1] * x
+        rate -= offset_and_slope(offset, int(face[NUMBER]), along(face, place, turn))[1] * x
     return rate
 
 
@@ -121,13 +120,13 @@ def along(face, place, turn):
 
 
 @inlined
-def penetration(bow, face, place, turn):
+def penetration(offset, face, place, turn):
     """Penetration (m) of ``face`` into its wall, negative across the gap."""
     y = place[1] + turn[3] * face[0] + turn[4] * face[1] + turn[5] * face[2]
     z = place[2] + turn[6] * face[0] + turn[7] * face[1] + turn[8] * face[2]
     p = face[NORMAL_Y] * y + face[NORMAL_Z] * z - face[WALL]
-    if bow is not None:
-        p -= stand(bow, int(face[NUMBER]), along(face, place, turn))[0]
+    if offset is not None:
+        p -= offset_and_slope(offset, int(face[NUMBER]), along(face, place, turn))[0]
     return p
 
 
@@ -162,28 +161,28 @@ def along_width(face, size):
 
 
 @inlined
-def gradient(bow, face, base, point):
+def gradient(offset, face, base, point):
     """What a step of the pad's ``point`` (m, scene axes) adds to the penetration: the normal of the
-    wall, bowed or straight."""
-    if bow is not None:
-        return _bowed(bow, face, base, point)
+    wall."""
+    if offset is not None:
+        return _gradient_with_offset(offset, face, base, point)
     return outward(face, base)
 
 
 @inlined
-def _bowed(bow, face, base, point):
+def _gradient_with_offset(offset, face, base, point):
     place = rotation.unrotate(
         base.turn, (point[0] - base.place[0], point[1] - base.place[1], point[2] - base.place[2])
     )
-    slope = stand(bow, int(face[NUMBER]), place[0])[1]
+    slope = offset_and_slope(offset, int(face[NUMBER]), place[0])[1]
     return rotation.rotate(base.turn, (-slope, face[NORMAL_Y], face[NORMAL_Z]))
 
 
 @inlined
-def slip_velocity(bow, u, closing, n):
+def slip_velocity(offset, u, closing, n):
     """The part of ``u`` (m/s) across ``n``, whose square is one where the wall is straight."""
     along = closing
-    if bow is not None:
+    if offset is not None:
         along = closing / rotation.dot(n, n)
     return (u[0] - along * n[0], u[1] - along * n[1], u[2] - along * n[2])
 
@@ -219,13 +218,13 @@ def friction_force(friction, normal_force, slip):
 def load(laws, friction, platform, face, p, body, base):
     """Load of ``face`` at penetration ``p`` >= 0."""
     point = pad_point(face, body)
-    n = gradient(laws.bow, face, base, point)
+    n = gradient(laws.thermal_offset, face, base, point)
     u = relative_velocity(platform, body, base, point)
     closing = rotation.dot(u, n)
     elastic, damping = law.parts(laws.impact, laws.hunt_crossley, laws.linear, p, closing)
     raw = elastic + damping
     force = max(raw, 0.0)
-    slip = slip_velocity(laws.bow, u, closing, n)
+    slip = slip_velocity(laws.thermal_offset, u, closing, n)
     return Load(
         point,
         (-force * n[0], -force * n[1], -force * n[2]),

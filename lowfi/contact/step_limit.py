@@ -8,8 +8,8 @@ C, hence every eigenvalue s::
     |s| <= S = C/2 + sqrt(C^2/4 + K),   K = sum_i |k_i| w_i(n),   C = sum_i |c_i| w_i(n) + N_i |mu'| (w_i(t1) + w_i(t2))
 
 and no step is taken above ``STABLE_RADIUS / S`` (``lowfi.dynamics.dormand_prince``). |mu'| is the larger of
-mu/s and |d mu/ds| at the slip now. Under the law that sticks a held face adds its spring and damper
-in both tangents, a sliding one N mu_d/|g| across g (``lowfi.contact.stick_slip``).
+mu/s and |d mu/ds| at the slip now. Under friction that sticks, a sticking face adds its spring
+and damper in both tangents, a sliding one N mu_d/|g| across g (``lowfi.contact.stick_slip``).
 """
 
 import numpy as np
@@ -18,7 +18,7 @@ from tipoff.kernels import rotation
 from tipoff.kernels.jit import inlined
 from tipoff.lowfi import state as slot
 from tipoff.lowfi.contact.springs import gradient, load, outward, penetration, relative_pose
-from tipoff.lowfi.contact.stick_slip import HELD, heading
+from tipoff.lowfi.contact.stick_slip import STICKS, heading, row_of
 from tipoff.scenes.effects import contact as law
 from tipoff.scenes.effects.friction import coefficient_over_speed
 
@@ -28,31 +28,30 @@ _NUDGE = 1e-6
 
 
 @inlined
-def fastest_rate(laws, friction, sticking, faces, platform, payload, active, grip, state, ahead):
-    """Bound S (1/s) of the eigenvalues of the ``active`` faces (f,) that touch at ``state``; 0 when
-    none does.
+def fastest_rate(laws, system, touching, stick, state, ahead):
+    """Bound S (1/s) of the eigenvalues of the ``touching`` faces (f,) at ``state``; 0 when none
+    touches.
 
     With a time ``ahead`` (s) it is a guess of the bound then: every face that closes is taken to go
     on closing at its speed.
     """
     rate = 0.0
     if laws is not None:
-        body, base = (
-            slot.motion(payload.mass, payload.inverse_inertia, state, slot.PAYLOAD),
-            slot.frame(platform, state),
-        )
+        payload, platform = system.payload, system.platform
+        body = slot.motion(payload.mass, payload.inverse_inertia, state, slot.PAYLOAD)
+        base = slot.frame(platform, state)
         place, turn = relative_pose(platform, body, base)
         stiffness, damping = 0.0, 0.0
-        for i in range(active.size):
-            if active[i]:
-                p = penetration(laws.bow, faces[i], place, turn)
+        for i in range(touching.size):
+            if touching[i]:
+                face = system.faces[i]
+                p = penetration(laws.thermal_offset, face, place, turn)
                 if p > 0.0:
-                    p += ahead * max(
-                        load(laws, None, platform, faces[i], p, body, base).closing, 0.0
-                    )
-                    k, c = _face(laws, friction, platform, payload, faces[i], p, body, base)
-                    held, rubbed = _grip(
-                        laws, sticking, grip, i, platform, payload, faces, p, body, base
+                    p += ahead * max(load(laws, None, platform, face, p, body, base).closing, 0.0)
+                    k, c = _normal(laws, system, face, p, body, base)
+                    row = row_of(system.sticking, stick, i)
+                    held, rubbed = _tangential(
+                        system.sticking, laws, system, row, face, p, body, base
                     )
                     stiffness += k + held
                     damping += c + rubbed
@@ -61,10 +60,11 @@ def fastest_rate(laws, friction, sticking, faces, platform, payload, active, gri
 
 
 @inlined
-def _face(laws, friction, platform, payload, face, p, body, base):
-    """Contribution of one face to K (1/s2) and C (1/s)."""
+def _normal(laws, system, face, p, body, base):
+    """Contribution of one face, with two-step friction, to K (1/s2) and C (1/s)."""
+    friction, platform, payload = system.friction, system.platform, system.payload
     now = load(laws, friction, platform, face, p, body, base)
-    n = gradient(laws.bow, face, base, now.point)
+    n = gradient(laws.thermal_offset, face, base, now.point)
     more = law.parts(laws.impact, laws.hunt_crossley, laws.linear, p * (1.0 + _NUDGE), now.closing)
     unit = law.parts(laws.impact, laws.hunt_crossley, laws.linear, p, 1.0)
     across = inverse_mass(platform, payload, body, base, now.point, n)
@@ -96,16 +96,13 @@ def friction_damping(friction, now, platform, payload, body, base, n):
 
 
 @inlined
-def _grip(laws, sticking, grip, number, platform, payload, faces, p, body, base):
-    """Contribution of the law that sticks to K (1/s2) and C (1/s)."""
+def _tangential(sticking, laws, system, row, face, p, body, base):
+    """Contribution of friction that sticks to K (1/s2) and C (1/s)."""
     stiffness, damping = 0.0, 0.0
     if sticking is not None:
-        now, n = (
-            load(laws, None, platform, faces[number], p, body, base),
-            outward(faces[number], base),
-        )
-        row = grip[number]
-        if row[HELD] != 0.0:
+        payload, platform = system.payload, system.platform
+        now, n = load(laws, None, platform, face, p, body, base), outward(face, base)
+        if row[STICKS] != 0.0:
             a = _tangent(n)
             across = inverse_mass(platform, payload, body, base, now.point, a) + inverse_mass(
                 platform, payload, body, base, now.point, rotation.cross(n, a)

@@ -1,24 +1,22 @@
-"""Where a wall ends: which faces stand over it, where a face comes over it within a step, and what
-strikes its edges.
+"""Ends of a wall: which faces are over it, where a face comes over it within a step, and what strikes
+its edges.
 
 A wall is a plate. With X of a face's middle, s the place of that middle across the rail, measured
-from where the pad stands when it is centred, and p the penetration, a face stands over its wall
-while::
+from its centred position, and p the penetration, a face is over its wall while::
 
     start - o <= X <= end + o,    |s| <= leg + o_s,    p < thickness
 
-Contact springs act at the middle of a face, so o is zero; walls that give way are pressed by
-whatever part of the face is over them, so o is half of its length. o_s is half of its width, and
-``leg`` bounds the width of the wall, so no part of a face farther away than that is over it. A face
-over its wall may lift off, touch, and leave over any edge.
+Contact springs act at the middle of a face, so o is zero. In compliant contact every part of the
+face that is over the wall acts, so o is half of its length. o_s is half of its width, and ``leg``
+bounds the width of the wall, so no part of a face farther away than that is over it. A face over
+its wall may lift off, touch, and leave over any edge.
 
-A face that comes over an edge brings p with it. At p <= 0 it comes in over the surface. At p > 0 it
-is behind the surface, and what meets the edge of the plate there is the edge of the pad, which no
-contact law here holds. The run ends: a **strike**. The edge of a pad lies back by its relief, and
-no edge is sharper than ``ROUNDED``; up to the sum of both the pad rides up. A face that has left
-over an edge and is still partly over the wall was held by that part, so it may come back as deep as
-it left. A face behind the plate (p >= thickness) feels nothing; when it comes back through p =
-thickness it strikes the back.
+At p <= 0 a face comes in over the surface. At p > 0 it is behind the surface, and the edge of the
+pad meets the edge of the plate, for which there is no contact law here. The run ends: a **strike**.
+The edge of a pad is set back by its relief, and no edge is sharper than ``ROUNDED``; up to the sum
+of both the pad rides up. A face that has left over an edge and is still partly over the wall was
+supported by that part, so it may come back as deep as it left. A face behind the plate (p >=
+thickness) carries no load; when it comes back through p = thickness it strikes the back.
 """
 
 import numpy as np
@@ -27,12 +25,14 @@ from tipoff.kernels.jit import inlined
 from tipoff.lowfi.system import BACK, HALF_LENGTH, OVERHANG, ROUND, SIDE_REACH
 from tipoff.mechanics import outcome
 
-# A crossing is aimed this far beyond itself (m), which is above rounding and below anything a force
-# could feel.
+# m by which a step passes a crossing: above rounding, and without effect on any force
 BEYOND = 1e-12
 SOONEST = 1e-9  # an event in this first part of a step is the one the step began at
-# Columns of what ``lowfi.dynamics.events.survey`` fills.
+# Columns of a survey (``lowfi.dynamics.survey``), one row per face: mode; penetration (m), its rate
+# (m/s) and pull; X (m); stick-slip margin; rate of X (m/s); place across the rail from the middle of
+# the wall (m) and its rate (m/s).
 MODE, DEPTH, CLOSING, PULL, ALONG, MARGIN, FORWARD, SIDE, SIDEWAYS, SURVEY_SIZE = range(10)
+OPEN, PRESSING, CUT_OFF = 0.0, 1.0, 2.0  # modes
 NOWHERE = -1
 
 
@@ -104,8 +104,8 @@ def comes_over(rail, face, before, after, dt):
 
     The quantity is NOWHERE if it does not. The level is NaN where the quantity is inside only
     between the ends of the step: then the fraction is where it turns, and the step up to there
-    shows the entry. Ends may lie on either side of a wall that is short against the step. A face
-    may be engaged too early in this way, never too late.
+    contains the entry. The ends may lie on either side of a wall that is shorter than the step. A
+    face may be taken as over its wall too early in this way, never too late.
     """
     entered, level, fraction = NOWHERE, np.nan, 1.0
     for kind in (ALONG, SIDE, DEPTH):
@@ -114,7 +114,7 @@ def comes_over(rail, face, before, after, dt):
         theta, turn = turning_point(a, b, dt * before[_rate(kind)], dt * after[_rate(kind)])
         if max(a, b, turn) < low or min(a, b, turn) > high:
             return NOWHERE, np.nan, 1.0
-        # In front of its wall a face is in no one's way.
+        # In front of its wall a face meets nothing.
         if entered == NOWHERE and (a > high or (a < low and kind != DEPTH)):
             entered, fraction = kind, theta
             if a > high:

@@ -4,7 +4,7 @@ import numpy as np
 
 from tipoff.lowfi import state
 from tipoff.lowfi.dynamics import audit
-from tipoff.lowfi.dynamics.integrate import DAMPING_POWER, FRICTION_POWER, Loop
+from tipoff.lowfi.dynamics.loop import Loop
 from tipoff.lowfi.dynamics.sample import (
     AXIAL_KINETIC,
     GIVEN,
@@ -41,7 +41,7 @@ def ledgers(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     total = np.zeros((len(rows), len(ledger.ENTRIES)))
     for name, values in (
         ("thrust", work(state.THRUST)),
-        ("gravity", work(state.GRAVITY)),
+        (ledger.BODY_FORCE, work(state.BODY_FORCE)),
         ("kinetic", rows[:, KINETIC]),
         ("strain", rows[:, STRAIN]),
         ("contact_stored", rows[:, STORED]),
@@ -54,7 +54,7 @@ def ledgers(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     across = total.copy()
     for name, values in (
         ("thrust", work(state.THRUST_AXIAL)),
-        ("gravity", work(state.GRAVITY_AXIAL)),
+        (ledger.BODY_FORCE, work(state.BODY_FORCE_AXIAL)),
         ("kinetic", rows[:, AXIAL_KINETIC]),
         ("friction", work(state.FRICTION_AXIAL)),
         ("contact_axial", -work(state.CONTACT_AXIAL)),
@@ -66,7 +66,7 @@ def ledgers(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def checks(
     rows: np.ndarray, moved: Motion, forces: np.ndarray, mass: float, loop: Loop, promised: Promises
 ) -> dict[str, float]:
-    """What is ``promised``, as it was kept: by the ledgers at the ends of all steps, by the momenta
+    """Measured errors of what is ``promised``: of the ledgers at the ends of all steps, of the momenta
     at all samples with pad ``forces`` (n,f,3) N."""
     energy, transverse = audit.errors(
         loop.audit, promised.energy_error, promised.transverse_energy_error
@@ -84,11 +84,11 @@ def checks(
         "linear_momentum_error": linear,
         "angular_momentum_error": angular,
         "quaternion_error": float(max(np.abs(norm - 1.0).max() for norm in norms)),
-        "friction_power_max": _power(clock[FRICTION_POWER]),
-        "damping_power_max": _power(clock[DAMPING_POWER]),
+        "friction_power_max": _power(clock.friction_power),
+        "damping_power_max": _power(clock.damping_power),
     }
 
 
 def _power(value: float) -> float:
-    # A run without a single step has felt no power at all. Adding zero turns -0.0 into 0.0.
+    # Not finite without a single step. Adding zero turns -0.0 into 0.0.
     return float(value) + 0.0 if np.isfinite(value) else 0.0

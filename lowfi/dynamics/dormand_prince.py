@@ -46,13 +46,14 @@ DENSE = np.array(
 
 
 @inlined
-def attempt(system, active, grip, stretch, time, dt, fresh, start, stages, end):
-    """From ``start`` (STATE_SIZE,) at ``time`` to ``end`` at ``time + dt``; unless ``fresh``,
-    ``stages`` (7, STATE_SIZE) holds k_1.
+def attempt(system, loop, stretch, time, dt, fresh):
+    """From ``loop.start`` at ``time`` (s) to ``loop.end`` at ``time + dt``; unless ``fresh``,
+    ``loop.stages`` holds k_1 already.
 
-    Thrust is taken inside ``stretch`` (s), open between two corners, whatever rounding does to
-    stage times.
+    Thrust is evaluated within ``stretch`` (s), the open interval between two corners, also where
+    stage times round beyond it.
     """
+    start, stages, end = loop.start, loop.stages, loop.end
     for stage in range(0 if fresh else 1, STAGES):
         _combine(stage, dt, start, stages, end)
         _combine_modes(stage, dt, start, stages, modal_size(system.compliance), end)
@@ -60,8 +61,8 @@ def attempt(system, active, grip, stretch, time, dt, fresh, start, stages, end):
             normalise(end)
         derivative(
             system,
-            active,
-            grip,
+            loop.touching,
+            loop.stick,
             min(max(time + NODES[stage] * dt, stretch[0]), stretch[1]),
             end,
             stages[stage],

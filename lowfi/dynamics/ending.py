@@ -1,15 +1,15 @@
 """Exit, settled window and jam of the surrogate, found on the interpolant of every step.
 
-A step is looked at in pieces, and where a piece begins and ends on different sides of the rail end,
-or of the jam speed, the crossing is found by regula falsi (Illinois) to rounding. Means over the
-window are integrals of the interpolant by Gauss and Legendre::
+A step is divided into pieces. Where a piece begins and ends on different sides of the rail end, or
+of the jam speed, the crossing is found by regula falsi (Illinois variant) to rounding. Means over
+the window are integrals of the interpolant by the rule of Gauss and Legendre::
 
     integral over h = h / 2 sum_k w_k f(t_k)         error <= 4e-13 h^11 max |f^(10)|  (five points)
 
-The velocity is a polynomial of degree four in a step, which that integrates exactly. The rate in
-body axes is not: it turns with up to twice the attitude. A step may turn by 4 rad where the
-relative tolerance is 1e-2, the loosest allowed, and the rule then misses 3e-4 of the rate; at 1e-4
-these are 1.2 rad and 2e-9.
+The velocity is a polynomial of degree four in a step, which the rule integrates exactly. The rate in
+body axes is not: it turns with up to twice the attitude. A step may turn by 4 rad at a relative
+tolerance of 1e-2, the loosest allowed, and the error is then 3e-4 of the rate; at 1e-4 these are
+1.2 rad and 2e-9.
 """
 
 from typing import NamedTuple
@@ -23,10 +23,10 @@ from tipoff.lowfi.dynamics.sample import posture, rearmost_edge
 from tipoff.mechanics import ending as books
 from tipoff.mechanics.ending import AT_EXIT, DONE, EXCESS, EXIT, NOW, PAST, ROW_SIZE
 
-# s, longest piece of a step: what leaves the rail or its rest and comes back sooner may be
-# overlooked
+# s, longest piece of a step: a body that leaves the rail, or rest, and comes back sooner may be
+# missed
 PIECE = 1e-3
-_EDGE, _SPEED = range(2)  # what is looked at
+_EDGE, _SPEED = range(2)  # quantities
 _ROUNDING = 1e-15  # of places (m) and speeds (m/s)
 _POINTS = np.array(
     [-0.9061798459386640, -0.5384693101056831, 0.0, 0.5384693101056831, 0.9061798459386640]
@@ -43,11 +43,11 @@ _WEIGHTS = np.array(
 
 
 class Step(NamedTuple):
-    """Begin and end of a step, and its size before an event cut it (s)."""
+    """A step that was taken."""
 
-    began: float
-    ended: float
-    size: float
+    began: float  # s
+    ended: float  # s
+    size: float  # s, before an event cut it
 
 
 @inlined
@@ -57,17 +57,17 @@ def follow(system, marks, loop, step):
     if book[DONE] < np.inf:
         return
     if book[EXIT] == np.inf:
-        _watch(system, marks, loop, step)
+        _monitor(system, marks, loop, step)
     if book[EXIT] < np.inf:
         _count(system, loop, step)
 
 
 @inlined
-def _watch(system, marks, loop, step):
+def _monitor(system, marks, loop, step):
     """Look for the exit and for a jam."""
     book = loop.book
     if np.isnan(book[PAST]):
-        book[PAST] = _gauge(_EDGE, system, marks, loop, step, step.began)
+        book[PAST] = _quantity(_EDGE, system, marks, loop, step, step.began)
         if book[PAST] > 0.0:
             _leave(system, marks, loop, step, step.began)
             return
@@ -78,7 +78,7 @@ def _watch(system, marks, loop, step):
             if piece == pieces
             else step.began + (step.ended - step.began) * piece / pieces
         )
-        past = _gauge(_EDGE, system, marks, loop, step, end)
+        past = _quantity(_EDGE, system, marks, loop, step, end)
         if past > 0.0:
             _leave(
                 system,
@@ -110,8 +110,8 @@ def _look_at_speed(system, marks, loop, step, begin, end):
     if low > end:
         return
     if np.isnan(book[EXCESS]):
-        books.look_at_speed(book, _gauge(_SPEED, system, marks, loop, step, low), low, low)
-    excess, crossing = _gauge(_SPEED, system, marks, loop, step, end), end
+        books.look_at_speed(book, _quantity(_SPEED, system, marks, loop, step, low), low, low)
+    excess, crossing = _quantity(_SPEED, system, marks, loop, step, end), end
     if (book[EXCESS] < 0.0) != (excess < 0.0):
         crossing = _crossing(_SPEED, system, marks, loop, step, (low, end), (book[EXCESS], excess))
     books.look_at_speed(book, excess, end, crossing)
@@ -119,7 +119,7 @@ def _look_at_speed(system, marks, loop, step, begin, end):
 
 @kernel
 def _count(system, loop, step):
-    """Add what the step has of the settled window."""
+    """Add the part of the step that is in the settled window."""
     book = loop.book
     begin, end = books.part_in_window(book, step.began, step.ended)
     if end > begin:
@@ -131,7 +131,7 @@ def _count(system, loop, step):
 
 @kernel
 def _crossing(kind, system, marks, loop, step, between, values):
-    """Instant (s) in ``between`` at which a gauge, whose ``values`` have different signs there,
+    """Instant (s) in ``between`` at which a quantity, whose ``values`` have different signs there,
     passes zero."""
     (low, high), (f_low, f_high) = between, values
     side = 0
@@ -139,7 +139,7 @@ def _crossing(kind, system, marks, loop, step, between, values):
         at = (low * f_high - high * f_low) / (f_high - f_low)
         if not low < at < high:
             break
-        f = _gauge(kind, system, marks, loop, step, at)
+        f = _quantity(kind, system, marks, loop, step, at)
         if abs(f) <= _ROUNDING:
             return at
         if (f > 0.0) == (f_high > 0.0):
@@ -154,7 +154,7 @@ def _crossing(kind, system, marks, loop, step, between, values):
 
 
 @inlined
-def _gauge(kind, system, marks, loop, step, time):
+def _quantity(kind, system, marks, loop, step, time):
     """At ``time`` (s): distance (m) of the rearmost trailing edge past the rail end, or the excess
     (m/s) of the axial speed."""
     _fill(system, loop, step, time)

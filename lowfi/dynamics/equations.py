@@ -2,70 +2,57 @@
 
     r' = v,   m v' = sum F,   q' = w q / 2,   A' = sum X x F   (X the point a force acts at, all about the scene origin)
 
-Every effect adds itself to the derivative in one line of ``derivative``; while it is filled, the
-velocity slots hold forces (N). Axial power is each force's X component times the X velocity of the
+Every effect adds itself in one line of ``derivative``. Until ``move``, the velocity slots of the
+derivative hold forces (N). Axial power is each force's X component times the X velocity of the
 mass centre of the body it acts on (``mechanics.ledger``).
 """
 
+from typing import NamedTuple
+
 from tipoff.kernels import rotation
-from tipoff.kernels.jit import inlined, kernel
+from tipoff.kernels.jit import inlined
 from tipoff.lowfi import state as slot
-from tipoff.lowfi.contact import stick_slip as grips
-from tipoff.lowfi.contact.compliant.loads import drive, lean
-from tipoff.lowfi.contact.compliant.loads import load as wall_load
-from tipoff.lowfi.contact.compliant.modes import swing
+from tipoff.lowfi.contact import stick_slip
+from tipoff.lowfi.contact.compliant.loads import axial_force, side_force
+from tipoff.lowfi.contact.compliant.loads import load as compliant_load
+from tipoff.lowfi.contact.compliant.modes import vibrate
 from tipoff.lowfi.contact.compliant.solution import solve
 from tipoff.lowfi.contact.springs import load, penetration, relative_pose, relative_velocity
 from tipoff.lowfi.state import IMPULSE, MOMENT, PAYLOAD, PLACE, PLATFORM, QUATERNION, TURN, VELOCITY
+from tipoff.lowfi.system import Body
+from tipoff.scenes.effects.friction import Friction
 from tipoff.scenes.effects.thrust_law import magnitude
 
 
+class Bodies(NamedTuple):
+    """What the forces on both bodies need of a system at one instant."""
+
+    payload: slot.Motion
+    base: slot.Motion  # of the platform, or of scene axes at rest
+    platform: Body | None  # None where the rails are fixed
+    friction: Friction | None
+    ledger: bool | None  # None where no work, loss or impulse is integrated
+
+
 @inlined
-def derivative(system, active, grip, time, state, out):
-    """Fill ``out`` with the time derivative of ``state`` (both STATE_SIZE,). ``active`` (f,) tells
-    which faces are felt, ``grip`` (f, GRIP_SIZE) or None how they stick."""
-    body = slot.motion(system.payload.mass, system.payload.inverse_inertia, state, PAYLOAD)
-    base = slot.frame(system.platform, state)
+def derivative(system, touching, stick, time, state, out):
+    """Fill ``out`` with the time derivative of ``state`` (both STATE_SIZE,). ``touching`` (f,) are
+    the faces that carry load, ``stick`` (f, ROW_SIZE) or None their stick-slip states."""
+    payload, platform = system.payload, system.platform
+    bodies = Bodies(
+        payload=slot.motion(payload.mass, payload.inverse_inertia, state, PAYLOAD),
+        base=slot.frame(platform, state),
+        platform=platform,
+        friction=system.friction,
+        ledger=system.ledger,
+    )
     out[:] = 0.0
-    add_thrust(
-        system.thrust,
-        system.thrust_offset,
-        system.platform,
-        system.reacts_on_platform,
-        system.ledger,
-        time,
-        body,
-        base,
-        out,
-    )
-    add_gravity(system.gravity, system.payload, system.platform, system.ledger, body, base, out)
-    add_contact(
-        system.contact,
-        system.friction,
-        system.sticking,
-        system.faces,
-        system.platform,
-        system.ledger,
-        active,
-        grip,
-        body,
-        base,
-        out,
-    )
-    add_walls(
-        system.compliance,
-        system.friction,
-        system.faces,
-        system.platform,
-        system.ledger,
-        active,
-        body,
-        base,
-        state,
-        out,
-    )
-    move(system.payload.mass, state[:PLATFORM], body, out[:PLATFORM])
-    move_platform(system.platform, state, base, out)
+    add_thrust(system.thrust, system.thrust_offset, system.reacts_on_platform, time, bodies, out)
+    add_body_force(system.body_force, payload.mass, bodies, out)
+    add_springs(system.contact, system.sticking, system.faces, touching, stick, bodies, out)
+    add_compliant_contact(system.compliance, system.faces, touching, bodies, state, out)
+    move(payload.mass, state[:PLATFORM], bodies.payload, out[:PLATFORM])
+    move_platform(platform, state, bodies.base, out)
 
 
 @inlined
@@ -83,6 +70,7 @@ def move(mass, state, body, out):
 
 @inlined
 def move_platform(platform, state, base, out):
+    """``move`` of the platform, if it is free."""
     if platform is not None:
         move(platform.mass, state[PLATFORM:], base, out[PLATFORM:])
 
@@ -97,23 +85,19 @@ def push(out, force_slot, moment_slot, force, point, sign):
 
 
 @inlined
-def add_thrust(thrust, offset, platform, reacts, ledger, time, body, base, out):
+def add_thrust(thrust, offset, reacts, time, bodies, out):
+    """Add the thrust and its reaction: on the platform if it ``reacts``, else outside."""
     size = magnitude(thrust.pulses, thrust.curve, time)
     if size == 0.0:
         return
+    body = bodies.payload
     force, point = line_of_action(offset, size, body)
     push(out, PAYLOAD + VELOCITY, PAYLOAD + MOMENT, force, point, 1.0)
+    velocity = slot.velocity_at(body, point)
     _book(
-        ledger,
-        slot.THRUST,
-        slot.THRUST_AXIAL,
-        force,
-        slot.velocity_at(body, point),
-        body.velocity[0],
-        1.0,
-        out,
+        bodies.ledger, slot.THRUST, slot.THRUST_AXIAL, force, velocity, body.velocity[0], 1.0, out
     )
-    react(platform, reacts, ledger, force, point, base, out)
+    react(bodies.platform, reacts, bodies, force, point, out)
 
 
 @inlined
@@ -148,174 +132,178 @@ def _offset_line(offset, size, body):
 
 
 @inlined
-def react(platform, reacts, ledger, force, point, base, out):
-    """Reaction of the thrust: on a free platform, or outside (exhaust, fixed platform)."""
+def react(platform, reacts, bodies, force, point, out):
+    """Add the reaction of the thrust: on a free platform, or outside (exhaust, fixed platform)."""
     if platform is None:
-        _outside(ledger, force, point, out)
+        _outside(bodies.ledger, force, point, out)
     if platform is not None:
-        _react_on_free_platform(reacts, ledger, force, point, base, out)
+        _react_on_free_platform(reacts, bodies, force, point, out)
 
 
 @inlined
-def _react_on_free_platform(reacts, ledger, force, point, base, out):
+def _react_on_free_platform(reacts, bodies, force, point, out):
     if reacts:
+        base = bodies.base
         push(out, PLATFORM + VELOCITY, PLATFORM + MOMENT, force, point, -1.0)
-        _book(
-            ledger,
-            slot.THRUST,
-            slot.THRUST_AXIAL,
-            force,
-            slot.velocity_at(base, point),
-            base.velocity[0],
-            -1.0,
-            out,
-        )
+        velocity, speed = slot.velocity_at(base, point), base.velocity[0]
+        _book(bodies.ledger, slot.THRUST, slot.THRUST_AXIAL, force, velocity, speed, -1.0, out)
     else:
-        _outside(ledger, force, point, out)
+        _outside(bodies.ledger, force, point, out)
 
 
 @inlined
-def add_gravity(gravity, payload, platform, ledger, body, base, out):
-    if gravity is not None:
-        _weigh(gravity, payload.mass, PAYLOAD, ledger, body, out)
-        _weigh_platform(gravity, platform, ledger, base, out)
+def add_body_force(force, mass, bodies, out):
+    """Add the body force on the payload of ``mass`` (kg), and on the platform."""
+    if force is not None:
+        _add_body_force(force, mass, PAYLOAD, bodies.ledger, bodies.payload, out)
+        _add_body_force_on_platform(force, bodies.platform, bodies, out)
 
 
 @inlined
-def _weigh_platform(gravity, platform, ledger, base, out):
+def _add_body_force_on_platform(force, platform, bodies, out):
     if platform is not None:
-        _weigh(gravity, platform.mass, PLATFORM, ledger, base, out)
+        _add_body_force(force, platform.mass, PLATFORM, bodies.ledger, bodies.base, out)
 
 
 @inlined
-def _weigh(gravity, mass, which, ledger, body, out):
-    weight = (mass * gravity.x, mass * gravity.y, mass * gravity.z)
-    push(out, which + VELOCITY, which + MOMENT, weight, body.place, 1.0)
+def _add_body_force(force, mass, first, ledger, body, out):
+    weight = (mass * force.x, mass * force.y, mass * force.z)
+    push(out, first + VELOCITY, first + MOMENT, weight, body.place, 1.0)
     _outside(ledger, weight, body.place, out)
     _book(
-        ledger, slot.GRAVITY, slot.GRAVITY_AXIAL, weight, body.velocity, body.velocity[0], 1.0, out
+        ledger, slot.BODY_FORCE, slot.BODY_FORCE_AXIAL, weight, body.velocity, body.velocity[0], 1.0, out
     )
 
 
 @inlined
-def add_contact(laws, friction, sticking, faces, platform, ledger, active, grip, body, base, out):
+def add_springs(laws, sticking, faces, touching, stick, bodies, out):
+    """Add the contact springs of all ``touching`` faces."""
     if laws is not None:
+        body, base, platform = bodies.payload, bodies.base, bodies.platform
         place, turn = relative_pose(platform, body, base)
-        for i in range(active.size):
-            if active[i]:
-                p = penetration(laws.bow, faces[i], place, turn)
+        for i in range(touching.size):
+            if touching[i]:
+                p = penetration(laws.thermal_offset, faces[i], place, turn)
                 if p > 0.0:
-                    face = load(laws, friction, platform, faces[i], p, body, base)
-                    _press(face, friction, platform, ledger, body, base, out)
-                    _grip(sticking, grip, i, faces, face, platform, ledger, body, base, out)
-
-
-@kernel
-def add_walls(compliance, friction, faces, platform, ledger, active, body, base, state, out):
-    if compliance is not None:
-        place, turn = relative_pose(platform, body, base)
-        for rail in range(compliance.members.shape[0]):
-            count = solve(compliance, faces, rail, active, place, turn, state)
-            for k in range(count):
-                face = compliance.room.order[k]
-                if compliance.room.force[face, 0] > 0.0:
-                    _press(
-                        wall_load(compliance, friction, platform, faces, face, body, base),
-                        friction,
-                        platform,
-                        ledger,
-                        body,
-                        base,
-                        out,
-                    )
-                    _lean(compliance, faces, face, platform, ledger, body, base, out)
-            if count > 0:
-                _drive(compliance, count, platform, ledger, body, base, out)
-            _swing(compliance.modes, compliance.room, rail, count, ledger, state, out)
+                    pad = load(laws, bodies.friction, platform, faces[i], p, body, base)
+                    _add_pad(pad, bodies, out)
+                    row = stick_slip.row_of(sticking, stick, i)
+                    _add_traction(sticking, row, faces[i], pad, bodies, out)
 
 
 @inlined
-def _swing(modes, room, rail, count, ledger, state, out):
-    """Add the motion of the modes of a rail, and what damping takes from them."""
+def add_compliant_contact(compliance, faces, touching, bodies, state, out):
+    """Add compliant contact under all ``touching`` faces, and the modes of the rails."""
+    if compliance is not None:
+        body, base, platform = bodies.payload, bodies.base, bodies.platform
+        order, force = compliance.workspace.order, compliance.workspace.force
+        place, turn = relative_pose(platform, body, base)
+        for rail in range(compliance.members.shape[0]):
+            count = solve(compliance, faces, rail, touching, place, turn, state)
+            for k in range(count):
+                face = order[k]
+                if force[face, 0] > 0.0:
+                    pad = compliant_load(
+                        compliance, bodies.friction, platform, faces, face, body, base
+                    )
+                    _add_pad(pad, bodies, out)
+                    aside, point = side_force(compliance, faces, face, body, base)
+                    _add_wall_force(aside, point, bodies, out)
+            if count > 0:
+                size, fading = axial_force(compliance, count)
+                along = rotation.rotate(base.turn, (size, 0.0, 0.0))
+                _add_released(bodies.ledger, fading, bodies, out)
+                _add_wall_force(along, body.place, bodies, out)
+            _add_modes(
+                compliance.modes, compliance.workspace, (rail, count), bodies.ledger, state, out
+            )
+
+
+@inlined
+def _add_modes(modes, workspace, pressed, ledger, state, out):
+    """Add the vibration of a rail, ``pressed`` being its number and how many faces press it, and
+    what damping takes from it."""
     if modes is not None:
-        loss = swing(modes, room, rail, count, state, out)
+        rail, count = pressed
+        loss = vibrate(modes, workspace, rail, count, state, out)
         if ledger is not None:
             out[slot.STRUCTURAL] += loss
 
 
 @inlined
-def _lean(compliance, faces, face, platform, ledger, body, base, out):
-    """Add what a wall that slopes across the rail does there; its work is the walls' own energy."""
-    force, point = lean(compliance, faces, face, body, base)
-    _pair(platform, ledger, force, point, out)
-    if ledger is not None:
-        out[slot.CONTACT_AXIAL] += force[0] * _axial_speed(platform, body, base)
+def _add_wall_force(force, point, bodies, out):
+    """Add a force of a wall along or across the rail; its work is the energy of the rail."""
+    _pair(bodies.platform, bodies.ledger, force, point, out)
+    _add_axial_power(bodies.ledger, force[0] * _axial_speed(bodies.platform, bodies), out)
 
 
 @inlined
-def _drive(compliance, count, platform, ledger, body, base, out):
-    """Add what the walls do along the rail, at the payload's mass centre."""
-    pull, fading = drive(compliance, count)
-    force = rotation.rotate(base.turn, (pull, 0.0, 0.0))
-    _pair(platform, ledger, force, body.place, out)
+def _add_axial_power(ledger, power, out):
     if ledger is not None:
-        out[slot.RELEASED] += (
-            fading
-            * rotation.unrotate(base.turn, relative_velocity(platform, body, base, body.place))[0]
-        )
-        out[slot.CONTACT_AXIAL] += force[0] * _axial_speed(platform, body, base)
+        out[slot.CONTACT_AXIAL] += power
 
 
 @inlined
-def _press(face, friction, platform, ledger, body, base, out):
-    """Add the load of one touching face: the pair of forces at one point, and what its energy
+def _add_released(ledger, fading, bodies, out):
+    """Add the power that is lost over an end of the rail: ``fading`` (J/m) at the axial speed."""
+    if ledger is not None:
+        body, base = bodies.payload, bodies.base
+        velocity = relative_velocity(bodies.platform, body, base, body.place)
+        out[slot.RELEASED] += fading * rotation.unrotate(base.turn, velocity)[0]
+
+
+@inlined
+def _add_pad(pad, bodies, out):
+    """Add the load of one touching face: a pair of forces at one point, and what its energy
     becomes."""
-    _pair(platform, ledger, face.normal, face.point, out)
-    _spend(ledger, face, platform, body, base, out)
-    _rub(friction, face, platform, ledger, body, base, out)
+    _pair(bodies.platform, bodies.ledger, pad.normal, pad.point, out)
+    axial_speed = _axial_speed(bodies.platform, bodies)
+    _add_contact_power(bodies.ledger, pad, axial_speed, out)
+    _add_friction(bodies.friction, pad, bodies, axial_speed, out)
 
 
 @inlined
-def _grip(sticking, grip, number, faces, face, platform, ledger, body, base, out):
-    """Add the friction that sticks. Of its work only the heat is lost, what the spring takes is
-    stored; the axial part of all of it stands with friction, where the spring's energy ends too."""
-    if sticking is not None:
-        drag, heat = grips.traction(sticking, grip[number], faces[number], face, base)
-        _pair(platform, ledger, drag, face.point, out)
-        _lose(ledger, heat, drag[0] * _axial_speed(platform, body, base), out)
-
-
-@inlined
-def _lose(ledger, heat, axial_power, out):
+def _add_contact_power(ledger, pad, axial_speed, out):
     if ledger is not None:
-        out[slot.FRICTION] += heat
-        out[slot.FRICTION_AXIAL] -= axial_power
-
-
-@inlined
-def _spend(ledger, face, platform, body, base, out):
-    if ledger is not None:
-        if face.raw >= 0.0:
-            out[slot.DAMPING] += (face.raw - face.elastic) * face.closing
+        if pad.raw >= 0.0:
+            out[slot.DAMPING] += (pad.raw - pad.elastic) * pad.closing
         else:
-            out[slot.RELEASED] -= face.elastic * face.closing
-        out[slot.CONTACT_AXIAL] += face.normal[0] * _axial_speed(platform, body, base)
+            out[slot.RELEASED] -= pad.elastic * pad.closing
+        out[slot.CONTACT_AXIAL] += pad.normal[0] * axial_speed
 
 
 @inlined
-def _rub(friction, face, platform, ledger, body, base, out):
+def _add_friction(friction, pad, bodies, axial_speed, out):
     if friction is not None:
-        _pair(platform, ledger, face.drag, face.point, out)
+        _pair(bodies.platform, bodies.ledger, pad.drag, pad.point, out)
         _book(
-            ledger,
+            bodies.ledger,
             slot.FRICTION,
             slot.FRICTION_AXIAL,
-            face.drag,
-            face.slip,
-            _axial_speed(platform, body, base),
+            pad.drag,
+            pad.slip,
+            axial_speed,
             -1.0,
             out,
         )
+
+
+@inlined
+def _add_traction(sticking, row, face, pad, bodies, out):
+    """Add friction that sticks. Only the heat of its work is lost, the spring stores the rest. The
+    axial part of all of it counts as friction, as the energy of the spring ends there too."""
+    if sticking is not None:
+        drag, heat = stick_slip.traction(sticking, row, face, pad, bodies.base)
+        _pair(bodies.platform, bodies.ledger, drag, pad.point, out)
+        axial_speed = _axial_speed(bodies.platform, bodies)
+        _add_friction_power(bodies.ledger, heat, drag[0] * axial_speed, out)
+
+
+@inlined
+def _add_friction_power(ledger, heat, axial_power, out):
+    if ledger is not None:
+        out[slot.FRICTION] += heat
+        out[slot.FRICTION_AXIAL] -= axial_power
 
 
 @inlined
@@ -330,8 +318,8 @@ def _pair(platform, ledger, force, point, out):
 
 
 @inlined
-def _axial_speed(platform, body, base):
+def _axial_speed(platform, bodies):
     """X velocity (m/s) of the payload's mass centre, less the platform's."""
     if platform is not None:
-        return body.velocity[0] - base.velocity[0]
-    return body.velocity[0]
+        return bodies.payload.velocity[0] - bodies.base.velocity[0]
+    return bodies.payload.velocity[0]

@@ -7,11 +7,11 @@ largest of::
     |e_v| across, reach |e_w|, |e_r| / h across, 2 reach |e_q| / h      over   rtol (floor + |v| across + reach |w|)
     |e_v| along X, |e_r| / h along X                                     over   rtol (floor + |v| along X)
 
-so that 6 m/s along the rail do not loosen what is asked of the millimetres per second across it.
-All speeds are those of the frame that ``mechanics.comoving`` moves with the platform, so a speed that
-all bodies share loosens nothing either. Modes of the rails are held by the energy they may be wrong
-by, as a speed of the payload's mass m. A step too long for the highest mode fails here, or at the
-proven limit before::
+so that 6 m/s along the rail do not loosen the tolerance of the millimetres per second across it.
+All speeds are those of the frame that moves with the platform (``mechanics.comoving``), so a speed
+that all bodies share loosens nothing either. Modes of the rails are bounded by the error of their
+energy, as a speed of the payload's mass m. A step too long for the highest mode fails here, or at
+the proven limit before::
 
     sqrt(sum over modes of (e_q'^2 + omega^2 e_q^2) / m)                 over   the first of these, of the payload
 """
@@ -41,38 +41,38 @@ from tipoff.mechanics.promises import Promises
 
 
 class Tolerance(NamedTuple):
-    """relative (1), floor (m/s), reach (m); what is promised of the total and the transverse ledger
-    (1)."""
+    """Allowed errors of a run."""
 
-    relative: float
-    floor: float
-    reach: float
-    total: float
-    across: float
+    relative: float  # local error of a step, relative to the speeds of the body
+    floor: float  # m/s, speeds below it count as this much
+    reach: float  # m, distance of the farthest pad from the mass centre of the payload
+    total: float  # promised relative error of the total ledger
+    transverse: float  # promised relative error of the transverse ledger
 
 
 def tolerance(numerics: Numerics, promised: Promises, reach: float) -> Tolerance:
-    """Of a payload whose farthest pad is ``reach`` (m) from its mass centre."""
+    """Tolerance of a payload whose farthest pad is ``reach`` (m) from its mass centre."""
     return Tolerance(
-        numerics.relative_tolerance,
-        numerics.speed_floor,
-        reach,
-        promised.energy_error,
-        promised.transverse_energy_error,
+        relative=numerics.relative_tolerance,
+        floor=numerics.speed_floor,
+        reach=reach,
+        total=promised.energy_error,
+        transverse=promised.transverse_energy_error,
     )
 
 
 @inlined
-def error_ratio(tolerance, payload, platform, compliance, dt, stages, end, error):
-    """Error of the step that led to ``end`` over what is allowed; NaN where anything is. ``error``,
-    as long as ``end``, is scratch."""
-    local_error(dt, stages, modal_size(compliance), error)
+def error_ratio(tolerance, system, loop, dt):
+    """Error of the step of ``dt`` (s) to ``loop.end`` over what is allowed; NaN where anything
+    is."""
+    payload, end, error = system.payload, loop.end, loop.work
+    local_error(dt, loop.stages, modal_size(system.compliance), error)
     ratio = _body_ratio(
         tolerance, payload.mass, payload.inverse_inertia, dt, error[:BODY_SIZE], end[:BODY_SIZE]
     )
     return worse(
-        worse(ratio, _platform_ratio(tolerance, platform, dt, error, end)),
-        _rail_ratio(tolerance, payload, compliance, error, end),
+        worse(ratio, _platform_ratio(tolerance, system.platform, dt, error, end)),
+        _rail_ratio(tolerance, payload, system.compliance, error, end),
     )
 
 

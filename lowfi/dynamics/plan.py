@@ -1,9 +1,9 @@
-"""Where steps must end and how long they may be, so that none jumps over a corner or a short pulse
-of the thrust."""
+"""When steps must end and how long they may be, so that none passes over a corner or a short pulse of
+the thrust."""
 
 import numpy as np
 
-from tipoff.lowfi.dynamics.integrate import Plan
+from tipoff.lowfi.dynamics.loop import Plan
 from tipoff.lowfi.numerics import Numerics
 from tipoff.mechanics.model import Model
 from tipoff.scenes.effects import thrust_law
@@ -18,7 +18,8 @@ def make(model: Model, end: float, numerics: Numerics) -> Plan:
     """Plan of a run up to ``end`` (s)."""
     stops = np.append(thrust_law.corners(model.thrust, end), end)
     if model.thrust.pulses is None:
-        return Plan(stops, np.full(stops.size, np.inf), numerics.maximum_steps)
+        caps = np.full(stops.size, np.inf)
+        return Plan(stops=stops, caps=caps, maximum_steps=numerics.maximum_steps)
     _, centres, widths, first, last = model.thrust.pulses
     begins, ends = (
         np.maximum(centres - _REACH * widths, first),
@@ -28,14 +29,12 @@ def make(model: Model, end: float, numerics: Numerics) -> Plan:
     stops = np.unique(np.append(stops, edges[(edges > 0.0) & (edges < end)]))
     middles = 0.5 * (stops + np.append(0.0, stops[:-1]))
     acting = (begins < middles[:, None]) & (middles[:, None] < ends)
-    return Plan(
-        stops, np.where(acting, _SHARE * widths, np.inf).min(axis=1), numerics.maximum_steps
-    )
+    caps = np.where(acting, _SHARE * widths, np.inf).min(axis=1)
+    return Plan(stops=stops, caps=caps, maximum_steps=numerics.maximum_steps)
 
 
 def first_step(made: Plan) -> float:
-    """Size (s) of the first step that is tried: whichever it is, error control brings it to the
-    right size in a few attempts."""
+    """Size (s) of the first step that is tried; error control corrects it in a few attempts."""
     return (
         0.25 * float(made.caps[0])
         if np.isfinite(made.caps[0])

@@ -6,14 +6,14 @@ import numpy as np
 from tipoff.kernels import rotation
 from tipoff.kernels.jit import inlined, kernel
 from tipoff.lowfi import state as slot
-from tipoff.lowfi.contact import stick_slip as grips
-from tipoff.lowfi.contact.compliant.loads import energy as wall_energy
-from tipoff.lowfi.contact.compliant.loads import lean
-from tipoff.lowfi.contact.compliant.loads import load as wall_load
+from tipoff.lowfi.contact import stick_slip
+from tipoff.lowfi.contact.compliant.loads import energy as energy_in_compliance
+from tipoff.lowfi.contact.compliant.loads import load as compliant_load
+from tipoff.lowfi.contact.compliant.loads import side_force
 from tipoff.lowfi.contact.compliant.modes import energies
 from tipoff.lowfi.contact.compliant.solution import solve
-from tipoff.lowfi.contact.springs import along, load, pad_point, penetration, relative_pose
-from tipoff.lowfi.dynamics.events import stored
+from tipoff.lowfi.contact.springs import along, load, penetration, relative_pose
+from tipoff.lowfi.dynamics.survey import stored
 from tipoff.lowfi.state import (
     IMPULSE,
     MOMENT,
@@ -36,70 +36,37 @@ SAMPLE_SIZE = GIVEN + 6
 
 
 @kernel
-def observe(system, engaged, active, grip, state, row, forces):
-    """Fill ``row`` (SAMPLE_SIZE,) and ``forces`` (f,3) N on the payload in scene axes; False where
-    a number is not finite. Walls that give way are pressed by the ``active`` faces (f,)."""
-    payload = system.payload
-    body, base = (
-        slot.motion(payload.mass, payload.inverse_inertia, state, PAYLOAD),
-        slot.frame(system.platform, state),
-    )
+def observe(system, loop, row, forces):
+    """Fill ``row`` (SAMPLE_SIZE,) and ``forces`` (f,3) N on the payload, in scene axes, from the
+    state ``loop.work``; False where a number is not finite."""
+    payload, state = system.payload, loop.work
+    body = slot.motion(payload.mass, payload.inverse_inertia, state, PAYLOAD)
+    base = slot.frame(system.platform, state)
     row[:] = 0.0
     _place(state, body, base, row)
     _body(payload.mass, state[:PLATFORM], body, row)
     _platform(system.platform, state, base, row)
-    row[STORED] = _press(
-        system.contact,
-        system.friction,
-        system.sticking,
-        system.faces,
-        system.platform,
-        engaged,
-        grip,
-        body,
-        base,
-        forces,
-    )
-    row[STORED] += _press_walls(
-        system.compliance,
-        system.friction,
-        system.faces,
-        system.platform,
-        active,
-        body,
-        base,
-        state,
-        forces,
-    )
+    row[STORED] = _observe_springs(system.contact, system, loop, body, base, forces)
+    row[STORED] += _observe_compliance(system.compliance, system, loop, body, base, forces)
     _rails(system.compliance, state, row)
     slot.copy(state[WORK:], row[WORKS:], WORK_SIZE)
     slot.copy(state[IMPULSE:], row[GIVEN:], 6)
     total = 0.0
     for value in row:
         total += abs(value)
-    for i in range(engaged.size):
+    for i in range(forces.shape[0]):
         total += abs(forces[i, 0]) + abs(forces[i, 1]) + abs(forces[i, 2])
     return np.isfinite(total)
 
 
 @inlined
 def posture(system, state, row):
-    """Fill only what ``row`` tells of the motion: its first two bodies."""
+    """Fill only the motion of both bodies in ``row``."""
     _place(
         state,
         slot.motion(system.payload.mass, system.payload.inverse_inertia, state, PAYLOAD),
         slot.frame(system.platform, state),
         row,
-    )
-
-
-@inlined
-def payload_rates(payload, state, row):
-    """Fill only the payload's part of ``row``."""
-    _copy(
-        state[:PLATFORM],
-        slot.motion(payload.mass, payload.inverse_inertia, state, PAYLOAD),
-        row[:PLATFORM],
     )
 
 
@@ -156,45 +123,52 @@ def _body(mass, state, body, row):
         row[ANGULAR + i] += moment[i]
 
 
-@kernel
-def _press(laws, friction, sticking, faces, platform, engaged, grip, body, base, forces):
-    """Fill ``forces``; the energy (J) stored in all faces."""
+@inlined
+def _observe_springs(laws, system, loop, body, base, forces):
+    """Fill ``forces`` with those of contact springs; the energy (J) stored in all faces."""
     energy = 0.0
     forces[:] = 0.0
     if laws is not None:
-        place, turn = relative_pose(platform, body, base)
-        for i in range(engaged.size):
-            if engaged[i]:
-                p = penetration(laws.bow, faces[i], place, turn)
+        place, turn = relative_pose(system.platform, body, base)
+        for i in range(loop.engaged.size):
+            if loop.engaged[i]:
+                face = system.faces[i]
+                p = penetration(laws.thermal_offset, face, place, turn)
                 if p > 0.0:
-                    face = load(laws, friction, platform, faces[i], p, body, base)
+                    pad = load(laws, system.friction, system.platform, face, p, body, base)
                     energy += stored(laws, p)
                     for j in range(3):
-                        forces[i, j] = face.normal[j] + face.drag[j]
-                    _add_grip(sticking, grip, i, faces, face, base, forces[i])
-        energy += _in_grips(sticking, grip, faces, body, base)
+                        forces[i, j] = pad.normal[j] + pad.drag[j]
+                    row = stick_slip.row_of(system.sticking, loop.stick, i)
+                    _add_traction(system.sticking, row, face, pad, base, forces[i])
+        energy += stick_slip.stored_in_all(system.sticking, loop.stick, system.faces, body, base)
     return energy
 
 
-@kernel
-def _press_walls(compliance, friction, faces, platform, active, body, base, state, forces):
-    """The same on walls that give way. A sample leaves no trace:
-    the next step begins with the displacement that the last one left."""
+@inlined
+def _observe_compliance(compliance, system, loop, body, base, forces):
+    """The same for compliant contact. The next step begins with the displacement that the last one
+    left, whatever is sampled."""
     energy = 0.0
     if compliance is not None:
-        _keep(compliance.room.displacement, compliance.room.kept)
-        place, turn = relative_pose(platform, body, base)
+        workspace, state = compliance.workspace, loop.work
+        # Before the first step no face is known to touch, and every face may press.
+        touching = loop.touching if loop.counts.steps > 0 else loop.engaged
+        _copy_rows(workspace.displacement, workspace.saved_displacement)
+        place, turn = relative_pose(system.platform, body, base)
         for rail in range(compliance.members.shape[0]):
-            count = solve(compliance, faces, rail, active, place, turn, state)
-            energy += wall_energy(compliance, count)
+            count = solve(compliance, system.faces, rail, touching, place, turn, state)
+            energy += energy_in_compliance(compliance, count)
             for k in range(count):
-                i = compliance.room.order[k]
-                if compliance.room.force[i, 0] > 0.0:
-                    face = wall_load(compliance, friction, platform, faces, i, body, base)
-                    aside, _ = lean(compliance, faces, i, body, base)
+                i = workspace.order[k]
+                if workspace.force[i, 0] > 0.0:
+                    pad = compliant_load(
+                        compliance, system.friction, system.platform, system.faces, i, body, base
+                    )
+                    aside, _ = side_force(compliance, system.faces, i, body, base)
                     for j in range(3):
-                        forces[i, j] = face.normal[j] + face.drag[j] + aside[j]
-        _keep(compliance.room.kept, compliance.room.displacement)
+                        forces[i, j] = pad.normal[j] + pad.drag[j] + aside[j]
+        _copy_rows(workspace.saved_displacement, workspace.displacement)
     return energy
 
 
@@ -208,24 +182,14 @@ def _rails(compliance, state, row):
 
 
 @inlined
-def _keep(source, target):
+def _copy_rows(source, target):
     for i in range(source.shape[0]):
         slot.copy(source[i], target[i], source.shape[1])
 
 
-@kernel
-def _add_grip(sticking, grip, number, faces, face, base, force):
+@inlined
+def _add_traction(sticking, row, face, pad, base, force):
     if sticking is not None:
-        drag, _ = grips.traction(sticking, grip[number], faces[number], face, base)
+        drag, _ = stick_slip.traction(sticking, row, face, pad, base)
         for j in range(3):
             force[j] += drag[j]
-
-
-@kernel
-def _in_grips(sticking, grip, faces, body, base):
-    """Energy (J) in the springs of all faces."""
-    energy = 0.0
-    if sticking is not None:
-        for i in range(faces.shape[0]):
-            energy += grips.kept(sticking, grip[i], faces[i], pad_point(faces[i], body), base)
-    return energy

@@ -1,66 +1,61 @@
-"""Between two steps: which faces are held from now on, which slide, and what energy leaves their
+"""Between two steps: which faces stick from now on, which slide, and the energy that leaves their
 springs (law: ``lowfi.contact.stick_slip``)."""
 
 from tipoff.kernels.jit import inlined
 from tipoff.lowfi import state as slot
-from tipoff.lowfi.contact import stick_slip as grips
+from tipoff.lowfi.contact import stick_slip as law
 from tipoff.lowfi.contact.springs import load, penetration, relative_pose
-from tipoff.lowfi.dynamics.events import MARGIN, MODE, OPEN
+from tipoff.lowfi.contact.wall_ends import MARGIN, MODE, OPEN
 
 
 @inlined
-def regrip(
-    laws, sticking, payload, platform, faces, engaged, active, grip, before, surveyed, state
-):
-    """Bring ``grip`` (f, GRIP_SIZE) and the margins of ``surveyed`` up to date as a step begins at
-    ``state``.
+def update(sticking, system, loop):
+    """Update stick-slip states and surveyed margins as a step begins at ``loop.end``.
 
-    ``active`` (f,) still tells which faces touched in the step before, ``before`` surveys the begin
-    of that. Returns whether anything changed and the energy (J) that friction takes from the
-    springs.
+    ``loop.touching`` still holds the faces that touched in the step before. Returns whether
+    anything changed, and the energy (J) that friction takes from the springs.
     """
     changed, lost = False, 0.0
     if sticking is not None:
-        for i in range(engaged.size):
-            touches = engaged[i] and surveyed[i, MODE] != OPEN
-            if touches != active[i] or (
-                touches and grips.used_up(grip[i], before[i, MARGIN], surveyed[i, MARGIN])
+        for i in range(loop.engaged.size):
+            touches = loop.engaged[i] and loop.after[i, MODE] != OPEN
+            if touches != loop.touching[i] or (
+                touches
+                and law.used_up(loop.stick[i], loop.before[i, MARGIN], loop.after[i, MARGIN])
             ):
-                energy, margin = change(
-                    laws, sticking, payload, platform, faces[i], grip[i], active[i], touches, state
+                energy, margin = _change(
+                    sticking, system, loop, i, loop.touching[i], touches, loop.end
                 )
-                surveyed[i, MARGIN] = margin
+                loop.after[i, MARGIN] = margin
                 lost += energy
                 changed = True
     return changed, lost
 
 
 @inlined
-def grasp(laws, sticking, payload, platform, faces, grip, number, state):
-    """Grip of one face that begins to touch at ``state``."""
+def begin_contact(sticking, system, loop, face):
+    """Stick-slip state of one face, by number, that begins to touch at ``loop.start``."""
     if sticking is not None:
-        change(laws, sticking, payload, platform, faces[number], grip[number], False, True, state)
+        _change(sticking, system, loop, face, False, True, loop.start)
 
 
 @inlined
-def change(laws, sticking, payload, platform, face, row, touched, touches, state):
-    """Change the grip of a face that begins to touch, slips, stops, or ceases to touch; the energy
+def _change(sticking, system, loop, number, touched, touches, state):
+    """Change the state of a face that begins to touch, slips, stops, or ceases to touch; the energy
     (J) lost, and its new margin."""
-    body, base = (
-        slot.motion(payload.mass, payload.inverse_inertia, state, slot.PAYLOAD),
-        slot.frame(platform, state),
-    )
-    place, turn = relative_pose(platform, body, base)
-    now = load(
-        laws, None, platform, face, max(penetration(laws.bow, face, place, turn), 0.0), body, base
-    )
+    face, row, laws = system.faces[number], loop.stick[number], system.contact
+    body = slot.motion(system.payload.mass, system.payload.inverse_inertia, state, slot.PAYLOAD)
+    base = slot.frame(system.platform, state)
+    place, turn = relative_pose(system.platform, body, base)
+    depth = max(penetration(laws.thermal_offset, face, place, turn), 0.0)
+    now = load(laws, None, system.platform, face, depth, body, base)
     lost = 0.0
     if not (touched and touches):
-        lost = grips.kept(sticking, row, face, now.point, base)
-        grips.let_go(row)
+        lost = law.stored(sticking, row, face, now.point, base)
+        law.clear(row)
     if touches:
-        if row[grips.HELD] != 0.0:
-            grips.slip(sticking, row, face, now, base)
+        if row[law.STICKS] != 0.0:
+            law.slip(sticking, row, face, now, base)
         else:
-            lost += grips.stop(sticking, row, now, base)
-    return lost, grips.margin(sticking, row, face, now, base)
+            lost += law.stop(sticking, row, now, base)
+    return lost, law.margin(sticking, row, face, now, base)

@@ -1,4 +1,4 @@
-"""Walls that give way, for tests: made by hand or for the reference scene, poses that press them,
+"""Rail compliances for tests: made by hand or for the reference scene, poses that press them,
 and the plain equations again."""
 
 from functools import cache, partial
@@ -27,7 +27,7 @@ UPRIGHT = (1.0, 0.0, 0.0, 0.0)
 
 
 @cache
-def reference_walls() -> RailCompliance:
+def reference_compliance() -> RailCompliance:
     """Those of the reference scene, from elements of 4 mm."""
     return compliance.condense(REFERENCE, 4e-3)
 
@@ -54,7 +54,7 @@ def handmade(scene: Scene, entries: dict, rail=None) -> RailCompliance:
 
 
 def in_one_cell(monkeypatch) -> None:
-    """Runs press walls with one cell on each pad face from here on."""
+    """Runs use compliant contact with one cell on each pad face from here on."""
     monkeypatch.setattr(record, "build", partial(record.build, cells=1))
 
 
@@ -129,25 +129,21 @@ def seen_from_platform(platform, payload, state):
 
 
 @kernel
-def add_walls(compliance, friction, faces, platform, payload, active, state, out):
-    """What walls alone add to ``out``, the derivative of ``state``."""
-    body = slot.motion(payload.mass, payload.inverse_inertia, state, slot.PAYLOAD)
-    equations.add_walls(
-        compliance,
-        friction,
-        faces,
-        platform,
+def add_compliant_contact(system, touching, state, out):
+    """Add compliant contact alone to ``out``, the derivative of ``state``."""
+    payload = system.payload
+    bodies = equations.Bodies(
+        slot.motion(payload.mass, payload.inverse_inertia, state, slot.PAYLOAD),
+        slot.frame(system.platform, state),
+        system.platform,
+        system.friction,
         True,
-        active,
-        body,
-        slot.frame(platform, state),
-        state,
-        out,
     )
+    equations.add_compliant_contact(system.compliance, system.faces, touching, bodies, state, out)
 
 
 def pressed(scene: Scene, compliance: RailCompliance, modes: int = 0):
-    """Model and records of ``scene`` on ``walls``."""
+    """Model and records of ``scene`` with a ``compliance``."""
     model = models.build(scene)
     damping = scene.rail.damping and scene.rail.damping.record()
     return model, systems.build(

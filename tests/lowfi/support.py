@@ -96,7 +96,7 @@ def unwatched(asked: scenes.Scene, numerics: lowfi.Numerics, change=None) -> Run
         )
     run.whole = True
     run.begin()
-    run.march(None)
+    run.integrate(None)
     return run
 
 

@@ -6,7 +6,7 @@ import sys
 
 import pytest
 
-from tests.lowfi.compliance import reference_walls
+from tests.lowfi.compliance import reference_compliance
 from tipoff import lowfi
 from tipoff.kernels.jit import contains
 from tipoff.lowfi.compiled import LAWS, compiled_code
@@ -42,8 +42,7 @@ from tipoff.scenes.effects.friction import coefficient_over_speed
 @numba.njit
 def call(records, felt, begin, out):
     equations.derivative(records, felt, None, 0.0, begin, out)
-    step_limit.fastest_rate(records.contact, records.friction, None, records.faces, records.platform,
-                        records.payload, felt, None, begin, 0.0)
+    step_limit.fastest_rate(records.contact, records, felt, None, begin, 0.0)
 def evaluate(scene):
     built = model.build(scene)
     records, begin = system.build(built), state.initial(built)
@@ -106,7 +105,7 @@ def test_without_any_effect_nothing_of_them_is_compiled():
 @pytest.mark.slow
 def test_temperature_is_compiled_for_a_warm_scene_only():
     """A contact law asks where the warm walls stand; compliant contact has code of its own."""
-    cold, compliance = load("reference"), reference_walls()
+    cold, compliance = load("reference"), reference_compliance()
     warm = cold.replace({"thermal.mean": 20.0})
     assert lowfi.compiled_effects(warm, compliance=compliance.rigid()) == lowfi.compiled_effects(
         cold
@@ -118,15 +117,15 @@ def test_temperature_is_compiled_for_a_warm_scene_only():
 def test_compliant_contact_stands_in_the_place_of_the_contact_law():
     """Nothing of its package is in a kernel without it."""
     scene = load("reference")
-    assert lowfi.compiled_effects(scene, compliance=reference_walls()) == lowfi.compiled_effects(
+    assert lowfi.compiled_effects(scene, compliance=reference_compliance()) == lowfi.compiled_effects(
         scene
     ) | {"contact": False, "compliance": True}
-    assert PACKAGE in compiled_code(scene, compliance=reference_walls())
+    assert PACKAGE in compiled_code(scene, compliance=reference_compliance())
     assert PACKAGE not in compiled_code(scene)
 
 
 def test_modes_of_the_rails_are_compiled_where_there_are_any():
-    scene, compliance = load("reference"), reference_walls()
+    scene, compliance = load("reference"), reference_compliance()
     without, with_modes = (
         lowfi.compiled_effects(scene, lowfi.Numerics(modes=count), compliance) for count in (0, 4)
     )

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tests.lowfi.compliance import reference_walls
+from tests.lowfi.compliance import reference_compliance
 from tipoff import lowfi
 from tipoff.scenes import load
 from tipoff.scenes.scene import Scene
@@ -58,8 +58,8 @@ def test_springs(velocity):
 
 
 @pytest.mark.parametrize("velocity", FLIGHTS)
-def test_compliant_walls(velocity):
-    compliance = reference_walls()
+def test_compliant_contact(velocity):
+    compliance = reference_compliance()
     assert_same(
         lowfi.run(flying(REFERENCE, velocity), compliance=compliance),
         lowfi.run(REFERENCE, compliance=compliance),

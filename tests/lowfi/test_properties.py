@@ -4,7 +4,7 @@ drawn at random.
 Contact makes small differences grow, by how much depends on the scene. So each comparison brings
 its own yardstick: the same scene with its state at ignition nudged by as much as one step may err.
 Two runs are compared as long as what the nudge changes is below a thousandth of the motion; a wrong
-sign or a lost term is a million times larger from the first touch on. Where both take the same
+sign or a lost term is a million times larger from the first contact on. Where both take the same
 steps ten nudges are allowed, for a pad that just touches may by rounding be open in one and closed
 in the other, which makes one step different; where they take different steps, one nudge for each.
 """
@@ -28,7 +28,6 @@ from tests.lowfi.random_scenes import (
 from tests.lowfi.support import RAIL, turned_state, unwatched
 from tipoff import lowfi
 from tipoff.lowfi import Numerics, state
-from tipoff.lowfi.dynamics import integrate
 from tipoff.lowfi.run import Run
 from tipoff.mechanics import ledger
 
@@ -135,7 +134,7 @@ def check_other_axes(raw: dict, base: np.ndarray, yardstick: np.ndarray) -> None
     expected, nudge = (
         np.hstack([turning.turned(values[:, :3]), values[:, 3:]]) for values in (base, yardstick)
     )
-    assert_equal_motion(speeds(run), expected, nudge, factor=run.loop.count[integrate.STEPS])
+    assert_equal_motion(speeds(run), expected, nudge, factor=run.loop.counts.steps)
 
 
 def reversed_motion(end: np.ndarray):
@@ -158,7 +157,7 @@ def check_reversal(raw: dict) -> None:
         -speeds(back),
         speeds(there)[::-1],
         -speeds(yardstick),
-        factor=there.loop.count[integrate.STEPS],
+        factor=there.loop.counts.steps,
     )
 
 

@@ -1,2 +1,2 @@
-"""Walls that give way: pads pressed through cells of their faces on the static flexibility of the
-rail (data: ``mechanics.rail_compliance``)."""
+"""Compliant contact: the cells of pad faces on the static flexibility of the rail (data:
+``mechanics.rail_compliance``)."""

@@ -5,11 +5,11 @@ in the middle of each cell::
 
     p = p_0 + a xi + b eta - relief (xi^4 + eta^4) - sum_a U_a phi_a(xi', eta'),   pressure = penalty max(0, p)
 
-where the crown is its mean over the cell and xi' = xi + shift, eta' = eta + aside is the place on
-the wall, which was found for pads that stand midway between all rails: 0.25 mm aside, the leg of an
-L, held along one edge only, is three percent softer or stiffer. Of rows of cells that hang over an
-end of the rail only the part over the wall counts, their sums taken as piecewise linear between the
-middles of the rows.
+where the crown is its mean over the cell, and xi' = xi + shift, eta' = eta + aside is the place on
+the wall. The compliance belongs to pads midway between all rails; 0.25 mm aside, the leg of an L,
+held along one edge only, is three percent softer or stiffer. Of rows of cells that overhang an end
+of the rail only the part over the wall counts, with sums piecewise linear between the middles of
+the rows.
 """
 
 import numpy as np
@@ -19,15 +19,15 @@ from tipoff.lowfi.contact.compliant.record import ASIDE, BY_ETA, BY_XI, DEPTH, D
 from tipoff.lowfi.contact.springs import penetration
 from tipoff.lowfi.system import NORMAL_Y, NORMAL_Z
 
-# in xi: where a pad comes to hang over an end, its place on the wall stops over so much way on
-# either side
+# in xi, half the travel over which the place of a pad on the wall comes to rest as the pad begins
+# to overhang an end
 _EASED = 0.1
 
 
 @inlined
 def take_lever(compliance, faces, face, place, turn):
     """Fill the face's lever for the payload's pose in platform axes."""
-    lever, half = compliance.room.lever[face], compliance.half[face]
+    lever, half = compliance.workspace.lever[face], compliance.half[face]
     y, z = faces[face, NORMAL_Y], faces[face, NORMAL_Z]
     lever[DEPTH] = penetration(None, faces[face], place, turn)
     lever[BY_XI] = half[0] * (y * turn[3] + z * turn[6])
@@ -50,8 +50,8 @@ def take_lever(compliance, faces, face, place, turn):
 
 @inlined
 def eased(over):
-    """``over`` where above zero, else zero, with the corner rounded off, and its slope: a force
-    along the rail goes with it."""
+    """``over`` where above zero, else zero, with a rounded corner, and its slope, which a force along
+    the rail contains."""
     if abs(over) >= _EASED:
         return max(over, 0.0), 1.0 if over > 0.0 else 0.0
     return 0.25 * (over + _EASED) ** 2 / _EASED, 0.5 * (over + _EASED) / _EASED
@@ -59,7 +59,7 @@ def eased(over):
 
 @inlined
 def cover(compliance, half, middle, row):
-    """Share of a row of cells that is over the wall, and what a metre of way takes from it."""
+    """Share of a row of cells that is over the wall, and its decrease per metre of travel."""
     behind_end, at_end = _behind(compliance, row, (compliance.end - middle) / half)
     behind_start, at_start = _behind(compliance, row, (compliance.start - middle) / half)
     return behind_end - behind_start, (at_end - at_start) / half
@@ -67,9 +67,9 @@ def cover(compliance, half, middle, row):
 
 @inlined
 def _behind(compliance, row, xi):
-    """Share of a row of cells behind an end of the rail at ``xi``, and its slope: what two
-    neighbouring rows hold changes evenly from one's middle to the other's, so the rate at which
-    energy is left behind does not jump."""
+    """Share of a row of cells behind an end of the rail at ``xi``, and its slope. The sums of
+    neighbouring rows change linearly from middle to middle, so the rate of lost energy does not
+    jump."""
     away = 0.5 * compliance.node.size * (xi - compliance.node[row])  # in cells
     outermost = row == 0 if away < 0.0 else row == compliance.node.size - 1
     reach = 0.5 if outermost else 1.0
@@ -83,7 +83,7 @@ def _behind(compliance, row, xi):
 def row_depth(compliance, face, xi, displacement):
     """Coefficients of 1, eta' and eta'^2 in p (m) along the row of cells at ``xi``, without the
     crown across it."""
-    lever, u = compliance.room.lever[face], displacement
+    lever, u = compliance.workspace.lever[face], displacement
     x = xi + lever[SHIFT]
     rigid = lever[DEPTH] + lever[BY_XI] * xi - lever[BY_ETA] * lever[ASIDE]
     return (rigid - u[0] - x * (u[1] + x * u[3]), lever[BY_ETA] - u[2] - x * u[4], -u[5])
@@ -94,9 +94,9 @@ def press(compliance, face):
     """Fill the face's force (p,) N and its moments, sums over the pressed cells of penalty dA xi'^i
     eta'^j."""
     force, moment, lever = (
-        compliance.room.force[face],
-        compliance.room.moment[face],
-        compliance.room.lever[face],
+        compliance.workspace.force[face],
+        compliance.workspace.moment[face],
+        compliance.workspace.lever[face],
     )
     relief, half = compliance.relief[face], compliance.half[face]
     count = compliance.node.size
@@ -107,7 +107,9 @@ def press(compliance, face):
         xi = compliance.node[row]
         weight = stiffness * cover(compliance, half[0], lever[MIDDLE], row)[0]
         if weight > 0.0:
-            level, tilt, bend = row_depth(compliance, face, xi, compliance.room.displacement[face])
+            level, tilt, bend = row_depth(
+                compliance, face, xi, compliance.workspace.displacement[face]
+            )
             level -= relief * compliance.crown[row]
             f0, f1, f2 = 0.0, 0.0, 0.0
             m0, m1, m2, m3, m4 = 0.0, 0.0, 0.0, 0.0, 0.0
@@ -151,10 +153,10 @@ def _add_moments(moment, weight, x, sums):
 
 @kernel
 def deepest(compliance, face, displacement):
-    """Largest p (m) of all cells, over the wall or where it would go on, and xi and eta of that
-    cell on the pad."""
+    """Largest p (m) of all cells, over the wall or its continuation, and xi and eta of that cell on
+    the pad."""
     aside, relief, largest, along, across = (
-        compliance.room.lever[face, ASIDE],
+        compliance.workspace.lever[face, ASIDE],
         compliance.relief[face],
         -np.inf,
         0.0,
@@ -176,10 +178,10 @@ def deepest(compliance, face, displacement):
 
 @kernel
 def stored(compliance, face):
-    """Energy (J) in the penalty of the face, and what of it is lost per metre that the pad moves
-    on, over an end of the rail."""
+    """Energy (J) in the penalty of the face, and what of it is lost per metre of travel over an end
+    of the rail."""
     lever, relief, half = (
-        compliance.room.lever[face],
+        compliance.workspace.lever[face],
         compliance.relief[face],
         compliance.half[face],
     )
@@ -190,7 +192,9 @@ def stored(compliance, face):
         xi = compliance.node[row]
         share, lost = cover(compliance, half[0], lever[MIDDLE], row)
         if share > 0.0:
-            level, tilt, bend = row_depth(compliance, face, xi, compliance.room.displacement[face])
+            level, tilt, bend = row_depth(
+                compliance, face, xi, compliance.workspace.displacement[face]
+            )
             squares = 0.0
             for column in range(count):
                 eta = compliance.node[column] + lever[ASIDE]

@@ -1,16 +1,15 @@
-"""Forces of walls that give way on the payload, from the gradient of one potential::
+"""Forces of compliant contact on the payload, from the gradient of one potential::
 
     E = sum over cells of penalty dA max(0, p)^2 / 2 + P' F P / 2
 
-(that of the modes, where the rail has some, is their own). With the pose of the payload they are:
-P_1 against the normal, at the centre of pressure, and along X, as the rail is softer or stiffer
-ahead and as its bent wall slopes (xi' moves with the pad where a face hangs over an end)::
+(modes have a potential of their own). They are: P_1 against the normal, at the centre of pressure;
+and along X, where the rail is softer or stiffer ahead and where its bent wall slopes (xi' moves
+with the pad where a face overhangs an end)::
 
     X = P' F' P / 2 + P' (T' + W' q) + sum of pressure d(xi')/dx du/dxi'
 
-which acts on payload and platform at the payload's mass centre, since that is the place whose way
-counts. Where the pad moves across the rail, eta' moves with its middle, and there the slope of the
-wall pushes::
+which acts on payload and platform at the payload's mass centre, whose travel it belongs to. Where
+the pad moves across the rail, eta' moves with its middle, and the slope of the wall pushes::
 
     Y = sum of pressure d(eta')/dy du/deta'
 
@@ -36,9 +35,9 @@ from tipoff.mechanics.rail_compliance import PATTERNS
 
 @kernel
 def load(compliance, friction, platform, faces, face, body, base):
-    """Load of a pressed face, after ``solve``; the wall's own velocity is left out."""
-    room = compliance.room
-    force, lever, half = room.force[face], room.lever[face], compliance.half[face]
+    """Load of a pressed face, after ``solve``; the velocity of the wall itself is neglected."""
+    workspace = compliance.workspace
+    force, lever, half = workspace.force[face], workspace.lever[face], compliance.half[face]
     across = along_width(faces[face], half[1] * (force[2] / force[0] - lever[ASIDE]))
     arm = rotation.rotate(
         body.turn,
@@ -64,35 +63,35 @@ def load(compliance, friction, platform, faces, face, body, base):
 
 
 @inlined
-def lean(compliance, faces, face, body, base):
+def side_force(compliance, faces, face, body, base):
     """Force (N) across the rail on the payload by the slope of the wall under a pressed face, and
     where it acts (m), in scene axes."""
-    u, force = compliance.room.displacement[face], compliance.room.force[face]
+    u, force = compliance.workspace.displacement[face], compliance.workspace.force[face]
     size = (u[2] * force[0] + u[4] * force[1] + 2.0 * u[5] * force[2]) / compliance.half[face, 1]
     return rotation.rotate(base.turn, along_width(faces[face], size)), pad_point(faces[face], body)
 
 
 @kernel
-def drive(compliance, count):
-    """Force (N) along the rail on the payload by the ``count`` faces solved for,
-    and the energy (J/m) its way takes from the wall."""
-    room, pull, fading = compliance.room, 0.0, 0.0
+def axial_force(compliance, count):
+    """Force (N) along the rail on the payload by the ``count`` faces solved for, and the energy lost
+    per metre of travel (J/m)."""
+    workspace, pull, fading = compliance.workspace, 0.0, 0.0
     for i in range(count):
-        face = room.order[i]
-        u, force = room.displacement[face], room.force[face]
-        pull += room.lever[face, DRIFT] * (
+        face = workspace.order[i]
+        u, force = workspace.displacement[face], workspace.force[face]
+        pull += workspace.lever[face, DRIFT] * (
             u[1] * force[0] + 2.0 * u[3] * force[1] + u[4] * force[2]
         )
-        pull += thermal_offset.pull(compliance.warm, face, force)
-        if room.lever[face, DRIFT] != 0.0:  # else all of it is over the wall
+        pull += thermal_offset.axial_force(compliance.thermal_offset, face, force)
+        if workspace.lever[face, DRIFT] != 0.0:  # else all of it is over the wall
             fading += stored(compliance, face)[1]
         for a in range(PATTERNS):
             total = 0.0
             for j in range(count):
                 for b in range(PATTERNS):
                     total += (
-                        room.slope[i * PATTERNS + a, j * PATTERNS + b]
-                        * room.force[room.order[j], b]
+                        workspace.slope[i * PATTERNS + a, j * PATTERNS + b]
+                        * workspace.force[workspace.order[j], b]
                     )
             pull += force[a] * (0.5 * total + slope(compliance.modes, face, a))
     return pull, fading
@@ -100,15 +99,19 @@ def drive(compliance, count):
 
 @kernel
 def energy(compliance, count):
-    """Energy (J) in walls and penalty under the ``count`` faces solved for: P' F P is P' (U - T - W
+    """Energy (J) in rail and penalty under the ``count`` faces solved for: P' F P is P' (U - T - W
     q)."""
     total = 0.0
     for i in range(count):
-        face = compliance.room.order[i]
+        face = compliance.workspace.order[i]
         total += stored(compliance, face)[0]
         for a in range(PATTERNS):
-            own = thermal_offset.place(compliance.warm, face, a) + offset(compliance.modes, face, a)
+            own = thermal_offset.offset(compliance.thermal_offset, face, a) + offset(
+                compliance.modes, face, a
+            )
             total += (
-                0.5 * compliance.room.force[face, a] * (compliance.room.displacement[face, a] - own)
+                0.5
+                * compliance.workspace.force[face, a]
+                * (compliance.workspace.displacement[face, a] - own)
             )
     return total

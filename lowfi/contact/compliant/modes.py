@@ -1,19 +1,19 @@
-"""Vibration of the rails that pads press: their lowest modes, states of their own behind those of
-the bodies (data: ``mechanics.rail_compliance``).
+"""Vibration of the rails: their lowest modes, whose states follow those of the bodies (data:
+``mechanics.rail_compliance``).
 
     U = F_res P + W q,    q_m'' + d_m q_m' + omega_m^2 q_m = sum_ia W_iam P_ia,    d_m = alpha + beta omega_m^2
 
-with W at the place the pads are at. The other modes follow at once. These are Lagrange's equations
-of the potential in ``loads`` with the modes' own energy sum_m (q_m'^2 + omega_m^2 q_m^2) / 2 beside
-it, so both ledgers close. At ignition a rail is at rest and straight, as in the reference.
-``lowfi.dynamics.local_error`` and ``lowfi.contact.compliant.step_limit`` hold the steps to what the highest mode asks.
+with W at the pads. The other modes respond without inertia. These are Lagrange's equations of the
+potential in ``loads`` and the modes' own energy sum_m (q_m'^2 + omega_m^2 q_m^2) / 2, so both
+ledgers close. At ignition a rail is at rest and straight, as in the reference. The step size
+follows the highest mode (``lowfi.dynamics.local_error``, ``lowfi.contact.compliant.step_limit``).
 
-Left out, in both directions, is that mounts move with the platform: the inertial load -L_m a of the
-modes under its acceleration a, and the momentum L_m q_m' of a rail that swings, which the contact
-force, taken to act on the platform at once, lacks or has too much. L_m^2 is the mode's effective
-mass, and all of them together are less than the rail weighs. The reference scene has rails of 0.11
+The motion of the mounts with the platform is neglected, in both directions: the inertial load
+-L_m a of the modes under its acceleration a, and the momentum L_m q_m' of a vibrating rail, by
+which the force on the platform differs from the contact force. L_m^2 is the effective mass of a
+mode; all of them together are less than the mass of the rail. The reference scene has rails of 0.11
 kg on a platform of 81 kg: a thousandth of the contact force, and 1e-5 m/s of the platform when a
-wall swings at 10 mm/s. The momenta of payload and platform are kept to rounding by that choice.
+wall vibrates at 10 mm/s. So the momenta of payload and platform are conserved to rounding.
 """
 
 from tipoff.kernels.jit import inlined, kernel
@@ -24,9 +24,9 @@ _XI, _ETA = POWERS.T.copy()
 
 
 @kernel
-def take_swing(modes, rail, face, station, way, changes, state):
-    """Fill what the modes of ``rail`` are under ``face``, ``way`` (m) from a station where that
-    changes by ``changes`` with the place."""
+def evaluate(modes, rail, face, station, way, changes, state):
+    """Fill shapes, displacement and speed of the modes of ``rail`` under ``face``, ``way`` (m) from
+    a station, where that distance changes by ``changes`` with the place."""
     if modes is not None:
         count = modes.square.shape[1]
         first, rates = STATE_SIZE + rail * count, STATE_SIZE + modes.square.size + rail * count
@@ -56,7 +56,7 @@ def offset(modes, face, a):
 
 @inlined
 def slope(modes, face, a):
-    """By how much (1) that changes per metre of way."""
+    """Derivative of that displacement along the rail."""
     value = 0.0
     if modes is not None:
         value = modes.slope[face, a]
@@ -65,7 +65,7 @@ def slope(modes, face, a):
 
 @inlined
 def speed_at(modes, face, xi, eta):
-    """Speed (m/s) at which the place (xi, eta) on the wall moves away by the modes."""
+    """Speed (m/s) at which the point (xi, eta) of the wall moves away by the modes."""
     value = 0.0
     if modes is not None:
         for a in range(PATTERNS):
@@ -74,18 +74,18 @@ def speed_at(modes, face, xi, eta):
 
 
 @kernel
-def swing(modes, room, rail, count, state, out):
-    """Fill the derivative ``out`` of the modes of ``rail``, pressed by the ``count`` faces solved
-    for; what damping takes (W)."""
+def vibrate(modes, workspace, rail, count, state, out):
+    """Fill the derivative ``out`` of the modes of ``rail`` under the ``count`` faces solved for; the
+    power (W) of their damping."""
     loss = 0.0
     number = modes.square.shape[1]
     first, rates = STATE_SIZE + rail * number, STATE_SIZE + modes.square.size + rail * number
     for i in range(number):
         rate, pressed = state[rates + i], 0.0
         for k in range(count):
-            face = room.order[k]
+            face = workspace.order[k]
             for a in range(PATTERNS):
-                pressed += modes.shape[face, i, a] * room.force[face, a]
+                pressed += modes.shape[face, i, a] * workspace.force[face, a]
         out[first + i] = rate
         out[rates + i] = (
             pressed - modes.square[rail, i] * state[first + i] - modes.drag[rail, i] * rate
@@ -113,8 +113,8 @@ def energies(modes, state):
 
 @inlined
 def fastest(modes, rail, pressed, state):
-    """Largest omega^2 (1/s2) and d (1/s) of the modes of a rail; zero while it is at rest and
-    nothing has pressed it, for then it stays so."""
+    """Largest omega^2 (1/s2) and d (1/s) of the modes of a rail; zero while it is at rest without
+    load."""
     square, drag = 0.0, 0.0
     if modes is not None:
         count = modes.square.shape[1]

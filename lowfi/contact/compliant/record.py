@@ -1,4 +1,4 @@
-"""What kernels are given of walls that give way, and the room they work in."""
+"""Records of compliant contact as the kernels take them, with their workspace."""
 
 from typing import NamedTuple
 
@@ -13,88 +13,77 @@ from tipoff.scenes.scene import Scene
 
 CELLS = 10  # along each edge of a pad face
 # Columns of a face's lever: penetration (m) of its flat face at the middle, and per xi and eta; how
-# far xi on the wall is ahead of xi on the pad, and by how much more per metre of way; X (m) of the
+# far xi on the wall is ahead of xi on the pad, and by how much more per metre of travel; X (m) of the
 # middle; how far eta on the wall is beyond eta on the pad.
 DEPTH, BY_XI, BY_ETA, SHIFT, DRIFT, MIDDLE, ASIDE, LEVER_SIZE = range(8)
 DEGREES = 5  # of the moments of pressed cells: products of two patterns reach the fourth power
 
 
-class Room(NamedTuple):
-    """Scratch of one run. lever (f, LEVER_SIZE); displacement (f,p) m of the walls, the next first
-    guess, and the same ``kept`` aside; force (f,p) N; moment (f, DEGREES, DEGREES) N/m; order (m,)
-    faces solved for at once; and over those, w = m p: flexibility and its slope along the travel
-    (w,w), matrix (w,w), right (w, 3 m + n) with n modes."""
+class Workspace(NamedTuple):
+    """Arrays that one run works in, for f faces, p patterns, at most m faces on a rail, w = m p, and
+    n modes."""
 
-    lever: np.ndarray
-    displacement: np.ndarray
-    kept: np.ndarray
-    force: np.ndarray
-    moment: np.ndarray
-    order: np.ndarray
-    flexibility: np.ndarray
-    slope: np.ndarray
-    matrix: np.ndarray
-    right: np.ndarray
+    lever: np.ndarray  # (f, LEVER_SIZE)
+    displacement: np.ndarray  # (f, p) m, of the walls; the first guess of the next solution
+    saved_displacement: np.ndarray  # (f, p) m, a copy
+    force: np.ndarray  # (f, p) N
+    moment: np.ndarray  # (f, DEGREES, DEGREES) N/m
+    order: np.ndarray  # (m,) numbers of the faces that are solved for together
+    flexibility: np.ndarray  # (w, w) m/N, between these faces
+    slope: np.ndarray  # (w, w) 1/N, its derivative along the rail
+    matrix: np.ndarray  # (w, w)
+    right: np.ndarray  # (w, 3 m + n)
 
 
 class Modes(NamedTuple):
-    """The n modes of each of r rails: square (r,n) 1/s2 of their frequencies, drag (r,n) 1/s, cubic
-    (s-1,f,n,p,4) of their shapes (1/kg^0.5) as that of ``RailCompliance``; and what they are now under each
-    face: shape (f,n,p), displacement ``offset`` (f,p) m, its slope along the travel (f,p), its
-    speed (f,p) m/s."""
+    """The n modes of each of r rails, and their displacement under each of f faces."""
 
-    square: np.ndarray
-    drag: np.ndarray
-    cubic: np.ndarray
-    shape: np.ndarray
-    offset: np.ndarray
-    slope: np.ndarray
-    speed: np.ndarray
+    square: np.ndarray  # (r, n) 1/s2, squares of the angular frequencies
+    drag: np.ndarray  # (r, n) 1/s, damping rates
+    cubic: (
+        np.ndarray
+    )  # (s-1, f, n, p, 4) 1/kg^0.5, shapes between stations, as ``Compliance.cubic``
+    shape: np.ndarray  # (f, n, p) 1/kg^0.5, workspace: shapes at the faces
+    offset: np.ndarray  # (f, p) m, workspace: displacement
+    slope: np.ndarray  # (f, p) workspace: its derivative along the rail
+    speed: np.ndarray  # (f, p) m/s, workspace: its rate
 
 
-class Warm(NamedTuple):
-    """cubic (s-1,f,p,4): T (m) of warm walls between stations as powers of the way (m) from the one
-    before; and as scratch its value ``place`` (f,p) m and its ``slope`` (f,p) under the faces last
-    looked at."""
+class ThermalOffset(NamedTuple):
+    """Displacement of warm walls without load."""
 
-    cubic: np.ndarray
-    place: np.ndarray
-    slope: np.ndarray
+    cubic: np.ndarray  # (s-1, f, p, 4) m, between stations, as ``Compliance.cubic``
+    offset: np.ndarray  # (f, p) m, workspace: value under the faces
+    slope: np.ndarray  # (f, p) workspace: its derivative along the rail
 
 
 class Compliance(NamedTuple):
-    """cubic (s-1,f,f,p,p,4): flexibility (m/N) between stations as powers of the way (m) from the
-    one before, which stand ``spacing`` apart from the X ``origin`` (m) of the first face at
-    ignition on; members (r,m) faces on each rail, -1 for none; rail (f,) and half (f,2) as in
-    ``mechanics.rail_compliance``; across (f,) m, where on the other axis across the rail the middle of each face
-    stands that the walls were found for; relief (f,) m; penalty (N/m3); start and end (m) of the
-    rail; node (n,) middle of the cells in xi and eta, and crown (n,) the means of xi^4 over them;
-    warm, None where no rail is."""
+    """Compliant contact of f faces on r rails, with its statics at s stations."""
 
-    cubic: np.ndarray
-    origin: float
-    spacing: float
-    members: np.ndarray
-    rail: np.ndarray
-    half: np.ndarray
-    across: np.ndarray
-    relief: np.ndarray
-    penalty: float
-    start: float
-    end: float
-    node: np.ndarray
-    crown: np.ndarray
-    modes: Modes | None
-    warm: Warm | None
-    room: Room
+    cubic: np.ndarray  # (s-1, f, f, p, p, 4) m/N, as powers of the distance (m) from a station
+    origin: float  # m, X of the first face at ignition: the first station
+    spacing: float  # m, between stations
+    members: np.ndarray  # (r, m) numbers of the faces on each rail; -1 fills up
+    rail: np.ndarray  # (f,) number of the rail of each face
+    half: np.ndarray  # (f, 2) m, half length and half width
+    across: np.ndarray  # (f,) m, place of the middle of each face across rail and normal, centred
+    relief: np.ndarray  # (f,) m, of the crown at the edges
+    penalty: float  # N/m3
+    start: float  # m, X of the rear end of the rail
+    end: float  # m, X of the open end
+    node: np.ndarray  # (c,) middles of the cells in xi and eta
+    crown: np.ndarray  # (c,) means of xi^4 over the cells
+    modes: Modes | None  # None for rails without inertia
+    thermal_offset: ThermalOffset | None  # None for rails that are not warm
+    workspace: Workspace
 
 
 def under_pads(
     scene: Scene, model: Model, found: data.RailCompliance | None, modes: int = 0
 ) -> Compliance | None:
-    """Record of what was ``found`` for the kernels, with so many vibrating ``modes`` of each rail;
-    None without contact and for rigid ones. Raises SceneError for walls of another rail or without
-    these modes, and for the law of friction that sticks."""
+    """Record of the compliance ``found``, with so many vibrating ``modes`` of each rail; None
+    without contact and for rigid walls. Raises SceneError for the compliance of another rail or
+    without these modes, and for friction that sticks."""
     if found is None or found.flexibility is None or model.contact is None:
         return None
     found.require(scene)
@@ -129,38 +118,38 @@ def build(
     flexibility, shape = found.cubic(modes)
     vibrating = _modes(found, shape, damping) if shape.size else None
     return Compliance(
-        flexibility,
-        float(nominal[0, 0]),
-        spacing,
-        members,
-        found.rail,
-        found.half,
-        nominal[np.arange(faces.axis.size), 3 - faces.axis],
-        faces.relief,
-        float(model.penalty),
-        float(model.rail_start),
-        float(model.rail_end),
-        0.5 * (edges[1:] + edges[:-1]),
-        crown,
-        vibrating,
-        _warm(found, model),
-        _room(faces.axis.size, members.shape[1], shape.shape[2]),
+        cubic=flexibility,
+        origin=float(nominal[0, 0]),
+        spacing=spacing,
+        members=members,
+        rail=found.rail,
+        half=found.half,
+        across=nominal[np.arange(faces.axis.size), 3 - faces.axis],
+        relief=faces.relief,
+        penalty=float(model.penalty),
+        start=float(model.rail_start),
+        end=float(model.rail_end),
+        node=0.5 * (edges[1:] + edges[:-1]),
+        crown=crown,
+        modes=vibrating,
+        thermal_offset=_thermal_offset(found, model),
+        workspace=_workspace(faces.axis.size, members.shape[1], shape.shape[2]),
     )
 
 
-def _warm(found: data.RailCompliance, model: Model) -> Warm | None:
+def _thermal_offset(found: data.RailCompliance, model: Model) -> ThermalOffset | None:
     if model.thermal is None:
         return None
     by_pattern = (model.faces.axis.size, data.PATTERNS)
-    return Warm(
-        data.cubic(found.travel, found.moved(model.thermal.amounts)),
-        zeros(by_pattern),
-        zeros(by_pattern),
+    return ThermalOffset(
+        cubic=data.cubic(found.travel, found.moved(model.thermal.amounts)),
+        offset=zeros(by_pattern),
+        slope=zeros(by_pattern),
     )
 
 
 def states(compliance: Compliance | None) -> int:
-    """How many numbers the modes of ``walls`` add to the state (``lowfi.state.modal_size``)."""
+    """How many numbers the modes of ``compliance`` add to the state (``lowfi.state.modal_size``)."""
     return (
         2 * compliance.modes.square.size
         if compliance is not None and compliance.modes is not None
@@ -172,27 +161,29 @@ def _modes(found: data.RailCompliance, cubic: np.ndarray, damping: Damping | Non
     count = cubic.shape[2]
     square = found.frequency[:, :count] ** 2
     mass_rate, stiffness_time = damping or (0.0, 0.0)
-    faces = (found.rail.size, data.PATTERNS)
+    faces, by_pattern = found.rail.size, (found.rail.size, data.PATTERNS)
     return Modes(
-        square,
-        mass_rate + stiffness_time * square,
-        cubic,
-        zeros((faces[0], count, faces[1])),
-        *(zeros(faces) for _ in range(3)),
+        square=square,
+        drag=mass_rate + stiffness_time * square,
+        cubic=cubic,
+        shape=zeros((faces, count, data.PATTERNS)),
+        offset=zeros(by_pattern),
+        slope=zeros(by_pattern),
+        speed=zeros(by_pattern),
     )
 
 
-def _room(faces: int, members: int, modes: int) -> Room:
+def _workspace(faces: int, members: int, modes: int) -> Workspace:
     wide, by_pattern = members * data.PATTERNS, (faces, data.PATTERNS)
-    return Room(
-        zeros((faces, LEVER_SIZE)),
-        zeros(by_pattern),
-        zeros(by_pattern),
-        zeros(by_pattern),
-        zeros((faces, DEGREES, DEGREES)),
-        np.zeros(members, dtype=np.int64),
-        zeros((wide, wide)),
-        zeros((wide, wide)),
-        zeros((wide, wide)),
-        zeros((wide, 3 * members + modes)),
+    return Workspace(
+        lever=zeros((faces, LEVER_SIZE)),
+        displacement=zeros(by_pattern),
+        saved_displacement=zeros(by_pattern),
+        force=zeros(by_pattern),
+        moment=zeros((faces, DEGREES, DEGREES)),
+        order=np.zeros(members, dtype=np.int64),
+        flexibility=zeros((wide, wide)),
+        slope=zeros((wide, wide)),
+        matrix=zeros((wide, wide)),
+        right=zeros((wide, 3 * members + modes)),
     )

@@ -1,14 +1,14 @@
-"""Displacement of the walls of one rail under the faces that press it, by Newton's method on
+"""Displacement of the walls of one rail under the faces that press on it, by Newton's method on
 piecewise linear equations.
 
     U = T + F P(U) + W q,    (1 + F K) dU = T + F P + W q - U,
     K_iab = dP_ia/d(-U_ib) = sum over pressed cells of penalty dA phi_a phi_b
 
-W q is what the rail's modes make of it (``lowfi.contact.compliant.modes``), F the rest; without modes there is
-only F. T is where walls stand that are warm (``lowfi.contact.compliant.thermal_offset``), zero otherwise. P is the
-gradient of a convex potential, so the solution is one; while the pressed cells do not change the
-equations are linear, and the last correction is exact. The displacement of the solution before is
-the first guess.
+F is the flexibility without the modes, W q the displacement by the modes
+(``lowfi.contact.compliant.modes``), T the thermal offset (``lowfi.contact.compliant.thermal_offset``).
+P is the gradient of a convex potential, so the solution is unique. While the set of pressed cells
+does not change the equations are linear, and the last correction is exact. The first guess is the
+displacement of the solution before.
 """
 
 import numpy as np
@@ -16,32 +16,32 @@ import numpy as np
 from tipoff.kernels.jit import inlined, kernel
 from tipoff.lowfi.contact.compliant import thermal_offset
 from tipoff.lowfi.contact.compliant.cells import eased, press, take_lever
-from tipoff.lowfi.contact.compliant.modes import offset, take_swing
+from tipoff.lowfi.contact.compliant.modes import evaluate, offset
 from tipoff.mechanics.rail_compliance import PATTERNS, POWERS
 
 _ARRIVED = 1e-14  # m, a correction that is rounding
 _MOST = 60  # corrections
-_CAREFUL = 12  # after so many only half of each is taken, so that none can go round in circles
+_CAREFUL = 12  # after so many, half corrections, which cannot cycle
 _XI, _ETA = POWERS.T.copy()
 
 
 @kernel
-def solve(compliance, faces, rail, active, place, turn, state):
-    """Number of ``active`` (f,) faces on ``rail``; ``walls.room`` holds them in ``order``, with
-    lever, displacement and force. Of ``state`` only the modes are read."""
-    room, count = compliance.room, 0
+def solve(compliance, faces, rail, touching, place, turn, state):
+    """Number of ``touching`` (f,) faces on ``rail``; ``compliance.workspace`` holds them in
+    ``order``, with lever, displacement and force. Of ``state`` only the modes are read."""
+    workspace, count = compliance.workspace, 0
     for slot in range(compliance.members.shape[1]):
         face = compliance.members[rail, slot]
-        if face >= 0 and active[face]:
+        if face >= 0 and touching[face]:
             take_lever(compliance, faces, face, place, turn)
-            room.order[count] = face
+            workspace.order[count] = face
             count += 1
     if count > 0:
         take_flexibility(compliance, count, place[0] + faces[0, 0], state)
         for correction in range(_MOST):
             if _correct(compliance, count, 1.0 if correction < _CAREFUL else 0.5) < _ARRIVED:
                 return count
-        room.force[:] = np.nan  # never seen; no step could stand on it
+        workspace.force[:] = np.nan  # no convergence; no step is accepted with it
     return count
 
 
@@ -65,28 +65,28 @@ def between_stations(compliance, place):
 def take_flexibility(compliance, count, place, state):
     """Fill flexibility and slope between the first ``count`` faces in order, and what the modes are
     under them."""
-    room = compliance.room
+    workspace = compliance.workspace
     station, s, changes = between_stations(compliance, place)
     for i in range(count):
-        take_swing(
+        evaluate(
             compliance.modes,
-            compliance.rail[room.order[i]],
-            room.order[i],
+            compliance.rail[workspace.order[i]],
+            workspace.order[i],
             station,
             s,
             changes,
             state,
         )
-        thermal_offset.take(compliance.warm, room.order[i], station, s, changes)
+        thermal_offset.evaluate(compliance.thermal_offset, workspace.order[i], station, s, changes)
         for j in range(count):
-            block = compliance.cubic[station, room.order[i], room.order[j]]
+            block = compliance.cubic[station, workspace.order[i], workspace.order[j]]
             for a in range(PATTERNS):
                 for b in range(PATTERNS):
                     c = block[a, b]
-                    room.flexibility[i * PATTERNS + a, j * PATTERNS + b] = c[0] + s * (
+                    workspace.flexibility[i * PATTERNS + a, j * PATTERNS + b] = c[0] + s * (
                         c[1] + s * (c[2] + s * c[3])
                     )
-                    room.slope[i * PATTERNS + a, j * PATTERNS + b] = changes * (
+                    workspace.slope[i * PATTERNS + a, j * PATTERNS + b] = changes * (
                         c[1] + s * (2.0 * c[2] + s * 3.0 * c[3])
                     )
 
@@ -100,49 +100,49 @@ def stiffness(moment, a, b):
 @kernel
 def _correct(compliance, count, share):
     """Take ``share`` of one correction; its largest size (m)."""
-    room = compliance.room
+    workspace = compliance.workspace
     for i in range(count):
-        press(compliance, room.order[i])
+        press(compliance, workspace.order[i])
     wide = count * PATTERNS
-    fill_matrix(room, count)
+    fill_matrix(workspace, count)
     for row in range(wide):
         total = 0.0
         for column in range(wide):
             total += (
-                room.flexibility[row, column]
-                * room.force[room.order[column // PATTERNS], column % PATTERNS]
+                workspace.flexibility[row, column]
+                * workspace.force[workspace.order[column // PATTERNS], column % PATTERNS]
             )
-        face, a = room.order[row // PATTERNS], row % PATTERNS
-        room.right[row, 0] = total - (
-            room.displacement[face, a]
-            - thermal_offset.place(compliance.warm, face, a)
+        face, a = workspace.order[row // PATTERNS], row % PATTERNS
+        workspace.right[row, 0] = total - (
+            workspace.displacement[face, a]
+            - thermal_offset.offset(compliance.thermal_offset, face, a)
             - offset(compliance.modes, face, a)
         )
-    eliminate(room.matrix, room.right, wide, 1)
+    eliminate(workspace.matrix, workspace.right, wide, 1)
     largest = 0.0
     for i in range(count):
-        face = room.order[i]
+        face = workspace.order[i]
         for a in range(PATTERNS):
-            change = share * room.right[i * PATTERNS + a, 0]
+            change = share * workspace.right[i * PATTERNS + a, 0]
             largest = max(largest, abs(change))
-            room.displacement[face, a] += change
+            workspace.displacement[face, a] += change
             for b in range(PATTERNS):
-                room.force[face, b] -= stiffness(room.moment[face], a, b) * change
+                workspace.force[face, b] -= stiffness(workspace.moment[face], a, b) * change
     return largest if largest == largest else 0.0  # what is not a number stays so
 
 
 @kernel
-def fill_matrix(room, count):
+def fill_matrix(workspace, count):
     """1 + F K over the first ``count`` faces in order."""
     wide = count * PATTERNS
     for row in range(wide):
         for j in range(count):
-            moment = room.moment[room.order[j]]
+            moment = workspace.moment[workspace.order[j]]
             for b in range(PATTERNS):
                 total = 1.0 if row == j * PATTERNS + b else 0.0
                 for c in range(PATTERNS):
-                    total += room.flexibility[row, j * PATTERNS + c] * stiffness(moment, c, b)
-                room.matrix[row, j * PATTERNS + b] = total
+                    total += workspace.flexibility[row, j * PATTERNS + c] * stiffness(moment, c, b)
+                workspace.matrix[row, j * PATTERNS + b] = total
 
 
 @kernel
@@ -177,14 +177,16 @@ def eliminate(matrix, right, size, columns):
 def follow(compliance, face, place, count, state, out):
     """Fill ``out`` (p,) with the displacement of the wall under a face that may not press, by the
     ``count`` faces solved for and by modes."""
-    room = compliance.room
+    workspace = compliance.workspace
     station, s, changes = between_stations(compliance, place)
-    take_swing(compliance.modes, compliance.rail[face], face, station, s, changes, state)
-    thermal_offset.take(compliance.warm, face, station, s, changes)
+    evaluate(compliance.modes, compliance.rail[face], face, station, s, changes, state)
+    thermal_offset.evaluate(compliance.thermal_offset, face, station, s, changes)
     for a in range(PATTERNS):
-        out[a] = thermal_offset.place(compliance.warm, face, a) + offset(compliance.modes, face, a)
+        out[a] = thermal_offset.offset(compliance.thermal_offset, face, a) + offset(
+            compliance.modes, face, a
+        )
         for j in range(count):
-            other = room.order[j]
+            other = workspace.order[j]
             for b in range(PATTERNS):
                 c = compliance.cubic[station, face, other, a, b]
-                out[a] += (c[0] + s * (c[1] + s * (c[2] + s * c[3]))) * room.force[other, b]
+                out[a] += (c[0] + s * (c[1] + s * (c[2] + s * c[3]))) * workspace.force[other, b]

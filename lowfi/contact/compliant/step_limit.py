@@ -1,16 +1,15 @@
-"""The proven step limit on walls that give way: stiffness and damping of the faces of each rail
+"""The proven step limit of compliant contact: stiffness and damping of the faces of each rail
 (``lowfi.contact.step_limit`` has the bound).
 
 With the tangent T = K (1 + F K)^-1 of ``lowfi.contact.compliant.solution`` and the wrenches g of depth, tilt
 along and tilt across of each rigid face, the linearised springs are sum_ab T_ab g_a g_b', and the
-trace over both bodies bounds what they can do. A way across the rail along a wall of slope du/deta'
-= U_2 + xi' U_4 + 2 eta' U_5 is a depth and tilts too, so each g has its part of a force there::
+trace over both bodies is their bound. A motion across the rail along a wall of slope du/deta' =
+U_2 + xi' U_4 + 2 eta' U_5 changes depth and tilts too, so each g has a force across the rail::
 
     K = sum over rails of sum_ab T_ab (g_a . M^-1 g_b)
 
-Modes of rails that move or are pressed add a diagonal of omega^2 and d to the matrices, which
-raises their spectra by the largest of each (Weyl), and the trace of what contact does to them, W' T
-W.
+Modes of rails that move or carry load add a diagonal of omega^2 and d to the matrices, which raises
+their spectra by the largest of each (Weyl), and the trace of contact on the modes, W' T W.
 """
 
 from tipoff.kernels import rotation
@@ -28,8 +27,8 @@ _RIGID = 3  # depth, tilt along, tilt across
 
 
 @kernel
-def stiffness_and_damping(compliance, friction, faces, platform, payload, active, state):
-    """Traces K (1/s2) and C (1/s) of all faces that are ``active`` (f,) at ``state``."""
+def stiffness_and_damping(compliance, friction, faces, platform, payload, touching, state):
+    """Traces K (1/s2) and C (1/s) of all ``touching`` faces (f,) at ``state``."""
     body, base = (
         slot.motion(payload.mass, payload.inverse_inertia, state, slot.PAYLOAD),
         slot.frame(platform, state),
@@ -37,12 +36,12 @@ def stiffness_and_damping(compliance, friction, faces, platform, payload, active
     place, turn = relative_pose(platform, body, base)
     springs, dampers, square, drag = 0.0, 0.0, 0.0, 0.0
     for rail in range(compliance.members.shape[0]):
-        count = solve(compliance, faces, rail, active, place, turn, state)
+        count = solve(compliance, faces, rail, touching, place, turn, state)
         by_rail = fastest(compliance.modes, rail, count > 0, state)
         square, drag = max(square, by_rail[0]), max(drag, by_rail[1])
         for i in range(count):
-            face = compliance.room.order[i]
-            if compliance.room.force[face, 0] > 0.0:
+            face = compliance.workspace.order[i]
+            if compliance.workspace.force[face, 0] > 0.0:
                 now = load(compliance, friction, platform, faces, face, body, base)
                 dampers += friction_damping(
                     friction, now, platform, payload, body, base, outward(faces[face], base)
@@ -51,35 +50,40 @@ def stiffness_and_damping(compliance, friction, faces, platform, payload, active
             columns = _tangent(compliance, count)
             springs += _trace(
                 compliance, faces, platform, payload, count, body, base
-            ) + _trace_of_modes(compliance.modes, compliance.room, count, columns)
+            ) + _trace_of_modes(compliance.modes, compliance.workspace, count, columns)
     return springs + square, dampers + drag
 
 
 @kernel
 def _tangent(compliance, count):
-    """Fill ``right`` with dU (w,) by a unit of each rigid motion, then of each mode; how many
-    columns the former take."""
-    room = compliance.room
-    fill_matrix(room, count)
+    """Fill ``right`` with dU (w,) by a unit of each rigid motion, then of each mode; the number of
+    columns of rigid motions."""
+    workspace = compliance.workspace
+    fill_matrix(workspace, count)
     wide = count * PATTERNS
     for row in range(wide):
         for j in range(count):
-            face = room.order[j]
+            face = workspace.order[j]
             for rigid in range(_RIGID):
                 total = 0.0
                 for c in range(PATTERNS):
                     column = j * PATTERNS + c
-                    total += room.flexibility[row, column] * _reaction(room, face, c, rigid)
-                room.right[row, j * _RIGID + rigid] = total
+                    total += workspace.flexibility[row, column] * _reaction(
+                        workspace, face, c, rigid
+                    )
+                workspace.right[row, j * _RIGID + rigid] = total
     # dU = (1 + F K)^-1 F K e, dP = K (e - dU)
     eliminate(
-        room.matrix, room.right, wide, count * _RIGID + _add_modes(compliance.modes, room, count)
+        workspace.matrix,
+        workspace.right,
+        wide,
+        count * _RIGID + _add_modes(compliance.modes, workspace, count),
     )
     return count * _RIGID
 
 
 @inlined
-def _add_modes(modes, room, count):
+def _add_modes(modes, workspace, count):
     """Fill the columns of the modes, whose number this is, before elimination."""
     number = 0
     if modes is not None:
@@ -88,70 +92,70 @@ def _add_modes(modes, room, count):
             for i in range(number):
                 total = 0.0
                 for j in range(count):
-                    face = room.order[j]
+                    face = workspace.order[j]
                     for c in range(PATTERNS):
-                        total += room.flexibility[row, j * PATTERNS + c] * _pressure(
-                            modes, room, face, c, i
+                        total += workspace.flexibility[row, j * PATTERNS + c] * _pressure(
+                            modes, workspace, face, c, i
                         )
-                room.right[row, count * _RIGID + i] = total
+                workspace.right[row, count * _RIGID + i] = total
     return number
 
 
 @inlined
-def _pressure(modes, room, face, a, i):
-    """dP_a by a unit of mode i on a wall that is stiff else."""
+def _pressure(modes, workspace, face, a, i):
+    """dP_a by a unit of mode i on an otherwise rigid wall."""
     value = 0.0
     for b in range(PATTERNS):
-        value += stiffness(room.moment[face], a, b) * modes.shape[face, i, b]
+        value += stiffness(workspace.moment[face], a, b) * modes.shape[face, i, b]
     return value
 
 
 @inlined
-def _trace_of_modes(modes, room, count, first):
+def _trace_of_modes(modes, workspace, count, first):
     """Trace (1/s2) of W' T W; dU of the modes stands in ``right`` from the column ``first`` on."""
     total = 0.0
     if modes is not None:
         for k in range(count):
-            face = room.order[k]
+            face = workspace.order[k]
             for a in range(PATTERNS):
                 for i in range(modes.square.shape[1]):
-                    total += _pressure(modes, room, face, a, i) * (
-                        modes.shape[face, i, a] - room.right[k * PATTERNS + a, first + i]
+                    total += _pressure(modes, workspace, face, a, i) * (
+                        modes.shape[face, i, a] - workspace.right[k * PATTERNS + a, first + i]
                     )
     return total
 
 
 @inlined
-def _reaction(room, face, a, rigid):
+def _reaction(workspace, face, a, rigid):
     """dP_a by a unit of a rigid motion on a wall at rest."""
-    value = stiffness(room.moment[face], a, rigid)
+    value = stiffness(workspace.moment[face], a, rigid)
     if rigid > 0:
-        value -= _beyond(room, face, rigid) * stiffness(room.moment[face], a, 0)
+        value -= _beyond(workspace, face, rigid) * stiffness(workspace.moment[face], a, 0)
     return value
 
 
 @inlined
-def _beyond(room, face, rigid):
+def _beyond(workspace, face, rigid):
     """How far the place on the wall is beyond that on the pad, along xi or eta."""
-    return room.lever[face, SHIFT if rigid == 1 else ASIDE]
+    return workspace.lever[face, SHIFT if rigid == 1 else ASIDE]
 
 
 @kernel
-def _answer(room, i, rigid, column):
+def _answer(workspace, i, rigid, column):
     """Generalised force of rigid motion ``rigid`` on face i of the order, by a unit of motion
     number ``column``."""
-    face = room.order[i]
-    total = _own(room, face, rigid, column % _RIGID) if column // _RIGID == i else 0.0
+    face = workspace.order[i]
+    total = _own(workspace, face, rigid, column % _RIGID) if column // _RIGID == i else 0.0
     for c in range(PATTERNS):
-        total -= _reaction(room, face, c, rigid) * room.right[i * PATTERNS + c, column]
+        total -= _reaction(workspace, face, c, rigid) * workspace.right[i * PATTERNS + c, column]
     return total
 
 
 @inlined
-def _own(room, face, rigid, other):
-    value = _reaction(room, face, rigid, other)
+def _own(workspace, face, rigid, other):
+    value = _reaction(workspace, face, rigid, other)
     if rigid > 0:
-        value -= _beyond(room, face, rigid) * _reaction(room, face, 0, other)
+        value -= _beyond(workspace, face, rigid) * _reaction(workspace, face, 0, other)
     return value
 
 
@@ -160,11 +164,13 @@ def _trace(compliance, faces, platform, payload, count, body, base):
     total = 0.0
     for i in range(count):
         for a in range(_RIGID):
-            first = _wrench(compliance, faces, compliance.room.order[i], a, body, base)
+            first = _wrench(compliance, faces, compliance.workspace.order[i], a, body, base)
             for j in range(count):
                 for b in range(_RIGID):
-                    second = _wrench(compliance, faces, compliance.room.order[j], b, body, base)
-                    total += _answer(compliance.room, i, a, j * _RIGID + b) * _met(
+                    second = _wrench(
+                        compliance, faces, compliance.workspace.order[j], b, body, base
+                    )
+                    total += _answer(compliance.workspace, i, a, j * _RIGID + b) * _met(
                         platform, payload, body, base, first, second
                     )
     return abs(total)
@@ -175,7 +181,7 @@ def _wrench(compliance, faces, face, rigid, body, base):
     """Force, a point it acts at (m), and couple that belong to a rigid motion of the face."""
     n, half = outward(faces[face], base), compliance.half[face]
     aside = rotation.rotate(
-        base.turn, along_width(faces[face], -_by_slope(compliance.room, face, rigid) / half[1])
+        base.turn, along_width(faces[face], -_by_slope(compliance.workspace, face, rigid) / half[1])
     )
     if rigid == 0:
         return (
@@ -188,10 +194,9 @@ def _wrench(compliance, faces, face, rigid, body, base):
 
 
 @inlined
-def _by_slope(room, face, rigid):
-    """What the slope of the wall across has of a rigid motion, as a sum over 1, xi and eta of the
-    pad."""
-    u, lever = room.displacement[face], room.lever[face]
+def _by_slope(workspace, face, rigid):
+    """Slope of the wall across the rail under a rigid motion."""
+    u, lever = workspace.displacement[face], workspace.lever[face]
     if rigid == 0:
         return u[2] + lever[SHIFT] * u[4] + 2.0 * lever[ASIDE] * u[5]
     return u[4] if rigid == 1 else 2.0 * u[5]

@@ -1,8 +1,6 @@
-"""Where warm walls that give way stand before anything presses them: T of ``mechanics.rail_compliance``, on top
-of which comes what load does.
-
-Every function is nothing where ``warm`` is None.
-"""
+"""Thermal offset of warm rails: the displacement T of their walls without load
+(``mechanics.rail_compliance``). Without temperatures ``warm`` is None and every function does
+nothing."""
 
 from tipoff.kernels.jit import inlined
 from tipoff.mechanics.rail_compliance import PATTERNS, POWERS
@@ -11,9 +9,9 @@ _XI, _ETA = POWERS.T.copy()
 
 
 @inlined
-def take(warm, face, station, s, changes):
-    """Fill T and its slope along the rail under ``face``, the way ``s`` (m) from a station, which
-    goes on with ``changes`` of the place."""
+def evaluate(warm, face, station, s, changes):
+    """Fill T and its slope along the rail under ``face``, ``s`` (m) from a station, where that
+    distance changes by ``changes`` with the place."""
     if warm is not None:
         _fill(warm, face, station, s, changes)
 
@@ -22,23 +20,22 @@ def take(warm, face, station, s, changes):
 def _fill(warm, face, station, s, changes):
     for a in range(PATTERNS):
         c = warm.cubic[station, face, a]
-        warm.place[face, a] = c[0] + s * (c[1] + s * (c[2] + s * c[3]))
+        warm.offset[face, a] = c[0] + s * (c[1] + s * (c[2] + s * c[3]))
         warm.slope[face, a] = changes * (c[1] + s * (2.0 * c[2] + s * 3.0 * c[3]))
 
 
 @inlined
-def place(warm, face, pattern):
+def offset(warm, face, pattern):
     """T (m) of one pattern."""
     value = 0.0
     if warm is not None:
-        value = warm.place[face, pattern]
+        value = warm.offset[face, pattern]
     return value
 
 
 @inlined
-def pull(warm, face, force):
-    """Force (N) along the rail by which ``force`` (p,) N on a wall that stands farther away ahead
-    pushes on."""
+def axial_force(warm, face, force):
+    """Force (N) along the rail of ``force`` (p,) N on a wall whose offset grows or shrinks ahead."""
     total = 0.0
     if warm is not None:
         for a in range(PATTERNS):
@@ -47,7 +44,7 @@ def pull(warm, face, force):
 
 
 @inlined
-def recess(warm, face, xi, eta):
+def slope(warm, face, xi, eta):
     """Slope of the wall at a point of the face."""
     total = 0.0
     if warm is not None:

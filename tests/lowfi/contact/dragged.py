@@ -2,7 +2,7 @@
 whose far end moves at 0.1 mm/s.
 
 No scene holds a spring to something that moves, so one external force is added to the thrust before
-any kernel is compiled; all the rest, ``lowfi.run`` with its steps, events, grips, limits and
+any kernel is compiled; all the rest, ``lowfi.run`` with its steps, events, stick-slip, limits and
 ledgers, is the code under test. Called with the path of a thrust file that is next to nothing, it
 prints what it found as JSON.
 """
@@ -36,15 +36,23 @@ _thrust = equations.add_thrust
 
 
 @inlined
-def _thrust_and_drag(thrust, offset, platform, reacts, ledger, time, body, base, out):
-    _thrust(thrust, offset, platform, reacts, ledger, time, body, base, out)
+def _thrust_and_drag(thrust, offset, reacts, time, bodies, out):
+    _thrust(thrust, offset, reacts, time, bodies, out)
+    body = bodies.payload
     force = (STIFFNESS * (STRETCHED + SPEED * time - body.place[0]), 0.0, 0.0)
     equations.push(
         out, slot.PAYLOAD + slot.VELOCITY, slot.PAYLOAD + slot.MOMENT, force, body.place, 1.0
     )
-    equations._outside(ledger, force, body.place, out)
+    equations._outside(bodies.ledger, force, body.place, out)
     equations._book(
-        ledger, slot.THRUST, slot.THRUST_AXIAL, force, body.velocity, body.velocity[0], 1.0, out
+        bodies.ledger,
+        slot.THRUST,
+        slot.THRUST_AXIAL,
+        force,
+        body.velocity,
+        body.velocity[0],
+        1.0,
+        out,
     )
 
 

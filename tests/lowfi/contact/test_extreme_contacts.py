@@ -1,5 +1,5 @@
 """Contacts at the ends of their range: pads pressed in from the start, grazing, very short, pushed
-over the rail's end; slopes that are infinite or nothing at first touch, and a body that weighs a
+over the rail's end; slopes that are infinite or nothing at first contact, and a body that weighs a
 gram."""
 
 import math
@@ -76,7 +76,7 @@ def test_opposed_interference_holds_itself(contact, stored, tolerance):
     run.system.faces[:, WALL] -= 20e-6  # a scene has no negative clearance, walls bent inwards do
     run.loop = integrate.ready(run.system, state.initial(run.model), run.interval)
     run.begin()
-    run.march(None)
+    run.integrate(None)
     both = run.trajectory()
     assert (np.abs(both.pad_force[:, :, 2]) > 100.0).all() and np.abs(
         both.pad_force.sum(axis=1)
@@ -188,7 +188,7 @@ def test_exponents_below_and_far_above_one(tolerance, n, k, answer):
         and run.checks["energy_error"] <= 1e-6
         and run.cost["limit_used"] <= 1.0
     )
-    # controls: a step from the slope at first touch does not exist, and a fixed one gains energy
+    # controls: a step from the slope at first contact does not exist, and a fixed one gains energy
     if n < 1.0:
         with np.errstate(divide="ignore"):
             assert np.isinf(n * k * np.float64(0.0) ** (n - 1.0))

@@ -46,7 +46,7 @@ def on_slope(
 ):
     """20 kg with coefficient 0.3 on a plane at ``angle`` (rad), started downhill at ``speed`` (m/s)
     in normal equilibrium."""
-    grip = {
+    sticking = {
         "law": "sticking",
         "static": 0.3,
         "dynamic": 0.3,
@@ -60,7 +60,7 @@ def on_slope(
             1e-3,
             pads=FEET,
             contact=GROUND,
-            friction=grip,
+            friction=sticking,
             thrust=thrust,
             initial={"velocity": {downhill: speed}, "position": {"z": -sunk}},
             gravity={downhill: G * math.sin(angle), "z": -G * math.cos(angle)},
@@ -173,14 +173,23 @@ def slider(offset: float, thrust: dict, duration: float, friction: dict):
 def test_wedged_slider(push):
     """2 mu r/s = 1.04 locks: a jam, less than 0.5 mm of travel and then none at all. 0.96 leaves 4
     % of the force."""
-    grip = {"law": "sticking", "static": 0.8, "dynamic": 0.8, "stiffness": 7e7, "damping": 3.7e4}
+    sticking = {
+        "law": "sticking",
+        "static": 0.8,
+        "dynamic": 0.8,
+        "stiffness": 7e7,
+        "damping": 3.7e4,
+    }
     constant = {"kind": "constant", "force": 2000.0, "duration": 0.2}
-    jammed, locked = slider(0.13, constant, 0.2, grip), slider(0.13, push(2000.0), 0.2, grip)
+    jammed, locked = (
+        slider(0.13, constant, 0.2, sticking),
+        slider(0.13, push(2000.0), 0.2, sticking),
+    )
     assert jammed.status == "jammed" and jammed.outcome.velocity is None
     assert 0.0 < locked.position[-1, 0] < 0.5e-3
     assert np.ptp(locked.position[locked.time > 0.1], axis=0).max() <= 1e-15
     assert locked.cost["events"] < 100 and passive(locked)
-    free = slider(0.12, constant, 0.05, grip)
+    free = slider(0.12, constant, 0.05, sticking)
     assert np.interp([0.02, 0.04], free.time, free.velocity[:, 0]) @ (
         -1.0,
         1.0,

@@ -1,4 +1,4 @@
-"""A contact law at warm walls: where they stand, one potential behind its forces, and what a warm
+"""Contact springs at warm walls: their offset, one potential behind its forces, and what a warm
 wall is the same as."""
 
 from dataclasses import replace
@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
 
-from tests.lowfi.compliance import REFERENCE, handmade, reference_walls
+from tests.lowfi.compliance import REFERENCE, handmade, reference_compliance
 from tipoff import lowfi
 from tipoff.lowfi import Numerics, oracle
 from tipoff.lowfi import system as systems
@@ -23,7 +23,7 @@ TIGHT = Numerics(relative_tolerance=1e-10)
 
 def standing_away(scene, distance, flexible=None):
     """Walls of ``scene`` that stand ``distance`` (s,) m away from the payload at every mean of 1 /
-    alpha K, all faces alike; with ``flexible`` entries they give way too."""
+    alpha K, all faces alike; with ``flexible`` entries they are compliant too."""
     compliance = handmade(scene, flexible or {})
     travel = np.linspace(0.0, 0.23, len(distance))
     warm = np.zeros((FIELDS, travel.size, compliance.rail.size, PATTERNS))
@@ -36,7 +36,7 @@ def standing_away(scene, distance, flexible=None):
 def test_where_walls_stand():
     """The mean over a face of the six patterns, as a spline of its place, straight beyond the
     ends."""
-    scene, compliance = REFERENCE.replace(WARM), reference_walls().rigid()
+    scene, compliance = REFERENCE.replace(WARM), reference_compliance().rigid()
     model = models.build(scene)
     record = thermal_offset.under_pads(scene, model, compliance)
     wanted = CubicSpline(
@@ -48,17 +48,17 @@ def test_where_walls_stand():
         start = model.faces.centre[face, 0] - model.platform.mass_centre[0]
         for way in (0.0, 0.0371, 0.2, last):
             here = wanted(way)[face], wanted(way, 1)[face]
-            assert thermal_offset.stand(record, face, start + way) == pytest.approx(
+            assert thermal_offset.offset_and_slope(record, face, start + way) == pytest.approx(
                 here, rel=1e-9, abs=1e-15
             )
         for end, over in ((first, -0.01), (last, 0.01)):
             beyond = wanted(end)[face] + over * wanted(end, 1)[face], wanted(end, 1)[face]
-            assert thermal_offset.stand(record, face, start + end + over) == pytest.approx(
-                beyond, rel=1e-9, abs=1e-15
-            )
+            assert thermal_offset.offset_and_slope(
+                record, face, start + end + over
+            ) == pytest.approx(beyond, rel=1e-9, abs=1e-15)
     assert thermal_offset.under_pads(REFERENCE, models.build(REFERENCE), None) is None
-    # walls that give way know it themselves
-    assert thermal_offset.under_pads(scene, model, reference_walls()) is None
+    # compliant contact holds the offset itself
+    assert thermal_offset.under_pads(scene, model, reference_compliance()) is None
 
 
 def test_force_is_along_the_gradient_of_the_penetration():
@@ -68,21 +68,23 @@ def test_force_is_along_the_gradient_of_the_penetration():
     model, x = models.build(scene), np.linspace(0.0, 0.23, 9)
     system = systems.build(
         model,
-        bow=thermal_offset.under_pads(scene, model, standing_away(scene, 1e-3 * np.sin(20.0 * x))),
+        thermal_offset=thermal_offset.under_pads(
+            scene, model, standing_away(scene, 1e-3 * np.sin(20.0 * x))
+        ),
     )
     upright, h = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0), 1e-6
     place = np.array([0.137, 2e-4, 1e-4])
     for face in system.faces[[0, 3, 12]]:
 
         def depth(at, face=face):
-            return springs.penetration(system.contact.bow, face, tuple(at), upright)
+            return springs.penetration(system.contact.thermal_offset, face, tuple(at), upright)
 
         difference = [
             (depth(place + h * axis) - depth(place - h * axis)) / (2.0 * h) for axis in np.eye(3)
         ]
         rates = [
             springs.approach(
-                system.contact.bow, face, tuple(place), upright, tuple(axis), (0.0,) * 9
+                system.contact.thermal_offset, face, tuple(place), upright, tuple(axis), (0.0,) * 9
             )
             for axis in np.eye(3)
         ]
@@ -92,7 +94,7 @@ def test_force_is_along_the_gradient_of_the_penetration():
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    "flexible", [None, {(face, 0, face, 0): 3e-8 for face in range(16)}], ids=["law", "giving way"]
+    "flexible", [None, {(face, 0, face, 0): 3e-8 for face in range(16)}], ids=["law", "compliant"]
 )
 def test_walls_that_stand_away_evenly_are_a_wider_clearance(flexible):
     """20 um more on every side, by temperature or by the clearance: the same motion, which without
@@ -112,7 +114,7 @@ def test_walls_that_stand_away_evenly_are_a_wider_clearance(flexible):
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    "flexible", [None, {(face, 0, face, 0): 3e-8 for face in range(16)}], ids=["law", "giving way"]
+    "flexible", [None, {(face, 0, face, 0): 3e-8 for face in range(16)}], ids=["law", "compliant"]
 )
 def test_ledgers_on_a_wavy_wall(flexible):
     """Waves of 0.1 mm along the rail: what they push along it is in the ledger, and momentum is
@@ -133,7 +135,7 @@ def test_ledgers_on_a_wavy_wall(flexible):
 @pytest.mark.slow
 def test_the_plain_equations_agree():
     """Fixed steps of 5 us, over all impacts. Control: cold rails are touched otherwise."""
-    scene, compliance = REFERENCE.condition("phi35").replace(WARM), reference_walls().rigid()
+    scene, compliance = REFERENCE.condition("phi35").replace(WARM), reference_compliance().rigid()
     run = lowfi.run(scene, "springs", numerics=TIGHT, compliance=compliance)
     plain = oracle.solve(scene, 10, compliance=compliance)
     cold = lowfi.run(REFERENCE.condition("phi35"), "springs", numerics=TIGHT)
@@ -145,7 +147,7 @@ def test_the_plain_equations_agree():
 @pytest.mark.slow
 def test_ensembles_vary_the_temperature():
     """Every case as ``lowfi.run`` has it, to the bit; without walls every warm one is refused."""
-    scene, compliance = REFERENCE.condition("phi35"), reference_walls().rigid()
+    scene, compliance = REFERENCE.condition("phi35"), reference_compliance().rigid()
     rows = [{"thermal.mean": mean} for mean in (0.0, 20.0, 60.0)] + [{"payload.mass": 10.0}]
     found = lowfi.run_many(scene, rows, "springs", compliance=compliance)
     for row, rate in zip(rows, found.rate.values):

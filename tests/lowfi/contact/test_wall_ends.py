@@ -34,12 +34,12 @@ def test_a_wall_shorter_than_a_step(speed, tolerance):
     cos(w t) after the time t it presses, which ends with the wall or at pi / w. Each of the few
     steps meanwhile errs by ``tolerance`` times the speed."""
     across, over = 0.01 * speed, WIDTH / speed
-    touch = START / speed + 0.3 * over
+    contact_time = START / speed + 0.3 * over
     asked = scene(
-        2.0 * touch,
-        0.1 * touch,
+        2.0 * contact_time,
+        0.1 * contact_time,
         rail=short_rail(),
-        contact=LINEAR | {"clearance": across * touch},
+        contact=LINEAR | {"clearance": across * contact_time},
         initial={"velocity": {"x": speed, "z": -across}},
     )
     run = lowfi.run(asked, "springs", numerics=numerics(tolerance))
@@ -77,7 +77,7 @@ def test_a_touch_between_two_ends(tolerance):
     run = lowfi.run(asked, "springs", numerics=numerics(tolerance))
     saved = g * (2.0 * late - pressed)
     assert run.velocity[-1, 2] == pytest.approx(g * (run.time[-1] - top) + saved, abs=0.02 * saved)
-    assert abs(saved) > 1e-4  # control: without the touch it is off by this
+    assert abs(saved) > 1e-4  # control: without the contact it is off by this
 
 
 def test_a_wall_reached_and_left_over_the_same_end():
@@ -102,7 +102,7 @@ def test_a_wall_reached_and_left_over_the_same_end():
 
 def one_pad(**changes):
     """A payload that does not turn, with a pad in one corner of endless rails; contact springs or
-    walls that give way."""
+    compliant contact."""
     stout = {"mass": 9.9, "inertia": {"xx": 1e6, "yy": 1e6, "zz": 1e6}}
     still = {"mass": 1e9, "inertia": {"xx": 1e9, "yy": 1e9, "zz": 1e9}, "mass_centre": {"x": 0.0}}
     pads = [
@@ -134,23 +134,23 @@ def test_a_short_wall_that_gives_way(monkeypatch, speed, tolerance):
     against another solver."""
     in_one_cell(monkeypatch)
     across, over = 0.01 * speed, (WIDTH + 2.0 * HALF) / speed
-    touch = (START - HALF) / speed + 0.3 * over
+    contact_time = (START - HALF) / speed + 0.3 * over
     asked = one_pad(
         rail=short_rail(),
-        duration=2.0 * touch,
-        output={"interval": 0.1 * touch},
+        duration=2.0 * contact_time,
+        output={"interval": 0.1 * contact_time},
         # which lets steps be as long as they want
         thrust=EFFECTS["thrust"] | {"peak": 0.0, "width": 1.0},
         initial={"velocity": {"x": speed, "y": across}},
-    ).replace({"contact.clearance": across * touch})
+    ).replace({"contact.clearance": across * contact_time})
     run = lowfi.run(asked, numerics=numerics(tolerance), compliance=handmade(asked, {}))
-    expected = pressed_by_a_share(speed, across, touch, over)
+    expected = pressed_by_a_share(speed, across, contact_time, over)
     error = run.cost["steps"] * tolerance * across
     assert run.status != "diverged" and run.velocity[-1, 1] == pytest.approx(expected, abs=error)
     assert abs(expected - across) > 5.0 * error  # control: the speed of a pad that felt nothing
 
 
-def pressed_by_a_share(speed: float, across: float, touch: float, over: float) -> float:
+def pressed_by_a_share(speed: float, across: float, contact_time: float, over: float) -> float:
     """Velocity across (m/s) once the pad has left the wall, its last hundredth at once."""
 
     def share(time):
@@ -162,7 +162,7 @@ def pressed_by_a_share(speed: float, across: float, touch: float, over: float) -
 
     end = (START + WIDTH + 0.99 * HALF) / speed
     return solve_ivp(
-        slope, (touch, end), [0.0, across], rtol=1e-10, atol=1e-14, max_step=1e-3 * over
+        slope, (contact_time, end), [0.0, across], rtol=1e-10, atol=1e-14, max_step=1e-3 * over
     ).y[1, -1]
 
 
@@ -194,7 +194,7 @@ def test_back_into_the_mouth(given):
             "compliant" if given else "springs",
             compliance=handmade(asked, {}) if given else None,
         )
-        # the whole pad presses walls, its middle presses springs
+        # compliant contact takes the whole pad, springs its middle
         way = 3e-3 + (0.01 * HALF if given else HALF)
         assert run.status == "diverged" and run.outcome.exit_time is None
         assert (
@@ -227,7 +227,7 @@ def unwatched_on(asked, compliance):
     run = Run(asked, lowfi.Numerics(), compliance)
     run.whole = True
     run.begin()
-    run.march(None)
+    run.integrate(None)
     return run.trajectory()
 
 

@@ -4,18 +4,18 @@ diverged and give no rates."""
 import numpy as np
 import pytest
 
-from tests.lowfi.compliance import reference_walls
+from tests.lowfi.compliance import reference_compliance
 from tests.lowfi.random_scenes import EFFECTS, independent, scene_of
 from tests.lowfi.support import PAPER_PAD, scene
 from tipoff import lowfi
-from tipoff.lowfi.dynamics import audit, integrate
+from tipoff.lowfi.dynamics import audit
 from tipoff.lowfi.run import Run, improved
 from tipoff.mechanics import promises
 from tipoff.scenes import load
 
 REFERENCE = load("reference").condition("phi35")
 QUICK = ("ejection", "guided", "frictionless", "free")  # kernels that other tests compile too
-# Rattles between walls without clearance, so that hundreds of touches add up: no law with this
+# Rattles between walls without clearance, so that hundreds of contacts add up: no law with this
 # exponent is smooth where it touches.
 RATTLING = REFERENCE.replace(
     {
@@ -71,7 +71,7 @@ def test_hundreds_of_touches_keep_the_ledger_closed():
     free = Run(RATTLING, lowfi.Numerics())
     free.tolerance = free.tolerance._replace(total=1.0, across=1.0)
     free.begin()
-    free.march(None)
+    free.integrate(None)
     assert audit.errors(free.loop.audit, 1e-6, 1e-4)[0] > 1e-6
 
 
@@ -88,32 +88,29 @@ def test_a_wall_stiffer_than_numbers_resolve_diverges():
 
 
 def test_a_broken_ledger_is_run_again_with_smaller_steps():
-    """Energy that one march loses and the next does not: asked for is the loose one, given the
+    """Energy that one run loses and the next does not: asked for is the loose one, given the
     tight one, to the same bits."""
     first = Run(REFERENCE, lowfi.Numerics())
     first.begin()
-    first.march(None)
+    first.integrate(None)
     assert first.usage() <= 1.0
-    first.loop.audit[audit.WORST] = first.loop.audit[audit.SCALE] * 2e-6
+    first.loop.audit.peak_error = first.loop.audit.scale * 2e-6
     again = improved(first)
     fine = lowfi.run(REFERENCE, "springs", numerics=lowfi.Numerics(relative_tolerance=2e-8))
     found = again.trajectory()
     assert found.outcome == fine.outcome and found.status == "exited"
-    assert (
-        found.cost["reruns"] == 1
-        and found.cost["discarded_steps"] == first.loop.count[integrate.STEPS]
-    )
+    assert found.cost["reruns"] == 1 and found.cost["discarded_steps"] == first.loop.counts.steps
     assert "2e-08" in found.message and found.checks["energy_error"] <= 1e-6
 
 
 def test_energy_given_back_by_lost_contacts_is_an_error():
-    """A march that finds less released than before has made energy: both ledgers count it, though
+    """A run that finds less released than before has made energy: both ledgers count it, though
     they close."""
     run = Run(REFERENCE, lowfi.Numerics())
     run.begin()
-    run.march(None)
+    run.integrate(None)
     before = audit.errors(run.loop.audit, 1e-6, 1e-4)
-    run.loop.audit[audit.CREATED] = 1e-3 * run.loop.audit[audit.SCALE]
+    run.loop.audit.created = 1e-3 * run.loop.audit.scale
     assert audit.errors(run.loop.audit, 1e-6, 1e-4)[0] == pytest.approx(1e-3) and before[0] < 1e-6
     assert run.trajectory().status == "diverged"
 
@@ -124,7 +121,7 @@ def test_compliant_walls_at_100_m_s_across(duration):
     walls from outside, which makes energy of nothing."""
     run = lowfi.run(
         REFERENCE.replace({"initial.velocity.y": 100.0, "duration": duration}),
-        compliance=reference_walls(),
+        compliance=reference_compliance(),
     )
     if "no contact is modelled there" in run.message:  # pressed through the wall
         assert run.status == "diverged" and run.outcome.rate is None

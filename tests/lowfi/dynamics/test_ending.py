@@ -7,7 +7,7 @@ import scipy.optimize
 import scipy.special
 
 from tests.exact import rigid
-from tests.lowfi.compliance import REFERENCE, reference_walls
+from tests.lowfi.compliance import REFERENCE, reference_compliance
 from tests.lowfi.support import scene
 from tipoff import lowfi
 from tipoff.kernels import rotation
@@ -43,7 +43,7 @@ def test_sampling_changes_no_bit(condition, compliance):
     first in all of the flight."""
     asked, model, stand = (
         REFERENCE.condition(condition),
-        *(("compliant", reference_walls()) if compliance else ("springs", None)),
+        *(("compliant", reference_compliance()) if compliance else ("springs", None)),
     )
     fine, *others = (
         lowfi.run(asked.replace({"output.interval": interval}), model, compliance=stand)
@@ -55,7 +55,7 @@ def test_sampling_changes_no_bit(condition, compliance):
         assert_same(other, fine)
 
 
-def test_an_ensemble_hangs_on_no_interval_and_mixes_no_rows():
+def test_an_ensemble_depends_on_no_interval_and_mixes_no_rows():
     """Rows that differ in the interval alone, and with it in other numbers, are what they are by
     themselves."""
     base = load("reference")
@@ -262,7 +262,7 @@ def test_jam_on_both_sides_of_its_duration(fall, jams, interval):
     )
     run = Run(asked, Numerics())
     run.begin()
-    run.march(None)
+    run.integrate(None)
     assert run.judged()[0] == ("jammed" if jams else "time_limit")
     assert not jams or run.loop.book[DONE] == pytest.approx((speed - slow) / fall + 5e-3, rel=1e-12)
 

@@ -1,4 +1,4 @@
-"""X18: the platform turns three full turns while it ejects. What it sees must not hang on inertial
+"""X18: the platform turns three full turns while it ejects. What it sees must not depend on inertial
 axes, nor jump at a full turn.
 
 Really 38 s at 0.5 rad/s, so the payload creeps: 0.1 m/s along a rail of 3 m. A thrust across the
@@ -60,7 +60,7 @@ def ejected(tolerance: float, turn=None, bodies=(state.PAYLOAD, state.PLATFORM))
     # what is left of the thrust does not keep the payload from settling
     run.marks = run.marks._replace(settled_thrust=0.0)
     run.begin()
-    run.march(None)
+    run.integrate(None)
     return run.trajectory()
 
 

@@ -102,7 +102,7 @@ def _whole(scene: Scene) -> Trajectory:
     made = Run(scene, Numerics(relative_tolerance=1e-7))
     made.whole = True
     made.begin()
-    made.march(None)
+    made.integrate(None)
     return made.trajectory()
 
 
@@ -227,7 +227,7 @@ def _seen_from(scene: Scene, turn: tuple | None) -> Trajectory:
             start[first : first + 4] = rotation.product(q, tuple(start[first : first + 4]))
         made.loop = integrate.ready(made.system, start, made.interval)
     made.begin()
-    made.march(None)
+    made.integrate(None)
     return made.trajectory()
 
 

@@ -7,7 +7,14 @@ import numpy as np
 import pytest
 
 from tests.exact import elasticity
-from tests.lowfi.compliance import REFERENCE, Pose, handmade, in_one_cell, pressed, reference_walls
+from tests.lowfi.compliance import (
+    REFERENCE,
+    Pose,
+    handmade,
+    in_one_cell,
+    pressed,
+    reference_compliance,
+)
 from tests.lowfi.contact.compliant.test_modes import DAMPED, pull_of_modes
 from tests.lowfi.contact.compliant.test_runs import EFFECTS, RUB, TIGHT, on_springs
 from tipoff import lowfi
@@ -120,7 +127,7 @@ def test_a_rail_rings_out():
         "friction.static": 0.0,
         "friction.dynamic": 0.0,
     }
-    run = Run(REFERENCE.replace(still | DAMPED), TIGHT_VIBRATING, reference_walls())
+    run = Run(REFERENCE.replace(still | DAMPED), TIGHT_VIBRATING, reference_compliance())
     modes = run.system.compliance.modes
     start = 1e-7 * np.random.default_rng(2).standard_normal(modes.square.size)
     begun = np.concatenate([run.loop.start[: slot.STATE_SIZE], start, 0.0 * start])
@@ -152,7 +159,7 @@ def test_a_rail_rings_out():
 )
 def test_ledgers_and_momentum(condition, changes):
     """As the user gets it; residuals fall with the tolerance."""
-    asked, compliance = REFERENCE.condition(condition).replace(changes), reference_walls()
+    asked, compliance = REFERENCE.condition(condition).replace(changes), reference_compliance()
     run = Run(asked, VIBRATING, compliance)
     states, fine = sampled(run), lowfi.run(asked, numerics=TIGHT_VIBRATING, compliance=compliance)
     coarse = run.trajectory()
@@ -177,7 +184,7 @@ def test_ledgers_and_momentum(condition, changes):
 def test_no_step_is_too_long_for_the_highest_mode():
     """At a tolerance that lets errors grow to centimetres a second the proven limit alone holds the
     steps, and no mode grows."""
-    asked, compliance = REFERENCE.condition("phi60"), reference_walls()
+    asked, compliance = REFERENCE.condition("phi60"), reference_compliance()
     loose, fine = (
         lowfi.run(asked, numerics=each, compliance=compliance)
         for each in (Numerics(relative_tolerance=1e-2, speed_floor=10.0, modes=4), VIBRATING)
@@ -211,7 +218,7 @@ def work_of_modes(scene, compliance, run, states) -> float:
 def test_rails_without_inertia_are_the_walls_of_statics():
     """Frequencies to infinity at the same statics: what vibration changes falls with their square,
     four times for twice as fast, and touches at another phase of it may hide a little of that."""
-    asked, compliance = REFERENCE.condition("phi60"), reference_walls()
+    asked, compliance = REFERENCE.condition("phi60"), reference_compliance()
     static = lowfi.run(asked, numerics=TIGHT, compliance=compliance).outcome.rate
     change = []
     for lighter in (1.0, 2.0, 4.0):
@@ -232,7 +239,7 @@ def test_rails_without_inertia_are_the_walls_of_statics():
 
 @pytest.mark.slow
 def test_ensembles_give_the_same_bits():
-    compliance, rows = reference_walls(), [{}, {"payload.mass": 10.0}, DAMPED]
+    compliance, rows = reference_compliance(), [{}, {"payload.mass": 10.0}, DAMPED]
     found = lowfi.run_many(REFERENCE, rows, compliance=compliance, numerics=VIBRATING, workers=2)
     for row, rate in zip(rows, found.rate.values):
         assert np.array_equal(

@@ -1,4 +1,4 @@
-"""Modes of the rails on walls that give way: one potential behind all forces, the step limit, and
+"""Modes of the rails on compliant contact: one potential behind all forces, the step limit, and
 who may ask for them."""
 
 from dataclasses import replace
@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.lowfi.compliance import REFERENCE, SMOOTH, pressed, reference_walls, state_of
+from tests.lowfi.compliance import REFERENCE, SMOOTH, pressed, reference_compliance, state_of
 from tests.lowfi.contact.compliant.test_statics import (
     BASES,
     POSES,
@@ -30,7 +30,7 @@ DAMPED = {"rail.damping.ratios": [0.02, 0.01], "rail.damping.frequencies": [1e3,
 def vibrating():
     """Model, records, and any motion of the modes: walls out by micrometres, at centimetres a
     second."""
-    model, system = pressed(REFERENCE.replace(SMOOTH | DAMPED), reference_walls(), COUNT)
+    model, system = pressed(REFERENCE.replace(SMOOTH | DAMPED), reference_compliance(), COUNT)
     size = system.compliance.modes.square.size
     random = np.random.default_rng(5)
     return (
@@ -95,8 +95,10 @@ def pull_of_modes(system, model, pose, modes) -> float:
     """Force (N) along the rail on the payload by walls that modes have bent."""
     found = 0.0
     for rail in rails(system):
-        faces = system.compliance.room.order[: solved(system, model, pose, rail, None, modes)]
-        found += (system.compliance.room.force[faces] * system.compliance.modes.slope[faces]).sum()
+        faces = system.compliance.workspace.order[: solved(system, model, pose, rail, None, modes)]
+        found += (
+            system.compliance.workspace.force[faces] * system.compliance.modes.slope[faces]
+        ).sum()
     return found
 
 
@@ -144,7 +146,7 @@ def test_modes_need_a_compliance_that_has_them():
         SceneError, match="numerics.modes: given 4, expected 0: springs stand on rigid rails"
     ):
         lowfi.run(REFERENCE, "springs", numerics=FOUR)
-    compliance = reference_walls()
+    compliance = reference_compliance()
     few = replace(
         compliance, frequency=compliance.frequency[:, :3], shape=compliance.shape[..., :3]
     )
@@ -162,7 +164,7 @@ def test_a_number_of_modes_is_a_whole_one(given):
 
 def test_rails_that_nothing_touches_take_no_time():
     """No pad touches in h5: not a step more, and the bits of a run without modes."""
-    asked, compliance = REFERENCE.condition("h5"), reference_walls()
+    asked, compliance = REFERENCE.condition("h5"), reference_compliance()
     plain, modes = (
         lowfi.run(asked, numerics=each, compliance=compliance) for each in (Numerics(), FOUR)
     )
@@ -170,7 +172,7 @@ def test_rails_that_nothing_touches_take_no_time():
 
 
 def test_walls_and_modes_of_different_rails_are_refused():
-    compliance = reference_walls()
+    compliance = reference_compliance()
     with pytest.raises(ValueError, match="^modes: given"):
         replace(compliance, shape=3.0 * compliance.shape).residual(1)
     assert compliance.residual(0) is compliance.flexibility

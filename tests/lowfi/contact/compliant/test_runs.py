@@ -1,11 +1,18 @@
-"""Runs on walls that give way: limits that are a spring, ledgers, symmetries, the step limit, and a
-wall pulled into touch."""
+"""Runs on compliant contact: limits that are a spring, ledgers, symmetries, the step limit, and a
+wall pulled into contact."""
 
 import numpy as np
 import pytest
 from scipy.integrate import cumulative_trapezoid, solve_ivp
 
-from tests.lowfi.compliance import REFERENCE, Pose, handmade, in_one_cell, pressed, reference_walls
+from tests.lowfi.compliance import (
+    REFERENCE,
+    Pose,
+    handmade,
+    in_one_cell,
+    pressed,
+    reference_compliance,
+)
 from tests.lowfi.contact.compliant.test_statics import solved
 from tests.lowfi.support import RAIL, corners
 from tipoff import lowfi
@@ -92,7 +99,7 @@ def test_one_cell_is_a_spring(monkeypatch, friction, given):
         lowfi.run(asked, model, numerics=TIGHT, compliance=each)
         for model, each in (("springs", None), ("compliant", compliance))
     )
-    assert (np.abs(law.pad_force).max(axis=(0, 2)) > 100.0).sum() >= 4  # faces in touch
+    assert (np.abs(law.pad_force).max(axis=(0, 2)) > 100.0).sum() >= 4  # faces in contact
     assert speeds(cells) == pytest.approx(speeds(law), abs=1e-7)
     # Control: a spring a thousandth stiffer moves otherwise.
     other = lowfi.run(on_springs(rub, 1.001 * together), "springs", numerics=TIGHT)
@@ -129,7 +136,7 @@ def pulled(coupling: float):
 
 def pulled_exactly(coupling: float, time: np.ndarray) -> np.ndarray:
     """Velocity across (n,2) m/s: two springs in series with a matrix of flexibility, in every state
-    of touch."""
+    of contact."""
     flexibility = np.array([[1e-7, coupling], [coupling, 1e-7]])
 
     def slope(_, state):
@@ -187,7 +194,7 @@ def test_a_wall_pulled_into_touch(monkeypatch):
 def test_ledgers_and_momentum(condition):
     """As the user gets it, with pads that leave the rail's end under load (h7 to h9); residuals
     fall with the tolerance."""
-    asked, compliance = REFERENCE.condition(condition), reference_walls()
+    asked, compliance = REFERENCE.condition(condition), reference_compliance()
     coarse, fine = (
         lowfi.run(asked, numerics=Numerics(relative_tolerance=tolerance), compliance=compliance)
         for tolerance in (2e-7, 1e-10)
@@ -227,7 +234,7 @@ def work_along(scene, compliance, run) -> float:
             tuple(run.platform_quaternion[k]),
         )
         pull = sum(
-            loads.drive(system.compliance, solved(system, model, pose, rail))[0]
+            loads.axial_force(system.compliance, solved(system, model, pose, rail))[0]
             for rail in range(len(system.compliance.members))
         )
         power.append(pull * (run.velocity[k, 0] - run.platform_velocity[k, 0]))
@@ -244,7 +251,7 @@ def rates(scene, compliance) -> np.ndarray:
 def test_mirror_image(condition):
     """y to -y: the thrust's clock angle and I_xy change their signs, and of the rates (an axial
     vector) those about x and z."""
-    asked, compliance = REFERENCE.condition(condition), reference_walls()
+    asked, compliance = REFERENCE.condition(condition), reference_compliance()
     clock = asked.thrust_offset.misalignment.radial
     change = {
         "thrust_offset.misalignment.radial": np.pi - clock,
@@ -264,11 +271,11 @@ def test_mirror_image(condition):
 
 
 def test_order_of_the_pads():
-    """Pads told backwards, and their walls found anew."""
+    """Pads in reverse order, and their compliance found again."""
     asked = REFERENCE.condition("phi35")
     backwards = asked.model_copy(update={"pads": asked.pads[::-1]})
     found = compliance.condense(backwards, 4e-3)
-    assert rates(backwards, found) == pytest.approx(rates(asked, reference_walls()), abs=1e-6)
+    assert rates(backwards, found) == pytest.approx(rates(asked, reference_compliance()), abs=1e-6)
     assert models.build(backwards).faces.sign[0] != models.build(asked).faces.sign[0]
 
 
@@ -279,22 +286,24 @@ def test_no_step_above_the_proven_limit():
     run = lowfi.run(
         stiff,
         numerics=Numerics(relative_tolerance=1e-2, speed_floor=10.0),
-        compliance=reference_walls(),
+        compliance=reference_compliance(),
     )
     assert run.status == "exited" and 0.9 < run.cost["limit_used"] <= 1.0 + 1e-9
-    fine = lowfi.run(stiff, compliance=reference_walls())
+    fine = lowfi.run(stiff, compliance=reference_compliance())
     assert np.degrees(run.outcome.rate) == pytest.approx(np.degrees(fine.outcome.rate), abs=0.1)
 
 
 @pytest.mark.parametrize("condition", ["phi0", "h7", "h9"])
 def test_no_touch_is_missed(condition):
     """Narrow gaps and long steps: a pad that touches late in the step in which it leaves, or only
-    with an edge, is felt as in short steps. A touch that is missed is worth degrees; the error of
+    with an edge, is felt as in short steps. A contact that is missed is worth degrees; the error of
     the steps, on h7 grown by ten touches, hundredths."""
     asked = load("sensitive").condition(condition)
     long, short = (
         lowfi.run(
-            asked, numerics=Numerics(relative_tolerance=tolerance), compliance=reference_walls()
+            asked,
+            numerics=Numerics(relative_tolerance=tolerance),
+            compliance=reference_compliance(),
         )
         for tolerance in (2e-7, 1e-9)
     )

@@ -1,4 +1,4 @@
-"""Statics of walls that give way: one potential behind all forces, one solution, and the finite
+"""Statics of compliant contact: one potential behind all forces, one solution, and the finite
 elements it came from."""
 
 import numpy as np
@@ -8,11 +8,11 @@ from scipy.sparse.linalg import splu
 from tests.lowfi.compliance import (
     REFERENCE,
     SMOOTH,
-    add_walls,
+    add_compliant_contact,
     flexibility_at,
     forces_of,
     pressed,
-    reference_walls,
+    reference_compliance,
     relative,
     seen_from_platform,
     state_of,
@@ -43,8 +43,8 @@ POSES = {
 
 @pytest.fixture(scope="module")
 def reference():
-    """Found walls, model, records."""
-    compliance = reference_walls()
+    """Rail compliance, model, records."""
+    compliance = reference_compliance()
     return compliance, *pressed(REFERENCE.replace(SMOOTH), compliance)
 
 
@@ -54,7 +54,7 @@ def pose_of(model, name, base=((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))):
 
 
 def solved(system, model, pose, rail, active=None, modes=()):
-    """Number of faces of a rail solved for at ``pose``, which ``system.walls.room`` then holds;
+    """Number of faces of a rail solved for at ``pose``, which ``system.compliance.workspace`` then holds;
     ``modes`` are those of the state."""
     state = np.append(state_of(model, pose), modes)
     place, turn = seen_from_platform(system.platform, system.payload, state)
@@ -70,22 +70,13 @@ def energy(system, model, pose, modes=()) -> float:
 
 
 def derivative(system, model, pose, twist, modes=()):
-    """What walls alone add to the derivative of the state at ``pose`` and ``twist``."""
+    """What compliant contact alone adds to the derivative of the state at ``pose`` and ``twist``."""
     state, every = (
         np.append(state_of(model, pose, twist), modes),
         np.ones(len(system.faces), dtype=np.bool_),
     )
     out = np.zeros(state.size)
-    add_walls(
-        system.compliance,
-        system.friction,
-        system.faces,
-        system.platform,
-        system.payload,
-        every,
-        state,
-        out,
-    )
+    add_compliant_contact(system, every, state, out)
     return out
 
 
@@ -136,7 +127,7 @@ def test_forces_are_the_gradient_of_the_energy(reference, name, base):
     # Control: without what a rail softer or stiffer ahead, or bent over its end, does along the way
     # they would not agree.
     along = sum(
-        loads.drive(system.compliance, solved(system, model, pose, rail))[0]
+        loads.axial_force(system.compliance, solved(system, model, pose, rail))[0]
         for rail in range(len(system.compliance.members))
     )
     assert abs(along) > 1e-6 * size
@@ -177,18 +168,18 @@ def test_one_solution_whatever_the_first_guess(reference, name):
     """U = F P(U) by the plain equations; walls with a fresh, a wild and the right first guess
     agree."""
     compliance, model, system = reference
-    pose, room = pose_of(model, name), system.compliance.room
+    pose, workspace = pose_of(model, name), system.compliance.workspace
     random = np.random.default_rng(8)
     flexibility = flexibility_at(compliance, min(max(POSES[name][0], 0.0), compliance.travel[-1]))
     for rail in range(len(system.compliance.members)):
         found = []
-        for guess in (0.0, 3e-4 * random.standard_normal(room.displacement.shape), None):
+        for guess in (0.0, 3e-4 * random.standard_normal(workspace.displacement.shape), None):
             if guess is not None:
-                room.displacement[:] = guess
+                workspace.displacement[:] = guess
             count = solved(system, model, pose, rail)
-            faces = room.order[:count]
-            found.append(room.displacement[faces].copy())
-            force = room.force[faces]
+            faces = workspace.order[:count]
+            found.append(workspace.displacement[faces].copy())
+            force = workspace.force[faces]
             between = flexibility[np.ix_(faces, range(PATTERNS), faces, range(PATTERNS))]
             assert found[-1] == pytest.approx(np.einsum("iajb,jb->ia", between, force), abs=1e-17)
         assert all(np.abs(each - found[0]).max() < 1e-16 for each in found)
@@ -205,23 +196,23 @@ def test_one_solution_whatever_the_first_guess(reference, name):
 def test_any_pose_is_solved(reference):
     """From a graze to millimetres deep, over the ends too, from guesses as wild: the forces are
     those of the displacements."""
-    _walls, model, system = reference
-    random, room, worst = np.random.default_rng(1), system.compliance.room, 0.0
+    _, model, system = reference
+    random, workspace, worst = np.random.default_rng(1), system.compliance.workspace, 0.0
     for size in 10.0 ** random.uniform(-7.0, -2.7, 500):
         offset = random.choice((-1.0, 1.0), 2) * CLEARANCE + size * random.standard_normal(2)
         pose = relative(
             model, random.uniform(-0.01, 0.22), offset, 5.0 * size * random.standard_normal(3)
         )
         for rail in range(len(system.compliance.members)):
-            room.displacement[:] = size * random.standard_normal(room.displacement.shape)
-            faces = room.order[: solved(system, model, pose, rail)]
-            told = room.force[faces].copy()
+            workspace.displacement[:] = size * random.standard_normal(workspace.displacement.shape)
+            faces = workspace.order[: solved(system, model, pose, rail)]
+            alone = workspace.force[faces].copy()
             for face in faces:
                 cells.press(system.compliance, face)
             worst = max(
                 worst,
-                np.abs(room.force[faces] - told).max(initial=0.0)
-                / max(np.abs(told).max(initial=0.0), 1e-3),
+                np.abs(workspace.force[faces] - alone).max(initial=0.0)
+                / max(np.abs(alone).max(initial=0.0), 1e-3),
             )
     assert worst < 1e-12
 
@@ -301,7 +292,7 @@ def test_force_is_that_of_the_finite_elements(reference, travel, error):
         offset[model.faces.axis[face] - 1] = model.faces.sign[face] * (CLEARANCE + depth)
         pose = relative(model, travel, offset)
         assert solved(system, model, pose, compliance.rail[face], active) == 1
-        assert system.compliance.room.force[face, 0] == pytest.approx(force(depth), rel=error)
+        assert system.compliance.workspace.force[face, 0] == pytest.approx(force(depth), rel=error)
         # Control: a rigid wall would press back three times as hard, or more.
         assert forces_of(compliance, model, record.CELLS, face, pose, np.zeros(PATTERNS))[
             0
@@ -323,7 +314,7 @@ def test_a_pad_aside_meets_a_softer_or_stiffer_leg(reference, aside):
         offset = np.zeros(2)
         offset[axis - 1], offset[2 - axis] = model.faces.sign[face] * (CLEARANCE + depth), way
         solved(system, model, relative(model, travel, offset), compliance.rail[face], active)
-        return system.compliance.room.force[face, 0]
+        return system.compliance.workspace.force[face, 0]
 
     expected = [pressed_elements(REFERENCE, face, travel, way, 16)(depth) for way in (0.0, aside)]
     change = expected[1] / expected[0] - 1.0

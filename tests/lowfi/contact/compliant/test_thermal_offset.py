@@ -1,11 +1,11 @@
-"""Walls that are warm and give way: one potential behind all forces, and displacement that starts
+"""Warm rails on compliant contact: one potential behind all forces, and displacement that starts
 from where they stand."""
 
 import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
 
-from tests.lowfi.compliance import REFERENCE, SMOOTH, flexibility_at, pressed, reference_walls
+from tests.lowfi.compliance import REFERENCE, SMOOTH, flexibility_at, pressed, reference_compliance
 from tests.lowfi.contact.compliant.test_statics import (
     BASES,
     POSES,
@@ -33,8 +33,8 @@ PRESSED = ("all faces of a rail, tilted", "rear pads over the end")
 
 @pytest.fixture(scope="module")
 def heated():
-    """Found walls, model, records."""
-    compliance = reference_walls()
+    """Rail compliance, model, records."""
+    compliance = reference_compliance()
     return compliance, *pressed(REFERENCE.replace(SMOOTH | FIELD), compliance)
 
 
@@ -61,13 +61,15 @@ def test_forces_are_the_gradient_of_the_energy(heated, name):
     # end the place on the wall stops.
     pushed = 0.0
     for rail in range(len(system.compliance.members)):
-        faces = system.compliance.room.order[: solved(system, model, pose, rail)]
+        faces = system.compliance.workspace.order[: solved(system, model, pose, rail)]
         pushed = max(
             pushed,
             *(
                 abs(
-                    thermal_offset.pull(
-                        system.compliance.warm, face, system.compliance.room.force[face]
+                    thermal_offset.axial_force(
+                        system.compliance.thermal_offset,
+                        face,
+                        system.compliance.workspace.force[face],
                     )
                 )
                 for face in faces
@@ -81,15 +83,15 @@ def test_forces_are_the_gradient_of_the_energy(heated, name):
 def test_displacement_starts_where_the_walls_stand(heated, name):
     """U = W + F P, W being the sum of the fields."""
     compliance, model, system = heated
-    travel, pose, room = POSES[name][0], pose_of(model, name), system.compliance.room
+    travel, pose, workspace = POSES[name][0], pose_of(model, name), system.compliance.workspace
     standing = warm_at(compliance, model, travel)
     for rail in range(len(system.compliance.members)):
-        faces = room.order[: solved(system, model, pose, rail)].copy()
+        faces = workspace.order[: solved(system, model, pose, rail)].copy()
         between = flexibility_at(compliance, travel)[
             np.ix_(faces, range(PATTERNS), faces, range(PATTERNS))
         ]
-        expected = standing[faces] + np.einsum("iajb,jb->ia", between, room.force[faces])
-        assert room.displacement[faces] == pytest.approx(expected, rel=1e-9, abs=1e-15)
+        expected = standing[faces] + np.einsum("iajb,jb->ia", between, workspace.force[faces])
+        assert workspace.displacement[faces] == pytest.approx(expected, rel=1e-9, abs=1e-15)
     assert np.abs(standing).max() > 1e-6
 
 
@@ -101,7 +103,7 @@ def warm_at(compliance, model, travel):
 @pytest.mark.slow
 @pytest.mark.parametrize("condition", ["phi35", "h9"])
 def test_ledgers_and_momentum(condition):
-    asked, compliance = REFERENCE.condition(condition).replace(FIELD), reference_walls()
+    asked, compliance = REFERENCE.condition(condition).replace(FIELD), reference_compliance()
     coarse, fine = (
         lowfi.run(asked, numerics=Numerics(relative_tolerance=tolerance), compliance=compliance)
         for tolerance in (2e-7, 1e-10)
@@ -127,7 +129,7 @@ def test_nothing_warm_is_the_same_as_no_temperature():
     rates = [
         np.degrees(
             lowfi.run(
-                cold.replace(change), compliance=reference_walls(), numerics=tight
+                cold.replace(change), compliance=reference_compliance(), numerics=tight
             ).outcome.rate
         )
         for change in (
@@ -157,7 +159,9 @@ def test_both_fidelities_agree_on_warm_rails():
     shade = {key: -value for key, value in sun.items()}
     errors = [
         np.abs(
-            np.degrees(lowfi.run(cold.replace(change), compliance=reference_walls()).outcome.rate)
+            np.degrees(
+                lowfi.run(cold.replace(change), compliance=reference_compliance()).outcome.rate
+            )
             - wanted
         ).max()
         for change in (sun, shade, {})

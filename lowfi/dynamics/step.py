@@ -1,0 +1,237 @@
+"""One step of the time loop, as long as error control, events, the proven limit and the energy
+ledgers allow."""
+
+import numpy as np
+
+from tipoff.kernels.jit import inlined, kernel
+from tipoff.lowfi import state as slot
+from tipoff.lowfi.contact.compliant.step_limit import stiffness_and_damping
+from tipoff.lowfi.contact.compliant.survey import energy as energy_in_compliance
+from tipoff.lowfi.contact.compliant.survey import longest_step_at_ends
+from tipoff.lowfi.contact.step_limit import fastest_rate
+from tipoff.lowfi.contact.wall_ends import SOONEST, SURVEY_SIZE
+from tipoff.lowfi.dynamics import audit, stick_slip
+from tipoff.lowfi.dynamics.dormand_prince import STABLE_RADIUS, STAGES, attempt, interpolate
+from tipoff.lowfi.dynamics.events import first_event
+from tipoff.lowfi.dynamics.local_error import error_ratio
+from tipoff.lowfi.dynamics.survey import keeps_law, survey, update_engaged, update_touching
+
+_SAFETY, _SHRINK, _GROW = 0.9, 0.2, 5.0
+# Largest error ratio at which interpolation may cut a step; its error is some times larger.
+_SPARE = 0.1
+# A change of law in this last share of a step does not cut it: the error is of second order in the
+# share, as in the energy of a pad that springs back freely in one step.
+_NEAR_END = 1e-4
+_CUTS = 40  # of one step
+# Of one step for the ledgers; an error that remains does not depend on the step size.
+_HALVINGS = 6
+
+
+@kernel
+def step(system, plan, tolerance, loop):
+    """Take one step; False when no step is short enough, when it lost a tenth of the energy, or
+    when a face strikes an edge of its wall where the step would begin."""
+    clock, counts = loop.clock, loop.counts
+    fresh = _begin(system, plan, loop)
+    if counts.striking_face >= 0:
+        return False
+    start, segment = clock.began, counts.segment
+    stop, rate, cuts, halvings = plan.stops[segment], clock.rate, 0, 0
+    # At a corner, the thrust of the side from which it is approached.
+    stretch = (
+        np.nextafter(0.0 if segment == 0 else plan.stops[segment - 1], np.inf),
+        np.nextafter(stop, -np.inf),
+    )
+    ceiling = min(
+        clock.wanted,
+        plan.caps[segment],
+        STABLE_RADIUS / rate,
+        stop - start,
+        _longest_at_ends(system.is_compliant, system, loop),
+    )
+    ceiling = _within_predicted_limit(system, loop, ceiling)
+    while True:
+        dt = min(clock.wanted, ceiling)
+        reaches = start + dt * (1.0 + 1e-9) >= stop
+        dt = stop - start if reaches else dt
+        if start + dt == start or not dt > 0.0:
+            return False
+        attempt(system, loop, stretch, start, dt, fresh)
+        counts.evaluations += STAGES if fresh else STAGES - 1
+        fresh = False
+        ratio = error_ratio(tolerance, system, loop, dt)
+        if not ratio <= 1.0:
+            counts.rejected += 1
+            clock.wanted = dt * (max(_SHRINK, _SAFETY * ratio**-0.2) if ratio < np.inf else _SHRINK)
+            continue
+        clock.rate = rate_bound(system, loop, loop.end, 0.0)
+        limit = STABLE_RADIUS / max(rate, clock.rate)
+        if dt > limit * (1.0 + 1e-12):
+            counts.rejected += 1
+            clock.wanted = _SAFETY * limit
+            continue
+        survey(system, loop)
+        smooth = ratio <= _SPARE and keeps_law(loop)
+        span, face = _cut_at_event(system, loop, dt)
+        if face >= 0:  # touches as the step begins, by rounding on the wrong side
+            loop.touching[face] = fresh = True
+            stick_slip.begin_contact(system.sticking, system, loop, face)
+            continue
+        if span < 1.0 and not smooth and not (cuts > 0 and span > 1.0 - _NEAR_END) and cuts < _CUTS:
+            cuts, ceiling = cuts + 1, span * dt * (1.0 + 0.2 * _NEAR_END)
+            continue
+        balances = audit.after_step(system.ledger, system, loop)
+        if halvings < _HALVINGS and not audit.step_is_affordable(system, tolerance, loop, balances):
+            halvings += 1
+            counts.rejected += 1
+            clock.wanted = 0.5 * span * dt
+            continue
+        clock.kept = span
+        if span < 1.0:
+            _accept_part(loop, dt, start + span * dt, limit)
+        else:
+            _accept(loop, dt, stop if reaches else start + dt, ratio, limit)
+        return audit.record_step(system, tolerance, loop, balances)
+
+
+@inlined
+def _begin(system, plan, loop):
+    """Make the end of the last step the start of the next; what jumps in between jumps here. True
+    when the derivative jumps too."""
+    clock, counts = loop.clock, loop.counts
+    slot.copy_all(loop.end, loop.start, slot.modal_size(system.compliance))
+    clock.began = clock.now
+    fresh = counts.segment < 0 or clock.now >= plan.stops[counts.segment]
+    if fresh:
+        counts.segment += 1
+    left, energy, returned, counts.striking_face = update_engaged(system, loop)
+    loop.start[slot.RELEASED] += energy
+    loop.audit.dissipated -= returned
+    changed, lost = stick_slip.update(system.sticking, system, loop)
+    loop.start[slot.FRICTION] += lost
+    for i in range(loop.engaged.size):
+        slot.copy(loop.after[i], loop.before[i], SURVEY_SIZE)
+    slot.copy_all(loop.stages[STAGES - 1], loop.stages[0], slot.modal_size(system.compliance))
+    _release(system.is_compliant, system, loop, left, 1.0)
+    changed = update_touching(loop) or changed
+    if changed:
+        clock.rate = rate_bound(system, loop, loop.start, 0.0)
+    _release(system.is_compliant, system, loop, left, -1.0)
+    if counts.steps == 0:
+        audit.open_books(system.ledger, system.is_compliant, system, loop)
+    return changed or left or fresh or clock.kept < 1.0
+
+
+@inlined
+def _release(is_compliant, system, loop, left, sign):
+    """Count as released the energy in compliant contact that leaving faces take with them: called
+    before they go with ``sign`` 1, and after with -1."""
+    if is_compliant is not None:
+        if left:
+            loop.start[slot.RELEASED] += sign * energy_in_compliance(
+                system.compliance,
+                system.faces,
+                system.platform,
+                system.payload,
+                loop.touching,
+                loop.start,
+            )
+
+
+@inlined
+def _longest_at_ends(is_compliant, system, loop):
+    longest = np.inf
+    if is_compliant is not None:
+        longest = longest_step_at_ends(
+            system.compliance,
+            system.faces,
+            system.platform,
+            system.payload,
+            loop.touching,
+            loop.start,
+        )
+    return longest
+
+
+@inlined
+def _within_predicted_limit(system, loop, dt):
+    """``dt`` (s), less where the proven limit will have fallen below it by the end of such a step:
+    a guess that saves attempts."""
+    touching = False
+    for touches in loop.touching:
+        touching = touching or touches
+    while touching:
+        limit = STABLE_RADIUS / rate_bound(system, loop, loop.start, 0.7 * dt)
+        touching = dt > limit
+        dt = max(0.7 * dt, limit) if touching else dt
+    return dt
+
+
+@inlined
+def rate_bound(system, loop, state, ahead):
+    """Bound (1/s) of the eigenvalues of the contact at ``state``, or a guess of it a time ``ahead``
+    (s) later."""
+    rate = fastest_rate(system.contact, system, loop.touching, loop.stick, state, ahead)
+    return max(rate, _rate_on_compliance(system.is_compliant, system, loop, state))
+
+
+@inlined
+def _rate_on_compliance(is_compliant, system, loop, state):
+    rate = 0.0
+    if is_compliant is not None:
+        stiffness, damping = stiffness_and_damping(
+            system.compliance,
+            system.friction,
+            system.faces,
+            system.platform,
+            system.payload,
+            loop.touching,
+            state,
+        )
+        rate = 0.5 * damping + np.sqrt(0.25 * damping * damping + stiffness)
+    return rate
+
+
+@inlined
+def _cut_at_event(system, loop, dt):
+    """Cut the step at its first event: the fraction kept, with ``loop.end`` and its survey there,
+    or a face that touches from the start."""
+    span, began = 1.0, loop.clock.began
+    for _ in range(_CUTS):
+        theta, face = first_event(system, loop, dt, span)
+        if theta >= 1.0 - 1e-9:
+            return span, -1
+        if theta * span <= SOONEST or began + 0.01 * theta * span * dt == began:
+            return span, -1 if loop.touching[face] or not loop.engaged[face] else face
+        span *= theta
+        loop.counts.events += 1
+        interpolate(
+            dt,
+            span,
+            loop.start,
+            loop.stages,
+            slot.STATE_SIZE,
+            slot.modal_size(system.compliance),
+            loop.end,
+        )
+        survey(system, loop)
+    return span, -1
+
+
+@kernel
+def _accept(loop, dt, time, ratio, limit):
+    clock, derivative = loop.clock, loop.stages[STAGES - 1]
+    grown = dt * (min(_GROW, _SAFETY * ratio**-0.2) if ratio > 0.0 else _GROW)
+    # A step cut short by a corner says little about the next one.
+    clock.wanted = grown if dt >= clock.wanted else max(grown, clock.wanted)
+    clock.friction_power = max(clock.friction_power, -derivative[slot.FRICTION])
+    clock.damping_power = max(clock.damping_power, -derivative[slot.DAMPING])
+    _accept_part(loop, dt, time, limit)
+
+
+@kernel
+def _accept_part(loop, dt, time, limit):
+    clock = loop.clock
+    clock.now, clock.dt = time, dt
+    clock.limit, clock.limit_used = min(clock.limit, limit), max(clock.limit_used, dt / limit)
+    loop.counts.steps += 1
