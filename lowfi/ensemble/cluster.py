@@ -1,9 +1,9 @@
-"""The chunks of an ensemble on a Dask cluster: workers run them, this process alone draws the cases
-and writes the store.
+"""Chunks of an ensemble on a Dask cluster: workers run them, this process alone draws the cases and
+writes the store.
 
-A worker that dies loses nothing but time: its chunks go to others. A scheduler that is lost ends
-the run with a message, and the store goes on from there. Sources and library versions of every
-worker must be those of this process, else the bits would not be the same.
+If a worker dies, its chunks go to others. If the scheduler dies, the run ends with a message, and
+the next run continues the store. Every worker must have the sources and library versions of this
+process, so that the bits are the same.
 """
 
 import threading
@@ -23,16 +23,15 @@ from tipoff.scenes.calibration import Calibration
 from tipoff.scenes.scene import Scene
 
 PATIENCE = 30.0  # s for a scheduler to answer, and for its first worker to come
-_AHEAD = 2  # chunks per worker thread that are on their way: one runs, the next waits for it
-_RETRIES = 5  # workers that may die under one chunk
+_AHEAD = 2  # chunks sent per worker thread: one runs, the next waits
+_RETRIES = 5  # of a chunk whose worker died
 
 _kept = threading.local()
 _Rows = Sequence[Mapping[str, Any]]
 
 
 class Recipe(NamedTuple):
-    """What a worker needs to run rows of an ensemble, and the ``key`` under which it keeps what it
-    made of that."""
+    """What a worker needs to run rows of an ensemble; it keeps the Family under ``key``."""
 
     key: str
     code: dict
@@ -43,9 +42,9 @@ class Recipe(NamedTuple):
 
 
 def made(
-    ensemble: Ensemble, store: Store, asked: Iterable[tuple[int, _Rows]], scheduler: str
+    ensemble: Ensemble, store: Store, requested: Iterable[tuple[int, _Rows]], scheduler: str
 ) -> Iterator[Chunk]:
-    """The chunks that are ``asked`` for, by number and rows, in the order in which they end. Raises
+    """The ``requested`` chunks, given by number and rows, in the order in which they end. Raises
     StoreError."""
     distributed = _distributed()
     try:
@@ -66,7 +65,7 @@ def made(
                 ensemble.numerics,
                 ensemble.compliance,
             ),
-            iter(asked),
+            iter(requested),
         )
     except TimeoutError as error:
         raise StoreError(
@@ -81,23 +80,23 @@ def made(
         client.close(timeout=1.0)
 
 
-def _made(client, recipe: Recipe, asked: Iterator[tuple[int, _Rows]]) -> Iterator[Chunk]:
+def _made(client, recipe: Recipe, requested: Iterator[tuple[int, _Rows]]) -> Iterator[Chunk]:
     from distributed import as_completed
 
-    under_way: dict = {}
+    sent: dict = {}
     ended = as_completed(loop=client.loop)
 
     def send() -> None:
         # each time anew: workers come and go
         wanted = _AHEAD * max(1, sum(client.nthreads().values()))
-        for number, rows in islice(asked, max(0, wanted - len(under_way))):
+        for number, rows in islice(requested, max(0, wanted - len(sent))):
             future = client.submit(run_rows, recipe, rows, pure=False, retries=_RETRIES)
-            under_way[future] = number, rows
+            sent[future] = number, rows
             ended.add(future)
 
     send()
     for future in ended:
-        number, rows = under_way.pop(future)
+        number, rows = sent.pop(future)
         results, messages = future.result()
         send()
         yield Chunk(number, rows, results, messages)
@@ -105,7 +104,7 @@ def _made(client, recipe: Recipe, asked: Iterator[tuple[int, _Rows]]) -> Iterato
 
 def run_rows(recipe: Recipe, rows: _Rows) -> tuple[Columns, list[str]]:
     """Results of ``rows`` and a message each; called in a worker. Raises RuntimeError where its
-    sources or libraries are others."""
+    sources or libraries differ."""
     if (here := code()) != recipe.code:
         other = [name for name, value in recipe.code.items() if here[name] != value]
         raise RuntimeError(
@@ -118,8 +117,8 @@ def run_rows(recipe: Recipe, rows: _Rows) -> tuple[Columns, list[str]]:
 
 
 def _family(recipe: Recipe) -> Family:
-    """The family of a recipe, kept from chunk to chunk; one per thread, for it changes while it
-    sets up a case."""
+    """The Family of a recipe, kept from chunk to chunk; one per thread, because setting up a case
+    changes it."""
     if getattr(_kept, "key", None) != recipe.key:
         _kept.key, _kept.family = (
             recipe.key,

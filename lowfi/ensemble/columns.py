@@ -1,5 +1,4 @@
-"""Results of many cases as columns of arrays, one row per case: what an ensemble keeps, in memory
-and on disk."""
+"""Results of many cases as columns, one row per case."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -31,24 +30,21 @@ VECTORS = (
 
 
 class Columns(NamedTuple):
-    """``status`` (n,) as a place in STATUSES, exit_time (n,) s, velocity (n,3) m/s, rate (n,3)
-    rad/s, lateral_velocity (n,) m/s, direction_error (n,) rad, at exit attitude (n,3) rad as a
-    rotation vector and position (n,3) m of the payload and position, velocity, attitude and rate
-    (n,3) of the platform, NaN in cases that did not settle, and ``steps`` (n,)."""
+    """Results of n cases; NaN in cases that did not settle. Attitudes are rotation vectors."""
 
-    status: np.ndarray
-    exit_time: np.ndarray
-    velocity: np.ndarray
-    rate: np.ndarray
-    lateral_velocity: np.ndarray
-    direction_error: np.ndarray
-    exit_attitude: np.ndarray
-    exit_position: np.ndarray
-    exit_platform_position: np.ndarray
-    exit_platform_velocity: np.ndarray
-    exit_platform_attitude: np.ndarray
-    exit_platform_rate: np.ndarray
-    steps: np.ndarray
+    status: np.ndarray  # (n,) place in STATUSES
+    exit_time: np.ndarray  # (n,) s
+    velocity: np.ndarray  # (n, 3) m/s
+    rate: np.ndarray  # (n, 3) rad/s
+    lateral_velocity: np.ndarray  # (n,) m/s
+    direction_error: np.ndarray  # (n,) rad
+    exit_attitude: np.ndarray  # (n, 3) rad
+    exit_position: np.ndarray  # (n, 3) m
+    exit_platform_position: np.ndarray  # (n, 3) m
+    exit_platform_velocity: np.ndarray  # (n, 3) m/s
+    exit_platform_attitude: np.ndarray  # (n, 3) rad
+    exit_platform_rate: np.ndarray  # (n, 3) rad/s
+    steps: np.ndarray  # (n,)
 
 
 def of(cases: Sequence[Case]) -> Columns:

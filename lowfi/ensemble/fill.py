@@ -1,5 +1,5 @@
-"""Runs an ensemble into its store: what is missing there, chunk by chunk, in threads of this
-machine or on a cluster."""
+"""Runs the missing chunks of an ensemble into its store, in threads of this machine or on a
+cluster."""
 
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -21,22 +21,22 @@ def fill(
     scheduler: str | None = None,
     progress: Callable[[int], None] | None = None,
 ) -> int:
-    """Run what ``store`` lacks, ``workers`` threads at a time or on the Dask cluster at
-    ``scheduler``; how many cases that were.
+    """Run the cases missing in ``store`` and return their number, in ``workers`` threads or on the
+    Dask cluster at ``scheduler``.
 
     ``progress`` is called with the number of cases stored. Raises StoreError when it cannot go on;
-    what is stored stays, and the next call goes on from there.
+    stored cases stay, and the next call runs the rest.
     """
     pending = store.pending()
     missing = sum(end - begin for begin, end in map(store.bounds, pending))
     if not pending:
         return 0
-    asked = ((number, ensemble.source.rows(*store.bounds(number))) for number in pending)
+    requested = ((number, ensemble.source.rows(*store.bounds(number))) for number in pending)
     stored = store.asked - missing
     for chunk in (
-        cluster.made(ensemble, store, asked, scheduler)
+        cluster.made(ensemble, store, requested, scheduler)
         if scheduler
-        else _here(ensemble, asked, workers)
+        else _here(ensemble, requested, workers)
     ):
         store.write(chunk)
         stored += len(chunk.rows)
@@ -46,12 +46,12 @@ def fill(
 
 
 def _here(
-    ensemble: Ensemble, asked: Iterable[tuple[int, _Rows]], workers: int | None
+    ensemble: Ensemble, requested: Iterable[tuple[int, _Rows]], workers: int | None
 ) -> Iterator[Chunk]:
     begun: deque[tuple[int, _Rows]] = deque()
 
     def pieces() -> Iterator[_Rows]:
-        for number, rows in asked:
+        for number, rows in requested:
             begun.append((number, rows))
             yield from (rows[begin : begin + PIECE] for begin in range(0, len(rows), PIECE))
 

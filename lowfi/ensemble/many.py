@@ -41,13 +41,13 @@ def run_many(
     """Run ``scene`` once per row of ``table``, a row being dotted overrides as in
     ``Scene.replace``, or per draw of an Uncertainty.
 
-    The values are those of ``lowfi.run`` to the last bit, with its ``model``, ``walls`` and
-    ``calibration``; no curves are kept. A row the scene refuses has the status ``refused`` and the
-    reason as its message; the others run. Settled values are NaN where a run has none. ``wall_s``
-    of a case is its share of the piece it ran in. The attributes count ``asked = ok + refused +
-    failed``, failed being the diverged. With a ``store``, a folder, cases go there chunk by chunk
-    and what it holds already is not run again (``lowfi.ensemble.fill``, which needs no room for all
-    results); it has no ``wall_s``.
+    The values are those of ``lowfi.run`` to the last bit, with its ``model``, ``compliance`` and
+    ``calibration``; there are no curves. A row that the scene refuses has the status ``refused`` and
+    the reason as its message; the others run. Settled values are NaN where a run has none.
+    ``wall_s`` of a case is its share of the time of its group. The attributes count ``asked = ok +
+    refused + failed``, failed being the diverged. With a ``store``, a folder, cases go there chunk
+    by chunk, stored cases are not run again (``lowfi.ensemble.fill``), and there is no
+    ``wall_s``.
     """
     require(scene, model, compliance, calibration, numerics)
     source, numerics = (

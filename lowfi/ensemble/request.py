@@ -1,5 +1,5 @@
-"""What an ensemble is asked for: the scene, where its cases come from, and everything else the
-numbers depend on."""
+"""Definition of an ensemble: the scene, the source of its cases, and everything else its numbers
+depend on."""
 
 from collections.abc import Mapping
 from functools import lru_cache
@@ -17,22 +17,20 @@ from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.scenes.calibration import Calibration
 from tipoff.scenes.scene import Scene
 
-# whose version may change the last bits of a result
-_LIBRARIES = ("numpy", "scipy", "numba", "llvmlite")
+_LIBRARIES = ("numpy", "scipy", "numba", "llvmlite")  # may change the last bits of a result
 
 
 class Ensemble(NamedTuple):
-    """A scene, where its cases come from (``lowfi.ensemble.rows``, ``lowfi.ensemble.table``), calibrated constants or
-    none, numerics, and walls that give way or none."""
+    """A scene and its cases."""
 
     scene: Scene
-    source: Any
-    calibration: Calibration | None
+    source: Any  # of the cases (``lowfi.ensemble.rows``, ``lowfi.ensemble.table``)
+    calibration: Calibration | None  # constants of contact springs
     numerics: Numerics
-    compliance: RailCompliance | None = None
+    compliance: RailCompliance | None = None  # None for contact springs on rigid walls
 
     def family(self) -> Family:
-        """What sets up its cases."""
+        """The Family that runs its cases."""
         return Family(self.scene, self.calibration, self.numerics, self.compliance)
 
     def identity(self) -> dict:
@@ -74,7 +72,7 @@ class Ensemble(NamedTuple):
 
 @lru_cache  # the sources do not change while the program runs
 def code() -> dict:
-    """Digest of the sources and versions of the libraries that make the numbers."""
+    """Digest of the sources, and versions of the libraries, that the numbers depend on."""
     return {
         "code": sources.digest("tipoff.lowfi"),
         "versions": {name: version(name) for name in _LIBRARIES},

@@ -1,9 +1,9 @@
-"""Where the cases of an ensemble come from: drawn by number, or listed by a program;
+"""Sources of the cases of an ensemble: drawn by number, or listed by a program;
 ``lowfi.ensemble.table`` reads them from a file.
 
-All answer alike: ``asked`` cases with ``keys``, an ``identity`` (JSON) that tells one ensemble from
-another, and ``rows(begin, end)``, a list of dotted overrides as ``Scene.replace`` takes them, made
-when it is asked for, so that drawn cases are never held all at once.
+Every source has ``asked``, the number of its cases, their ``keys``, an ``identity`` (JSON) that
+distinguishes ensembles, and ``rows(begin, end)``, a list of dotted overrides as ``Scene.replace``
+takes them. Cases are drawn by ``rows``, so that they are never all in memory.
 """
 
 import hashlib

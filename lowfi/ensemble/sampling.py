@@ -1,9 +1,9 @@
 """Points of the unit cube by case number: plain sampling, Latin hypercube, scrambled Sobol'. Case n
-has the same bits however the cases are cut into chunks, and whoever draws them.
+has the same bits however the cases are divided into chunks.
 
 Plain sampling takes 52 bits per number from the counter-based generator Philox (Salmon et al., SC
-2011), keyed by the seed, its counter set to the case, so a case costs the same wherever it stands.
-Sobol' (``scipy.stats.qmc``) is wound forward to the case. A Latin hypercube exists as a whole only,
+2011), keyed by the seed, its counter set to the case, so every case costs the same.
+Sobol' (``scipy.stats.qmc``) is wound forward to the case. A Latin hypercube exists only as a whole,
 and is held in memory.
 """
 

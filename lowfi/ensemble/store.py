@@ -47,8 +47,8 @@ _FAILED = ("refused", "diverged")
 
 
 class StoreError(RuntimeError):
-    """An ensemble that cannot go on in its store; the message says why and what to do. What is
-    stored stays."""
+    """An ensemble that cannot go on in its store; the message gives the reason and the remedy. Stored
+    cases stay."""
 
 
 class Chunk(NamedTuple):
@@ -85,7 +85,7 @@ class Store:
         self._arrays, self._inputs = self._opened()
 
     def _make(self, attributes: dict) -> None:
-        """Made under another name and then renamed, so that a store is never half made."""
+        """Create the store under another name and rename it, so that it is never incomplete."""
         self.path.parent.mkdir(parents=True, exist_ok=True)
         folder = Path(tempfile.mkdtemp(prefix=f".{self.path.name}.", dir=self.path.parent))
         try:
@@ -130,7 +130,7 @@ class Store:
 
     def _require(self, identity: dict) -> None:
         """Raises StoreError unless this is a store of the ensemble of this ``identity``. Where its
-        description is damaged, its chunks say whose it is."""
+        description is damaged, its chunks identify it."""
         described, expected = _attributes(self.path), json.loads(json.dumps(identity))
         if described is None:
             if not any(self._belongs(mark) for mark in (self.path / "done").glob("*.json")):
@@ -154,8 +154,8 @@ class Store:
             return False
 
     def _describe(self, attributes: dict) -> None:
-        """Write every description again that is not as in a new store. What is said of the scene in
-        words may differ."""
+        """Write every description again that differs from a new store; attributes that fit their
+        digest may differ."""
         new: dict = {}
         self._create(_zarr().storage.MemoryStore(new), attributes)
         for name, content in new.items():
@@ -186,11 +186,11 @@ class Store:
         return number * CHUNK, min((number + 1) * CHUNK, self.asked)
 
     def pending(self) -> list[int]:
-        """Numbers of the chunks that are missing or damaged; what is damaged is said."""
+        """Numbers of the chunks that are missing or damaged; damage is reported."""
         return [number for number in range(len(self)) if not self._whole(number)]
 
     def holds(self, case: int) -> bool:
-        """Whether the chunk of a case is done and whole; what is damaged is said."""
+        """Whether the chunk of a case is done and whole; damage is reported."""
         return self._whole(case // CHUNK)
 
     def write(self, chunk: Chunk) -> None:
@@ -236,7 +236,7 @@ class Store:
             ) from error
 
     def progress(self) -> str:
-        """How far the ensemble is, for a message that ends it."""
+        """Number of stored cases, as part of a message."""
         return (
             f"{self.done():,} of {self.asked:,} cases are stored, and the same command goes on "
             f"from there"
@@ -257,7 +257,7 @@ class Store:
             return False
         try:
             whole = mark["digest"] == _digest(*self.read(begin, end))
-        except Exception:  # whatever zarr raises on damaged bytes, the remedy is the same
+        except Exception:  # zarr raises many kinds on damaged bytes
             whole = False
         if not whole:
             tell(
@@ -270,8 +270,7 @@ class Store:
         return self.path / "done" / f"{number:06}.json"
 
     def _read_mark(self, number: int) -> dict | None:
-        """What is told of a chunk, None before it is done. Raises StoreError where that is
-        damaged."""
+        """The mark of a chunk, None before it is done. Raises StoreError where it is damaged."""
         try:
             return read_json(self._mark(number))
         except FileNotFoundError:
@@ -331,8 +330,8 @@ class Store:
 
 
 def _attributes(path: Path) -> dict | None:
-    """What the store at ``path`` says of itself; None where there is nothing, or it does not fit
-    its digest."""
+    """Attributes of the store at ``path``; None where there are none, or they do not fit their
+    digest."""
     try:
         found = json.loads((path / "cases.zarr" / "zarr.json").read_bytes())["attributes"]
         return found if fits_digest(found) else None

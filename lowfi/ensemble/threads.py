@@ -1,5 +1,5 @@
-"""Cases in threads: kernels release the interpreter lock, and runs share nothing, so the worker count
-changes no bit."""
+"""Cases in threads. Kernels release the interpreter lock, and runs share nothing, so the number of
+threads changes no bit."""
 
 import os
 from collections import deque
@@ -10,21 +10,21 @@ from typing import Any
 
 from tipoff.lowfi.ensemble.batch import Case, Family
 
-# cases set up together: enough for the calls to cost nothing, few enough for memory to stay flat
+# cases set up together: enough to make calls cheap, few enough to bound memory
 PIECE = 256
 
 
 def completed(
     family: Family, pieces: Iterable[Sequence[Mapping[str, Any]]], workers: int | None = None
 ) -> Iterator[list[Case]]:
-    """Cases of each of ``pieces`` of rows, in their order; a piece is taken when a thread is free
-    for it soon."""
-    count = _workers(workers)
+    """Cases of each of ``pieces`` of rows, in their order; pieces are taken as threads become
+    free."""
+    count = workers or os.cpu_count() or 1
     waiting: deque[list[Future[list[tuple[int, Case]]]]] = deque()
     with ThreadPoolExecutor(count) as pool:
         for rows in pieces:
-            # Setting up holds the interpreter lock, stepping does not: one thread prepares what the
-            # others run.
+            # Setting up holds the interpreter lock, kernels do not: this thread prepares, the others
+            # run.
             waiting.append([pool.submit(job) for job in family.jobs(rows)])
             while len(waiting) > count:
                 yield in_order(future.result() for future in waiting.popleft())
@@ -33,9 +33,5 @@ def completed(
 
 
 def in_order(found: Iterable[list[tuple[int, Case]]]) -> list[Case]:
-    """Cases of a piece from what its jobs found, pairs of a row's number and its case."""
+    """Cases of a piece, from pairs of a row's number and its case."""
     return [case for _, case in sorted(chain.from_iterable(found), key=lambda pair: pair[0])]
-
-
-def _workers(workers: int | None) -> int:
-    return workers or os.cpu_count() or 1
