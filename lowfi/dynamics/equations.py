@@ -171,7 +171,14 @@ def _add_body_force(force, mass, first, ledger, body, out):
     push(out, first + VELOCITY, first + MOMENT, weight, body.place, 1.0)
     _outside(ledger, weight, body.place, out)
     _book(
-        ledger, slot.BODY_FORCE, slot.BODY_FORCE_AXIAL, weight, body.velocity, body.velocity[0], 1.0, out
+        ledger,
+        slot.BODY_FORCE,
+        slot.BODY_FORCE_AXIAL,
+        weight,
+        body.velocity,
+        body.velocity[0],
+        1.0,
+        out,
     )
 
 
