@@ -117,9 +117,9 @@ def test_temperature_is_compiled_for_a_warm_scene_only():
 def test_compliant_contact_stands_in_the_place_of_the_contact_law():
     """Nothing of its package is in a kernel without it."""
     scene = load("reference")
-    assert lowfi.compiled_effects(scene, compliance=reference_compliance()) == lowfi.compiled_effects(
-        scene
-    ) | {"contact": False, "compliance": True}
+    assert lowfi.compiled_effects(
+        scene, compliance=reference_compliance()
+    ) == lowfi.compiled_effects(scene) | {"contact": False, "compliance": True}
     assert PACKAGE in compiled_code(scene, compliance=reference_compliance())
     assert PACKAGE not in compiled_code(scene)
 
