@@ -11,7 +11,7 @@ from tipoff.scenes.faults import SceneError
 from tipoff.studies.agreement import stage as compare
 from tipoff.studies.agreement.verdicts import Context
 from tipoff.studies.blind import stage as blind
-from tipoff.studies.blind.stage import Asked
+from tipoff.studies.blind.stage import Options
 from tipoff.studies.core.settings import Settings
 from tipoff.studies.core.study import Study
 
@@ -21,17 +21,19 @@ def study_of(name: str = "reference") -> Study:
 
 
 def test_seed_is_that_of_code_and_scene(monkeypatch):
-    own = blind.seed_of(study_of(), Asked())
+    own = blind.seed_of(study_of(), Options())
     assert (
-        own == blind.seed_of(study_of(), Asked()) != blind.seed_of(study_of("sensitive"), Asked())
+        own
+        == blind.seed_of(study_of(), Options())
+        != blind.seed_of(study_of("sensitive"), Options())
     )
-    assert blind.seed_of(study_of(), Asked(seed=3)) == 3
+    assert blind.seed_of(study_of(), Options(seed=3)) == 3
     monkeypatch.setattr(blind.sources, "digest", lambda *modules: "another line of code")
-    assert blind.seed_of(study_of(), Asked()) != own
+    assert blind.seed_of(study_of(), Options()) != own
 
 
 def test_drawn_conditions_are_all_held_out():
-    drawn = blind.draw(study_of(), Asked(cases=3, seed=1))
+    drawn = blind.draw(study_of(), Options(cases=3, seed=1))
     assert (
         list(drawn.conditions)
         == ["blind1", "blind2", "blind3"]
@@ -45,7 +47,7 @@ def test_drawn_conditions_are_all_held_out():
     assert len(hashes) == 3 and hashes.isdisjoint(
         scene.hash for scene in study_of().conditions.values()
     )
-    again = blind.draw(study_of(), Asked(cases=2, seed=1))
+    again = blind.draw(study_of(), Options(cases=2, seed=1))
     assert [scene.hash for scene in again.conditions.values()] == [
         drawn.condition(name).hash for name in ("blind1", "blind2")
     ]
@@ -54,7 +56,7 @@ def test_drawn_conditions_are_all_held_out():
 def test_no_drawn_condition_borrows_its_uncertainty(monkeypatch):
     """Mesh, step and penalty on each. Control: a scene that refines one only has the others borrow,
     and says so."""
-    drawn = blind.draw(study_of(), Asked(cases=3, seed=1))
+    drawn = blind.draw(study_of(), Options(cases=3, seed=1))
     alone = replace(drawn, scene=drawn.scene.replace({"agreement.refined": ["blind2"]}))
     monkeypatch.setattr(
         type(drawn.store), "fill", lambda store, title, runs: [flight() for _ in runs]
@@ -66,4 +68,4 @@ def test_no_drawn_condition_borrows_its_uncertainty(monkeypatch):
 
 def test_unknown_distributions_are_refused():
     with pytest.raises(SceneError, match="one of"):
-        blind.draw(study_of(), Asked(vary="unheard"))
+        blind.draw(study_of(), Options(vary="unheard"))

@@ -84,9 +84,9 @@ def test_shipped_logs_from_command_to_page(tmp_path, fitted):
     again = call("--cases", 200, "--out", tmp_path, "--json")
     assert json.loads(again.stdout) == found and "nothing changed" in again.stderr
     study = Study(load("reference"), tmp_path / "reference", Settings(), ())
-    assert stage.stored(study)["tests"] == found["tests"]
+    assert stage.STAGE.stored(study)["tests"] == found["tests"]
     assert (
-        stage.stored(
+        stage.STAGE.stored(
             Study(
                 load("reference").replace({"payload.mass": "9 kg"}),
                 tmp_path / "reference",
@@ -147,25 +147,25 @@ def test_a_result_is_current_as_long_as_its_logs_are(tmp_path, fitted, monkeypat
     monkeypatch.setattr(chart, "to_files", lambda *_: [])
     monday, tuesday = _tests_in(tmp_path, "monday", "tuesday")
     study = Study(load("reference"), tmp_path / "reference", Settings())
-    found = stage.run(study, [monday, tuesday], stage.Asked(cases=60, model="springs"))
+    found = stage.run(study, stage.Options((monday, tuesday), cases=60, model="springs"))
     assert [row["test"] for row in found["tests"]] == ["monday/log", "tuesday/log"]
     for row, path in zip(found["tests"], (monday, tuesday)):  # groups of groups
         _require_signals(study.path(found["data"]), row, stage.analyse(path))
     table, moved = tuesday.with_name("simulated0.csv"), tuesday.with_name("other.toml")
-    assert stage.stored(study) == found
+    assert stage.STAGE.stored(study) == found
     table.write_text(TABLE.replace("0.100,", "0.1001,"))
-    assert stage.stored(study) is None
+    assert stage.STAGE.stored(study) is None
     table.unlink()
-    assert stage.stored(study) is None
+    assert stage.STAGE.stored(study) is None
     table.write_text(TABLE)
-    assert stage.stored(study) == found
+    assert stage.STAGE.stored(study) == found
     tuesday.rename(moved)
-    assert stage.stored(study) is None
-    renamed = stage.run(study, [monday, moved], stage.Asked(cases=60, model="springs"))
+    assert stage.STAGE.stored(study) is None
+    renamed = stage.run(study, stage.Options((monday, moved), cases=60, model="springs"))
     assert [row["test"] for row in renamed["tests"]] == ["log", "other"] and renamed[
         "key"
     ] != found["key"]
-    assert stage.stored(study) == renamed
+    assert stage.STAGE.stored(study) == renamed
 
 
 def test_tests_are_judged_by_the_errors_condition_and_seed_that_are_asked_for(
@@ -204,11 +204,11 @@ def test_tests_are_judged_by_the_errors_condition_and_seed_that_are_asked_for(
         and "condition phi60" in other["summary"][0]
     )
     study = Study(load("reference"), tmp_path / "reference", Settings())
-    assert stage.stored(study) == other
+    assert stage.STAGE.stored(study) == other
     errors.write_text(lines.format("0.1"))
-    assert stage.stored(study) is None
+    assert stage.STAGE.stored(study) is None
     errors.write_text(lines.format("0.001"))
-    assert stage.stored(study) == other
+    assert stage.STAGE.stored(study) == other
 
 
 def test_bad_errors_are_listed_beside_bad_logs(tmp_path):
@@ -317,7 +317,7 @@ def test_verdict_for_models_that_fit_that_are_too_narrow_and_too_wide(tmp_path, 
     found |= {
         "model": "springs, calibrated",
         "agreement": "unknown",
-        "request": asdict(stage.Asked()),
+        "request": asdict(stage.Options()),
         "varied": {"seed": 1},
     }
     line = next(line for line in stage.summary("reference", found) if "together" in line)

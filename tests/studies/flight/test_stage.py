@@ -105,16 +105,19 @@ def test_conditions_and_cases_are_flown_and_kept(tmp_path, uncalibrated, monkeyp
     study = Study(
         load("reference").replace({"flight.range": "1 km"}), folder, Settings(), ("phi35", "phi60")
     )
-    assert flight.stored(study)["key"] == further["key"]
-    assert flight.stored(Study(load("reference"), folder, Settings(), ("phi35", "phi60"))) is None
+    assert flight.STAGE.stored(study)["key"] == further["key"]
     assert (
-        flight.stored(Study(load("reference").replace({"flight": None}), folder, Settings()))
+        flight.STAGE.stored(Study(load("reference"), folder, Settings(), ("phi35", "phi60")))
+        is None
+    )
+    assert (
+        flight.STAGE.stored(Study(load("reference").replace({"flight": None}), folder, Settings()))
         is None
     )
     write_json(
         folder / "flight.json", further | {"asked": further["asked"] | {"vary": "gone.toml"}}
     )
-    assert flight.stored(study) is None
+    assert flight.STAGE.stored(study) is None
     drawn = html(section.draw(found))
     assert (
         "<figure>flight-miss</figure>" in drawn

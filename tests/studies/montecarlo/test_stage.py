@@ -18,7 +18,7 @@ from tipoff.studies.core.settings import Settings
 from tipoff.studies.core.study import Study, StudyError
 from tipoff.studies.montecarlo import page as pictures
 from tipoff.studies.montecarlo import stage as montecarlo
-from tipoff.studies.montecarlo.stage import Asked
+from tipoff.studies.montecarlo.stage import Options
 from tipoff.studies.populations import answers, population, spread
 from tipoff.studies.populations.population import Population
 
@@ -32,7 +32,7 @@ def study(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def found(study):
-    return montecarlo.run(study, Asked(cases=1500, limits=("y=6 deg/s", "8 deg/s")))
+    return montecarlo.run(study, Options(cases=1500, limits=("y=6 deg/s", "8 deg/s")))
 
 
 def test_what_is_written_is_whole_and_not_made_again(study, found, monkeypatch):
@@ -50,9 +50,9 @@ def test_what_is_written_is_whole_and_not_made_again(study, found, monkeypatch):
         "tipoff.studies.populations.population.run", lambda *_: pytest.fail("made again")
     )
     assert (
-        montecarlo.run(study, Asked(cases=1500, limits=("y=6 deg/s", "8 deg/s")))
+        montecarlo.run(study, Options(cases=1500, limits=("y=6 deg/s", "8 deg/s")))
         == found
-        == montecarlo.stored(study)
+        == montecarlo.STAGE.stored(study)
     )
     assert json.loads(study.path("montecarlo.json").read_text()) == found
 
@@ -121,7 +121,7 @@ def test_what_does_not_settle_elsewhere_is_said_and_stops_nothing(study, monkeyp
         return run(*arguments)
 
     monkeypatch.setattr(population, "run", spoilt)
-    found = montecarlo.run(study, Asked(cases=120, limits=("8 deg/s",)))
+    found = montecarlo.run(study, Options(cases=120, limits=("8 deg/s",)))
     row = found["readings"][2]
     assert (
         row["settled"] == 1
@@ -134,16 +134,18 @@ def test_what_does_not_settle_elsewhere_is_said_and_stops_nothing(study, monkeyp
     assert "1 settled" in html(pictures.draw(found))
     monkeypatch.setattr(population, "run", lambda *_: counted(120, slice(None)))
     with pytest.raises(StudyError, match="no case settled"):
-        montecarlo.run(study, Asked(cases=120, seed=2, limits=("8 deg/s",)))
+        montecarlo.run(study, Options(cases=120, seed=2, limits=("8 deg/s",)))
     monkeypatch.setattr(population, "surrogate", lambda *_: None)
     touching = Study(load("reference"), study.folder, study.settings)
     # no springs calibrated
     assert (
-        montecarlo._models(touching, Asked(cases=120), "compliant", counted(120, slice(0, 9)))
+        montecarlo._models(touching, Options(cases=120), "compliant", counted(120, slice(0, 9)))
         is None
     )
     monkeypatch.setattr(montecarlo.calibrate, "stored", lambda _: {"key": "k"})
-    models = montecarlo._models(touching, Asked(cases=120), "compliant", counted(120, slice(0, 9)))
+    models = montecarlo._models(
+        touching, Options(cases=120), "compliant", counted(120, slice(0, 9))
+    )
     assert models["both_settled"] == 0 and models["quantities"] == []
     both = found | {"models": models}
     assert (

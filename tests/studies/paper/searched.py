@@ -11,7 +11,7 @@ from tipoff.studies.paper import stage as paper
 
 BASE = scenes.load("reference")
 COUNT = len(inputs.UNKNOWNS)
-SMALL = paper.Asked(1, solutions.Plan(points=6, descents=1, pool=1, hops=1, kept=3))
+SMALL = paper.Options(1, solutions.Plan(points=6, descents=1, pool=1, hops=1, kept=3))
 
 
 def stub(admissible: tuple[int, ...] = (2, 0)):

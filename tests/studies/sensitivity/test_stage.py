@@ -119,14 +119,15 @@ def test_the_command(tiny, tmp_path, monkeypatch):
     drawn = html(section.draw(found))
     assert "misalignment y" in drawn and "-2.355, -2.554, 2.502" in drawn and "0.71 %" in drawn
     assert (
-        sensitivity.stored(Study(load("tiny"), tmp_path / "out" / "tiny", defaults("tiny")))
+        sensitivity.STAGE.stored(Study(load("tiny"), tmp_path / "out" / "tiny", defaults("tiny")))
         == found
     )
     monkeypatch.setattr(population, "surrogate", lambda *_: pytest.fail("made again"))
     assert json.loads(call([*tiny, "--json"]).stdout) == found
     (tmp_path / "mine.toml").unlink()
     assert (
-        sensitivity.stored(Study(load("tiny"), tmp_path / "out" / "tiny", defaults("tiny"))) is None
+        sensitivity.STAGE.stored(Study(load("tiny"), tmp_path / "out" / "tiny", defaults("tiny")))
+        is None
     )
 
 
@@ -149,13 +150,13 @@ def test_tables_of_warm_rails_stand_on_the_walls_of_the_model(tmp_path, monkeypa
     )
     rigid = SimpleNamespace(flexibility=None)
     model = Surrogate(study.scene.replace({"contact.stiffness": 1e9}), None, rigid)
-    tables = sensitivity._tables(study, model, sensitivity.Asked())
+    tables = sensitivity._tables(study, model, sensitivity.Options())
     assert [found.compliance for found in asked] == [rigid] * 2 and len(tables) == 2
     assert asked[1].scene.contact == study.scene.contact
     for table in tables:
         assert {row["symbol"] for row in table["rows"]} == {"baseline", "k", "c", "d", "clearance"}
     (compliant,) = sensitivity._tables(
-        study, model._replace(compliance=SimpleNamespace(flexibility=1.0)), sensitivity.Asked()
+        study, model._replace(compliance=SimpleNamespace(flexibility=1.0)), sensitivity.Options()
     )
     assert {row["symbol"] for row in compliant["rows"]} == {"baseline", "penalty", "clearance"}
 
@@ -189,7 +190,7 @@ def test_cases_that_do_not_settle(tiny, tmp_path, monkeypatch):
     monkeypatch.setattr(population, "run", spoilt(np.arange(0, 320, 7)))
     with pytest.raises(StudyError, match="too few"):
         study = Study(load("tiny"), tmp_path / "again", defaults("tiny"))
-        sensitivity.run(study, sensitivity.Asked(str(tmp_path / "mine.toml"), 64))
+        sensitivity.run(study, sensitivity.Options(str(tmp_path / "mine.toml"), 64))
 
 
 def test_bad_input_is_listed_whole_and_nothing_written(tiny, tmp_path):

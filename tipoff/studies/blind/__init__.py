@@ -7,7 +7,7 @@ from tipoff.studies.question import Parts, Question
 def _load() -> Parts:
     from tipoff.studies.blind import page, stage
 
-    return Parts(stage.run, stage.stored, page.draw)
+    return Parts(stage.run, stage.STAGE.stored, page.draw)
 
 
 QUESTION = Question("blind", "Agreement on conditions nobody chose", "Blind", command.add, _load)

@@ -57,7 +57,7 @@ def blind(
 
         return stage.run(
             study_of(scene, out, set_, element_size=element_size, workers=workers),
-            stage.Asked(cases, vary, seed),
+            stage.Options(cases, vary, seed),
         )
 
     found = guarded(work, json_)

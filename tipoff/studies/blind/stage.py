@@ -6,7 +6,7 @@ errors, and unless a seed is given it is that of the sources and the scene: any 
 draws others.
 """
 
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
@@ -19,6 +19,7 @@ from tipoff.studies.agreement import stage as compare
 from tipoff.studies.agreement import verdicts
 from tipoff.studies.agreement.verdicts import Context
 from tipoff.studies.calibration import stage as calibrate
+from tipoff.studies.core.stage import Stage
 from tipoff.studies.core.study import Study, require_success
 
 NAME = "blind"
@@ -26,7 +27,7 @@ _CODE = ("tipoff.highfi", "tipoff.lowfi", "tipoff.calibration")
 
 
 @dataclass(frozen=True)
-class Asked:
+class Options:
     """``cases`` conditions from the distributions ``vary``; ``seed`` None: that of the code and the
     scene."""
 
@@ -35,10 +36,10 @@ class Asked:
     seed: int | None = None
 
 
-def run(study: Study, asked: Asked = Asked()) -> dict:
+def run(study: Study, options: Options = Options()) -> dict:
     """Rows of the ``calibrated`` surrogate and of that on ``compliant`` walls, as in the agreement
     study, and the conditions drawn."""
-    drawn = draw(study, asked)
+    drawn = draw(study, options)
     ladder = [
         compare.Rung("calibrated", f"{SPRINGS}, calibrated", calibrate.load(study)),
         compare.compliant(drawn, drawn.conditions),
@@ -60,8 +61,8 @@ def run(study: Study, asked: Asked = Asked()) -> dict:
                 drawn, rung, highfi, Context([*floor, *own], changes, gates)
             )
         return {
-            "asked": asdict(asked),
-            "seed": seed_of(study, asked),
+            "asked": STAGE.plain(options),
+            "seed": seed_of(study, options),
             "gates": gates,
             "converged_deg_s": verdicts.CONVERGED_DEG_S,
             "clearance_change_m": study.settings.clearance_change,
@@ -69,29 +70,24 @@ def run(study: Study, asked: Asked = Asked()) -> dict:
             **rows,
         }, []
 
-    return study.stage(NAME, _key(study, drawn), make)
+    return STAGE.run(study, options, make)
 
 
-def stored(study: Study) -> dict | None:
-    """The result, if it was made from the present scene, code and settings."""
-    return study.stored(NAME, lambda found: _key(study, draw(study, Asked(**found["asked"]))))
-
-
-def draw(study: Study, asked: Asked) -> Study:
+def draw(study: Study, options: Options) -> Study:
     """The study of the drawn conditions, in the same folder: all held out, each with a floor and
     refinements of its own, so that none borrows the uncertainty of another, which may be
     chaotic."""
     source = Drawn(
         uncertainty.load(
-            asked.vary,
+            options.vary,
             study.scene,
-            cases=asked.cases,
-            seed=seed_of(study, asked),
+            cases=options.cases,
+            seed=seed_of(study, options),
             sampling="random",
         )
     )
     conditions = {
-        f"blind{number + 1}": row for number, row in enumerate(source.rows(0, asked.cases))
+        f"blind{number + 1}": row for number, row in enumerate(source.rows(0, options.cases))
     }
     names = list(conditions)
     roles = {
@@ -103,11 +99,11 @@ def draw(study: Study, asked: Asked) -> Study:
     return replace(study, scene=study.scene.replace({"conditions": conditions, **roles}), only=())
 
 
-def seed_of(study: Study, asked: Asked) -> int:
+def seed_of(study: Study, options: Options) -> int:
     """The seed of the draws."""
     return (
-        asked.seed
-        if asked.seed is not None
+        options.seed
+        if options.seed is not None
         else int(content_hash(sources.digest(*_CODE), study.scene.hash)[:12], 16)
     )
 
@@ -135,5 +131,8 @@ def _rate(value: float | None) -> str:
     return "unknown" if value is None else f"{value:.3g} deg/s"
 
 
-def _key(study: Study, drawn: Study) -> str:
-    return study.key(__name__, NAME, drawn.scene.conditions, verdicts.gates(study.scene))
+def _inputs(study: Study, options: Options) -> list:
+    return [draw(study, options).scene.conditions, verdicts.gates(study.scene)]
+
+
+STAGE = Stage(NAME, __name__, Options, _inputs)

@@ -8,7 +8,7 @@ from tipoff.studies.question import Parts, Question
 def _load() -> Parts:
     from tipoff.studies.droptest import page, stage
 
-    return Parts(stage.run, stage.stored, page.draw)
+    return Parts(stage.run, stage.STAGE.stored, page.draw)
 
 
 QUESTION = Question("droptest", "Drop tests", "Drop tests", command.add, _load)

@@ -73,8 +73,9 @@ def droptest(
 
         return stage.run(
             study_of(scene, out, set_, workers=workers),
-            logs,
-            stage.Asked(vary, cases, seed, condition, model and model.value),
+            stage.Options(
+                tuple(logs) if logs else None, vary, cases, seed, condition, model and model.value
+            ),
         )
 
     found = guarded(work, json_)

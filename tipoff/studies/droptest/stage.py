@@ -7,7 +7,8 @@ unless told otherwise, and start at rest in free fall. How a test sits among the
 """
 
 import hashlib
-from dataclasses import asdict, dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +18,7 @@ from tipoff.scenes import uncertainty
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.scene import Scene
 from tipoff.studies.core.checked import together
+from tipoff.studies.core.stage import Stage
 from tipoff.studies.core.study import Study, StudyError
 from tipoff.studies.droptest import sheet, signals
 from tipoff.studies.droptest.analysis import Drop, analyse
@@ -31,11 +33,12 @@ _SHOWN = 2000  # cases in the figure
 
 
 @dataclass(frozen=True)
-class Asked:
-    """What ``tipoff droptest`` is given beside the scene and the logs: distributions, how many
-    cases and their seed, None as the file says, the condition that was dropped, None for the scene
-    itself, and the name of a ``model``, None for the default."""
+class Options:
+    """What ``tipoff droptest`` is given beside the scene: sheets of ``logs``, None for those of the
+    package; distributions, how many cases and their seed, None as the file says; the condition that
+    was dropped, None for the scene itself; the name of a ``model``, None for the default."""
 
+    logs: tuple[Path, ...] | None = None
     vary: str = uncertainty.DEFAULT
     cases: int = CASES
     seed: int | None = None
@@ -43,26 +46,29 @@ class Asked:
     model: str | None = None
 
 
-def run(study: Study, logs: list[Path] | None = None, asked: Asked = Asked()) -> dict:
+def run(study: Study, options: Options = Options()) -> dict:
     """``tests`` with their rates, budgets and standing, ``together``, ``power``, and ``summary`` in
     words.
 
     Raises SceneError listing every fault of every log and of what varies, StudyError where too few
     cases settle.
     """
-    drops, drawn = together(lambda: _analysed(logs or sheet.SAMPLES), lambda: _drawn(study, asked))
-    request = asdict(asked) | {"logs": [str(path.resolve()) for path in logs] if logs else None}
+    drops, drawn = together(
+        lambda: _analysed(options.logs or sheet.SAMPLES), lambda: _drawn(study, options)
+    )
+    if options.logs:
+        options = replace(options, logs=tuple(path.resolve() for path in options.logs))
 
     def make() -> tuple[dict, list[Path]]:
         from tipoff.studies.droptest import page
         from tipoff.studies.render.chart import to_files
 
-        model = population.surrogate(study, asked.model, asked.condition)
+        model = population.surrogate(study, options.model, options.condition)
         cases = population.run(study, NAME, model, drawn)
         found = result(study, drops, cases, drawn.uncertainty.sampling == "random")
         found |= {
-            "request": request,
-            **population.answering(study, model, asked.condition),
+            "request": STAGE.plain(options),
+            **population.answering(study, model, options.condition),
             "varied": drawn.uncertainty.resolved(),
         }
         found["summary"] = summary(study.scene.name, found)
@@ -73,30 +79,28 @@ def run(study: Study, logs: list[Path] | None = None, asked: Asked = Asked()) ->
         ]
         return found | {"data": study.relative(data)}, [data, *pictures]
 
-    return study.stage(NAME, _key(study, request), make)
+    return STAGE.run(study, options, make)
 
 
-def stored(study: Study) -> dict | None:
-    """The result, if it was made from the present scene, code and settings: the report shows it and
-    makes none."""
-    return study.stored(NAME, lambda found: _key(study, found["request"]))
+def _inputs(study: Study, options: Options) -> list:
+    """What the logs and the distributions hold. Raises SceneError for a file that is gone or
+    broken."""
+    digests = [_digest(path) for path in options.logs or sheet.SAMPLES]
+    return [digests, _drawn(study, options).uncertainty.resolved()]
 
 
-def _key(study: Study, request: dict) -> str:
-    """By the paths of the logs, and by what these and the distributions hold now. Raises SceneError
-    for a file that is gone or broken."""
-    digests = [_digest(Path(path)) for path in request["logs"] or sheet.SAMPLES]
-    asked = Asked(**{name: value for name, value in request.items() if name != "logs"})
-    return study.key(__name__, NAME, request, digests, _drawn(study, asked).uncertainty.resolved())
+STAGE = Stage(NAME, __name__, Options, _inputs, "request")
 
 
-def _drawn(study: Study, asked: Asked) -> Drawn:
-    seed = {} if asked.seed is None else {"seed": asked.seed}
-    return Drawn(uncertainty.load(asked.vary, _scene(study, asked), cases=asked.cases, **seed))
+def _drawn(study: Study, options: Options) -> Drawn:
+    seed = {} if options.seed is None else {"seed": options.seed}
+    return Drawn(
+        uncertainty.load(options.vary, _scene(study, options), cases=options.cases, **seed)
+    )
 
 
-def _scene(study: Study, asked: Asked) -> Scene:
-    return study.condition(asked.condition) if asked.condition else study.scene
+def _scene(study: Study, options: Options) -> Scene:
+    return study.condition(options.condition) if options.condition else study.scene
 
 
 def _digest(path: Path) -> list[str]:
@@ -108,7 +112,7 @@ def _digest(path: Path) -> list[str]:
         raise SceneError([Fault(str(path), "file", str(error), "a readable CSV file")]) from error
 
 
-def _analysed(paths: list[Path]) -> list[Drop]:
+def _analysed(paths: Sequence[Path]) -> list[Drop]:
     """Every log under a name of its own. Raises SceneError listing every fault of every log."""
     drops, different = [], {path.resolve(): path for path in reversed(paths)}
     places = [path.resolve() for path in paths]

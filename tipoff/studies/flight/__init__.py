@@ -8,7 +8,7 @@ from tipoff.studies.question import Parts, Question
 def _load() -> Parts:
     from tipoff.studies.flight import page, stage
 
-    return Parts(stage.run, stage.stored, page.draw)
+    return Parts(stage.run, stage.STAGE.stored, page.draw)
 
 
 QUESTION = Question("flight", "After separation", "Flight", command.add, _load)

@@ -82,7 +82,7 @@ def flight(
         said = {"range": range_, "altitude": altitude, "duration": duration}
         table = [f"flight.{key}={value}" for key, value in said.items() if value is not None]
         study = study_of(scene, out, [*(set_ or []), *table], condition, element_size, workers)
-        return stage.run(study, stage.Asked(vary, cases, seed, model and model.value))
+        return stage.run(study, stage.Options(vary, cases, seed, model and model.value))
 
     found = guarded(work, json_)
     if not json_:

@@ -1,7 +1,7 @@
 """Stage ``flight``: what becomes of the payload after its exit, for every condition and for many
 cases with errors."""
 
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +16,7 @@ from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.scene import Scene
 from tipoff.scenes.variation import Variations
 from tipoff.studies.core.progress import Board
+from tipoff.studies.core.stage import Stage
 from tipoff.studies.core.study import Study, StudyError
 from tipoff.studies.flight import bodies, curves, flown, summary
 from tipoff.studies.populations import population
@@ -24,7 +25,7 @@ NAME = "flight"
 
 
 @dataclass(frozen=True)
-class Asked:
+class Options:
     """What ``tipoff flight`` is given beside the scene: distributions, how many cases and their
     seed, None as the file says, and the name of a ``model``, None for the default."""
 
@@ -34,32 +35,32 @@ class Asked:
     model: str | None = None
 
 
-def run(study: Study, asked: Asked = Asked()) -> dict:
+def run(study: Study, options: Options = Options()) -> dict:
     """``conditions``, rows as ``studies.flight.summary`` has them; ``cases``, their distributions;
     ``curves`` of the first conditions. Raises SceneError for a scene that says nothing of a
     flight."""
-    _require(study.conditions | {study.scene.name: study.scene})
+    _require(study)
     changed = {
         name: value
-        for name, value in (("cases", asked.cases), ("seed", asked.seed))
+        for name, value in (("cases", options.cases), ("seed", options.seed))
         if value is not None
     }
-    drawn = Drawn(uncertainty.load(asked.vary, study.scene, **changed))
+    drawn = Drawn(uncertainty.load(options.vary, study.scene, **changed))
     if wrong := [key for key in drawn.keys if key.split(".")[0] == "flight"]:
         expected = "a key of the ejection: a flight is the same for all cases"
         raise SceneError(
-            [Fault(asked.vary, f"vary.{key}", "a distribution", expected) for key in wrong]
+            [Fault(options.vary, f"vary.{key}", "a distribution", expected) for key in wrong]
         )
 
     def make() -> tuple[dict, list[Path]]:
         from tipoff.studies.flight import page
         from tipoff.studies.render import chart
 
-        rows, shapes, single, exits = _conditions(study, asked)
-        cases, many, left = _cases(study, asked, drawn)
+        rows, shapes, single, exits = _conditions(study, options)
+        cases, many, left = _cases(study, options, drawn)
         found = {
-            "asked": asdict(asked),
-            **population.answering(study, population.surrogate(study, asked.model)),
+            "asked": STAGE.plain(options),
+            **population.answering(study, population.surrogate(study, options.model)),
             "flight": summary.orbit(study.scene),
             "conditions": rows,
             "curves": shapes,
@@ -78,28 +79,22 @@ def run(study: Study, asked: Asked = Asked()) -> dict:
         ]
         return found | {"data": study.relative(data)}, [data, *pictures]
 
-    return study.stage(NAME, _key(study, asked), make)
+    return STAGE.run(study, options, make)
 
 
-def stored(study: Study) -> dict | None:
-    """The result, if it was made from the present scene, code and settings."""
-    return (
-        study.stored(NAME, lambda found: _key(study, Asked(**found["asked"])))
-        if study.scene.flight
-        else None
-    )
-
-
-def _key(study: Study, asked: Asked) -> str:
+def _inputs(study: Study, options: Options) -> list:
+    """The tables of the flight and what varies. Raises SceneError where no flight can be."""
+    _require(study)
     tables = {
         name: scene.flight and scene.flight.model_dump(mode="json")
         for name, scene in study.conditions.items()
     }
-    varied = uncertainty.load(asked.vary, study.scene).resolved()
+    varied = uncertainty.load(options.vary, study.scene).resolved()
     own = _flight(study.scene).model_dump(mode="json")
-    return study.key(
-        __name__, NAME, own, tables, asdict(asked), varied, study.settings.element_size
-    )
+    return [own, tables, varied, study.settings.element_size]
+
+
+STAGE = Stage(NAME, __name__, Options, _inputs)
 
 
 def _flight(scene: Scene) -> FlightTable:
@@ -107,7 +102,8 @@ def _flight(scene: Scene) -> FlightTable:
     return scene.flight
 
 
-def _require(scenes: dict[str, Scene]) -> None:
+def _require(study: Study) -> None:
+    scenes = study.conditions | {study.scene.name: study.scene}
     expected = 'a table [flight], or --set flight.altitude="500 km" --set flight.range="100 m"'
     faults = [
         Fault(name, "flight", "nothing", expected)
@@ -125,13 +121,13 @@ def _require(scenes: dict[str, Scene]) -> None:
 
 
 def _conditions(
-    study: Study, asked: Asked
+    study: Study, options: Options
 ) -> tuple[list[dict], list[dict], flown.Flown | None, bodies.Exits | None]:
     """A row for every condition, curves of the first that settled, what was found for all that did,
     and their outcomes as arrays."""
     runs = []
     for name in study.conditions:
-        model = population.surrogate(study, asked.model, name)
+        model = population.surrogate(study, options.model, name)
         runs.append(study.lowfi(name, model.calibration, compliance=model.compliance))
     ended = dict(zip(study.conditions, study.store.fill(NAME, runs)))
     settled = [name for name, found in ended.items() if found.outcome.rate is not None]
@@ -170,10 +166,10 @@ def _conditions(
     )
 
 
-def _cases(study: Study, asked: Asked, drawn: Drawn) -> tuple[dict, flown.Flown, Columns]:
+def _cases(study: Study, options: Options, drawn: Drawn) -> tuple[dict, flown.Flown, Columns]:
     """Distributions over the cases of ``drawn``, what was found for each that settled, and what
     these left their rails with."""
-    model = population.surrogate(study, asked.model)
+    model = population.surrogate(study, options.model)
     cases = population.run(study, NAME, model, drawn)
     which = np.flatnonzero(cases.settled)
     if not len(which):

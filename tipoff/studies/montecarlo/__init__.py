@@ -7,7 +7,7 @@ from tipoff.studies.question import Parts, Question
 def _load() -> Parts:
     from tipoff.studies.montecarlo import page, stage
 
-    return Parts(stage.run, stage.stored, page.draw)
+    return Parts(stage.run, stage.STAGE.stored, page.draw)
 
 
 QUESTION = Question("montecarlo", "Random errors", "Random errors", command.add, _load)

@@ -95,10 +95,10 @@ def add(app: typer.Typer) -> None:
             from tipoff.studies.populations.random_factors import Reading
 
             how = Reading(reading.value, angles.value, rule.value, initial)
-            asked = stage.Asked(
-                cases, seed, how, tuple(limit or stage.Asked.limits), model and model.value
+            options = stage.Options(
+                cases, seed, how, tuple(limit or stage.Options.limits), model and model.value
             )
-            return stage.run(study_of(scene, out, set_, workers=workers), asked)
+            return stage.run(study_of(scene, out, set_, workers=workers), options)
 
         found = guarded(work, json_)
         if not json_:

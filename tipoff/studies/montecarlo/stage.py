@@ -6,7 +6,7 @@ there are. The paper prints no number of its own here: its Figure 9 shows histog
 says that three drop tests lie within them.
 """
 
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +15,7 @@ import numpy as np
 from tipoff.mechanics.models import COMPLIANT, SPRINGS
 from tipoff.studies.calibration import stage as calibrate
 from tipoff.studies.core.checked import together
+from tipoff.studies.core.stage import Stage
 from tipoff.studies.core.study import Study, StudyError
 from tipoff.studies.populations import answers, exceedance, population, random_factors, spread
 from tipoff.studies.populations.population import Population, Surrogate
@@ -30,7 +31,7 @@ _RATES = (*answers.RATES, answers.TOTAL_RATE)
 
 
 @dataclass(frozen=True)
-class Asked:
+class Options:
     """What ``tipoff montecarlo`` is given beside the scene; ``limits`` as ``exceedance.limits``
     reads them; the name of a ``model``, None for the default."""
 
@@ -41,22 +42,22 @@ class Asked:
     model: str | None = None
 
 
-def run(study: Study, asked: Asked = Asked()) -> dict:
+def run(study: Study, options: Options = Options()) -> dict:
     """Spread of every quantity, tails, convergence, all readings, and both surrogates on the same
     draws; ``summary`` in words.
 
     Raises SceneError for bad input, StudyError where no case settles.
     """
     limits, source = together(
-        lambda: exceedance.limits(asked.limits),
-        lambda: random_factors.source(study.scene, asked.reading, asked.cases, asked.seed),
+        lambda: exceedance.limits(options.limits),
+        lambda: random_factors.source(study.scene, options.reading, options.cases, options.seed),
     )
 
     def make() -> tuple[dict, list[Path]]:
         from tipoff.studies.montecarlo import page as pictures
         from tipoff.studies.render.chart import to_files
 
-        model = population.surrogate(study, asked.model)
+        model = population.surrogate(study, options.model)
         found = population.run(study, NAME, model, source)
         if (settled := int(found.settled.sum())) < _FEWEST:
             raise StudyError(
@@ -65,14 +66,14 @@ def run(study: Study, asked: Asked = Asked()) -> dict:
                 f"{found.store}/done"
             )
         made: dict[str, Any] = {
-            "asked": _plain(asked),
-            "reading": asked.reading.words,
+            "asked": STAGE.plain(options),
+            "reading": options.reading.words,
             "store": found.store,
             **population.answering(study, model),
             "counts": found.counts,
             "settled": settled,
             "confidence": spread.CONFIDENCE,
-            "paper_cases": min(PAPER, asked.cases),
+            "paper_cases": min(PAPER, options.cases),
             "quantities": [_quantity(item, found) for item in answers.ALL],
             "tails": [_tail(limit, np.degrees(found.results.rate)) for limit in limits],
             "convergence": [
@@ -80,8 +81,8 @@ def run(study: Study, asked: Asked = Asked()) -> dict:
                 for item in _RATES
                 for row in spread.convergence(item.of(found.results), _CONVERGING)
             ],
-            "readings": _readings(study, asked, model, found),
-            "models": _models(study, asked, model.name, found),
+            "readings": _readings(study, options, model, found),
+            "models": _models(study, options, model.name, found),
         }
         made |= {"findings": _findings(made), "summary": _numbers(made)}
         return made, [
@@ -90,21 +91,16 @@ def run(study: Study, asked: Asked = Asked()) -> dict:
             for path in to_files(chart, study.path("figures"))
         ]
 
-    return study.stage(NAME, _key(study, _plain(asked)), make)
+    return STAGE.run(study, options, make)
 
 
-def stored(study: Study) -> dict | None:
-    """The result, if it was made from the present scene, code and settings."""
-    return study.stored(NAME, lambda found: _key(study, found["asked"]))
+def _fitted(study: Study, options: Options) -> str | None:
+    """Both models are compared where there is a calibration."""
+    fitted = calibrate.stored(study)
+    return fitted["key"] if fitted else None
 
 
-def _key(study: Study, asked: dict) -> str:
-    fitted = calibrate.stored(study)  # both models are compared where there is one
-    return study.key(__name__, NAME, asked, fitted and fitted["key"])
-
-
-def _plain(asked: Asked) -> dict:
-    return asdict(asked) | {"reading": asked.reading._asdict(), "limits": list(asked.limits)}
+STAGE = Stage(NAME, __name__, Options, _fitted)
 
 
 def _settled(quantity: answers.Quantity, found: Population, first: int | None = None) -> np.ndarray:
@@ -142,21 +138,21 @@ def _tail(limit: exceedance.Limit, rates: np.ndarray) -> dict:
     }
 
 
-def _readings(study: Study, asked: Asked, model: Surrogate, found: Population) -> list[dict]:
+def _readings(study: Study, options: Options, model: Surrogate, found: Population) -> list[dict]:
     """Each reading with a seed of its own beside the cases that were asked for; the row of the same
     reading is the control. Where too few settled there are no rates, and no distance."""
-    rows, cases = [], min(_COMPARED, asked.cases)
+    rows, cases = [], min(_COMPARED, options.cases)
     here = [_settled(item, found, cases) for item in _RATES]
     for place, reading in enumerate(READINGS):
         if reading.initial and study.scene.contact is None:
             continue
-        drawn = random_factors.source(study.scene, reading, cases, asked.seed + 1 + place)
+        drawn = random_factors.source(study.scene, reading, cases, options.seed + 1 + place)
         other = population.run(study, f"{NAME}-reading", model, drawn)
         values = [_settled(item, other) for item in _RATES]
         rows.append(
             {
                 "reading": reading.words,
-                "same": reading == asked.reading,
+                "same": reading == options.reading,
                 "cases": cases,
                 "settled": int(other.settled.sum()),
                 **_apart(here, values),
@@ -182,14 +178,14 @@ def _apart(here: list[np.ndarray], values: list[np.ndarray]) -> dict:
     }
 
 
-def _models(study: Study, asked: Asked, model: str, found: Population) -> dict | None:
+def _models(study: Study, options: Options, model: str, found: Population) -> dict | None:
     """The paper's thousand on springs and on compliant contact; None where no pad can touch, for
     then both are one model, and where no springs were calibrated for the scene. No quantities where
     no case settled on both."""
     if study.scene.contact is None or calibrate.stored(study) is None:
         return None
-    cases = min(PAPER, asked.cases)
-    drawn = random_factors.source(study.scene, asked.reading, cases, asked.seed)
+    cases = min(PAPER, options.cases)
+    drawn = random_factors.source(study.scene, options.reading, cases, options.seed)
     other = population.run(
         study,
         f"{NAME}-other",
@@ -228,10 +224,10 @@ def _models(study: Study, asked: Asked, model: str, found: Population) -> dict |
 
 def _findings(made: dict) -> list[str]:
     """What was run and what it says beside its numbers, one line each."""
-    counts, asked = made["counts"], made["asked"]
+    counts, options = made["counts"], made["asked"]
     said = [
         f"{counts['asked']:,} cases = {counts['ok']:,} ok + {counts['refused']:,} refused + "
-        f"{counts['failed']:,} failed; {made['settled']:,} settled; seed {asked['seed']}",
+        f"{counts['failed']:,} failed; {made['settled']:,} settled; seed {options['seed']}",
         population.said(made),
         f"errors: {made['reading']}",
     ]

@@ -43,7 +43,7 @@ def paper(
     def work() -> dict:
         from tipoff.studies.paper import stage
 
-        return stage.run(study_of(scene, out, set_, workers=workers), stage.Asked(starts))
+        return stage.run(study_of(scene, out, set_, workers=workers), stage.Options(starts))
 
     found = guarded(work, json_)
     if not json_:

@@ -23,6 +23,7 @@ input is told as far as the set is narrower than its bounds.
 """
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -42,7 +43,8 @@ _LONG, _SHORT, _LAST = 25, 12, 25  # steps of a descent: of a point drawn, of a 
 _WORK = {"point": 0.02, "descent": 2.0, "hop": 1.0, "end": 10.0}  # shares of the time, in hops
 
 
-class Plan(NamedTuple):
+@dataclass(frozen=True)
+class Plan:
     """Size of a search: ``points`` drawn, ``descents`` from the best of them, ends in the ``pool``,
     ``hops``, points ``kept``; relative error of a step where points are drawn, where a search goes
     down, and in what is told of its end."""

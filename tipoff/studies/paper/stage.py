@@ -20,6 +20,7 @@ from tipoff.scenes.scene import Scene, load
 from tipoff.studies import published
 from tipoff.studies.agreement import stage as compare
 from tipoff.studies.core.progress import Board, team
+from tipoff.studies.core.stage import Stage
 from tipoff.studies.core.study import Study, StudyError, read
 from tipoff.studies.paper import exits, inputs, known, misfit, results, scene_file, solutions, told
 from tipoff.studies.paper import page as drawn
@@ -34,14 +35,14 @@ _WRITTEN = 1e-5  # relative: a scene file has nine digits of most numbers, six o
 
 
 @dataclass(frozen=True)
-class Asked:
+class Options:
     """``starts`` searches for each stress, and the ``plan`` of each."""
 
     starts: int = 3
     plan: solutions.Plan = solutions.Plan()
 
 
-def run(study: Study, asked: Asked = Asked()) -> dict:
+def run(study: Study, options: Options = Options()) -> dict:
     """The searches, what they tell of every input, and the best set beside the printed tables;
     writes it as a scene too, and every end and admissible point as netCDF.
 
@@ -55,14 +56,14 @@ def run(study: Study, asked: Asked = Asked()) -> dict:
         # before the searches, which are dear, and not only after them
         with TemporaryDirectory() as folder:
             _write(base, np.full(len(inputs.UNKNOWNS), 0.5), np.zeros((5, 3)), Path(folder, SCENE))
-        found = _searches(study, base, asked)
+        found = _searches(study, base, options)
         best = min(found, key=told.misfit_of)
         path, data = study.path(SCENE), study.path(f"{NAME}.nc")
         _write(base, best.shares, best.rates, path)
-        left = exits.run(misfit.Launcher(base, asked.plan.tolerances[-1]), best.shares)
+        left = exits.run(misfit.Launcher(base, options.plan.tolerances[-1]), best.shares)
         results.save(data, found, found.index(best), left)
         result = {
-            "asked": {"starts": asked.starts, "plan": _plain(asked.plan)},
+            "asked": STAGE.plain(options),
             "admissible_deg_s": solutions.ADMISSIBLE,
             "negligible_deg_s": misfit.NEGLIGIBLE,
             "scatter_deg_s": misfit.SCATTER.tolist(),
@@ -71,7 +72,7 @@ def run(study: Study, asked: Asked = Asked()) -> dict:
             "inputs": told.ranges(found, best),
             "admissible": told.counted(found),
             "exit": exits.told(left),
-            "known": known.errors(load(CATALOGUED), asked.plan.tolerances[-1]),
+            "known": known.errors(load(CATALOGUED), options.plan.tolerances[-1]),
             "front": told.front(found).tolist(),
             "slips": published.slips(),
             "headline": published.headline(),
@@ -85,12 +86,12 @@ def run(study: Study, asked: Asked = Asked()) -> dict:
         ]
         return result, [path, data, *pictures]
 
-    return _with_present(study, study.stage(NAME, _key(study, asked), make))
+    return _with_present(study, STAGE.run(study, options, make))
 
 
 def stored(study: Study) -> dict | None:
     """The result, if it was made from the present scene, code and settings."""
-    found = study.stored(NAME, lambda found: _key(study, _asked(found["asked"])))
+    found = STAGE.stored(study)
     return found and _with_present(study, found)
 
 
@@ -194,9 +195,9 @@ def _differing(first, second, key: str = "") -> list[str]:
     return [] if first == second else [key]
 
 
-def _searches(study: Study, base: Scene, asked: Asked) -> list[solutions.Search]:
+def _searches(study: Study, base: Scene, options: Options) -> list[solutions.Search]:
     """Every search in its order, ``workers`` at a time; on Ctrl-C none is waited for or begun."""
-    plans = [(stress, seed) for seed in range(asked.starts) for stress in STRESSES]
+    plans = [(stress, seed) for seed in range(options.starts) for stress in STRESSES]
     with Board(NAME, len(plans)) as board, team(board, study.settings.workers) as pool:
 
         def one(stress: float, seed: int) -> solutions.Search:
@@ -204,7 +205,7 @@ def _searches(study: Study, base: Scene, asked: Asked) -> list[solutions.Search]
             key = content_hash(
                 base.hash,
                 sources.digest("tipoff.lowfi", "tipoff.studies.paper.solutions"),
-                _plain(asked.plan),
+                STAGE.plain(options)["plan"],
                 stress,
                 seed,
             )
@@ -216,7 +217,7 @@ def _searches(study: Study, base: Scene, asked: Asked) -> list[solutions.Search]
                 lambda tolerance: misfit.Launcher(base, tolerance),
                 stress,
                 seed,
-                asked.plan,
+                options.plan,
                 board.callback(label),
             )
             write_json(path, {"key": key, **solutions.plain(found)})
@@ -232,6 +233,9 @@ def _searches(study: Study, base: Scene, asked: Asked) -> list[solutions.Search]
         for future in as_completed(pending):
             future.result()
     return [future.result() for future in pending]
+
+
+STAGE = Stage(NAME, __name__, Options)
 
 
 def _with_present(study: Study, found: dict) -> dict:
@@ -250,22 +254,6 @@ def _with_present(study: Study, found: dict) -> dict:
             "description": kept.description,
         },
     }
-
-
-def _key(study: Study, asked: Asked) -> str:
-    return study.key(__name__, NAME, asked.starts, _plain(asked.plan))
-
-
-def _asked(plain: dict) -> Asked:
-    """Inverse of what a result holds of it."""
-    plan = plain["plan"]
-    return Asked(
-        plain["starts"], solutions.Plan(**plan | {"tolerances": tuple(plan["tolerances"])})
-    )
-
-
-def _plain(plan: solutions.Plan) -> dict:
-    return plan._asdict() | {"tolerances": list(plan.tolerances)}
 
 
 def lines(found: dict) -> list[str]:

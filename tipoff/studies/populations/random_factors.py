@@ -12,6 +12,7 @@ line, and only signs tell whether they add up or cancel.
 """
 
 import math
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -55,7 +56,8 @@ ERRORS = {
 }
 
 
-class Reading(NamedTuple):
+@dataclass(frozen=True)
+class Reading:
     """How Table 3 is read: ``values`` and ``angles`` as above, the ``rule`` of truncation, and
     whether the place inside the clearance at ignition is one more random factor."""
 

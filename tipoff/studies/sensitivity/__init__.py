@@ -7,7 +7,7 @@ from tipoff.studies.sensitivity import command
 def _load() -> Parts:
     from tipoff.studies.sensitivity import page, stage
 
-    return Parts(stage.run, stage.stored, page.draw)
+    return Parts(stage.run, stage.STAGE.stored, page.draw)
 
 
 QUESTION = Question(

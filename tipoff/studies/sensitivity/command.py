@@ -74,7 +74,7 @@ def sensitivity(
 
         study = study_of(scene, out, set_, element_size=element_size, workers=workers)
         tolerances = None if vary is None else str(vary)
-        return stage.run(study, stage.Asked(tolerances, points, seed, model and model.value))
+        return stage.run(study, stage.Options(tolerances, points, seed, model and model.value))
 
     found = guarded(work, json_)
     if not json_:

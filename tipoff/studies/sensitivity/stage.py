@@ -2,8 +2,8 @@
 constants moved one at a time, as in Table 2 of the paper, and Sobol' indices over everything a file
 calls uncertain, which the paper could not afford."""
 
+from dataclasses import dataclass
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from tipoff.lowfi.numerics import Numerics
 from tipoff.mechanics.models import COMPLIANT, SPRINGS
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.studies import published
+from tipoff.studies.core.stage import Stage
 from tipoff.studies.core.study import Study, StudyError
 from tipoff.studies.populations import answers, population
 from tipoff.studies.populations.population import Population, Surrogate
@@ -24,7 +25,8 @@ _HALVINGS = 3  # smaller runs beside the whole one, for convergence
 _FINE = Numerics().relative_tolerance  # deviations of a thousandth are asked of a table
 
 
-class Asked(NamedTuple):
+@dataclass(frozen=True)
+class Options:
     """What ``tipoff sensitivity`` is given beside the scene: a file of tolerances or None for
     ``tolerances.DEFAULT``, base points (a power of two), a seed, the name of a model, None for the
     default."""
@@ -35,24 +37,24 @@ class Asked(NamedTuple):
     model: str | None = None
 
 
-def run(study: Study, asked: Asked = Asked()) -> dict:
+def run(study: Study, options: Options = Options()) -> dict:
     """``tables`` like the paper's Table 2, ``sobol`` with indices by quantity, and ``summary`` in
     words.
 
     Raises SceneError for bad input, before anything runs, and StudyError where too few cases
     settle.
     """
-    _require(study, asked)
+    _require(study, options)
 
     def make() -> tuple[dict, list[Path]]:
-        model = population.surrogate(study, asked.model)
+        model = population.surrogate(study, options.model)
         found = {
-            "asked": asked._asdict(),
+            "asked": STAGE.plain(options),
             **population.answering(study, model),
             "citation": published.CITATION,
-            "tables": _tables(study, model, asked),
+            "tables": _tables(study, model, options),
             "paper": _paper(),
-            "sobol": _sobol(study, model, asked),
+            "sobol": _sobol(study, model, options),
         }
         found["summary"] = summary(found)
         files = [
@@ -62,42 +64,35 @@ def run(study: Study, asked: Asked = Asked()) -> dict:
         ]
         return found, files
 
-    return study.stage(NAME, _key(study, asked), make)
+    return STAGE.run(study, options, make)
 
 
-def stored(study: Study) -> dict | None:
-    """The result, if it was made from the present scene, code, settings and file of tolerances."""
-    return study.stored(NAME, lambda found: _key(study, Asked(**found["asked"])))
+def _varied(study: Study, options: Options) -> str:
+    return tolerances.digest(options.vary or tolerances.DEFAULT)
 
 
-def _key(study: Study, asked: Asked) -> str:
-    return study.key(
-        __name__,
-        NAME,
-        asked._asdict(),
-        tolerances.digest(asked.vary or tolerances.DEFAULT),
-    )
+STAGE = Stage(NAME, __name__, Options, _varied)
 
 
-def _require(study: Study, asked: Asked) -> None:
+def _require(study: Study, options: Options) -> None:
     faults = []
-    if asked.points < 2**_HALVINGS * 8 or asked.points & (asked.points - 1):
+    if options.points < 2**_HALVINGS * 8 or options.points & (options.points - 1):
         faults.append(
             Fault(
-                "--points", NAME, str(asked.points), f"a power of two, {2**_HALVINGS * 8} or more"
+                "--points", NAME, str(options.points), f"a power of two, {2**_HALVINGS * 8} or more"
             )
         )
-    if asked.seed < 1:
-        faults.append(Fault("--seed", NAME, str(asked.seed), "1 or more"))
+    if options.seed < 1:
+        faults.append(Fault("--seed", NAME, str(options.seed), "1 or more"))
     try:
-        tolerances.load(asked.vary or tolerances.DEFAULT, study.scene, asked.model or COMPLIANT)
+        tolerances.load(options.vary or tolerances.DEFAULT, study.scene, options.model or COMPLIANT)
     except SceneError as error:
         faults += error.faults
     if faults:
         raise SceneError(faults)
 
 
-def _tables(study: Study, model: Surrogate, asked: Asked) -> list[dict]:
+def _tables(study: Study, model: Surrogate, options: Options) -> list[dict]:
     """One table about the constants of the surrogate, and one about the scene's own where a
     calibration changed them."""
     if model.scene.contact is None:
@@ -145,28 +140,31 @@ def _paper() -> dict:
     return {"rows": table, "largest": contact_table.largest(table)}
 
 
-def _sobol(study: Study, model: Surrogate, asked: Asked) -> dict:
-    spread = tolerances.load(asked.vary or tolerances.DEFAULT, model.scene, model.name)
+def _sobol(study: Study, model: Surrogate, options: Options) -> dict:
+    spread = tolerances.load(options.vary or tolerances.DEFAULT, model.scene, model.name)
     inputs = len(spread.inputs)
     found = population.run(
-        study, NAME, model, Listed(spread.rows(indices.points(asked.points, inputs, asked.seed)))
+        study,
+        NAME,
+        model,
+        Listed(spread.rows(indices.points(options.points, inputs, options.seed))),
     )
     whole = indices.whole_blocks(found.settled, inputs)
-    if whole.sum() < asked.points // 2:
+    if whole.sum() < options.points // 2:
         raise StudyError(
-            f"only {whole.sum()} of {asked.points} base points settled in each of their "
+            f"only {whole.sum()} of {options.points} base points settled in each of their "
             f"{inputs + 2} cases: too few "
             "to say anything of all; see the statuses in the store"
         )
     return {
         "inputs": [_described(item) for item in spread.inputs],
         "left_out": spread.left_out,
-        "base_points": asked.points,
+        "base_points": options.points,
         "used": int(whole.sum()),
         "cases": found.counts,
         "not_settled": int((~found.settled).sum()),
         "store": found.store,
-        "quantities": [_quantity(item, found, inputs, asked) for item in answers.ALL],
+        "quantities": [_quantity(item, found, inputs, options) for item in answers.ALL],
     }
 
 
@@ -184,11 +182,13 @@ def _described(item: tolerances.Input) -> dict:
     }
 
 
-def _quantity(item: answers.Quantity, found: Population, inputs: int, asked: Asked) -> dict:
+def _quantity(item: answers.Quantity, found: Population, inputs: int, options: Options) -> dict:
     """Spread and indices of one quantity, those of the first parts of the points too."""
     values = item.of(found.results)
-    sizes = [asked.points >> halving for halving in range(_HALVINGS, -1, -1)]
-    series = [indices.indices(values[: size * (inputs + 2)], inputs, asked.seed) for size in sizes]
+    sizes = [options.points >> halving for halving in range(_HALVINGS, -1, -1)]
+    series = [
+        indices.indices(values[: size * (inputs + 2)], inputs, options.seed) for size in sizes
+    ]
     settled = values[np.isfinite(values)]
     return {
         "name": item.name,

@@ -8,7 +8,7 @@ from tipoff.studies.sweeps import command
 def _load() -> Parts:
     from tipoff.studies.sweeps import page, stage
 
-    return Parts(stage.run, stage.stored, page.draw)
+    return Parts(stage.run, stage.STAGE.stored, page.draw)
 
 
 QUESTION = Question("sweeps", "How large an error may be", "Sweeps", command.add, _load)

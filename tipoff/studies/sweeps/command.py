@@ -46,7 +46,7 @@ def sweeps(
         from tipoff.studies.sweeps import stage
 
         study = study_of(scene, out, set_, element_size=element_size, workers=workers)
-        return stage.run(study, stage.Asked(angles, model and model.value))
+        return stage.run(study, stage.Options(angles, model and model.value))
 
     found = guarded(work, json_)
     if not json_:

@@ -2,14 +2,15 @@
 time over size and direction; where the largest rate stops to grow, if it does; which walls the
 payload leans on; and the same launcher with a thrust that burns on, or out."""
 
+from dataclasses import dataclass
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.studies import published
 from tipoff.studies.core.progress import Board
+from tipoff.studies.core.stage import Stage
 from tipoff.studies.core.study import Study
 from tipoff.studies.populations import answers, population
 from tipoff.studies.populations.population import Population, Surrogate
@@ -28,7 +29,8 @@ _COARSER = 5  # directions of the ensemble for each one whose pads are looked at
 _DEPARTS = 0.05  # of the rate of a free payload: by more the rail has its say
 
 
-class Asked(NamedTuple):
+@dataclass(frozen=True)
+class Options:
     """What ``tipoff sweeps`` is given beside the scene: directions of each size, the name of a
     model, None for the default."""
 
@@ -36,26 +38,26 @@ class Asked(NamedTuple):
     model: str | None = None
 
 
-def run(study: Study, asked: Asked = Asked()) -> dict:
+def run(study: Study, options: Options = Options()) -> dict:
     """``launches``: the scene as given, and with its thrust stretched, each with its factors;
     ``summary`` in words.
 
     Raises SceneError for bad input, before anything runs.
     """
-    if asked.angles < _FEWEST:
-        raise SceneError([Fault("--angles", NAME, str(asked.angles), f"{_FEWEST} or more")])
+    if options.angles < _FEWEST:
+        raise SceneError([Fault("--angles", NAME, str(options.angles), f"{_FEWEST} or more")])
 
     def make() -> tuple[dict, list[Path]]:
-        model = population.surrogate(study, asked.model)
+        model = population.surrogate(study, options.model)
         alone = model._replace(scene=factors.alone(model.scene))
-        launches = [_launch(study, alone, asked, 1.0, burnout.exit_of(alone))]
-        launches[0]["faces"], looked_at = _sides(study, alone, asked)
+        launches = [_launch(study, alone, options, 1.0, burnout.exit_of(alone))]
+        launches[0]["faces"], looked_at = _sides(study, alone, options)
         for factor, seen in zip(launches[0]["factors"], looked_at):
             factor["sides"] = seen
         if other := burnout.other_way(alone):
-            launches.append(_launch(study, other[1], asked, other[0], other[2]))
+            launches.append(_launch(study, other[1], options, other[0], other[2]))
         found = {
-            "asked": asked._asdict(),
+            "asked": STAGE.plain(options),
             **population.answering(study, model),
             "citation": published.CITATION,
             "launches": launches,
@@ -68,25 +70,19 @@ def run(study: Study, asked: Asked = Asked()) -> dict:
         ]
         return found, files
 
-    return study.stage(NAME, _key(study, asked), make)
+    return STAGE.run(study, options, make)
 
 
-def stored(study: Study) -> dict | None:
-    """The result, if it was made from the present scene, code and settings."""
-    return study.stored(NAME, lambda found: _key(study, Asked(**found["asked"])))
-
-
-def _key(study: Study, asked: Asked) -> str:
-    return study.key(__name__, NAME, asked._asdict())
+STAGE = Stage(NAME, __name__, Options)
 
 
 def _launch(
-    study: Study, model: Surrogate, asked: Asked, stretch: float, leaves: burnout.Exit | None
+    study: Study, model: Surrogate, options: Options, stretch: float, leaves: burnout.Exit | None
 ) -> dict:
     """All cases of one surrogate in one ensemble, and what becomes of each factor."""
-    directions = factors.angles(asked.angles)
+    directions = factors.angles(options.angles)
     found = population.run(study, NAME, model, factors.cases(directions), _TOLERANCE)
-    count = len(SIZES) * asked.angles
+    count = len(SIZES) * options.angles
     return {
         "stretch": stretch,
         "exit_s": leaves and leaves.time,
@@ -134,12 +130,12 @@ def _factor(
     }
 
 
-def _sides(study: Study, model: Surrogate, asked: Asked) -> tuple[list[str], list[dict | None]]:
+def _sides(study: Study, model: Surrogate, options: Options) -> tuple[list[str], list[dict | None]]:
     """Faces, and for each factor which of them was touched first and bore most, on a coarser grid
     of directions."""
     if model.scene.contact is None:
         return [], [None] * len(FACTORS)
-    directions = factors.angles(max(_FEWEST, asked.angles // _COARSER))
+    directions = factors.angles(max(_FEWEST, options.angles // _COARSER))
     rows = [row for factor in FACTORS for row in factor.rows(SIZES, directions)]
     with Board("which walls", 1) as board:
         seen = sides.found(
