@@ -17,7 +17,7 @@ from tipoff.mechanics.outcome import Outcome
 from tipoff.studies import published
 from tipoff.studies.core.settings import Settings
 from tipoff.studies.core.study import Study
-from tipoff.studies.paper import exits, inputs, misfit, results, solutions, told
+from tipoff.studies.paper import exits, inputs, misfit, results, solutions, summary
 from tipoff.studies.paper import stage as paper
 from tipoff.studies.populations import answers
 
@@ -48,7 +48,7 @@ def test_exits_are_those_of_single_runs():
     )
     left = exits.run(launcher, shares)
     assert np.degrees(left.rate).tolist() == launcher.rates(shares).tolist()
-    scene, rows = launcher.scene(shares), exits.told(left)["conditions"]
+    scene, rows = launcher.scene(shares), exits.summary(left)["conditions"]
     for name, row in zip(PHI, rows, strict=True):
         alone = lowfi.run(
             scene.condition(name), "springs", numerics=Numerics(relative_tolerance=1e-5)
@@ -91,7 +91,7 @@ def test_a_condition_that_does_not_settle_has_no_values_and_says_why(quick):
     )
     cases = [Case("exited", "", ended, 10, 0.0)] * 5
     cases[2] = Case("time_limit", "", Outcome(), 10, 0.0)
-    odd = found | {"exit": exits.told(columns.of(cases))}
+    odd = found | {"exit": exits.summary(columns.of(cases))}
     rows = odd["exit"]["conditions"]
     assert [row["lateral_velocity_mm_s"] for row in rows] == [5.0, 5.0, None, 5.0, 5.0]
     said = "\n".join(paper.lines(odd))
@@ -158,7 +158,8 @@ def test_data_explain_themselves(quick):
         "long_name"
     ].endswith("of the clearance")
     assert (
-        data.change.values.tolist() == list(told.CHANGES) and told.CHANGES[0] == "k = 66000 N/mm^e"
+        data.change.values.tolist() == list(summary.CHANGES)
+        and summary.CHANGES[0] == "k = 66000 N/mm^e"
     )
     assert data.radial_misalignment.values.tolist() == [0.0, 15.0, 35.0, 60.0, 90.0]
 

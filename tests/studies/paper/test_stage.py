@@ -20,7 +20,7 @@ from tipoff.studies.agreement import stage as compare
 from tipoff.studies.core.progress import Interrupted
 from tipoff.studies.core.settings import Settings
 from tipoff.studies.core.study import Study, StudyError
-from tipoff.studies.paper import inputs, known, misfit, scene_file, solutions
+from tipoff.studies.paper import catalogued, inputs, misfit, scene_file, solutions
 from tipoff.studies.paper import page as section
 from tipoff.studies.paper import stage as paper
 
@@ -225,7 +225,7 @@ def test_catalogue_scene_gives_the_printed_rates():
     errors = np.sort(np.abs(misfit.nine(found)).ravel())
     assert errors[7] < 0.2 and f"within {errors[8]:.2g} deg/s" in kept.description
     assert solutions.largest_negligible(found) < 0.4 and kept.provenance["thrust.arm"] == "inferred"
-    told = known.errors(kept, 1e-5)
+    told = catalogued.errors(kept, 1e-5)
     assert told["largest_error_deg_s"] == errors[8] and told[
         "largest_negligible_deg_s"
     ] == solutions.largest_negligible(found)

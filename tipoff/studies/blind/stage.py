@@ -110,9 +110,9 @@ def seed_of(study: Study, options: Options) -> int:
 
 def lines(found: dict) -> list[str]:
     """The verdicts in words."""
-    said = [f"{len(found['conditions'])} conditions drawn with seed {found['seed']}"]
+    text = [f"{len(found['conditions'])} conditions drawn with seed {found['seed']}"]
     for name in ("calibrated", "compliant"):
-        said += [
+        text += [
             f"  {name:11} {row['condition']}: rate L2 {_percent(row['rate_relative_l2'])}, settled "
             f"error "
             f"{_rate(row['settled_rate_error_deg_s'])} (reference within "
@@ -120,7 +120,7 @@ def lines(found: dict) -> list[str]:
             f"{row['verdict']}"
             for row in found[name]
         ]
-    return said
+    return text
 
 
 def _percent(value: float | None) -> str:

@@ -34,20 +34,20 @@ def sensitivity(scale_error, misalignment) -> np.ndarray:
 def calibrated(sheet: Sheet, log: Log) -> Calibrated:
     """Rates and forces of a log, compensated and turned into body axes."""
     gyro, turn = sheet.gyro, sheet.mounting
-    felt, force = log.rate - np.array(gyro.bias), None
+    rate, force = log.rate - np.array(gyro.bias), None
     if log.acceleration is not None:
         assert sheet.accelerometer is not None  # as a sheet with accelerations has to have it
         force = (log.acceleration - np.array(sheet.accelerometer.bias)) / (
             1.0 + np.array(sheet.accelerometer.scale_error)
         )
-        felt = felt - force @ np.array(gyro.g_sensitivity).T
+        rate = rate - force @ np.array(gyro.g_sensitivity).T
         force = force @ turn.T
     if log.temperature is not None:
-        felt = felt - (log.temperature - gyro.reference_temperature)[:, None] * np.array(
+        rate = rate - (log.temperature - gyro.reference_temperature)[:, None] * np.array(
             gyro.temperature
         )
     inverse = np.linalg.inv(sensitivity(gyro.scale_error, gyro.misalignment))
-    return Calibrated(log.time, felt @ (turn @ inverse).T, force, log.temperature)
+    return Calibrated(log.time, rate @ (turn @ inverse).T, force, log.temperature)
 
 
 def untold(sheet: Sheet, log: Log) -> list[str]:

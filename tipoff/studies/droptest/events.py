@@ -44,7 +44,7 @@ class Events(NamedTuple):
 
 class Spans(NamedTuple):
     """First and last instant (s) of the windows: at ``rest`` before release, ``reference`` in free
-    fall, ``settled`` after exit; ``instant`` is when the settled rate is told, in the middle of the
+    fall, ``settled`` after exit; ``instant`` is of the settled rate, in the middle of the
     window over which simulations take it."""
 
     rest: tuple[float, float]
@@ -61,14 +61,14 @@ def find(sheet: Sheet, found: Calibrated, source: str) -> Events:
     interval = found.time[1] - found.time[0]
     release = _release(sheet, found, interval, source)
     hanging = _force(found)[: max(1, release - int(_NOISE_FROM / interval))]
-    felt = float(np.linalg.norm(hanging.mean(axis=0)))
-    if abs(felt / GRAVITY - 1.0) > _AT_REST:
+    measured = float(np.linalg.norm(hanging.mean(axis=0)))
+    if abs(measured / GRAVITY - 1.0) > _AT_REST:
         raise SceneError(
             [
                 Fault(
                     source,
                     "units.acceleration",
-                    f"{felt:.4g} m/s2 at rest",
+                    f"{measured:.4g} m/s2 at rest",
                     f"{GRAVITY:.4g} m/s2 within {100.0 * _AT_REST:g} %: unit, scale or bias is "
                     f"wrong",
                 )
@@ -103,9 +103,9 @@ def _release(sheet: Sheet, found: Calibrated, interval: float, source: str) -> i
     span = max(3, int(np.ceil(reach(sheet.channel_class) / interval)))
     low, high = max(crossing - span, 1), min(crossing + span, found.time.size - 1)
     before = force[max(0, low - 5 * span) : low].mean(axis=0)
-    felt = force[low:high] @ before / (before @ before)  # 1 while hanging, 0 in free fall
+    measured = force[low:high] @ before / (before @ before)  # 1 while hanging, 0 in free fall
     # Sum of squares that a step after k samples leaves, but for a constant.
-    wrong = np.concatenate([[0.0], np.cumsum((felt - 1.0) ** 2 - felt**2)])
+    wrong = np.concatenate([[0.0], np.cumsum((measured - 1.0) ** 2 - measured**2)])
     return low + int(np.argmin(wrong))
 
 

@@ -18,8 +18,8 @@ _AROUND = 0.12  # s around ignition where they are not
 def row_of(number: int, drop: Drop, simulated: np.ndarray) -> dict:
     """One test among simulated rates (n,3) deg/s."""
     found, events, sheet = drop.reduced, drop.events, drop.sheet
-    change, sure = np.degrees(found.change), np.degrees(found.combined)
-    place = judgement.standing(simulated, change, sure, number)
+    change, uncertainty = np.degrees(found.change), np.degrees(found.combined)
+    place = judgement.standing(simulated, change, uncertainty, number)
     return {
         "test": drop.name,
         "simulated": sheet.simulated,
@@ -38,9 +38,9 @@ def row_of(number: int, drop: Drop, simulated: np.ndarray) -> dict:
         "before_deg_s": np.degrees(found.before).tolist(),
         "after_deg_s": np.degrees(found.after).tolist(),
         "change_deg_s": change.tolist(),
-        "standard_uncertainty_deg_s": sure.tolist(),
+        "standard_uncertainty_deg_s": uncertainty.tolist(),
         "coverage_factor": found.factor.tolist(),
-        "expanded_uncertainty_deg_s": (found.factor * sure).tolist(),
+        "expanded_uncertainty_deg_s": (found.factor * uncertainty).tolist(),
         "coverage": COVERAGE,
         "budget_deg_s": {name: np.degrees(part).tolist() for name, part in found.parts.items()},
         "noise_deg_s": np.degrees(found.noise).tolist(),
@@ -79,7 +79,7 @@ def joint(tests: list[dict], simulated: np.ndarray) -> dict:
     """``together``: p of all tests, and of the two ways to ask for it after Bonferroni; ``regions``
     of prediction for each pair of components; ``power`` of what is asked of them."""
     changes = np.array([row["change_deg_s"] for row in tests])
-    sure = np.array([row["standard_uncertainty_deg_s"] for row in tests])
+    uncertainty = np.array([row["standard_uncertainty_deg_s"] for row in tests])
     regions = []
     for pair in PAIRS:
         centre, covariance, radius = judgement.region(simulated[:, pair])
@@ -94,7 +94,7 @@ def joint(tests: list[dict], simulated: np.ndarray) -> dict:
         )
     out, spread = (
         judgement.combined([row["p_distance"] for row in tests]),
-        judgement.p_spread(simulated, changes, sure),
+        judgement.p_spread(simulated, changes, uncertainty),
     )
     return {
         "together": {
@@ -120,21 +120,21 @@ def quantiles(results: Columns, settled: np.ndarray, independent: bool) -> dict[
 def summary(scene: str, found: dict) -> list[str]:
     """The whole result in words, one line each."""
     cases, tests = found["cases"], found["tests"]
-    said = [
+    text = [
         f"{scene}: {len(tests)} drop tests against {cases['settled']:,} settled of "
         f"{cases['asked']:,} cases of the surrogate, "
         f"{_drawn(found)}",
-        f"  {population.said(found)}",
+        f"  {population.model_line(found)}",
     ]
     if any(row["simulated"] for row in tests):
-        said.append(
+        text.append(
             "  SIMULATED     logs marked so come from a sensor model: they show that the reduction "
             "works and say "
             "nothing of a launcher"
         )
     for row in tests:
-        said += _test_lines(row)
-    return [*said, *_cases(found["cases"]), *_verdict(found)]
+        text += _test_lines(row)
+    return [*text, *_cases(found["cases"]), *_verdict(found)]
 
 
 def _cases(cases: dict) -> list[str]:
@@ -165,8 +165,10 @@ def _test_lines(row: dict) -> list[str]:
     largest = sorted(row["budget_deg_s"], key=lambda name: -max(row["budget_deg_s"][name]))[:3]
     parts = ", ".join(f"{name} {max(row['budget_deg_s'][name]):.2g}" for name in largest)
     values = ", ".join(
-        f"{axis} {value:+.3f} ± {sure:.3f}"
-        for axis, value, sure in zip("xyz", row["change_deg_s"], row["expanded_uncertainty_deg_s"])
+        f"{axis} {value:+.3f} ± {uncertainty:.3f}"
+        for axis, value, uncertainty in zip(
+            "xyz", row["change_deg_s"], row["expanded_uncertainty_deg_s"]
+        )
     )
     places = ", ".join(
         f"{axis} {100.0 * share:.1f} % (p {p:.3f})"

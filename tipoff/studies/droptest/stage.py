@@ -2,7 +2,7 @@
 same launcher.
 
 The simulated cases vary what the distributions that are asked for vary, the catalogue's ``paper``
-unless told otherwise, and start at rest in free fall. How a test sits among them is told by ranks
+unless another is given, and start at rest in free fall. The place of a test among them is a rank
 (``studies.droptest.judgement``), what that is worth by its power (``studies.droptest.power``).
 """
 

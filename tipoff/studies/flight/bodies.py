@@ -100,7 +100,7 @@ def of_outcomes(outcomes: Sequence[Outcome]) -> Exits:
 
 
 def unknown_size(scene: Scene) -> str:
-    """Why no clearance can be told in this scene; empty where it can."""
+    """Why no clearance can be computed in this scene; empty where it can."""
     if _size(scene) is None:
         return "neither flight.body nor payload.size says how large the payload is"
     return (

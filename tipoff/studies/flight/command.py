@@ -79,8 +79,8 @@ def flight(
     def work() -> dict:
         from tipoff.studies.flight import stage
 
-        said = {"range": range_, "altitude": altitude, "duration": duration}
-        table = [f"flight.{key}={value}" for key, value in said.items() if value is not None]
+        given = {"range": range_, "altitude": altitude, "duration": duration}
+        table = [f"flight.{key}={value}" for key, value in given.items() if value is not None]
         study = study_of(scene, out, [*(set_ or []), *table], condition, element_size, workers)
         return stage.run(study, stage.Options(vary, cases, seed, model and model.value))
 

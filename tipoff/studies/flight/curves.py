@@ -61,7 +61,7 @@ def _clearance(both: flown.Pair) -> dict:
 
 
 def _plain(values: np.ndarray) -> list:
-    """Six digits, which no picture can tell from all."""
+    """Six digits, enough for every picture."""
     return (
         [_plain(row) for row in values]
         if values.ndim > 1

@@ -91,8 +91,8 @@ _JUDGED = (
 
 
 def orbit(scene: Scene) -> dict:
-    """The flight asked for, resolved; ``no_clearance`` says why none can be told, empty where it
-    can; ``rails_listed`` whether the rails are among the boxes only if the scene lists them."""
+    """The requested flight, resolved; ``no_clearance`` says why none is computed, empty where one
+    is; ``rails_listed`` whether the rails are among the boxes only if the scene lists them."""
     flight = bodies.table_of(scene).record()
     return {
         "mean_motion_rad_s": flight.mean_motion,
@@ -118,7 +118,7 @@ def cases(found: Flown, population: Population, uncertainty: Uncertainty) -> dic
     """Counts, quantiles with bounds, how many touch again and how many never reach the target, and
     points to draw."""
     independent = uncertainty.sampling == "random"
-    told, reached, settled = (
+    known, reached, settled = (
         np.isfinite(found.clearance),
         np.isfinite(found.passes),
         population.settled,
@@ -148,7 +148,7 @@ def cases(found: Flown, population: Population, uncertainty: Uncertainty) -> dic
         },
         # all: none was asked for
         "limit_open": 0 if np.isnan(found.limit).all() else int(np.isnan(found.limit).sum()),
-        "touch": _share(found.clearance[told] <= 0.0, independent),
+        "touch": _share(found.clearance[known] <= 0.0, independent),
         "not_reached": _share(~reached, independent),
         "points_m": [[float(f"{value:.6g}") for value in point] for point in points],
     }
@@ -215,35 +215,35 @@ def dataset(
 def lines(found: dict) -> list[str]:
     """The result in words and units."""
     flight, many = found["flight"], found["cases"]
-    said = [
+    text = [
         f"{found['scene']}: target {flight['range_m']:g} m along the launch axis, orbit of "
         f"{flight['period_s'] / 60.0:.4g} min",
-        f"  {population.said(found)}",
+        f"  {population.model_line(found)}",
     ]
     for item in found["conditions"]:
-        said.append(
+        text.append(
             f"  {item['condition']:10} "
             + (_one(item["flown"]) if item["flown"] else item["status"])
         )
     counts = many["counts"]
-    said.append(
+    text.append(
         f"  {counts['asked']:,} cases = {counts['ok']:,} ok + {counts['refused']:,} refused + "
         f"{counts['failed']:,} failed; "
         f"{many['settled']:,} flown"
     )
-    said += [
+    text += [
         f"  {WORDS[name]:44} " + "  ".join(_quantile(row) for row in rows)
         for name, rows in many["quantiles"].items()
     ]
     if many["touch"]:
-        said.append(
+        text.append(
             f"  touch again                                  {many['touch']['count']:,} of "
             f"{many['touch']['of']:,}"
         )
     if doubt := doubts(found):
-        said.append(f"  {doubt}")
+        text.append(f"  {doubt}")
     return [
-        *said,
+        *text,
         f"  bounds: {many['confidence']:.0%} confidence, {many['bounds']}",
         f"  store {many['store']}, data {found['data']}",
     ]
@@ -252,17 +252,17 @@ def lines(found: dict) -> list[str]:
 def doubts(found: dict) -> str:
     """What is to be known of the result beside its numbers, or nothing."""
     flight, left = found["flight"], found["cases"]["limit_open"]
-    said = [f"no clearance is told: {flight['no_clearance']}"] if flight["no_clearance"] else []
+    text = [f"no clearance is computed: {flight['no_clearance']}"] if flight["no_clearance"] else []
     if flight["rails_listed"]:
-        said.append(
+        text.append(
             "the rails are given by a file: the clearance counts them only as far as "
             "flight.envelope lists them"
         )
     if left:
-        said.append(
+        text.append(
             f"whether {left:,} cases reach the pointing limit stayed open, and they are not counted"
         )
-    return "; ".join(said)
+    return "; ".join(text)
 
 
 def _one(row: dict) -> str:

@@ -20,7 +20,7 @@ def draws(
     """``count`` sets of overrides of ``scene``, and the names of the constants that differ in them.
 
     Each is drawn by itself from the normal distribution of its 95 % interval, and inside it (a
-    Latin hypercube). A constant without an interval, which the curves do not tell, keeps its value.
+    Latin hypercube). A constant without an interval keeps its value.
     """
     from tipoff.calibration import parameters
 

@@ -91,12 +91,12 @@ def _uncertain(found: dict) -> str:
 
 def summary(found: dict) -> list[str]:
     """What the study says, one line each."""
-    said = [
+    text = [
         f"limits: {', '.join(found['limits_said'])}; each case within all of them with probability "
         f"{found['probability']:g}, "
         f"shown at {found['confidence']:.0%} confidence by {found['cases']:,} cases"
     ]
-    return [*said, population.said(found)] + [_line(row, _unit(row)) for row in found["rows"]]
+    return [*text, population.model_line(found)] + [_line(row, _unit(row)) for row in found["rows"]]
 
 
 def _unit(row: dict) -> str:
@@ -120,9 +120,9 @@ def _odd(row: dict, unit: str) -> list[str]:
     """Where the count of cases above does not grow with the tolerance, in words."""
     again, falls = row["nominal"]["again"], row["nominal"]["falls"]
     sizes = ", ".join(f"{size:.3g}" for size in again)
-    said = [f"certified again beyond a failure, which is not used: {sizes}{unit}"] if again else []
+    text = [f"certified again beyond a failure, which is not used: {sizes}{unit}"] if again else []
     ends = " and from ".join(f"{one:.3g} to {two:.3g}" for one, two in falls)
-    return said + ([f"fewer cases above, not more, from {ends}{unit}"] if falls else [])
+    return text + ([f"fewer cases above, not more, from {ends}{unit}"] if falls else [])
 
 
 def value(answer: dict, unit: str = "") -> str:

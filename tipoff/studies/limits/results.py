@@ -38,7 +38,7 @@ def save(path: Path, values: np.ndarray, scale: float, tolerances: Mapping[str, 
 
 def load(path: Path) -> np.ndarray | None:
     """The values (n,k) that ``save`` wrote; None where they are not there, those of other
-    quantities, or not whole, which is said."""
+    quantities, or not whole, which is reported."""
     if not path.is_file():
         return None
     import xarray

@@ -4,7 +4,7 @@ scale.
 ``above(s)`` counts the cases above a limit at scale s, and s is certified while the count is at
 most ``allowed``. Scales halved from ``most`` down are all tried, so that it is seen, not assumed,
 whether the count grows with the scale; then the gap between the smallest scale that fails and the
-one tried before it is bisected. What passes again beyond the first failure is not used, but told.
+one tried before it is bisected. Scales that pass beyond the first failure are reported, not used.
 """
 
 import math

@@ -140,8 +140,8 @@ class Cases:
             self._model.compliance,
         )
         path = self._study.path(f"{self._folder}/{ensemble.key[:16]}.nc")
-        if (known := results.load(path)) is not None:
-            return known
+        if (stored := results.load(path)) is not None:
+            return stored
         pieces = (
             drawn.rows(begin, min(begin + PIECE, drawn.asked))
             for begin in range(0, drawn.asked, PIECE)

@@ -80,8 +80,8 @@ def add(app: typer.Typer) -> None:
         workers: Workers = None,
         json_: Json = False,
     ) -> None:
-        """Random errors of thrust and mass as in the paper's Table 3: rates, tails, and how sure
-        both are; writes montecarlo.json.
+        """Random errors of thrust and mass as in the paper's Table 3: rates, tails, and the
+        uncertainty of both; writes montecarlo.json.
 
         The first thousand cases are the paper's number. All readings of the table are compared, and
         both surrogates on equal draws.

@@ -24,7 +24,7 @@ from tipoff.studies.populations.random_factors import READINGS, Reading
 NAME = "montecarlo"
 PAPER = 1000  # cases of the paper
 CASES = 1_000_000
-_COMPARED = 10_000  # cases of each reading: differences of 2 % between distributions can be told
+_COMPARED = 10_000  # cases of each reading: differences of 2 % between distributions can be seen
 _FEWEST = 2  # settled cases, without which there is no standard deviation
 _CONVERGING = (0.5, 0.95, 0.99)
 _RATES = (*answers.RATES, answers.TOTAL_RATE)
@@ -162,9 +162,9 @@ def _readings(study: Study, options: Options, model: Surrogate, found: Populatio
 
 
 def _apart(here: list[np.ndarray], values: list[np.ndarray]) -> dict:
-    told = values[0].size >= _FEWEST
+    enough = values[0].size >= _FEWEST
     distance, chance = (
-        spread.apart(here, values) if told and here[0].size >= _FEWEST else (None, None)
+        spread.apart(here, values) if enough and here[0].size >= _FEWEST else (None, None)
     )
     return {
         "distance": distance,
@@ -173,7 +173,7 @@ def _apart(here: list[np.ndarray], values: list[np.ndarray]) -> dict:
             {"name": item.name, **spread.moments(each), "quantiles": spread.quantiles(each)}
             for item, each in zip(_RATES, values)
         ]
-        if told
+        if enough
         else None,
     }
 
@@ -225,49 +225,51 @@ def _models(study: Study, options: Options, model: str, found: Population) -> di
 def _findings(made: dict) -> list[str]:
     """What was run and what it says beside its numbers, one line each."""
     counts, options = made["counts"], made["asked"]
-    said = [
+    text = [
         f"{counts['asked']:,} cases = {counts['ok']:,} ok + {counts['refused']:,} refused + "
         f"{counts['failed']:,} failed; {made['settled']:,} settled; seed {options['seed']}",
-        population.said(made),
+        population.model_line(made),
         f"errors: {made['reading']}",
     ]
     lost = [row["reading"] for row in made["readings"] if row["distance"] is None]
-    said += [f"too few cases settled to compare: {'; '.join(lost)}"] if lost else []
+    text += [f"too few cases settled to compare: {'; '.join(lost)}"] if lost else []
     others = [
         row
         for row in made["readings"]
         if row["reading"] not in lost and row["chance"] < 0.01 and not row["same"]
     ]
-    if told := "; ".join(f"{row['reading']} (distance {row['distance']:.3f})" for row in others):
-        said.append(f"readings that can be told from this one: {told}")
+    if others_text := "; ".join(
+        f"{row['reading']} (distance {row['distance']:.3f})" for row in others
+    ):
+        text.append(f"readings that can be told from this one: {others_text}")
     elif not lost:
-        said.append("no other reading of the table can be told from this one")
+        text.append("no other reading of the table can be told from this one")
     if made["models"] and not made["models"]["quantities"]:
-        said.append(
+        text.append(
             f"springs against compliant contact on the same {made['models']['cases']:,} draws: "
             f"none settled on both"
         )
     elif made["models"]:
         rates = [row for row in made["models"]["quantities"] if row["unit"] == "deg/s"]
-        said.append(
+        text.append(
             f"springs against compliant contact on the same {made['models']['cases']:,} draws, "
             f"root mean square: "
             + ", ".join(f"{row['label']} {row['root_mean_square']:.3g}" for row in rates)
             + " deg/s"
         )
-    return said
+    return text
 
 
 def _numbers(made: dict) -> list[str]:
     """The numbers in words and units."""
-    said = []
+    text = []
     for item in made["quantities"]:
         row = next(row for row in item["quantiles"] if row["share"] == 0.99)
-        said.append(
+        text.append(
             f"{item['label']}: sd {item['sd']:.4g} ± {item['sd_error']:.2g}, 99 % below "
             f"{_in_bounds(row)} {item['unit']}"
         )
-    return said + [
+    return text + [
         f"{row['limit']}: above it in {row['above']:,} of {row['cases']:,}, probability "
         f"{row['share']:.3g} "
         f"[{row['low']:.3g}, {row['high']:.3g}]"

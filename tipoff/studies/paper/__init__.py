@@ -1,4 +1,4 @@
-"""What searches for the paper's unpublished inputs tell: ranges of every input, what the best set
+"""What searches for the paper's unpublished inputs show: ranges of every input, what the best set
 leaves its rail with, data."""
 
 from tipoff.studies.paper import command

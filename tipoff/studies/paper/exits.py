@@ -28,7 +28,7 @@ def run(launcher: misfit.Launcher, shares: np.ndarray) -> Columns:
     return columns.of([cases[number] for number in range(len(rows))])
 
 
-def told(left: Columns) -> dict:
+def summary(left: Columns) -> dict:
     """``conditions`` with what each ``left`` its rail with, None where it did not settle, and where
     the constants of contact come from."""
     rows = []
@@ -51,14 +51,14 @@ def lines(found: dict) -> list[str]:
     ended = ", ".join(
         f"{row['condition']} ({row['radial_misalignment_deg']:g} deg{_odd(row)})" for row in rows
     )
-    said = [f"  at exit       best set on conditions {ended}; the paper prints rates only"]
+    text = [f"  at exit       best set on conditions {ended}; the paper prints rates only"]
     for item in answers.ALL:
         values = "".join(
             f"{'–' if row[item.name] is None else format(row[item.name], '.4g'):>11}"
             for row in rows
         )
-        said.append(f"    {item.label:30}{values} {item.unit}")
-    return [*said, f"    {found['calibration']}"]
+        text.append(f"    {item.label:30}{values} {item.unit}")
+    return [*text, f"    {found['calibration']}"]
 
 
 def _odd(row: dict) -> str:

@@ -4,7 +4,7 @@ have been, and what they trade."""
 import numpy as np
 
 from tipoff.studies import published
-from tipoff.studies.paper import told
+from tipoff.studies.paper import summary
 from tipoff.studies.populations import answers
 from tipoff.studies.render.chart import (
     AMBER,
@@ -109,7 +109,7 @@ def admissible(found: dict) -> str:
     )
     if not kept["points"]:
         return (
-            f"No set {limit} was met in {all_searches} searches, so that nothing is told of any "
+            f"No set {limit} was met in {all_searches} searches, so that nothing is known of any "
             f"input."
         )
     return (
@@ -126,8 +126,8 @@ def _outside(found: dict) -> str:
     itself."""
     best = found["searches"][found["best"]]
     missed = max(best["largest_error_deg_s"], best["largest_deviation_error_deg_s"])
-    told = " The best set is none of them: it is best with conditions 1 and 5 counted."
-    return told if missed > found["admissible_deg_s"] else ""
+    note = " The best set is none of them: it is best with conditions 1 and 5 counted."
+    return note if missed > found["admissible_deg_s"] else ""
 
 
 def charts(found: dict) -> list[Chart]:
@@ -220,7 +220,7 @@ def _table2(best: dict) -> Fold:
         rows.append((str(condition), "baseline", *_pairs(printed.baseline[place], nominal[place])))
         rows += [
             (str(condition), words, *_pairs(printed.changed[place, row], changed[place, row]))
-            for row, words in enumerate(told.CHANGES)
+            for row, words in enumerate(summary.CHANGES)
         ]
     rates = [
         Column(f"{axis}, {kind}", "deg/s", "+.3f")
@@ -252,7 +252,7 @@ def _deviations(best: dict) -> list[Part]:
             ),
         )
         for place, condition in enumerate(published.SENSITIVE)
-        for row, words in enumerate(told.CHANGES)
+        for row, words in enumerate(summary.CHANGES)
     ]
     largest = [
         (kind, *(f"{100.0 * share:.2f} %" for share in table_2.largest_relative()))

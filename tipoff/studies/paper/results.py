@@ -13,7 +13,7 @@ import numpy as np
 from tipoff.files import sealed
 from tipoff.lowfi.ensemble.columns import Columns
 from tipoff.studies import published
-from tipoff.studies.paper import exits, inputs, misfit, solutions, told
+from tipoff.studies.paper import exits, inputs, misfit, solutions, summary
 from tipoff.studies.populations import answers
 
 if TYPE_CHECKING:
@@ -80,7 +80,7 @@ def _ends(found: list[solutions.Search]) -> dict[str, tuple]:
         "seed": _of("search", [item.seed for item in found], "seed of the search", "1"),
         "misfit": _of(
             "search",
-            [told.misfit_of(item) for item in found],
+            [summary.misfit_of(item) for item in found],
             "misfit with conditions 1 and 5 at full weight",
             "1",
         ),
@@ -118,7 +118,7 @@ def _inputs(prefix: str, dimension: str, shares: np.ndarray, where: str) -> dict
 
 
 def _traded(found: list[solutions.Search]) -> dict[str, tuple]:
-    errors, sizes = told.front(found).T
+    errors, sizes = summary.front(found).T
     return {
         "front_largest_error_deg_s": _of(
             "pair", errors, "largest error of the nine printed rates", "deg/s"
@@ -145,7 +145,7 @@ def _coordinates(count: int) -> dict[str, tuple]:
         ),
         "change": (
             "change",
-            list(told.CHANGES),
+            list(summary.CHANGES),
             {"long_name": "the contact constant that was changed, and what to"},
         ),
         "axis": ("axis", list("xyz"), {"long_name": "payload body axis"}),

@@ -17,9 +17,9 @@ Better is what has the smaller misfit of all 69: an end on the edge of its basin
 rates, but not with a contact constant changed by some percent. A search that ends badly is shown
 like one that ends well.
 
-Nine rates and fifty-four small deviations cannot tell twenty inputs. What is kept is therefore a
+Nine rates and 54 small deviations cannot determine twenty inputs. What is kept is therefore a
 set: every end at which no printed rate and no deviation is missed by more than ``ADMISSIBLE``; an
-input is told as far as the set is narrower than its bounds.
+input is determined as far as the set is narrower than its bounds.
 """
 
 from collections.abc import Callable
@@ -47,7 +47,7 @@ _WORK = {"point": 0.02, "descent": 2.0, "hop": 1.0, "end": 10.0}  # shares of th
 class Plan:
     """Size of a search: ``points`` drawn, ``descents`` from the best of them, ends in the ``pool``,
     ``hops``, points ``kept``; relative error of a step where points are drawn, where a search goes
-    down, and in what is told of its end."""
+    down, and in what is reported of its end."""
 
     points: int = 2000
     descents: int = 24

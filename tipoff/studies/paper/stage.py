@@ -22,7 +22,16 @@ from tipoff.studies.agreement import stage as compare
 from tipoff.studies.core.progress import Board, team
 from tipoff.studies.core.stage import Stage
 from tipoff.studies.core.study import Study, StudyError, read
-from tipoff.studies.paper import exits, inputs, known, misfit, results, scene_file, solutions, told
+from tipoff.studies.paper import (
+    catalogued,
+    exits,
+    inputs,
+    misfit,
+    results,
+    scene_file,
+    solutions,
+    summary,
+)
 from tipoff.studies.paper import page as drawn
 from tipoff.studies.render.chart import to_files
 
@@ -43,7 +52,7 @@ class Options:
 
 
 def run(study: Study, options: Options = Options()) -> dict:
-    """The searches, what they tell of every input, and the best set beside the printed tables;
+    """The searches, what they show of every input, and the best set beside the printed tables;
     writes it as a scene too, and every end and admissible point as netCDF.
 
     Raises SceneError for a scene that ``require`` refuses, StudyError where the best set could not
@@ -57,7 +66,7 @@ def run(study: Study, options: Options = Options()) -> dict:
         with TemporaryDirectory() as folder:
             _write(base, np.full(len(inputs.UNKNOWNS), 0.5), np.zeros((5, 3)), Path(folder, SCENE))
         found = _searches(study, base, options)
-        best = min(found, key=told.misfit_of)
+        best = min(found, key=summary.misfit_of)
         path, data = study.path(SCENE), study.path(f"{NAME}.nc")
         _write(base, best.shares, best.rates, path)
         left = exits.run(misfit.Launcher(base, options.plan.tolerances[-1]), best.shares)
@@ -67,13 +76,13 @@ def run(study: Study, options: Options = Options()) -> dict:
             "admissible_deg_s": solutions.ADMISSIBLE,
             "negligible_deg_s": misfit.NEGLIGIBLE,
             "scatter_deg_s": misfit.SCATTER.tolist(),
-            "searches": [told.summary(item) for item in found],
+            "searches": [summary.of_search(item) for item in found],
             "best": found.index(best),
-            "inputs": told.ranges(found, best),
-            "admissible": told.counted(found),
-            "exit": exits.told(left),
-            "known": known.errors(load(CATALOGUED), options.plan.tolerances[-1]),
-            "front": told.front(found).tolist(),
+            "inputs": summary.ranges(found, best),
+            "admissible": summary.counted(found),
+            "exit": exits.summary(left),
+            "known": catalogued.errors(load(CATALOGUED), options.plan.tolerances[-1]),
+            "front": summary.front(found).tolist(),
             "slips": published.slips(),
             "headline": published.headline(),
             "scene_file": study.relative(path),
@@ -259,7 +268,7 @@ def _with_present(study: Study, found: dict) -> dict:
 def lines(found: dict) -> list[str]:
     """The result in words and units."""
     best = found["searches"][found["best"]]
-    said = [
+    text = [
         f"best of {len(found['searches'])} searches: a printed rate missed by "
         f"{best['largest_error_deg_s']:.3g} deg/s at most, "
         f"a deviation by {best['largest_deviation_error_deg_s']:.3g} deg/s; rates of conditions 1 "
@@ -274,7 +283,7 @@ def lines(found: dict) -> list[str]:
             if item["share"] is None
             else f"admissible at least {item['from']:.3g} to {item['to']:.3g}"
         )
-        said.append(
+        text.append(
             f"  {item['name']:16}{item['best']:.4g} {item['unit']}, {kept} of {item['low']:.3g} to "
             f"{item['high']:.3g}"
         )
@@ -286,9 +295,9 @@ def lines(found: dict) -> list[str]:
         if ours
         else f"not measured yet: make compare SCENE={found['scene']} does it"
     )
-    said += exits.lines(found["exit"])
+    text += exits.lines(found["exit"])
     return [
-        *said,
+        *text,
         *(f"  note          {words}" for words in found["slips"]),
         f"  one case      {cost}",
         f"  scene         {found['scene_file']}",

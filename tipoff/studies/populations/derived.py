@@ -23,10 +23,10 @@ class Derived:
     def __init__(self, uncertainty: Uncertainty, derive: Callable[[Numbers], Numbers]):
         self._points, self._vary, self._derive = Points(uncertainty), uncertainty.vary, derive
         self.asked = uncertainty.cases
-        told = self.rows(0, min(_TOLD, self.asked))
+        sample = self.rows(0, min(_TOLD, self.asked))
         self.keys, self.identity = (
-            list(told[0]),
-            uncertainty.resolved() | {"derived": content_hash(told)},
+            list(sample[0]),
+            uncertainty.resolved() | {"derived": content_hash(sample)},
         )
 
     def rows(self, begin: int, end: int) -> list[dict[str, float]]:

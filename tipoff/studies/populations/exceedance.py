@@ -1,4 +1,4 @@
-"""How often a rate is above a limit, and how sure that is.
+"""How often a rate is above a limit, and with which confidence.
 
 Of n independent cases, k above a limit leave for the probability of being above it the bounds of
 Clopper and Pearson (Biometrika 26, 1934), quantiles of beta laws: beta(k, n - k + 1) below and
@@ -78,7 +78,7 @@ def any_above(rates: np.ndarray, asked: Sequence[Limit]) -> np.ndarray:
 
 
 def bounds(count: int, cases: int, confidence: float) -> tuple[float, float]:
-    """Two-sided bounds of a probability that ``count`` of ``cases`` tell."""
+    """Two-sided bounds of a probability that ``count`` of ``cases`` give."""
     found = binomtest(count, cases).proportion_ci(confidence, method="exact")
     return float(found.low), float(found.high)
 

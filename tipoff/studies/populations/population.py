@@ -94,8 +94,8 @@ def answering(study: Study, model: Surrogate, condition: str | None = None) -> d
     }
 
 
-def said(found: dict) -> str:
-    """A line on the model behind a result that holds what ``answering`` tells."""
+def model_line(found: dict) -> str:
+    """A line on the model behind a result that holds what ``answering`` gives."""
     return f"model {found['model']}; agreement: {found['agreement']}"
 
 

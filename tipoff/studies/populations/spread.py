@@ -1,5 +1,5 @@
 """What independent cases say of a quantity: moments, quantiles with their bounds, histograms, and
-how sure all that is by their number."""
+what their number leaves uncertain."""
 
 import math
 from collections.abc import Sequence

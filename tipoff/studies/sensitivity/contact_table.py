@@ -74,10 +74,10 @@ def deviations(baseline: Sequence[float], rates: Sequence[float]) -> dict:
     zero at the ``baseline``."""
     nominal = np.asarray(baseline, dtype=float)
     moved = np.asarray(rates, dtype=float) - nominal
-    told = (abs(nominal) >= _NEARLY_ZERO * np.linalg.norm(nominal)) & (nominal != 0.0)
+    meaningful = (abs(nominal) >= _NEARLY_ZERO * np.linalg.norm(nominal)) & (nominal != 0.0)
     return {
         "absolute_deg_s": moved.tolist(),
-        "relative": [float(d / w) if ok else None for d, w, ok in zip(moved, nominal, told)],
+        "relative": [float(d / w) if ok else None for d, w, ok in zip(moved, nominal, meaningful)],
     }
 
 

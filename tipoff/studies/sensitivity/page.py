@@ -79,13 +79,13 @@ def name_of(key: str) -> str:
 def pictures(found: dict) -> list[tuple[Chart | Picture, str]]:
     """Every figure of the study and its caption."""
     sobol = found["sobol"]
-    told = [item for item in sobol["quantities"] if item["indices"]]
-    rates = [item for item in told if item["name"] in _RATES]
+    shown = [item for item in sobol["quantities"] if item["indices"]]
+    rates = [item for item in shown if item["name"] in _RATES]
     if not rates:
         return []
     return [
         (_bars(sobol, rates), _BARS),
-        (_map(sobol, told), _MAP),
+        (_map(sobol, shown), _MAP),
         (_convergence(sobol, rates), _CONVERGENCE),
     ]
 
@@ -271,10 +271,10 @@ def _bars(sobol: dict, rates: list[dict]) -> Picture:
     return Picture("sensitivity-indices", figure)
 
 
-def _map(sobol: dict, told: list[dict]) -> Picture:
+def _map(sobol: dict, shown: list[dict]) -> Picture:
     from matplotlib.figure import Figure
 
-    totals = np.array([item["indices"]["total"] for item in told]).T
+    totals = np.array([item["indices"]["total"] for item in shown]).T
     order = np.argsort(-totals.max(axis=1))
     figure = Figure(figsize=(9.6, 0.33 * len(order) + 2.0), dpi=130, layout="constrained")
     axes = figure.subplots()
@@ -293,7 +293,7 @@ def _map(sobol: dict, told: list[dict]) -> Picture:
         range(len(order)), [name_of(sobol["inputs"][n]["key"]) for n in order], fontsize=8.5
     )
     axes.set_xticks(
-        range(len(told)), [item["label"] for item in told], rotation=30, ha="right", fontsize=8.5
+        range(len(shown)), [item["label"] for item in shown], rotation=30, ha="right", fontsize=8.5
     )
     figure.colorbar(image, label="total Sobol' index", pad=0.02)
     return Picture("sensitivity-map", figure)

@@ -213,7 +213,7 @@ def _plain(found: indices.Indices | None) -> dict | None:
 def summary(found: dict) -> list[str]:
     """What the study says, one line each."""
     paper = found["paper"]["largest"]
-    lines = [population.said(found)]
+    lines = [population.model_line(found)]
     lines += [
         f"{table['title']}: moved one at a time, {_most(table['largest'])}; 1 um of clearance: "
         f"{_most(table['largest_clearance'])}"

@@ -87,16 +87,16 @@ def _scatter(factor: dict) -> Chart:
     over_angle: list[Line] = []
     for place, (name, (axis, marker, _)) in enumerate(_LOOKS.items()):
         rates = np.array(factor["values"][name], dtype=float).ravel()
-        told = np.isfinite(rates)
+        settled = np.isfinite(rates)
         for lines, x, step in (
             (over_size, size, sizes[-1]),
             (over_angle, angle, 180.0 / len(angles)),
         ):
-            shifted = x.ravel()[told] + (place - 1) * _APART * step
+            shifted = x.ravel()[settled] + (place - 1) * _APART * step
             lines.append(
                 Line(
                     shifted,
-                    rates[told],
+                    rates[settled],
                     f"rate about {axis}",
                     AXIS_COLOURS[axis],
                     dash="",

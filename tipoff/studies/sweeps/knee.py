@@ -1,5 +1,5 @@
 """Where growth ends: a largest rate g over the size s of an error, and which of five simple laws
-tells it best.
+fits it best.
 
     proportional   g = b s
     straight       g = a + b s
@@ -25,7 +25,7 @@ import numpy as np
 
 RESAMPLES = 400
 LAWS = ("proportional", "straight", "levelling", "plateau", "knee")
-MISFIT = 0.1  # rms residual over the largest value, above which no law tells the curve
+MISFIT = 0.1  # rms residual over the largest value, above which no law fits the curve
 # what may be left to grow: beyond a knee, over the value there; of the height a levelling curve
 # tends to
 LEVEL = 0.1
@@ -167,7 +167,7 @@ def _misfit(fit: _Fit, curve: np.ndarray, index: int) -> float:
 
 
 def _verdict(law: str, sizes: np.ndarray, fit: _Fit, curve: np.ndarray, index: int) -> str:
-    """One of the laws in words, or that none tells the curve."""
+    """One of the laws in words, or that none fits the curve."""
     if _misfit(fit, curve, index) > MISFIT:
         return "none of the laws"
     if law == "levelling":

@@ -86,9 +86,9 @@ def jumps(walls: np.ndarray, rate: np.ndarray) -> tuple[float | None, float | No
         differing.append((walls[one] != walls[other]).ravel())
         moves.append(np.linalg.norm(rate[one] - rate[other], axis=2).ravel())
     changed, moved = np.concatenate(differing), np.concatenate(moves)
-    told = np.isfinite(moved)
+    settled = np.isfinite(moved)
     there, elsewhere = (
-        float(np.median(moved[chosen & told])) if (chosen & told).any() else None
+        float(np.median(moved[chosen & settled])) if (chosen & settled).any() else None
         for chosen in (changed, ~changed)
     )
     return there, elsewhere

@@ -158,7 +158,7 @@ def _sides(study: Study, model: Surrogate, options: Options) -> tuple[list[str],
 
 
 def _plain(values: np.ndarray) -> list:
-    """Six digits, which no figure can tell from all of them, and None where a case did not
+    """Six digits, enough for every figure, and None where a case did not
     settle."""
     if values.ndim > 1:
         return [_plain(row) for row in values]
@@ -167,7 +167,7 @@ def _plain(values: np.ndarray) -> list:
 
 def summary(found: dict) -> list[str]:
     """What the study says, one line each."""
-    lines, labels = [population.said(found)], {item.name: item.label for item in JUDGED}
+    lines, labels = [population.model_line(found)], {item.name: item.label for item in JUDGED}
     for launch in found["launches"]:
         how = (
             "as given" if launch["stretch"] == 1.0 else f"thrust stretched by {launch['stretch']:g}"
@@ -185,14 +185,14 @@ def summary(found: dict) -> list[str]:
             f"{leaves}"
         )
         for factor in launch["factors"]:
-            told = "; ".join(
-                f"{labels[name]}: {said(bent, factor['unit'])}"
+            growth = "; ".join(
+                f"{labels[name]}: {verdict_text(bent, factor['unit'])}"
                 for name, bent in factor["growth"].items()
                 if bent
             )
             lines.append(
                 f"{how}, {factor['label']} (the paper: plateau from {factor['paper']:g} "
-                f"{factor['unit']}): {told}"
+                f"{factor['unit']}): {growth}"
             )
             most = ", ".join(
                 f"{item.label} {_most(factor['largest'][item.name])} {item.unit}"
@@ -208,7 +208,7 @@ def _most(values: list[float | None]) -> str:
     )
 
 
-def said(bent: dict, unit: str) -> str:
+def verdict_text(bent: dict, unit: str) -> str:
     """A verdict in words, with the knee and its interval."""
     if bent["knee"] is None:
         return bent["verdict"]

@@ -1,4 +1,4 @@
-"""What the catalogue's set of inputs gives, beside the ends of searches: those hang on the last
+"""What the catalogue's set of inputs gives, beside the ends of searches: those depend on the last
 bits of a run, a scene does not."""
 
 import numpy as np

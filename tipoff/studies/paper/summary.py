@@ -1,4 +1,4 @@
-"""What searches tell in the units the paper prints: each by its errors, every input by its range,
+"""What searches show in the units the paper prints: each by its errors, every input by its range,
 and how much that rests on."""
 
 import numpy as np
@@ -16,7 +16,7 @@ def misfit_of(found: solutions.Search) -> float:
     return misfit.whole(found.rates, found.changed, 1.0)
 
 
-def summary(found: solutions.Search) -> dict:
+def of_search(found: solutions.Search) -> dict:
     """Where a search ended: errors and rates in deg/s, ``values`` of the inputs in SI."""
     return {
         "stress": found.stress,
