@@ -62,6 +62,7 @@ def blind(
 
     found = guarded(work, json_)
     if not json_:
-        from tipoff.studies.blind import stage
+        from tipoff.studies.blind import page
+        from tipoff.studies.render import document
 
-        print("\n".join(stage.lines(found)))
+        print(document.terminal(page.verdicts(found)))

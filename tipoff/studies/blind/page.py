@@ -4,7 +4,7 @@ import math
 
 from tipoff.studies.agreement.page import judged, summary
 from tipoff.studies.render.document import Caption, Fold, Part
-from tipoff.studies.render.table import Table
+from tipoff.studies.render.table import Column, Table
 
 _WORDS = (
     "Drawn from the distributions “{vary}” with seed {seed}{origin}. Every condition has its own "
@@ -28,6 +28,32 @@ def draw(found: dict) -> list[Part]:
         judged(calibrated, "blind-calibrated"),
         Fold("What was drawn", [_drawn(found["conditions"])]),
     ]
+
+
+def verdicts(found: dict) -> list[Part]:
+    """The verdicts for the terminal."""
+    heads = (
+        "model",
+        "condition",
+        Column("rate L2", "%", scale=100.0),
+        Column("settled error", "deg/s"),
+        Column("reference ±", "deg/s"),
+        "verdict",
+    )
+    rows = [
+        (
+            model,
+            row["condition"],
+            row["rate_relative_l2"],
+            row["settled_rate_error_deg_s"],
+            row["reference_uncertainty_deg_s"],
+            row["verdict"],
+        )
+        for model in ("calibrated", "compliant")
+        for row in found[model]
+    ]
+    count = len(found["conditions"])
+    return [Table(heads, rows, title=f"{count} conditions drawn with seed {found['seed']}")]
 
 
 def _drawn(conditions: dict) -> Table:

@@ -108,29 +108,6 @@ def seed_of(study: Study, options: Options) -> int:
     )
 
 
-def lines(found: dict) -> list[str]:
-    """The verdicts in words."""
-    text = [f"{len(found['conditions'])} conditions drawn with seed {found['seed']}"]
-    for name in ("calibrated", "compliant"):
-        text += [
-            f"  {name:11} {row['condition']}: rate L2 {_percent(row['rate_relative_l2'])}, settled "
-            f"error "
-            f"{_rate(row['settled_rate_error_deg_s'])} (reference within "
-            f"{_rate(row['reference_uncertainty_deg_s'])}): "
-            f"{row['verdict']}"
-            for row in found[name]
-        ]
-    return text
-
-
-def _percent(value: float | None) -> str:
-    return "unknown" if value is None else f"{100.0 * value:.3g} %"
-
-
-def _rate(value: float | None) -> str:
-    return "unknown" if value is None else f"{value:.3g} deg/s"
-
-
 def _inputs(study: Study, options: Options) -> list:
     return [draw(study, options).scene.conditions, verdicts.gates(study.scene)]
 
