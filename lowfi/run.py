@@ -148,8 +148,9 @@ class Run:
         self._advance(0)
 
     def integrate(self, progress) -> None:
-        """Advance, some samples at a time, to the end of the run."""
-        stride = max(1, round(_STRIDE / self.interval))
+        """Advance to the end of the run, some samples at a time where ``progress`` is reported:
+        each call of the kernel costs some microseconds for its records."""
+        stride = max(1, round(_STRIDE / self.interval)) if progress else self.end + 1
         while self.taken <= self.end and not self.message:
             self._advance(min(self.taken - 1 + stride, self.end))
             if progress:
