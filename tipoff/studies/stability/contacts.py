@@ -17,7 +17,7 @@ from tipoff.mechanics import ledger
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.scene import Scene, parse
 from tipoff.studies.stability import weaker_methods as weaker
-from tipoff.studies.stability.verdict import Verdict, stability, verdict
+from tipoff.studies.stability.verdict import Control, Measure, Verdict, stability, verdict
 
 DEFAULT_STEP = 1e-4  # s: what a careless user of a fixed-step code would take
 _MASS, _LINEAR = 20.0, 7e7
@@ -128,11 +128,15 @@ def _impact(name: str, stiffness: float, exponent: float, limit: float) -> Verdi
     return verdict(
         name,
         "lowfi",
-        "largest relative error of penetration, force, duration, rebound speed",
-        float(np.abs(measured / exact - 1.0).max()),
-        limit,
-        f"{_CARELESS}: rebound speed",
-        abs(_thrown(stiffness, exponent, 0.0, speed, 1.3 * duration) / -speed - 1.0),
+        Measure(
+            "largest relative error of penetration, force, duration, rebound speed",
+            float(np.abs(measured / exact - 1.0).max()),
+            limit,
+        ),
+        Control(
+            f"{_CARELESS}: rebound speed",
+            abs(_thrown(stiffness, exponent, 0.0, speed, 1.3 * duration) / -speed - 1.0),
+        ),
         f"contact lasts {1e3 * duration:.3g} ms",
         stable=stability(found, exponent * exact[1] / depth, _MASS),
     )
@@ -170,11 +174,14 @@ def interference() -> Verdict:
     return verdict(
         "pressed in by 20 um at the start",
         "lowfi",
-        "relative error of stored energy and of the speed it becomes",
-        float(max(abs(entry / stored - 1.0), abs(found.velocity[-1, 1] / -leaves - 1.0))),
-        1e-3,
-        f"{_CARELESS}: speed",
-        abs(_thrown(_LINEAR, exponent, depth, 0.0, 5e-3) / -leaves - 1.0),
+        Measure(
+            "relative error of stored energy and of the speed it becomes",
+            float(max(abs(entry / stored - 1.0), abs(found.velocity[-1, 1] / -leaves - 1.0))),
+            1e-3,
+        ),
+        Control(
+            f"{_CARELESS}: speed", abs(_thrown(_LINEAR, exponent, depth, 0.0, 5e-3) / -leaves - 1.0)
+        ),
         found.message,
         holds="pads 0" in found.message,
         stable=stability(found, _LINEAR, _MASS),
@@ -197,11 +204,13 @@ def grazing() -> Verdict:
     return verdict(
         "grazing, contact of 2 us",
         "lowfi",
-        "relative error of the rebound speed",
-        abs(found.velocity[-1, 1] / -speed - 1.0),
-        1e-4,
-        f"{_CARELESS}: rebound speed",
-        abs(_thrown(stiffness, 1.0, 0.0, speed, 1e-3) / -speed - 1.0),
+        Measure(
+            "relative error of the rebound speed", abs(found.velocity[-1, 1] / -speed - 1.0), 1e-4
+        ),
+        Control(
+            f"{_CARELESS}: rebound speed",
+            abs(_thrown(stiffness, 1.0, 0.0, speed, 1e-3) / -speed - 1.0),
+        ),
         f"{found.cost['events']} events",
         stable=stability(found, stiffness, _MASS),
     )
@@ -238,11 +247,17 @@ def eight_pads() -> Verdict:
     return verdict(
         "flat drop on eight pads",
         "lowfi",
-        "relative error of the eight forces and the rebound speed",
-        float(max(np.abs(force / exact - 1.0).max(), abs(found.velocity[-1, 1] / -speed - 1.0))),
-        1e-4,
-        f"{_CARELESS}: rebound speed",
-        abs(_thrown(8.0 * _LINEAR, 1.0, 0.0, speed, 1.3 * duration) / -speed - 1.0),
+        Measure(
+            "relative error of the eight forces and the rebound speed",
+            float(
+                max(np.abs(force / exact - 1.0).max(), abs(found.velocity[-1, 1] / -speed - 1.0))
+            ),
+            1e-4,
+        ),
+        Control(
+            f"{_CARELESS}: rebound speed",
+            abs(_thrown(8.0 * _LINEAR, 1.0, 0.0, speed, 1.3 * duration) / -speed - 1.0),
+        ),
         f"spin {spin:.1g} rad/s, other order of pads {order:.1g}",
         holds=spin <= 1e-12 and order <= 1e-12,
         stable=stability(found, 8.0 * _LINEAR, _MASS),
@@ -267,11 +282,12 @@ def rail_end() -> Verdict:
     return verdict(
         "pad leaves the rail pressed",
         "lowfi",
-        "share of the stored energy neither released nor in motion",
-        abs((released + motion) / stored - 1.0),
-        1e-3,
-        "the same ledger without released energy",
-        abs(motion / stored - 1.0),
+        Measure(
+            "share of the stored energy neither released nor in motion",
+            abs((released + motion) / stored - 1.0),
+            1e-3,
+        ),
+        Control("the same ledger without released energy", abs(motion / stored - 1.0)),
         "no force after the edge" if not found.pad_force[1:].any() else "a force after the edge",
         holds=not found.pad_force[1:].any(),
         stable=stability(found, _LINEAR, _MASS),
@@ -301,11 +317,15 @@ def light_payload() -> Verdict:
     return verdict(
         "light payload, 1 g on 150 kg",
         "lowfi",
-        "relative error of both speeds and of the momentum",
-        float(max(np.abs(speeds / exact - 1.0).max(), momentum)),
-        1e-6,
-        f"{_CARELESS}: separation speed",
-        abs(_thrown(_LINEAR, 1.0, 0.0, speed, 1e-3, reduced) / -speed - 1.0),
+        Measure(
+            "relative error of both speeds and of the momentum",
+            float(max(np.abs(speeds / exact - 1.0).max(), momentum)),
+            1e-6,
+        ),
+        Control(
+            f"{_CARELESS}: separation speed",
+            abs(_thrown(_LINEAR, 1.0, 0.0, speed, 1e-3, reduced) / -speed - 1.0),
+        ),
         f"contact lasts {1e6 * math.pi * math.sqrt(reduced / _LINEAR):.3g} us",
         stable=stability(found, _LINEAR, reduced),
     )

@@ -8,7 +8,7 @@ import numpy as np
 from tipoff.scenes.scene import Scene, load
 from tipoff.studies.agreement.verdicts import settled_change
 from tipoff.studies.stability import weaker_methods as weaker
-from tipoff.studies.stability.verdict import Stability, Verdict, verdict
+from tipoff.studies.stability.verdict import Control, Measure, Stability, Verdict, verdict
 
 _SIZE = 0.016
 
@@ -84,11 +84,15 @@ def step_above_the_limit() -> Verdict:
     return verdict(
         "step above the critical one",
         "highfi",
-        "growth of the displacement over 400 steps at 0.9 of the limit",
-        rail.leapfrog(0.9 * rail.limit, 400)[0],
-        10.0,
-        "the same loop, unchecked, at 1.05 x the limit",
-        rail.leapfrog(1.05 * rail.limit, 400)[0],
+        Measure(
+            "growth of the displacement over 400 steps at 0.9 of the limit",
+            rail.leapfrog(0.9 * rail.limit, 400)[0],
+            10.0,
+        ),
+        Control(
+            "the same loop, unchecked, at 1.05 x the limit",
+            rail.leapfrog(1.05 * rail.limit, 400)[0],
+        ),
         f"{len(refused)} of 3 longer steps refused",
         holds=len(refused) == 3,
         stable=Stability(0.9 * rail.limit, rail.limit),
@@ -104,11 +108,8 @@ def long_vibration() -> Verdict:
     return verdict(
         "ringing rail, 20,000 steps",
         "highfi",
-        "relative change of the energy",
-        drift,
-        1e-9,
-        "explicit Euler, same step, 50 steps",
-        rail.euler(step, 50),
+        Measure("relative change of the energy", drift, 1e-9),
+        Control("explicit Euler, same step, 50 steps", rail.euler(step, 50)),
         stable=Stability(step, rail.limit, drift),
     )
 
@@ -132,11 +133,8 @@ def sliding_over_facets() -> Verdict:
     return verdict(
         "pads slide over facet borders",
         "highfi",
-        "settled rates against 10 x 10 points per facet (deg/s)",
-        ours,
-        0.1,
-        "one contact point per facet",
-        theirs,
+        Measure("settled rates against 10 x 10 points per facet (deg/s)", ours, 0.1),
+        Control("one contact point per facet", theirs),
         stable=Stability(
             usual.cost["dt_s"], usual.cost["dt_limit_s"], usual.checks["energy_error"]
         ),

@@ -16,7 +16,14 @@ from tipoff.scenes.effects import thrust_law
 from tipoff.scenes.scene import Scene, load, parse
 from tipoff.studies.stability import weaker_methods as weaker
 from tipoff.studies.stability.contacts import DEFAULT_STEP, run
-from tipoff.studies.stability.verdict import Stability, Verdict, stability, verdict
+from tipoff.studies.stability.verdict import (
+    Control,
+    Measure,
+    Stability,
+    Verdict,
+    stability,
+    verdict,
+)
 
 _RAIL = {"density": 2810.0, "youngs_modulus": 72e9, "poisson_ratio": 0.33}
 
@@ -45,12 +52,15 @@ def zero_clearance() -> Verdict:
     return verdict(
         "zero clearance, eight pads",
         "lowfi",
-        "exit speed against impulse / mass; lateral speed (m/s), rate (rad/s), force at ignition "
-        "(N)",
-        float(max(abs(found.velocity[-1, 0] / exact - 1.0), stray)),
-        1e-9,
-        "semi-implicit Euler, fixed step 0.1 ms: exit speed",
-        abs(control / exact_control - 1.0),
+        Measure(
+            "exit speed against impulse / mass; lateral speed (m/s), rate (rad/s), force at ignition "
+            "(N)",
+            float(max(abs(found.velocity[-1, 0] / exact - 1.0), stray)),
+            1e-9,
+        ),
+        Control(
+            "semi-implicit Euler, fixed step 0.1 ms: exit speed", abs(control / exact_control - 1.0)
+        ),
         "no chatter: no pad force at any sample"
         if not found.pad_force.any()
         else "pads push each other",
@@ -120,11 +130,8 @@ def wedged() -> Verdict:
     return verdict(
         "wedged at 1.04 of the lock",
         "lowfi",
-        "travel in 0.2 s (mm)",
-        1e3 * float(found.position[-1, 0]),
-        0.5,
-        "friction smoothed over 50 mm/s: travel",
-        1e3 * float(smooth.position[-1, 0]),
+        Measure("travel in 0.2 s (mm)", 1e3 * float(found.position[-1, 0]), 0.5),
+        Control("friction smoothed over 50 mm/s: travel", 1e3 * float(smooth.position[-1, 0])),
         f"status {told.status}",
         holds=told.status == "jammed" and told.outcome.velocity is None,
         stable=_stopped(found, 0.8, 0.130, 5e-4),
@@ -141,11 +148,10 @@ def nearly_wedged() -> Verdict:
     return verdict(
         "sliding at 0.96 of the lock",
         "lowfi",
-        "relative error of the acceleration from 20 to 40 ms",
-        abs(measured / exact - 1.0),
-        0.02,
-        "friction smoothed over 0.5 m/s: acceleration",
-        abs(control / exact - 1.0),
+        Measure(
+            "relative error of the acceleration from 20 to 40 ms", abs(measured / exact - 1.0), 0.02
+        ),
+        Control("friction smoothed over 0.5 m/s: acceleration", abs(control / exact - 1.0)),
         f"status {found.status}",
         stable=_stopped(found, 0.8, 0.120, 1e-3),
     )
@@ -253,11 +259,12 @@ def turning_platform() -> Verdict:
     return verdict(
         "platform turns three times",
         "lowfi",
-        "relative change of relative velocity and rate in other inertial axes",
-        float(figure),
-        1e-9,
-        "relative velocity without the frame's turning",
-        float(wrong),
+        Measure(
+            "relative change of relative velocity and rate in other inertial axes",
+            float(figure),
+            1e-9,
+        ),
+        Control("relative velocity without the frame's turning", float(wrong)),
         f"status {found.status}",
         stable=stability(found),
     )

@@ -4,7 +4,7 @@ J / m (momentum)."""
 from tipoff.scenes.effects import thrust_law
 from tipoff.studies.stability import weaker_methods as weaker
 from tipoff.studies.stability.contacts import DEFAULT_STEP, run, single_pad
-from tipoff.studies.stability.verdict import Verdict, stability, verdict
+from tipoff.studies.stability.verdict import Control, Measure, Verdict, stability, verdict
 
 _MASS = 20.0
 
@@ -29,11 +29,12 @@ def _pushed(
     return verdict(
         name,
         "lowfi",
-        "relative error of the exit speed",
-        abs(found.velocity[-1, 0] / exact - 1.0),
-        limit,
-        f"Runge-Kutta 4, fixed step {1e3 * step:g} ms: exit speed",
-        abs(control / exact - 1.0),
+        Measure(
+            "relative error of the exit speed", abs(found.velocity[-1, 0] / exact - 1.0), limit
+        ),
+        Control(
+            f"Runge-Kutta 4, fixed step {1e3 * step:g} ms: exit speed", abs(control / exact - 1.0)
+        ),
         stable=stability(found),
     )
 

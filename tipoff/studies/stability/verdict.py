@@ -44,32 +44,44 @@ def stability(run: Trajectory, stiffness: float = 0.0, mass: float = 1.0) -> Sta
     return Stability(run.cost.get("dt_limit_s"), critical, run.checks["energy_error"])
 
 
+class Measure(NamedTuple):
+    """What was measured on a case, and the largest value that holds."""
+
+    words: str
+    figure: float
+    limit: float
+
+
+class Control(NamedTuple):
+    """A weaker method, and what the same measure gives for it."""
+
+    words: str
+    figure: float
+
+
 def verdict(
     name: str,
     fidelity: str,
-    measure: str,
-    figure: float,
-    limit: float,
-    control: str,
-    control_figure: float,
+    measure: Measure,
+    control: Control,
     note: str = "",
     holds: bool = True,
     stable: Stability = Stability(),
 ) -> Verdict:
-    """A verdict from the two figures; ``holds`` adds conditions that are not numbers (a refusal, a
+    """A verdict from both figures; ``holds`` adds conditions that are not numbers (a refusal, a
     status)."""
     return Verdict(
-        name,
-        fidelity,
-        measure,
-        _finite(figure),
-        limit,
-        bool(holds and figure <= limit),
-        control,
-        _finite(control_figure),
-        not bool(control_figure <= limit),
-        note,
-        *stable,
+        name=name,
+        fidelity=fidelity,
+        measure=measure.words,
+        figure=_finite(measure.figure),
+        limit=measure.limit,
+        held=bool(holds and measure.figure <= measure.limit),
+        control=control.words,
+        control_figure=_finite(control.figure),
+        control_failed=not bool(control.figure <= measure.limit),
+        note=note,
+        **stable._asdict(),
     )
 
 
