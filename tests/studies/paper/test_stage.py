@@ -303,7 +303,7 @@ def test_ranges_say_how_few_searches_they_come_from(quick, tmp_path, monkeypatch
     monkeypatch.setattr(solutions, "run", stub(admissible=(0, 0)))
     none = paper.run(Study(BASE, tmp_path / "none", Settings(workers=1)), SMALL)
     for text in (page(none), "\n".join(paper.lines(none))):
-        assert "nothing is told of any input" in text
+        assert "nothing is known of any input" in text
     assert "admissible at least" not in "\n".join(paper.lines(none))
 
 

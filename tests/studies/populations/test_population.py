@@ -31,7 +31,7 @@ def test_compliant_contact_answers_and_needs_no_calibration(tmp_path, monkeypatc
 
 def test_springs_answer_where_they_are_named(tmp_path, monkeypatch):
     monkeypatch.setattr(
-        population.rail_compliance, "load", lambda *_, **__: pytest.fail("found a compliance")
+        Study, "rail_compliance", lambda *_, **__: pytest.fail("found a compliance")
     )
     monkeypatch.setattr(
         population.calibrate, "load", lambda _: SimpleNamespace(apply=lambda scene: scene)

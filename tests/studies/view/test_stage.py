@@ -117,17 +117,7 @@ def test_contact_pressure_comes_to_the_force_on_the_pads(size, off):
     # look.
     loop.active.wait[:] = 0
     loop.state.payload.position[1] += loop.scene.contact.clearance + 30e-6
-    evaluate(
-        *loop.arguments()[:3],
-        loop.system.model.payload,
-        loop.system.frame,
-        loop.system.model.penalty,
-        loop.system.model.friction,
-        loop.state,
-        loop.active,
-        loop.team,
-        loop.stepping.dt_s,
-    )
+    evaluate(*loop.arguments(), loop.team)
     mesh, frame = loop.system.mesh, frames.Camera(loop).take(loop)
     share = np.zeros(len(mesh.points))
     for name, facets in mesh.surfaces.items():
