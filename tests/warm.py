@@ -9,7 +9,7 @@ from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
 
 from tests.highfi.support import COARSE, tiny
-from tests.lowfi.compliance import REFERENCE, reference_walls
+from tests.lowfi.compliance import REFERENCE, reference_compliance
 from tests.lowfi.support import PAPER_PAD, scene
 from tipoff import highfi, lowfi
 
@@ -23,7 +23,7 @@ def finite_elements() -> None:
 
 def compliant() -> None:
     """The surrogate on compliant rails."""
-    lowfi.run(REFERENCE, "compliant", compliance=reference_walls())
+    lowfi.run(REFERENCE, "compliant", compliance=reference_compliance())
 
 
 def springs() -> None:
