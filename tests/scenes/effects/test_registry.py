@@ -60,7 +60,7 @@ def test_names_of_the_ledger_stay():
 
 def test_an_effect_is_named_in_its_file_the_registry_and_the_scene():
     package = Path(registry.__file__).parents[2]
-    folders = ("scenes", "mechanics", "calibration", "meshes", "kernels")
+    folders = ("scenes", "mechanics", "calibration", "meshes", "kernels", "highfi", "lowfi")
     paths = [path for folder in folders for path in (package / folder).rglob("*.py")]
     named = {path.name for path in paths if re.search(r"\bgravity\b", path.read_text())}
     assert named == {"gravity.py", "registry.py", "scene.py"}
