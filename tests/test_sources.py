@@ -73,7 +73,7 @@ def test_a_constant_of_the_friction_law_counts_wherever_the_law_is_used(project)
 def test_one_solver_does_not_depend_on_the_other(project):
     before = digests(*SOLVERS)
     edit(
-        project / "tipoff" / "lowfi" / "dynamics" / "integrate.py",
+        project / "tipoff" / "lowfi" / "dynamics" / "step.py",
         "_SAFETY, _SHRINK, _GROW = 0.9",
         "_SAFETY, _SHRINK, _GROW = 0.8",
     )

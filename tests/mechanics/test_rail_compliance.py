@@ -59,7 +59,7 @@ def test_warm_walls_are_saved_too_and_older_files_know_of_none(compliance, tmp_p
 @pytest.mark.parametrize(
     "model, wrong, words",
     [
-        ("springs", lambda compliance: None, "given no walls"),
+        ("springs", lambda compliance: None, "given no rail compliance"),
         ("compliant", lambda compliance: compliance, "without thermal offset"),
         ("springs", lambda compliance: compliance.rigid(), "without thermal offset"),
     ],
