@@ -69,7 +69,7 @@ def test_hundreds_of_touches_keep_the_ledger_closed():
     assert_kept(run)
     assert run.status == "time_limit" and run.cost["events"] > 200
     free = Run(RATTLING, lowfi.Numerics())
-    free.tolerance = free.tolerance._replace(total=1.0, across=1.0)
+    free.tolerance = free.tolerance._replace(total=1.0, transverse=1.0)
     free.begin()
     free.integrate(None)
     assert audit.errors(free.loop.audit, 1e-6, 1e-4)[0] > 1e-6
