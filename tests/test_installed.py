@@ -1,6 +1,7 @@
 """The package as a user gets it: a wheel in an environment of its own, away from the repository."""
 
 import re
+import shutil
 import subprocess
 import sys
 import sysconfig
@@ -27,21 +28,11 @@ print(sys.modules["tipoff"].__file__)
 def wheel(tmp_path_factory):
     """Built from a copy, for setuptools leaves its work beside what it packs."""
     folder = tmp_path_factory.mktemp("wheel")
-    listed = subprocess.run(
-        ["git", "ls-files", "--cached", "--others", "--exclude-standard"],
-        cwd=ROOT,
-        capture_output=True,
-        text=True,
-        check=True,
-    ).stdout.split("\n")
-    for name in filter(None, listed):
-        if not name.startswith("tests/") and (ROOT / name).exists():
-            copy = folder / "copy" / name
-            copy.parent.mkdir(parents=True, exist_ok=True)
-            if (ROOT / name).is_symlink():
-                copy.symlink_to((ROOT / name).readlink())
-            else:
-                copy.write_bytes((ROOT / name).read_bytes())
+    leave = shutil.ignore_patterns("__pycache__")
+    for name in ("tipoff", "highfi", "lowfi", "meshes", "calibrate"):
+        shutil.copytree(ROOT / name, folder / "copy" / name, symlinks=True, ignore=leave)
+    for name in ("pyproject.toml", "README.md", "LICENSE"):
+        shutil.copy(ROOT / name, folder / "copy")
     _run(
         *(sys.executable, "-m", "pip", "wheel", "--quiet", "--no-deps", "--no-build-isolation"),
         *("--wheel-dir", folder, folder / "copy"),
