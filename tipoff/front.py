@@ -8,7 +8,10 @@ from tipoff import sources
 from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS, MODELS, SURROGATES
 from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.mechanics.trajectory import Trajectory
-from tipoff.scenes import Calibration, Fault, Scene, SceneError, catalog, load, parse, uncertainty
+from tipoff.scenes import Calibration, Fault, Scene, SceneError, uncertainty
+from tipoff.scenes import catalog as catalog
+from tipoff.scenes import load as load
+from tipoff.scenes import parse as parse
 from tipoff.scenes.uncertainty import Uncertainty
 
 if TYPE_CHECKING:
@@ -16,23 +19,6 @@ if TYPE_CHECKING:
 
     from tipoff.calibration import Curves
     from tipoff.studies.agreement.metrics import Difference
-
-__all__ = [
-    "Calibration",
-    "Fault",
-    "RailCompliance",
-    "Scene",
-    "SceneError",
-    "Trajectory",
-    "calibrate",
-    "catalog",
-    "compare",
-    "compliance",
-    "ensemble",
-    "load",
-    "parse",
-    "run",
-]
 
 
 def run(
@@ -61,7 +47,7 @@ def run(
     from tipoff import lowfi
 
     chosen = lowfi.Numerics(**numerics)
-    known = _pressed(scene, model, compliance)
+    known = _pressed(scene, model, compliance, calibration)
     return lowfi.run(
         scene, model, compliance=known, calibration=calibration, numerics=chosen, progress=progress
     )
@@ -82,7 +68,7 @@ def ensemble(
 
     ``cases`` are rows of dotted overrides as in ``Scene.replace``; or distributions, by the name or
     path of their file. ``options`` are ``count`` and ``seed``, which replace those of this file,
-    and the numerics of ``run``. ``workers`` is the number of processes. ``store`` is a folder that
+    and the numerics of ``run``. ``workers`` is the number of threads. ``store`` is a folder that
     keeps results, so that an interrupted ensemble continues. The rest is as in ``run``. Raises
     SceneError, StoreError or ValueError.
     """
@@ -98,7 +84,7 @@ def ensemble(
             [Fault(scene.name, "count, seed", "given", "none: the cases are listed already")]
         )
     chosen = lowfi.Numerics(**options)
-    known = _pressed(scene, model, compliance)
+    known = _pressed(scene, model, compliance, calibration)
     return lowfi.run_many(
         scene,
         cases,
@@ -116,18 +102,19 @@ def compliance(scene: Scene, element_size: float | None = None) -> RailComplianc
     ``element_size`` (m), else on the coarsest mesh that is within 1 % of the reference's own.
 
     Takes seconds to a minute, once for a rail and its pads: it is stored in the cache folder of the
-    user, beside the compiled kernels. Raises SceneError or MeshError.
+    user, beside the compiled kernels, and announced on standard error. Raises SceneError or MeshError.
     """
     from tipoff.calibration import rail_compliance
+    from tipoff.studies.core.progress import say
 
     folder = sources.cache_folder() / "compliance"
     if element_size is not None:
-        return rail_compliance.kept(scene, folder / "of-a-size", element_size)
+        return rail_compliance.kept(scene, folder / "of-a-size", element_size, say)
     own = rail_compliance.REFERENCE_SIZE
     for size in (own, 2.0 * own):
         if rail_compliance.kept_file(scene, folder, size).is_file():
-            return rail_compliance.kept(scene, folder, size)
-    return rail_compliance.kept(scene, folder, rail_compliance.fine_enough(scene, own))
+            return rail_compliance.kept(scene, folder, size, say)
+    return rail_compliance.kept(scene, folder, rail_compliance.fine_enough(scene, own), say)
 
 
 def calibrate(
@@ -154,14 +141,20 @@ def compare(reference: Trajectory, surrogate: Trajectory) -> "Difference":
     return metrics.compare(reference, surrogate)
 
 
-def _pressed(scene: Scene, model: str, given: RailCompliance | None) -> RailCompliance | None:
+def _pressed(
+    scene: Scene,
+    model: str,
+    given: RailCompliance | None,
+    calibration: Calibration | None = None,
+) -> RailCompliance | None:
     """The rail compliance that ``model`` needs; rigid walls with a thermal offset for springs at warm
     rails."""
-    if given is not None or scene.contact is None:
+    if scene.contact is None:
         return given
-    if model == COMPLIANT:
-        return compliance(scene)
-    return compliance(scene).rigid() if scene.thermal is not None else None
+    if model == COMPLIANT:  # checked before the compliance is found, which takes seconds
+        _require_none(scene, model, calibration=calibration)
+        return given or compliance(scene)
+    return compliance(scene).rigid() if given is None and scene.thermal is not None else given
 
 
 def _require(scene: Scene, model: str, models: Sequence[str]) -> None:

@@ -3,10 +3,12 @@
 import copy
 
 import numpy as np
+import pytest
 
 from tipoff.mechanics import ledger
 from tipoff.mechanics.outcome import Outcome
 from tipoff.mechanics.trajectory import Trajectory
+from tipoff.scenes import SceneError, parse
 
 SMALL = {
     "name": "small",
@@ -89,3 +91,17 @@ def motion(
         scene={},
     )
     return Trajectory(**entries | parts)
+
+
+def refused(raw) -> list:
+    """Faults of a scene that must be refused."""
+    with pytest.raises(SceneError) as caught:
+        parse(raw, "file.toml")
+    return caught.value.faults
+
+
+def write(folder, name, text):
+    """A file of this text."""
+    path = folder / name
+    path.write_text(text, encoding="utf-8")
+    return path

@@ -1,0 +1,46 @@
+"""X19: a measured thrust curve that cannot be used is refused, every fault named."""
+
+import pytest
+
+from tests.scenes.support import refused, small, write
+
+pytestmark = pytest.mark.case("X19")
+
+CURVES = {
+    "unsorted": ("time_s,force_N\n0,0\n2,5\n1,0\n", "increasing order"),
+    "repeated": ("time_s,force_N\n0,0\n0,5\n", "increasing order"),
+    "one row": ("time_s,force_N\n0,0\n", "at least two rows"),
+    "no rows": ("time_s,force_N\n", "at least two rows"),
+    "negative times": ("time_s,force_N\n-1,0\n1,5\n", "not negative"),
+    "nan": ("time_s,force_N\n0,nan\n1,5\n", "finite"),
+    "nan time": ("time_s,force_N\n0,1\nnan,5\n2,1\n", "finite"),
+    "text": ("time_s,force_N\n0,a\n1,5\n", "finite number"),
+    "one column": ("time_s,force_N\n0\n1\n", "two numbers"),
+    "three columns": ("time_s,force_N\n0,1,2\n1,5,2\n", "two numbers"),
+    "no header": ("0,1\n1,5\n", "header"),
+    "empty": ("", "header"),
+    "wrong units": ("time_ms,force_N\n0,1\n1,5\n", "header"),
+}
+
+
+@pytest.mark.parametrize("name", CURVES)
+def test_thrust_curves(tmp_path, name):
+    text, expected = CURVES[name]
+    path = write(tmp_path, "curve.csv", text)
+    (fault,) = refused(small(thrust={"kind": "measured", "file": str(path)}))
+    assert fault.key == "thrust.file"
+    assert expected in fault.expected
+
+
+def test_every_fault_of_a_curve_is_named(tmp_path):
+    path = write(tmp_path, "curve.csv", "time_s,force_N\n1,inf\n-1,5\n")
+    (fault,) = refused(small(thrust={"kind": "measured", "file": str(path)}))
+    assert all(word in fault.expected for word in ("finite", "not negative", "increasing"))
+
+
+def test_curve_files_that_are_no_text(tmp_path):
+    (tmp_path / "curve.csv").write_bytes(b"\xff\xfe\x00")
+    for file in (tmp_path / "curve.csv", tmp_path / "none.csv", tmp_path):
+        (fault,) = refused(small(thrust={"kind": "measured", "file": str(file)}))
+        assert fault.key == "thrust.file"
+        assert "CSV file" in fault.expected

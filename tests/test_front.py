@@ -1,0 +1,101 @@
+"""What ``import tipoff`` offers: which solver answers, and options that are refused before any work."""
+
+from types import SimpleNamespace
+
+import pytest
+
+import tipoff
+from tipoff import highfi, lowfi
+from tipoff.calibration import rail_compliance
+
+SCENE = tipoff.load("tiny")
+CALIBRATION = SimpleNamespace()
+
+
+@pytest.fixture
+def solvers(monkeypatch):
+    """What the solvers were asked for, in place of their runs."""
+    asked = []
+    monkeypatch.setattr(highfi, "run", lambda *given: asked.append(("highfi", *given)))
+    monkeypatch.setattr(lowfi, "run", lambda *given, **more: asked.append((*given, more)))
+    monkeypatch.setattr(lowfi, "run_many", lambda *given, **more: asked.append((*given, more)))
+    return asked
+
+
+@pytest.fixture
+def found(monkeypatch, tmp_path):
+    """Element sizes (m) of the compliances that were computed, in place of their statics."""
+    sizes = []
+
+    def compute(scene, element_size):
+        sizes.append(element_size)
+        return SimpleNamespace(save=lambda path: (path.parent.mkdir(parents=True), path.touch()))
+
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
+    monkeypatch.setattr(rail_compliance, "compliance", compute)
+    monkeypatch.setattr(rail_compliance, "fine_enough", lambda scene, own: 2.0 * own)
+    monkeypatch.setattr(rail_compliance.RailCompliance, "load", _stored)
+    return sizes
+
+
+def _stored(path):
+    if not path.is_file():
+        raise FileNotFoundError(path)
+    return "stored"
+
+
+def test_every_name_is_there():
+    assert all(hasattr(tipoff, name) for name in tipoff.__all__)
+    assert dir(tipoff) == tipoff.__all__
+    with pytest.raises(AttributeError, match="no attribute 'walls'"):
+        _ = tipoff.walls
+
+
+def test_finite_elements_take_their_own_numerics(solvers):
+    tipoff.run(SCENE, "finite-elements", element_size=8e-3)
+    assert solvers == [("highfi", SCENE, highfi.Numerics(element_size=8e-3), None)]
+
+
+def test_compliant_contact_finds_its_compliance_once(solvers, found, capsys):
+    for _ in range(2):
+        tipoff.run(SCENE, modes=2)
+    assert found == [4e-3] and capsys.readouterr().err.count("rail compliance, once") == 1
+    (_, model, first), (_, _, again) = solvers
+    assert model == "compliant" and first["numerics"] == lowfi.Numerics(modes=2)
+    assert again["compliance"] == "stored"
+
+
+def test_springs_need_no_compliance_but_on_warm_rails(solvers, found):
+    tipoff.run(SCENE, "springs", calibration=CALIBRATION)
+    assert solvers[0][2]["compliance"] is None and solvers[0][2]["calibration"] is CALIBRATION
+    assert found == []
+
+
+def test_an_ensemble_draws_as_many_cases_as_asked_for(solvers):
+    tipoff.ensemble(SCENE, "paper", "springs", count=7, seed=3, relative_tolerance=1e-3)
+    (_, cases, model, more) = solvers[0]
+    assert (cases.cases, cases.seed, model) == (7, 3, "springs")
+    assert more["numerics"] == lowfi.Numerics(relative_tolerance=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("model", "given"),
+    [
+        ("finite-elements", {"compliance": CALIBRATION, "calibration": CALIBRATION}),
+        ("compliant", {"calibration": CALIBRATION}),
+        ("walls", {}),
+    ],
+)
+def test_options_of_another_model_are_refused_before_any_work(solvers, found, model, given):
+    with pytest.raises(tipoff.SceneError) as caught:
+        tipoff.run(SCENE, model, **given)
+    assert [fault.key for fault in caught.value.faults] == (list(given) or ["model"])
+    assert solvers == [] and found == []
+
+
+def test_listed_cases_are_not_drawn(solvers):
+    with pytest.raises(tipoff.SceneError, match="count, seed"):
+        tipoff.ensemble(SCENE, [{}], "springs", count=7)
+    with pytest.raises(tipoff.SceneError, match="one of compliant, springs"):
+        tipoff.ensemble(SCENE, [{}], "finite-elements")
+    assert solvers == []
