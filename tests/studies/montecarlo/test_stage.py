@@ -21,6 +21,8 @@ from tipoff.studies.montecarlo import stage as montecarlo
 from tipoff.studies.montecarlo.stage import Options
 from tipoff.studies.populations import answers, population, spread
 from tipoff.studies.populations.population import Population
+from tipoff.studies.render import table as tables
+from tipoff.studies.render.document import terminal
 
 pytest.importorskip("zarr")
 
@@ -109,9 +111,9 @@ def test_a_part_of_the_cases_is_their_first_whether_they_settled_or_not():
     ]
 
 
-def test_what_does_not_settle_elsewhere_is_said_and_stops_nothing(study, monkeypatch):
-    """Neither another reading nor the other surrogate; with none settled of the cases asked for
-    there is nothing to say."""
+def test_cases_that_do_not_settle_elsewhere_are_reported_and_stop_nothing(study, monkeypatch):
+    """Neither in another reading nor on the other surrogate. The study itself needs settled
+    cases."""
     run, seen = population.run, []
 
     def spoilt(*arguments):
@@ -128,8 +130,8 @@ def test_what_does_not_settle_elsewhere_is_said_and_stops_nothing(study, monkeyp
         and row["rates"] is row["distance"] is None
         and found["readings"][0]["distance"] is not None
     )
-    assert any(
-        line == f"too few cases settled to compare: {row['reading']}" for line in found["findings"]
+    assert f"too few settled cases to compare: {row['reading']}\n" in terminal(
+        pictures.summary(found)
     )
     assert "1 settled" in html(pictures.draw(found))
     monkeypatch.setattr(population, "run", lambda *_: counted(120, slice(None)))
@@ -148,11 +150,9 @@ def test_what_does_not_settle_elsewhere_is_said_and_stops_nothing(study, monkeyp
     )
     assert models["both_settled"] == 0 and models["quantities"] == []
     both = found | {"models": models}
-    assert (
-        "No case of 120 settled in both models" in html(pictures.draw(both))
-        and len(pictures.charts(both)) == 2
-    )
-    assert "none settled on both" in montecarlo._findings(both)[-1]
+    assert "No case of 120 settled in both models" in html(pictures.draw(both))
+    assert len(pictures.charts(both)) == 2
+    assert "no case settled in both models" in terminal(pictures.summary(both))
 
 
 def test_tails_hold_the_probability_by_independent_quadrature(found):
@@ -208,10 +208,17 @@ def test_section_of_the_page(found):
         for words in (
             "montecarlo-histograms",
             "two normal components",
-            "prints no number",
+            "Figure 9",
             "rate about y 6",
         )
     )
+
+
+def test_the_terminal_shows_the_tables_of_the_page(found):
+    shown = terminal(pictures.summary(found))
+    for table in (pictures._quantities(found), pictures._tails(found)):
+        assert tables.terminal(table) in shown
+    assert "readings with other distributions of the rates: two normal components" in shown
 
 
 def test_bad_input_is_refused_and_nothing_written(tmp_path):

@@ -1,4 +1,4 @@
-"""The paper's random errors, case by case."""
+"""The random errors of the paper's Table 3 on the surrogate."""
 
 from tipoff.studies.montecarlo import command
 from tipoff.studies.question import Parts, Question

@@ -11,7 +11,7 @@ from tipoff.studies.commands.options import Json, Out, SceneName, Set, Surrogate
 
 
 class Values(StrEnum):
-    """What a normal axial value may be."""
+    """Distributions of the axial value of an error."""
 
     signed = "signed"
     half = "half"
@@ -19,14 +19,14 @@ class Values(StrEnum):
 
 
 class Angles(StrEnum):
-    """Whose the radial angles are."""
+    """Whether errors share one radial angle."""
 
     independent = "independent"
     shared = "shared"
 
 
 class Rules(StrEnum):
-    """What may become of a draw beyond three sigma."""
+    """Treatment of a value beyond three sigma."""
 
     redraw = "redraw"
     clip = "clip"
@@ -38,25 +38,27 @@ Seed = Annotated[int, typer.Option("--seed", metavar="N", min=0, help="Seed of a
 Meaning = Annotated[
     Values,
     typer.Option(
-        "--reading", help="What a normal axial value is: signed, its size, or two components."
+        "--reading",
+        help="Axial value of an error: signed normal, its magnitude, or two normal components.",
     ),
 ]
 Direction = Annotated[
-    Angles, typer.Option("--angles", help="A radial angle for each error, or one that all share.")
+    Angles, typer.Option("--angles", help="A radial angle for each error, or one for all errors.")
 ]
-Rule = Annotated[Rules, typer.Option("--rule", help="What becomes of a draw beyond three sigma.")]
+Rule = Annotated[
+    Rules,
+    typer.Option("--rule", help="A value beyond three sigma is drawn again, clipped or kept."),
+]
 Initial = Annotated[
-    bool, typer.Option("--initial", help="Draw the place inside the clearance at ignition too.")
+    bool, typer.Option("--initial", help="Draw the initial position inside the clearance too.")
 ]
 Limit = Annotated[
     list[str] | None,
     typer.Option(
         "--limit",
         metavar="[AXIS=]RATE",
-        help='How often is a rate above it? "x=2 '
-        'deg/s", or "5 deg/s" for the total; '
-        "repeatable. Default: 5 deg/s for each "
-        "and the total.",
+        help='Limit of a rate, "x=2 deg/s", or of the total rate, "5 deg/s"; repeatable. The '
+        "result is the probability above it. Default: 5 deg/s for each rate and for the total.",
     ),
 ]
 
@@ -80,11 +82,11 @@ def add(app: typer.Typer) -> None:
         workers: Workers = None,
         json_: Json = False,
     ) -> None:
-        """Random errors of thrust and mass as in the paper's Table 3: rates, tails, and the
-        uncertainty of both; writes montecarlo.json.
+        """Random errors of thrust and mass as in the paper's Table 3: quantiles of the rates and
+        probabilities above limits, with bounds; writes montecarlo.json.
 
-        The first thousand cases are the paper's number. All readings of the table are compared, and
-        both surrogates on equal draws.
+        The paper has 1,000 cases. All readings of its Table 3 are compared, and both surrogates on
+        the same cases.
 
           tipoff montecarlo --cases 1000000 --limit "x=2 deg/s" --limit "8 deg/s"
           tipoff montecarlo --reading half --angles shared --initial
@@ -102,4 +104,7 @@ def add(app: typer.Typer) -> None:
 
         found = guarded(work, json_)
         if not json_:
-            print("\n".join([*found["findings"], *found["summary"]]))
+            from tipoff.studies.montecarlo import page
+            from tipoff.studies.render import document
+
+            print(document.terminal(page.summary(found)))

@@ -1,8 +1,9 @@
-"""Random errors on the page: distributions, tails, convergence, what the reading of the table
-changes, and both surrogates."""
+"""Random errors on the page and for the terminal: distributions, probabilities above limits,
+convergence, the readings of the paper's Table 3, and both surrogates."""
 
 import numpy as np
 
+from tipoff.studies.populations import population
 from tipoff.studies.render.chart import (
     AMBER,
     GREY,
@@ -19,38 +20,32 @@ from tipoff.studies.render.table import Column, Table, estimate, number, percent
 _RATES = ("rate_x_deg_s", "rate_y_deg_s", "rate_z_deg_s")
 _LOOKS = {0.5: (NAVY, "-", "o"), 0.95: (VERMILION, "--", "s"), 0.99: (TEAL, "-.", "^")}
 _HISTOGRAMS = (
-    "Densities of the settled rates. Broad pale: the first {paper_cases:,} cases, as many as the "
-    "paper has in its "
-    "Figure 9. Thin: all of them."
+    "Probability density of the settled rates. Wide pale line: the first {paper_cases:,} cases, "
+    "the number of the paper's Figure 9. Thin line: all cases."
 )
 _CONVERGENCE = (
-    "Left: quantiles of each rate from the first cases, with their 95 % bounds from order "
-    "statistics (dotted). "
-    "Right: half the width of these bounds; the grey lines fall with the root of the number of "
-    "cases."
+    "Left: quantiles of each rate against the number of cases, with 95 % bounds from order "
+    "statistics (dotted). Right: half the width of these bounds; the grey lines fall as 1/√n."
 )
 _MODELS = (
-    "The same {cases:,} draws on calibrated springs and on compliant contact. On the grey line "
-    "both agree; what lies off "
-    "it is the uncertainty of the model."
+    "Rates of the same {cases:,} cases with calibrated springs and with compliant contact. On the "
+    "grey line both models give the same rate."
 )
 _BOUNDS = (
-    "Small: 95 % bounds from order statistics, which hold whatever the distribution is; a dash "
-    "where the cases are too few "
-    "for one. The second line of each is of the paper's number of cases."
+    "Each quantile is followed by its 95 % bounds from order statistics, which hold for any "
+    "distribution. A dash: too few cases for a bound."
 )
 _READINGS = (
-    "{cases:,} cases each, deg/s, drawn apart from the study's own. Distance: the largest between "
-    "the distribution "
-    "functions of a rate here and in the study (Kolmogorov and Smirnov), with the chance of so "
-    "large a one if there were "
-    "no difference."
+    "{cases:,} cases of each reading, deg/s, drawn with another seed than those of the study. "
+    "Distance: the largest difference between the distribution functions of a rate in both samples "
+    "(Kolmogorov and Smirnov). By chance: the probability of such a distance if both distributions "
+    "are equal."
 )
 _PAPER = (
-    "The paper prints no number of its Monte Carlo study, only histograms (Figure 9) and that "
-    "three drop tests lie within "
-    "them, so there is none to set beside these."
+    "The paper gives no numbers of its Monte Carlo study. It shows histograms (Figure 9) and "
+    "states that its three drop tests lie within them."
 )
+_DIFFERENT = 0.01  # probability by chance, below which two readings are called different
 
 
 def charts(found: dict) -> list[tuple[Chart, str]]:
@@ -66,20 +61,69 @@ def charts(found: dict) -> list[tuple[Chart, str]]:
 
 
 def draw(found: dict) -> list[Part]:
-    """What stands in the section."""
+    """The section."""
     histograms, convergence, *models = [Figure(*each) for each in charts(found)]
     return [
-        Bullets(found["findings"]),
+        Bullets(_run(found)),
         histograms,
         _quantities(found),
+        Fold("All quantiles, also of the paper's number of cases", [_quantiles(found)]),
         _tails(found),
         convergence,
-        Heading("Does the reading matter?"),
+        Heading("Effect of the reading of the paper's Table 3"),
         _readings(found),
         *models,
         *_apart(found["models"]),
         _PAPER,
     ]
+
+
+def summary(found: dict) -> list[Part]:
+    """Quantiles and probabilities above limits, for the terminal."""
+    lines = [*_run(found), *_different(found["readings"]), *_model_error(found["models"])]
+    return [Bullets(lines), _quantities(found), _tails(found)]
+
+
+def _run(found: dict) -> list[str]:
+    """What was run."""
+    counts = found["counts"]
+    return [
+        f"{counts['asked']:,} cases = {counts['ok']:,} ok + {counts['refused']:,} refused + "
+        f"{counts['failed']:,} failed; {found['settled']:,} settled; seed {found['asked']['seed']}",
+        population.model_line(found),
+        f"random errors: {found['reading']}",
+    ]
+
+
+def _different(readings: list[dict]) -> list[str]:
+    """Readings whose rates differ from those of the study, and those with too few cases to tell."""
+    others = [row for row in readings if not row["same"]]
+    few = [row["reading"] for row in others if row["distance"] is None]
+    different = [
+        f"{row['reading']} (distance {row['distance']:.3f})"
+        for row in others
+        if row["distance"] is not None and row["chance"] < _DIFFERENT
+    ]
+    lines = [f"readings with too few settled cases to compare: {'; '.join(few)}"] if few else []
+    return [
+        *lines,
+        f"readings with other distributions of the rates: {'; '.join(different) or 'none'}",
+    ]
+
+
+def _model_error(models: dict | None) -> list[str]:
+    """The difference between springs and compliant contact in the rates."""
+    if not models:
+        return []
+    what = f"springs against compliant contact, the same {models['cases']:,} cases"
+    if not models["quantities"]:
+        return [f"{what}: no case settled in both models"]
+    rates = ", ".join(
+        f"{row['label']} {row['root_mean_square']:.3g} {row['unit']}"
+        for row in models["quantities"]
+        if row["unit"] == "deg/s"
+    )
+    return [f"{what}: root mean square difference {rates}"]
 
 
 def _histograms(found: dict) -> Chart:
@@ -198,6 +242,22 @@ def _models(models: dict) -> Chart:
 
 
 def _quantities(found: dict) -> Table:
+    rows = []
+    for item in found["quantities"]:
+        quantiles = {row["share"]: row for row in item["quantiles"]}
+        shown = [estimate(quantiles[share]) for share in _LOOKS]
+        rows.append((*_name_and_sd(item), *shown))
+    below = [f"{percent(share, 'g')} % below" for share in _LOOKS]
+    return Table(["quantity", "sd", *below], rows, (_BOUNDS,))
+
+
+def _name_and_sd(item: dict) -> tuple[str, str]:
+    sd = f"{number(item['sd'], '.4g')} ± {number(item['sd_error'], '.1g')}"
+    return f"{item['label']} ({item['unit']})", sd
+
+
+def _quantiles(found: dict) -> Table:
+    """Of all cases, and in a second row of the paper's number of cases."""
     shares = [row["share"] for row in found["quantities"][0]["quantiles"][1:]]
     rows = []
     for item in found["quantities"]:
@@ -206,13 +266,9 @@ def _quantities(found: dict) -> Table:
             if item["first"]
             else ["none settled", *[""] * (len(shares) - 1)]
         )
+        name, sd = _name_and_sd(item)
         rows += [
-            (
-                f"{item['label']} ({item['unit']})",
-                found["counts"]["asked"],
-                f"{number(item['sd'], '.4g')} ± {number(item['sd_error'], '.1g')}",
-                *map(estimate, item["quantiles"][1:]),
-            ),
+            (name, found["counts"]["asked"], sd, *map(estimate, item["quantiles"][1:])),
             ("", found["paper_cases"], "", *first),
         ]
     below = [f"{percent(share, 'g')} % below" for share in shares]
@@ -229,23 +285,15 @@ def _tails(found: dict) -> Table:
         )
         for row in found["tails"]
     ]
-    heads: tuple[Column | str, ...] = (
-        "limit",
-        "cases above",
-        "probability of being above",
-        "95 % bounds (Clopper and Pearson)",
-    )
-    note = (
-        "A rate about an axis counts by its magnitude. A case that did not settle counts as above "
-        "every limit."
-    )
+    heads = ("limit", "cases above", "probability above", "95 % bounds (Clopper and Pearson)")
+    note = "The magnitude of a rate is compared. A case that did not settle counts as above."
     return Table(heads, rows, (note,))
 
 
 def _readings(found: dict) -> Table:
     shares, rows = (0.5, 0.95, 0.99, 0.9973), []
     for item in found["readings"]:
-        name = item["reading"] + (" (the same, drawn again)" if item["same"] else "")
+        name = item["reading"] + (" (that of the study, drawn again)" if item["same"] else "")
         if item["rates"] is None:
             settled = f"{item['settled'] or 'none'} settled"
             rows.append((name, settled, *[""] * (4 + len(shares))))
@@ -268,8 +316,8 @@ def _readings(found: dict) -> Table:
         "distance",
         Column("by chance", form=".2g"),
     )
-    words = _READINGS.format(cases=found["readings"][0]["cases"])
-    return Table(heads, rows, (words,), dense=True)
+    note = _READINGS.format(cases=found["readings"][0]["cases"])
+    return Table(heads, rows, (note,), dense=True)
 
 
 def _apart(models: dict | None) -> list[Part]:
@@ -299,4 +347,4 @@ def _apart(models: dict | None) -> list[Part]:
         )
         for row in models["quantities"]
     ]
-    return [Fold("both surrogates on the same draws", [Table(heads, rows, dense=True)])]
+    return [Fold("Both surrogates on the same cases", [Table(heads, rows, dense=True)])]

@@ -1,9 +1,9 @@
-"""Stage ``montecarlo``: the paper's random errors (Table 3) on the surrogate, its thousand cases
-and many more.
+"""Stage ``montecarlo``: the paper's random errors (Table 3) on the surrogate, with the paper's
+1,000 cases and with many more.
 
-Case n is drawn from the seed and n alone, so the paper's thousand are the first of however many
-there are. The paper prints no number of its own here: its Figure 9 shows histograms, and its text
-says that three drop tests lie within them.
+Case n depends on the seed and on n alone, so the first 1,000 cases are the same for any number of
+cases. The paper gives no numbers of this study: its Figure 9 shows histograms, and its text states
+that three drop tests lie within them.
 """
 
 from dataclasses import dataclass
@@ -22,18 +22,18 @@ from tipoff.studies.populations.population import Population, Surrogate
 from tipoff.studies.populations.random_factors import READINGS, Reading
 
 NAME = "montecarlo"
-PAPER = 1000  # cases of the paper
+PAPER = 1000  # number of cases in the paper
 CASES = 1_000_000
-_COMPARED = 10_000  # cases of each reading: differences of 2 % between distributions can be seen
-_FEWEST = 2  # settled cases, without which there is no standard deviation
+_COMPARED = 10_000  # cases of each reading: enough to detect a distance of 2 %
+_FEWEST = 2  # settled cases: a standard deviation needs two
 _CONVERGING = (0.5, 0.95, 0.99)
 _RATES = (*answers.RATES, answers.TOTAL_RATE)
 
 
 @dataclass(frozen=True)
 class Options:
-    """What ``tipoff montecarlo`` is given beside the scene; ``limits`` as ``exceedance.limits``
-    reads them; the name of a ``model``, None for the default."""
+    """Options of ``tipoff montecarlo``: number of cases, seed, reading of Table 3, ``limits`` in
+    the form of ``exceedance.limits``, name of the ``model`` (None: the default)."""
 
     cases: int = CASES
     seed: int = 1
@@ -43,10 +43,10 @@ class Options:
 
 
 def run(study: Study, options: Options = Options()) -> dict:
-    """Spread of every quantity, tails, convergence, all readings, and both surrogates on the same
-    draws; ``summary`` in words.
+    """Distribution of every quantity, probabilities above limits (``tails``), convergence, all
+    readings, and both surrogates on the same cases.
 
-    Raises SceneError for bad input, StudyError where no case settles.
+    Raises SceneError for bad input, and StudyError where fewer than two cases settle.
     """
     limits, source = together(
         lambda: exceedance.limits(options.limits),
@@ -61,9 +61,8 @@ def run(study: Study, options: Options = Options()) -> dict:
         found = population.run(study, NAME, model, source)
         if (settled := int(found.settled.sum())) < _FEWEST:
             raise StudyError(
-                f"{settled or 'no'} case settled, {found.counts['refused']:,} of them refused; the "
-                f"reasons are in "
-                f"{found.store}/done"
+                f"{settled or 'no'} case settled; {found.counts['refused']:,} were refused, for "
+                f"the reasons in {found.store}/done"
             )
         made: dict[str, Any] = {
             "asked": STAGE.plain(options),
@@ -84,7 +83,6 @@ def run(study: Study, options: Options = Options()) -> dict:
             "readings": _readings(study, options, model, found),
             "models": _models(study, options, model.name, found),
         }
-        made |= {"findings": _findings(made), "summary": _numbers(made)}
         return made, [
             path
             for chart, _ in pictures.charts(made)
@@ -95,7 +93,7 @@ def run(study: Study, options: Options = Options()) -> dict:
 
 
 def _fitted(study: Study, options: Options) -> str | None:
-    """Both models are compared where there is a calibration."""
+    """Key of the calibration, with which both models are compared; None without one."""
     fitted = calibrate.stored(study)
     return fitted["key"] if fitted else None
 
@@ -104,8 +102,7 @@ STAGE = Stage(NAME, __name__, Options, _fitted)
 
 
 def _settled(quantity: answers.Quantity, found: Population, first: int | None = None) -> np.ndarray:
-    """Values of the settled of all cases, or of the ``first``: a case that did not settle keeps its
-    number."""
+    """Values (m,) of the settled cases among all, or among the ``first`` cases, settled or not."""
     return quantity.of(found.results)[:first][found.settled[:first]]
 
 
@@ -123,7 +120,7 @@ def _quantity(quantity: answers.Quantity, found: Population) -> dict:
 
 
 def _tail(limit: exceedance.Limit, rates: np.ndarray) -> dict:
-    """How often ``rates`` (n,3), deg/s, are above ``limit``."""
+    """Number and probability of ``rates`` (n,3), deg/s, above ``limit``, with its bounds."""
     above = exceedance.above(rates, limit)
     count = int(above.sum())
     low, high = exceedance.bounds(count, len(rates), spread.CONFIDENCE)
@@ -139,8 +136,8 @@ def _tail(limit: exceedance.Limit, rates: np.ndarray) -> dict:
 
 
 def _readings(study: Study, options: Options, model: Surrogate, found: Population) -> list[dict]:
-    """Each reading with a seed of its own beside the cases that were asked for; the row of the same
-    reading is the control. Where too few settled there are no rates, and no distance."""
+    """Each reading with its own seed, compared with the cases of the study; the row of the same
+    reading is the control. Without enough settled cases, ``rates`` and ``distance`` are None."""
     rows, cases = [], min(_COMPARED, options.cases)
     here = [_settled(item, found, cases) for item in _RATES]
     for place, reading in enumerate(READINGS):
@@ -179,9 +176,9 @@ def _apart(here: list[np.ndarray], values: list[np.ndarray]) -> dict:
 
 
 def _models(study: Study, options: Options, model: str, found: Population) -> dict | None:
-    """The paper's thousand on springs and on compliant contact; None where no pad can touch, for
-    then both are one model, and where no springs were calibrated for the scene. No quantities where
-    no case settled on both."""
+    """The first 1,000 cases with springs and with compliant contact. None without contact, where
+    both are the same model, and without a calibration for the scene. ``quantities`` is empty where
+    no case settled in both models."""
     if study.scene.contact is None or calibrate.stored(study) is None:
         return None
     cases = min(PAPER, options.cases)
@@ -220,63 +217,3 @@ def _models(study: Study, options: Options, model: str, found: Population) -> di
         for item in _RATES
     }
     return {"cases": cases, "both_settled": int(both.sum()), "quantities": rows, "pairs": pairs}
-
-
-def _findings(made: dict) -> list[str]:
-    """What was run and what it says beside its numbers, one line each."""
-    counts, options = made["counts"], made["asked"]
-    text = [
-        f"{counts['asked']:,} cases = {counts['ok']:,} ok + {counts['refused']:,} refused + "
-        f"{counts['failed']:,} failed; {made['settled']:,} settled; seed {options['seed']}",
-        population.model_line(made),
-        f"errors: {made['reading']}",
-    ]
-    lost = [row["reading"] for row in made["readings"] if row["distance"] is None]
-    text += [f"too few cases settled to compare: {'; '.join(lost)}"] if lost else []
-    others = [
-        row
-        for row in made["readings"]
-        if row["reading"] not in lost and row["chance"] < 0.01 and not row["same"]
-    ]
-    if others_text := "; ".join(
-        f"{row['reading']} (distance {row['distance']:.3f})" for row in others
-    ):
-        text.append(f"readings that can be told from this one: {others_text}")
-    elif not lost:
-        text.append("no other reading of the table can be told from this one")
-    if made["models"] and not made["models"]["quantities"]:
-        text.append(
-            f"springs against compliant contact on the same {made['models']['cases']:,} draws: "
-            f"none settled on both"
-        )
-    elif made["models"]:
-        rates = [row for row in made["models"]["quantities"] if row["unit"] == "deg/s"]
-        text.append(
-            f"springs against compliant contact on the same {made['models']['cases']:,} draws, "
-            f"root mean square: "
-            + ", ".join(f"{row['label']} {row['root_mean_square']:.3g}" for row in rates)
-            + " deg/s"
-        )
-    return text
-
-
-def _numbers(made: dict) -> list[str]:
-    """The numbers in words and units."""
-    text = []
-    for item in made["quantities"]:
-        row = next(row for row in item["quantiles"] if row["share"] == 0.99)
-        text.append(
-            f"{item['label']}: sd {item['sd']:.4g} ± {item['sd_error']:.2g}, 99 % below "
-            f"{_in_bounds(row)} {item['unit']}"
-        )
-    return text + [
-        f"{row['limit']}: above it in {row['above']:,} of {row['cases']:,}, probability "
-        f"{row['share']:.3g} "
-        f"[{row['low']:.3g}, {row['high']:.3g}]"
-        for row in made["tails"]
-    ]
-
-
-def _in_bounds(row: dict) -> str:
-    low, high = ("none" if row[side] is None else f"{row[side]:.4g}" for side in ("low", "high"))
-    return f"{row['value']:.4g} [{low}, {high}]"
