@@ -1,5 +1,5 @@
-"""The ``tipoff sensitivity`` command: tables, indices, figures, what bad input it refuses, and its
-section of the page."""
+"""The ``tipoff sensitivity`` command: tables, indices, figures, refused input, and the section of
+the page."""
 
 import json
 from types import SimpleNamespace
@@ -17,6 +17,7 @@ from tipoff.studies.core.settings import defaults
 from tipoff.studies.core.study import Study, StudyError, read
 from tipoff.studies.populations import answers, population
 from tipoff.studies.populations.population import Population, Surrogate
+from tipoff.studies.render import table as tables
 from tipoff.studies.sensitivity import page as section
 from tipoff.studies.sensitivity import stage as sensitivity
 
@@ -93,9 +94,8 @@ def test_the_command(tiny, tmp_path, monkeypatch):
         >= max(abs(value - attitude[0]) for value in attitude)
         > 0.0
     )
-    assert "lateral velocity" in next(
-        line for line in result.stdout.splitlines() if "every quantity moves" in line
-    )
+    for shown in (section._largest(table, found["paper"]), section._indices(found["sobol"])):
+        assert tables.terminal(shown) in result.stdout
     sobol = found["sobol"]
     assert [item["name"] for item in sobol["quantities"]] == [item.name for item in answers.ALL]
     assert [item["key"] for item in sobol["inputs"]] == [
@@ -132,12 +132,12 @@ def test_the_command(tiny, tmp_path, monkeypatch):
 
 
 def test_tables_of_warm_rails_stand_on_the_walls_of_the_model(tmp_path, monkeypatch):
-    """Both the calibrated constants and the scene's own; constants of the law are moved, not the
+    """Both the calibrated constants and those of the scene. Constants of the law change, not the
     penalty of compliant contact."""
-    asked = []
+    models = []
 
     def run(_study, _name, model, source, _tolerance):
-        asked.append(model)
+        models.append(model)
         rates = np.zeros((source.asked, 3))
         found = columns.Columns(
             *[rates if name in columns.VECTORS else rates[:, 0] for name in columns.Columns._fields]
@@ -150,10 +150,10 @@ def test_tables_of_warm_rails_stand_on_the_walls_of_the_model(tmp_path, monkeypa
     )
     rigid = SimpleNamespace(flexibility=None)
     model = Surrogate(study.scene.replace({"contact.stiffness": 1e9}), None, rigid)
-    tables = sensitivity._tables(study, model, sensitivity.Options())
-    assert [found.compliance for found in asked] == [rigid] * 2 and len(tables) == 2
-    assert asked[1].scene.contact == study.scene.contact
-    for table in tables:
+    made = sensitivity._tables(study, model, sensitivity.Options())
+    assert [found.compliance for found in models] == [rigid] * 2 and len(made) == 2
+    assert models[1].scene.contact == study.scene.contact
+    for table in made:
         assert {row["symbol"] for row in table["rows"]} == {"baseline", "k", "c", "d", "clearance"}
     (compliant,) = sensitivity._tables(
         study, model._replace(compliance=SimpleNamespace(flexibility=1.0)), sensitivity.Options()
@@ -162,8 +162,7 @@ def test_tables_of_warm_rails_stand_on_the_walls_of_the_model(tmp_path, monkeypa
 
 
 def test_cases_that_do_not_settle(tiny, tmp_path, monkeypatch):
-    """Few of them are counted and left out with their base points; with too many nothing is
-    said."""
+    """A few are counted and left out with their base points; too many are a StudyError."""
     run = population.run
 
     def spoilt(cases):

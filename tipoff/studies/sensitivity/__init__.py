@@ -1,4 +1,4 @@
-"""Which inputs an answer depends on: constants moved one at a time, and Sobol' indices."""
+"""Sensitivity of the result to its inputs: one contact constant at a time, and Sobol' indices."""
 
 from tipoff.studies.question import Parts, Question
 from tipoff.studies.sensitivity import command
@@ -11,5 +11,5 @@ def _load() -> Parts:
 
 
 QUESTION = Question(
-    "sensitivity", "Which numbers the answer depends on", "Sensitivity", command.add, _load
+    "sensitivity", "Sensitivity to uncertain inputs", "Sensitivity", command.add, _load
 )

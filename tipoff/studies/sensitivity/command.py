@@ -31,7 +31,7 @@ def sensitivity(
         typer.Option(
             "--vary",
             metavar="FILE",
-            help="What is not certain, as a .toml file; default: "
+            help="Distributions of the uncertain inputs, a .toml file; default: "
             "studies/sensitivity/tolerances.toml.",
         ),
     ] = None,
@@ -40,8 +40,8 @@ def sensitivity(
         typer.Option(
             "--points",
             metavar="N",
-            help="Base points of the Sobol' indices, a power "
-            "of two; each takes one case an input, and two.",
+            help="Base points of the Sobol' indices, a power of two; each base point takes two "
+            "cases more than there are inputs.",
         ),
     ] = 1024,
     seed: Annotated[
@@ -52,11 +52,11 @@ def sensitivity(
     workers: Workers = None,
     json_: Json = False,
 ) -> None:
-    """Which numbers the answer depends on: contact constants as in the paper's Table 2, and Sobol'
-    indices; writes sensitivity.json.
+    """Sensitivity of the result to uncertain inputs: contact constants as in the paper's Table 2,
+    and Sobol' indices; writes sensitivity.json.
 
-    A file of tolerances holds a distribution for the number itself, or for a factor of the number
-    that the surrogate has:
+    A file of tolerances gives the distribution of an input (vary), or of a factor of its nominal
+    value (factor):
 
       \\[factor."friction.dynamic"]
       distribution = "uniform"
@@ -78,4 +78,7 @@ def sensitivity(
 
     found = guarded(work, json_)
     if not json_:
-        print("\n".join(found["summary"]))
+        from tipoff.studies.render import document
+        from tipoff.studies.sensitivity import page
+
+        print(document.terminal(page.summary(found)))

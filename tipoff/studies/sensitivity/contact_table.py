@@ -1,9 +1,9 @@
-"""Contact constants moved one at a time about those of a surrogate, laid out like Table 2 of the
-paper (``studies.published``).
+"""Contact constants changed one at a time, in the form of Table 2 of the paper
+(``studies.published``).
 
-A deviation is absolute, w - w0, and relative, (w - w0)/w0; the relative one says nothing where w0
-itself is nearly zero, which here means below a twentieth of the total rate of its condition. One
-micrometre of clearance stands beside them: no contact constant needs to be known better than that.
+A deviation is absolute, w - w0, and relative, (w - w0)/w0. The relative one is left out where w0 is
+below a twentieth of the total rate of its condition. A change of the clearance by one micrometre is
+added for comparison: it is the floor of every agreement.
 """
 
 from collections.abc import Mapping, Sequence
@@ -15,8 +15,8 @@ from tipoff.mechanics.models import COMPLIANT
 from tipoff.scenes.scene import Scene
 from tipoff.studies import published
 
-# Of Table 2: 66,000 and 74,000 about 70,000; 50 and 70 about 60; 0.25 and 0.35 about 0.30. The
-# penalty is what compliant contact has.
+# The changes of Table 2: 70,000 to 66,000 and 74,000; 60 to 50 and 70; 0.30 to 0.25 and 0.35.
+# Compliant contact has the penalty alone.
 _STIFFNESS, _DAMPING = 4.0 / 70.0, 10.0 / 60.0
 _MOVED = {
     "stiffness": ("k", _STIFFNESS),
@@ -30,8 +30,8 @@ _NEARLY_ZERO = 0.05
 
 
 class Change(NamedTuple):
-    """A constant that is moved: its ``symbol``, whether it is ``raised`` (None: nothing is
-    changed), by which ``share``, and overrides."""
+    """A changed constant: its ``symbol``, whether it is ``raised`` (None: the baseline without a
+    change), the relative change ``share``, and the overrides of the scene (SI)."""
 
     symbol: str
     raised: bool | None
@@ -40,8 +40,8 @@ class Change(NamedTuple):
 
 
 def changes(scene: Scene, model: str) -> list[Change]:
-    """What is moved in ``scene``, which has contact: nothing first, then each constant of the
-    contact of ``model`` down and up, then the clearance."""
+    """The changes of ``scene``, which has contact: the baseline, then each contact constant of
+    ``model`` lowered and raised, then the clearance."""
     assert scene.contact is not None
     found = [Change("baseline", None, 0.0, {})]
     for name, (symbol, share) in (_COMPLIANT if model == COMPLIANT else _MOVED).items():
@@ -60,7 +60,7 @@ def changes(scene: Scene, model: str) -> list[Change]:
 
 
 def conditions(scene: Scene) -> list[str]:
-    """Those of Table 2 where the scene has them, else the fitted ones, else all it has."""
+    """The conditions of Table 2 if the scene has them all, else the fitted ones, else all."""
     names = [name for name in published.CONDITIONS if name in scene.conditions]
     return (
         names
@@ -70,8 +70,8 @@ def conditions(scene: Scene) -> list[str]:
 
 
 def deviations(baseline: Sequence[float], rates: Sequence[float]) -> dict:
-    """Absolute (deg/s) and relative deviations by axis; relative ones None where the rate is nearly
-    zero at the ``baseline``."""
+    """Absolute (deg/s) and relative deviations by axis; a relative one is None where the rate of
+    the ``baseline`` is below a twentieth of its total rate."""
     nominal = np.asarray(baseline, dtype=float)
     moved = np.asarray(rates, dtype=float) - nominal
     meaningful = (abs(nominal) >= _NEARLY_ZERO * np.linalg.norm(nominal)) & (nominal != 0.0)
@@ -88,7 +88,7 @@ def rows(
     others: Mapping[str, np.ndarray] | None = None,
 ) -> list[dict]:
     """Rows of the table for one condition; ``rates`` (n,3) in deg/s, NaN where a case did not
-    settle, and any ``others`` (n,) by name: their ``values``, and by how much each ``moved``."""
+    settle. For ``others`` (n,) by name: their ``values``, and the change ``moved`` of each."""
     found, columns = [], others or {}
     for place, (change, rate) in enumerate(zip(changed, rates)):
         settled = bool(np.isfinite(rate).all() and np.isfinite(rates[0]).all())
@@ -157,8 +157,8 @@ def largest(table: Sequence[dict], symbols: Sequence[str] | None = None) -> dict
 
 
 def most_moved(table: Sequence[dict]) -> dict[str, float]:
-    """By how much each quantity moves at most over the rows of a table, the clearance left out; of
-    none where no row settled."""
+    """The largest change of each quantity over the rows of a table, without the clearance; empty
+    where no row settled."""
     moved = [
         row["moved"]
         for row in table

@@ -3,13 +3,13 @@ SALib.
 
 With V the variance of y over all inputs, x_i one of them and x_~i all others::
 
-    first order  S_i = V[E(y | x_i)] / V           what would go if x_i were known
-    total        T_i = E[V(y | x_~i)] / V           what would stay if all but x_i were known
+    first order  S_i = V[E(y | x_i)] / V           share of the variance that x_i causes alone
+    total        T_i = E[V(y | x_~i)] / V           its share with all interactions
 
 n base points take n (d + 2) cases: A, A with column i from B for each of the d inputs, and B. S_i
 is estimated by mean(B (A_B,i - A))/V and T_i by mean((A - A_B,i)^2)/(2 V) (Saltelli et al., Comput.
-Phys. Commun. 181, 2010); their intervals are of a bootstrap over base points. The points are a
-scrambled Sobol' sequence, of which the first half is one again.
+Phys. Commun. 181, 2010); their intervals come from a bootstrap over base points. The points are a
+scrambled Sobol' sequence, whose first half is such a sequence too.
 """
 
 from typing import Any, NamedTuple
@@ -18,12 +18,12 @@ import numpy as np
 
 CONFIDENCE = 0.95
 RESAMPLES = 200
-_EDGE = 2.0**-53  # 0 and 1 themselves have no finite quantile in a normal distribution
+_EDGE = 2.0**-53  # a normal distribution has no finite quantile at 0 and 1
 
 
 class Indices(NamedTuple):
-    """First-order and total indices (d,) with half widths of their 95 % intervals (d,), and how
-    many base points they come from."""
+    """First-order and total indices (d,) with half widths of their 95 % intervals (d,), and the
+    number of base points used."""
 
     first: np.ndarray
     first_half_width: np.ndarray
@@ -45,8 +45,7 @@ def points(count: int, inputs: int, seed: int) -> np.ndarray:
 
 
 def whole_blocks(settled: np.ndarray, inputs: int) -> np.ndarray:
-    """Which base points (n,) have a result in each of their d + 2 cases; ``settled`` (n (d +
-    2),)."""
+    """Whether all d + 2 cases of each base point (n,) settled; ``settled`` (n (d + 2),)."""
     return np.all(settled.reshape(-1, inputs + 2), axis=1)
 
 
@@ -56,8 +55,7 @@ def indices(
     """Indices of a result ``values`` (n (inputs + 2),) at the points of ``points``; None where it
     does not vary.
 
-    A base point without a result in one of its cases, NaN, is left out with all of them: the
-    estimators need whole blocks.
+    A base point with NaN in one of its cases is left out: the estimators need all its cases.
     """
     from SALib.analyze import sobol
 

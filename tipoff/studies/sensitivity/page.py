@@ -1,10 +1,12 @@
-"""Which numbers the answer depends on, on the page: the paper's Table 2 beside ours, and Sobol'
-indices of every quantity."""
+"""The sensitivity of the result, on the page and for the terminal: contact constants beside the
+paper's Table 2, and Sobol' indices of every quantity."""
 
 from dataclasses import replace
+from itertools import chain
 
 import numpy as np
 
+from tipoff.studies.populations import answers, population
 from tipoff.studies.render.chart import (
     AMBER,
     GREY,
@@ -20,9 +22,9 @@ from tipoff.studies.render.document import Bullets, Figure, Fold, Heading, Part
 from tipoff.studies.render.table import Column, Table, span
 
 _RATES = ("rate_x_deg_s", "rate_y_deg_s", "rate_z_deg_s", "rate_deg_s")
-_STILL = 1e-6  # deg/s; the tables are of runs at a relative tolerance of 2e-7
-_DRAWN = 8  # inputs with bars
-# of inputs whose convergence is drawn
+_STILL = 1e-6  # deg/s, the error of integration at the relative tolerance of the tables, 2e-7
+_DRAWN = 8  # inputs in each bar chart
+# lines of the inputs whose convergence is drawn
 _LINES = ((NAVY, "-", "o"), (VERMILION, "--", "s"), (AMBER, "-.", "^"), (TEAL, ":", "D"))
 _NAMES = {
     "contact.stiffness": "contact stiffness",
@@ -40,38 +42,42 @@ _NAMES = {
     "initial.position": "initial position",
 }
 _BARS = (
-    "First-order index (pale, hatched): the share of the variance that would go if this input were "
-    "known. Total index (dark): "
-    "what would stay if all others were. The difference is what it does together with others. "
-    "Whiskers: 95 %, bootstrap."
+    "First-order index (pale, hatched): the share of the variance that this input causes alone. "
+    "Total index (dark): its share with all interactions. Whiskers: 95 % intervals, bootstrap."
 )
 _MAP = (
-    "Total indices of every quantity: a row of large numbers is an input worth a closer tolerance. "
-    "Half widths of the 95 % "
-    "intervals are in sensitivity.json."
+    "Total Sobol' index of each input (row) for each quantity (column). The half widths of the "
+    "95 % intervals are in sensitivity.json."
 )
 _CONVERGENCE = (
-    "Total indices of the four largest inputs from the first parts of the same points: what more "
-    "points would still "
-    "change."
+    "Total indices of the four largest inputs against the number of base points. A flat line shows "
+    "that more points would change little."
 )
 _TABLE = (
-    "A share says nothing of a rate that is nearly zero, here below a twentieth of the total, and "
-    "is left out. The paper's "
-    "shares are computed from its Table 2; its text gives 0.26 % as the largest about z, its table "
-    "0.71 %. Its scene, and so "
-    "its rates, are not ours."
+    "No percentage is given for a rate below a twentieth of the total rate. The paper's percentages "
+    "are computed from the rates of its Table 2; its text gives 0.26 % as the largest about z, its "
+    "table 0.71 %. The paper's scene is another one, so its rates differ."
+)
+_LARGEST = (
+    "Largest change over all conditions when one contact constant changes, when the clearance is "
+    "1 µm larger, and in the paper's Table 2. Percentages leave out rates below a twentieth of the "
+    "total rate."
+)
+_INDICES = (
+    "Mean, standard deviation, sum of the first-order indices, and the three inputs with the "
+    "largest total index. A sum below 100 % shows interactions; a negative sum is sampling error."
 )
 _MOVED = (
     Column("rates x, y, z", "deg/s", ".3f"),
-    Column("moved by", "deg/s", ".2g"),
-    Column("moved by", "%", ".2g", 100.0),
+    Column("change", "deg/s", ".2g"),
+    Column("change", "%", ".2g", 100.0),
 )
+_SHOWN = 3  # inputs in the table of indices
 _HEADS = ("condition", "changed", *_MOVED, replace(_MOVED[0], title="paper: rates"), *_MOVED[1:])
 
 
 def name_of(key: str) -> str:
-    """A dotted key in words."""
+    """The name of a dotted key for a reader."""
     head, _, last = key.rpartition(".")
     return _NAMES.get(key) or (f"{_NAMES[head]} {last}" if head in _NAMES else key)
 
@@ -92,43 +98,111 @@ def pictures(found: dict) -> list[tuple[Chart | Picture, str]]:
 
 def draw(found: dict) -> list[Part]:
     """The section: tables of contact constants, then indices."""
-    # The map shows what a quantity depends on most; the summary would repeat it.
-    lines = [line for line in found["summary"] if "total index" not in line]
-    tables = [_beside_paper(item, found["paper"]) for item in found["tables"]]
+    tables = [
+        table
+        for item in found["tables"]
+        for table in (_largest(item, found["paper"]), _beside_paper(item, found["paper"]))
+    ]
     return [
-        Bullets(lines),
-        *([Heading("Contact constants, one at a time")] if tables else []),
+        population.model_line(found),
+        *([Heading("One contact constant at a time")] if tables else []),
         *tables,
-        Heading("Everything at once"),
+        Heading("All inputs together"),
+        _used(found["sobol"]),
+        _indices(found["sobol"]),
         *(Figure(*item) for item in pictures(found)),
-        *_inputs(found["sobol"]),
+        _inputs(found["sobol"]),
     ]
 
 
+def summary(found: dict) -> list[Part]:
+    """The largest changes and the total indices, for the terminal."""
+    return [
+        population.model_line(found),
+        *(_largest(item, found["paper"]) for item in found["tables"]),
+        _used(found["sobol"]),
+        _indices(found["sobol"]),
+    ]
+
+
+def _largest(item: dict, paper: dict) -> Table:
+    """The largest change of each quantity by a contact constant, by the clearance, and in the
+    paper's Table 2."""
+    sources = (item["largest"], item["largest_clearance"], paper["largest"])
+    rows: list[tuple] = []
+    for place, quantity in enumerate(answers.ALL):
+        name = f"{quantity.label} ({quantity.unit})"
+        if place >= len(answers.RATES):
+            rows.append((name, item["most_moved"].get(quantity.name), *[""] * 5))
+            continue
+        changes = [
+            (_change(found["absolute_deg_s"][place]), found["relative"][place]) for found in sources
+        ]
+        rows.append((name, *chain.from_iterable(changes)))
+    heads = ("contact constants", "clearance", "the paper")
+    columns = [(Column(head), Column("%", "", ".2g", 100.0)) for head in heads]
+    title = f"Largest change of each quantity, {item['title']}"
+    return Table(["quantity", *chain.from_iterable(columns)], rows, (_LARGEST,), title)
+
+
+def _change(value: float | None) -> float | str | None:
+    """A change of a rate, deg/s, without errors of integration."""
+    return "0" if value is not None and abs(value) < _STILL else value
+
+
+def _used(sobol: dict) -> str:
+    """How many cases the indices are from."""
+    return (
+        f"{sobol['cases']['asked']:,} cases of {len(sobol['inputs'])} inputs, "
+        f"{sobol['not_settled']:,} did not settle; {sobol['used']:,} of {sobol['base_points']:,} "
+        "base points used. A base point is left out if one of its cases did not settle."
+    )
+
+
+def _indices(sobol: dict) -> Table:
+    """Spread, sum of the first-order indices and largest total indices of each quantity."""
+    rows = []
+    for item in sobol["quantities"]:
+        most = ""
+        if item["indices"]:
+            totals = item["indices"]["total"]
+            order = np.argsort(totals)[::-1][:_SHOWN]
+            most = ", ".join(f"{name_of(sobol['inputs'][n]['key'])} {totals[n]:.2f}" for n in order)
+        rows.append(
+            (
+                f"{item['label']} ({item['unit']})",
+                item["mean"],
+                item["sd"],
+                item["indices"] and sum(item["indices"]["first"]),
+                most,
+            )
+        )
+    heads = (
+        "quantity",
+        "mean",
+        "sd",
+        Column("first order", "%", scale=100.0),
+        "largest total indices",
+    )
+    return Table(heads, rows, (_INDICES,))
+
+
 def _beside_paper(item: dict, paper: dict) -> Table:
-    """Rows of ours and, where the condition is one of the paper's, its own."""
+    """One row for each change, with the rates of the paper where its Table 2 has the same."""
     theirs = {(row["condition"], row["symbol"], row["raised"]): row for row in paper["rows"]}
     rows: list[tuple] = [
         (*_ours(row), *_theirs(theirs.get((row["condition"], row["symbol"], row["raised"]))))
         for row in item["rows"]
     ]
     constants = ", ".join(f"{key} {value:.4g}" for key, value in item["constants_si"].items())
-    rows += [
-        ("largest", "", "", *_moved(item["largest"]), "", *_moved(paper["largest"])),
-        ("largest", "clearance", "", *_moved(item["largest_clearance"]), "", "", ""),
-    ]
     symbols = dict.fromkeys(row["symbol"] for row in item["rows"] if row["raised"] is not None)
     idle = [
         symbol
         for symbol in symbols
         if all(_still(row) for row in item["rows"] if row["symbol"] == symbol)
     ]
-    words = (
-        f" Nothing moves with {' or '.join(idle)}: at these constants it has no effect."
-        if idle
-        else ""
-    )
-    title = f"{item['title'].capitalize()}: {item['law']}, SI: {constants}.{words}"
+    without = f" No rate changes with {' or '.join(idle)}." if idle else ""
+    title = f"{item['title'].capitalize()}: {item['law']}, SI: {constants}.{without}"
     return Table(_HEADS, rows, (_TABLE,), title, dense=True)
 
 
@@ -151,7 +225,7 @@ def _rates(row: dict) -> tuple:
 
 
 def _still(row: dict) -> bool:
-    """Whether nothing moved by more than errors of integration."""
+    """Whether no rate changed by more than errors of integration."""
     return row["absolute_deg_s"] is not None and max(map(abs, row["absolute_deg_s"])) < _STILL
 
 
@@ -161,8 +235,8 @@ def _moved(row: dict) -> tuple:
     return row["absolute_deg_s"], row["relative"]
 
 
-def _inputs(sobol: dict) -> list[Part]:
-    """What varied, how far, and by which provenance; what did not."""
+def _inputs(sobol: dict) -> Fold:
+    """The inputs that vary with their distributions and provenance, and those that do not."""
     rows = [
         (
             name_of(item["key"]),
@@ -174,50 +248,11 @@ def _inputs(sobol: dict) -> list[Part]:
         )
         for item in sobol["inputs"]
     ]
-    left = [f"{name_of(key)}: {why}" for key, why in sobol["left_out"].items()]
-    spread = [
-        (
-            item["label"],
-            item["mean"],
-            item["sd"],
-            item["unit"],
-            item["indices"] and sum(item["indices"]["first"]),
-        )
-        for item in sobol["quantities"]
-    ]
-    heads = (
-        "quantity",
-        "mean",
-        "sd",
-        "unit",
-        Column("sum of first-order indices", "%", scale=100.0),
-    )
-    varied = Table(
-        (
-            "input",
-            "distribution",
-            Column("nominal", form=".4g"),
-            "95 % within",
-            "unit",
-            "provenance",
-        ),
-        rows,
-        dense=True,
-    )
-    return [
-        "A base point with a case that does not settle is left out with all of its cases, so the "
-        f"indices hold for launches that leave the rail: {sobol['used']:,} of "
-        f"{sobol['base_points']:,} were used.",
-        Table(
-            heads,
-            spread,
-            (
-                "The sum is what goes by knowing each input alone; below zero it is error of "
-                "sampling (see the whiskers).",
-            ),
-        ),
-        Fold("what varied", [varied, "Left out:" if left else "", Bullets(left)]),
-    ]
+    left = [f"{name_of(key)}: {reason}" for key, reason in sobol["left_out"].items()]
+    nominal = Column("nominal", form=".4g")
+    heads = ("input", "distribution", nominal, "95 % within", "unit", "provenance")
+    parts = [Table(heads, rows, dense=True), "Left out:" if left else "", Bullets(left)]
+    return Fold("Inputs and their distributions", parts)
 
 
 def _bars(sobol: dict, rates: list[dict]) -> Picture:
@@ -300,7 +335,7 @@ def _map(sobol: dict, shown: list[dict]) -> Picture:
 
 
 def _convergence(sobol: dict, rates: list[dict]) -> Chart:
-    """The same inputs in every panel: those with the largest indices over all of them."""
+    """Every panel shows the inputs with the largest mean total index over all rates."""
     most = np.argsort(np.mean([item["indices"]["total"] for item in rates], axis=0))[::-1][
         : len(_LINES)
     ]

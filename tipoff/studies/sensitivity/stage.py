@@ -1,6 +1,6 @@
-"""Stage ``sensitivity``: how much the answer depends on numbers nobody knows exactly. Contact
-constants moved one at a time, as in Table 2 of the paper, and Sobol' indices over everything a file
-calls uncertain, which the paper could not afford."""
+"""Stage ``sensitivity``: how much the result depends on uncertain inputs. Contact constants are
+changed one at a time, as in Table 2 of the paper; Sobol' indices cover all inputs of a file of
+tolerances."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -21,15 +21,14 @@ from tipoff.studies.sensitivity import contact_table, indices, tolerances
 from tipoff.studies.sensitivity import page as drawing
 
 NAME = "sensitivity"
-_HALVINGS = 3  # smaller runs beside the whole one, for convergence
-_FINE = Numerics().relative_tolerance  # deviations of a thousandth are asked of a table
+_HALVINGS = 3  # parts of the points, each half of the next, for convergence
+_FINE = Numerics().relative_tolerance  # the tables show changes of a thousandth
 
 
 @dataclass(frozen=True)
 class Options:
-    """What ``tipoff sensitivity`` is given beside the scene: a file of tolerances or None for
-    ``tolerances.DEFAULT``, base points (a power of two), a seed, the name of a model, None for the
-    default."""
+    """Options of ``tipoff sensitivity``: file of tolerances (None: ``tolerances.DEFAULT``), number
+    of base points (a power of two), seed, name of the model (None: the default)."""
 
     vary: str | None = None
     points: int = 1024
@@ -38,8 +37,8 @@ class Options:
 
 
 def run(study: Study, options: Options = Options()) -> dict:
-    """``tables`` like the paper's Table 2, ``sobol`` with indices by quantity, and ``summary`` in
-    words.
+    """``tables`` in the form of the paper's Table 2, and ``sobol`` with the indices of every
+    quantity.
 
     Raises SceneError for bad input, before anything runs, and StudyError where too few cases
     settle.
@@ -56,7 +55,6 @@ def run(study: Study, options: Options = Options()) -> dict:
             "paper": _paper(),
             "sobol": _sobol(study, model, options),
         }
-        found["summary"] = summary(found)
         files = [
             path
             for picture, _ in drawing.pictures(found)
@@ -93,14 +91,13 @@ def _require(study: Study, options: Options) -> None:
 
 
 def _tables(study: Study, model: Surrogate, options: Options) -> list[dict]:
-    """One table about the constants of the surrogate, and one about the scene's own where a
+    """One table for the constants of the surrogate, and one for those of the scene where a
     calibration changed them."""
     if model.scene.contact is None:
         return []
     titled = [(model.words, model)]
     if model.name == SPRINGS and model.scene.contact != study.scene.contact:
-        # A law stands on the same rigid walls whatever its constants are: where warm rails have
-        # moved them to.
+        # The rigid walls are the same, displaced by the temperature of the rails.
         own = Surrogate(study.scene, None, model.compliance)
         titled.append((own.words, own))
     return [{"title": title, **_table(study, surrogate)} for title, surrogate in titled]
@@ -152,9 +149,8 @@ def _sobol(study: Study, model: Surrogate, options: Options) -> dict:
     whole = indices.whole_blocks(found.settled, inputs)
     if whole.sum() < options.points // 2:
         raise StudyError(
-            f"only {whole.sum()} of {options.points} base points settled in each of their "
-            f"{inputs + 2} cases: too few "
-            "to say anything of all; see the statuses in the store"
+            f"only {whole.sum()} of {options.points} base points settled in all of their "
+            f"{inputs + 2} cases: too few for indices; the store has the status of each case"
         )
     return {
         "inputs": [_described(item) for item in spread.inputs],
@@ -183,7 +179,7 @@ def _described(item: tolerances.Input) -> dict:
 
 
 def _quantity(item: answers.Quantity, found: Population, inputs: int, options: Options) -> dict:
-    """Spread and indices of one quantity, those of the first parts of the points too."""
+    """Spread and indices of one quantity, and its indices from the first parts of the points."""
     values = item.of(found.results)
     sizes = [options.points >> halving for halving in range(_HALVINGS, -1, -1)]
     series = [
@@ -208,48 +204,3 @@ def _plain(found: indices.Indices | None) -> dict | None:
         name: value.tolist() if isinstance(value, np.ndarray) else value
         for name, value in found._asdict().items()
     }
-
-
-def summary(found: dict) -> list[str]:
-    """What the study says, one line each."""
-    paper = found["paper"]["largest"]
-    lines = [population.model_line(found)]
-    lines += [
-        f"{table['title']}: moved one at a time, {_most(table['largest'])}; 1 um of clearance: "
-        f"{_most(table['largest_clearance'])}"
-        for table in found["tables"]
-    ]
-    lines += [
-        f"{table['title']}, every quantity moves by up to: "
-        + ", ".join(
-            f"{item.label} {table['most_moved'][item.name]:.3g} {item.unit}" for item in answers.ALL
-        )
-        for table in found["tables"]
-        if table["most_moved"]
-    ]
-    lines += [f"the paper's Table 2: {_most(paper)}"] if found["tables"] else []
-    sobol = found["sobol"]
-    lines.append(
-        f"{sobol['cases']['asked']:,} cases of {len(sobol['inputs'])} inputs, "
-        f"{sobol['not_settled']:,} did not settle; "
-        f"{sobol['used']:,} of {sobol['base_points']:,} base points used"
-    )
-    for item in sobol["quantities"]:
-        if item["indices"]:
-            order = np.argsort(item["indices"]["total"])[::-1][:3]
-            most = ", ".join(
-                f"{sobol['inputs'][n]['key']} {item['indices']['total'][n]:.2f}" for n in order
-            )
-            lines.append(f"{item['label']}: sd {item['sd']:.3g} {item['unit']}; total index {most}")
-    return lines
-
-
-def _most(largest: dict) -> str:
-    def shown(values, text):
-        return ", ".join("-" if value is None else text.format(value) for value in values)
-
-    relative = [None if value is None else 100.0 * value for value in largest["relative"]]
-    return (
-        f"rates about x, y, z move by up to {shown(largest['absolute_deg_s'], '{:.3g}')} deg/s, "
-        f"{shown(relative, '{:.3g}')} %"
-    )

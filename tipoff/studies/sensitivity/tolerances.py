@@ -1,17 +1,17 @@
-"""What is not certain about a launcher, as a file says it (``tolerances.toml`` here), and from
-points of the unit cube to cases.
+"""The uncertain inputs of a launcher from a file (by default ``tolerances.toml`` here), and the
+cases at points of the unit cube.
 
-Each key has a distribution of ``scenes.distributions``. Under ``[vary]`` it is that of the number
-itself, under ``[factor]`` that of a factor of the number the surrogate has. An offset that a scene
-holds as size r and angle a may be given by its components::
+Each key has a distribution of ``scenes.distributions``: under ``[vary]`` that of the number itself,
+under ``[factor]`` that of a factor of its nominal value. An offset, which a scene has as size r and
+angle a, may be given by its components::
 
     misalignment  y = r cos a, z = r sin a
     eccentricity  y = r sin a, z = r cos a    (angles as in ``scenes.effects``)
 
-so that independent normal components stand for a direction about which nothing is known. Where the
-exponent of a contact law varies, the force at the reference penetration p_r of the calibration
-stays: k' = k p_r^(e - e'). Friction at rest goes along with that of sliding, unless it has a
-distribution of its own.
+so that independent normal components describe an unknown direction. Where the exponent e of a
+contact law varies, the force at the reference penetration p_r of the calibration is kept:
+k' = k p_r^(e - e'). Static friction varies in proportion to dynamic friction, unless it has its own
+distribution.
 """
 
 from functools import reduce
@@ -44,8 +44,8 @@ _SPRINGS = (
 
 
 class Input(NamedTuple):
-    """A number that is not certain: its dotted key, whether its distribution is that of a factor,
-    the number in the scene or None, unit (SI)."""
+    """An uncertain input: its dotted key, whether the distribution is that of a factor, the nominal
+    value in the scene or None, unit (SI)."""
 
     key: str
     is_factor: bool
@@ -60,7 +60,7 @@ class Input(NamedTuple):
 
 
 class Tolerances(NamedTuple):
-    """Inputs that apply to a ``scene``, and under the keys of those that do not the reason."""
+    """Inputs that apply to a ``scene``, and by key the reason why another one does not."""
 
     scene: Scene
     inputs: list[Input]
@@ -90,13 +90,13 @@ class Tolerances(NamedTuple):
 
 
 def digest(path: str | Path) -> str:
-    """Hexadecimal digest of what a file says. Raises SceneError where it cannot be read."""
+    """Hexadecimal digest of the content of a file. Raises SceneError where it cannot be read."""
     return content_hash(reading.toml(Path(path), str(path)))
 
 
 def load(path: str | Path, scene: Scene, model: str = COMPLIANT) -> Tolerances:
-    """What a file says of ``scene``, for the surrogate of the name ``model``. Raises SceneError
-    listing every fault."""
+    """The tolerances of a file for ``scene`` and the surrogate ``model``. Raises SceneError listing
+    every fault."""
     raw, source = reading.toml(Path(path), str(path)), str(path)
     found: list[Input] = []
     left_out: dict[str, str] = {}
@@ -131,7 +131,7 @@ def load(path: str | Path, scene: Scene, model: str = COMPLIANT) -> Tolerances:
         raise SceneError(faults)
     tolerances = Tolerances(scene, found, left_out)
     try:
-        # finds what no single key shows
+        # finds faults that concern several keys
         scene.replace(tolerances.rows(np.full((1, len(found)), 0.5))[0])
     except SceneError as error:
         raise SceneError(
@@ -176,7 +176,7 @@ def _input(
 
 
 def _idle(item: Input, scene: Scene, model: str) -> str | None:
-    """Why a number does not vary in this scene, if so."""
+    """The reason why an input does not vary in this scene; None where it does."""
     table = item.key.partition(".")[0]
     if table in ("contact", "friction") and getattr(scene, table) is None:
         return f"the scene has no {table}"
@@ -189,7 +189,7 @@ def _idle(item: Input, scene: Scene, model: str) -> str | None:
     if item.nominal is None and (item.is_factor or table in ("contact", "friction", "thrust")):
         return "the scene has no such number"
     return (
-        "the scene's number is zero, and so is any multiple of it"
+        "the nominal value is zero, and a factor does not change it"
         if item.is_factor and item.nominal == 0.0
         else None
     )
@@ -218,13 +218,13 @@ def _component(key: str) -> tuple[str, str] | None:
 
 
 def _stored(key: str) -> str:
-    """The key under which a scene holds a number of the same unit."""
+    """The key of a number of the scene with the same unit."""
     component = _component(key)
     return f"{component[0]}.axial" if component else key
 
 
 def _polar(columns: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """The same with components of offsets turned into sizes and angles."""
+    """``columns`` with the components of offsets converted to sizes and angles."""
     found: dict[str, np.ndarray] = {}
     offsets: dict[str, dict[str, np.ndarray]] = {}
     for key, column in columns.items():
