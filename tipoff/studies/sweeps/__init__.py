@@ -1,5 +1,5 @@
-"""One error at a time over size and direction: where growth ends, which faces bear, whether the
-thrust outlasts the rail."""
+"""One error at a time over size and direction: the end of growth, the loaded faces, and the thrust
+after the exit."""
 
 from tipoff.studies.question import Parts, Question
 from tipoff.studies.sweeps import command

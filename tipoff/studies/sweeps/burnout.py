@@ -1,9 +1,8 @@
-"""Whether a payload leaves its rail while the thrust still acts, and the same launcher with a
-thrust so long, or so short, that it is the other way round.
+"""The impulse of the thrust after the exit, and the same launcher with a longer or shorter thrust.
 
-A thrust stretched by f keeps its impulse: force by 1/f, times by f. What acts after the exit turns
-a free payload, so its rate grows with the error however the rail limits the angle before; what
-burns out on the rail leaves it to the walls, whose clearance limits the angle.
+A thrust stretched by f keeps its impulse: the force is divided by f, the times are multiplied by f.
+Thrust after the exit turns a free payload, so the rate grows with the error. If the thrust burns
+out on the rail, the clearance limits the angle.
 """
 
 from typing import NamedTuple
@@ -20,15 +19,14 @@ _MOST = 7  # doublings of the stretch
 
 
 class Exit(NamedTuple):
-    """Of a launch without errors: time of the exit (s) and share of the impulse that acts after
-    it."""
+    """Exit of a launch without errors: its time (s) and the share of the impulse after it."""
 
     time: float
     share_after: float
 
 
 def exit_of(model: Surrogate) -> Exit | None:
-    """How the payload leaves, or None where it does not."""
+    """The exit of the payload; None where it does not leave."""
     time = lowfi.run(
         model.scene,
         model.name,
@@ -43,8 +41,8 @@ def exit_of(model: Surrogate) -> Exit | None:
 
 
 def stretched(scene: Scene, factor: float) -> dict[str, float] | None:
-    """Overrides (SI) that stretch the thrust, and the scene's duration with a longer one; None for
-    a kind that has no such numbers."""
+    """Overrides (SI) that stretch the thrust, and with a longer thrust the duration of the scene.
+    None for a kind of thrust without such numbers."""
     table = scene.thrust
     if table.kind == "constant":
         found = {
@@ -67,10 +65,10 @@ def stretched(scene: Scene, factor: float) -> dict[str, float] | None:
 
 
 def other_way(model: Surrogate) -> tuple[float, Surrogate, Exit] | None:
-    """Stretch, surrogate and its exit where the thrust acts after the exit if it does not in
-    ``model``, and the other way round.
+    """Stretch, surrogate and exit with thrust after the exit if ``model`` has none there, and
+    without it if ``model`` has some.
 
-    None where the payload does not leave or no stretch up to 2^7 does it.
+    None where the payload does not leave, or where no stretch up to 2^7 is enough.
     """
     nominal = exit_of(model)
     if nominal is None:

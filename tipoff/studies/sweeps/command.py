@@ -27,19 +27,19 @@ def sweeps(
     out: Out = Path("out"),
     set_: Set = None,
     angles: Annotated[
-        int, typer.Option("--angles", metavar="N", help="Directions of each size.")
+        int, typer.Option("--angles", metavar="N", help="Number of directions for each size.")
     ] = 120,
     model: Surrogate = None,
     element_size: ElementSize = None,
     workers: Workers = None,
     json_: Json = False,
 ) -> None:
-    """How large misalignment, thrust and mass eccentricity may be: sizes up to 1 deg and 1 mm in
-    every direction; writes sweeps.json.
+    """Rates by size and direction of misalignment, thrust eccentricity and mass eccentricity, up to
+    1 deg and 1 mm; writes sweeps.json.
 
-    Says for the largest rate about each axis whether, and from which size on, it stops to grow,
-    with the interval of that size; and shows the same launcher with a thrust that acts beyond the
-    exit, or burns out before it.
+    The result states whether the largest rate about each axis stops growing, and the size at which
+    it does, with its interval. The launcher is also run with a thrust that continues after the
+    exit, or that ends before it.
     """
 
     def work() -> dict:
@@ -50,4 +50,7 @@ def sweeps(
 
     found = guarded(work, json_)
     if not json_:
-        print("\n".join(found["summary"]))
+        from tipoff.studies.render import document
+        from tipoff.studies.sweeps import page
+
+        print(document.terminal(page.summary(found)))

@@ -1,9 +1,9 @@
-"""The errors that section 3 of the paper sweeps, one at a time, over size and direction, and what
-each would do to a free payload.
+"""The errors that section 3 of the paper sweeps over size and direction, one at a time, and the
+rates that each gives to a free payload.
 
 A free payload of inertia I leaves with w = I^-1 L, where L = J (r x f) is the moment impulse of
-``scenes.moments``. On the reference scene that is 26 deg/s per millimetre of arm: the line that the
-rail bends. Gyroscopic moments are left out: they are quadratic in the rates.
+``scenes.moments``. On the reference scene that is 26 deg/s per millimetre of arm. Gyroscopic moments
+are left out: they are quadratic in the rates.
 """
 
 from typing import NamedTuple
@@ -18,8 +18,8 @@ from tipoff.scenes.scene import Scene
 
 
 class Factor(NamedTuple):
-    """A swept error: ``name``, words for it, dotted table of its size ``axial`` and direction
-    ``radial``, its unit, and that in SI."""
+    """A swept error: ``name``, ``label`` for a reader, dotted ``table`` of its size ``axial`` and
+    direction ``radial``, its ``unit``, and the size of that unit in SI."""
 
     name: str
     label: str
@@ -47,7 +47,7 @@ SIZES = np.arange(1, 11) / 10.0  # deg or mm
 
 
 def angles(count: int) -> np.ndarray:
-    """``count`` directions (rad) around the axis, the first along the zero of the scene's angle."""
+    """``count`` directions (rad) around the axis from the zero of the scene's angle, (count,)."""
     return np.arange(count) * (2.0 * np.pi / count)
 
 
@@ -62,8 +62,7 @@ def cases(directions: np.ndarray) -> Listed:
 
 
 def free_rates(scene: Scene, rows: list[dict[str, float]]) -> np.ndarray:
-    """Rates (n,3) in rad/s that ``rows`` of overrides, those of a factor, would give a free payload
-    of ``scene``."""
+    """Rates (n,3), rad/s, of a free payload of ``scene`` with ``rows`` of overrides of a factor."""
     table = Listed(rows)
     inputs = dict(zip(table.keys, numbers(table.keys, rows).T))
     impulse = float(thrust.impulse(scene.thrust.record(), scene.duration))

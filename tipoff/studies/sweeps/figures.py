@@ -1,5 +1,5 @@
 """Figures of the sweeps: rates over size and direction as in the paper's Figures 11, 13 and 15,
-where growth ends, and polar maps."""
+growth of the largest rates, and polar maps."""
 
 import numpy as np
 
@@ -20,7 +20,7 @@ _LOOKS = {
     "rate_y_deg_s": ("y", "s", "-"),
     "rate_z_deg_s": ("z", "^", "--"),
 }
-_APART = 0.018  # of the axis, so that points of three axes at one size do not hide each other
+_APART = 0.018  # shift, as a share of the axis: points of three axes do not hide each other
 _WALLS = {"-y": NAVY, "+y": TEAL, "-z": AMBER, "+z": "#dfe3e8"}  # darker to lighter
 _FIGURES = {"misalignment": 11, "thrust_eccentricity": 13, "mass_eccentricity": 15}
 _ANGLE = {
@@ -29,22 +29,18 @@ _ANGLE = {
     "mass_eccentricity": "beta, from +z towards +y",
 }
 _GROWTH = (
-    "Largest rate over all directions against the size of the error; top as given, below with the "
-    "thrust stretched. Grey "
-    "lines: a payload that no rail holds, w = I^-1 J (r x f). Shaded: the 95 % interval of a knee "
-    "beyond which the rate "
-    "about y or z stays within a tenth. Dotted: where the paper sees its plateau."
+    "Largest rate over all directions against the size of the error; top: as given, below: with the "
+    "stretched thrust. Grey: a free payload, w = I^-1 J (r x f). Shaded: the 95 % interval of a "
+    "knee before a plateau about y or z. Dotted: the plateau of the paper."
 )
 _SCATTER = (
-    "Settled rates of all cases, as in the paper's Figure {figure}: over the size (left) and over "
-    "the direction {angle} "
-    "(right). Points of the three axes stand a little apart."
+    "Settled rates of all cases, as in the paper's Figure {figure}: against the size (left) and "
+    "the direction {angle} (right). Points of the three axes are shifted to be visible."
 )
 _MAP = (
-    "The same over size (radius, {unit}) and direction ({angle}); the line is a rate of zero. "
-    "Below: the wall touched first "
-    "and the wall that bore the largest impulse, of single runs in a coarser grid of directions. "
-    "{jumps}"
+    "Settled rates over size (radius, {unit}) and direction ({angle}); the line is a rate of zero. "
+    "Below: the wall touched first and the wall with the largest impulse, from single runs on a "
+    "coarser grid of directions. {jumps}"
 )
 
 
@@ -58,25 +54,23 @@ def pictures(found: dict) -> list[tuple[Chart | Picture, str]]:
             (_scatter(factor), _SCATTER.format(figure=_FIGURES[factor["name"]], angle=angle))
         )
         if factor["sides"] is not None:
-            words = _MAP.format(
-                unit=factor["unit"], angle=angle, jumps=_jumping(factor["sides"]["jumps_deg_s"])
-            )
-            drawn.append((_map(factor, given["faces"]), words))
+            jumps = _jumps(factor["sides"]["jumps_deg_s"])
+            caption = _MAP.format(unit=factor["unit"], angle=angle, jumps=jumps)
+            drawn.append((_map(factor, given["faces"]), caption))
     return drawn
 
 
-def _jumping(jumps: list[float | None]) -> str:
-    """How far the rates move where contact changes sides, and elsewhere."""
+def _jumps(jumps: list[float | None]) -> str:
+    """The change of the rates where the most loaded face changes, and elsewhere."""
     if None in jumps:
         return (
-            "Contact never changes sides."
+            "The most loaded face never changes."
             if jumps[0] is None
-            else "Contact changes sides everywhere."
+            else "The most loaded face changes everywhere."
         )
     return (
-        f"Between neighbours of that grid the rates move by {jumps[0]:.2g} deg/s (median) where "
-        f"another wall, or the other end "
-        f"of the payload, takes the largest impulse, and by {jumps[1]:.2g} deg/s elsewhere."
+        f"Between neighbours of that grid the rates change by {jumps[0]:.2g} deg/s (median) where "
+        f"the most loaded face changes, and by {jumps[1]:.2g} deg/s elsewhere."
     )
 
 
@@ -145,7 +139,7 @@ def _grown(launch: dict, factor: dict) -> Panel:
             spans.append((bent["low"], bent["high"]))
     for name, (axis, _, dash) in _LOOKS.items():
         free = np.array(factor["free"][name])
-        # a free payload may turn much faster, and would flatten all others
+        # a free payload may turn much faster, and would flatten the other lines
         shown = free <= 1.15 * top
         lines.append(
             Line(

@@ -1,22 +1,22 @@
-"""Where growth ends: a largest rate g over the size s of an error, and which of five simple laws
-fits it best.
+"""The end of growth: which of five simple laws fits the largest rate g over the size s of an error
+best.
 
     proportional   g = b s
     straight       g = a + b s
-    levelling      g = p (1 - exp(-s/h))                 slower and slower, without a point where growth ends
+    levelling      g = p (1 - exp(-s/h))                 ever slower growth, without a knee
     plateau        g = a + b min(s, k)                   growth up to k, then none
-    knee           g = a + b s + c max(s - k, 0)          growth up to k, then another one
+    knee           g = a + b s + c max(s - k, 0)         growth up to k, then with another slope
 
 Each is fitted by least squares, k and h by scanning. The law with the smallest corrected
 information criterion (Hurvich and Tsai, Biometrika 76, 1989) is taken::
 
     AICc = n ln(RSS/n) + 2 K + 2 K (K + 1)/(n - K - 1),   K = constants + 1
 
-so a bend must earn its constants. Residuals below a five hundredth of the largest rate, what many
-cases are exact to, count as that, so that errors of integration choose no law. The interval of k is
-a percentile bootstrap: angles are drawn again with replacement, the largest rate taken over those,
-and the chosen law fitted anew. The maximum of so many angles can only fall when they are drawn
-again, so the interval speaks of where the bend is, not of how high the curve.
+which penalises additional constants. An rms residual below 1/500 of the largest rate, the error of
+integration of most cases, counts as 1/500. The interval of k is a percentile bootstrap: angles are
+drawn again with replacement, the largest rate is taken over them, and the chosen law is fitted
+again. A resample of the angles can only lower the maximum, so the interval is about the position of
+the knee, not about the height of the curve.
 """
 
 from typing import NamedTuple
@@ -26,19 +26,19 @@ import numpy as np
 RESAMPLES = 400
 LAWS = ("proportional", "straight", "levelling", "plateau", "knee")
 MISFIT = 0.1  # rms residual over the largest value, above which no law fits the curve
-# what may be left to grow: beyond a knee, over the value there; of the height a levelling curve
-# tends to
+# largest growth of a plateau: beyond the knee, over the value there; or of the height that a
+# levelling curve approaches
 LEVEL = 0.1
-# of the largest value: what 95 % of cases are exact to at the coarsest tolerance, lowfi.Numerics
+# of the largest value: error of 95 % of the cases at the coarsest tolerance, lowfi.Numerics
 _RESOLUTION = 2e-3
-_LEAST = 6  # sizes; with fewer, AICc of the knee law has no denominator
+_LEAST = 6  # sizes; with fewer, AICc of the knee law is not defined
 _SCANNED = 121
 
 
 class Growth(NamedTuple):
-    """What became of growth. ``law`` chosen; ``verdict`` in words; ``knee`` with the ends of its 95
-    % interval, None where the law has none; slopes before and after it (or the only one);
-    ``misfit``, rms residual over the largest value; ``plateau_share`` of resamples whose verdict is
+    """The chosen ``law`` and its ``verdict``; ``knee`` with the ends of its 95 % interval, None
+    where the law has no knee; slopes before and after the knee (or the only slope); ``misfit``, the
+    rms residual over the largest value; ``plateau_share``, the share of resamples whose verdict is
     a plateau; AICc by law."""
 
     law: str
@@ -66,10 +66,10 @@ class _Fit(NamedTuple):
 def growth(
     sizes: np.ndarray, values: np.ndarray, seed: int = 1, resamples: int = RESAMPLES
 ) -> Growth | None:
-    """How the largest of ``values`` (s,a), one column an angle, grows over ``sizes`` (s,) above
-    zero. NaN where a case did not settle.
+    """The growth of the largest of ``values`` (s,a), one column per angle, over ``sizes`` (s,)
+    above zero. NaN marks a case that did not settle.
 
-    None where fewer than six sizes have a value, or all are zero.
+    None where fewer than six sizes have a value, or all values are zero.
     """
     some = np.isfinite(values).any(axis=1)
     sizes, values = np.asarray(sizes, dtype=float)[some], np.asarray(values, dtype=float)[some]
@@ -88,7 +88,7 @@ def growth(
     ]
     law, fit = chosen[0], fits[chosen[0]]
     bent = law in ("plateau", "knee")
-    half = 0.5 * (sizes[-2] - sizes[1]) / (_SCANNED - 1)  # what the scan itself leaves open
+    half = 0.5 * (sizes[-2] - sizes[1]) / (_SCANNED - 1)  # half the step of the scan
     low, high = (
         np.percentile(fit.scanned[1:], (2.5, 97.5)) + np.array([-half, half])
         if bent and len(curves) > 1
@@ -116,8 +116,8 @@ def largest(values: np.ndarray) -> np.ndarray:
 
 
 def _fitted(law: str, sizes: np.ndarray, curves: np.ndarray) -> _Fit:
-    """Least squares, all curves at once, and of the values of a scanned constant the one that
-    leaves least."""
+    """Least squares of all curves at once, at the value of the scanned constant with the smallest
+    residual."""
     scanned, designs = _scan(law, sizes)
     constants = np.stack([curves @ np.linalg.pinv(design).T for design in designs])
     residual = np.stack(
@@ -137,8 +137,8 @@ def _fitted(law: str, sizes: np.ndarray, curves: np.ndarray) -> _Fit:
 
 
 def _scan(law: str, sizes: np.ndarray) -> tuple[np.ndarray, list[np.ndarray]]:
-    """Values of the scanned constant (NaN: there is none) and the matrix of the linear ones for
-    each."""
+    """Values of the scanned constant (NaN: there is none), and for each the matrix of the linear
+    constants."""
     one, none = np.ones_like(sizes), np.array([np.nan])
     if law == "proportional":
         return none, [sizes[:, None]]
@@ -167,7 +167,7 @@ def _misfit(fit: _Fit, curve: np.ndarray, index: int) -> float:
 
 
 def _verdict(law: str, sizes: np.ndarray, fit: _Fit, curve: np.ndarray, index: int) -> str:
-    """One of the laws in words, or that none fits the curve."""
+    """The verdict for one curve: its law, or that no law fits."""
     if _misfit(fit, curve, index) > MISFIT:
         return "none of the laws"
     if law == "levelling":

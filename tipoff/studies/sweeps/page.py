@@ -1,9 +1,9 @@
-"""How large an error may be, on the page: verdicts beside the paper's, why there is a plateau or
-none, and the figures."""
+"""How large an error may be, on the page and for the terminal: verdicts beside the paper's, the
+reason for a plateau, and the figures."""
 
-from tipoff.studies.populations import answers
+from tipoff.studies.populations import answers, population
 from tipoff.studies.render.document import Caption, Figure, Fold, Heading, Part
-from tipoff.studies.render.table import Column, Table, number, percent, span
+from tipoff.studies.render.table import Column, Noted, Table, number, percent, span
 from tipoff.studies.sweeps.figures import pictures
 from tipoff.studies.sweeps.knee import LEVEL, MISFIT
 
@@ -17,55 +17,64 @@ _RUN = (
 )
 _VERDICT = (
     "error",
-    "leaves the free line at",
-    "about",
-    "verdict",
-    "knee",
-    "95 %",
     Column("the paper", form="g"),
-    "slope before",
-    "after",
+    "rate",
+    "verdict",
+    "knee, 95 % interval",
     Column("misfit", "%", ".2g", 100.0),
-    Column("plateau in resamples", "%", ".2g", 100.0),
+    Column("plateau", "%", ".2g", 100.0),
 )
+_SLOPES = ("error", "not free from", "rate", "slope before", "slope after")
 _METHOD = (
-    "A law is chosen by its corrected information criterion; the interval of a knee is 95 %, a "
-    "bootstrap over directions. "
-    f"Plateau: beyond the knee the rate stays within {100.0 * LEVEL:g} % of its value there. "
-    f"Levels off: at the largest "
-    f"size no more than {100.0 * LEVEL:g} % of the height is left to grow. None of the laws: the "
-    f"best one misses by more "
-    f"than {100.0 * MISFIT:g} % of the largest rate (rms). The free line is that of a payload no "
-    f"rail holds; the size is "
-    "the first at which a total rate is 5 % off it."
+    "The corrected information criterion chooses the law. Plateau: beyond the knee the rate stays "
+    f"within {100.0 * LEVEL:g} % of its value there. Levels off: at the largest size at most "
+    f"{100.0 * LEVEL:g} % of the height is left to grow. None of the laws: the best law has a "
+    f"misfit (rms) above {100.0 * MISFIT:g} % of the largest rate."
+)
+_INTERVAL = (
+    "The paper: the size at which its plateau begins. The interval of a knee is a bootstrap over "
+    "directions. Plateau: the share of the resamples with this verdict."
+)
+_FREE = (
+    "Not free from: the first size at which a total rate differs by 5 % from that of a free "
+    "payload. Slopes in deg/s per unit of the error."
 )
 _REASON = (
-    "Why there may be a plateau: an error turns the payload by its moment until the clearance "
-    "stops it, and from there a "
-    "larger moment only presses harder. Where the thrust burns out on the rail, what the touches "
-    "left of the rate is all "
-    "there is, and a larger error adds little until it makes other pads touch. Where the payload "
-    "leaves while the thrust "
-    "still acts, no wall stops it any more: the impulse J' that is left adds the rate J' r/I, in "
-    "proportion to the error, "
-    "and no plateau can outlive that."
+    "Reason for a plateau: an error turns the payload until the clearance stops it, and a larger "
+    "moment then only increases the pressure. If the thrust burns out on the rail, a larger error "
+    "adds little to the rate until other pads touch. If the payload leaves under thrust, no wall "
+    "limits the rest: the remaining impulse J' adds the rate J' r/I, in proportion to the error, "
+    "and there is no plateau."
 )
 
 
 def draw(found: dict) -> list[Part]:
-    """The section: what was run, verdicts, why, then figures."""
+    """The section: runs, verdicts, the reason for a plateau, figures."""
     launches = found["launches"]
-    parts: list[Part] = [_counts(launches)]
+    parts: list[Part] = [population.model_line(found), _counts(launches)]
     for launch in launches:
-        parts += [Heading(_title(launch)), _verdicts(launch), _largest(launch)]
+        parts += [
+            Heading(_title(launch)),
+            _verdicts(launch),
+            _largest(launch),
+            Fold("Slopes, and the largest values by size", _details(launch)),
+        ]
     figures = [Figure(*item) for item in pictures(found)]
     return [*parts, Caption(_METHOD), *_why(launches), *figures]
+
+
+def summary(found: dict) -> list[Part]:
+    """Runs, verdicts and the largest values, for the terminal."""
+    parts: list[Part] = [population.model_line(found), _counts(found["launches"])]
+    for launch in found["launches"]:
+        parts += [Heading(_title(launch)), _verdicts(launch), _largest(launch)]
+    return parts
 
 
 def _title(launch: dict) -> str:
     if launch["stretch"] == 1.0:
         return "The launcher as given"
-    return f"Its thrust {launch['stretch']:g} times as long, with the same impulse"
+    return f"With a thrust {launch['stretch']:g} times as long and the same impulse"
 
 
 def _counts(launches: list[dict]) -> Table:
@@ -86,33 +95,73 @@ def _counts(launches: list[dict]) -> Table:
 
 def _verdicts(launch: dict) -> Table:
     rows = [
-        _verdict(factor, name, bent)
+        (
+            *_error(factor, name, factor["paper"]),
+            _SHORT[name],
+            bent["verdict"],
+            None
+            if bent["knee"] is None
+            else Noted(bent["knee"], span(bent["low"], bent["high"], ".2f")),
+            bent["misfit"],
+            bent["plateau_share"],
+        )
+        for factor, name, bent in _judged(launch)
+    ]
+    return Table(_VERDICT, rows, (_INTERVAL,))
+
+
+def _slopes(launch: dict) -> Table:
+    rows = [
+        (
+            *_error(factor, name, factor["departs_from_free_at"]),
+            _SHORT[name],
+            bent["slope_before"],
+            bent["slope_after"],
+        )
+        for factor, name, bent in _judged(launch)
+    ]
+    return Table(_SLOPES, rows, (_FREE,), dense=True)
+
+
+def _judged(launch: dict) -> list[tuple[dict, str, dict]]:
+    """Factor, name of the rate, and its growth."""
+    return [
+        (factor, name, bent)
         for factor in launch["factors"]
         for name, bent in factor["growth"].items()
         if bent
     ]
-    return Table(_VERDICT, rows, dense=True)
 
 
-def _verdict(factor: dict, name: str, bent: dict) -> tuple:
-    return (
-        f"{factor['label']} ({factor['unit']})",
-        factor["departs_from_free_at"],
-        _SHORT[name],
-        bent["verdict"],
-        bent["knee"],
-        span(bent["low"], bent["high"], ".2f"),
-        factor["paper"],
-        bent["slope_before"],
-        bent["slope_after"],
-        bent["misfit"],
-        bent["plateau_share"],
-    )
+def _error(factor: dict, name: str, size: float | None) -> tuple:
+    """Label and a size of a factor, in the first of its rows alone."""
+    first = next(key for key, bent in factor["growth"].items() if bent)
+    return (f"{factor['label']} ({factor['unit']})", size) if name == first else ("", "")
 
 
-def _largest(launch: dict) -> Fold:
-    """Every quantity at every size, in magnitude."""
-    parts: list[Part] = [
+def _largest(launch: dict) -> Table:
+    """The largest magnitude of every quantity over sizes and directions."""
+    factors = launch["factors"]
+    rows = [
+        (
+            f"{item.label} ({item.unit})",
+            *(
+                max(
+                    (value for value in factor["largest"][item.name] if value is not None),
+                    default=None,
+                )
+                for factor in factors
+            ),
+        )
+        for item in answers.ALL
+    ]
+    note = "Largest magnitude of the settled cases, over all sizes and directions."
+    return Table(["largest", *(factor["label"] for factor in factors)], rows, (note,))
+
+
+def _details(launch: dict) -> list[Part]:
+    """Slopes, and every quantity at every size, in magnitude."""
+    tables: list[Part] = [
         Table(
             [f"{factor['label']} ({factor['unit']})", *(f"{size:g}" for size in factor["sizes"])],
             [
@@ -123,13 +172,12 @@ def _largest(launch: dict) -> Fold:
         )
         for factor in launch["factors"]
     ]
-    note = Caption("Largest magnitude over all directions that settled.")
-    return Fold("largest value of every quantity by size", [*parts, note])
+    note = Caption("Largest magnitude of the settled cases, over all directions.")
+    return [_slopes(launch), *tables, note]
 
 
 def _why(launches: list[dict]) -> list[Part]:
-    """What the two launches show together, on misalignment, which is the error with a plateau in
-    the paper and the first here."""
+    """The reason for a plateau, with the numbers of both launches for the first error."""
     if len(launches) < 2 or launches[0]["share_after_exit"] is None:
         return []
     held, freed = sorted(launches, key=lambda item: item["share_after_exit"])
@@ -140,11 +188,11 @@ def _why(launches: list[dict]) -> list[Part]:
     after = None if free is None else freed["share_after_exit"] * free
     return [
         _REASON,
-        f"Here: with {percent(held['share_after_exit'], '.2g')} % of the impulse after the exit "
-        f"the largest rate about y changes by {number(rises[0])} deg/s over the upper half of "
-        f"sizes of the {held['factors'][0]['label']}; with "
-        f"{percent(freed['share_after_exit'], '.2g')} % it changes by {number(rises[1])} deg/s, "
-        f"and the moment after the exit alone gives {number(after)}.",
+        f"Over the upper half of the sizes of the {held['factors'][0]['label']}, the largest rate "
+        f"about y changes by {number(rises[0])} deg/s with "
+        f"{percent(held['share_after_exit'], '.2g')} % of the impulse after the exit, and by "
+        f"{number(rises[1])} deg/s with {percent(freed['share_after_exit'], '.2g')} %. The moment "
+        f"after the exit alone gives {number(after)} deg/s.",
     ]
 
 

@@ -1,9 +1,7 @@
-"""Which pad faces a payload leaned on: the first that touched and the one that bore the largest
-impulse, of single runs with their curves.
+"""The pad faces that touch a wall: the first one, and the one with the largest impulse.
 
-An ensemble keeps no pad forces, so this takes runs of ``lowfi.run`` on a coarser grid of
-directions. A face is a wall the payload touches: its normal is that of the pad, so a face "-y"
-presses the wall at -y.
+An ensemble keeps no pad forces, so this uses single runs of ``lowfi.run`` on a coarser grid of
+directions. The normal of a face is that of the pad, so a face "-y" presses on the wall at -y.
 """
 
 from collections.abc import Callable
@@ -42,7 +40,8 @@ def names(scene: Scene) -> list[str]:
 def found(
     model: Surrogate, rows: list[dict[str, float]], workers: int, progress: Callable[[float], None]
 ) -> Sides:
-    """Sides of every row of overrides of ``model.scene``."""
+    """Sides of every row of overrides of ``model.scene``; ``progress`` is called with the share
+    done."""
     numerics = Numerics(relative_tolerance=TOLERANCE)
 
     def one(row: dict[str, float]) -> tuple[int, int, list[float]]:
@@ -67,17 +66,17 @@ def of(time: np.ndarray, force: np.ndarray) -> tuple[int, int]:
     if not touched.any():
         return NONE, NONE
     began = np.where(touched.any(axis=0), touched.argmax(axis=0), len(time))
-    # Of faces that began within one sample, as both legs of a corner may, the one pressed harder
-    # there counts.
+    # Of faces that touch within one sample, such as both legs of a corner, the one with the larger
+    # force counts.
     earliest = np.flatnonzero(began == began.min())
     first = earliest[np.argmax(force[began.min(), earliest])]
     return int(first), int(np.argmax(np.trapezoid(force, time, axis=0)))
 
 
 def jumps(walls: np.ndarray, rate: np.ndarray) -> tuple[float | None, float | None]:
-    """Median change of the rates (rad/s) between neighbours in size or direction: where ``walls``
-    (s,a), labels with the directions along the second axis, differ between them, and where they do
-    not. ``rate`` (s,a,3); None where there is no such pair."""
+    """Median change of the ``rate`` (s,a,3), in its unit, between neighbours in size or direction:
+    where their labels ``walls`` (s,a) differ, and where they do not. The directions are the second
+    axis. None where there is no such pair."""
     differing, moves = [], []
     for one, other in (
         (np.s_[:-1], np.s_[1:]),

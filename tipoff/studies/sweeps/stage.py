@@ -1,6 +1,6 @@
-"""Stage ``sweeps``: section 3 of the paper. Misalignment, thrust and mass eccentricity one at a
-time over size and direction; where the largest rate stops to grow, if it does; which walls the
-payload leans on; and the same launcher with a thrust that burns on, or out."""
+"""Stage ``sweeps``: section 3 of the paper. Misalignment, thrust eccentricity and mass eccentricity
+vary one at a time in size and direction. Results: the size at which the largest rate stops growing,
+the walls that the payload touches, and both for a longer or shorter thrust."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -21,26 +21,25 @@ from tipoff.studies.sweeps.factors import FACTORS, SIZES, Factor
 
 NAME = "sweeps"
 JUDGED = (*answers.RATES, answers.TOTAL_RATE)  # quantities whose growth is judged
-# at the ensemble's own a long thrust without contact is taken in six steps and loses 0.5 % of its
-# impulse
+# at the tolerance of other ensembles, a long thrust without contact takes six steps and loses 0.5 %
+# of its impulse
 _TOLERANCE = 1e-4
-_FEWEST = 8  # directions: fewer tell no side from another
-_COARSER = 5  # directions of the ensemble for each one whose pads are looked at
-_DEPARTS = 0.05  # of the rate of a free payload: by more the rail has its say
+_FEWEST = 8  # directions: fewer do not separate the walls
+_COARSER = 5  # directions of the ensemble for each direction of the maps of walls
+_DEPARTS = 0.05  # of the rate of a free payload: a larger difference is an effect of the rail
 
 
 @dataclass(frozen=True)
 class Options:
-    """What ``tipoff sweeps`` is given beside the scene: directions of each size, the name of a
-    model, None for the default."""
+    """Options of ``tipoff sweeps``: number of directions for each size, name of the model (None:
+    the default)."""
 
     angles: int = 120
     model: str | None = None
 
 
 def run(study: Study, options: Options = Options()) -> dict:
-    """``launches``: the scene as given, and with its thrust stretched, each with its factors;
-    ``summary`` in words.
+    """``launches``: the scene as given, and with a stretched thrust, each with its factors.
 
     Raises SceneError for bad input, before anything runs.
     """
@@ -51,9 +50,9 @@ def run(study: Study, options: Options = Options()) -> dict:
         model = population.surrogate(study, options.model)
         alone = model._replace(scene=factors.alone(model.scene))
         launches = [_launch(study, alone, options, 1.0, burnout.exit_of(alone))]
-        launches[0]["faces"], looked_at = _sides(study, alone, options)
-        for factor, seen in zip(launches[0]["factors"], looked_at):
-            factor["sides"] = seen
+        launches[0]["faces"], touched = _sides(study, alone, options)
+        for factor, each in zip(launches[0]["factors"], touched):
+            factor["sides"] = each
         if other := burnout.other_way(alone):
             launches.append(_launch(study, other[1], options, other[0], other[2]))
         found = {
@@ -62,7 +61,6 @@ def run(study: Study, options: Options = Options()) -> dict:
             "citation": published.CITATION,
             "launches": launches,
         }
-        found["summary"] = summary(found)
         files = [
             path
             for picture, _ in drawing.pictures(found)
@@ -79,7 +77,7 @@ STAGE = Stage(NAME, __name__, Options)
 def _launch(
     study: Study, model: Surrogate, options: Options, stretch: float, leaves: burnout.Exit | None
 ) -> dict:
-    """All cases of one surrogate in one ensemble, and what becomes of each factor."""
+    """All cases of one surrogate in one ensemble, and the results of each factor."""
     directions = factors.angles(options.angles)
     found = population.run(study, NAME, model, factors.cases(directions), _TOLERANCE)
     count = len(SIZES) * options.angles
@@ -100,7 +98,7 @@ def _launch(
 def _factor(
     model: Surrogate, factor: Factor, directions: np.ndarray, found: Population, part: slice
 ) -> dict:
-    """Results of one factor; ``part`` of the cases are its own."""
+    """Results of one factor from its ``part`` of the cases."""
     shape = len(SIZES), len(directions)
     values = {item.name: item.of(found.results)[part].reshape(shape) for item in answers.ALL}
     free = np.degrees(factors.free_rates(model.scene, factor.rows(SIZES, directions))).reshape(
@@ -131,8 +129,8 @@ def _factor(
 
 
 def _sides(study: Study, model: Surrogate, options: Options) -> tuple[list[str], list[dict | None]]:
-    """Faces, and for each factor which of them was touched first and bore most, on a coarser grid
-    of directions."""
+    """Names of the faces, and for each factor the face that touched first and the one with the
+    largest impulse, on a coarser grid of directions."""
     if model.scene.contact is None:
         return [], [None] * len(FACTORS)
     directions = factors.angles(max(_FEWEST, options.angles // _COARSER))
@@ -143,13 +141,13 @@ def _sides(study: Study, model: Surrogate, options: Options) -> tuple[list[str],
         )
     shape = len(FACTORS), len(SIZES), len(directions)
     names = sides.names(model.scene)
-    compliance = np.array([*names, ""])  # the last for no face, which is -1
+    faces = np.array([*names, ""])  # the last for no face, which is -1
     return names, [
         {
             "angles_deg": np.degrees(directions).tolist(),
             "first": first.tolist(),
             "most": most.tolist(),
-            "jumps_deg_s": sides.jumps(compliance[most], np.degrees(rate)),
+            "jumps_deg_s": sides.jumps(faces[most], np.degrees(rate)),
         }
         for first, most, rate in zip(
             seen.first.reshape(shape), seen.most.reshape(shape), seen.rate.reshape(*shape, 3)
@@ -158,61 +156,7 @@ def _sides(study: Study, model: Surrogate, options: Options) -> tuple[list[str],
 
 
 def _plain(values: np.ndarray) -> list:
-    """Six digits, enough for every figure, and None where a case did not
-    settle."""
+    """Values with six digits, None where a case did not settle."""
     if values.ndim > 1:
         return [_plain(row) for row in values]
     return [float(f"{value:.6g}") if np.isfinite(value) else None for value in values]
-
-
-def summary(found: dict) -> list[str]:
-    """What the study says, one line each."""
-    lines, labels = [population.model_line(found)], {item.name: item.label for item in JUDGED}
-    for launch in found["launches"]:
-        how = (
-            "as given" if launch["stretch"] == 1.0 else f"thrust stretched by {launch['stretch']:g}"
-        )
-        leaves = (
-            "never leaves without errors"
-            if launch["exit_s"] is None
-            else (
-                f"exit after {1e3 * launch['exit_s']:.1f} ms, "
-                f"{100.0 * launch['share_after_exit']:.2g} % of the impulse after it"
-            )
-        )
-        lines.append(
-            f"{how}: {launch['cases']['asked']:,} cases, {launch['not_settled']:,} did not settle; "
-            f"{leaves}"
-        )
-        for factor in launch["factors"]:
-            growth = "; ".join(
-                f"{labels[name]}: {verdict_text(bent, factor['unit'])}"
-                for name, bent in factor["growth"].items()
-                if bent
-            )
-            lines.append(
-                f"{how}, {factor['label']} (the paper: plateau from {factor['paper']:g} "
-                f"{factor['unit']}): {growth}"
-            )
-            most = ", ".join(
-                f"{item.label} {_most(factor['largest'][item.name])} {item.unit}"
-                for item in answers.ALL
-            )
-            lines.append(f"{how}, {factor['label']}, largest at any size and angle: {most}")
-    return lines
-
-
-def _most(values: list[float | None]) -> str:
-    return (
-        f"{max(known):.3g}" if (known := [value for value in values if value is not None]) else "-"
-    )
-
-
-def verdict_text(bent: dict, unit: str) -> str:
-    """A verdict in words, with the knee and its interval."""
-    if bent["knee"] is None:
-        return bent["verdict"]
-    return (
-        f"{bent['verdict']}, knee at {bent['knee']:.2f} {unit} ({bent['low']:.2f} to "
-        f"{bent['high']:.2f})"
-    )
