@@ -1,5 +1,5 @@
-"""The search for the largest certified scale: steps with a known place, every way to have no
-answer, and counts that do not grow."""
+"""The search for the largest certified scale: steps at a given scale, every state without a result,
+and counts that do not grow."""
 
 import pytest
 
@@ -27,21 +27,20 @@ def test_a_step_is_found_from_below(place):
 @pytest.mark.parametrize(
     "search", [lambda above: largest(above, 3), lambda above: near(above, 3, 0.2)]
 )
-def test_no_answer_is_told_apart(search):
+def test_searches_without_a_result_have_different_states(search):
     assert search(step(2.0)).state == ALL and search(step(2.0)).scale == 1.0
     assert search(step(1e-4)).state == SMALL and search(step(1e-4)).scale is None
     assert search(step(2.0, below=4)).state == NONE and search(step(2.0, below=4)).scale is None
 
 
-def test_what_passes_again_beyond_a_failure_is_told_and_not_used():
-    """A window of failures between 0.1 and 0.3: the scales 0.5 and 1 pass, and the answer stays
-    below the window."""
+def test_a_certified_scale_beyond_a_failure_is_reported_and_not_used():
+    """The scales between 0.1 and 0.3 fail, 0.5 and 1 pass; the result is below 0.1."""
     found = largest(lambda scale: 9 if 0.1 < scale <= 0.3 else 2, 3)
     assert found.state == FOUND and found.scale <= 0.1 < found.fails
     assert found.again == [0.5, 1.0] and [pair[1] for pair in found.falls] == [0.5]
 
 
-def test_counts_are_asked_for_once_each():
-    asked = []
-    largest(lambda scale: asked.append(scale) or int(scale > 0.4), 0)
-    assert len(asked) == len(set(asked)) == 14
+def test_each_scale_is_counted_once():
+    scales = []
+    largest(lambda scale: scales.append(scale) or int(scale > 0.4), 0)
+    assert len(scales) == len(set(scales)) == 14

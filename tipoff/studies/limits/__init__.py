@@ -1,5 +1,4 @@
-"""Tolerances that keep rates below limits: what is asked, cases within tolerances, the largest that
-are certified."""
+"""The largest tolerances that keep the rates below limits with a given probability."""
 
 from tipoff.studies.limits import command
 from tipoff.studies.question import Parts, Question

@@ -18,7 +18,7 @@ class Tolerances(StrEnum):
 
 
 class Others(StrEnum):
-    """What errors are that do not vary."""
+    """Values of the errors that do not vary."""
 
     scene = "scene"
     zero = "zero"
@@ -29,17 +29,16 @@ Limit = Annotated[
     typer.Option(
         "--limit",
         metavar="[AXIS=]RATE",
-        help='Limit of a rate, "x=2 deg/s", or of '
-        'the total, "5 deg/s"; repeatable, and '
-        "all are to be kept. Default: 5 deg/s "
-        "for the total.",
+        help='Limit of a rate, "x=2 deg/s", or of the total rate, "5 deg/s"; repeatable. All '
+        "limits must be kept. Default: 5 deg/s for the total rate.",
     ),
 ]
 Probability = Annotated[
-    float, typer.Option("--probability", metavar="P", help="Share of launches that keep them.")
+    float,
+    typer.Option("--probability", metavar="P", help="Share of launches that keep all limits."),
 ]
 Confidence = Annotated[
-    float, typer.Option("--confidence", metavar="C", help="Confidence with which that is shown.")
+    float, typer.Option("--confidence", metavar="C", help="Confidence of that probability.")
 ]
 Cases = Annotated[
     int | None,
@@ -47,14 +46,14 @@ Cases = Annotated[
         "--cases",
         metavar="N",
         min=1,
-        help="Cases of each set of tolerances; default: ten times the fewest that can show it.",
+        help="Cases of each set of tolerances; default: ten times the fewest that are possible.",
     ),
 ]
 Scaled = Annotated[
     Tolerances,
     typer.Option(
         "--tolerances",
-        help="What is scaled together: what the paper advises, or the ranges of its Table 3.",
+        help="Tolerances that are scaled together: the paper's advice, or ranges of its Table 3.",
     ),
 ]
 Fixed = Annotated[
@@ -66,8 +65,8 @@ Draws = Annotated[
     typer.Option(
         "--draws",
         metavar="N",
-        help="Draws of the calibrated constants from their "
-        "intervals, with --model springs; default: 8.",
+        help="Draws of the calibrated constants from their intervals, with --model springs; "
+        "default: 8.",
     ),
 ]
 Condition = Annotated[
@@ -98,11 +97,11 @@ def add(app: typer.Typer) -> None:
         workers: Workers = None,
         json_: Json = False,
     ) -> None:
-        """Tolerances of thrust, mass, clearance and friction that keep the rates below limits at a
-        probability; writes limits.json.
+        """The largest tolerances of thrust, mass, clearance and friction that keep the rates below
+        limits with a probability; writes limits.json.
 
-        Each alone, all together, and misalignment against mass eccentricity; with what is not
-        certain.
+        The result has each tolerance alone, all together, pairs of misalignment and mass
+        eccentricity, and the uncertainty of the constants and of the model.
 
           tipoff limits --limit "x=2 deg/s" --limit "5 deg/s" --probability 0.99
           tipoff limits --limit "10 deg/s" --others zero --tolerances table3
@@ -128,4 +127,7 @@ def add(app: typer.Typer) -> None:
 
         found = guarded(work, json_)
         if not json_:
-            print("\n".join(found["summary"]))
+            from tipoff.studies.limits import page
+            from tipoff.studies.render import document
+
+            print(document.terminal(page.summary(found)))

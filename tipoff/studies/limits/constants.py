@@ -1,4 +1,4 @@
-"""What is not certain about the calibrated constants and about the model they are constants of."""
+"""The uncertainty of the calibrated constants, and the error of the surrogate."""
 
 from typing import NamedTuple
 
@@ -17,10 +17,10 @@ _TWO_SIDED_95 = 1.959963984540054  # standard deviations
 def draws(
     scene: Scene, fitted: Calibration, count: int, seed: int
 ) -> tuple[list[dict[str, float]], list[str]]:
-    """``count`` sets of overrides of ``scene``, and the names of the constants that differ in them.
+    """``count`` sets of overrides of ``scene``, and the names of the drawn constants.
 
-    Each is drawn by itself from the normal distribution of its 95 % interval, and inside it (a
-    Latin hypercube). A constant without an interval keeps its value.
+    Each constant is drawn independently from the normal distribution of its 95 % interval,
+    truncated to the interval (Latin hypercube). A constant without an interval keeps its value.
     """
     from tipoff.calibration import parameters
 
@@ -36,28 +36,28 @@ def draws(
     if not laws or count == 0:
         return [], []
     points = Points(Uncertainty(count, seed, "latin-hypercube", laws)).draw(0, count)
-    known = dict(zip(fitted.parameters, fitted.values))
+    nominal = dict(zip(fitted.parameters, fitted.values))
     drawn = zip(*(item.ppf(column).tolist() for item, column in zip(laws.values(), points.T)))
-    return [parameters.overrides(scene, known | dict(zip(laws, values))) for values in drawn], list(
-        laws
-    )
+    return [
+        parameters.overrides(scene, nominal | dict(zip(laws, values))) for values in drawn
+    ], list(laws)
 
 
 class Margin(NamedTuple):
-    """What the surrogate's settled rates were off by at most, deg/s: about each axis and in
-    magnitude; None where nothing was measured. ``said`` is where that is from."""
+    """The largest error of the surrogate's settled rates, deg/s, by axis x, y, z and in ``total``;
+    None where nothing is measured. ``source`` names the measured conditions."""
 
     deg_s: dict[str, float] | None
-    said: str
+    source: str
 
 
 def margin(study: Study, model: str) -> Margin:
-    """The largest errors on the conditions of ``make compare`` that nothing was fitted to and whose
-    reference is converged: elsewhere nobody knows whose error it is. Without any, those the fit
-    itself leaves."""
+    """The largest errors on the held-out conditions of ``make compare`` with a converged reference;
+    without a converged reference the error has an unknown share of the reference's own. Where there
+    is no such condition, the largest residuals of the calibration."""
     if study.scene.contact is None:
         return Margin(
-            dict.fromkeys(("x", "y", "z", "total"), 0.0), "no contact, no error of a contact law"
+            dict.fromkeys(("x", "y", "z", "total"), 0.0), "zero, because the scene has no contact"
         )
     table = (compare.stored(study) or {}).get("compliant" if model == COMPLIANT else "held_out", [])
     rows = [row for row in table if row["role"] == "held_out"]
@@ -73,19 +73,18 @@ def margin(study: Study, model: str) -> Margin:
         found["total"] = max(sum(part**2 for part in error) ** 0.5 for error in errors)
         return Margin(
             found,
-            f"largest of {len(errors)} held-out conditions; {len(rows) - len(errors)} more have no "
-            f"converged "
-            "reference, and errors there are not known",
+            f"largest of {len(errors)} held-out conditions; {len(rows) - len(errors)} others have "
+            "no converged reference",
         )
     left = [
         row["settled_rate_error_deg_s"]
         for row in (read(study.path("calibration.json")) or {}).get("residuals", {}).values()
     ]
     if model == COMPLIANT or not left or None in left:
-        return Margin(None, "not measured: make compare measures it")
+        return Margin(None, "not measured (make compare measures it)")
     worst = max(left)
     return Margin(
         {"x": worst, "y": worst, "z": worst, "total": 3**0.5 * worst},
-        f"largest of the {len(left)} fitted conditions, for no held-out one was measured (make "
-        f"compare)",
+        f"largest of the {len(left)} fitted conditions; no held-out condition is measured (make "
+        "compare)",
     )

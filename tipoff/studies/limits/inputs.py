@@ -1,4 +1,4 @@
-"""What ``tipoff limits`` is asked, and whether that can be answered."""
+"""The options of ``tipoff limits`` and their checks."""
 
 from dataclasses import dataclass
 
@@ -8,18 +8,19 @@ from tipoff.studies.core.checked import together
 from tipoff.studies.populations import exceedance, order_statistics
 from tipoff.studies.populations.exceedance import Limit
 
-# of the fewest cases: some may then be above, and tolerances are not cut for want of cases
+# times the fewest cases: some cases may then be above a limit
 TIMES_NEEDED = 10
 DRAWS, _MOST_DRAWS = 8, 1000
 
 
 @dataclass(frozen=True)
 class Options:
-    """``limits`` as ``exceedance.limits`` reads them, all of which a case must keep with
-    ``probability``, to be shown with ``confidence`` from ``cases`` (None: ten times the fewest);
-    the ``tolerances`` that are scaled together, advised or table3; errors that do not vary as in
-    the ``scene`` or ``zero``; ``draws`` of calibrated constants, which springs have alone, None for
-    eight; the name of a ``model``, None for the default."""
+    """``limits`` in the form of ``exceedance.limits``; the ``probability`` with which a case keeps
+    all of them, at a ``confidence``, from a number of ``cases`` (None: ten times the fewest);
+    ``tolerances`` that are scaled together, "advised" or "table3"; ``others``, errors that do not
+    vary, as in the "scene" or "zero"; ``draws`` of the calibrated constants, for springs alone
+    (None: eight); name of the ``model`` (None: the default); name of a ``condition`` (None: the
+    scene)."""
 
     limits: tuple[str, ...] = ("5 deg/s",)
     probability: float = 0.99
@@ -61,7 +62,7 @@ def _cases(options: Options) -> int:
             Fault("--confidence", "value", f"{options.confidence:g}", "0.5 or more and less than 1")
         )
     if options.draws is not None and options.model != SPRINGS:
-        expected = f"none but with --model {SPRINGS}: compliant contact has no fitted constants"
+        expected = f"used with --model {SPRINGS} alone; compliant contact has no fitted constants"
         faults.append(Fault("--draws", "option", str(options.draws), expected))
     elif options.draws is not None and not 0 <= options.draws <= _MOST_DRAWS:
         faults.append(Fault("--draws", "value", str(options.draws), f"0 to {_MOST_DRAWS}"))
@@ -76,8 +77,8 @@ def _cases(options: Options) -> int:
                 "--cases",
                 "value",
                 f"{options.cases:,}",
-                f"{needed:,} or more: with fewer, none above the limits does not show "
-                f"{options.probability:g} at a confidence of {options.confidence:g}",
+                f"{needed:,} or more, to show a probability of {options.probability:g} at a "
+                f"confidence of {options.confidence:g}",
             )
         )
     raise SceneError(faults)

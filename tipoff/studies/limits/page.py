@@ -1,7 +1,11 @@
-"""Certified tolerances on the page: a table beside the paper's advice, how often limits are missed
-by tolerance, a map of two."""
+"""Certified tolerances on the page and for the terminal: a table beside the paper's advice, the
+share of cases above a limit by tolerance, and a map of two tolerances."""
 
-from tipoff.studies.limits.search import ALL, FOUND, NONE, SMALL
+from collections.abc import Callable
+from typing import Any
+
+from tipoff.studies.limits.search import ALL, FOUND, LOST, NONE, SMALL
+from tipoff.studies.limits.within import TOGETHER
 from tipoff.studies.populations import exceedance, population
 from tipoff.studies.render.chart import (
     AMBER,
@@ -17,29 +21,39 @@ from tipoff.studies.render.document import Bullets, Figure, Fold, Part
 from tipoff.studies.render.table import Column, Table, estimate, span
 
 _CURVES = (
-    "Share of {cases:,} cases above a limit over the tolerance, the same draws at every tolerance. "
-    "Dotted: its upper bound "
-    "at {confidence:.0%} confidence, which may not be above the horizontal line, 1 - p. Vertical: "
-    "the largest certified "
-    "tolerance; dashed, what the paper advises."
+    "Share of {cases:,} cases above a limit against the tolerance, with the same draws at every "
+    "tolerance. Dotted: its upper bound at {confidence:.0%} confidence; horizontal: the allowed "
+    "share 1 - p. Vertical: the largest certified tolerance; dashed: the advice of the paper."
 )
 _MAP = (
-    "Both errors vary, and on an axis the other one is zero: certified pairs lie on the side of "
-    "the origin. The square is what "
-    "the paper advises."
+    "Both errors vary; on an axis the other error is zero. Pairs on the side of the origin are "
+    "certified. Square: the advice of the paper."
 )
-_TABLE = (
-    "A tolerance is three sigma of a normal distribution, redrawn beyond it; errors point anywhere "
-    "around the axis. One "
-    "factor varies at a time, and the errors of the others are {others}; the last row scales a "
-    "whole set. Certified: the "
-    "upper bound of the probability that any rate is above its limit is at most {most:.4g} "
-    "({confidence:.0%} confidence, "
-    "{cases:,} cases, of which {allowed:,} may be above). {uncertain}"
+_TOLERANCE = (
+    "A tolerance is three sigma of a normal distribution, drawn again beyond it; an error has any "
+    "direction. One factor varies at a time, the errors of the others are {others}; the last "
+    "row scales a whole set."
+)
+_CERTIFIED = (
+    "Certified: the upper bound of the probability that a rate is above its limit is at most "
+    "{most:.4g} ({confidence:.0%} confidence; of {cases:,} cases {allowed:,} may be above)."
 )
 _ADVICE = (
-    "The paper advises its tolerances where rates stop rising with the error; it names no "
+    "The paper advises the tolerances at which rates stop growing with the error. It gives no "
     "limit and no probability."
+)
+_REASONS = {
+    NONE: "none, a limit is exceeded even at zero",
+    LOST: "none, the model error exceeds a limit",
+}
+_COLUMNS: tuple[tuple[str, Callable[[dict], Any]], ...] = (
+    ("tolerance of", lambda row: row["words"] + _unit(row["unit"], " ({})")),
+    ("largest certified", lambda row: value(row["nominal"])),
+    ("the paper advises", lambda row: row["advised"] and row["advised"]["tolerance"]),
+    ("limits kept there", lambda row: row["advised"] and _kept(row["advised"])),
+    ("other constants", lambda row: row["constants"] and extent(row["constants"])),
+    ("with model error", lambda row: row["model"] and value(row["model"])),
+    ("worst constants, model error", lambda row: row["both"] and value(row["both"])),
 )
 
 
@@ -51,135 +65,94 @@ def charts(found: dict) -> list[tuple[Chart, str]]:
 
 
 def draw(found: dict) -> list[Part]:
-    """What stands in the section."""
-    others = "as the scene has them" if found["asked"]["others"] == "scene" else "zero"
-    words = _TABLE.format(
-        others=others,
-        most=1.0 - found["probability"],
-        uncertain=_uncertain(found),
-        **{name: found[name] for name in ("confidence", "cases", "allowed")},
-    )
-    odd = [f"{row['words']}: {line}" for row in found["rows"] for line in _odd(row, _unit(row))]
+    """The section."""
     return [
-        Bullets([*found["summary"][:2], *odd]),
-        _table(found, words),
+        *summary(found),
         *(Figure(*each) for each in charts(found)),
         *_beside(found),
         _ADVICE,
     ]
 
 
-def _uncertain(found: dict) -> str:
-    """Where both uncertainties come from, in words."""
-    count, names, margin = (
-        found["constants"]["draws"],
-        ", ".join(found["constants"]["drawn"]),
-        found["margin"],
+def summary(found: dict) -> list[Part]:
+    """The certified tolerances, also for the terminal."""
+    limits = ", ".join(exceedance.Limit(**each).words for each in found["limits"])
+    run = (
+        f"limits: {limits}; to be kept together with probability {found['probability']:g} at "
+        f"{found['confidence']:.0%} confidence; {found['cases']:,} cases"
     )
-    constants = (
-        f"the search repeated for {count} draws of {names} from their 95 % intervals"
-        if count
-        else "none is fitted, or none has an interval"
+    odd = [f"{row['words']}: {line}" for row in found["rows"] for line in _odd(row)]
+    return [Bullets([run, population.model_line(found), *odd]), _table(found)]
+
+
+def _table(found: dict) -> Table:
+    """One row for each factor, without the columns that are empty in all rows."""
+    columns = [(head, [cell(row) for row in found["rows"]]) for head, cell in _COLUMNS]
+    shown = [column for column in columns if any(cell is not None for cell in column[1])]
+    heads, cells = zip(*shown)
+    others = "as in the scene" if found["asked"]["others"] == "scene" else "zero"
+    notes = (
+        _TOLERANCE.format(others=others),
+        _CERTIFIED.format(most=1.0 - found["probability"], **found),
+        _uncertain(found),
+    )
+    return Table(heads, list(zip(*cells)), notes)
+
+
+def _uncertain(found: dict) -> str:
+    """The source of both uncertainties."""
+    constants, margin = found["constants"], found["margin"]
+    drawn = (
+        f"the search is repeated for {constants['draws']} draws of {', '.join(constants['drawn'])} "
+        "from their 95 % intervals"
+        if constants["draws"]
+        else "not drawn, since none is fitted or has an interval"
     )
     sizes = ", ".join(f"{axis} {size:.2g}" for axis, size in (margin["deg_s"] or {}).items())
-    off = f", {sizes} deg/s" if sizes else ""
+    error = f"{sizes} deg/s, " if sizes else ""
     return (
-        f"Constants: {constants}. Model: the settled error of the surrogate taken off every "
-        f"limit{off} ({margin['said']})."
+        f"Other constants: {drawn}. Model error, which reduces every limit: {error}"
+        f"{margin['said']}."
     )
 
 
-def summary(found: dict) -> list[str]:
-    """What the study says, one line each."""
-    text = [
-        f"limits: {', '.join(found['limits_said'])}; each case within all of them with probability "
-        f"{found['probability']:g}, "
-        f"shown at {found['confidence']:.0%} confidence by {found['cases']:,} cases"
-    ]
-    return [*text, population.model_line(found)] + [_line(row, _unit(row)) for row in found["rows"]]
+def _unit(unit: str, form: str = " {}") -> str:
+    return "" if unit == "1" else form.format(unit)
 
 
-def _unit(row: dict) -> str:
-    return "" if row["unit"] == "1" else f" {row['unit']}"
+def _kept(advised: dict) -> str:
+    """Bounds of the share of cases within the limits."""
+    return span(100.0 * (1.0 - advised["high"]), 100.0 * (1.0 - advised["low"]), ".4g") + " %"
 
 
-def _line(row: dict, unit: str) -> str:
-    parts = [f"{row['words']}: {value(row['nominal'], unit)}"]
-    if row["constants"]:
-        parts.append(f"with other constants {extent(row['constants'])}{unit}")
-    for key, words in (("model", "with the model's error"), ("both", "with both")):
-        parts += [f"{words} {value(row[key], unit)}"] if row[key] else []
-    if advised := row["advised"]:
-        parts.append(
-            f"{advised['share']:.2%} above at the advised {advised['tolerance']:.3g}{unit}"
-        )
-    return "; ".join(parts + _odd(row, unit))
-
-
-def _odd(row: dict, unit: str) -> list[str]:
-    """Where the count of cases above does not grow with the tolerance, in words."""
-    again, falls = row["nominal"]["again"], row["nominal"]["falls"]
+def _odd(row: dict) -> list[str]:
+    """Where the number of cases above a limit does not grow with the tolerance."""
+    again, falls, unit = row["nominal"]["again"], row["nominal"]["falls"], _unit(row["unit"])
     sizes = ", ".join(f"{size:.3g}" for size in again)
-    text = [f"certified again beyond a failure, which is not used: {sizes}{unit}"] if again else []
-    ends = " and from ".join(f"{one:.3g} to {two:.3g}" for one, two in falls)
-    return text + ([f"fewer cases above, not more, from {ends}{unit}"] if falls else [])
-
-
-def value(answer: dict, unit: str = "") -> str:
-    """An answer in words."""
-    if answer["state"] == FOUND:
-        return f"{answer['tolerance']:.3g}{unit}"
-    if answer["state"] == ALL:
-        return f"every one searched, up to {answer['tolerance']:.3g}{unit}"
-    if answer["state"] == SMALL:
-        return f"none of {answer['fails']:.2g}{unit} or more"
-    why = (
-        "what is not varied is above a limit"
-        if answer["state"] == NONE
-        else "the model's error leaves nothing of a limit"
+    lines = [f"also certified beyond the first failure, not used: {sizes}{unit}"] if again else []
+    ends = ", ".join(f"{one:.3g} to {two:.3g}" for one, two in falls)
+    return lines + (
+        [f"a larger tolerance has fewer cases above from {ends}{unit}"] if falls else []
     )
-    return f"no tolerance is small enough, for {why}"
 
 
-def extent(answers: list[dict]) -> str:
-    """Smallest and largest of several answers."""
-    known = [answer["tolerance"] for answer in answers if answer["tolerance"] is not None]
-    lost = (
-        f", none in {len(answers) - len(known)} of {len(answers)}"
-        if len(known) < len(answers)
-        else ""
-    )
-    return (f"{min(known):.3g} to {max(known):.3g}" if known else "none") + lost
+def value(found: dict) -> float | str:
+    """The largest certified tolerance, or the reason why there is none."""
+    if found["state"] == FOUND:
+        return found["tolerance"]
+    if found["state"] == ALL:
+        return f"all searched, up to {found['tolerance']:.3g}"
+    if found["state"] == SMALL:
+        return f"less than {found['fails']:.2g}"
+    return _REASONS[found["state"]]
 
 
-def _table(found: dict, words: str) -> Table:
-    heads = (
-        "tolerance of",
-        "unit",
-        "the paper advises",
-        "there limits are kept in",
-        "largest certified",
-        "with other constants",
-        "with the model's error",
-        "with the worst constants and the error",
-    )
-    rows = []
-    for row in found["rows"]:
-        advised, kept = row["advised"], ""
-        if advised:
-            kept = span(100.0 * (1.0 - advised["high"]), 100.0 * (1.0 - advised["low"]), ".4g")
-        rows.append(
-            (
-                row["words"],
-                "" if row["unit"] == "1" else row["unit"],
-                advised["tolerance"] if advised else "",
-                f"{kept} %" if kept else "",
-                value(row["nominal"]),
-                extent(row["constants"]) if row["constants"] else "",
-                *(value(row[key]) if row[key] else "" for key in ("model", "both")),
-            )
-        )
-    return Table(heads, rows, (words,))
+def extent(searches: list[dict]) -> str:
+    """Smallest and largest of several tolerances, and how many searches found none."""
+    sizes = [each["tolerance"] for each in searches if each["tolerance"] is not None]
+    missing = len(searches) - len(sizes)
+    none = f", none in {missing} of {len(searches)}" if missing else ""
+    return (span(min(sizes), max(sizes)) if sizes else "none") + none
 
 
 def _beside(found: dict) -> list[Part]:
@@ -190,11 +163,11 @@ def _beside(found: dict) -> list[Part]:
     quantities = [Column(item["label"], item["unit"]) for item in rows[0]["beside"]]
     body = [(row["words"], *map(estimate, row["beside"])) for row in rows]
     note = (
-        f"What each stays below in magnitude in {found['probability']:.4%} of the cases; small: "
-        "95 % bounds."
+        f"The magnitude that {found['probability']:.4%} of the cases stay below, with its 95 % "
+        "bounds."
     )
     table = Table(["at the certified tolerance of", *quantities], body, (note,), dense=True)
-    return [Fold("every quantity at the certified tolerances", [table])]
+    return [Fold("Every quantity at the certified tolerances", [table])]
 
 
 def _curves(found: dict) -> Chart:
@@ -204,8 +177,8 @@ def _curves(found: dict) -> Chart:
 
 
 def _panel(row: dict, found: dict) -> Panel:
-    """Share above a limit over the tolerance; none above has no place on a logarithmic axis, but
-    its bound has."""
+    """Share above a limit over the tolerance. A share of zero is not drawn, since the axis is
+    logarithmic; its upper bound is."""
     trials = [(size, count) for size, count in row["nominal"]["trials"] if size > 0.0]
     sizes, seen = (
         [size for size, _ in trials],
@@ -233,10 +206,8 @@ def _panel(row: dict, found: dict) -> Panel:
         lines.append(
             Line([row["advised"]["tolerance"]] * 2, ends, "advised by the paper", AMBER, 1.8, "--")
         )
-    title, _, more = row["words"].partition(",")
-    unit = (
-        row["unit"] if row["unit"] != "1" else "of the set" if more == " times" else "dimensionless"
-    )
+    title = row["words"].partition(",")[0]
+    unit = "times the set" if row["name"] == TOGETHER else row["unit"].replace("1", "dimensionless")
     return Panel(title, f"tolerance ({unit})", "share above a limit", lines, log=True)
 
 
@@ -263,7 +234,7 @@ def _map(found: dict) -> Chart:
             size=10.0,
         ),
     ]
-    across, upwards = (
-        f"tolerance of {words} ({unit})" for words, unit in zip(shown["words"], shown["units"])
+    x_label, y_label = (
+        f"tolerance of {name} ({unit})" for name, unit in zip(shown["words"], shown["units"])
     )
-    return Chart("limits-map", [Panel("", across, upwards, lines)], height=380)
+    return Chart("limits-map", [Panel("", x_label, y_label, lines)], height=380)

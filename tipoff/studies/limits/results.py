@@ -1,5 +1,5 @@
-"""The quantities of all cases within one set of tolerances, as a netCDF file that explains
-itself."""
+"""The quantities of all cases within one set of tolerances, as a netCDF file with names and
+units."""
 
 import json
 from collections.abc import Mapping
@@ -13,8 +13,8 @@ from tipoff.studies.populations import answers
 
 
 def save(path: Path, values: np.ndarray, scale: float, tolerances: Mapping[str, float]) -> None:
-    """Write ``values`` (n,k) of ``answers.ALL`` atomically; ``scale`` and the ``tolerances`` (SI)
-    there are attributes."""
+    """Write ``values`` (n,k) of ``answers.ALL`` atomically, with ``scale`` and the ``tolerances``
+    (SI) at that scale as attributes."""
     import xarray
 
     found = xarray.Dataset(
@@ -22,7 +22,7 @@ def save(path: Path, values: np.ndarray, scale: float, tolerances: Mapping[str, 
             "value": (
                 ("case", "quantity"),
                 values,
-                {"long_name": "what a case leaves the rail with, NaN where it did not settle"},
+                {"long_name": "quantity of a case after the exit, NaN where it did not settle"},
             )
         },
         {
@@ -37,8 +37,8 @@ def save(path: Path, values: np.ndarray, scale: float, tolerances: Mapping[str, 
 
 
 def load(path: Path) -> np.ndarray | None:
-    """The values (n,k) that ``save`` wrote; None where they are not there, those of other
-    quantities, or not whole, which is reported."""
+    """The values (n,k) that ``save`` wrote. None where there are none or they are of other
+    quantities; None with a message where the file is damaged."""
     if not path.is_file():
         return None
     import xarray
@@ -51,6 +51,6 @@ def load(path: Path) -> np.ndarray | None:
     except DamageError as fault:
         say(f"  {path} {fault.reason}: its cases are run again")
         return None
-    # what HDF5 says of a foreign file depends on what it lacks
+    # the exception that HDF5 raises for a foreign file depends on the file
     except (OSError, KeyError, TypeError, ValueError, RuntimeError):
         return None

@@ -1,10 +1,9 @@
-"""The largest scale of a set of tolerances that is still certified, on the same draws at every
-scale.
+"""The largest certified scale of a set of tolerances, with the same draws at every scale.
 
-``above(s)`` counts the cases above a limit at scale s, and s is certified while the count is at
-most ``allowed``. Scales halved from ``most`` down are all tried, so that it is seen, not assumed,
-whether the count grows with the scale; then the gap between the smallest scale that fails and the
-one tried before it is bisected. Scales that pass beyond the first failure are reported, not used.
+``above(s)`` counts the cases above a limit at scale s; s is certified if the count is at most
+``allowed``. The search first tries all scales halved from ``most``, which shows whether the count
+grows with the scale. It then bisects between the smallest scale that fails and the scale below it.
+Certified scales beyond the first failure are reported and not used.
 """
 
 import math
@@ -12,8 +11,8 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 FOUND, ALL, SMALL, NONE, LOST = "found", "all", "small", "none", "lost"
-_HALVINGS, _REFINEMENTS = 7, 6  # down to 1/128, and to 1.1 %
-_STEP, _CLOSER = 1.25, 3  # near a known answer: factors of 1.25, then to 2.8 %
+_HALVINGS, _REFINEMENTS = 7, 6  # down to 1/128, then to 1.1 %
+_STEP, _CLOSER = 1.25, 3  # from a start near the result: factors of 1.25, then to 2.8 %
 
 
 class Trial(NamedTuple):
@@ -24,9 +23,9 @@ class Trial(NamedTuple):
 
 
 class Found(NamedTuple):
-    """``scale`` is the largest certified below the first that fails, ``fails``. ``state``: FOUND;
-    ALL, nothing that was searched fails; SMALL, even the smallest that was searched fails, though
-    not zero; NONE, zero fails too; LOST, nothing was searched, for no limit is left."""
+    """``scale`` is the largest certified one below ``fails``, the first that fails. ``state``:
+    FOUND; ALL, no searched scale fails; SMALL, all searched scales fail except zero; NONE, zero
+    fails too; LOST, no search, because the model error exceeds a limit."""
 
     state: str
     scale: float | None
@@ -45,7 +44,7 @@ class Found(NamedTuple):
 
     @property
     def falls(self) -> list[tuple[float, float]]:
-        """Neighbouring scales of which the larger has fewer cases above."""
+        """Neighbouring scales of which the larger has fewer cases above a limit."""
         return [
             (one.scale, two.scale)
             for one, two in zip(self.trials, self.trials[1:])
@@ -60,12 +59,12 @@ def largest(above: Callable[[float], int], allowed: int, most: float = 1.0) -> F
     }
     failing = [scale for scale, count in counts.items() if count > allowed]
     if not failing:
-        return _told(ALL, most, None, counts, allowed)
+        return _found(ALL, most, None, counts, allowed)
     low, high = 0.5 * failing[0], failing[0]
     if low not in counts:
         counts[0.0] = above(0.0)
-        return _told(NONE if counts[0.0] > allowed else SMALL, None, high, counts, allowed)
-    return _told(
+        return _found(NONE if counts[0.0] > allowed else SMALL, None, high, counts, allowed)
+    return _found(
         FOUND, *_bisected(above, allowed, low, high, counts, _REFINEMENTS), counts, allowed
     )
 
@@ -77,8 +76,8 @@ def near(
     most: float = 1.0,
     least: float = 0.5**_HALVINGS,
 ) -> Found:
-    """Search outward from ``start``, where the answer to a slightly different question is known,
-    within ``least`` to ``most``."""
+    """Search outward from ``start``, the result of a similar search, within ``least`` to
+    ``most``."""
     counts = {start: above(start)}
     up = counts[start] <= allowed
     while True:
@@ -86,14 +85,14 @@ def near(
         if (counts[last] <= allowed) != up:
             break
         if up and last >= most:
-            return _told(ALL, most, None, counts, allowed)
+            return _found(ALL, most, None, counts, allowed)
         if not up and last <= least:
             counts[0.0] = above(0.0)
-            return _told(NONE if counts[0.0] > allowed else SMALL, None, last, counts, allowed)
+            return _found(NONE if counts[0.0] > allowed else SMALL, None, last, counts, allowed)
         following = min(last * _STEP, most) if up else max(last / _STEP, least)
         counts[following] = above(following)
     low, high = sorted(list(counts)[-2:])
-    return _told(FOUND, *_bisected(above, allowed, low, high, counts, _CLOSER), counts, allowed)
+    return _found(FOUND, *_bisected(above, allowed, low, high, counts, _CLOSER), counts, allowed)
 
 
 def _bisected(
@@ -106,7 +105,7 @@ def _bisected(
     return low, high
 
 
-def _told(
+def _found(
     state: str, scale: float | None, fails: float | None, counts: dict[float, int], allowed: int
 ) -> Found:
     return Found(state, scale, fails, [Trial(*pair) for pair in sorted(counts.items())], allowed)

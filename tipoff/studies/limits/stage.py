@@ -1,11 +1,12 @@
-"""Stage ``limits``: the tolerances that keep the rates below limits, at a probability, and what is
-not certain about them.
+"""Stage ``limits``: the tolerances that keep the rates below limits with a given probability, and
+their uncertainty.
 
 A set of tolerances is certified when the upper bound of the probability that some rate is above its
-limit (Clopper and Pearson, one side) is at most 1 - p. That is asked of each factor alone, the rest
-nominal; of a whole set, times a factor; and of pairs of misalignment and mass eccentricity. Two
-things are then told apart: the constants of the surrogate, by repeating the search for draws from
-their intervals, and the surrogate itself, by taking its measured error off every limit.
+limit (Clopper and Pearson, one side) is at most 1 - p. The largest certified tolerance is searched
+for each factor alone, with the others nominal; for a multiple of a whole set; and for pairs of
+misalignment and mass eccentricity. Two uncertainties are separate: for the constants of the
+surrogate, the search is repeated for draws from their intervals; for the surrogate itself, its
+measured error reduces every limit.
 """
 
 import math
@@ -22,21 +23,20 @@ from tipoff.studies.core.study import Study
 from tipoff.studies.limits import constants, search, within
 from tipoff.studies.limits.inputs import DRAWS, Options, checked
 from tipoff.studies.limits.search import Found
-from tipoff.studies.limits.within import ADVISED, SETS, Cases, Factor
+from tipoff.studies.limits.within import ADVISED, SETS, TOGETHER, Cases, Factor
 from tipoff.studies.populations import answers, exceedance, population, spread
 from tipoff.studies.populations.exceedance import Limit
 from tipoff.studies.populations.population import Surrogate
 
 NAME = "limits"
-TOGETHER = "together"
 PAIR = ("misalignment", "mass_eccentricity")
-_RAYS = 5  # between the axes of the map of two tolerances
-_REACH = 5.0  # times the tolerances that are scaled together
+_RAYS = 5  # rays between the axes of the map of two tolerances
+_REACH = 5.0  # largest multiple of a whole set
 
 
 def run(study: Study, options: Options = Options()) -> dict:
-    """``rows`` by factor and one of all together, ``map`` of two, ``summary`` in words. Raises
-    SceneError for bad input, every fault listed."""
+    """``rows`` for each factor and for all together, and the ``map`` of two. Raises SceneError for
+    bad input, every fault listed."""
     (limits, cases), _ = together(
         lambda: checked(options), lambda: options.condition and study.condition(options.condition)
     )
@@ -48,11 +48,10 @@ def run(study: Study, options: Options = Options()) -> dict:
         from tipoff.studies.render.chart import to_files
 
         with Board(NAME, 1) as board:
-            found = _Answers(
+            found = _Search(
                 study, options, limits, cases, model, margin, board.callback(NAME)
             ).all()
             board.finished(NAME, f"{found['evaluations']:,} sets of {cases:,} cases")
-        found["summary"] = pictures.summary(found)
         return found, [
             path
             for chart, _ in pictures.charts(found)
@@ -69,8 +68,8 @@ def _margin(study: Study, options: Options) -> constants.Margin:
 STAGE = Stage(NAME, __name__, Options, _margin)
 
 
-class _Answers:
-    """One study: everything that its answers share."""
+class _Search:
+    """All searches of one study."""
 
     def __init__(
         self,
@@ -92,7 +91,7 @@ class _Answers:
         self.model = model if options.others == "scene" else within.without_errors(model)
         self.factors = within.factors(self.model.scene)
         allowed = exceedance.allowed(cases, options.probability, options.confidence)
-        assert allowed is not None  # so many cases were asked for
+        assert allowed is not None  # ``checked`` has refused fewer cases
         self.allowed = allowed
         overrides, self.drawn = (
             ([], [])
@@ -106,8 +105,8 @@ class _Answers:
         )
         self.others = [self.model.at(item) for item in overrides]
         self.report, self.evaluations = report, 0
-        # Halvings and refinements of each search, and about five evaluations of each that starts
-        # from a known answer.
+        # Halvings and refinements of each full search, and about five evaluations of each search
+        # that starts near its result.
         self.expected = (len(self.factors) + 1) * (14 + 5 * (len(self.others) + 2)) + 9 * _RAYS
 
     def all(self) -> dict:
@@ -119,14 +118,13 @@ class _Answers:
         searched = {name: self._search(tolerances) for name, tolerances in full.items()}
         rows = [self._row(name, tolerances, searched[name]) for name, tolerances in full.items()]
         shown = {
-            "limits_said": [limit.words for limit in self.limits],
             "probability": self.options.probability,
             "confidence": self.options.confidence,
             "cases": self.cases,
             "allowed": self.allowed,
             **population.answering(self.study, self.model, self.options.condition),
             "constants": {"draws": len(self.others), "drawn": self.drawn},
-            "margin": self.margin._asdict(),
+            "margin": {"deg_s": self.margin.deg_s, "said": self.margin.source},
         }
         return {
             "asked": STAGE.plain(self.options),
@@ -154,11 +152,10 @@ class _Answers:
         return search.largest(self._above(self._of(tolerances), self.limits), self.allowed)
 
     def _row(self, name: str, tolerances: dict[str, float], found: Found) -> dict:
-        # The paper advises one of the sets, as it stands; of a multiple of its Table 3 it says
-        # nothing.
+        # The paper advises one of the sets; it advises no multiple of its Table 3.
         advised = 1.0 / _REACH if self.options.tolerances == "advised" else None
         factor = self.factors.get(name) or Factor(
-            "all of them together, times", "1", 1.0 / _REACH, 1.0, advised
+            "all together, multiple of the set", "1", 1.0 / _REACH, 1.0, advised
         )
         size = factor.most / factor.scale
         row = {
@@ -166,7 +163,7 @@ class _Answers:
             "words": factor.words,
             "unit": factor.unit,
             "most": size,
-            "nominal": _told(found, size),
+            "nominal": _plain(found, size),
             "advised": self._advised(tolerances, factor),
             **dict.fromkeys(("constants", "model", "both", "beside")),
         }
@@ -176,13 +173,13 @@ class _Answers:
         row["beside"] = self._beside(cases.values(found.scale))
         near = [self._near(tolerances, other, self.limits, found.scale) for other in self.others]
         if near:
-            row["constants"] = [_told(item, size) for item in near]
+            row["constants"] = [_plain(item, size) for item in near]
         shrunk = self._shrunk()
         if shrunk is not None:
-            row["model"] = _told(self._near(tolerances, None, shrunk, found.scale), size)
+            row["model"] = _plain(self._near(tolerances, None, shrunk, found.scale), size)
             if near:
                 worst = min(range(len(near)), key=lambda place: near[place].scale or 0.0)
-                row["both"] = _told(
+                row["both"] = _plain(
                     self._near(
                         tolerances, self.others[worst], shrunk, near[worst].scale or found.scale
                     ),
@@ -191,8 +188,8 @@ class _Answers:
         return row
 
     def _beside(self, values: np.ndarray) -> list[dict]:
-        """What every quantity stays below in magnitude with the probability asked for, where the
-        rates keep their limits."""
+        """The magnitude that each quantity stays below with the given probability, from ``values``
+        (n,k) of ``answers.ALL``."""
         settled, share = (
             np.abs(values[np.isfinite(values).all(axis=1)]),
             (self.options.probability,),
@@ -219,14 +216,14 @@ class _Answers:
         return search.near(self._above(self._of(tolerances, model), limits), self.allowed, start)
 
     def _shrunk(self) -> list[Limit] | None:
-        """The limits less the error of the model; None where that is not known, or none."""
-        known = self.margin.deg_s
-        if not known or not any(known.values()):
+        """The limits less the error of the model; None where that error is not known or zero."""
+        error = self.margin.deg_s
+        if not error or not any(error.values()):
             return None
-        return [Limit(limit.axis, limit.deg_s - known[limit.axis]) for limit in self.limits]
+        return [Limit(limit.axis, limit.deg_s - error[limit.axis]) for limit in self.limits]
 
     def _advised(self, tolerances: dict[str, float], factor: Factor) -> dict | None:
-        """How often the limits are kept at the tolerance that the paper advises."""
+        """Probability of a rate above its limit at the tolerance that the paper advises."""
         if factor.advised is None:
             return None
         count = self._above(self._of(tolerances), self.limits)(factor.advised / factor.most)
@@ -241,14 +238,13 @@ class _Answers:
         }
 
     def _map(self, start: float) -> dict | None:
-        """Certified pairs of two tolerances, on rays from one axis, where the other error is zero,
-        to the other axis; each search starts where the last one ended. None where there is no such
-        pair."""
+        """Certified pairs of two tolerances on rays from one axis to the other; each search starts
+        at the last result. None where there is no such pair."""
         pair, points = [self.factors[name] for name in PAIR], []
         for number in range(_RAYS + 2):
             angle = 0.5 * math.pi * number / (_RAYS + 1)
             shares = [round(part, 12) for part in (math.cos(angle), math.sin(angle))]
-            edge = 1.0 / max(shares)  # where the first of both is the largest that is searched
+            edge = 1.0 / max(shares)  # there one of both reaches its largest searched tolerance
             ray = {name: share * factor.most for name, share, factor in zip(PAIR, shares, pair)}
             found = search.near(
                 self._above(self._of(ray), self.limits), self.allowed, min(start, edge), edge
@@ -275,8 +271,8 @@ class _Answers:
         }
 
 
-def _told(found: Found, size: float) -> dict:
-    """A search in the unit of its factor, of which ``size`` are scale one."""
+def _plain(found: Found, size: float) -> dict:
+    """A search as JSON values in the unit of its factor; scale one is ``size``."""
     return {
         "state": found.state,
         "tolerance": None if found.scale is None else size * found.scale,

@@ -1,9 +1,8 @@
-"""Cases within tolerances: an error of size T is normal about zero (or a number normal about its
-nominal value) with T for three sigma, redrawn beyond T, as parts that are inspected and sent back;
-an error of thrust or mass points anywhere around the axis.
+"""Cases within tolerances. An input with tolerance T is normal about zero, or about its nominal
+value, with T for three sigma; a value beyond T is drawn again, as an inspection rejects such parts.
+An error of thrust or mass has a uniform direction around the axis.
 
-The draws of a case are the same whatever varies and however far, so that the rates of two sets of
-tolerances differ by what the sets differ in, not by chance.
+A case has the same draws for all sets of tolerances, so that two sets do not differ by chance.
 """
 
 import math
@@ -24,8 +23,8 @@ from tipoff.studies.populations.derived import Derived, Numbers, around_zero, fr
 from tipoff.studies.populations.population import Surrogate
 from tipoff.studies.populations.random_factors import ERRORS, pointing
 
-CLEARANCE, FRICTION = "clearance", "friction"
-# the paper's abstract
+CLEARANCE, FRICTION, TOGETHER = "clearance", "friction", "together"
+# from the abstract of the paper
 ADVISED = {
     "misalignment": math.radians(0.2),
     "thrust_eccentricity": 0.4e-3,
@@ -37,8 +36,9 @@ _REACH = 5.0  # times the advised tolerances: misalignments as far as the paper'
 
 
 class Factor(NamedTuple):
-    """A factor that may have a tolerance: words, the unit it is shown in with its size (SI), the
-    largest tolerance searched (SI), and the one that the paper advises (SI), if any."""
+    """A factor with a tolerance: ``words`` for a reader, the displayed ``unit`` and its size
+    ``scale`` (SI), the largest searched tolerance ``most`` (SI), and the tolerance that the paper
+    advises (SI), or None."""
 
     words: str
     unit: str
@@ -65,7 +65,7 @@ def factors(scene: Scene) -> dict[str, Factor]:
 
 
 def without_errors(model: Surrogate, but=()) -> Surrogate:
-    """``model`` with every error of thrust and mass zero, but those of the names ``but``."""
+    """``model`` without errors of thrust and mass, except those of the names ``but``."""
     return model.at(
         {f"{error.key}.axial": 0.0 for name, error in ERRORS.items() if name not in but}
     )
@@ -99,8 +99,8 @@ def _overrides(scene: Scene, tolerances: dict[str, float], drawn: Numbers) -> Nu
 
 
 class Cases:
-    """Results of ``model`` within ``tolerances`` times any scale, each scale run once and kept in a
-    file."""
+    """Results of ``model`` within ``tolerances`` (SI) times a scale; each scale is run once and
+    kept in a file."""
 
     def __init__(
         self,
@@ -116,7 +116,7 @@ class Cases:
         self._known: dict[float, np.ndarray] = {}
 
     def source(self, scale: float) -> Derived:
-        """The cases at a scale; at zero all are alike, and one stands for them."""
+        """The cases at a scale; one case at scale zero, where all are equal."""
         sizes = {name: scale * size for name, size in self._tolerances.items()}
         return source(self._model.scene, sizes, self._cases if scale > 0.0 else 1, self._seed)
 
