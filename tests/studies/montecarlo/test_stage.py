@@ -180,7 +180,7 @@ def test_tails_hold_the_probability_by_independent_quadrature(found):
     assert not tail["low"] < 1.5 * above < tail["high"]
 
 
-def test_readings_that_are_one_law_cannot_be_told_apart_and_others_can(found):
+def test_readings_with_equal_distributions_have_no_significant_distance(found):
     rows = {row["reading"]: row for row in found["readings"]}
     same, half = (
         rows[f"{kind} normal, three angles, redrawn beyond 3 sigma"] for kind in ("signed", "half")
@@ -190,7 +190,7 @@ def test_readings_that_are_one_law_cannot_be_told_apart_and_others_can(found):
     assert rows["half normal, one angle, redrawn beyond 3 sigma"]["chance"] < 0.01
 
 
-def test_distance_of_two_samples_is_told_from_chance():
+def test_distance_and_probability_of_two_samples():
     random = np.random.default_rng(1)
     one, two = random.normal(size=(2, 2000))
     assert (

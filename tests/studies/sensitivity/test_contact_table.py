@@ -1,5 +1,5 @@
-"""The table of contact constants: the paper's own deviations from its own rates, and what is moved
-in a scene."""
+"""The table of contact constants: the deviations of the paper from its rates, and the changes of a
+scene."""
 
 import numpy as np
 import pytest
@@ -34,7 +34,7 @@ def test_largest_deviations_of_the_paper():
 
 
 def test_a_rate_that_is_nearly_zero_has_no_relative_deviation():
-    """Condition 3 of the paper about z: 0.042 deg/s, of which 0.003 would be 7 %."""
+    """Condition 3 of the paper about z: 0.042 deg/s, so that 0.003 deg/s would be 7 %."""
     row = next(
         row
         for row in contact_table.of_paper()
@@ -72,7 +72,7 @@ def test_a_rate_that_is_nearly_zero_has_no_relative_deviation():
         ),
     ],
 )
-def test_the_constants_of_a_law_are_moved_down_and_up(law, symbols):
+def test_the_constants_of_a_law_are_lowered_and_raised(law, symbols):
     scene = load("reference").replace(law)
     found = contact_table.changes(scene, SPRINGS)
     assert [item.symbol for item in found] == [

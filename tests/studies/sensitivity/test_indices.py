@@ -1,5 +1,5 @@
-"""Sobol' indices through the path of the study: file of tolerances, points, rows of overrides,
-estimators; and what is left out of them."""
+"""Sobol' indices of the study: file of tolerances, points, rows of overrides, estimators, and the
+inputs and base points that are left out."""
 
 import numpy as np
 import pytest
@@ -23,8 +23,7 @@ def table(key: str, **entries: str) -> str:
 
 
 def columns(folder, tables: list[str], count: int) -> np.ndarray:
-    """Inputs (count (d + 2), d) of the cases that a file of ``tables`` asks for, in the order of
-    the file."""
+    """Inputs (count (d + 2), d) of the cases of a file of ``tables``, in the order of the file."""
     path = folder / "tolerances.toml"
     path.write_text("\n".join(tables))
     spread = tolerances.load(path, SCENE)
@@ -38,8 +37,8 @@ def uniform(key: str) -> str:
 
 @pytest.mark.case("O46")
 def test_ishigami(tmp_path):
-    """Ishigami and Homma 1990, a = 7, b = 0.1. Control: the same values in another order say
-    nothing of their inputs."""
+    """Ishigami and Homma 1990, a = 7, b = 0.1. Control: the same values in another order have no
+    significant index."""
     x = columns(tmp_path, [uniform(key) for key in ANGLES], 2**14).T
     values = np.sin(x[0]) + 7.0 * np.sin(x[1]) ** 2 + 0.1 * x[2] ** 4 * np.sin(x[0])
     assert values.var() == pytest.approx(13.844588, rel=0.01)
@@ -99,8 +98,7 @@ def test_shares_of_the_linear_tip_off(tmp_path):
 
 
 def test_base_points_that_did_not_settle_are_left_out_whole(tmp_path):
-    """The same as if these points had not been asked for. Control: a result that does not vary has
-    no indices."""
+    """The same as without these points. Control: a result that does not vary has no indices."""
     x = columns(tmp_path, [uniform(key) for key in ANGLES], 256).T
     values = np.sin(x[0]) + x[1]
     missing = values.copy()
@@ -114,8 +112,8 @@ def test_base_points_that_did_not_settle_are_left_out_whole(tmp_path):
 
 
 def test_components_are_those_of_the_effects(tmp_path):
-    """A scene with the size and angle of a case has its components; and the force at the reference
-    penetration does not feel the exponent."""
+    """A scene with the size and angle of a case has its components; the force at the reference
+    penetration does not depend on the exponent."""
     found = tolerances.load(tolerances.DEFAULT, SCENE, SPRINGS)
     points = indices.points(8, len(found.inputs), seed=2)
     drawn = {item.key: item.values(column) for item, column in zip(found.inputs, points.T)}
@@ -139,8 +137,8 @@ def test_components_are_those_of_the_effects(tmp_path):
 
 
 @pytest.mark.parametrize("static", [0.2, 0.3])
-def test_friction_at_rest_goes_along(tmp_path, static):
-    """Control: a distribution of its own is left as it is."""
+def test_static_friction_changes_in_proportion(tmp_path, static):
+    """Control: its own distribution is not changed."""
     scene = SCENE.replace({"friction.static": static})
     found = tolerances.load(tolerances.DEFAULT, scene)
     rows = found.rows(indices.points(8, len(found.inputs), seed=1))
@@ -160,7 +158,7 @@ def test_friction_at_rest_goes_along(tmp_path, static):
     assert own == [pytest.approx({"friction.dynamic": 0.175, "friction.static": 0.35})]
 
 
-def test_what_a_scene_does_not_have_is_left_out_with_the_reason():
+def test_an_input_that_a_scene_lacks_is_left_out_with_the_reason():
     def left_out(overrides: dict) -> dict[str, str]:
         return tolerances.load(tolerances.DEFAULT, SCENE.replace(overrides)).left_out
 

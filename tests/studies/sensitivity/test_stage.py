@@ -48,7 +48,7 @@ high = "1.1"
 
 @pytest.fixture
 def tiny(tmp_path, monkeypatch):
-    """Arguments of the command; the scene's own constants stand for a fit."""
+    """Arguments of the command; the constants of the scene replace a fit."""
     monkeypatch.setattr(
         population, "surrogate", lambda study, *_: Surrogate(study.scene, None, None)
     )
@@ -131,7 +131,7 @@ def test_the_command(tiny, tmp_path, monkeypatch):
     )
 
 
-def test_tables_of_warm_rails_stand_on_the_walls_of_the_model(tmp_path, monkeypatch):
+def test_tables_of_warm_rails_have_the_walls_of_the_model(tmp_path, monkeypatch):
     """Both the calibrated constants and those of the scene. Constants of the law change, not the
     penalty of compliant contact."""
     models = []

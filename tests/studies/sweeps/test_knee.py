@@ -1,5 +1,4 @@
-"""Where growth ends: laws made on purpose are told from each other, and a bend is found where it
-was put."""
+"""The end of growth: synthetic laws are recognised, and a knee is found at its place."""
 
 import numpy as np
 import pytest
@@ -39,8 +38,8 @@ def test_a_plateau_is_found_where_it_begins(seed):
 @pytest.mark.parametrize("name", [name for name in LAWS if name != "plateau"])
 @pytest.mark.parametrize("noise", [0.0, 0.01])
 def test_no_other_law_passes_for_a_plateau(name, noise):
-    """With a scatter of 3 % "slower" is told by fewer constants as levelling off, so less is put on
-    here than on the plateau above."""
+    """The scatter is smaller than that of the plateau above: with 3 %, "slower" is fitted by the
+    levelling law, which has fewer constants."""
     found = growth(SIZES, rates(LAWS[name], noise))
     assert name in found.verdict and found.plateau_share < 0.5
     if name in ("slower", "faster", "falls"):
@@ -60,14 +59,14 @@ def test_slopes_of_lines_without_scatter():
     assert (bent.slope_before, bent.slope_after) == pytest.approx((12.0, 5.0), rel=0.02)
 
 
-def test_what_no_law_tells_is_said():
+def test_a_curve_that_no_law_fits_is_reported():
     found = growth(SIZES, rates(lambda s: 10.0 + 10.0 * np.sin(4.0 * np.pi * s), 0.0))
     assert found.verdict == "none of the laws" and found.misfit > 0.1
 
 
 def test_cases_that_did_not_settle():
-    """A few missing cases change little; sizes without any are left out; where too few are left
-    nothing is said."""
+    """A few missing cases change little; sizes without cases are left out; with too few sizes there
+    is no result."""
     values = rates(LAWS["plateau"])
     values[3, 5:9] = values[8] = np.nan
     assert growth(SIZES, values).verdict == "plateau"

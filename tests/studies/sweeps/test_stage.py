@@ -1,5 +1,5 @@
-"""Sweeps of the three errors: the exact line of a payload that touches nothing, and the whole stage
-with contact on a small scene."""
+"""Sweeps of the three errors: the exact rates of a free payload, and the whole stage with contact
+on a small scene."""
 
 import json
 import math
@@ -46,9 +46,9 @@ def by_hand(name: str, size: float, angle: float) -> np.ndarray:
 
 
 def test_without_contact_rates_are_the_moment_impulse_over_the_inertia(tmp_path, monkeypatch):
-    """Every factor in proportion, no plateau, whether the thrust burns out on the rail or not.
-    Allowed are two parts in a thousand, what a case is exact to, and the gyroscopic moment -w x I
-    w, which the line by hand leaves out, all the way at its last value."""
+    """Rates in proportion to every factor, without a plateau, for both thrusts. Allowed errors:
+    0.2 % of integration, and the gyroscopic moment -w x I w, which the closed form leaves out, at its
+    last value."""
     monkeypatch.setattr(sweeps.drawing, "pictures", lambda _: [])
     study = Study(
         load("reference").replace({"contact": None, "friction": None}),
@@ -170,8 +170,8 @@ def test_moment_impulses_of_many_cases_are_those_of_their_scenes():
 
 
 def test_the_command_with_contact(tmp_path, monkeypatch):
-    """One factor of the scene made for tests, whose own constants stand for a fit: what it writes,
-    and that it is not made twice."""
+    """One factor of the tiny scene, whose constants replace a fit: the files, and that a second run
+    is not made."""
     for module in (sweeps, factors):
         monkeypatch.setattr(module, "FACTORS", factors.FACTORS[1:2])
     monkeypatch.setattr(

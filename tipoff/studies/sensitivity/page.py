@@ -54,9 +54,9 @@ _CONVERGENCE = (
     "that more points would change little."
 )
 _TABLE = (
-    "No percentage is given for a rate below a twentieth of the total rate. The paper's percentages "
-    "are computed from the rates of its Table 2; its text gives 0.26 % as the largest about z, its "
-    "table 0.71 %. The paper's scene is another one, so its rates differ."
+    "No percentage is given for a rate below a twentieth of the total rate. The paper's "
+    "percentages are computed from the rates of its Table 2; its text gives 0.26 % as the largest "
+    "about z, its table 0.71 %. The paper's scene is another one, so its rates differ."
 )
 _LARGEST = (
     "Largest change over all conditions when one contact constant changes, when the clearance is "

@@ -123,7 +123,7 @@ def load(path: str | Path, scene: Scene, model: str = COMPLIANT) -> Tolerances:
             Fault(
                 source,
                 "vary, factor",
-                "nothing that the scene has",
+                "no input that the scene has",
                 "at least one number that varies",
             )
         )

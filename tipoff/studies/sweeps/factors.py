@@ -2,8 +2,8 @@
 rates that each gives to a free payload.
 
 A free payload of inertia I leaves with w = I^-1 L, where L = J (r x f) is the moment impulse of
-``scenes.moments``. On the reference scene that is 26 deg/s per millimetre of arm. Gyroscopic moments
-are left out: they are quadratic in the rates.
+``scenes.moments``. On the reference scene that is 26 deg/s per millimetre of arm. Gyroscopic
+moments are left out: they are quadratic in the rates.
 """
 
 from typing import NamedTuple

@@ -29,9 +29,9 @@ _ANGLE = {
     "mass_eccentricity": "beta, from +z towards +y",
 }
 _GROWTH = (
-    "Largest rate over all directions against the size of the error; top: as given, below: with the "
-    "stretched thrust. Grey: a free payload, w = I^-1 J (r x f). Shaded: the 95 % interval of a "
-    "knee before a plateau about y or z. Dotted: the plateau of the paper."
+    "Largest rate over all directions against the size of the error; top: as given, below: with "
+    "the stretched thrust. Grey: a free payload, w = I^-1 J (r x f). Shaded: the 95 % interval of "
+    "a knee before a plateau about y or z. Dotted: the plateau of the paper."
 )
 _SCATTER = (
     "Settled rates of all cases, as in the paper's Figure {figure}: against the size (left) and "

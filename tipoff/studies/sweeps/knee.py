@@ -104,7 +104,7 @@ def growth(
         before,
         after,
         _misfit(fit, curves[0], 0),
-        float(np.mean([words == "plateau" for words in verdicts[1:]])) if len(curves) > 1 else 0.0,
+        float(np.mean([each == "plateau" for each in verdicts[1:]])) if len(curves) > 1 else 0.0,
         {name: float(item.criterion[0]) for name, item in fits.items()},
     )
 
