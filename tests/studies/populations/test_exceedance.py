@@ -1,4 +1,4 @@
-"""Limits of rates as they are given, and the bounds of a probability against closed forms and
+"""Limits of rates from texts; the bounds of a probability against closed forms, and their
 coverage."""
 
 import numpy as np
@@ -30,7 +30,7 @@ def test_every_fault_of_every_limit_is_listed():
     )
 
 
-def test_above_counts_magnitudes_and_what_did_not_settle():
+def test_above_counts_magnitudes_and_cases_that_did_not_settle():
     rates = np.array(
         [[-3.0, 0.0, 0.0], [1.0, 0.0, 0.0], [np.nan] * 3, [1.5, 1.5, 1.5], [2.0, 0.0, 0.0]]
     )
@@ -57,9 +57,9 @@ def test_bounds_with_none_and_all_above_have_closed_forms():
 
 @pytest.mark.case("O49")
 @pytest.mark.parametrize("probability", [0.95, 0.99, 0.9973])
-def test_allowed_begins_where_order_statistics_say(probability):
-    """Not even zero above is enough for one run fewer than needed; then the count is the largest
-    the bound lets through."""
+def test_the_first_allowed_number_of_cases_is_that_of_order_statistics(probability):
+    """One run fewer than needed allows no count; with enough runs the count is the largest within
+    the bound."""
     needed = order_statistics.runs_needed(probability)
     assert (
         exceedance.allowed(needed - 1, probability, 0.95) is None
@@ -74,7 +74,7 @@ def test_allowed_begins_where_order_statistics_say(probability):
         )
 
 
-def test_bounds_hold_as_often_as_they_say():
+def test_bounds_have_their_coverage():
     counts, truth = np.random.default_rng(4).binomial(300, 0.03, 1000), 0.03
     held = np.mean([exceedance.at_most(int(count), 300, 0.95) >= truth for count in counts])
     # Exact bounds are on the safe side: at least 95 %, less 3 standard errors of the share.

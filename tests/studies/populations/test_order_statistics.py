@@ -30,12 +30,12 @@ def test_bounds_exist_from_the_needed_number_of_runs_on():
     assert bounds(np.arange(3.0), 0.05)[0] is None
 
 
-def test_bounds_hold_as_often_as_they_say():
+def test_bounds_have_their_coverage():
     random, held, tries = np.random.default_rng(2), 0, 1000
     for _ in range(tries):
         low, high = bounds(random.exponential(size=200), 0.9)
         held += low <= -np.log(0.1) <= high
-    # Ranks are whole numbers, so the confidence is a little more than asked: at least 95 %, less 3
-    # standard errors of the count.
+    # Ranks are whole numbers, so the confidence is a little above the given one: at least 95 %,
+    # less 3 standard errors of the count.
     assert held >= 950 - 3.0 * np.sqrt(tries * 0.95 * 0.05)
     assert held < tries

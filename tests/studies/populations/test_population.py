@@ -1,5 +1,4 @@
-"""Many cases on the surrogate of a study: the store, the model that answers, and the quantities
-that are reported."""
+"""Many cases on the surrogate of a study: the store, the model, and the reported quantities."""
 
 from types import SimpleNamespace
 
@@ -22,14 +21,14 @@ FLEXIBLE = SimpleNamespace(flexibility=1.0)
 
 
 @pytest.mark.parametrize("model", [None, COMPLIANT])
-def test_compliant_contact_answers_and_needs_no_calibration(tmp_path, monkeypatch, model):
+def test_compliant_contact_is_the_default_and_needs_no_calibration(tmp_path, monkeypatch, model):
     monkeypatch.setattr(population.calibrate, "load", lambda _: pytest.fail("fitted springs"))
     monkeypatch.setattr(Study, "rail_compliance", lambda *_, **__: FLEXIBLE)
     found = population.surrogate(Study(SCENE, tmp_path, Settings()), model)
     assert found.name == found.words == COMPLIANT and found.scene.hash == SCENE.hash
 
 
-def test_springs_answer_where_they_are_named(tmp_path, monkeypatch):
+def test_springs_are_used_where_they_are_named(tmp_path, monkeypatch):
     monkeypatch.setattr(
         Study, "rail_compliance", lambda *_, **__: pytest.fail("found a compliance")
     )
@@ -40,9 +39,8 @@ def test_springs_answer_where_they_are_named(tmp_path, monkeypatch):
     assert found.name == SPRINGS and found.words == "springs, calibrated"
 
 
-def test_a_model_that_the_agreement_table_rejects_answers_by_name_only(tmp_path, monkeypatch):
-    """Control: where the reference is not converged nothing is rejected, and another condition says
-    nothing of this one."""
+def test_a_model_that_the_agreement_table_rejects_must_be_named(tmp_path, monkeypatch):
+    """Control: a reference that is not converged rejects nothing, nor does another condition."""
     rows = [
         {
             "condition": "h1",

@@ -1,5 +1,5 @@
-"""The paper's random factors: each reading against its closed form, and the linear tip-off through
-the whole path."""
+"""The paper's random factors: each reading against its closed form, and the linear tip-off from
+draws to rates."""
 
 import numpy as np
 import pytest
@@ -70,7 +70,7 @@ def test_variance_by_rule_of_truncation(rule, variance, fourth):
 
 
 def test_one_angle_puts_both_eccentricities_on_one_line():
-    """Signed ones add up as often as they cancel; half-normal ones always point the same way."""
+    """Signed errors add as often as they cancel; half-normal errors always add."""
     for reading, signs in (
         (Reading(angles="shared"), {-1.0, 1.0}),
         (Reading("half", "shared"), {1.0}),
@@ -94,7 +94,7 @@ def test_one_angle_puts_both_eccentricities_on_one_line():
     )
 
 
-def test_a_case_has_the_same_bits_however_cases_are_cut_and_the_reading_is_part_of_the_identity():
+def test_a_case_has_the_same_bits_in_every_chunk_and_the_reading_is_part_of_the_identity():
     whole = {}
     for reading in READINGS:
         source = random_factors.source(SCENE, reading, 300, 5)
@@ -118,7 +118,7 @@ def test_a_case_has_the_same_bits_however_cases_are_cut_and_the_reading_is_part_
     assert 0.9 * SCENE.contact.clearance < np.abs(inside).max() <= SCENE.contact.clearance
 
 
-def test_what_has_no_meaning_is_refused_with_every_fault():
+def test_contradicting_options_are_refused_with_every_fault():
     with pytest.raises(SceneError) as refused:
         random_factors.source(
             free_flight.scene(), Reading("components", "shared", initial=True), 100, 1
@@ -152,8 +152,8 @@ def test_linear_tip_off_on_a_launch_without_contact(tmp_path):
         )
         assert found.settled.all()
         for quantity in answers.RATES[1:]:
-            told = spread.moments(quantity.of(found.results))
+            moments = spread.moments(quantity.of(found.results))
             assert (
-                abs(told["sd"] - expected) < 3.0 * told["sd_error"] < 0.2
-                and abs(told["mean"]) < 3.0 * told["mean_error"]
+                abs(moments["sd"] - expected) < 3.0 * moments["sd_error"] < 0.2
+                and abs(moments["mean"]) < 3.0 * moments["mean_error"]
             )

@@ -1,1 +1,1 @@
-"""Many cases at once: what is drawn, what is kept of each, and what independent draws say."""
+"""Populations of cases: random inputs, results, and statistics of independent draws."""

@@ -1,5 +1,5 @@
-"""What a payload leaves its rail with, as the studies of tolerances report it: rates, velocity
-across, its direction, and attitude.
+"""The quantities that the studies of tolerances report: rates, lateral velocity, its direction, and
+attitude.
 
     settled rates w_x, w_y, w_z and |w|      deg/s, inertial, in payload body axes
     lateral velocity  sqrt(v_y^2 + v_z^2)    mm/s, initial scene axes
@@ -14,8 +14,8 @@ import numpy as np
 
 
 class Left(Protocol):
-    """What n payloads left their rails with, named as in ``lowfi.ensemble.columns.Columns``: rate (n,3)
-    rad/s, lateral_velocity (n,) m/s, direction_error (n,) rad, exit_attitude (n,3) rad."""
+    """Results of n cases, named as in ``lowfi.ensemble.columns.Columns``: rate (n,3) rad/s,
+    lateral_velocity (n,) m/s, direction_error (n,) rad, exit_attitude (n,3) rad."""
 
     @property
     def rate(self) -> np.ndarray: ...
@@ -28,8 +28,8 @@ class Left(Protocol):
 
 
 class Quantity(NamedTuple):
-    """A result: ``name`` with its unit, as in result files, its ``label`` and ``unit`` in figures,
-    and its values (n,) of columns."""
+    """A quantity: ``name`` with its unit, as in result files; ``label`` and ``unit`` in figures and
+    tables; ``of``, its values (n,) in that unit from columns."""
 
     name: str
     label: str

@@ -1,5 +1,5 @@
-"""Cases of an ensemble whose overrides follow from draws, where one number drawn decides several
-inputs: a ``lowfi.ensemble.rows`` of studies."""
+"""Cases of an ensemble whose overrides are computed from draws, where one draw may set several
+inputs."""
 
 from collections.abc import Callable
 
@@ -12,18 +12,19 @@ from tipoff.scenes.scene import Scene
 from tipoff.scenes.uncertainty import Uncertainty
 
 Numbers = dict[str, np.ndarray]
-_TOLD = 16  # cases whose overrides stand for the way they were derived, in the identity
+_SAMPLE = 16  # cases whose overrides represent ``derive`` in the identity
 
 
 class Derived:
-    """``derive`` turns columns (n,) of the draws of ``uncertainty``, under the names of its
-    ``vary``, which need be no keys of a scene, into columns (n,) of overrides by dotted key, SI. It
-    works case by case, so that a case has the same bits however cases are cut."""
+    """Rows of cases for ``lowfi.ensemble``. ``derive`` computes columns (n,) of overrides by dotted
+    key, SI, from columns (n,) of the draws of ``uncertainty`` by the names of its ``vary``, which
+    need not be keys of a scene. ``derive`` treats each case alone, so that a case has the same bits
+    in every chunk."""
 
     def __init__(self, uncertainty: Uncertainty, derive: Callable[[Numbers], Numbers]):
         self._points, self._vary, self._derive = Points(uncertainty), uncertainty.vary, derive
         self.asked = uncertainty.cases
-        sample = self.rows(0, min(_TOLD, self.asked))
+        sample = self.rows(0, min(_SAMPLE, self.asked))
         self.keys, self.identity = (
             list(sample[0]),
             uncertainty.resolved() | {"derived": content_hash(sample)},
@@ -42,9 +43,8 @@ class Derived:
 
 
 def friction(scene: Scene, dynamic: np.ndarray) -> Numbers:
-    """Overrides of friction in ``scene``, which has some, by coefficients ``dynamic`` (n,): that of
-    rest goes along in proportion, for it is the same pair of surfaces, and no draw may slide with
-    more friction than it stands with."""
+    """Overrides of friction in ``scene``, which has friction, for coefficients ``dynamic`` (n,).
+    The static coefficient keeps its ratio to the dynamic one, so that it is never smaller."""
     assert scene.friction is not None
     return {
         "friction.dynamic": dynamic,
@@ -60,8 +60,8 @@ def law(distribution: str, **values) -> Distribution:
 
 
 def around_zero(half_range: float, rule: str) -> Distribution:
-    """A normal distribution about zero whose three sigma are ``half_range``, limited there by a
-    ``rule``: redraw, clip, or none."""
+    """A normal distribution about zero with three sigma equal to ``half_range``, truncated there by
+    a ``rule``: redraw, clip or none."""
     sd = half_range / 3.0
     if rule == "none":
         return law("normal", mean=0.0, sd=sd)

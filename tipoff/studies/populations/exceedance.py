@@ -1,9 +1,9 @@
-"""How often a rate is above a limit, and with which confidence.
+"""The probability that a rate is above a limit, with its bounds.
 
-Of n independent cases, k above a limit leave for the probability of being above it the bounds of
-Clopper and Pearson (Biometrika 26, 1934), quantiles of beta laws: beta(k, n - k + 1) below and
-beta(k + 1, n - k) above. They hold whatever the distribution is. A case that did not settle counts
-as above every limit.
+If k of n independent cases are above a limit, the bounds of Clopper and Pearson (Biometrika 26,
+1934) for that probability are quantiles of beta distributions: beta(k, n - k + 1) for the lower and
+beta(k + 1, n - k) for the upper bound. They hold for any distribution of the rate. A case that did
+not settle counts as above every limit.
 """
 
 from collections.abc import Sequence
@@ -20,14 +20,14 @@ _AXES = ("x", "y", "z", TOTAL)
 
 
 class Limit(NamedTuple):
-    """A limit (deg/s) of a rate: about the axis x, y or z, or of its magnitude, ``TOTAL``."""
+    """A limit (deg/s) of the rate about the axis x, y or z, or of its magnitude, ``TOTAL``."""
 
     axis: str
     deg_s: float
 
     @property
     def words(self) -> str:
-        """In words."""
+        """The rate and its limit as text."""
         return (
             f"{'total rate' if self.axis == TOTAL else f'rate about {self.axis}'} "
             f"{self.deg_s:g} deg/s"
@@ -35,8 +35,8 @@ class Limit(NamedTuple):
 
 
 def limits(texts: Sequence[str], option: str = "--limit") -> list[Limit]:
-    """Limits such as ``x=2 deg/s``, or ``5 deg/s`` for the total rate. Raises SceneError listing
-    every fault."""
+    """Limits from texts such as ``x=2 deg/s``, or ``5 deg/s`` for the total rate. Raises SceneError
+    listing every fault."""
     found, faults = [], []
     for text in texts:
         axis, equals, value = text.rpartition("=")
@@ -63,7 +63,7 @@ def limits(texts: Sequence[str], option: str = "--limit") -> list[Limit]:
 
 
 def above(rates: np.ndarray, limit: Limit) -> np.ndarray:
-    """Whether each of ``rates`` (n,3), deg/s, is above ``limit`` (n,); NaN is."""
+    """Whether each of ``rates`` (n,3), deg/s, is above ``limit`` (n,); NaN counts as above."""
     value = (
         np.linalg.norm(rates, axis=1)
         if limit.axis == TOTAL
@@ -72,30 +72,30 @@ def above(rates: np.ndarray, limit: Limit) -> np.ndarray:
     return ~(value <= limit.deg_s)
 
 
-def any_above(rates: np.ndarray, asked: Sequence[Limit]) -> np.ndarray:
-    """Whether each of ``rates`` (n,3), deg/s, is above some limit (n,)."""
-    return np.logical_or.reduce([above(rates, limit) for limit in asked])
+def any_above(rates: np.ndarray, limits_: Sequence[Limit]) -> np.ndarray:
+    """Whether each of ``rates`` (n,3), deg/s, is above at least one limit (n,)."""
+    return np.logical_or.reduce([above(rates, limit) for limit in limits_])
 
 
 def bounds(count: int, cases: int, confidence: float) -> tuple[float, float]:
-    """Two-sided bounds of a probability that ``count`` of ``cases`` give."""
+    """Two-sided bounds of a probability from ``count`` of ``cases``."""
     found = binomtest(count, cases).proportion_ci(confidence, method="exact")
     return float(found.low), float(found.high)
 
 
 def at_most(count: int, cases: int, confidence: float) -> float:
-    """One-sided upper bound of that probability."""
+    """One-sided upper bound of a probability from ``count`` of ``cases``."""
     return float(
         binomtest(count, cases, alternative="less").proportion_ci(confidence, method="exact").high
     )
 
 
 def allowed(cases: int, probability: float, confidence: float) -> int | None:
-    """Most of ``cases`` that may be above a limit for the upper bound to be 1 - ``probability`` or
-    less; None where not even zero is."""
+    """The largest number of ``cases`` above a limit with an upper bound of at most
+    1 - ``probability``; None where the bound of zero cases is larger."""
     if at_most(0, cases, confidence) > 1.0 - probability:
         return None
-    # the share itself is below its bound
+    # a share is below its upper bound, so the search may end at 1 - probability
     fine, many = 0, min(int((1.0 - probability) * cases) + 1, cases)
     while many - fine > 1:
         middle = (fine + many) // 2

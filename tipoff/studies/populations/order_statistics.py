@@ -1,10 +1,9 @@
-"""What the order of independent draws says about a distribution of which nothing is known.
+"""Bounds of quantiles from the order of independent draws, for any distribution.
 
-Of n draws, k lie below the quantile of probability p with a binomial probability, whatever the
-distribution is, so that a pair of draws bounds the quantile (``scipy.stats.quantile_test``). The
-largest of n draws lies above it with confidence ``1 - p^n``; the smallest and largest hold a share
-p of the distribution between them with ``1 - n p^(n-1) + (n-1) p^n`` (Wilks, Ann. Math. Statist.
-12, 1941).
+The number of n draws below the quantile of probability p is binomial, so that a pair of draws
+bounds the quantile (``scipy.stats.quantile_test``). The largest of n draws is above it with
+confidence ``1 - p^n``; the smallest and the largest enclose a share p of the distribution with
+confidence ``1 - n p^(n-1) + (n-1) p^n`` (Wilks, Ann. Math. Statist. 12, 1941).
 """
 
 import math
@@ -14,14 +13,14 @@ from scipy.stats import quantile_test
 
 
 def runs_needed(share: float, confidence: float = 0.95, sides: int = 1) -> int:
-    """Fewest runs whose largest (``sides`` = 1), or smallest and largest (2), bound a ``share`` of
-    all runs with this confidence."""
+    """The smallest number of runs whose largest (``sides`` = 1), or smallest and largest (2), bound
+    a ``share`` of all runs with this confidence."""
 
     def confident(n: int) -> bool:
         missed = share**n if sides == 1 else n * share ** (n - 1) - (n - 1) * share**n
         return 1.0 - missed >= confidence
 
-    # of one side, at most one too few
+    # for one side, at most one too small
     n = max(sides, math.floor(math.log(1.0 - confidence) / math.log(share)))
     while not confident(n):
         n += 1
@@ -31,8 +30,8 @@ def runs_needed(share: float, confidence: float = 0.95, sides: int = 1) -> int:
 def bounds(
     values: np.ndarray, share: float, confidence: float = 0.95
 ) -> tuple[float | None, float | None]:
-    """Two-sided bounds of the quantile ``share`` from independent draws (n,); None where n is too
-    small for one."""
+    """Two-sided bounds of the quantile ``share`` from independent draws (n,); a bound is None where
+    n is too small for it."""
     found = quantile_test(values, q=0.0, p=share).confidence_interval(confidence)
     low, high = (None if math.isnan(value) else float(value) for value in found)
     return low, high

@@ -1,9 +1,9 @@
-"""Many cases of a scene on the surrogate that its studies use, kept in a store beside the results:
-what every study of tolerances asks.
+"""Many cases of a scene on the surrogate of the tolerance studies, kept in a store beside the
+results.
 
-The surrogate is compliant unless springs are asked for by name: those are the calibrated ones, with
-their constants laid over the scene, so that a case may vary them like any other number. A store
-that was left half filled is gone on with, and one that is whole is only read.
+The surrogate is compliant unless springs are named. Springs have the calibrated constants as
+overrides of the scene, so that a case may vary them like any other input. An incomplete store is
+completed, and a complete one is only read.
 """
 
 from typing import Any, NamedTuple
@@ -31,8 +31,9 @@ TOLERANCE = 1e-2  # relative error of a step: 95 % of reference cases within 0.2
 
 
 class Surrogate(NamedTuple):
-    """A scene, and either its rail compliance as ``walls``, or the ``calibration`` whose constants
-    it has, on rigid walls where the rails are warm. A scene without contact has none of them."""
+    """A scene and its contact: the ``compliance`` of its rails, or the ``calibration`` of its
+    springs, with the ``compliance`` of displaced rigid walls where the rails are warm. Both are
+    None without contact."""
 
     scene: Scene
     calibration: Calibration | None
@@ -40,7 +41,7 @@ class Surrogate(NamedTuple):
 
     @property
     def words(self) -> str:
-        """The model in words."""
+        """The name of the model and the source of its constants."""
         return words.model(self.scene, self.calibration, self.compliance)
 
     @property
@@ -54,8 +55,8 @@ class Surrogate(NamedTuple):
 
 
 class Population(NamedTuple):
-    """``inputs`` (n,) by dotted key, SI; results as columns, NaN in cases that did not settle; the
-    folder of the store, and counts as ``lowfi.ensemble.columns.counts`` gives them."""
+    """``inputs`` (n,) by dotted key, SI; ``results`` as columns, NaN in cases that did not settle;
+    the folder ``store``; ``counts`` from ``lowfi.ensemble.columns.counts``."""
 
     inputs: dict[str, np.ndarray]
     results: Columns
@@ -69,11 +70,10 @@ class Population(NamedTuple):
 
 
 def surrogate(study: Study, model: str | None = None, condition: str | None = None) -> Surrogate:
-    """The surrogate by the name of its ``model``, None for the default, on one condition of a study
-    or on the scene itself; its rail compliance or its constants are found where that was not done
-    yet.
+    """The surrogate of a ``model`` (None: the default) on a ``condition`` of a study (None: the
+    scene). Its rail compliance or its calibration is computed unless it is stored.
 
-    Raises StudyError where none is named and the agreement table rejects the default.
+    Raises StudyError where no model is named and the agreement table rejects the default.
     """
     scene = study.condition(condition) if condition else study.scene
     if scene.contact is None:
@@ -86,8 +86,7 @@ def surrogate(study: Study, model: str | None = None, condition: str | None = No
 
 
 def answering(study: Study, model: Surrogate, condition: str | None = None) -> dict[str, str]:
-    """Which ``model`` answers, and its ``agreement`` with the reference, in words, as result files
-    hold both."""
+    """The ``model`` and its ``agreement`` with the reference, as text for a result file."""
     return {
         "model": model.words,
         "agreement": kept.words(study, model.name, condition, model.calibration is not None),
@@ -95,15 +94,15 @@ def answering(study: Study, model: Surrogate, condition: str | None = None) -> d
 
 
 def model_line(found: dict) -> str:
-    """A line on the model behind a result that holds what ``answering`` gives."""
+    """One line about the model of a result that has the items of ``answering``."""
     return f"model {found['model']}; agreement: {found['agreement']}"
 
 
 def run(
     study: Study, name: str, model: Surrogate, source, tolerance: float = TOLERANCE
 ) -> Population:
-    """Every case of ``source`` (``lowfi.ensemble.rows``), in a store called after ``name``.
-    Raises StudyError when it cannot go on."""
+    """Results of every case of ``source`` (``lowfi.ensemble.rows``), in a store named after
+    ``name``. Raises StudyError when the store fails."""
     ensemble = Ensemble(
         model.scene, source, None, Numerics(relative_tolerance=tolerance), model.compliance
     )
@@ -120,7 +119,7 @@ def run(
                 progress=lambda stored: report(stored / store.asked),
             )
         results, inputs = store.read(0, store.asked)
-        named = dict(zip(store.names, inputs.T))
+        by_key = dict(zip(store.names, inputs.T))
     except StoreError as fault:
         raise StudyError(str(fault)) from fault
-    return Population(named, results, study.relative(path), columns.counts(results.status))
+    return Population(by_key, results, study.relative(path), columns.counts(results.status))

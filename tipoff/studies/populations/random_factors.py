@@ -1,14 +1,14 @@
-"""The paper's random factors (its Table 3), and what "normal axial value, uniform radial angle" can
-mean.
+"""The paper's random factors (its Table 3), and the possible readings of "normal axial value,
+uniform radial angle".
 
-    signed       x normal about zero, three sigma as printed, at the angle a; a negative one
-                 points to the other side, a + pi
+    signed       x normal about zero, three sigma as printed, at the angle a; a negative x is at the
+                 angle a + pi
     half         |x| at the angle a
-    components   one such x along y, another along z: the size follows Rayleigh's law
+    components   one such x along y, another along z: the size has a Rayleigh distribution
 
-Where every error has an angle of its own, signed and half are one law, since a + pi is as uniform
-as a; components are larger. Where all share one angle, thrust and mass eccentricity lie on one
-line, and only signs tell whether they add up or cancel.
+If every error has its own angle, signed and half are the same distribution, since a + pi is uniform
+too; components are larger. If all errors share one angle, thrust and mass eccentricity are on one
+line, and their signs decide whether they add or cancel.
 """
 
 import math
@@ -31,8 +31,9 @@ VALUES, ANGLES, RULES = (
 
 
 class Error(NamedTuple):
-    """An error of assembly: the dotted key above ``axial`` and ``radial``, words for it, the three
-    sigma of Table 3 (SI), and the unit it is shown in with that unit's size (SI)."""
+    """An error of assembly: the dotted ``key`` above ``axial`` and ``radial``, ``words`` for a
+    reader, the three sigma of Table 3 (SI), and the displayed ``unit`` with its size ``scale``
+    (SI)."""
 
     key: str
     words: str
@@ -58,8 +59,8 @@ ERRORS = {
 
 @dataclass(frozen=True)
 class Reading:
-    """How Table 3 is read: ``values`` and ``angles`` as above, the ``rule`` of truncation, and
-    whether the place inside the clearance at ignition is one more random factor."""
+    """A reading of Table 3: ``values`` and ``angles`` as above, the ``rule`` of truncation, and
+    ``initial``, whether the initial position inside the clearance is random too."""
 
     values: str = "signed"
     angles: str = "independent"
@@ -68,7 +69,7 @@ class Reading:
 
     @property
     def words(self) -> str:
-        """In words."""
+        """The reading as text."""
         what = {
             "signed": "signed normal",
             "half": "half normal",
@@ -87,7 +88,7 @@ class Reading:
         return f"{what}{where}, {cut}{', anywhere in the clearance' if self.initial else ''}"
 
 
-# What the table of all readings compares, the default first.
+# The readings that are compared, the default first.
 READINGS = (
     Reading(),
     Reading("half"),
@@ -101,8 +102,8 @@ READINGS = (
 
 
 def source(scene: Scene, reading: Reading, cases: int, seed: int) -> Derived:
-    """Cases of ``scene`` under ``reading``. Raises SceneError for one that has no meaning, every
-    fault listed."""
+    """Cases of ``scene`` with a ``reading``. Raises SceneError for options that contradict each
+    other, every fault listed."""
     faults = []
     if reading.values == "components" and reading.angles == "shared":
         faults.append(
@@ -110,11 +111,11 @@ def source(scene: Scene, reading: Reading, cases: int, seed: int) -> Derived:
                 "--angles",
                 "value",
                 "shared",
-                "independent, for two components have an angle of their own",
+                "independent, since two components determine the angle",
             )
         )
     if reading.initial and not (scene.contact is not None and scene.contact.clearance > 0.0):
-        faults.append(Fault("--initial", "contact.clearance", "nothing", "a clearance to lie in"))
+        faults.append(Fault("--initial", "contact.clearance", "nothing", "a clearance"))
     if faults:
         raise SceneError(faults)
     return Derived(
@@ -124,7 +125,7 @@ def source(scene: Scene, reading: Reading, cases: int, seed: int) -> Derived:
 
 
 def _laws(scene: Scene, reading: Reading) -> dict[str, Distribution]:
-    """What is drawn, by name."""
+    """Distributions of the draws by name."""
     whole_turn = law("uniform", low=0.0, high=2.0 * math.pi)
     found: dict[str, Distribution] = {}
     for name, error in ERRORS.items():
@@ -146,7 +147,7 @@ def _laws(scene: Scene, reading: Reading) -> dict[str, Distribution]:
 
 
 def _overrides(reading: Reading, drawn: Numbers) -> Numbers:
-    """Overrides of the scene from what was drawn."""
+    """Overrides of the scene from the draws."""
     found = {key: values for key, values in drawn.items() if key.startswith("initial.")}
     for name, error in ERRORS.items():
         if reading.values == "components":
@@ -162,14 +163,14 @@ def _overrides(reading: Reading, drawn: Numbers) -> Numbers:
 
 
 def pointing(value: np.ndarray, angle: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Size and angle of signed values (n,) at ``angle`` (n,): an eccentricity of a scene has no
-    sign."""
+    """Size and angle of signed values (n,) at ``angle`` (n,), rad: an offset of a scene is not
+    negative."""
     return np.abs(value), np.where(value < 0.0, angle + math.pi, angle)
 
 
 def _polar(y: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    # One number at a time: NumPy's vector code may round the end of an array in another way than
-    # its middle.
+    # One number at a time: NumPy's vector code may round the end of an array differently from its
+    # middle.
     pairs = list(zip(y.tolist(), z.tolist()))
     return np.array([math.hypot(*pair) for pair in pairs]), np.array(
         [math.atan2(b, a) for a, b in pairs]

@@ -1,5 +1,5 @@
-"""What independent cases say of a quantity: moments, quantiles with their bounds, histograms, and
-what their number leaves uncertain."""
+"""Statistics of a quantity from independent cases: moments, quantiles with bounds, histograms, and
+the convergence with the number of cases."""
 
 import math
 from collections.abc import Sequence
@@ -15,8 +15,8 @@ _BINS = 80
 
 
 def quantiles(values: np.ndarray, shares: Sequence[float] = SHARES) -> list[dict]:
-    """The quantile of each of ``shares`` with two-sided bounds, None where the values (n,) are too
-    few for one."""
+    """The quantile of each of ``shares`` with two-sided bounds; a bound is None where there are too
+    few values (n,)."""
     found = zip(
         shares,
         np.quantile(values, shares),
@@ -29,8 +29,8 @@ def quantiles(values: np.ndarray, shares: Sequence[float] = SHARES) -> list[dict
 
 
 def moments(values: np.ndarray) -> dict:
-    """Mean, standard deviation, extremes, and the standard errors of the first two, from the
-    moments of the values (n,) themselves."""
+    """Mean, standard deviation, extremes, and the standard errors of the first two, of the values
+    (n,); the error of the standard deviation is from the fourth moment."""
     count, mean, sd = values.size, float(values.mean()), float(values.std(ddof=1))
     fourth = float(((values - mean) ** 4).mean())
     error = math.sqrt(max(fourth - sd**4, 0.0) / count) / (2.0 * sd) if sd > 0.0 else 0.0
@@ -45,8 +45,8 @@ def moments(values: np.ndarray) -> dict:
 
 
 def histograms(first: np.ndarray, values: np.ndarray) -> dict:
-    """Densities of the ``first`` (m,) of the values and of all (n,), over common edges; zero where
-    there are none."""
+    """Densities of the ``first`` (m,) of the values and of all (n,), with common edges; zero
+    without values."""
     low, high = np.quantile(values, (0.0005, 0.9995))
     edges = np.linspace(low, high if high > low else low + 1e-9, _BINS + 1)
     width = edges[1] - edges[0]
@@ -58,8 +58,8 @@ def histograms(first: np.ndarray, values: np.ndarray) -> dict:
 
 
 def convergence(values: np.ndarray, shares: Sequence[float]) -> list[dict]:
-    """Quantiles with bounds of the first 100, 200, 500, 1000 ... cases and of all (n,), NaN in
-    those that did not settle, which count as cases; nothing of a part in which none settled."""
+    """Quantiles with bounds of the first 100, 200, 500, 1000 ... cases and of all (n,). A case that
+    did not settle, NaN, counts as a case; a part without settled cases is left out."""
     counts = [
         scale * 10**power
         for power in range(2, 10)
@@ -76,9 +76,9 @@ def convergence(values: np.ndarray, shares: Sequence[float]) -> list[dict]:
 
 
 def apart(one: Sequence[np.ndarray], other: Sequence[np.ndarray]) -> tuple[float, float]:
-    """Largest distance between the distributions of independent samples, quantity by quantity, and
-    the chance of so large a one if none differed (Kolmogorov and Smirnov; times the number of
-    quantities, after Bonferroni)."""
+    """The largest distance of Kolmogorov and Smirnov between two independent samples over all
+    quantities, and the probability of such a distance if the distributions are equal (times the
+    number of quantities, after Bonferroni)."""
     tests = [ks_2samp(a, b, method="asymp") for a, b in zip(one, other, strict=True)]
     return max(float(test.statistic) for test in tests), min(
         1.0, len(tests) * min(float(test.pvalue) for test in tests)
