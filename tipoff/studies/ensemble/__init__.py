@@ -1,4 +1,4 @@
-"""Many varied cases of the surrogate, and what they say."""
+"""Many varied cases of the surrogate, and their statistics."""
 
 from tipoff.studies.ensemble import command
 from tipoff.studies.question import Entry

@@ -39,44 +39,44 @@ def ensemble(
     table: Annotated[
         Path | None,
         typer.Option(
-            "--table", metavar="FILE", help="CSV table of cases, in place of distributions."
+            "--table", metavar="FILE", help="CSV table of cases, instead of distributions."
         ),
     ] = None,
     cases: Annotated[
         int | None,
         typer.Option(
-            "--cases", metavar="N", min=1, help="Number of cases; default: as the file says."
+            "--cases", metavar="N", min=1, help="Number of cases; default: from the file."
         ),
     ] = None,
     seed: Annotated[
         int | None,
         typer.Option(
-            "--seed", metavar="N", min=0, help="Seed of all draws; default: as the file says."
+            "--seed", metavar="N", min=0, help="Seed of all draws; default: from the file."
         ),
     ] = None,
     sampling: Annotated[
         Sampling | None,
-        typer.Option("--sampling", help="How points are drawn; default: as the file says."),
+        typer.Option("--sampling", help="Method of drawing; default: from the file."),
     ] = None,
     store: Annotated[
         Path | None,
         typer.Option(
             "--store",
             metavar="DIR",
-            help="Folder of the results; default: one of its own for every ensemble.",
+            help="Folder of the results; default: a separate one for every ensemble.",
         ),
     ] = None,
     case: Annotated[
         int | None,
-        typer.Option("--case", metavar="N", min=0, help="Run case N alone and print it."),
+        typer.Option("--case", metavar="N", min=0, help="Run case N alone and print its result."),
     ] = None,
     tolerance: Annotated[
         float,
         typer.Option(
             "--tolerance",
             metavar="X",
-            help="Relative error of a step; 1e-2 keeps "
-            "95 % of 20 reference cases to 0.2 % of their rate, 1e-4 to 0.1 %.",
+            help="Relative error of a step. 95 % of 20 reference cases have a rate with an error "
+            "below 0.2 % with 1e-2, and below 0.1 % with 1e-4.",
         ),
     ] = 1e-2,
     model: Surrogate = None,
@@ -96,24 +96,25 @@ def ensemble(
     """Run the surrogate on thousands to millions of varied cases; writes ensemble.json and a store
     in zarr.
 
-    A file of distributions says what varies; --cases, --seed and --sampling may say otherwise:
+    A file of distributions defines the inputs that vary; --cases, --seed and --sampling override
+    it:
 
       \\[vary."payload.mass"]
       distribution = "normal"
       mean = "9.9 kg"
       sd = "20 g"
 
-    The others are fixed (value), uniform (low, high), truncated-normal (mean, sd, low, high, rule
-    "redraw" or "clip") and rayleigh (scale). A table has dotted keys in its first line, units in
-    the second or in each cell, and one case in every further line.
+    Other distributions: fixed (value), uniform (low, high), truncated-normal (mean, sd, low, high,
+    rule "redraw" or "clip") and rayleigh (scale). A table has dotted keys in its first line, units
+    in the second or in each cell, and one case in every further line.
 
       tipoff ensemble --cases 1000000
       tipoff ensemble --vary my_errors.toml --sampling sobol --cases 4096
       tipoff ensemble --table cases.csv --store out/night
-      tipoff ensemble --cases 1000000 --case 1234    # that case alone, beside its stored bits
+      tipoff ensemble --cases 1000000 --case 1234    # that case alone, compared with the store
 
-    Stopped, killed or out of disk, the same command goes on from there to the same bits. A bad case
-    is refused by itself and listed with its inputs and the reason in the store (done/*.json).
+    After a stop or a full disk, the same command continues and gives the same bits. A bad case is
+    refused alone; the store lists it with its inputs and the reason (done/*.json).
     xarray.open_zarr(STORE + "/cases.zarr") reads the results.
     """
 
@@ -138,9 +139,9 @@ def ensemble(
         study = study_of(scene, out, set_)
         return stage.run(study, options) if case is None else stage.case(study, options, case)
 
-    def lines(found: dict) -> list[str]:
-        from tipoff.studies.ensemble import stage, summary
+    found = guarded(work, json_)
+    if not json_:
+        from tipoff.studies.ensemble import page
+        from tipoff.studies.render import document
 
-        return summary.lines(found) if case is None else stage.case_lines(found)
-
-    guarded(work, json_, lines)
+        print(document.terminal(page.summary(found) if case is None else page.case(found)))

@@ -1,5 +1,5 @@
-"""Stage ``ensemble``: many varied cases of the surrogate into a store, and what they say of the
-rates a payload leaves with."""
+"""Stage ``ensemble``: many varied cases of the surrogate in a store, and the statistics of their
+results."""
 
 import resource
 import time
@@ -30,8 +30,7 @@ from tipoff.studies.ensemble import summary
 
 @dataclass(frozen=True)
 class Options:
-    """What ``tipoff ensemble`` is given beside the scene; None: as the file of distributions says,
-    or the default."""
+    """Options of ``tipoff ensemble``; None: from the file of distributions, or the default."""
 
     vary: str = uncertainty.DEFAULT
     table: Path | None = None
@@ -46,8 +45,8 @@ class Options:
 
 
 def request(study: Study, options: Options) -> Ensemble:
-    """The ensemble that the ``options`` describe. Raises SceneError for bad input, before any rail
-    compliance is found, and StudyError where no model is named and the agreement table rejects the
+    """The ensemble of the ``options``. Raises SceneError for bad input, before any rail compliance
+    is computed, and StudyError where no model is named and the agreement table rejects the
     default."""
     fitted = constants(options.model.calibration)
     changed = {
@@ -57,7 +56,7 @@ def request(study: Study, options: Options) -> Ensemble:
     }
     if options.table is not None:
         if changed:
-            expected = "nothing, since the table lists its cases"
+            expected = "no such option, since the table lists its cases"
             raise SceneError(
                 [Fault("--table", name, str(value), expected) for name, value in changed.items()]
             )
@@ -82,8 +81,8 @@ def request(study: Study, options: Options) -> Ensemble:
 
 
 def run(study: Study, options: Options) -> dict:
-    """Run what the store lacks; the summary, also written as ``ensemble.json``. Raises StudyError
-    when the run cannot go on."""
+    """Run the cases that the store lacks. Returns the statistics, also written as
+    ``ensemble.json``. Raises StudyError when the store fails."""
     ensemble = request(study, options)
     try:
         store = ensemble.store(path := _path(study, options, ensemble))
@@ -105,7 +104,7 @@ def run(study: Study, options: Options) -> dict:
             )
     except StoreError as fault:
         raise StudyError(str(fault)) from fault
-    said = summary.of(ensemble, store)
+    statistics = summary.of(ensemble, store)
     cost = {
         "cases": new,
         "wall_s": wall,
@@ -118,7 +117,7 @@ def run(study: Study, options: Options) -> dict:
         "stage": "ensemble",
         "scene": study.scene.name,
         "store": str(path),
-        **said,
+        **statistics,
         "agreement": _agreement(study, options),
         "run": cost,
         "hardware": machine.describe(),
@@ -138,12 +137,13 @@ def _agreement(study: Study, options: Options) -> str:
 
 
 def _path(study: Study, options: Options, ensemble: Ensemble) -> Path:
-    """The store: where it was asked for, else one of its own for every ensemble."""
+    """The given store, or by default a separate one for every ensemble."""
     return options.store or study.path(f"ensemble-{ensemble.key[:8]}")
 
 
 def case(study: Study, options: Options, number: int) -> dict:
-    """One case run alone, and whether its store, if there is one, holds the same bits."""
+    """One case run alone, and whether its store has the same bits (None: no stored result). Raises
+    SceneError for a case that does not exist, and StudyError when the store fails."""
     ensemble = request(study, options)
     if not 0 <= number < ensemble.source.asked:
         raise SceneError(
@@ -172,29 +172,3 @@ def case(study: Study, options: Options, number: int) -> dict:
                 np.array_equal(a, b, equal_nan=a.dtype.kind == "f") for a, b in zip(stored, alone)
             )
     return result
-
-
-def case_lines(found: dict) -> list[str]:
-    """One case in words and units."""
-    said = [
-        f"case {found['case']}: {found['status']}"
-        + (f" ({found['message']})" if found["message"] else "")
-    ]
-    said += [f"  {key} = {value}" for key, value in found["inputs"].items()]
-    if found["rate"] is not None:
-        said.append(
-            "  velocity      "
-            + ", ".join(f"{value:.17g}" for value in found["velocity"])
-            + " m/s (x, y, z)"
-        )
-        said.append(
-            "  rate          "
-            + ", ".join(f"{value:.17g}" for value in found["rate"])
-            + " rad/s (x, y, z)"
-        )
-    kept = {
-        None: "no stored result to compare with",
-        True: "the stored result has the same bits",
-        False: "THE STORED RESULT DIFFERS",
-    }
-    return [*said, f"  {kept[found['stored']]}"]

@@ -1,0 +1,77 @@
+"""An ensemble for the terminal: quantiles with bounds, and the distributions of the inputs."""
+
+from tipoff.studies.render.document import Bullets, Part
+from tipoff.studies.render.table import Table, estimate, percent
+
+_LABELS = {
+    "rate_deg_s": "total rate (deg/s)",
+    "lateral_velocity_mm_s": "lateral velocity (mm/s)",
+    "direction_error_deg": "direction error (deg)",
+}
+_STORED = {
+    None: "no stored result to compare with",
+    True: "the stored result has the same bits",
+    False: "THE STORED RESULT DIFFERS",
+}
+
+
+def summary(found: dict) -> list[Part]:
+    """Counts, failures, quantiles and the cost of the run."""
+    counts, cost = found["counts"], found["run"]
+    failures = [
+        f"{item['status']}: case {item['case']}: {' '.join(item['reason'].split())}"
+        for item in found["failures"]
+    ]
+    run = [
+        f"{found['scene']}, model {found['model']}: {counts['asked']:,} cases = {counts['ok']:,} "
+        f"ok + {counts['refused']:,} refused + {counts['failed']:,} failed; {found['settled']:,} "
+        "left the rail and settled",
+        f"agreement: {found['agreement']}",
+        *failures,
+    ]
+    processor = (
+        f", {cost['cpu_ms_per_case']:.3f} ms of processor time per case"
+        if "cpu_ms_per_case" in cost
+        else ""
+    )
+    memory = f"{cost['peak_memory_bytes'] / 1e6:.0f} MB of memory at most"
+    tables = [_quantiles(found)] if found["quantiles"] else []
+    return [
+        Bullets(run),
+        *_varied(found["cases"].get("vary", {})),
+        *tables,
+        f"run time: {cost['wall_s']:.3g} s for {cost['cases']:,} cases{processor}; {memory}",
+        f"store: {found['store']}",
+    ]
+
+
+def _varied(vary: dict) -> list[Part]:
+    rows = [(key, item["distribution"], item.get("rule", "")) for key, item in vary.items()]
+    return [Table(["varied input", "distribution", "beyond its bounds"], rows)] if rows else []
+
+
+def _quantiles(found: dict) -> Table:
+    rows = [
+        (_LABELS[name], *(estimate(row) for row in rows))
+        for name, rows in found["quantiles"].items()
+    ]
+    shares = [row["share"] for row in next(iter(found["quantiles"].values()))]
+    note = f"{found['confidence']:.0%} bounds: {found['bounds']}."
+    return Table(
+        ["quantity", *(f"{percent(share, 'g')} % below" for share in shares)], rows, (note,)
+    )
+
+
+def case(found: dict) -> list[Part]:
+    """One case: status, inputs, velocity and rate with all digits, and the comparison with the
+    store."""
+    message = f" ({found['message']})" if found["message"] else ""
+    parts: list[Part] = [
+        f"case {found['case']}: {found['status']}{message}",
+        Table(["input", "value"], list(found["inputs"].items())),
+    ]
+    if found["rate"] is not None:
+        vectors = (("velocity (m/s)", found["velocity"]), ("rate (rad/s)", found["rate"]))
+        rows = [(name, *(f"{value:.17g}" for value in vector)) for name, vector in vectors]
+        parts.append(Table(["", "x", "y", "z"], rows))
+    return [*parts, _STORED[found["stored"]]]
