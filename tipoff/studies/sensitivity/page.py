@@ -104,7 +104,7 @@ def draw(found: dict) -> list[Part]:
         for table in (_largest(item, found["paper"]), _beside_paper(item, found["paper"]))
     ]
     return [
-        population.model_line(found),
+        Bullets([population.model_line(found)]),
         *([Heading("One contact constant at a time")] if tables else []),
         *tables,
         Heading("All inputs together"),
@@ -118,7 +118,7 @@ def draw(found: dict) -> list[Part]:
 def summary(found: dict) -> list[Part]:
     """The largest changes and the total indices, for the terminal."""
     return [
-        population.model_line(found),
+        Bullets([population.model_line(found)]),
         *(_largest(item, found["paper"]) for item in found["tables"]),
         _used(found["sobol"]),
         _indices(found["sobol"]),

@@ -2,7 +2,7 @@
 reason for a plateau, and the figures."""
 
 from tipoff.studies.populations import answers, population
-from tipoff.studies.render.document import Caption, Figure, Fold, Heading, Part
+from tipoff.studies.render.document import Bullets, Caption, Figure, Fold, Heading, Part
 from tipoff.studies.render.table import Column, Noted, Table, number, percent, span
 from tipoff.studies.sweeps.figures import pictures
 from tipoff.studies.sweeps.knee import LEVEL, MISFIT
@@ -51,7 +51,7 @@ _REASON = (
 def draw(found: dict) -> list[Part]:
     """The section: runs, verdicts, the reason for a plateau, figures."""
     launches = found["launches"]
-    parts: list[Part] = [population.model_line(found), _counts(launches)]
+    parts: list[Part] = [Bullets([population.model_line(found)]), _counts(launches)]
     for launch in launches:
         parts += [
             Heading(_title(launch)),
@@ -65,7 +65,7 @@ def draw(found: dict) -> list[Part]:
 
 def summary(found: dict) -> list[Part]:
     """Runs, verdicts and the largest values, for the terminal."""
-    parts: list[Part] = [population.model_line(found), _counts(found["launches"])]
+    parts: list[Part] = [Bullets([population.model_line(found)]), _counts(found["launches"])]
     for launch in found["launches"]:
         parts += [Heading(_title(launch)), _verdicts(launch), _largest(launch)]
     return parts
