@@ -73,6 +73,15 @@ def test_terminal():
     assert any(line.split() == ["<phi0>", "+1.23", "1e-07", "12,345"] for line in lines)
 
 
+def test_terminal_breaks_lines_between_words():
+    """Columns are narrowed to their longest word; a table of long words is wider than the limit."""
+    rows = [["conditions of the reference " * 3, "12.5 (10 to 20)"] + ["longest_word_of_all"] * 4]
+    lines = terminal(Table(list("abcdef"), rows)).splitlines()
+    text = " ".join(lines)
+    assert "…" not in text and text.count("longest_word_of_all") == 4
+    assert all(len(line) <= 160 for line in lines) and len(lines) > 4
+
+
 def test_a_table_without_rows_has_heads():
     empty = Table(["a", "b"], [])
     assert "<th>b</th>" in html(empty) and "| a | b |" in markdown(empty) and "b" in terminal(empty)

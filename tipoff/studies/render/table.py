@@ -128,15 +128,30 @@ def terminal(table: Table) -> str:
 
     grid = Grid(box=box.SIMPLE_HEAD, pad_edge=False)
     rows = _texts(table)
-    for place, head in enumerate(table.heads):
-        right = all(_numeric(row[place]) for row in rows if row[place])
-        grid.add_column(Text(head), justify="right" if right else "left")
+    columns = list(zip(table.heads, *rows))
+    limit = max(100, shutil.get_terminal_size((160, 24)).columns)
+    widths = _widths(columns, limit - 3 * len(columns))
+    for (head, *cells), width in zip(columns, widths):
+        right = all(_numeric(cell) for cell in cells if cell)
+        grid.add_column(Text(head), justify="right" if right else "left", width=width)
     for row in rows:
         grid.add_row(*map(Text, row))
     stream = io.StringIO()
-    Console(file=stream, width=max(100, shutil.get_terminal_size((160, 24)).columns)).print(grid)
+    Console(file=stream, width=max(limit, sum(widths) + 3 * len(columns))).print(grid)
     drawn = "\n".join(line.rstrip() for line in stream.getvalue().strip("\n").splitlines())
     return "\n".join([*([table.title] if table.title else []), drawn, *table.notes])
+
+
+def _widths(columns: Sequence[Sequence[str]], limit: int) -> list[int]:
+    """Widths of columns of text, together at most ``limit`` where that cuts no word."""
+    widths = [max(map(len, cells)) for cells in columns]
+    words = [max(map(len, " ".join(cells).split()), default=0) for cells in columns]
+    while sum(widths) > limit and widths != words:
+        wide = max(
+            range(len(widths)), key=lambda place: (widths[place] > words[place], widths[place])
+        )
+        widths[wide] -= 1
+    return widths
 
 
 def html(table: Table) -> Markup:
