@@ -19,6 +19,7 @@ from tipoff.studies.flight import summary
 from tipoff.studies.populations import answers, population
 from tipoff.studies.populations.population import Surrogate
 from tipoff.studies.render import chart
+from tipoff.studies.render.table import Noted
 
 pytest.importorskip("zarr")
 xarray = pytest.importorskip("xarray")
@@ -35,17 +36,14 @@ def uncalibrated(monkeypatch):
 
 
 def call(*arguments):
-    return CliRunner().invoke(app, ["flight", *(str(argument) for argument in arguments)])
+    return CliRunner(env={"COLUMNS": "400"}).invoke(app, ["flight", *map(str, arguments)])
 
 
 def test_conditions_and_cases_are_flown_and_kept(tmp_path, uncalibrated, monkeypatch):
     asked = ("--condition", "phi35", "--condition", "phi60", "--cases", 60, "--out", tmp_path)
     first = call(*asked)
     assert first.exit_code == 0, first.output
-    assert (
-        "60 cases = 60 ok + 0 refused + 0 failed" in first.stdout
-        and "of it by errors" in first.stdout
-    )
+    assert "60 cases: 60 ok, 0 refused, 0 failed" in first.stdout and "flight.nc" in first.stdout
     folder = tmp_path / "reference"
     found = json.loads((folder / "flight.json").read_text())
     assert [item["condition"] for item in found["conditions"]] == ["phi35", "phi60"]
@@ -119,11 +117,7 @@ def test_conditions_and_cases_are_flown_and_kept(tmp_path, uncalibrated, monkeyp
     )
     assert flight.STAGE.stored(study) is None
     drawn = html(section.draw(found))
-    assert (
-        "<figure>flight-miss</figure>" in drawn
-        and "misses by" not in drawn
-        and "touch the platform again" in drawn
-    )
+    assert "<figure>flight-miss</figure>" in drawn and "0 of 60 touch" in drawn
     # conditions, and quantiles of cases
     assert all(drawn.count(f"{item.label} ({item.unit})") == 2 for item in answers.ALL)
     assert all(f"{item.label} ({item.unit})" in first.stdout for item in answers.ALL)
@@ -137,24 +131,21 @@ def test_without_an_exit_there_is_no_flight(tmp_path, uncalibrated):
     assert not (tmp_path / "reference" / "flight.json").exists()
 
 
-def test_what_is_to_be_doubted():
-    orbit = summary.orbit(load("channel"))
-    assert "given by a file" in summary.doubts(
-        {"flight": orbit, "cases": {"limit_open": 0}, "conditions": []}
-    )
-    assert "3 cases" in summary.doubts(
-        {"flight": summary.orbit(load("reference")), "cases": {"limit_open": 3}, "conditions": []}
-    )
-    assert (
-        summary.doubts(
-            {
-                "flight": summary.orbit(load("reference")),
-                "cases": {"limit_open": 0},
-                "conditions": [],
-            }
-        )
-        == ""
-    )
+def test_limitations_are_remarked():
+    def remarks(scene, limit_open):
+        found = {"flight": summary.orbit(load(scene)), "cases": {"limit_open": limit_open}}
+        return section.remarks(found)
+
+    assert any("flight.envelope" in line for line in remarks("channel", 0))
+    (line,) = remarks("reference", 3)
+    assert line.startswith("3 cases")
+    assert remarks("reference", 0) == []
+
+
+def test_a_condition_without_a_flight_shows_its_status():
+    row = {"condition": "phi0", "status": "jammed", "flown": None}
+    table = section._conditions({"conditions": [row]}, ["miss_m"], [])
+    assert table.rows == [(Noted("phi0", "jammed"), None)]
 
 
 @pytest.mark.parametrize(

@@ -33,44 +33,43 @@ def flight(
         typer.Option(
             "--range",
             metavar="LENGTH",
-            help="How far the target lies along the "
-            'launch axis, "500 m"; default: as the scene says.',
+            help='Distance of the target along the launch axis, "500 m"; default: that of the scene.',
         ),
     ] = None,
     altitude: Annotated[
         str | None, typer.Option(metavar="LENGTH", help='Altitude of the orbit, "500 km".')
     ] = None,
     duration: Annotated[
-        str | None, typer.Option(metavar="TIME", help='How long the flight is followed, "2 hour".')
+        str | None, typer.Option(metavar="TIME", help='Duration of the flight, "2 hour".')
     ] = None,
     vary: Annotated[
         str, typer.Option("--vary", metavar="NAME_OR_FILE", help="Distributions of the cases.")
     ] = "paper",
     cases: Annotated[
         int | None,
-        typer.Option(metavar="N", min=1, help="Number of cases; default: as the file says."),
+        typer.Option(metavar="N", min=1, help="Number of cases; default: that of the file."),
     ] = None,
     seed: Annotated[
         int | None,
-        typer.Option(metavar="N", min=0, help="Seed of all draws; default: as the file says."),
+        typer.Option(metavar="N", min=0, help="Seed of all draws; default: that of the file."),
     ] = None,
     model: Surrogate = None,
     element_size: ElementSize = None,
     workers: Workers = None,
     json_: Json = False,
 ) -> None:
-    """What becomes of the payload in orbit: miss of a target, pointing, coning, and whether it
-    touches the platform again.
+    """Flight of the payload in orbit: miss distance of a target, pointing error, coning, and
+    clearance to the platform.
 
-    Every condition, and many cases with errors of assembly; writes flight.json, flight.nc and
-    figures. The scene says where:
+    Computes every condition and many cases with random errors; writes flight.json, flight.nc and
+    figures. The scene defines the orbit and the target:
 
       \\[flight]
       altitude = "500 km"
       range = "100 m"
 
-    azimuth, elevation and roll turn the launch axis out of the flight direction. Options take the
-    place of what the table says:
+    azimuth, elevation and roll turn the launch axis out of the flight direction. Options replace
+    values of the table:
 
       tipoff flight --range "1 km" --cases 10000
       tipoff flight --scene my_launcher.toml --altitude "600 km" --range "200 m" --set flight.elevation="90 deg"
@@ -86,6 +85,7 @@ def flight(
 
     found = guarded(work, json_)
     if not json_:
-        from tipoff.studies.flight import summary
+        from tipoff.studies.flight import page
+        from tipoff.studies.render import document
 
-        print("\n".join(summary.lines(found)))
+        print(document.terminal(page.terminal(found)))

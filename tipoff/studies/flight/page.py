@@ -1,10 +1,10 @@
-"""The flight as the page shows it: paths, axes, clearance and the scatter about the target, then
+"""The flight on the page and in the terminal: figures of paths, axes, clearance and scatter, and
 tables of conditions and cases."""
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Sequence
 
-from tipoff.studies.flight.summary import WORDS, doubts
+from tipoff.studies.flight.summary import WORDS
 from tipoff.studies.populations import answers
 from tipoff.studies.render.chart import (
     AMBER,
@@ -17,7 +17,7 @@ from tipoff.studies.render.chart import (
     Panel,
 )
 from tipoff.studies.render.document import Figure, Part
-from tipoff.studies.render.table import Column, Table, estimate, percent, span
+from tipoff.studies.render.table import Column, Noted, Table, estimate, percent
 
 _LOOKS = (
     (NAVY, "-", "o"),
@@ -26,111 +26,101 @@ _LOOKS = (
     (TEAL, ":", "D"),
     (GREY, "-", "v"),
 )
-_SHOWN = (
+_TARGET = (
     "miss_m",
     "tip_off_miss_m",
     "passes_s",
     "pointing_deg",
     "limit_s",
-    "coning_deg_s",
-    "nutation_s",
     "clearance_mm",
     "closest_ms",
 )
+_ROTATION = ("cone_least_deg", "cone_largest_deg", "coning_deg_s", "nutation_s")
 _PATHS = (
-    "Left and middle: the way to the target in orbit axes, sideways and up being the scene's y and "
-    "z. The bend that all "
-    "shots have in common is the orbit's. Right: relative to the platform; at this scale the "
-    "conditions can hardly be told "
-    "apart."
+    "Left and middle: path to the target in orbit axes; sideways is scene y, up is scene z. The "
+    "curvature common to all paths is the orbit's. Right: path relative to the platform."
 )
 _AXES = (
-    "Left: the cone of the payload's x axis in inertial space, one round about its angular "
-    "momentum, free rotation of the "
-    "whole inertia tensor; distance from the middle is the angle from the launch axis, the marker "
-    "the instant of passing the "
-    "target. Right: that angle until the target is passed."
+    "Left: direction of the payload's x axis in inertial space during one round about the angular "
+    "momentum; the distance from the origin is the angle to the launch axis, markers show the "
+    "instant of passing the target. Right: the same angle over time until the target is passed."
 )
 _CLEARANCE = (
-    "Least distance between the payload's box and the boxes of platform and rails after "
-    "exit; below zero they overlap."
+    "Smallest distance between the payload's box and the boxes of platform and rails after the "
+    "exit. Negative values are overlap."
 )
 _SCATTER = (
-    "Left: where cases pass the plane through the target. A shot without errors misses too, by "
-    "what the orbit bends its "
-    "way. Right: share of cases that miss by more, in all and by their errors alone, with bounds "
-    "of the quantiles."
+    "Left: points where the cases pass the plane of the target. A shot without errors also misses, "
+    "because the orbit curves its path. Right: share of cases with a larger miss distance, in "
+    "total and by ejection errors alone, with bounds of the quantiles."
 )
 _EXITS = (
-    "What every condition leaves its rail with and the flight begins from: settled rates in "
-    "payload body axes and velocity "
-    "across the launch axis, attitude as a rotation vector."
+    "State at the exit: settled rates in payload body axes, velocity across the launch axis, and "
+    "attitude as a rotation vector, to four digits."
 )
 _BOXES = (
-    "Clearance below zero is depth of overlap: the boxes are the scene's, rigid and undeformed. A "
-    "body that stood back "
-    "from its pads by as much would pass clear; flight.body says how large it is without them."
+    "Negative clearance is the depth of overlap of the rigid boxes of the scene. `flight.body` is "
+    "the size of the payload without its pads."
 )
+_CONE = "The cone angle is that between the payload's x axis and its angular momentum."
 
 
 def draw(found: dict) -> list[Part]:
     """The section."""
     return [
-        _words(found),
+        _setup(found),
         *(Figure(*item) for item in charts(found)),
-        _exits(found["conditions"]),
-        _conditions(found),
+        _conditions(found, [item.name for item in answers.ALL], [_EXITS], ".4g"),
+        *_flights(found),
         _cases(found["cases"]),
     ]
 
 
-def _exits(conditions: list[dict]) -> Table:
-    """What every condition leaves its rail with, to four digits: rates of a thousandth of a degree
-    are compared here."""
-    return Table(
-        ["condition", *(Column(WORDS[item.name], form=".4g") for item in answers.ALL)],
-        [_of(row, [item.name for item in answers.ALL]) for row in conditions],
-        (_EXITS,),
-        dense=True,
-    )
+def terminal(found: dict) -> list[Part]:
+    """The tables of conditions and cases, and the names of the data."""
+    return [
+        f"{found['scene']}: {_setup(found)}",
+        f"Agreement of the model: {found['agreement']}.",
+        *_flights(found),
+        _cases(found["cases"]),
+        f"Store {found['cases']['store']}, data {found['data']}.",
+    ]
 
 
-def _conditions(found: dict) -> Table:
+def _conditions(found: dict, shown: Sequence[str], notes: Sequence[str], form=".3g") -> Table:
+    """The quantities ``shown`` of every condition; a condition without a flight has its status."""
     rows = [
-        (*_of(row, _SHOWN), _cone(row["flown"]) if row["flown"] else None)
+        (row["condition"], *(row["flown"][name] for name in shown))
+        if row["flown"]
+        else (Noted(row["condition"], row["status"]), *[None] * len(shown))
         for row in found["conditions"]
     ]
-    notes = [_BOXES] * (not found["flight"]["no_clearance"]) + [doubts(found)]
-    return Table(
-        ["condition", *(WORDS[name] for name in _SHOWN), "x axis from angular momentum (deg)"],
-        rows,
-        tuple(note for note in notes if note),
-        dense=True,
-    )
+    columns = [Column(WORDS[name], form=form) for name in shown]
+    return Table(["condition", *columns], rows, tuple(notes), dense=True)
 
 
-def _of(row: dict, names: Iterable[str]) -> tuple:
-    return row["condition"], *(row["flown"][name] if row["flown"] else None for name in names)
-
-
-def _cone(flown: dict) -> str:
-    return span(flown["cone_least_deg"], flown["cone_largest_deg"])
+def _flights(found: dict) -> list[Part]:
+    """Tables of the flight of every condition."""
+    notes = [_BOXES] * (not found["flight"]["no_clearance"]) + remarks(found)
+    return [_conditions(found, _TARGET, notes), _conditions(found, _ROTATION, [_CONE])]
 
 
 def _cases(many: dict) -> Table:
     judged = many["quantiles"]
     shares = [row["share"] for row in next(iter(judged.values()), [])]
-    note = (
-        f"{many['counts']['asked']:,} cases, {many['settled']:,} of them flown. Share of cases "
-        f"below the value; small: its bounds at {many['confidence']:.0%} confidence "
-        f"({many['bounds']}). {_touching(many)}"
+    counts = many["counts"]
+    notes = (
+        f"{counts['asked']:,} cases: {counts['ok']:,} ok, {counts['refused']:,} refused, "
+        f"{counts['failed']:,} failed; {many['settled']:,} flown.{_touching(many)}",
+        "Values below which that share of the cases lies, in brackets the bounds at "
+        f"{many['confidence']:.0%} confidence ({many['bounds']}).",
     )
     rows = [
         (WORDS[name], *("never" if row["value"] is None else estimate(row) for row in quantiles))
         for name, quantiles in judged.items()
     ]
     heads = ["quantity", *(f"{percent(share, '.4g')} %" for share in shares)]
-    return Table(heads, rows, (note,), dense=True)
+    return Table(heads, rows, notes, dense=True)
 
 
 def charts(found: dict) -> list[tuple[Chart, str]]:
@@ -234,8 +224,8 @@ def _scatter(found: dict) -> Chart:
     y, z, orbital_y, orbital_z = zip(*many["points_m"])
     errors = [math.hypot(a - c, b - d) for a, b, c, d in many["points_m"]]
     shares = [
-        *_exceeded(many, "miss_m", list(map(math.hypot, y, z)), "in all", NAVY, "-"),
-        *_exceeded(many, "tip_off_miss_m", errors, "by errors alone", AMBER, "--"),
+        *_exceeded(many, "miss_m", list(map(math.hypot, y, z)), "total", NAVY, "-"),
+        *_exceeded(many, "tip_off_miss_m", errors, "ejection errors alone", AMBER, "--"),
     ]
     marks = [
         Line(y, z, "case", NAVY, 1.0, "", 0.35, marker="o", size=3.0),
@@ -251,7 +241,7 @@ def _scatter(found: dict) -> Chart:
                 "z (m)",
                 marks,
             ),
-            Panel("cases that miss by more", "miss (m)", "share (%)", shares),
+            Panel("cases with a larger miss distance", "miss distance (m)", "share (%)", shares),
         ],
         columns=2,
         height=360,
@@ -280,19 +270,27 @@ def _exceeded(
     return [Line(sorted(values), above, words, colour, 2.0, dash), *bounds]
 
 
-def _words(found: dict) -> str:
+def _setup(found: dict) -> str:
     flight = found["flight"]
-    limit = (
-        ""
-        if flight["pointing_limit_deg"] is None
-        else f" The pointing limit is {flight['pointing_limit_deg']:g} deg."
-    )
+    limit = flight["pointing_limit_deg"]
     return (
-        f"A target {flight['range_m']:g} m along the launch axis, at rest beside a circular orbit "
-        f"of "
-        f"{flight['period_s'] / 60.0:.4g} min; model {found['model']}. Nothing acts after the exit "
-        f"but gravity.{limit}"
+        f"Target {flight['range_m']:g} m along the launch axis, at rest relative to a circular "
+        f"orbit of {flight['period_s'] / 60.0:.4g} min; model {found['model']}. Gravity alone acts "
+        f"after the exit.{'' if limit is None else f' The pointing limit is {limit:g} deg.'}"
     )
+
+
+def remarks(found: dict) -> list[str]:
+    """Limitations of the result, one sentence each."""
+    flight, left = found["flight"], found["cases"]["limit_open"]
+    lines = {
+        f"No clearance is computed: {flight['no_clearance']}.": flight["no_clearance"],
+        "The rails come from a file: the clearance includes only those that `flight.envelope` "
+        "lists.": flight["rails_listed"],
+        f"{left:,} cases do not show whether they reach the pointing limit; they are not "
+        "counted.": left,
+    }
+    return [line for line, holds in lines.items() if holds]
 
 
 def _touching(many: dict) -> str:
@@ -300,8 +298,6 @@ def _touching(many: dict) -> str:
     if share is None:
         return ""
     ends = (
-        ""
-        if share["low"] is None
-        else f" ({100.0 * share['low']:.3g} to {100.0 * share['high']:.3g} %)"
+        "" if share["low"] is None else f" ({percent(share['low'])} to {percent(share['high'])} %)"
     )
-    return f"{share['count']:,} of {share['of']:,} touch the platform again{ends}."
+    return f" {share['count']:,} of {share['of']:,} touch the platform again{ends}."
