@@ -1,8 +1,7 @@
-"""The stage on shipped logs: result, words, figures and the section of the page; simulated logs are
-called so everywhere."""
+"""The stage on shipped logs: result, tables, figures and the section of the page; simulated logs are
+marked everywhere."""
 
 import json
-from dataclasses import asdict
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -22,7 +21,7 @@ from tipoff.studies.core.study import Study, StudyError
 from tipoff.studies.droptest import page, stage
 from tipoff.studies.droptest.sheet import SAMPLES
 from tipoff.studies.populations import answers
-from tipoff.studies.render import chart
+from tipoff.studies.render import chart, document
 
 pytest.importorskip("zarr")
 xarray = pytest.importorskip("xarray")
@@ -36,8 +35,8 @@ def fitted(monkeypatch):
 
 
 def call(*arguments):
-    return CliRunner().invoke(
-        app, ["droptest", "--model", "springs", *(str(argument) for argument in arguments)]
+    return CliRunner(env={"COLUMNS": "400"}).invoke(
+        app, ["droptest", "--model", "springs", *map(str, arguments)]
     )
 
 
@@ -45,13 +44,10 @@ def test_shipped_logs_from_command_to_page(tmp_path, fitted):
     result = call("--cases", 200, "--out", tmp_path)
     assert result.exit_code == 0, result.output
     for words in (
-        "3 drop tests against 200 settled of 200 cases of the surrogate",
+        "3 drop tests, 200 settled of 200 simulated cases",
         "model springs, calibrated; agreement: ",
-        "SIMULATED",
-        "(SIMULATED log), CFC 60",
-        "settling rule kept",
-        "it is no validation",
-        "100.0 % with one three times too wide",
+        "simulated0 (SIMULATED)",
+        "errors of paper, seed 1",
         "7 samples clipped",
     ):
         assert words in result.stdout
@@ -75,7 +71,7 @@ def test_shipped_logs_from_command_to_page(tmp_path, fitted):
     assert (
         found["data"] == "droptest.nc"
         and "droptest.nc" in found["files"]
-        and f"data          {data}" in result.stdout
+        and str(data) in result.stdout
     )
     # what a kill in the middle of writing would leave
     assert not list(data.parent.glob(".droptest.nc*"))
@@ -96,7 +92,9 @@ def test_shipped_logs_from_command_to_page(tmp_path, fitted):
         is None
     )
     drawn = html(page.draw(found))
-    assert drawn.count("<figure>droptest-") == 2 and drawn.count("SIMULATED") == 1
+    assert drawn.count("<figure>droptest-") == 2
+    # the warning, and every test
+    assert drawn.count("SIMULATED") == 4 and "do not contradict" in drawn
     assert all(f"{item.label} ({item.unit})" in drawn for item in answers.ALL)
     assert set(found["cases"]["quantiles"]) == {item.name for item in answers.ALL}
     assert "direction error of the velocity" in result.stdout
@@ -199,10 +197,9 @@ def test_tests_are_judged_by_the_errors_condition_and_seed_that_are_asked_for(
     # the condition turns the errors about X
     assert np.ptp(close[:, 1]) < 1e-3 < 0.05 < np.ptp(moved[:, 1])
     assert narrow["varied"]["seed"] == 4 and seeded["varied"]["seed"] == 5
-    assert (
-        f"errors of {errors}, seed 4" in narrow["summary"][0]
-        and "condition phi60" in other["summary"][0]
-    )
+    assert narrow["request"]["vary"] == str(errors) and other["request"]["condition"] == "phi60"
+    shown = document.terminal(page.terminal(other))
+    assert f"of condition phi60; errors of {errors}, seed 4" in shown
     study = Study(load("reference"), tmp_path / "reference", Settings())
     assert stage.STAGE.stored(study) == other
     errors.write_text(lines.format("0.1"))
@@ -314,14 +311,11 @@ def test_verdict_for_models_that_fit_that_are_too_narrow_and_too_wide(tmp_path, 
     )
     rates = np.random.default_rng(2).normal(0.0, width, (400, 3))
     found = stage.result(study, drops, population(rates))
-    found |= {
-        "model": "springs, calibrated",
-        "agreement": "unknown",
-        "request": asdict(stage.Options()),
-        "varied": {"seed": 1},
-    }
-    line = next(line for line in stage.summary("reference", found) if "together" in line)
-    assert f"the tests {p} the" in line
+    table = next(part for part in page._comparison(found) if part.heads[0] == "all tests together")
+    assert f"The tests {p} the" in table.notes[0]
+    assert [row[1] for row in table.rows] == [
+        found["together"][name] for name in ("p_distance", "p_spread", "p")
+    ]
     assert found["together"]["inside_range"] is (width > 1.0)
 
 
@@ -332,8 +326,8 @@ def test_what_does_not_match_the_scene_is_said(tmp_path):
     )
     notes = " ".join(found["tests"][0]["notes"])
     assert (
-        "of the scene reference, the simulated cases of tiny" in notes
-        and "the simulated cases after 12 to 12 ms" in notes
+        "scene reference, the simulated cases to tiny" in notes
+        and "simulated cases after 12 to 12 ms" in notes
     )
 
 

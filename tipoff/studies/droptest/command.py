@@ -1,4 +1,4 @@
-"""``tipoff droptest``: what logs of drop tests say, and where they sit among simulated cases."""
+"""``tipoff droptest``: logs of drop tests compared with simulated cases."""
 
 from pathlib import Path
 from typing import Annotated
@@ -30,7 +30,7 @@ def droptest(
         typer.Option(
             "--condition",
             metavar="NAME",
-            help="Named condition that was dropped; default: the scene.",
+            help="Named condition of the drop test; default: the scene.",
         ),
     ] = None,
     vary: Annotated[
@@ -42,30 +42,28 @@ def droptest(
     seed: Annotated[
         int | None,
         typer.Option(
-            "--seed", metavar="N", min=0, help="Seed of all draws; default: as the file says."
+            "--seed", metavar="N", min=0, help="Seed of all draws; default: that of the file."
         ),
     ] = None,
     model: Surrogate = None,
     workers: Workers = None,
     json_: Json = False,
 ) -> None:
-    """From logs of drop tests to rates with their uncertainty, and their place in the simulated
-    distribution.
+    """Change of rate in drop tests with its uncertainty, and its rank among simulated cases.
 
     Writes droptest.json, all signals to droptest.nc, and figures.
 
-    A log is a CSV file with time, three rates and, if there are, accelerations and temperature.
-    Beside it lies a sheet, a .toml file with units, axes, calibration and its uncertainties;
-    studies/droptest/logs/ holds three to copy from. Give the sheets:
+    A log is a CSV file with time, three rates and optional accelerations and temperature. Its sheet
+    is a .toml file in the same folder with units, axes, calibration and uncertainties;
+    studies/droptest/logs/ has three examples. Give the sheets:
 
       tipoff droptest test1.toml test2.toml test3.toml
 
-    The simulated cases have the errors that the paper lists, unless a file says which yours has:
+    The simulated cases have the errors that the paper lists; --vary gives others:
 
       tipoff droptest test1.toml --scene my_launcher.toml --vary my_errors.toml --condition heavy
 
-    The logs that come with the package are simulated by a sensor model, and say so wherever they
-    appear.
+    The logs of the package are simulated by a sensor model and are marked so in all results.
     """
 
     def work() -> dict:
@@ -80,9 +78,9 @@ def droptest(
 
     found = guarded(work, json_)
     if not json_:
+        from tipoff.studies.droptest import page
+        from tipoff.studies.render import document
+
         folder = Path(out) / found["scene"]
-        files = [
-            f"  {'data' if path == found['data'] else 'figure':13} {folder / path}"
-            for path in found["files"]
-        ]
-        print("\n".join([*found["summary"], *files]))
+        files = f"Data {folder / found['data']}, figures in {folder / 'figures'}."
+        print(document.terminal([*page.terminal(found), files]))

@@ -1,13 +1,13 @@
-"""Drop tests on the page: filtered rates with what was found in them, the budget, and the tests in
-the simulated cloud."""
+"""Drop tests on the page and in the terminal: filtered rates, their change with uncertainty, and the
+tests among the simulated cases."""
 
 from collections.abc import Callable
 
 import numpy as np
 
-from tipoff.studies.droptest import judgement
+from tipoff.studies.droptest import judgement, power
 from tipoff.studies.droptest.results import MAGNITUDES, PAIRS
-from tipoff.studies.populations import answers, spread
+from tipoff.studies.populations import answers, population, spread
 from tipoff.studies.render.chart import (
     AMBER,
     AXIS_COLOURS,
@@ -20,55 +20,69 @@ from tipoff.studies.render.chart import (
     Panel,
 )
 from tipoff.studies.render.document import Figure, Fold, Notice, Part
-from tipoff.studies.render.table import Column, Table, estimate, percent
+from tipoff.studies.render.table import Column, Noted, Table, estimate, percent
 
 _DASHES = {"x": "-", "y": "--", "z": "-."}
 _LOOKS = ((VERMILION, "s"), (TEAL, "^"), (AMBER, "D"), (NAVY, "v"))
 _RATES = (
-    "Rates in payload body axes, filtered forward and backward with the channel frequency class of "
-    "each log. Shaded: the "
-    "window at rest before release, the reference window in free fall and the settled window after "
-    "exit; dotted uprights: "
-    "release and ignition. Right: the same around ignition."
+    "Rates in payload body axes after the filter of the channel frequency class. Shaded: window at "
+    "rest, reference window in free fall, settled window after the exit; dotted: release and "
+    "ignition. Right: the same around ignition."
 )
 _CLOUD = (
-    "Change of rate by ejection. Dots: simulated cases{shown}, which start at rest, with errors of "
-    "{vary}. Closed curve: the "
-    "region that holds the next case with {share:g} % probability, an ellipse whose size comes "
-    "from ranks and whose shape "
-    "need not be that of the cloud. Symbols: the tests, with bars of 95 % where these are wider "
-    "than the symbol. Last: "
-    "magnitudes, which need no angle about X."
+    "Change of rate by the ejection. Dots: simulated cases{shown} with errors of {vary}; curve: "
+    "region that contains the next case with {share:g} % probability; symbols: tests with 95 % "
+    "bars. Last panel: magnitudes, which do not depend on the angle about X."
 )
 _SIMULATED = (
-    "SIMULATED logs, made by a sensor model: they show that the reduction works, and say nothing "
-    "of a launcher."
+    "SIMULATED logs from a sensor model: they demonstrate the reduction and are no evidence about "
+    "a launcher."
 )
 
 
 def draw(found: dict) -> list[Part]:
     """Everything in the section."""
     rates, cloud = charts(found)
-    verdict = [line.split(None, 1)[1] for line in found["summary"][-3:]]
     shown, settled = len(found["cases"]["shown_deg_s"]), found["cases"]["settled"]
     words = _CLOUD.format(
         share=100.0 * found["regions"][0]["share"],
-        shown="" if shown == settled else f", the first {shown:,} of {settled:,}",
+        shown="" if shown == settled else f", the first {shown:,} of {settled:,},",
         vary=found["request"]["vary"],
     )
-    simulated = any(row["simulated"] for row in found["tests"])
     return [
-        *([Notice(_SIMULATED)] if simulated else []),
+        *_warning(found),
         Figure(rates, _RATES),
         _changes(found["tests"]),
         Figure(cloud, words),
-        *(f"{line[0].upper()}{line[1:]}." for line in verdict),
-        _standing(found),
-        _cases(found["cases"]),
-        _power(found["power"]),
+        *_comparison(found),
         _budgets(found["tests"]),
         *_notes(found["tests"]),
     ]
+
+
+def terminal(found: dict) -> list[Part]:
+    """The tables of the tests and of their comparison with the simulated cases."""
+    request, cases = found["request"], found["cases"]
+    condition = f" of condition {request['condition']}" if request["condition"] else ""
+    return [
+        f"{found['scene']}: {len(found['tests'])} drop tests, {cases['settled']:,} settled of "
+        f"{cases['asked']:,} simulated cases{condition}; errors of {request['vary']}, seed "
+        f"{found['varied']['seed']}",
+        population.model_line(found),
+        *_warning(found),
+        _changes(found["tests"]),
+        *_comparison(found),
+        *_notes(found["tests"]),
+    ]
+
+
+def _warning(found: dict) -> list[Part]:
+    return [Notice(_SIMULATED)] if any(row["simulated"] for row in found["tests"]) else []
+
+
+def _comparison(found: dict) -> list[Part]:
+    """Tables that compare the tests with the simulated cases."""
+    return [_standing(found), _together(found), _cases(found["cases"]), _power(found["power"])]
 
 
 def charts(found: dict) -> tuple[Chart, Chart]:
@@ -195,17 +209,18 @@ def _changes(tests: list[dict]) -> Table:
         "test",
         Column("release", "s", ".4f"),
         Column("ignition", "s", ".4f"),
-        Column("rest, largest", "deg/s", ".2g"),
-        "settling rule",
+        Column("CFC", "Hz", "g"),
+        "largest rate at rest (deg/s)",
         *(Column(f"change {axis}", "deg/s") for axis in "xyz"),
     )
     rows = [
         (
-            row["test"],
+            Noted(row["test"], "SIMULATED") if row["simulated"] else row["test"],
             row["release_s"],
             row["ignition_s"],
-            row["rest_deg_s"],
-            f"{'kept' if row['rest_kept'] else 'broken'} ({row['rest_limit_deg_s']:g} deg/s)",
+            row["channel_class"],
+            f"{row['rest_deg_s']:.2g}, {'limit' if row['rest_kept'] else 'ABOVE'} "
+            f"{row['rest_limit_deg_s']:g}",
             *(
                 f"{value:+.3f} ± {uncertainty:.3f}"
                 for value, uncertainty in zip(
@@ -215,18 +230,16 @@ def _changes(tests: list[dict]) -> Table:
         )
         for row in tests
     ]
-    note = "Settled rate less the rate before ignition, with expanded uncertainties (95 %)."
+    note = "Change: settled rate minus the rate before ignition, with expanded uncertainty (95 %)."
     return Table(heads, rows, (note,))
 
 
 def _standing(found: dict) -> Table:
     heads: tuple[Column | str, ...] = (
         "test",
-        "x, percentile (p)",
-        "y",
-        "z",
-        Column("distance of all three, p", form=".3f"),
-        *MAGNITUDES,
+        *(f"{name}, percentile (p)" for name in "xyz"),
+        Column("distance of x, y, z (p)", form=".3f"),
+        *(f"{name}, percentile (p)" for name in MAGNITUDES),
     )
     rows = [
         (
@@ -238,11 +251,28 @@ def _standing(found: dict) -> Table:
         for row in found["tests"]
     ]
     note = (
-        "Percentiles among simulated cases that carry the same errors of measurement, and p by "
-        f"rank, (r + 1)/(N + 1): no smaller than {found['together']['smallest_p']:.2g}. Two-sided "
-        "but for the Mahalanobis distance."
+        "Percentile of each test among the simulated cases with the same measurement errors. p is "
+        f"from ranks, (r + 1)/(N + 1), at least {found['together']['smallest_p']:.2g}; two-sided "
+        "except for the Mahalanobis distance of x, y and z. Roll, transverse and total are "
+        "magnitudes."
     )
     return Table(heads, rows, (note,))
+
+
+def _together(found: dict) -> Table:
+    together = found["together"]
+    verdict = "do not contradict" if together["p"] > power.LEVEL else "contradict"
+    rows = [
+        ("distance from the mean (Fisher)", together["p_distance"]),
+        ("spread, two-sided", together["p_spread"]),
+        ("both, twice the smaller p", together["p"]),
+    ]
+    note = (
+        f"The tests {verdict} the simulated distribution at the {percent(power.LEVEL)} % level. "
+        f"{'All tests are' if together['inside_range'] else 'Not all tests are'} inside the range "
+        "of the cases, which alone is no validation."
+    )
+    return Table(["all tests together", Column("p", form=".3f")], rows, (note,))
 
 
 def _place(share: float, p: float) -> str:
@@ -256,32 +286,32 @@ def _cases(cases: dict) -> Table:
         for item in answers.ALL
     ]
     note = (
-        f"What {cases['settled']:,} simulated cases leave their rail with, beside the rates that a "
-        "log tells: share of cases below the value; small: its bounds at "
-        f"{spread.CONFIDENCE:.0%} confidence where the cases are independent and enough."
+        f"Exit state of {cases['settled']:,} simulated cases: values below which that share of the "
+        f"cases lies, in brackets the bounds at {spread.CONFIDENCE:.0%} confidence where the cases "
+        "are independent and enough."
     )
     heads = ["simulated cases", *(f"{percent(share, '.4g')} %" for share in shares)]
     return Table(heads, rows, (note,), dense=True)
 
 
-def _power(power: list[dict]) -> Table:
+def _power(table: list[dict]) -> Table:
     columns = {
-        "passes_one_axis": "tests inside the range, one axis",
-        "passes_three_axes": "three axes",
-        "passes_in_cloud": "in this cloud",
-        "flagged_by_spread": "flagged by the spread",
-        "flagged_in_cloud": "in this cloud",
+        "passes_one_axis": "inside the range, one axis",
+        "passes_three_axes": "inside the range, three axes",
+        "passes_in_cloud": "inside the range, this cloud",
+        "flagged_by_spread": "rejected by the spread",
+        "flagged_in_cloud": "rejected by the spread, this cloud",
     }
     heads: tuple[Column | str, ...] = (
-        "model's spread over the truth's",
+        Column("spread of the model over the truth", form=".3g"),
         *(Column(title, "%", ".2f", 100.0) for title in columns.values()),
     )
-    rows = [(row["factor"], *(row[name] for name in columns)) for row in power]
+    rows = [(row["factor"], *(row[name] for name in columns)) for row in table]
     note = (
-        "How often so many tests pass if asked to lie inside the range of so many cases, and how "
-        "often a two-sided 5 % test of their spread objects. The row of 1 is exact for any "
-        "distribution, the others are for a normal one (Monte Carlo over the range); in this "
-        "cloud: for a truth that is the simulated cloud, shrunk or blown up about its mean."
+        "Probability that this many tests lie inside the range of this many cases, and that a "
+        "two-sided 5 % test of their spread rejects the model. Row 1 is a correct model and exact; "
+        "the other rows are for a normal distribution (Monte Carlo). This cloud: the truth is the "
+        "simulated cloud, scaled about its mean."
     )
     return Table(heads, rows, (note,))
 
@@ -301,9 +331,9 @@ def _budgets(tests: list[dict]) -> Fold:
     ]
     parts = [Column(name, form=".2g") for name in (*names, "combined")]
     table = Table(["test", "axis", *parts, Column("k", form=".2f")], rows, dense=True)
-    return Fold("budget of uncertainty, standard uncertainties in deg/s", [table])
+    return Fold("Uncertainty budget: standard uncertainties in deg/s", [table])
 
 
 def _notes(tests: list[dict]) -> list[Part]:
     rows = [(row["test"], words) for row in tests for words in row["notes"]]
-    return [Table(["test", "what was repaired, left out or doubtful"], rows)] if rows else []
+    return [Table(["test", "repairs, omissions and doubts"], rows)] if rows else []

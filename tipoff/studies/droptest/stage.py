@@ -1,9 +1,8 @@
-"""Stage ``droptest``: logs of drop tests against the distribution that the surrogate has for the
-same launcher.
+"""Stage ``droptest``: logs of drop tests compared with simulated cases of the same launcher.
 
-The simulated cases vary what the distributions that are asked for vary, the catalogue's ``paper``
-unless another is given, and start at rest in free fall. The place of a test among them is a rank
-(``studies.droptest.judgement``), what that is worth by its power (``studies.droptest.power``).
+The simulated cases vary the inputs of the given distributions (default: ``paper`` of the catalogue)
+and start at rest in free fall. ``studies.droptest.judgement`` ranks each test among them;
+``studies.droptest.power`` gives the power of that comparison.
 """
 
 import hashlib
@@ -22,21 +21,22 @@ from tipoff.studies.core.stage import Stage
 from tipoff.studies.core.study import Study, StudyError
 from tipoff.studies.droptest import sheet, signals
 from tipoff.studies.droptest.analysis import Drop, analyse
-from tipoff.studies.droptest.results import joint, quantiles, row_of, summary
+from tipoff.studies.droptest.results import joint, quantiles, row_of
 from tipoff.studies.populations import population
 from tipoff.studies.populations.population import Population
 
 NAME = "droptest"
 CASES = 1000
-_FEWEST = 20  # settled cases; a covariance of fewer says little
+_FEWEST = 20  # settled cases for a useful covariance
 _SHOWN = 2000  # cases in the figure
 
 
 @dataclass(frozen=True)
 class Options:
-    """What ``tipoff droptest`` is given beside the scene: sheets of ``logs``, None for those of the
-    package; distributions, how many cases and their seed, None as the file says; the condition that
-    was dropped, None for the scene itself; the name of a ``model``, None for the default."""
+    """Options of ``tipoff droptest``: sheets of ``logs``, None for those of the package; ``vary``,
+    the distributions; number of ``cases`` and their ``seed``, None: that of the file; the
+    ``condition`` that was dropped, None: the scene itself; ``model`` by name, None: the
+    default."""
 
     logs: tuple[Path, ...] | None = None
     vary: str = uncertainty.DEFAULT
@@ -47,11 +47,10 @@ class Options:
 
 
 def run(study: Study, options: Options = Options()) -> dict:
-    """``tests`` with their rates, budgets and standing, ``together``, ``power``, and ``summary`` in
-    words.
+    """``tests`` with their rates, uncertainty budgets and ranks, ``together``, ``power``.
 
-    Raises SceneError listing every fault of every log and of what varies, StudyError where too few
-    cases settle.
+    Raises SceneError listing every fault of every log and of the distributions, StudyError where
+    too few cases settle.
     """
     drops, drawn = together(
         lambda: _analysed(options.logs or sheet.SAMPLES), lambda: _drawn(study, options)
@@ -71,7 +70,6 @@ def run(study: Study, options: Options = Options()) -> dict:
             **population.answering(study, model, options.condition),
             "varied": drawn.uncertainty.resolved(),
         }
-        found["summary"] = summary(study.scene.name, found)
         data = study.path(f"{NAME}.nc")
         signals.write(data, drops)
         pictures = [
@@ -83,8 +81,8 @@ def run(study: Study, options: Options = Options()) -> dict:
 
 
 def _inputs(study: Study, options: Options) -> list:
-    """What the logs and the distributions hold. Raises SceneError for a file that is gone or
-    broken."""
+    """Content of the logs and of the distributions. Raises SceneError for a missing or invalid
+    file."""
     digests = [_digest(path) for path in options.logs or sheet.SAMPLES]
     return [digests, _drawn(study, options).uncertainty.resolved()]
 
@@ -104,7 +102,7 @@ def _scene(study: Study, options: Options) -> Scene:
 
 
 def _digest(path: Path) -> list[str]:
-    """Of a sheet and of the table it names."""
+    """Digests of a sheet and of its CSV file."""
     files = (path, path.parent / sheet.load(path).file)
     try:
         return [hashlib.sha256(file.read_bytes()).hexdigest() for file in files]
@@ -113,7 +111,7 @@ def _digest(path: Path) -> list[str]:
 
 
 def _analysed(paths: Sequence[Path]) -> list[Drop]:
-    """Every log under a name of its own. Raises SceneError listing every fault of every log."""
+    """Every log under a unique name. Raises SceneError listing every fault of every log."""
     drops, different = [], {path.resolve(): path for path in reversed(paths)}
     places = [path.resolve() for path in paths]
     faults = [
@@ -132,8 +130,7 @@ def _analysed(paths: Sequence[Path]) -> list[Drop]:
 
 
 def _names(places: list[Path]) -> list[str]:
-    """The names of the sheets without their ending, with as many folders before them as it takes to
-    tell one from another."""
+    """Names of the sheets without suffix, with as many parent folders as make them unique."""
     names = [place.stem for place in places]
     for depth in range(2, max(len(place.parts) for place in places)):
         names = [
@@ -144,13 +141,13 @@ def _names(places: list[Path]) -> list[str]:
 
 
 def result(study: Study, drops: list[Drop], cases: Population, independent: bool = True) -> dict:
-    """The drops among the cases, which are ``independent`` draws or points that depend on each
-    other, as plain values. Raises StudyError where too few cases settle."""
+    """The drops compared with the cases, as plain values; ``independent``: the cases are
+    independent draws. Raises StudyError where too few cases settle."""
     settled = cases.settled
     if settled.sum() < _FEWEST:
         raise StudyError(
-            f"only {settled.sum()} of {settled.size} simulated cases left the rail and settled: "
-            f"too few"
+            f"only {settled.sum()} of {settled.size} simulated cases left the rail and settled; "
+            f"at least {_FEWEST} are needed"
         )
     rates = np.degrees(cases.results.rate[settled])
     tests = [row_of(number, drop, rates) for number, drop in enumerate(drops)]
@@ -171,20 +168,20 @@ def result(study: Study, drops: list[Drop], cases: Population, independent: bool
 
 
 def _doubts(study: Study, drop: Drop, exits: np.ndarray) -> list[str]:
-    """What makes a test and the cases not quite the same thing, in words."""
-    notes, ask = [], drop.sheet.windows
+    """Differences between the conditions of a test and of the cases, as sentences."""
+    notes, windows = [], drop.sheet.windows
     if drop.sheet.scene not in (None, study.scene.name):
         notes.append(
-            f"the log is of the scene {drop.sheet.scene}, the simulated cases of {study.scene.name}"
+            f"the log belongs to scene {drop.sheet.scene}, the simulated cases to "
+            f"{study.scene.name}"
         )
     if (
-        not exits.min() - 3.0 * ask.exit_uncertainty
-        <= ask.exit
-        <= exits.max() + 3.0 * ask.exit_uncertainty
+        not exits.min() - 3.0 * windows.exit_uncertainty
+        <= windows.exit
+        <= exits.max() + 3.0 * windows.exit_uncertainty
     ):
         notes.append(
-            f"left its rail {1e3 * ask.exit:.4g} ms after ignition, the simulated cases after "
-            f"{1e3 * exits.min():.4g} to "
-            f"{1e3 * exits.max():.4g} ms"
+            f"exit {1e3 * windows.exit:.4g} ms after ignition, in the simulated cases after "
+            f"{1e3 * exits.min():.4g} to {1e3 * exits.max():.4g} ms"
         )
     return notes
