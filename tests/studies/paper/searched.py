@@ -8,6 +8,7 @@ from tipoff.studies import published
 from tipoff.studies.paper import inputs, solutions
 from tipoff.studies.paper import page as section
 from tipoff.studies.paper import stage as paper
+from tipoff.studies.render import document
 
 BASE = scenes.load("reference")
 COUNT = len(inputs.UNKNOWNS)
@@ -40,3 +41,8 @@ def stub(admissible: tuple[int, ...] = (2, 0)):
 def page(found: dict) -> str:
     """The section of a result, with captions in place of its figures."""
     return html(section.draw(found))
+
+
+def shown(found: dict) -> str:
+    """What the command prints of a result."""
+    return document.terminal(section.terminal(found))

@@ -2,13 +2,12 @@
 rates, and paper.nc."""
 
 import dataclasses
-import re
 
 import numpy as np
 import pytest
 import xarray
 
-from tests.studies.paper.searched import BASE, COUNT, SMALL, page, stub
+from tests.studies.paper.searched import BASE, COUNT, SMALL, page, shown, stub
 from tipoff import lowfi
 from tipoff.lowfi.ensemble import columns
 from tipoff.lowfi.ensemble.batch import Case
@@ -18,6 +17,7 @@ from tipoff.studies import published
 from tipoff.studies.core.settings import Settings
 from tipoff.studies.core.study import Study
 from tipoff.studies.paper import exits, inputs, misfit, results, solutions, summary
+from tipoff.studies.paper import page as section
 from tipoff.studies.paper import stage as paper
 from tipoff.studies.populations import answers
 
@@ -67,21 +67,18 @@ def test_exits_are_those_of_single_runs():
         assert np.min(np.diff(np.sort(values))) > 1e-5 * np.abs(values).max()
 
 
-def test_every_quantity_of_every_condition_is_told(quick):
+def test_every_quantity_of_every_condition_is_shown(quick):
     found = quick[1]
-    rows, text = found["exit"]["conditions"], "\n".join(paper.lines(found))
-    assert [row["condition"] for row in rows] == list(published.angles())
-    assert "paper prints rates only" in text and "The paper prints rates only" in page(found)
-    for item in answers.ALL:
-        assert f"<th>{item.label} ({item.unit})</th>" in page(found)
-        line = next(line for line in text.splitlines() if line.strip().startswith(item.label))
-        shown = [
-            float(value) for value in re.findall(r"-?\d[\d.e-]*", line.replace(item.label, ""))
-        ]
-        assert shown == pytest.approx([row[item.name] for row in rows], rel=1e-3)
+    conditions = found["exit"]["conditions"]
+    assert [row["condition"] for row in conditions] == list(published.angles())
+    table = section._at_exit(found["exit"])
+    assert "paper prints rates" in table.notes[0]
+    for item, (label, *values) in zip(answers.ALL, table.rows, strict=True):
+        assert label == f"{item.label} ({item.unit})" and label in page(found)
+        assert values == [row[item.name] for row in conditions]
 
 
-def test_a_condition_that_does_not_settle_has_no_values_and_says_why(quick):
+def test_a_condition_that_does_not_settle_has_no_values_and_shows_its_status(quick):
     """Control: the other four keep theirs."""
     found, ended = (
         quick[1],
@@ -92,12 +89,12 @@ def test_a_condition_that_does_not_settle_has_no_values_and_says_why(quick):
     cases = [Case("exited", "", ended, 10, 0.0)] * 5
     cases[2] = Case("time_limit", "", Outcome(), 10, 0.0)
     odd = found | {"exit": exits.summary(columns.of(cases))}
-    rows = odd["exit"]["conditions"]
-    assert [row["lateral_velocity_mm_s"] for row in rows] == [5.0, 5.0, None, 5.0, 5.0]
-    said = "\n".join(paper.lines(odd))
-    assert "3 (35 deg, time limit)" in said and said.count("time limit") == 1
-    assert re.search(r"lateral velocity +5 +5 +– +5 +5 mm/s", said)
-    assert page(odd).count("time limit") == 1 and page(found).count("time limit") == 0
+    table = section._at_exit(odd["exit"])
+    assert table.rows[4][1:] == (5.0, 5.0, None, 5.0, 5.0)
+    assert table.heads[3] == "3 at 35 deg, time limit"
+    for text in (page(odd), shown(odd)):
+        assert text.count("time limit") == 1
+    assert "time limit" not in page(found)
 
 
 def test_data_hold_what_the_searches_ended_with(quick):

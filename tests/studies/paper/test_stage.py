@@ -8,7 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 
-from tests.studies.paper.searched import BASE, COUNT, SMALL, page, stub
+from tests.studies.paper.searched import BASE, COUNT, SMALL, page, shown, stub
 from tipoff import lowfi, scenes
 from tipoff.files import write_json
 from tipoff.lowfi.numerics import Numerics
@@ -35,7 +35,7 @@ def test_stage_keeps_searches_and_is_skipped(tmp_path, monkeypatch):
         tmp_path / "paper_like.toml"
     ).name == "paper_like"
     assert "Table 2, printed and found" in page(found)
-    assert any("36 h" in line for line in paper.lines(found))
+    assert "36 h" in shown(found)
     monkeypatch.setattr(solutions, "run", lambda *_: pytest.fail("searched again"))
     assert paper.run(study, SMALL) == found
     (tmp_path / "paper.json").unlink()
@@ -121,13 +121,13 @@ def test_three_measures_are_drawn_by_pairs(quick):
         drawn = {line.name: list(zip(line.x, line.y)) for line in panel.lines}
         for item, name in zip(
             found["searches"],
-            ("ended, three conditions asked", "ended, all five asked"),
+            ("search over three conditions", "search over five conditions"),
             strict=True,
         ):
             assert drawn[name] == [(item[across], item[upwards])]
         best = found["searches"][found["best"]]
-        assert drawn["best of all"] == [(best[across], best[upwards])]
-        assert ("front of all met" in drawn) == ("54" not in panel.x_label + panel.y_label)
+        assert drawn["best set"] == [(best[across], best[upwards])]
+        assert ("Pareto front" in drawn) == ("54" not in panel.x_label + panel.y_label)
     assert len(pairs) == 3
 
 
@@ -150,19 +150,19 @@ def test_printed_deviations_stand_beside_ours(quick):
 
 def test_ranges_say_how_few_searches_they_come_from(quick, tmp_path, monkeypatch):
     _study, found = quick
-    said = "2, kept from 1 of 2 searches, 2 of them from one"
+    counts = "2 from 1 of 2 searches, at most 2 from one search"
     assert found["admissible"] == {"points": 2, "searches": 1, "most_of_one": 2}
-    for text in (page(found), "\n".join(paper.lines(found))):
-        assert said in text and "at least" in text
+    for text in (page(found), shown(found)):
+        assert counts in text and "at least as wide" in text
     far = found | {
         "admissible_deg_s": 0.5 * found["searches"][found["best"]]["largest_deviation_error_deg_s"]
     }
-    assert "best set is none of them" in page(far) and "best set is none of them" not in page(found)
+    assert "not among them" in page(far) and "not among them" not in page(found)
     monkeypatch.setattr(solutions, "run", stub(admissible=(0, 0)))
     none = paper.run(Study(BASE, tmp_path / "none", Settings(workers=1)), SMALL)
-    for text in (page(none), "\n".join(paper.lines(none))):
-        assert "nothing is known of any input" in text
-    assert "admissible at least" not in "\n".join(paper.lines(none))
+    for text in (page(none), shown(none)):
+        assert "None of 2 searches found an admissible set" in text and "no range is known" in text
+    assert {row[5] for row in section._inputs(none).rows} == {None}
 
 
 def test_headline_has_our_cost_of_the_present_code_only(quick, monkeypatch):
@@ -172,11 +172,11 @@ def test_headline_has_our_cost_of_the_present_code_only(quick, monkeypatch):
     speed = {"highfi_wall_s": 60.0, "lowfi_wall_s": 2e-3, "ratio": 30000.0}
     write_json(study.path("agreement.json"), {"key": "of other code", "speedup": speed})
     stale = paper.stored(study)
-    for text in (page(stale), "\n".join(paper.lines(stale))):
+    for text in (page(stale), shown(stale)):
         assert "make compare SCENE=reference" in text and "30,000" not in text
     monkeypatch.setattr(compare, "stored", lambda _: {"speedup": speed})
     fresh = paper.stored(study)
-    for text in (page(fresh), "\n".join(paper.lines(fresh))):
+    for text in (page(fresh), shown(fresh)):
         assert "make compare" not in text and "30,000" in text
     monkeypatch.setattr(solutions, "run", lambda *_: pytest.fail("searched again"))
     assert paper.run(study, SMALL) == fresh
@@ -260,9 +260,9 @@ def test_a_set_that_no_scene_file_could_hold_is_told_before_any_search(tmp_path,
 def test_page_says_whether_the_best_set_is_the_catalogue_s(quick, monkeypatch):
     """Control: a catalogue of which this run's scene is part."""
     study, found = quick
-    for text in (page(found), "\n".join(paper.lines(found))):
-        assert "It is not the catalogue" in text and "paper_like" in text
+    for text in (page(found), shown(found)):
+        assert "is not the scene paper_like" in text
     monkeypatch.setattr(paper, "CATALOGUED", study.path("paper_like.toml"))
     same = paper.stored(study)
-    for text in (page(same), "\n".join(paper.lines(same))):
-        assert "It is the catalogue" in text
+    for text in (page(same), shown(same)):
+        assert "is the scene paper_like" in text

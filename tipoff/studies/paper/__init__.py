@@ -1,5 +1,4 @@
-"""What searches for the paper's unpublished inputs show: ranges of every input, what the best set
-leaves its rail with, data."""
+"""The paper's unpublished inputs, inferred from its printed rates by searches."""
 
 from tipoff.studies.paper import command
 from tipoff.studies.question import Parts, Question
@@ -11,4 +10,4 @@ def _load() -> Parts:
     return Parts(stage.run, stage.stored, page.draw)
 
 
-QUESTION = Question("paper", "The paper's own numbers", "Paper", command.add, _load)
+QUESTION = Question("paper", "Comparison with the paper", "Paper", command.add, _load)

@@ -1,4 +1,4 @@
-"""What the catalogue's set of inputs gives, beside the ends of searches: those depend on the last
+"""Errors of the catalogue's scene, for comparison with the searches: their ends depend on the last
 bits of a run, a scene does not."""
 
 import numpy as np
@@ -8,7 +8,7 @@ from tipoff.studies.paper import inputs, misfit, solutions
 
 
 class _Given(misfit.Launcher):
-    """The launcher on one scene, whatever the point of the unit cube."""
+    """The launcher with one scene at all points of the unit cube."""
 
     def scene(self, shares: np.ndarray) -> Scene:
         return self.base

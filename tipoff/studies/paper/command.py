@@ -24,20 +24,20 @@ def paper(
             "--starts",
             metavar="N",
             min=1,
-            help="Independent searches for three conditions, "
-            "and as many for all five; each takes some minutes.",
+            help="Number of searches over three conditions, and as many over all five; each takes "
+            "some minutes.",
         ),
     ] = 3,
     workers: Workers = None,
     json_: Json = False,
 ) -> None:
-    """What the inputs the paper does not print must have been, and its tables beside ours.
+    """Infer inputs that the paper does not print from its rates, and compare its tables with ours.
 
-    Writes paper.json, paper.nc with every end and admissible point, and the best set as
-    paper_like.toml.
+    Writes paper.json, paper.nc with the end of every search and all admissible points, and the best
+    set as paper_like.toml.
 
-    The scene gives what is not searched: the pads' size and the platform. Stopped, the same command
-    goes on with the next search.
+    The size of the pads and the platform are those of the scene. After an interruption the same
+    command continues with the next search.
     """
 
     def work() -> dict:
@@ -47,6 +47,7 @@ def paper(
 
     found = guarded(work, json_)
     if not json_:
-        from tipoff.studies.paper import stage
+        from tipoff.studies.paper import page
+        from tipoff.studies.render import document
 
-        print("\n".join(stage.lines(found)))
+        print(document.terminal(page.terminal(found)))

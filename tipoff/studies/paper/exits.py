@@ -1,5 +1,5 @@
-"""What the best set leaves its rail with on the paper's five conditions: the rates, and what the
-paper prints no number of."""
+"""Exit state with the best set on the paper's five conditions: the rates, and quantities that the
+paper does not print."""
 
 import math
 
@@ -20,8 +20,7 @@ _RADIAL = "thrust_offset.misalignment.radial"
 
 
 def run(launcher: misfit.Launcher, shares: np.ndarray) -> Columns:
-    """The five conditions at ``shares`` (p,). Raises SceneError where no such body or rail can
-    be."""
+    """The five conditions at ``shares`` (p,). Raises SceneError for an impossible body or rail."""
     rows = [{_RADIAL: math.radians(radial)} for _, radial in published.angles().values()]
     jobs = Family(launcher.scene(shares), None, launcher.numerics).jobs(rows)
     cases = dict(pair for job in jobs for pair in job())
@@ -29,8 +28,8 @@ def run(launcher: misfit.Launcher, shares: np.ndarray) -> Columns:
 
 
 def summary(left: Columns) -> dict:
-    """``conditions`` with what each ``left`` its rail with, None where it did not settle, and where
-    the constants of contact come from."""
+    """``conditions`` with the exit state ``left`` of each, None where it did not settle, and
+    ``calibration``, the origin of the contact constants."""
     rows = []
     for place, (condition, (_, radial)) in enumerate(published.angles().items()):
         values = {item.name: float(item.of(left)[place]) for item in answers.ALL}
@@ -43,23 +42,3 @@ def summary(left: Columns) -> dict:
             }
         )
     return {"conditions": rows, "calibration": CALIBRATION}
-
-
-def lines(found: dict) -> list[str]:
-    """A quantity a line, its values by condition."""
-    rows = found["conditions"]
-    ended = ", ".join(
-        f"{row['condition']} ({row['radial_misalignment_deg']:g} deg{_odd(row)})" for row in rows
-    )
-    text = [f"  at exit       best set on conditions {ended}; the paper prints rates only"]
-    for item in answers.ALL:
-        values = "".join(
-            f"{'–' if row[item.name] is None else format(row[item.name], '.4g'):>11}"
-            for row in rows
-        )
-        text.append(f"    {item.label:30}{values} {item.unit}")
-    return [*text, f"    {found['calibration']}"]
-
-
-def _odd(row: dict) -> str:
-    return "" if row["status"] == "exited" else f", {row['status'].replace('_', ' ')}"

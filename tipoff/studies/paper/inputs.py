@@ -1,8 +1,8 @@
 """The inputs that the paper does not print, as points of the unit cube: bounds with their reasons,
 and the overrides of a scene.
 
-Inertia comes from a mass that is spread over the body, so that every point of the cube is a body
-that can exist: with P_i = m g_i^2 the second moments about the mass centre (g the radii along the
+The inertia is that of a mass distribution, so that every point of the cube is a possible body:
+with P_i = m g_i^2 the second moments about the mass centre (g the radii along the
 axes) and P_ij = r_ij sqrt(P_i P_j),
 
     I_xx = P_y + P_z,  I_yy = P_x + P_z,  I_zz = P_x + P_y,  I_ij = -P_ij
@@ -20,8 +20,8 @@ from tipoff.scenes.scene import Scene
 
 
 class Unknown(NamedTuple):
-    """An input: its bounds (SI), searched on a logarithmic or linear scale, the unit and factor it
-    is printed with, and why these bounds."""
+    """An input: its bounds (SI), searched on a logarithmic or linear scale, the unit and factor for
+    printing, and the reason for the bounds."""
 
     name: str
     low: float
@@ -44,7 +44,7 @@ class Unknown(NamedTuple):
         return (value - self.low) / (self.high - self.low)
 
 
-_BODY = "a body of the group's drawings' scale: cuboid edges of 0.1 to 0.6 m"
+_BODY = "cuboid edges of 0.1 to 0.6 m, the scale of the group's drawings"
 UNKNOWNS = (
     Unknown("mass", 8.0, 12.0, False, "kg", 1.0, "9.9 kg in the group's companion paper"),
     Unknown("radius_x", 0.06, 0.15, True, "mm", 1e3, _BODY),
@@ -57,15 +57,23 @@ UNKNOWNS = (
         "rear", 0.03, 0.15, False, "mm", 1e3, "rear pads behind the mass centre, within the body"
     ),
     Unknown(
-        "front", 0.03, 0.15, False, "mm", 1e3, "front pads before the mass centre, within the body"
+        "front",
+        0.03,
+        0.15,
+        False,
+        "mm",
+        1e3,
+        "front pads ahead of the mass centre, within the body",
     ),
     Unknown("half_width", 0.06, 0.14, False, "mm", 1e3, "pads at the corners of the body"),
     Unknown("half_height", 0.06, 0.14, False, "mm", 1e3, "pads at the corners of the body"),
-    Unknown("guided", 0.02, 0.40, True, "mm", 1e3, "rail ahead of the front pads at ignition"),
-    Unknown("clearance", 0.03e-3, 0.5e-3, True, "mm", 1e3, "a sliding fit to a loose one"),
+    Unknown(
+        "guided", 0.02, 0.40, True, "mm", 1e3, "length of rail ahead of the front pads at ignition"
+    ),
+    Unknown("clearance", 0.03e-3, 0.5e-3, True, "mm", 1e3, "sliding fit to loose fit"),
     Unknown("arm", 0.05, 0.20, False, "mm", 1e3, "thruster at the rear of the body"),
-    Unknown("impulse", 30.0, 120.0, True, "N s", 1.0, "exit at 3 to 12 m/s"),
-    Unknown("width", 1e-3, 10e-3, True, "ms", 1e3, "a solid thruster that burns for 5 to 50 ms"),
+    Unknown("impulse", 30.0, 120.0, True, "N s", 1.0, "exit speed of 3 to 12 m/s"),
+    Unknown("width", 1e-3, 10e-3, True, "ms", 1e3, "solid thruster with 5 to 50 ms burn time"),
     Unknown(
         "friction",
         0.02,
@@ -82,7 +90,7 @@ UNKNOWNS = (
         False,
         "1",
         1.0,
-        "flat contact to beyond Hertz; the paper prints k without it",
+        "from flat contact to above Hertz contact; not printed in the paper",
     ),
     Unknown(
         "offset_y",
@@ -91,7 +99,7 @@ UNKNOWNS = (
         False,
         "of the clearance",
         1.0,
-        "where between the rails the body stands at ignition",
+        "position of the body between the rails at ignition",
     ),
     Unknown(
         "offset_z",
@@ -100,7 +108,7 @@ UNKNOWNS = (
         False,
         "of the clearance",
         1.0,
-        "where between the rails the body stands at ignition",
+        "position of the body between the rails at ignition",
     ),
 )
 NAMES = tuple(item.name for item in UNKNOWNS)
@@ -136,7 +144,7 @@ def inertia(found: dict[str, float]) -> dict[str, float]:
 
 
 def overrides(base: Scene, found: dict[str, float]) -> dict[str, Any]:
-    """Dotted overrides (SI) that turn ``base``, of eight pads at the corners, into the scene of
+    """Dotted overrides (SI) that turn ``base``, with eight pads at the corners, into the scene of
     these inputs."""
     clearance, width, exponent = found["clearance"], found["width"], found["exponent"]
     changed = {
@@ -179,13 +187,13 @@ def stiffness(printed: float, exponent: float) -> float:
 
 
 def duration(found: dict[str, float]) -> float:
-    """Time (s) in which the body leaves the rail and settles: burnout, or the way at half the final
-    speed, whichever is longer."""
-    way = found["rear"] + found["front"] + found["guided"] + 0.016
+    """Time (s) in which the body leaves the rail and settles: burnout, or the distance at half the
+    final speed, whichever is longer."""
+    distance = found["rear"] + found["front"] + found["guided"] + 0.016
     return (
         max(
             7.0 * found["width"],
-            _CENTRE * found["width"] + 2.0 * way * found["mass"] / found["impulse"],
+            _CENTRE * found["width"] + 2.0 * distance * found["mass"] / found["impulse"],
         )
         + 6e-3
     )

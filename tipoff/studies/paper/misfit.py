@@ -1,16 +1,15 @@
-"""How far a set of inputs is from the paper's printed rates, and how large its rates are where the
-paper calls them negligible.
+"""Misfit of a set of inputs: its errors from the paper's printed rates, and its rates on conditions
+where the paper calls them negligible.
 
     nine rates       e = w - w_printed, conditions 2 to 4 at the baseline           weight 1 / s
     54 deviations    e = (w_changed - w) - (w_changed - w)_printed                  weight 1 / s
     conditions 1, 5  e = max(|w| - 0.3 deg/s, 0)                                    weight ``stress`` / s
 
 s is per axis the root mean square of the printed deviations themselves (0.034, 0.013, 0.0075
-deg/s). They do not run monotonically in k, c or d (the roll rate of condition 2 falls for a softer
-and for a stiffer contact), so as much of them as that is scatter of the printed solution, and no
-smooth model comes closer. A search starts with residuals of many s; those count by sqrt(1 +
-(e/L)^2) - 1 with L = 0.3 deg/s, the size the paper calls negligible, so that one bad rate does not
-hide eight good ones.
+deg/s). They are not monotone in k, c or d (the roll rate of condition 2 falls for a softer and for
+a stiffer contact), so s is scatter of the printed solution, which no smooth model reproduces. The
+misfit of a residual is sqrt(1 + (e/L)^2) - 1 with L = 0.3 deg/s, the size the paper calls
+negligible, so that one large error does not hide eight small ones.
 """
 
 import math
@@ -26,7 +25,7 @@ from tipoff.studies.paper import inputs
 
 NEGLIGIBLE = 0.3  # deg/s
 SCATTER = np.sqrt((published.sensitivity().deviations() ** 2).mean(axis=(0, 1)))  # deg/s, per axis
-_UNSETTLED = 1e3  # deg/s, in place of the rates of a body that never leaves the rail
+_UNSETTLED = 1e3  # deg/s, for a body that never leaves the rail
 _RADIAL = "thrust_offset.misalignment.radial"
 _SCALE = {
     "k": ("contact.stiffness", None),
@@ -43,7 +42,7 @@ class Launcher:
         self.base, self.numerics = base, Numerics(relative_tolerance=tolerance)
 
     def scene(self, shares: np.ndarray) -> Scene:
-        """The scene at ``shares`` (p,). Raises SceneError where no such body or rail can be."""
+        """The scene at ``shares`` (p,). Raises SceneError for an impossible body or rail."""
         return self.base.replace(inputs.overrides(self.base, inputs.values(shares)))
 
     def rates(self, shares: np.ndarray) -> np.ndarray:
@@ -93,26 +92,26 @@ def nine(rates: np.ndarray) -> np.ndarray:
 
 
 def excess(rates: np.ndarray) -> np.ndarray:
-    """How far (2,3) deg/s the rates of conditions 1 and 5 are above what is negligible."""
+    """Excess (2,3) deg/s of the rates of conditions 1 and 5 over the negligible rate."""
     return np.maximum(
         np.abs(rates[[condition - 1 for condition in published.NEGLIGIBLE]]) - NEGLIGIBLE, 0.0
     )
 
 
 def deviations(rates: np.ndarray, changed: np.ndarray) -> np.ndarray:
-    """Errors (3,6,3) deg/s of the 54 deviations, of the rates (5,3) and what they change to
+    """Errors (3,6,3) deg/s of the 54 deviations, from the rates (5,3) and the ``changed`` rates
     (3,6,3)."""
     nominal = rates[[condition - 1 for condition in published.SENSITIVE]]
     return changed - nominal[:, None, :] - published.sensitivity().deviations()
 
 
 def rough(rates: np.ndarray, stress: float) -> float:
-    """The misfit of the rates alone, of a point that may be far off."""
+    """Misfit of the rates alone."""
     return _soft(nine(rates)) + stress * _soft(excess(rates))
 
 
 def whole(rates: np.ndarray, changed: np.ndarray, stress: float) -> float:
-    """The misfit of everything; nine rates count as much as 54 deviations."""
+    """Misfit of rates and deviations; the nine rates weigh as much as the 54 deviations."""
     return rough(rates, stress) + nine(rates).size / changed.size * _soft(
         deviations(rates, changed)
     )

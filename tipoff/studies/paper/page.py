@@ -1,5 +1,5 @@
-"""The paper's own numbers on the page: its Table 2 and headline beside ours, the inputs that must
-have been, and what they trade."""
+"""The paper's numbers on the page and in the terminal: its Table 2 and headline and ours, and the
+inferred inputs."""
 
 import numpy as np
 
@@ -16,22 +16,35 @@ from tipoff.studies.render.chart import (
     Line,
     Panel,
 )
-from tipoff.studies.render.document import Figure, Fold, Part
+from tipoff.studies.render.document import Bullets, Figure, Fold, Part
 from tipoff.studies.render.table import Column, Table
 
 _AXES = tuple(zip("xyz", (NAVY, VERMILION, AMBER), ("o", "s", "^")))
 _NINE = ("largest_error_deg_s", "largest error of nine rates, deg/s")
 _QUIET = ("largest_negligible_deg_s", "largest rate, conditions 1 and 5, deg/s")
 _DEVIATIONS = ("largest_deviation_error_deg_s", "largest error of 54 deviations, deg/s")
+_MEASURES = {
+    "largest_error_deg_s": Column("largest error of nine rates", "deg/s"),
+    "largest_deviation_error_deg_s": Column("largest error of 54 deviations", "deg/s"),
+    "largest_negligible_deg_s": Column("largest rate, conditions 1 and 5", "deg/s"),
+}
 _PAIRS = (
     ("Nine rates, conditions 1 and 5", _NINE, _QUIET),
     ("Nine rates, 54 deviations", _NINE, _DEVIATIONS),
     ("54 deviations, conditions 1 and 5", _DEVIATIONS, _QUIET),
 )
+_TRADED = (
+    "Ends of the searches by three measures, two in each panel: largest error of the nine printed "
+    "rates, largest error of their 54 deviations, largest rate on conditions 1 and 5. Squares: "
+    "searches over conditions 2 to 4; circles: over all five. The line is the Pareto front of all "
+    "points, whatever their deviations."
+)
+_BESIDE = (
+    "Printed rates (left) and deviations (right) and those of the best set; equal on the line."
+)
 _AT_EXIT = (
-    "What the best set leaves its rail with, of one more run of each condition, which the radial "
-    "misalignment tells "
-    "apart. The paper prints rates only, those of conditions 2 to 4. {calibration}"
+    "Exit state with the best set, one run for each condition; heads give the radial misalignment. "
+    "The paper prints rates of conditions 2 to 4 only. {calibration}"
 )
 
 
@@ -41,97 +54,78 @@ def draw(found: dict) -> list[Part]:
     best = found["searches"][found["best"]]
     words = (
         f"The paper prints no geometry, inertia, thrust, friction or clearance. "
-        f"{len(found['searches'])} searches over "
-        f"{len(found['inputs'])} inputs within physical bounds ask which would give the nine rates "
-        f"of its Table 2 and their "
-        f"54 deviations, half of them also that no rate of conditions 1 and 5 exceeds "
-        f"{found['negligible_deg_s']:g} deg/s, "
-        "where the paper speaks of negligible rates and prints none. The best misses a printed "
-        "rate by at most "
-        f"{best['largest_error_deg_s']:.2g} deg/s and a deviation by "
-        f"{best['largest_deviation_error_deg_s']:.2g} deg/s; its "
-        "largest rate on conditions 1 and 5 is "
-        f"{best['largest_negligible_deg_s']:.2g} deg/s. It is inferred, one of many that would do. "
-        f"{in_catalogue(found)}"
+        f"{len(found['searches'])} searches over {len(found['inputs'])} inputs within physical "
+        "bounds fit the nine rates of its Table 2 and their 54 deviations. Half of them also keep "
+        "the rates of conditions 1 and 5, which the paper calls negligible, below "
+        f"{found['negligible_deg_s']:g} deg/s. Other inputs can fit as well as the best set."
     )
     return [
         words,
         Figure(trade, _TRADED),
-        _verdict(found),
+        _fit(found),
         Figure(beside, _BESIDE),
         _table2(best),
         *_deviations(best),
         _at_exit(found["exit"]),
-        _inputs(found["inputs"]),
-        admissible(found),
-        Fold("Every search", [_searches(found["searches"])]),
+        _inputs(found),
+        Fold("Reasons for the bounds", [_reasons(found["inputs"])]),
+        Fold("All searches", [_searches(found["searches"])]),
         *_headline(found),
-        "On the printed numbers: " + " ".join(found["slips"]),
+        Bullets(found["slips"]),
     ]
 
 
-_TRADED = (
-    "Where searches ended, each with all three: the largest error of the nine printed rates, the "
-    "largest error of their 54 "
-    "deviations, and the largest rate of conditions 1 and 5, two in each panel. Squares were asked "
-    "for three conditions, "
-    "circles for all five; the diamond has the least misfit, the triangle is the catalogue's. A "
-    "set has all three only if "
-    "it lies low and left in every panel. The line of the first panel is the front of all that "
-    "searches met on their way, "
-    "whatever the deviations there."
-)
-_BESIDE = (
-    "Printed rates (left) and deviations (right) against those of the best set; on the line "
-    "they agree."
-)
+def terminal(found: dict) -> list[Part]:
+    """The tables of the best set, its inputs and its exit state, and the names of the files."""
+    return [
+        _fit(found),
+        _inputs(found),
+        _at_exit(found["exit"]),
+        *_headline(found),
+        Bullets(found["slips"]),
+        f"Scene {found['scene_file']}, data {found['data']}.",
+    ]
 
 
-def in_catalogue(found: dict) -> str:
-    """Whether the best set is the catalogue's, in words."""
-    kept, known = found["catalogue"], found["known"]
-    if kept["same"]:
-        return f"It is the catalogue's scene {kept['name']}."
-    return (
-        f"It is not the catalogue's scene {kept['name']}, which another run found; here that "
-        f"misses a printed rate by at most "
-        f"{known['largest_error_deg_s']:.2g} deg/s and a deviation by "
-        f"{known['largest_deviation_error_deg_s']:.2g} deg/s, and "
-        f"its largest rate on conditions 1 and 5 is {known['largest_negligible_deg_s']:.2g} deg/s."
+def _fit(found: dict) -> Table:
+    """Errors of the best set and of the catalogue's scene."""
+    best, kept = found["searches"][found["best"]], found["catalogue"]
+    rows = [
+        (f"best of {len(found['searches'])} searches", *(best[key] for key in _MEASURES)),
+        (f"scene {kept['name']}", *(found["known"][key] for key in _MEASURES)),
+    ]
+    same = (
+        f"The best set is the scene {kept['name']} of the catalogue."
+        if kept["same"]
+        else f"The best set is not the scene {kept['name']} of the catalogue, which is from "
+        "another run."
     )
+    return Table(["inputs", *_MEASURES.values()], rows, (_verdict(found), same))
 
 
-def admissible(found: dict) -> str:
-    """How much the ranges of the inputs rest on, in words."""
-    kept, all_searches = found["admissible"], len(found["searches"])
-    limit = (
-        f"missing no printed rate and no deviation by more than {found['admissible_deg_s']:g} deg/s"
-    )
+def _admissible(found: dict) -> list[str]:
+    """How many points the ranges of the inputs come from, one sentence each."""
+    kept, count = found["admissible"], len(found["searches"])
+    limit = f"no error of a printed rate or deviation above {found['admissible_deg_s']:g} deg/s"
     if not kept["points"]:
-        return (
-            f"No set {limit} was met in {all_searches} searches, so that nothing is known of any "
-            f"input."
-        )
-    return (
-        f"Admissible sets, {limit}: {kept['points']}, kept from {kept['searches']} of "
-        f"{all_searches} searches, "
-        f"{kept['most_of_one']} of them from one. Those of one search lie in few basins, so that "
-        f"every range is at least so "
-        "wide: it shows what is possible and excludes nothing outside it." + _outside(found)
-    )
+        return [f"None of {count} searches found an admissible set ({limit}): no range is known."]
+    return [
+        f"Admissible sets ({limit}): {kept['points']} from {kept['searches']} of {count} searches, "
+        f"at most {kept['most_of_one']} from one search. Sets of one search are close to each "
+        "other, so the true ranges are at least as wide." + _outside(found)
+    ]
 
 
 def _outside(found: dict) -> str:
-    """A word more where the best set, which counts conditions 1 and 5 too, is not admissible
-    itself."""
+    """A further sentence where the best set is not admissible."""
     best = found["searches"][found["best"]]
     missed = max(best["largest_error_deg_s"], best["largest_deviation_error_deg_s"])
-    note = " The best set is none of them: it is best with conditions 1 and 5 counted."
+    note = " The best set is not among them: its misfit includes conditions 1 and 5."
     return note if missed > found["admissible_deg_s"] else ""
 
 
 def charts(found: dict) -> list[Chart]:
-    """What searches trade, and printed against found rates and deviations of the best."""
+    """Measures of all searches, and rates and deviations of the best set over the printed ones."""
     best, printed = found["searches"][found["best"]], published.sensitivity()
     rates = np.array(best["rates_deg_s"])[1:4]
     deviations = np.array(best["changed_deg_s"]) - rates[:, None, :]
@@ -149,11 +143,11 @@ def charts(found: dict) -> list[Chart]:
 
 
 def _traded(found: dict, title: str, across: tuple[str, str], upwards: tuple[str, str]) -> Panel:
-    """Panel of two measures (key, label) of every search's end; with the front where it is of these
+    """Panel of two measures (key, label) of every search; with the Pareto front where it has these
     two."""
     front, best = np.array(found["front"]), found["searches"][found["best"]]
     lines = (
-        [Line(front[:, 0], front[:, 1], "front of all met", TEAL)]
+        [Line(front[:, 0], front[:, 1], "Pareto front", TEAL)]
         if (across, upwards) == (_NINE, _QUIET)
         else []
     )
@@ -161,7 +155,7 @@ def _traded(found: dict, title: str, across: tuple[str, str], upwards: tuple[str
         Line(
             [best[across[0]]],
             [best[upwards[0]]],
-            "best of all",
+            "best set",
             VERMILION,
             dash="",
             marker="D",
@@ -173,25 +167,25 @@ def _traded(found: dict, title: str, across: tuple[str, str], upwards: tuple[str
         Line(
             [known[across[0]]],
             [known[upwards[0]]],
-            f"the catalogue's {known['name']}",
+            f"scene {known['name']}",
             TEAL,
             dash="",
             marker="^",
             size=11.0,
         )
     )
-    for asked, name, colour, marker in (
-        (False, "three conditions asked", GREY, "s"),
-        (True, "all five asked", NAVY, "o"),
+    for all_five, name, colour, marker in (
+        (False, "search over three conditions", GREY, "s"),
+        (True, "search over five conditions", NAVY, "o"),
     ):
         ends = [
             (item[across[0]], item[upwards[0]])
             for item in found["searches"]
-            if bool(item["stress"]) is asked
+            if bool(item["stress"]) is all_five
         ]
         if ends:
             x, y = zip(*ends)
-            lines.append(Line(x, y, f"ended, {name}", colour, dash="", marker=marker))
+            lines.append(Line(x, y, name, colour, dash="", marker=marker))
     return Panel(title, across[1], upwards[1], lines, log=True)
 
 
@@ -236,7 +230,7 @@ def _pairs(printed: np.ndarray, ours: np.ndarray) -> list[float]:
 
 
 def _deviations(best: dict) -> list[Part]:
-    """The 54 deviations, printed and ours, and the largest of each axis as a share of its rate."""
+    """The 54 deviations, printed and found, and the largest of each axis relative to its rate."""
     printed = published.sensitivity()
     ours = published.Sensitivity(
         np.array(best["rates_deg_s"])[1:4], np.array(best["changed_deg_s"])
@@ -256,38 +250,35 @@ def _deviations(best: dict) -> list[Part]:
     ]
     largest = [
         (kind, *(f"{100.0 * share:.2f} %" for share in table_2.largest_relative()))
-        for kind, table_2 in (("printed", printed), ("ours", ours))
+        for kind, table_2 in (("printed", printed), ("found", ours))
     ]
-    heads = ("condition", "constant", *(f"{axis}, printed / ours (deg/s)" for axis in "xyz"))
+    heads = ("condition", "constant", *(f"{axis}, printed / found (deg/s)" for axis in "xyz"))
     return [
         Table(
             ("", "x", "y", "z"),
             largest,
-            title="Largest deviation by axis as a share of the rate, on conditions 2 and 4; about "
-            "z that of condition 3 is nearly zero.",
+            title="Largest deviation of each axis relative to its rate, conditions 2 and 4; the z "
+            "rate of condition 3 is nearly zero.",
         ),
-        Fold("54 deviations, printed and ours", [Table(heads, rows, dense=True)]),
+        Fold("54 deviations, printed and found", [Table(heads, rows, dense=True)]),
     ]
 
 
 def _at_exit(found: dict) -> Table:
-    """What the best set leaves its rail with, by condition; a dash where it did not settle."""
-    rows = [
-        (
-            str(row["condition"]),
-            row["radial_misalignment_deg"],
-            row["status"].replace("_", " "),
-            *(row[item.name] for item in answers.ALL),
+    """Exit state with the best set by condition; a dash where it did not settle."""
+    conditions = [
+        Column(
+            f"{row['condition']} at {row['radial_misalignment_deg']:g} deg"
+            + ("" if row["status"] == "exited" else f", {row['status'].replace('_', ' ')}"),
+            form=".4g",
         )
         for row in found["conditions"]
     ]
-    heads: tuple[Column | str, ...] = (
-        "condition",
-        Column("radial misalignment", "deg", "g"),
-        "ended",
-        *(Column(item.label, item.unit) for item in answers.ALL),
-    )
-    return Table(heads, rows, (_AT_EXIT.format(**found),), dense=True)
+    rows = [
+        (f"{item.label} ({item.unit})", *(row[item.name] for row in found["conditions"]))
+        for item in answers.ALL
+    ]
+    return Table(["exit state, condition", *conditions], rows, (_AT_EXIT.format(**found),))
 
 
 def _verdict(found: dict) -> str:
@@ -300,28 +291,21 @@ def _verdict(found: dict) -> str:
     quiet = [item for item in ends if item["largest_negligible_deg_s"] <= found["negligible_deg_s"]]
     if quiet:
         return (
-            f"{len(quiet)} searches met all within {limit:g} deg/s: printed rates, their "
-            f"deviations and negligible ones can "
-            "hold together."
+            f"{len(quiet)} searches fit the printed rates, their deviations and the negligible "
+            f"rates within {limit:g} deg/s."
         )
     least = min((size for error, size in found["front"] if error <= limit), default=None)
     if least is None:
-        return (
-            f"No search met all nine rates within {limit:g} deg/s; the figure shows how close they "
-            f"came, and at which rates of "
-            "conditions 1 and 5."
-        )
+        return f"No search fits all nine rates within {limit:g} deg/s."
     return (
-        f"{len(ends)} searches ended within {limit:g} deg/s of all nine rates and 54 deviations, "
-        f"none of them with negligible "
-        f"rates on conditions 1 and 5. Where nine rates are met as closely, whatever the "
-        f"deviations, the least largest rate "
-        f"met there is {least:.2g} deg/s."
+        f"{len(ends)} searches fit the nine rates and 54 deviations within {limit:g} deg/s, none "
+        "of them with negligible rates on conditions 1 and 5. Where the nine rates alone are "
+        f"within the limit, the largest rate on conditions 1 and 5 is at least {least:.2g} deg/s."
     )
 
 
 def _headline(found: dict) -> list[Part]:
-    """Cost of one case in both fidelities, the paper's beside ours."""
+    """Cost of one case in both fidelities, the paper's and ours."""
     printed, ours = found["headline"], found["ours"]
     springs = "springs, calibrated"
     rows = [
@@ -342,16 +326,16 @@ def _headline(found: dict) -> list[Part]:
     ]
     heads: tuple[Column | str, ...] = (
         "",
-        "flexible rail",
-        "one case",
-        "rigid bodies, one case",
-        Column("times as fast", form=",.0f"),
+        "model with flexible rail",
+        "wall time of one case",
+        "rigid bodies, wall time of one case",
+        Column("speed-up", form=",.0f"),
     )
-    missing = f"Ours is not measured yet: `make compare SCENE={found['scene']}` does it."
-    return [Table(heads, rows), "" if ours else missing]
+    missing = f"Not measured here yet; `make compare SCENE={found['scene']}` measures it."
+    return [Table(heads, rows, () if ours else (missing,))]
 
 
-def _inputs(found: list[dict]) -> Table:
+def _inputs(found: dict) -> Table:
     rows = [
         (
             item["name"].replace("_", " "),
@@ -361,39 +345,32 @@ def _inputs(found: list[dict]) -> Table:
             item["best"],
             item["from"],
             item["to"],
-            item["share"] and f"{100.0 * item['share']:.0f} %",
-            item["reason"],
+            item["share"],
         )
-        for item in found
+        for item in found["inputs"]
     ]
     heads: tuple[Column | str, ...] = (
         "input",
         "unit",
-        "bound from",
-        "to",
+        "lower bound",
+        "upper bound",
         Column("best", form=".4g"),
-        "admissible at least from",
-        "to",
-        "of the bounds, at least",
-        "why these bounds",
+        "admissible from",
+        "admissible to",
+        Column("share of the bounds", "%", ".0f", 100.0),
     )
-    return Table(heads, rows, dense=True)
+    return Table(heads, rows, tuple(_admissible(found)), dense=True)
+
+
+def _reasons(found: list[dict]) -> Table:
+    rows = [(item["name"].replace("_", " "), item["reason"]) for item in found]
+    return Table(["input", "reason for the bounds"], rows)
 
 
 def _searches(found: list[dict]) -> Table:
-    columns: dict[str, Column | str] = {
-        "largest_error_deg_s": Column("largest error of nine rates", "deg/s"),
-        "largest_negligible_deg_s": Column("largest rate, conditions 1 and 5", "deg/s"),
-        "largest_deviation_error_deg_s": Column("largest error of 54 deviations", "deg/s"),
-        "misfit": "misfit",
-        "admissible": "admissible points kept",
-    }
+    columns = _MEASURES | {"misfit": Column("misfit"), "admissible": Column("admissible sets")}
     rows = [
-        (
-            item["seed"] + 1,
-            "five" if item["stress"] else "three",
-            *(item[name] for name in columns),
-        )
+        (item["seed"] + 1, "five" if item["stress"] else "three", *(item[name] for name in columns))
         for item in found
     ]
-    return Table(["search", "conditions asked", *columns.values()], rows)
+    return Table(["search", "conditions", *columns.values()], rows)

@@ -1,8 +1,7 @@
-"""Where every search ended, every admissible point kept, what they trade and what the best set
-leaves its rail with, as a netCDF file that explains itself.
+"""Ends of all searches, admissible points, Pareto front and exit state of the best set, as a netCDF
+file with names and units.
 
-Inputs stand there in the units they are printed with, a variable each, with the bounds they were
-searched within.
+Each input is a variable in its printed unit, with its bounds.
 """
 
 from pathlib import Path
@@ -28,8 +27,8 @@ def save(path: Path, found: list[solutions.Search], best: int, left: Columns) ->
 
 
 def dataset(found: list[solutions.Search], best: int, left: Columns) -> "xarray.Dataset":
-    """The ends of the searches by ``search``, ``best`` of which left its rail with ``left``;
-    admissible points by ``point``; the front of all searches by ``pair``."""
+    """Ends of the searches by ``search``, the exit state ``left`` of number ``best``, admissible
+    points by ``point``, the Pareto front by ``pair``."""
     import xarray
 
     points = np.vstack([item.admissible for item in found])
@@ -40,7 +39,7 @@ def dataset(found: list[solutions.Search], best: int, left: Columns) -> "xarray.
             "end", "search", np.array([item.shares for item in found]), "at the end of a search"
         )
         | _inputs("admissible", "point", points, "at an admissible point")
-        | {"admissible_search": _of("point", origin, "the search that met it", "1")}
+        | {"admissible_search": _of("point", origin, "search that found the point", "1")}
         | _traded(found)
         | {
             f"exit_{item.name}": _of(
@@ -74,7 +73,7 @@ def _ends(found: list[solutions.Search]) -> dict[str, tuple]:
         "stress": _of(
             "search",
             [item.stress for item in found],
-            "weight the search gave the rates of conditions 1 and 5",
+            "weight of the rates of conditions 1 and 5 in the search",
             "1",
         ),
         "seed": _of("search", [item.seed for item in found], "seed of the search", "1"),
@@ -133,7 +132,7 @@ def _coordinates(count: int) -> dict[str, tuple]:
     angles = published.angles()
     axial, radial = np.array(list(angles.values())).T
     return {
-        "search": _of("search", np.arange(count), "place among the searches of paper.json", "1"),
+        "search": _of("search", np.arange(count), "number of the search in paper.json", "1"),
         "condition": _of("condition", list(angles), "condition of the paper's Table 1", "1"),
         "axial_misalignment": _of("condition", axial, "axial misalignment of the thrust", "deg"),
         "radial_misalignment": _of("condition", radial, "radial misalignment of the thrust", "deg"),
@@ -146,7 +145,7 @@ def _coordinates(count: int) -> dict[str, tuple]:
         "change": (
             "change",
             list(summary.CHANGES),
-            {"long_name": "the contact constant that was changed, and what to"},
+            {"long_name": "changed contact constant and its value"},
         ),
         "axis": ("axis", list("xyz"), {"long_name": "payload body axis"}),
     }

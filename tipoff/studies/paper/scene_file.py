@@ -1,4 +1,4 @@
-"""A set of inputs as a scene file that extends another, each number with its provenance."""
+"""A set of inputs as a scene file that extends another; every number has its provenance."""
 
 from typing import Any
 
@@ -30,8 +30,8 @@ _DIGITS = 9
 
 
 def scene(base: Scene, found: dict[str, float], rates: np.ndarray) -> str:
-    """TOML of a scene like ``base`` with inputs ``found`` (``inputs.values``), whose settled
-    ``rates`` (5,3) deg/s its description has."""
+    """TOML of a scene that extends ``base`` with the inputs ``found`` (``inputs.values``); settled
+    ``rates`` (5,3) deg/s give the error in its description."""
     changed = inputs.overrides(base, found)
     error = np.abs(
         rates[[condition - 1 for condition in published.SENSITIVE]]
@@ -98,7 +98,6 @@ def _in(unit: str, factor: float, value: float, digits: int = _DIGITS) -> str:
 
 
 def _home(key: str) -> str:
-    """The key under which units and provenance stand: an inertia, a position and the pads as a
-    whole."""
+    """The key of units and provenance: one for the inertia, the position and the pads."""
     wholes = ("payload.inertia", "initial.position", "pads")
     return next((whole for whole in wholes if key.startswith(whole)), key)

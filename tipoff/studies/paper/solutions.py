@@ -1,25 +1,23 @@
-"""Sets of inputs that give the printed rates: independent searches, everything admissible on their
-way, and what they trade.
+"""Sets of inputs that give the printed rates: independent searches, their admissible points, and the
+Pareto front.
 
-Rates are smooth in the inputs until an impact more or less changes them by degrees per second.
-Inside such a basin there are few residuals for many inputs, so that Gauss and Newton bring them all
-to zero where it holds such a point; which basin does, only trying tells (basin hopping: Wales and
-Doye, J. Phys. Chem. A 101 (1997) 5111). A search
+Rates are smooth in the inputs until one impact more or less changes them by degrees per second.
+Inside such a basin, Gauss-Newton steps reach zero residuals where the basin contains such a point,
+because there are fewer residuals than inputs. Basin hopping tries many basins (Wales and Doye, J.
+Phys. Chem. A 101 (1997) 5111). A search
 
-1. draws points of the unit cube, goes down from the best of them by least squares on the rates of
-   five runs, and keeps a pool of ends;
-2. moves one of the pool at random, a little or far, some of its inputs or all, goes down from
-   there, and puts the end in its place if that is better;
-3. goes down from each of the pool once more, by all 69 residuals of 23 runs, and ends with the
-   best.
+1. draws points of the unit cube, minimises the rates of five runs by least squares from the best of
+   them, and keeps a pool of ends;
+2. moves one of the pool at random by a small or large step, in some inputs or in all, minimises
+   from there, and replaces it if the end is better;
+3. minimises all 69 residuals of 23 runs from each of the pool, and ends with the best.
 
-Better is what has the smaller misfit of all 69: an end on the edge of its basin may give the nine
-rates, but not with a contact constant changed by some percent. A search that ends badly is shown
-like one that ends well.
+Better means a smaller misfit of all 69: an end near the edge of its basin can give the nine rates,
+but not with a contact constant changed by some percent. Searches that end badly are shown too.
 
-Nine rates and 54 small deviations cannot determine twenty inputs. What is kept is therefore a
-set: every end at which no printed rate and no deviation is missed by more than ``ADMISSIBLE``; an
-input is determined as far as the set is narrower than its bounds.
+Nine rates and 54 small deviations cannot determine twenty inputs. The result is therefore a set:
+every end at which no printed rate and no deviation is missed by more than ``ADMISSIBLE``. An input
+is determined as far as the set is narrower than its bounds.
 """
 
 from collections.abc import Callable
@@ -36,7 +34,7 @@ ADMISSIBLE = misfit.NEGLIGIBLE
 
 _MOVES = (0.01, 0.03, 0.06, 0.12)  # standard deviations of a hop, of the bounds
 _SOME = 0.25  # chance of an input to be among those that move, in every other hop
-_INSIDE = 1e-3  # of the bounds, for least squares cannot begin on one
+_INSIDE = 1e-3  # of the bounds: least squares cannot start on a bound
 # of the bounds: above the scatter of runs at the middle tolerance, below the size of a basin
 _DIFFERENCE = 5e-4
 _LONG, _SHORT, _LAST = 25, 12, 25  # steps of a descent: of a point drawn, of a hop, of the end
@@ -46,8 +44,8 @@ _WORK = {"point": 0.02, "descent": 2.0, "hop": 1.0, "end": 10.0}  # shares of th
 @dataclass(frozen=True)
 class Plan:
     """Size of a search: ``points`` drawn, ``descents`` from the best of them, ends in the ``pool``,
-    ``hops``, points ``kept``; relative error of a step where points are drawn, where a search goes
-    down, and in what is reported of its end."""
+    ``hops``, admissible points ``kept``; ``tolerances`` (relative error of a step) of drawn points,
+    of descents and of the reported end."""
 
     points: int = 2000
     descents: int = 24
@@ -58,10 +56,10 @@ class Plan:
 
 
 class Search(NamedTuple):
-    """Where a search of one ``stress`` (the weight of the rates that should be negligible) and
-    ``seed`` ended: shares (p,), rates (5,3) and ``changed`` (3,6,3) deg/s there; the ``admissible``
-    points (n,p) it met; and the ``front`` (m,2) of what it traded, deg/s: largest error of a
-    printed rate, largest rate of conditions 1 and 5."""
+    """End of a search with one ``stress`` (weight of the rates that should be negligible) and
+    ``seed``: shares (p,), rates (5,3) and ``changed`` (3,6,3) deg/s; its ``admissible`` points
+    (n,p); its Pareto ``front`` (m,2) in deg/s: largest error of a printed rate, largest rate of
+    conditions 1 and 5."""
 
     stress: float
     seed: int
@@ -119,7 +117,7 @@ def run(
 
 
 class _Walk:
-    """The ways down, and what was met at their ends."""
+    """Descents of one search, with the results at their ends."""
 
     def __init__(
         self,
@@ -147,12 +145,12 @@ class _Walk:
         )
 
     def first(self, shares: np.ndarray) -> float:
-        """Misfit of a point as it was drawn."""
+        """Misfit of a drawn point."""
         self._book("point")
         return misfit.rough(self.rough.rates(shares), self.stress)
 
     def end(self, shares: np.ndarray, steps: int, kind: str) -> _End:
-        """Down by the rates alone."""
+        """Descent with the residuals of the rates alone."""
 
         def few(point: np.ndarray) -> np.ndarray:
             rates = self.middle.rates(point)
@@ -166,7 +164,7 @@ class _Walk:
         return found
 
     def last(self, end: _End) -> _End:
-        """Down by all residuals, or ``end`` itself where that is no better."""
+        """Descent with all residuals, or ``end`` itself where that is better."""
 
         def every(point: np.ndarray) -> np.ndarray:
             return misfit.residuals(
@@ -178,7 +176,7 @@ class _Walk:
         return min(end, found, key=lambda item: item.misfit)
 
     def admissible(self, kept: int) -> np.ndarray:
-        """At most so many (n,p) of the admissible points met, from the first to the last."""
+        """At most ``kept`` of the admissible points (n,p), spread evenly from first to last."""
         found = np.array(self._met).reshape(-1, len(UNKNOWNS))
         return found[np.linspace(0, len(found) - 1, min(kept, len(found))).round().astype(int)]
 
@@ -199,7 +197,7 @@ class _Walk:
 def _down(
     residuals: Callable[[np.ndarray], np.ndarray], start: np.ndarray, steps: int
 ) -> np.ndarray:
-    """Where least squares end after so many steps."""
+    """End of least squares after at most ``steps``."""
 
     def slopes(point: np.ndarray) -> np.ndarray:
         here, columns = residuals(point), []
@@ -247,7 +245,7 @@ def plain(found: Search) -> dict:
 
 
 def restored(document: dict) -> Search:
-    """Inverse of ``plain``; keys that are none of a search's are passed over."""
+    """Inverse of ``plain``; other keys are ignored."""
     return Search(
         stress=document["stress"],
         seed=document["seed"],

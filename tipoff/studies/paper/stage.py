@@ -1,8 +1,8 @@
-"""Stage ``paper``: what the inputs that the paper does not print must have been, and its tables
-beside those of the best set found.
+"""Stage ``paper``: inputs inferred from the paper's printed rates, and its tables compared with
+those of the best set found.
 
-Every search is kept as it ends, so that a stage that was stopped goes on with the next, and more
-starts add to those there are.
+Every finished search is stored, so an interrupted stage continues with the next one, and more
+starts add to the stored ones.
 """
 
 import math
@@ -37,10 +37,9 @@ from tipoff.studies.render.chart import to_files
 
 NAME = "paper"
 SCENE = "paper_like.toml"
-CATALOGUED = "paper_like"  # the best set of those who made the catalogue
+CATALOGUED = "paper_like"  # scene of the catalogue with the best set of an earlier run
 STRESSES = (0.0, 1.0)  # without and with the rates that the paper calls negligible
 _WRITTEN = 1e-5  # relative: a scene file has nine digits of most numbers, six of the mounts
-# a search outlives a change of anything else
 
 
 @dataclass(frozen=True)
@@ -52,17 +51,17 @@ class Options:
 
 
 def run(study: Study, options: Options = Options()) -> dict:
-    """The searches, what they show of every input, and the best set beside the printed tables;
-    writes it as a scene too, and every end and admissible point as netCDF.
+    """The searches, the ranges of every input, and the best set with the printed tables; writes the
+    best set as a scene, and every end and admissible point as netCDF.
 
-    Raises SceneError for a scene that ``require`` refuses, StudyError where the best set could not
-    be kept as a scene file.
+    Raises SceneError for a scene that ``require`` refuses, StudyError where no scene file could
+    hold the best set.
     """
     require(study.scene)
 
     def make() -> tuple[dict, list[Path]]:
         base = _base(study.scene)
-        # before the searches, which are dear, and not only after them
+        # before the searches, which take long
         with TemporaryDirectory() as folder:
             _write(base, np.full(len(inputs.UNKNOWNS), 0.5), np.zeros((5, 3)), Path(folder, SCENE))
         found = _searches(study, base, options)
@@ -105,8 +104,7 @@ def stored(study: Study) -> dict | None:
 
 
 def require(scene: Scene) -> None:
-    """Raise SceneError unless ``scene`` is one whose inputs the searches can replace: every fault
-    of it."""
+    """Raise SceneError with every fault of a ``scene`` whose inputs the searches cannot replace."""
     impact = scene.contact is not None and scene.contact.law == "impact"
     corners = {(x > 0.0, y > 0.0, z > 0.0) for x, y, z in (pad.position for pad in scene.pads)}
     wrong = [
@@ -116,25 +114,25 @@ def require(scene: Scene) -> None:
                 scene.rail.GIVEN_BY == "section",
                 "rail",
                 f"a {scene.rail.GIVEN_BY}",
-                "the built-in section, whose ends are searched",
+                "the built-in section, because its ends are searched",
             ),
             (
                 scene.thermal is None,
                 "thermal",
                 "a table",
-                "absent, for the searches have rails that stand where they are drawn",
+                "absent, because the searches have no thermal offset",
             ),
             (
                 impact,
                 "contact.law",
                 "another law, or no contact",
-                "impact, of which the paper prints the constants",
+                "impact, whose constants the paper prints",
             ),
             (
                 scene.thrust.kind == "gaussian",
                 "thrust.kind",
                 scene.thrust.kind,
-                "gaussian, as the paper fits its thrust",
+                "gaussian, as in the paper",
             ),
             (
                 scene.friction is not None and hasattr(scene.friction, "static"),
@@ -183,8 +181,8 @@ def _write(base: Scene, shares: np.ndarray, rates: np.ndarray, path: Path) -> No
 
 
 def _differing(first, second, key: str = "") -> list[str]:
-    """Dotted keys at which two scenes (``Scene.physics``) are not the same to the digits of a scene
-    file."""
+    """Dotted keys at which two scenes (``Scene.physics``) differ by more than the rounding of a
+    scene file."""
     if isinstance(first, dict) and isinstance(second, dict):
         return [
             name
@@ -205,7 +203,8 @@ def _differing(first, second, key: str = "") -> list[str]:
 
 
 def _searches(study: Study, base: Scene, options: Options) -> list[solutions.Search]:
-    """Every search in its order, ``workers`` at a time; on Ctrl-C none is waited for or begun."""
+    """Every search in its order, ``workers`` at a time; Ctrl-C ends those that run and starts no
+    other."""
     plans = [(stress, seed) for seed in range(options.starts) for stress in STRESSES]
     with Board(NAME, len(plans)) as board, team(board, study.settings.workers) as pool:
 
@@ -248,9 +247,8 @@ STAGE = Stage(NAME, __name__, Options)
 
 
 def _with_present(study: Study, found: dict) -> dict:
-    """The result with what stands beside it now, which comes and goes without it: the cost of both
-    fidelities where the present agreement study measured it, and whether the best set is the
-    catalogue's."""
+    """The result with values that are not stored in it: the cost of both fidelities, where the
+    present agreement study has it, and whether the best set is the catalogue's scene."""
     kept = load(CATALOGUED)
     best = misfit.Launcher(_base(study.scene)).scene(
         inputs.shares(found["searches"][found["best"]]["values"])
@@ -263,43 +261,3 @@ def _with_present(study: Study, found: dict) -> dict:
             "description": kept.description,
         },
     }
-
-
-def lines(found: dict) -> list[str]:
-    """The result in words and units."""
-    best = found["searches"][found["best"]]
-    text = [
-        f"best of {len(found['searches'])} searches: a printed rate missed by "
-        f"{best['largest_error_deg_s']:.3g} deg/s at most, "
-        f"a deviation by {best['largest_deviation_error_deg_s']:.3g} deg/s; rates of conditions 1 "
-        f"and 5 up to "
-        f"{best['largest_negligible_deg_s']:.3g} deg/s",
-        drawn.in_catalogue(found),
-        drawn.admissible(found),
-    ]
-    for item in found["inputs"]:
-        kept = (
-            "nothing admissible"
-            if item["share"] is None
-            else f"admissible at least {item['from']:.3g} to {item['to']:.3g}"
-        )
-        text.append(
-            f"  {item['name']:16}{item['best']:.4g} {item['unit']}, {kept} of {item['low']:.3g} to "
-            f"{item['high']:.3g}"
-        )
-    ours = found["ours"]
-    cost = (
-        f"{ours['highfi_wall_s']:.3g} s in finite elements, {1e3 * ours['lowfi_wall_s']:.3g} ms "
-        f"calibrated: "
-        f"{ours['ratio']:,.0f} times as fast"
-        if ours
-        else f"not measured yet: make compare SCENE={found['scene']} does it"
-    )
-    text += exits.lines(found["exit"])
-    return [
-        *text,
-        *(f"  note          {words}" for words in found["slips"]),
-        f"  one case      {cost}",
-        f"  scene         {found['scene_file']}",
-        f"  data          {found['data']}",
-    ]

@@ -1,5 +1,5 @@
-"""What searches show in the units the paper prints: each by its errors, every input by its range,
-and how much that rests on."""
+"""Results of the searches in the paper's units: errors of each search, range of every input, counts
+of admissible points."""
 
 import numpy as np
 
@@ -12,12 +12,12 @@ CHANGES = tuple(f"{name} = {value:g} {_UNITS[name]}" for name, value in publishe
 
 
 def misfit_of(found: solutions.Search) -> float:
-    """Misfit with the rates of conditions 1 and 5 at full weight, whatever the search gave them."""
+    """Misfit with full weight of the rates of conditions 1 and 5."""
     return misfit.whole(found.rates, found.changed, 1.0)
 
 
 def of_search(found: solutions.Search) -> dict:
-    """Where a search ended: errors and rates in deg/s, ``values`` of the inputs in SI."""
+    """End of a search: errors and rates in deg/s, ``values`` of the inputs in SI."""
     return {
         "stress": found.stress,
         "seed": found.seed,
@@ -62,7 +62,8 @@ def ranges(found: list[solutions.Search], best: solutions.Search) -> list[dict]:
 
 
 def counted(found: list[solutions.Search]) -> dict[str, int]:
-    """How many admissible points were kept, of how many searches, and the most of one."""
+    """Numbers of admissible points, of searches with such points, and of points of one search at
+    most."""
     counts = [len(item.admissible) for item in found]
     return {
         "points": sum(counts),
@@ -72,6 +73,5 @@ def counted(found: list[solutions.Search]) -> dict[str, int]:
 
 
 def front(found: list[solutions.Search]) -> np.ndarray:
-    """What all searches together traded (m,2), deg/s, as ``solutions.Search.front`` has it of
-    one."""
+    """Pareto front (m,2), deg/s, of all searches together; see ``solutions.Search.front``."""
     return solutions.front(*np.vstack([item.front for item in found]).T)
