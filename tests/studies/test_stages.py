@@ -81,8 +81,7 @@ def test_surrogate_is_timed_by_turns(monkeypatch, tmp_path):
 
 
 def test_pareto_front():
-    """Two that cannot be told from the yardstick, whose error is its band, are as good as each
-    other: the faster one is best."""
+    """Two with errors below the band of the finest mesh count as equal: the faster one is best."""
     points = [
         {
             "model": "a",

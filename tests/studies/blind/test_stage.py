@@ -1,4 +1,4 @@
-"""Conditions that nobody chose: drawn by the seed of the code and the scene, never fitted."""
+"""Blind conditions: drawn by a seed from the code and the scene, never fitted."""
 
 from dataclasses import replace
 from pathlib import Path

@@ -28,7 +28,7 @@ def test_axis_that_did_not_settle_leaves_all_unknown(axis):
 
 
 @pytest.mark.parametrize(
-    "error, size, surer",
+    "error, size, sufficient",
     [
         (0.5, 8e-3, True),
         (0.41, 4e-3, True),
@@ -38,12 +38,12 @@ def test_axis_that_did_not_settle_leaves_all_unknown(axis):
         (0.0, 1e-3, False),
     ],
 )
-def test_coarsest_mesh_that_is_surer_or_the_finest(error, size, surer):
+def test_coarsest_sufficient_mesh_or_the_finest(error, size, sufficient):
     mesh = equal_accuracy.coarsest(SIZES, [0.41, 0.11, 0.03, 0.02], error)
-    assert (mesh.element_size, mesh.surer) == (size, surer)
+    assert (mesh.element_size, mesh.sufficient) == (size, sufficient)
 
 
-def test_speedup_over_a_mesh_that_is_not_surer_is_the_least_it_can_be():
+def test_speedup_over_an_insufficient_mesh_is_a_lower_bound():
     found = {
         "condition": "phi35",
         "error_deg_s": 0.01,
@@ -55,14 +55,11 @@ def test_speedup_over_a_mesh_that_is_not_surer_is_the_least_it_can_be():
         "highfi_wall_s": 250.0,
         "lowfi_wall_s": 5e-3,
     }
-    least, surer = (
+    least, measured = (
         equal_accuracy.sentence(found | {"surer": False}),
         equal_accuracy.sentence(found | {"surer": True}),
     )
-    assert "no mesh down to 1 mm has a smaller discretisation error (0.012 by all meshes" in least
-    assert "counted); at least 50,000 times (40,000 to 60,000), 250 s against 5 ms" in least
-    assert (
-        "1 mm is the coarsest mesh whose discretisation error is smaller (0.012 by all meshes"
-        in surer
-    )
-    assert "counted); 50,000 times" in surer and "at least" not in surer
+    assert "at least 50,000 times (40,000 to 60,000), 250 s of the reference to 5 ms" in least
+    assert "no mesh down to 1 mm has a smaller uncertainty (0.012 deg/s" in least
+    assert "phi35: 50,000 times" in measured and "at least" not in measured
+    assert "1 mm is the coarsest mesh with a smaller uncertainty (0.012 deg/s" in measured

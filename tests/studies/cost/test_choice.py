@@ -10,7 +10,7 @@ from tipoff.studies.core.study import Study, StudyError
 from tipoff.studies.cost.choice import choose, elsewhere
 from tipoff.studies.runs import single
 
-# name, error (deg/s), wall (s); None is the yardstick, which is trusted to the band of 0.02.
+# name, error (deg/s), wall (s); None is the finest mesh, whose error bound is the band of 0.02.
 POINTS = [
     ("rigid", 0.9, 0.002),
     ("rigid fine", 0.85, 0.004),
@@ -75,14 +75,14 @@ def test_cheapest_or_most_exact(accuracy, budget, expected):
 def test_refusal_names_the_nearest():
     with pytest.raises(StudyError) as fault:
         choose(COST, "phi15", None, 0.1, 0.0025)
-    assert "most exact in that time: rigid, - (0.9 deg/s, 0.002 s)" in str(fault.value)
-    assert "cheapest that is so exact: compliant, - (0.05 deg/s, 0.003 s)" in str(fault.value)
+    assert "most accurate in this time: rigid, - (0.9 deg/s, 0.002 s)" in str(fault.value)
+    assert "fastest with this accuracy: compliant, - (0.05 deg/s, 0.003 s)" in str(fault.value)
 
 
 def test_refusal_of_one_limit_names_the_best_there_is():
-    with pytest.raises(StudyError, match="most exact of all: compliant fine, - "):
+    with pytest.raises(StudyError, match="most accurate: compliant fine, - "):
         choose(COST, "phi15", None, accuracy=0.01)
-    with pytest.raises(StudyError, match="fastest of all: rigid, - "):
+    with pytest.raises(StudyError, match="fastest: rigid, - "):
         choose(COST, "phi15", None, budget=0.0015)
 
 
@@ -116,17 +116,19 @@ def test_what_holds_on_one_condition_is_not_promised_of_another():
     """Control: without the agreement study the errors of phi15 are taken, and that is said."""
     found = choose(COST, "phi60", agreement(13.0, 9.0), 0.03)
     assert found["trusted_deg_s"] == 0.02 and found["why"].endswith(
-        "errors on phi60 as make compare found them"
+        "errors on phi60 from make compare"
     )
-    with pytest.raises(StudyError, match="(?s)no model fits.*errors on h8 as make compare"):
+    with pytest.raises(StudyError, match="(?s)no model fits.*errors on h8 from make compare"):
         choose(COST, "h8", agreement(13.0, 9.0), 0.03)
-    # a rung that is not judged there never counts
+    # a model without an error there never counts
     nearest = choose(COST, "h8", agreement(13.0, 9.0), budget=0.01)
     assert (nearest["model"], nearest["trusted_deg_s"]) == ("compliant", 13.0)
     with pytest.raises(StudyError, match="no model fits"):
         choose(COST, "h8", agreement(0.01, None), 0.03)
     for unknown in (None, agreement(13.0, 9.0)):
-        assert choose(COST, "nominal", unknown, 0.03)["why"].endswith("nothing is known of nominal")
+        assert choose(COST, "nominal", unknown, 0.03)["why"].endswith(
+            "none are measured on nominal"
+        )
 
 
 def test_other_modes_are_chosen_only_where_they_were_measured():
@@ -170,7 +172,7 @@ def test_what_is_not_known_elsewhere_is_never_chosen():
         choose(COST, "h8", agreement(13.0, None), budget=60.0)
 
 
-def test_every_rung_is_known_elsewhere():
+def test_every_model_has_a_bound_elsewhere():
     found = elsewhere(agreement(13.0, 9.0), "h8")
     assert found == {
         "uncalibrated": 13.0,
@@ -217,6 +219,6 @@ def test_bad_limits_are_refused(tmp_path, options, words):
 
 def test_refusal_of_both_limits_names_the_fastest_of_the_most_exact():
     with pytest.raises(
-        StudyError, match="(?s)most exact of all: compliant fine, - .*fastest of all: rigid, - "
+        StudyError, match="(?s)most accurate: compliant fine, - .*fastest: rigid, - "
     ):
         choose(COST, "phi15", None, accuracy=0.001, budget=0.001)

@@ -16,7 +16,8 @@ from tipoff.studies.core.settings import defaults
 from tipoff.studies.core.study import Study
 from tipoff.studies.cost.page import picture as cost_picture
 from tipoff.studies.render.chart import Chart, Line, Panel, to_files, to_html
-from tipoff.studies.render.markup import number, table
+from tipoff.studies.render.markup import table
+from tipoff.studies.render.table import markdown, number
 from tipoff.studies.report import inputs, stage
 from tipoff.studies.report.page import Page
 from tipoff.studies.report.promises import promises
@@ -67,7 +68,7 @@ def test_text_from_a_scene_is_escaped():
 
 
 def test_a_star_leaves_powers_of_ten_as_they_are():
-    assert "10<sup>-9</sup>*</td>" in table(("a",), [(_starred(number(1e-9), False),)])
+    assert "1·10<sup>-9</sup>*</td>" in table(("a",), [(_starred(number(1e-9), False),)])
     assert _starred(number(0.5), True) == "0.5"
 
 
@@ -190,25 +191,21 @@ def test_other_rails_are_judged_where_a_pad_touches_and_the_reference_is_converg
             judged("h9", None, None, passes=False),
         ],
     }
-    springs, walls = rails_page.rows(
-        [{"name": "thin", "element_size_m": 4e-3, "agreement": agreement, "constants": {}}]
-    )
-    assert springs == ("thin", "4 mm", "springs, calibrated", "2 of 2", "1", "12", "0.3", "")
-    assert walls == ("thin", "4 mm", "compliant", "3 of 4", "2", "0.5", "0.02", "h8")
-    shown = rails_page.table(
-        [
-            {
-                "name": "thin",
-                "element_size_m": 4e-3,
-                "agreement": agreement,
-                "constants": {"contact.stiffness": 2e7},
-            }
-        ]
-    )
-    assert "stiffness 2·10<sup>7</sup>" in shown
+    scene = {
+        "name": "thin",
+        "element_size_m": 4e-3,
+        "agreement": agreement,
+        "constants": {"contact.stiffness": 2e7},
+    }
+    table, constants = rails_page.parts([scene])
+    springs, compliant = table.rows
+    assert springs == ("thin", 4e-3, "springs, calibrated", "2 of 2", 1, 0.12, 0.3, "")
+    assert compliant == ("thin", 4e-3, "compliant", "3 of 4", 2, 0.005, 0.02, "h8")
+    assert "| thin | 4 | compliant | 3 of 4 | 2 | 0.5 | 0.02 | h8 |" in markdown(table)
+    assert constants.rows == [("thin", "stiffness 2e+07")]
 
 
-def test_front_of_the_best_counts_errors_below_the_band_as_the_band():
+def test_pareto_front_counts_errors_below_the_band_as_the_band():
     def point(model, error, wall, pareto):
         return {
             "model": model,
@@ -234,7 +231,7 @@ def test_front_of_the_best_counts_errors_below_the_band_as_the_band():
         }
     )
     settled, curves = chart.panels
-    assert [line.name for line in settled.lines] == ["front of the best", "rough", "fine", "mesh"]
+    assert [line.name for line in settled.lines] == ["Pareto front", "rough", "fine", "mesh"]
     assert (settled.lines[0].x, settled.lines[0].y) == (
         [1e-3, 5e-3, 5e-3, 9.0],
         [0.3, 0.3, 0.04, 0.04],

@@ -1,31 +1,27 @@
-"""How 1 um grows on the page: separation of each model from its disturbed twins, and what follows
-for comparing curves."""
+"""Growth of a 1 um disturbance on the page: separation of each model from its disturbed twins, and
+the time up to which curves can be compared."""
 
-from html import escape
 from typing import TYPE_CHECKING
 
 from tipoff.mechanics.models import FINITE_ELEMENTS
 from tipoff.studies.render.chart import NAVY, VERMILION, Chart, Line, Panel
-from tipoff.studies.render.markup import Html, caption, number, section, table
+from tipoff.studies.render.document import Bullets, Figure, Part
+from tipoff.studies.render.markup import Html, section
+from tipoff.studies.render.table import Column, Table
 
 if TYPE_CHECKING:
     from tipoff.studies.report.page import Page
 
-WORDS = (
-    "Largest separation of the body rates from those of twins whose clearance differs by ±1 µm. "
-    "Grey: below the gate of the "
-    "settled rates. Marks: the horizon, where it passes the gate for good; peaks that a contact "
-    "takes back are contacts that "
-    "come a little earlier or later. A curve begins where the twins first touch."
+_SEPARATION = (
+    "Largest difference of the body rates from twins with ±1 µm of clearance, from their first "
+    "contact on. Grey: below the gate of the settled rates. Marker: horizon, after which the "
+    "difference stays above the gate."
 )
-_LEGEND = (
-    "Reference on the coarse mesh, as for the floor. Sensitive: 1 µm moves a settled rate by more "
-    "than the gate "
-    "({gate:g} deg/s). Chaotic: so it does, and by growth from contact to contact: the factor is "
-    "above their number, which "
-    "is what a wall 1 µm elsewhere brings at every contact without growth. Conditions are those of "
-    "the floor "
-    "and all whose reference is not converged."
+_NOTES = (
+    "Reference on the coarse mesh; conditions of the floor, and all with a reference that is not "
+    "converged.",
+    "Sensitive: 1 µm changes a settled rate by more than the gate ({gate:g} deg/s). Chaotic: "
+    "sensitive, and the factor is above the number of contacts, which is the factor without growth.",
 )
 _SHOWN = 1e-4  # of the gate; nothing below matters to a comparison
 _LOOKS = ((NAVY, 5.0, "-", 0.35), (VERMILION, 1.5, "-", 1.0))
@@ -33,13 +29,12 @@ _MARKERS = "Do"
 
 
 def draw(page: "Page") -> Html:
-    """The section, where anything touches; agreement reminds of its own stage."""
+    """The section, where a pad touches a rail."""
     found = (page.documents.get("agreement") or {}).get("growth")
     if not found:
         return Html("")
-    return section(
-        "growth-section", "How 1 µm grows", page.figure(picture(found), WORDS), tables(found)
-    )
+    parts = [Figure(picture(found), _SEPARATION), *tables(found)]
+    return section("growth-section", "Growth of a 1 µm disturbance", page.parts(parts))
 
 
 def picture(found: list[dict]) -> Chart:
@@ -68,15 +63,15 @@ def picture(found: list[dict]) -> Chart:
 
 
 def _lines(item: dict, look: tuple[str, float, str, float], marker: str) -> list[Line]:
-    """The curve of one model and its horizon; nothing where twins do not part."""
-    known = [
+    """The curve of one model and its horizon; nothing where the twins do not separate."""
+    points = [
         (1e3 * time, apart)
         for time, apart in zip(item["time_s"], item["separation_deg_s"])
         if apart > _SHOWN * item["gate_deg_s"]
     ]
-    if not known:
+    if not points:
         return []
-    times, separations = zip(*known)
+    times, separations = zip(*points)
     curve = Line(times, separations, item["model"], *look)
     if item["horizon_s"] is None:
         return [curve]
@@ -94,17 +89,16 @@ def _lines(item: dict, look: tuple[str, float, str, float], marker: str) -> list
     ]
 
 
-def tables(found: list[dict]) -> Html:
-    """In words up to when a curve comparison means anything, then growth from contact to
-    contact."""
+def tables(found: list[dict]) -> list[Part]:
+    """Up to when curves can be compared, and the growth over the contacts."""
     heads = (
         "condition",
         "model",
         "contacts",
-        "separation after each (deg/s)",
+        Column("difference after each", "deg/s", ".2g"),
         "factor, first to last",
-        "exponent (1/s)",
-        "settled (deg/s per µm)",
+        Column("exponent", "1/s"),
+        Column("settled", "deg/s per µm"),
         "horizon (ms)",
         "verdict",
     )
@@ -113,41 +107,29 @@ def tables(found: list[dict]) -> Html:
             item["condition"],
             item["model"],
             len(item["contacts"]),
-            "; ".join(f"{contact['separation_deg_s']:.2g}" for contact in item["contacts"]) or None,
-            number(item["factor"]),
-            number(item["exponent_per_s"]),
-            number(item["settled_growth_deg_s_um"]),
+            [contact["separation_deg_s"] for contact in item["contacts"]] or None,
+            item["factor"],
+            item["exponent_per_s"],
+            item["settled_growth_deg_s_um"],
             _horizon(item),
             verdict(item),
         )
         for item in found
     ]
     kinds = ["good" if item["sensitive"] is False else "doubt" for item in found]
-    said = "".join(
-        f"<li>{escape(sentence(item))}</li>" for item in found if item["model"] == FINITE_ELEMENTS
-    )
-    return Html(
-        f"<ul>{said}</ul>"
-        + table(heads, rows, "growth", kinds, dense=True)
-        + caption(_LEGEND.format(gate=found[0]["gate_deg_s"]) if found else "")
-    )
+    notes = tuple(note.format(gate=found[0]["gate_deg_s"]) for note in _NOTES)
+    lines = [sentence(item) for item in found if item["model"] == FINITE_ELEMENTS]
+    return [Bullets(lines), Table(heads, rows, notes, "", "growth", kinds, dense=True)]
 
 
 def sentence(item: dict) -> str:
-    """Up to when a curve comparison means anything on one condition."""
-    if item["horizon_s"] is None:
-        return (
-            f"{item['condition']}: {verdict(item)}; curves can be compared to their end at "
-            f"{1e3 * item['end_s']:.1f} ms"
-        )
-    return (
-        f"{item['condition']}: {verdict(item)}; a curve comparison means something up to "
-        f"{_horizon(item)} ms"
-    )
+    """Up to when curves of one condition can be compared."""
+    horizon = _horizon(item) if item["horizon_s"] is not None else f"{1e3 * item['end_s']:.1f}"
+    return f"{item['condition']}: {verdict(item)}; curves can be compared up to {horizon} ms"
 
 
 def verdict(item: dict) -> str:
-    """What 1 um makes of one condition."""
+    """Whether 1 um grows on one condition."""
     if item["sensitive"] is None:
         return "a run did not settle"
     return (

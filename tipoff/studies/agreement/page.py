@@ -2,102 +2,93 @@
 
 from typing import TYPE_CHECKING
 
-from tipoff.studies.render.markup import (
-    Html,
-    caption,
-    fold,
-    joined,
-    number,
-    paragraph,
-    percent,
-    table,
-)
+from tipoff.studies.render.document import Fold, Part
+from tipoff.studies.render.markup import Html
+from tipoff.studies.render.table import Column, Table, number, percent
 
 if TYPE_CHECKING:
     from tipoff.studies.report.page import Page
 
-_HEADS = (
+
+def _percent(title: str) -> Column:
+    return Column(title, "%", scale=100.0)
+
+
+_HEADS: tuple[Column | str, ...] = (
     "condition",
     "role",
-    "rate L2 (%)",
+    _percent("rate L2"),
     "floor L2 (%)",
-    Html("v<sub>x</sub> L2 (%)"),
-    "settled error (deg/s)",
-    "error x, y, z (deg/s)",
+    _percent("v_x L2"),
+    Column("settled error", "deg/s"),
+    Column("error x, y, z", "deg/s", "+.2g"),
     "floor (deg/s)",
     "reference ± (deg/s)",
-    "ISO 18571",
-    "S-G magnitude (%)",
-    "S-G phase (%)",
+    Column("ISO 18571", form=".3f"),
+    _percent("S-G magnitude"),
+    _percent("S-G phase"),
     "verdict",
 )
 
-_FLOOR = "Floor: what ±{change:g} µm of clearance changes in either model. "
-
 
 def draw(page: "Page") -> Html:
-    """The section, or how to make what it shows."""
+    """The section, or how to make its result."""
     return page.section(
-        "agreement", "agreement-section", "Agreement with the reference", agreement, "compare"
+        "agreement",
+        "agreement-section",
+        "Agreement with the reference",
+        lambda found: page.parts(agreement(found)),
+        "compare",
     )
 
 
-def agreement(document: dict) -> Html:
-    """The agreement tables, the surrogate on compliant contact first, with floor and reference
-    uncertainty beside every claim."""
-    gates = document["gates"]
-    legend = (
-        f"Gates: rate L2 {percent(gates['rate_relative_l2'])} %, v_x L2 "
-        f"{percent(gates['velocity_relative_l2'])} %, "
-        f"settled error {gates['settled_rate_error_deg_s']:g} deg/s, or twice the floor where that "
-        f"is more. "
-        + _FLOOR.format(change=1e6 * document["clearance_change_m"])
-        + "Reference ±: the largest change of its settled rates from twice the element size on, "
-        f"and there under half the step or four times the penalty; above "
-        f"{document['converged_deg_s']:g} deg/s no agreement "
-        "is claimed. A star marks a value measured on other conditions, of which the largest is "
-        "taken. ISO 18571 is the mean "
-        "rating of the three rates (1 is perfect); Sprague and Geers over the three rates together."
-    )
+def agreement(document: dict) -> list[Part]:
+    """The agreement tables, first that of compliant contact; every row has its floor and the
+    uncertainty of the reference."""
     calibrated = [*document["fitted"], *document["held_out"]]
-    return joined(
-        paragraph(
-            "On compliant contact as the statics of the rail has them, nothing fitted (the role is "
-            "that of the "
-            "condition in the calibration of springs): " + summary(document["compliant"])
-        ),
-        judged(document["compliant"], "agreement"),
-        caption(legend),
+    return [
+        "Compliant contact with the rail compliance; nothing is fitted, and the role is that of "
+        f"the condition in the calibration of the springs. {summary(document['compliant'])}.",
+        judged(document["compliant"], "agreement", _notes(document)),
         _further(document["compliant"]),
         _simpler(document),
-        _stiffer(document["stiffer"]),
-        paragraph(
-            "One spring and damper per pad face, calibrated on the fitted conditions: "
-            + summary(document["fitted"], "fitted ")
-            + "; "
-            + summary(document["held_out"], "held-out ")
-        ),
+        *_stiffer(document["stiffer"]),
+        "One spring and damper at each pad face, calibrated on the fitted conditions. "
+        f"{summary(document['fitted'], 'fitted ')}; {summary(document['held_out'], 'held-out ')}.",
         judged(calibrated, "agreement-calibrated"),
         _further(calibrated),
-        fold(
-            "the same before calibration",
-            judged(document["uncalibrated"], "agreement-uncalibrated"),
-        ),
+        Fold("Before calibration", [judged(document["uncalibrated"], "agreement-uncalibrated")]),
         _evidence(document),
+    ]
+
+
+def _notes(document: dict) -> tuple[str, ...]:
+    gates = document["gates"]
+    return (
+        f"Gates: rate L2 {percent(gates['rate_relative_l2'])} %, v_x L2 "
+        f"{percent(gates['velocity_relative_l2'])} %, settled error "
+        f"{gates['settled_rate_error_deg_s']:g} deg/s or twice the floor, if that is larger. "
+        f"Floor: change of either model by ±{1e6 * document['clearance_change_m']:g} µm of "
+        "clearance.",
+        "Reference ±: largest change of its settled rates by the mesh (from twice the element "
+        "size) and, on that coarse mesh, by half the step or four times the penalty. Above "
+        f"{document['converged_deg_s']:g} deg/s the reference is not converged.",
+        "A star marks the largest value of other conditions. ISO 18571 is the mean rating of the "
+        "three rates (1 is perfect); Sprague and Geers (S-G) is over the three rates together.",
     )
 
 
-def judged(rows: list[dict], name: str) -> Html:
-    """A table of agreement rows: good, bad, or of a reference that is not converged."""
+def judged(rows: list[dict], name: str, notes: tuple[str, ...] = ()) -> Table:
+    """A table of agreement rows: good, bad, or with a reference that is not converged."""
     kinds = [
         "doubt" if not row["reference_converged"] else "good" if row["passes"] else "bad"
         for row in rows
     ]
-    return table(_HEADS, [_agreement_row(row) for row in rows], name, kinds, dense=True)
+    return Table(_HEADS, [_agreement_row(row) for row in rows], notes, "", name, kinds, dense=True)
 
 
-def _simpler(document: dict) -> Html:
-    """What each part of the walls' flexibility is worth."""
+def _simpler(document: dict) -> Fold:
+    """Errors with parts of the rail compliance."""
     found = document["simpler"]
     names = list(dict.fromkeys(item["condition"] for item in found))
     rows = []
@@ -120,78 +111,52 @@ def _simpler(document: dict) -> Html:
         )
         for words, group in whole.items()
     ]
-    return fold(
-        "what the parts of the flexibility are worth: rate L2 (%) and settled error (deg/s) when "
-        "the surrogate knows less, "
-        "or more",
-        table(("walls", *names), rows, dense=True),
+    return Fold(
+        "Compliant contact with parts of the rail compliance, and with modes: rate L2 (%) and "
+        "settled error (deg/s)",
+        [Table(("rail compliance", *names), rows, dense=True)],
     )
 
 
-def _stiffer(found: list[dict]) -> Html:
-    """What the penalty makes uncertain, and what of it is a difference of the models."""
+def _stiffer(found: list[dict]) -> list[Part]:
+    """Changes of both models, and of their difference, with four times the penalty."""
     if not found:
-        return Html("")
-    rows = [
-        (
-            item["condition"],
-            *(
-                number(item[key], 2)
-                for key in (
-                    "reference_change_deg_s",
-                    "surrogate_change_deg_s",
-                    "apart_deg_s",
-                    "apart_with_more_deg_s",
-                )
-            ),
-        )
-        for item in found
-    ]
-    return fold(
-        "four times the penalty in both models: how far settled rates move, and how far apart the "
-        "models are (deg/s)",
-        table(
-            (
-                "condition",
-                "the reference moves by",
-                "the surrogate moves by",
-                "apart before",
-                "apart after",
-            ),
-            rows,
-        ),
-        caption(
-            "The reference on the coarse mesh. Where both move alike the stiffness of the penalty "
-            "makes the answer "
-            "uncertain, and the agreement of the models does not depend on it."
-        ),
+        return []
+    columns = {
+        "reference_change_deg_s": "change of the reference",
+        "surrogate_change_deg_s": "change of the surrogate",
+        "apart_deg_s": "difference before",
+        "apart_with_more_deg_s": "difference after",
+    }
+    titles = [Column(title, "deg/s", ".2g") for title in columns.values()]
+    rows = [(item["condition"], *(item[key] for key in columns)) for item in found]
+    note = (
+        "Settled rates, the reference on the coarse mesh. Where both models change alike, the "
+        "penalty makes the result uncertain but not the agreement."
     )
+    return [
+        Fold(
+            "Four times the penalty in both models", [Table(["condition", *titles], rows, (note,))]
+        )
+    ]
 
 
 def _errors(row: dict) -> str:
-    return f"{percent(row['rate_relative_l2'])}; {number(row['settled_rate_error_deg_s'], 2)}"
+    return f"{percent(row['rate_relative_l2'])}; {number(row['settled_rate_error_deg_s'], '.2g')}"
 
 
 def summary(rows: list[dict], words: str = "") -> str:
     """How many of the ``words`` conditions agree."""
-    passed, doubtful = (
+    passed, doubtful, free = (
         sum(row["passes"] for row in rows),
         sum(not row["reference_converged"] for row in rows),
+        sum(row["passes"] and not row["touches"] for row in rows),
     )
     return (
         f"{passed} of {len(rows)} {words}conditions pass all three gates"
-        + _free(rows)
-        + (
-            f" ({doubtful} of {len(rows)} with a reference that is not converged)"
-            if doubtful
-            else ""
-        )
+        + (f", {free} of them without contact" if free else "")
+        + (f"; for {doubtful} the reference is not converged" if doubtful else "")
     )
-
-
-def _free(rows: list[dict]) -> str:
-    count = sum(row["passes"] and not row["touches"] for row in rows)
-    return f", {count} of them without touching the rail at all" if count else ""
 
 
 def _agreement_row(row: dict) -> tuple:
@@ -199,87 +164,72 @@ def _agreement_row(row: dict) -> tuple:
         row["floor_measured_here"],
         row["reference_uncertainty_measured_here"],
     )
-    xyz = row["settled_rate_error_xyz_deg_s"]
     return (
         row["condition"],
         row["role"].replace("_", " "),
-        percent(row["rate_relative_l2"]),
+        row["rate_relative_l2"],
         _starred(percent(row["floor_l2"]), floor_here),
-        percent(row["velocity_relative_l2"]),
-        number(row["settled_rate_error_deg_s"]),
-        "–" if xyz is None else ", ".join(f"{value:+.2g}" for value in xyz),
+        row["velocity_relative_l2"],
+        row["settled_rate_error_deg_s"],
+        row["settled_rate_error_xyz_deg_s"],
         _starred(number(row["floor_deg_s"]), floor_here),
         _starred(number(row["reference_uncertainty_deg_s"]), uncertainty_here),
-        f"{row['iso18571']:.3f}",
-        percent(row["sprague_geers_magnitude"]),
-        percent(row["sprague_geers_phase"]),
+        row["iso18571"],
+        row["sprague_geers_magnitude"],
+        row["sprague_geers_phase"],
         row["verdict"],
     )
 
 
-def _starred(shown: str, measured_here: bool) -> Html:
+def _starred(shown: str, measured_here: bool) -> str:
     """A number, with a star where it was measured on other conditions."""
-    return Html(shown if measured_here else f"{shown}*")
+    return shown if measured_here else f"{shown}*"
 
 
-def _further(rows: list[dict]) -> Html:
+def _further(rows: list[dict]) -> Fold:
     """Lateral velocity, direction, and the ratings of each channel."""
     channels = list(rows[0]["iso18571_channels"]) if rows else []
+    names = [name.replace("_", " ") for name in channels]
+    heads: tuple[Column | str, ...] = (
+        "condition",
+        Column("lateral velocity", "mm/s", "+.3g", 1e3),
+        Column("direction", "deg", "+.3g"),
+        *(Column(f"ISO 18571, {name}", form=".3f") for name in names),
+        *(Column(f"S-G M, P, {name}", "%", ".2g", 100.0) for name in names),
+    )
     lines = [
         (
             row["condition"],
-            *(
-                _signed(row[name], factor)
-                for name, factor in (
-                    ("lateral_velocity_difference_m_s", 1e3),
-                    ("direction_error_difference_deg", 1.0),
-                )
-            ),
-            *(f"{row['iso18571_channels'][name]:.3f}" for name in channels),
-            *(_pair(row["sprague_geers_channels"][name]) for name in channels),
+            row["lateral_velocity_difference_m_s"],
+            row["direction_error_difference_deg"],
+            *(row["iso18571_channels"][name] for name in channels),
+            *(row["sprague_geers_channels"][name] for name in channels),
         )
         for row in rows
     ]
-    names = [name.replace("_", " ") for name in channels]
-    return fold(
-        "lateral velocity, direction, and each channel by itself",
-        table(
-            (
-                "condition",
-                "lateral velocity (mm/s)",
-                "direction (deg)",
-                *(f"ISO 18571, {name}" for name in names),
-                *(f"S-G M; P (%), {name}" for name in names),
-            ),
-            lines,
-            dense=True,
-        ),
-        caption("Differences are surrogate minus reference."),
+    note = "Lateral velocity and direction: surrogate minus reference."
+    return Fold(
+        "Lateral velocity, direction, and ratings of each channel",
+        [Table(heads, lines, (note,), dense=True)],
     )
 
 
-def _signed(value: float | None, factor: float) -> str:
-    return "–" if value is None else f"{factor * value:+.3g}"
-
-
-def _pair(values: list[float] | None) -> str:
-    return "–" if values is None else "; ".join(f"{100.0 * value:.2g}" for value in values)
-
-
-def _evidence(document: dict) -> Html:
+def _evidence(document: dict) -> Fold:
+    heads: tuple[Column | str, ...] = (
+        "condition",
+        "model",
+        "changed input",
+        _percent("rate L2"),
+        Column("settled rates", "deg/s"),
+    )
     rows = [
         (
             item["condition"],
             item["model"],
             item["cause"],
-            percent(item["rate_relative_l2"]),
-            number(item["settled_rate_change_deg_s"]),
+            item["rate_relative_l2"],
+            item["settled_rate_change_deg_s"],
         )
         for item in [*document["floor"], *document["refinement"]]
     ]
-    return fold(
-        "floor and reference uncertainty as measured",
-        table(
-            ("condition", "model", "what was changed", "rate L2 (%)", "settled rates (deg/s)"), rows
-        ),
-    )
+    return Fold("Measured floor and uncertainty of the reference", [Table(heads, rows)])

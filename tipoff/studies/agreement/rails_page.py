@@ -1,74 +1,40 @@
-"""Agreement on other rails: scenes whose results lie beside those of the page, each calibrated and
-judged by itself."""
+"""Agreement on other rails: scenes whose results are in folders beside that of the page."""
 
 from typing import TYPE_CHECKING
 
-from tipoff.studies.render.markup import Html, caption, number, paragraph, section
-from tipoff.studies.render.markup import table as drawn
+from tipoff.studies.render.document import Part
+from tipoff.studies.render.markup import Html, section
+from tipoff.studies.render.table import Column, Table
 
 if TYPE_CHECKING:
     from tipoff.studies.report.page import Page
 
-HEADS = (
+_HEADS = (
     "scene",
-    "elements",
+    Column("elements", "mm", "g", 1e3),
     "model",
     "judged",
     "agree",
-    "largest rate L2 (%)",
-    "largest settled error (deg/s)",
+    Column("largest rate L2", "%", ".2g", 100.0),
+    Column("largest settled error", "deg/s", ".2g"),
     "reference not converged",
 )
 
 
 def draw(page: "Page") -> Html:
-    """The section, where other scenes have results beside these."""
+    """The section, where other scenes have results."""
     found = page.documents.get("rails")
-    return section("rails", "Other rails", table(found)) if found else Html("")
+    return section("rails", "Other rails", page.parts(parts(found))) if found else Html("")
 
 
-def rows(found: list[dict]) -> list[tuple]:
-    """Two rows a scene, calibrated springs and compliant contact, over its conditions with a touch:
-    how many are judged, because their reference is converged, how many of those agree, the largest
-    errors of these, and how many are not judged."""
-    return [
-        (
-            scene["name"],
-            f"{1e3 * scene['element_size_m']:g} mm",
-            title,
-            *_judged(scene["agreement"], kinds),
-        )
-        for scene in found
-        for title, kinds in (
-            ("springs, calibrated", ("fitted", "held_out")),
-            ("compliant", ("compliant",)),
-        )
-    ]
-
-
-def _judged(agreement: dict, kinds: tuple[str, ...]) -> tuple:
-    touched = [row for kind in kinds for row in agreement[kind] if row["touches"]]
-    judged = [row for row in touched if row["reference_converged"]]
-    errors = [
-        100.0 * row["rate_relative_l2"] for row in judged if row["rate_relative_l2"] is not None
-    ]
-    settled = [
-        row["settled_rate_error_deg_s"]
-        for row in judged
-        if row["settled_rate_error_deg_s"] is not None
-    ]
-    return (
-        f"{len(judged)} of {len(touched)}",
-        str(sum(row["passes"] for row in judged)),
-        number(max(errors, default=None), 2),
-        number(max(settled, default=None), 2),
-        ", ".join(row["condition"] for row in touched if not row["reference_converged"]),
+def parts(found: list[dict]) -> list[Part]:
+    """Agreement and constants of the scenes ``found``."""
+    note = (
+        "The springs are calibrated for each scene. Judged are conditions with contact and a "
+        "converged reference. `make rails` makes the results of the thin and titanium rails of "
+        "the catalogue at 4 mm."
     )
-
-
-def constants(found: list[dict]) -> list[tuple]:
-    """What each scene was calibrated to."""
-    return [
+    rows = [
         (
             scene["name"],
             ", ".join(
@@ -78,25 +44,39 @@ def constants(found: list[dict]) -> list[tuple]:
         )
         for scene in found
     ]
+    return [table(found, note), Table(("scene", "calibrated constants (SI)"), rows)]
 
 
-def table(found: list[dict]) -> Html:
-    """Both tables, and what makes more of them."""
-    return Html(
-        "".join(
-            [
-                paragraph(
-                    "Scenes whose results lie beside these. Springs were calibrated anew for each; "
-                    "the compliance is from statics."
-                ),
-                drawn(HEADS, rows(found)),
-                drawn(("scene", "calibrated constants (SI)"), constants(found)),
-                caption(
-                    "Of the conditions in which a pad touches a rail, those are judged whose "
-                    "reference is converged. "
-                    "make rails calibrates and judges the catalogue's thin and titanium rails at 4 "
-                    "mm."
-                ),
-            ]
+def table(found: list[dict], *notes: str, title: str = "") -> Table:
+    """Two rows a scene, calibrated springs and compliant contact, over its conditions with contact:
+    number judged, number that agrees, largest errors of those judged, and names of those not
+    judged."""
+    rows = [
+        (
+            scene["name"],
+            scene["element_size_m"],
+            model,
+            *_judged([row for kind in kinds for row in scene["agreement"][kind]]),
         )
+        for scene in found
+        for model, kinds in (
+            ("springs, calibrated", ("fitted", "held_out")),
+            ("compliant", ("compliant",)),
+        )
+    ]
+    return Table(_HEADS, rows, notes, title)
+
+
+def _judged(rows: list[dict]) -> tuple:
+    touched = [row for row in rows if row["touches"]]
+    judged = [row for row in touched if row["reference_converged"]]
+    largest = (
+        max((row[key] for row in judged if row[key] is not None), default=None)
+        for key in ("rate_relative_l2", "settled_rate_error_deg_s")
+    )
+    return (
+        f"{len(judged)} of {len(touched)}",
+        sum(row["passes"] for row in judged),
+        *largest,
+        ", ".join(row["condition"] for row in touched if not row["reference_converged"]),
     )

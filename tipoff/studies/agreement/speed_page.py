@@ -4,85 +4,75 @@ from typing import TYPE_CHECKING
 
 from tipoff.studies import published
 from tipoff.studies.convergence import equal_accuracy
-from tipoff.studies.render.markup import Html, caption, joined, paragraph, table
+from tipoff.studies.render.document import Caption, Part
+from tipoff.studies.render.markup import Html
+from tipoff.studies.render.table import Column, Table, span
 
 if TYPE_CHECKING:
     from tipoff.studies.report.page import Page
 
 
 def draw(page: "Page") -> Html:
-    """The section, or how to make what it shows."""
+    """The section, or how to make its result."""
     equal = (page.documents.get("convergence") or {}).get("equal_accuracy")
     return page.section(
-        "agreement", "speedup", "Speed", lambda found: speedups(found, equal), "compare"
+        "agreement",
+        "speedup",
+        "Speed",
+        lambda found: page.parts(speedups(found, equal)),
+        "compare",
     )
 
 
-def speedups(document: dict, equal: dict | None = None) -> Html:
-    """Wall times of the reference and of two surrogates on one machine, their ratios and the
-    scatter; and those at ``equal`` accuracy, where the error of the reference was studied."""
+def speedups(document: dict, equal: dict | None = None) -> list[Part]:
+    """Wall times of the reference and of two surrogates on one machine, their ratios and scatter;
+    and those at ``equal`` accuracy, where the convergence study measured them."""
     found = document["speedup_compliant"]
     machine = found["hardware"]
-    return joined(
-        paragraph("Model compliant:"),
-        _speedup(found),
-        paragraph("Model springs, calibrated:"),
-        _speedup(document["speedup"]),
-        caption(
-            f"Condition {found['condition']}, all models by turns in one go, all included but "
-            f"compilation, on {machine['processor']}, "
-            f"{machine['cores']} cores, {machine['memory_gib']} GiB, Python {machine['python']}."
+    return [
+        _speedup("model compliant", found),
+        _speedup("model springs, calibrated", document["speedup"]),
+        Caption(
+            f"Condition {found['condition']}; all models run alternately in one process, times "
+            f"without compilation, on {machine['processor']}, {machine['cores']} cores, "
+            f"{machine['memory_gib']} GiB, Python {machine['python']}."
         ),
         _equal(equal),
-    )
+    ]
 
 
-def _equal(found: dict | None) -> Html:
-    """The mesh above is fixed; the one that a speed-up should be measured on is as sure as the
-    surrogate is exact."""
+def _equal(found: dict | None) -> str:
+    """The speed-up at equal accuracy; the mesh of the tables above is fixed."""
     if found is None:
-        return paragraph(
-            "How much faster at equal accuracy: make convergence tells, on the mesh that is as "
-            "sure as the surrogate "
-            "is exact."
-        )
-    said = equal_accuracy.sentence(found)
-    asked = float(published.headline()["speedup"])
-    return paragraph(f"{said[0].upper()}{said[1:]}. The paper has {asked:,.0f} for its two models.")
+        return "`make convergence` measures the speed-up at equal accuracy."
+    printed = float(published.headline()["speedup"])
+    return f"{equal_accuracy.sentence(found)}. The paper has {printed:,.0f} for its two models."
 
 
-def _speedup(found: dict) -> Html:
+def _speedup(model: str, found: dict) -> Table:
+    surrogate = [1e3 * value for value in found["lowfi_wall_range_s"]]
     rows = [
         (
             "wall time of one reference run",
             f"{found['highfi_wall_s']:.4g} s",
-            f"{found['highfi_repeats']} repeats, "
-            f"{_range(found['highfi_wall_range_s'])} s, {found['elements']:,} elements",
+            f"{found['highfi_repeats']} repeats, {_range(found['highfi_wall_range_s'])} s, "
+            f"{found['elements']:,} elements",
         ),
         (
             "wall time of one surrogate run",
             f"{1e3 * found['lowfi_wall_s']:.4g} ms",
-            f"{found['lowfi_repeats']} repeats, "
-            f"{_range([1e3 * value for value in found['lowfi_wall_range_s']])} ms, warm",
+            f"{found['lowfi_repeats']} repeats, {_range(surrogate)} ms, compiled",
         ),
         (
             "ratio of wall times",
-            f"{found['ratio']:,.0f}",
+            found["ratio"],
             f"{found['low']:,.0f} to {found['high']:,.0f} over all pairs of repeats",
         ),
-        (
-            "ratio of kernels alone",
-            _whole(found["kernel_ratio"]),
-            "time loops only, without set-up and output",
-        ),
-        ("ratio of processor times", _whole(found["cpu_ratio"]), "of the whole process"),
+        ("ratio of kernel times", found["kernel_ratio"], "time loops only"),
+        ("ratio of processor times", found["cpu_ratio"], "whole process"),
     ]
-    return table(("", "value", "how measured"), rows)
+    return Table((model, Column("value", form=",.0f"), "measurement"), rows)
 
 
 def _range(values: list[float]) -> str:
-    return f"{min(values):.3g} to {max(values):.3g}"
-
-
-def _whole(value: float | None) -> str:
-    return "–" if value is None else f"{value:,.0f}"
+    return span(min(values), max(values))

@@ -1,6 +1,5 @@
-"""Stage ``compare``: agreement of the surrogates with the reference, on conditions one was fitted
-to and on conditions none ever saw, beside the floor and the uncertainty of the reference; the
-growth of 1 um; and the speed-up."""
+"""Stage ``compare``: agreement of the surrogates with the reference on fitted and held-out conditions,
+with the floor and the uncertainty of the reference; growth of a 1 um disturbance; speed-up."""
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import asdict
@@ -30,9 +29,9 @@ _SIMPLER = {
 }
 
 
-class Rung(NamedTuple):
-    """A surrogate to judge: its name in result files, what the report calls it, its constants, the
-    rail compliance of each condition, and how many modes of each rail vibrate."""
+class Candidate(NamedTuple):
+    """A surrogate to compare with the reference: ``name`` in result files, ``title`` in the report,
+    ``calibration`` of its springs, rail ``compliance`` by condition, ``modes`` of each rail."""
 
     name: str
     title: str
@@ -40,60 +39,65 @@ class Rung(NamedTuple):
     compliance: Mapping[str, RailCompliance | None] = MappingProxyType({})
     modes: int = 0
 
-    def ask(
+    def request(
         self, study: Study, condition: str, overrides: dict | None = None, tag: str = "", **numerics
     ) -> Run:
-        """The run of a condition."""
-        vibrating = {"modes": self.modes} if self.modes else {}
+        """The run of a condition with ``overrides`` of the scene; ``tag`` is part of its name."""
+        modes = {"modes": self.modes} if self.modes else {}
         return study.lowfi(
             condition,
             self.calibration,
             overrides,
             tag + "-modal" * bool(self.modes),
             self.compliance.get(condition),
-            **vibrating,
+            **modes,
             **numerics,
         )
 
 
-def rungs(study: Study, conditions: Iterable[str] | None = None) -> list[Rung]:
-    """The surrogates of a scene for ``conditions``, else for all, from the plainest up: springs
-    with the scene's own constants, with calibrated ones, compliant contact, and the same with the
+def candidates(study: Study, conditions: Iterable[str] | None = None) -> list[Candidate]:
+    """The surrogates of a scene for ``conditions`` (default: all): springs with the constants of the
+    scene, springs with calibrated constants, compliant contact, and compliant contact with the
     lowest modes of the rails."""
     static, modes = (
         compliant(study, study.conditions if conditions is None else conditions),
         study.settings.rail_modes,
     )
     return [
-        Rung("uncalibrated", f"{SPRINGS}, uncalibrated"),
-        Rung("calibrated", f"{SPRINGS}, calibrated", calibrate.load(study)),
+        Candidate("uncalibrated", f"{SPRINGS}, uncalibrated"),
+        Candidate("calibrated", f"{SPRINGS}, calibrated", calibrate.load(study)),
         static,
         static._replace(name="modal", title=f"{COMPLIANT}, {modes} modes", modes=modes),
     ]
 
 
-def compliant(study: Study, conditions: Iterable[str]) -> Rung:
+def compliant(study: Study, conditions: Iterable[str]) -> Candidate:
     """The surrogate on compliant contact, for ``conditions``."""
-    return Rung("compliant", COMPLIANT, compliance=study.rail_compliances(conditions))
+    return Candidate("compliant", COMPLIANT, compliance=study.rail_compliances(conditions))
 
 
 def run(study: Study) -> dict:
-    """``uncalibrated``, ``fitted``, ``held_out``, ``compliant`` and ``modal`` rows, ``floor`` and
-    ``refinement`` as measured, ``growth`` of 1 um, ``speedup`` of the calibrated and of the
-    compliant surrogate, ``simpler`` walls, ``stiffer`` penalty."""
+    """``uncalibrated``, ``fitted``, ``held_out``, ``compliant`` and ``modal`` rows; measured
+    ``floor`` and ``refinement``; ``growth`` of a 1 um disturbance; ``speedup`` of calibrated springs
+    and ``speedup_compliant``; ``simpler`` rail compliance; ``stiffer`` penalty."""
     study.fitted()
-    _, calibrated, on_walls, modal = ladder = rungs(study)
+    _, calibrated, static, modal = compared = candidates(study)
     gates = verdicts.gates(study.scene)
 
     def make() -> tuple[dict, list[Path]]:
-        asked = {name: study.highfi(name) for name in study.conditions}
-        highfi = dict(zip(asked, study.store.fill("highfi", list(asked.values()))))
+        wanted = {name: study.highfi(name) for name in study.conditions}
+        highfi = dict(zip(wanted, study.store.fill("highfi", list(wanted.values()))))
         require_success(highfi, "compare")
         changes, floor = refinements(study), floors(study, "reference", study.coarse)
-        own = {rung.name: floors(study, rung.title, partial(rung.ask, study)) for rung in ladder}
+        own = {
+            candidate.name: floors(study, candidate.title, partial(candidate.request, study))
+            for candidate in compared
+        }
         table = {
-            rung.name: rows(study, rung, highfi, Context([*floor, *own[rung.name]], changes, gates))
-            for rung in ladder
+            candidate.name: rows(
+                study, candidate, highfi, Context([*floor, *own[candidate.name]], changes, gates)
+            )
+            for candidate in compared
         }
         groups = {
             role: [row for row in table["calibrated"] if row["role"] == role]
@@ -111,10 +115,10 @@ def run(study: Study) -> dict:
             "clearance_change_m": study.settings.clearance_change,
             "floor": [asdict(item) for item in sum(own.values(), floor)],
             "refinement": [asdict(item) for item in changes],
-            "growth": [asdict(item) for item in _growths(study, on_walls, table["compliant"])],
-            "simpler": _simpler(study, on_walls, highfi),
-            "stiffer": _stiffer(study, on_walls),
-            **dict(zip(("speedup", "speedup_compliant"), _speedups(study, [calibrated, on_walls]))),
+            "growth": [asdict(item) for item in _growths(study, static, table["compliant"])],
+            "simpler": _simpler(study, static, highfi),
+            "stiffer": _stiffer(study, static),
+            **dict(zip(("speedup", "speedup_compliant"), _speedups(study, [calibrated, static]))),
         }, []
 
     return STAGE.run(study, None, make)
@@ -128,10 +132,12 @@ STAGE = Stage("agreement", __name__, inputs=_inputs)
 stored = STAGE.stored
 
 
-def rows(study: Study, rung: Rung, highfi: dict[str, Trajectory], context: Context) -> list[dict]:
+def rows(
+    study: Study, candidate: Candidate, highfi: dict[str, Trajectory], context: Context
+) -> list[dict]:
     """Agreement of one surrogate on every condition."""
-    wanted = {name: rung.ask(study, name) for name in study.conditions}
-    found = dict(zip(wanted, study.store.fill(rung.title, list(wanted.values()))))
+    wanted = {name: candidate.request(study, name) for name in study.conditions}
+    found = dict(zip(wanted, study.store.fill(candidate.title, list(wanted.values()))))
     return [
         verdicts.row(name, role, highfi[name], found[name], context)
         for role in ("fitted", "held_out")
@@ -139,19 +145,18 @@ def rows(study: Study, rung: Rung, highfi: dict[str, Trajectory], context: Conte
     ]
 
 
-def _simpler(study: Study, compliant: Rung, highfi: dict[str, Trajectory]) -> list[dict]:
-    """What each part of the walls' flexibility is worth: the errors of surrogates that know less of
-    it."""
+def _simpler(study: Study, compliant: Candidate, highfi: dict[str, Trajectory]) -> list[dict]:
+    """Errors of surrogates with parts of the rail compliance."""
     found = []
     for words, (patterns, coupled) in _SIMPLER.items():
-        rung = compliant._replace(
+        candidate = compliant._replace(
             compliance={
-                name: known and known.restricted(patterns, coupled)
-                for name, known in compliant.compliance.items()
+                name: whole and whole.restricted(patterns, coupled)
+                for name, whole in compliant.compliance.items()
             }
         )
         wanted = [
-            rung.ask(study, name, tag=f"-{patterns}{'' if coupled else '-apart'}")
+            candidate.request(study, name, tag=f"-{patterns}{'' if coupled else '-apart'}")
             for name in study.conditions
         ]
         for name, result in zip(study.conditions, study.store.fill(f"walls: {words}", wanted)):
@@ -169,10 +174,10 @@ def _simpler(study: Study, compliant: Rung, highfi: dict[str, Trajectory]) -> li
     return found
 
 
-def _stiffer(study: Study, compliant: Rung) -> list[dict]:
-    """What four times the penalty moves in either model, and how far apart they are with it, the
-    reference on the coarse mesh: a stiffness that both share makes the reference uncertain, but is
-    no difference between them."""
+def _stiffer(study: Study, compliant: Candidate) -> list[dict]:
+    """Changes of settled rates (deg/s) in both models by four times the penalty, and their
+    differences before and after, the reference on the coarse mesh. Both models share the penalty,
+    so its uncertainty does not affect their difference."""
     names = [
         name
         for name in study.conditions
@@ -182,8 +187,8 @@ def _stiffer(study: Study, compliant: Rung) -> list[dict]:
         name: (
             study.coarse(name),
             refined(study, name)["penalty"],
-            compliant.ask(study, name),
-            compliant.ask(study, name, _more_penalty(study), "-penalty"),
+            compliant.request(study, name),
+            compliant.request(study, name, _more_penalty(study), "-penalty"),
         )
         for name in names
     }
@@ -203,21 +208,22 @@ def _stiffer(study: Study, compliant: Rung) -> list[dict]:
     return found
 
 
-def floors(study: Study, model: str, ask: Callable[..., Run]) -> list[Spread]:
-    """Spread of one model under +-1 um of clearance, on the conditions the scene names for it."""
+def floors(study: Study, model: str, request: Callable[..., Run]) -> list[Spread]:
+    """Spread of one model under +-1 um of clearance, on the scene's conditions of the floor;
+    ``request`` makes its runs."""
     if study.scene.contact is None:
         return []
     return [
         spread(name, model, "clearance", nominal, changed)
         for name, (nominal, *changed) in _twins(
-            study, f"floor, {model}", ask, study.scene.agreement.floor
+            study, f"floor, {model}", request, study.scene.agreement.floor
         ).items()
     ]
 
 
-def _growths(study: Study, compliant: Rung, rows: list[dict]) -> list[growth.Growth]:
-    """How 1 um of clearance grows in both models, on the conditions of the floor and on those whose
-    reference is not converged: that they are chaotic may be why."""
+def _growths(study: Study, compliant: Candidate, rows: list[dict]) -> list[growth.Growth]:
+    """Growth of 1 um of clearance in both models, on the conditions of the floor and on those whose
+    reference is not converged, because chaos can be the reason."""
     if study.scene.contact is None:
         return []
     names = dict.fromkeys(
@@ -229,22 +235,22 @@ def _growths(study: Study, compliant: Rung, rows: list[dict]) -> list[growth.Gro
     gate = verdicts.gates(study.scene)["settled_rate_error_deg_s"]
     return [
         growth.growth(name, model, nominal, changed, study.settings.clearance_change, gate)
-        for model, ask in (
+        for model, request in (
             (FINITE_ELEMENTS, study.coarse),
-            (compliant.title, partial(compliant.ask, study)),
+            (compliant.title, partial(compliant.request, study)),
         )
-        for name, (nominal, *changed) in _twins(study, f"growth, {model}", ask, names).items()
+        for name, (nominal, *changed) in _twins(study, f"growth, {model}", request, names).items()
     ]
 
 
 def _twins(
-    study: Study, title: str, ask: Callable[..., Run], names: Iterable[str]
+    study: Study, title: str, request: Callable[..., Run], names: Iterable[str]
 ) -> dict[str, list[Trajectory]]:
-    """The run of each condition, and those that differ from it by 1 um of clearance."""
+    """The run of each condition, and its runs with 1 um more and less clearance."""
     groups = {
-        name: [ask(name)]
+        name: [request(name)]
         + [
-            ask(name, overrides={"contact.clearance": clearance}, tag=f"-clearance-{sign}")
+            request(name, overrides={"contact.clearance": clearance}, tag=f"-clearance-{sign}")
             for sign, clearance in clearances(study)
         ]
         for name in names
@@ -254,8 +260,7 @@ def _twins(
 
 
 def clearances(study: Study) -> list[tuple[str, float]]:
-    """The perturbed clearances (m) that are physical, of a scene with contact: a closed gap is only
-    opened."""
+    """The perturbed clearances (m) of a scene with contact; a negative one is left out."""
     assert study.scene.contact is not None
     nominal, change = study.scene.contact.clearance, study.settings.clearance_change
     return [
@@ -266,9 +271,9 @@ def clearances(study: Study) -> list[tuple[str, float]]:
 
 
 def refinements(study: Study) -> list[Spread]:
-    """Spread of the reference under each refinement alone: the mesh from the coarse one to its own,
-    on every condition, for one that is chaotic shows itself there; the others on the coarse one,
-    where the scene asks for it."""
+    """Spread of the reference under each refinement alone: from the coarse mesh to its own on every
+    condition, which also reveals chaotic ones; step and penalty on the coarse mesh, on the scene's
+    refined conditions."""
     found, groups = [], _refinement_runs(study)
     runs = study.store.fill(
         "refinement", [run for group in groups.values() for run in group.values()]
@@ -280,12 +285,6 @@ def refinements(study: Study) -> list[Spread]:
             spread(name, "reference", cause, coarse, [one]) for cause, one in zip(causes, changed)
         ]
     return found
-
-
-def asked_of_the_reference(study: Study) -> list[Run]:
-    """Every run from which ``refinements`` knows how sure the reference is, its own on every
-    condition among them."""
-    return [run for group in _refinement_runs(study).values() for run in group.values()]
 
 
 def _refinement_runs(study: Study) -> dict[str, dict[str, Run]]:
@@ -305,16 +304,16 @@ def refined(study: Study, name: str) -> dict[str, Run]:
 
 
 def _more_penalty(study: Study) -> dict[str, float]:
-    assert study.scene.contact is not None  # or nobody asks for more
+    assert study.scene.contact is not None  # as for every caller
     return {"contact.penalty": 4.0 * study.scene.contact.penalty}
 
 
-def _speedups(study: Study, ladder: list[Rung]) -> list[dict]:
+def _speedups(study: Study, compared: list[Candidate]) -> list[dict]:
     name, settings = study.fitted()[0], study.settings
     with Board("speed-up", 1) as board:
         found = speedups(
             study.highfi(name),
-            {rung.name: rung.ask(study, name) for rung in ladder},
+            {candidate.name: candidate.request(study, name) for candidate in compared},
             settings.highfi_repeats,
             settings.lowfi_repeats,
             board.callback("speed-up"),

@@ -1,4 +1,4 @@
-"""Agreement on conditions drawn after everything was settled."""
+"""Agreement on conditions drawn at random."""
 
 from tipoff.studies.blind import command
 from tipoff.studies.question import Parts, Question
@@ -10,4 +10,4 @@ def _load() -> Parts:
     return Parts(stage.run, stage.STAGE.stored, page.draw)
 
 
-QUESTION = Question("blind", "Agreement on conditions nobody chose", "Blind", command.add, _load)
+QUESTION = Question("blind", "Agreement on blind conditions", "Blind", command.add, _load)

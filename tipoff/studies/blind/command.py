@@ -24,7 +24,7 @@ def blind(
             "--cases",
             metavar="N",
             min=1,
-            help="Conditions to draw; each is two runs of the reference.",
+            help="Number of conditions; each takes several runs of the reference.",
         ),
     ] = 8,
     vary: Annotated[
@@ -32,7 +32,7 @@ def blind(
         typer.Option(
             "--vary",
             metavar="NAME_OR_FILE",
-            help="Distributions: a .toml file, or from the catalogue.",
+            help="Distributions: a .toml file, or a name of the catalogue.",
         ),
     ] = "paper",
     seed: Annotated[
@@ -41,15 +41,14 @@ def blind(
             "--seed",
             metavar="N",
             min=0,
-            help="Seed of the draws; default: from the sources and the scene, so that nobody "
-            "chooses it.",
+            help="Seed of the draws; default: a digest of the sources and the scene.",
         ),
     ] = None,
     element_size: ElementSize = None,
     workers: Workers = None,
     json_: Json = False,
 ) -> None:
-    """Agreement of the surrogates on conditions drawn now, which nobody can have looked at before;
+    """Agreement of the surrogates on conditions drawn at random after all constants are fixed;
     writes blind.json."""
 
     def work() -> dict:

@@ -1,32 +1,31 @@
-"""Agreement on conditions drawn by a seed that nobody chose, on the page."""
+"""Agreement on blind conditions on the page and in the terminal."""
 
 import math
 
 from tipoff.studies.agreement.page import judged, summary
-from tipoff.studies.render.document import Caption, Fold, Part
+from tipoff.studies.render.document import Fold, Part
 from tipoff.studies.render.table import Column, Table
-
-_WORDS = (
-    "Drawn from the distributions “{vary}” with seed {seed}{origin}. Every condition has its own "
-    "floor and its own reference uncertainty, by mesh, step and penalty."
-)
 
 
 def draw(found: dict) -> list[Part]:
     """The section."""
     options, compliant, calibrated = found["asked"], found["compliant"], found["calibrated"]
     origin = (
-        ", which follows from the sources and the scene: a change of the code draws others"
+        " (digest of the sources and the scene: other code draws other conditions)"
         if options["seed"] is None
         else ""
     )
+    note = (
+        f"Drawn from the distributions “{options['vary']}” with seed {found['seed']}{origin}. Every "
+        "condition has its own floor and its own uncertainty of the reference by mesh, step and "
+        "penalty."
+    )
     return [
-        "On compliant contact, nothing fitted: " + summary(compliant),
-        judged(compliant, "blind-compliant"),
-        Caption(_WORDS.format(vary=options["vary"], seed=found["seed"], origin=origin)),
-        "Calibrated springs: " + summary(calibrated),
+        f"Compliant contact, nothing fitted: {summary(compliant)}.",
+        judged(compliant, "blind-compliant", (note,)),
+        f"Calibrated springs: {summary(calibrated)}.",
         judged(calibrated, "blind-calibrated"),
-        Fold("What was drawn", [_drawn(found["conditions"])]),
+        Fold("Drawn conditions", [_drawn(found["conditions"])]),
     ]
 
 

@@ -1,9 +1,7 @@
-"""Stage ``blind``: agreement on conditions drawn after everything was settled, by a seed that
-nobody chose.
+"""Stage ``blind``: agreement on conditions drawn at random after all constants are fixed.
 
-Held-out conditions are known to whoever writes the surrogate. These are drawn from distributions of
-errors, and unless a seed is given it is that of the sources and the scene: any change of the code
-draws others.
+Authors of a surrogate can see held-out conditions. These are drawn from distributions of errors;
+the default seed is a digest of the sources and the scene, so any change of the code draws others.
 """
 
 from dataclasses import dataclass, replace
@@ -28,8 +26,8 @@ _CODE = ("tipoff.highfi", "tipoff.lowfi", "tipoff.calibration")
 
 @dataclass(frozen=True)
 class Options:
-    """``cases`` conditions from the distributions ``vary``; ``seed`` None: that of the code and the
-    scene."""
+    """``cases`` conditions from the distributions ``vary``; ``seed`` None: the digest of the code
+    and the scene."""
 
     cases: int = 8
     vary: str = uncertainty.DEFAULT
@@ -37,11 +35,11 @@ class Options:
 
 
 def run(study: Study, options: Options = Options()) -> dict:
-    """Rows of the ``calibrated`` surrogate and of that on ``compliant`` walls, as in the agreement
-    study, and the conditions drawn."""
+    """Rows of ``calibrated`` springs and of ``compliant`` contact, as in the agreement study, and the
+    drawn conditions."""
     drawn = draw(study, options)
-    ladder = [
-        compare.Rung("calibrated", f"{SPRINGS}, calibrated", calibrate.load(study)),
+    compared = [
+        compare.Candidate("calibrated", f"{SPRINGS}, calibrated", calibrate.load(study)),
         compare.compliant(drawn, drawn.conditions),
     ]
 
@@ -55,10 +53,10 @@ def run(study: Study, options: Options = Options()) -> dict:
             verdicts.gates(study.scene),
         )
         rows = {}
-        for rung in ladder:
-            own = compare.floors(drawn, rung.title, partial(rung.ask, drawn))
-            rows[rung.name] = compare.rows(
-                drawn, rung, highfi, Context([*floor, *own], changes, gates)
+        for candidate in compared:
+            own = compare.floors(drawn, candidate.title, partial(candidate.request, drawn))
+            rows[candidate.name] = compare.rows(
+                drawn, candidate, highfi, Context([*floor, *own], changes, gates)
             )
         return {
             "asked": STAGE.plain(options),
@@ -74,9 +72,9 @@ def run(study: Study, options: Options = Options()) -> dict:
 
 
 def draw(study: Study, options: Options) -> Study:
-    """The study of the drawn conditions, in the same folder: all held out, each with a floor and
-    refinements of its own, so that none borrows the uncertainty of another, which may be
-    chaotic."""
+    """The study of the drawn conditions, in the same folder: all held out, each with its own floor
+    and refinements, because the uncertainty of another, possibly chaotic, condition does not
+    apply."""
     source = Drawn(
         uncertainty.load(
             options.vary,

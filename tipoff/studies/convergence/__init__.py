@@ -1,4 +1,4 @@
-"""Error of the reference itself: quantities over ever finer meshes, and what they tend to."""
+"""Error of the reference: quantities over refined meshes and steps, with their uncertainty."""
 
 from tipoff.studies.convergence import command
 from tipoff.studies.question import Contents, Entry, Result, Section

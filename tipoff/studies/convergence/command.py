@@ -30,7 +30,7 @@ def convergence(
     workers: Workers = None,
     json_: Json = False,
 ) -> None:
-    """Error of the reference itself: meshes, steps, penalty, quadrature; takes minutes; writes
+    """Error of the reference by mesh, step, penalty and quadrature; takes minutes; writes
     convergence.json."""
 
     def work() -> dict:
@@ -40,4 +40,9 @@ def convergence(
             study_of(scene, out, set_, element_size=element_size, workers=workers), condition
         )
 
-    guarded(work, json_, lambda found: found["summary"])
+    found = guarded(work, json_)
+    if not json_:
+        from tipoff.studies.convergence import page
+        from tipoff.studies.render import document
+
+        print(document.terminal(page.terminal(found)))

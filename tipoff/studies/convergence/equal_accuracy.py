@@ -1,15 +1,14 @@
-"""The mesh to measure a speed-up against: the coarsest one that is surer of its answer than the
-surrogate is exact.
+"""The mesh for the speed-up at equal accuracy: the coarsest one whose uncertainty is below the error
+of the surrogate.
 
-With settled rates r, over all axes, and U what the three finest meshes leave open at the finest
+With settled rates r, over all axes, and U the uncertainty of the finest mesh from the three finest
 (``studies.convergence``)::
 
     error of the surrogate           e    = max |r - r_finest|
     uncertainty of a mesh of size h  u(h) = max (U + |r_h - r_finest|)
 
-A finer mesh than that would make the reference slow for digits that nobody compares, a coarser one
-could not tell how wrong the surrogate is. Where even the finest is not surer, a mesh that is takes
-longer still.
+A finer mesh makes the reference slower without need; a coarser one cannot resolve the error of the
+surrogate. Where even the finest mesh is not sufficient, its speed-up is a lower bound.
 """
 
 from collections.abc import Sequence
@@ -17,18 +16,17 @@ from typing import NamedTuple
 
 
 class Mesh(NamedTuple):
-    """Its ``element_size`` (m), its ``uncertainty`` (deg/s), and whether that is less than the
-    surrogate's error."""
+    """A mesh with its ``element_size`` (m) and ``uncertainty`` (deg/s); ``sufficient``: the
+    uncertainty is below the error of the surrogate."""
 
     element_size: float
     uncertainty: float
-    surer: bool
+    sufficient: bool
 
 
 def uncertainties(rates: Sequence[dict]) -> list[float] | None:
-    """u(h) in deg/s of every mesh, coarsest first; None where it is not known of all. Each of
-    ``rates`` is one axis: ``values`` (deg/s) by mesh, and the ``uncertainty`` (deg/s) of the
-    last."""
+    """u(h) in deg/s of every mesh, coarsest first; None where one is unknown. Each of ``rates`` is
+    one axis: ``values`` (deg/s) by mesh, and the ``uncertainty`` (deg/s) of the last."""
     if any(axis["uncertainty"] is None or None in axis["values"] for axis in rates):
         return None
     by_axis = [
@@ -38,29 +36,26 @@ def uncertainties(rates: Sequence[dict]) -> list[float] | None:
     return [max(found) for found in zip(*by_axis)]
 
 
-def coarsest(sizes: Sequence[float], uncertain: Sequence[float], error: float) -> Mesh:
-    """The first of the meshes of falling ``sizes`` (m) with ``uncertain`` (deg/s) below ``error``
+def coarsest(sizes: Sequence[float], uncertainty: Sequence[float], error: float) -> Mesh:
+    """The first of the meshes of falling ``sizes`` (m) with ``uncertainty`` (deg/s) below ``error``
     (deg/s), else the last."""
-    meshes = [Mesh(size, open_, open_ < error) for size, open_ in zip(sizes, uncertain)]
-    return next((mesh for mesh in meshes if mesh.surer), meshes[-1])
+    meshes = [Mesh(size, value, value < error) for size, value in zip(sizes, uncertainty)]
+    return next((mesh for mesh in meshes if mesh.sufficient), meshes[-1])
 
 
 def sentence(found: dict) -> str:
-    """The speed-up in words."""
-    size, wall = f"{1e3 * found['element_size_m']:g} mm", f"{found['highfi_wall_s']:.3g} s"
-    known = (
-        f"({found['mesh_uncertainty_deg_s']:.2g} by all meshes; penalty and quadrature not counted)"
-    )
+    """The speed-up at equal accuracy, without a full stop."""
+    size = f"{1e3 * found['element_size_m']:g} mm"
     mesh = (
-        f"{size} is the coarsest mesh whose discretisation error is smaller {known}"
+        f"{size} is the coarsest mesh with a smaller uncertainty"
         if found["surer"]
-        else f"no mesh down to {size} has a smaller discretisation error {known}"
+        else f"no mesh down to {size} has a smaller uncertainty"
     )
-    least = "" if found["surer"] else "at least "
-    ratio = f"{least}{found['ratio']:,.0f} times ({found['low']:,.0f} to {found['high']:,.0f})"
     return (
-        f"speed at equal accuracy on {found['condition']}: on compliant contact the surrogate is "
-        f"within "
-        f"{found['error_deg_s']:.2g} deg/s of the finest mesh, and {mesh}; {ratio}, {wall} against "
-        f"{1e3 * found['lowfi_wall_s']:.3g} ms, timed in one go"
+        f"speed-up at equal accuracy on {found['condition']}: {'' if found['surer'] else 'at least '}"
+        f"{found['ratio']:,.0f} times ({found['low']:,.0f} to {found['high']:,.0f}), "
+        f"{found['highfi_wall_s']:.3g} s of the reference to {1e3 * found['lowfi_wall_s']:.3g} ms of "
+        f"compliant contact. The error of compliant contact is {found['error_deg_s']:.2g} deg/s from "
+        f"the finest mesh; {mesh} ({found['mesh_uncertainty_deg_s']:.2g} deg/s, without penalty and "
+        "quadrature)"
     )

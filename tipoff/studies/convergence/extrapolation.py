@@ -1,14 +1,13 @@
-"""How far a value still is from that of an infinitely fine grid, judged from three grids, coarsest
-first.
+"""Discretisation uncertainty of a value, from three grids, coarsest first.
 
     f(h) = f_0 + a h^p,   e32 / e21 = r21^p (r32^p - 1) / (r21^p - 1)      gives the observed order p
     GCI = F |e21 / f_1| / (r21^p - 1),   F = 1.25                          the finest value is within GCI of f_0
 
 with f_1 the finest value, e21 = f_2 - f_1, e32 = f_3 - f_2, r21 = h_2 / h_1, r32 = h_3 / h_2.
 Sources: Roache, J. Fluids Eng. 116 (1994) 405; ASME V&V 20-2009, section 2-4. Where three values
-show no order (not monotone, or an order below 0.5) the uncertainty is three times half their range,
-and an order above that of the method is not believed: Eca and Hoekstra, J. Comput. Phys. 262 (2014)
-104, section 3.
+show no order (not monotone, or an order below 0.5) the uncertainty is three times half their range;
+the order is limited to that of the method: Eca and Hoekstra, J. Comput. Phys. 262 (2014) 104,
+section 3.
 """
 
 import math
@@ -26,8 +25,8 @@ _STEEPEST = 60.0  # an order beyond this is a difference that vanished
 
 @dataclass(frozen=True)
 class Estimate:
-    """Observed ``order`` or None, ``uncertainty`` of the finest value in its own unit, the same in
-    per cent of that value (None where there is none), and in words by which ``method``."""
+    """Observed ``order`` or None, ``uncertainty`` of the finest value in its own unit, ``gci_percent``,
+    the same in per cent of that value (or None), and the ``method`` by name."""
 
     order: float | None
     uncertainty: float | None
@@ -64,33 +63,33 @@ def extrapolated(sizes: Sequence[float], values: Sequence[float], order: float) 
 
 
 def estimate(sizes: Sequence[float], values: Sequence[float | None]) -> Estimate:
-    """Uncertainty of the last of the ``values``, from the three finest grids; one that is None was
-    not reached."""
+    """Uncertainty of the last of the ``values``, from the three finest grids; None stands for a run
+    that did not settle."""
     sizes, finest = sizes[-3:], [value for value in values[-3:] if value is not None]
     if len(finest) < len(values[-3:]):
         return Estimate(None, None, None, "a run did not settle")
     if max(finest) == min(finest):
-        return _told(None, 0.0, finest, "no change at all")
+        return _estimate(None, 0.0, finest, "no change at all")
     order = observed_order(sizes, finest)
     if order is None or order < _LEAST_ORDER:
         why = "not monotone" if order is None else f"order below {_LEAST_ORDER:g}"
-        return _told(
+        return _estimate(
             order,
             _RANGE_FACTOR * 0.5 * (max(finest) - min(finest)),
             finest,
             f"{why}: three times half the range",
         )
     if order > METHOD_ORDER:
-        return _told(
+        return _estimate(
             order,
             _uncertainty(sizes, finest, METHOD_ORDER),
             finest,
             f"GCI, order limited to {METHOD_ORDER:g}",
         )
-    return _told(order, _uncertainty(sizes, finest, order), finest, "GCI")
+    return _estimate(order, _uncertainty(sizes, finest, order), finest, "GCI")
 
 
-def _told(
+def _estimate(
     order: float | None, uncertainty: float, values: Sequence[float], method: str
 ) -> Estimate:
     return Estimate(

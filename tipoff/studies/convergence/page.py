@@ -1,34 +1,51 @@
-"""The reference's own error as the page shows it: settled rates over element size, and tables of
-what was refined or changed."""
+"""Error of the reference on the page and in the terminal: settled rates over element size, and tables
+of the refinements and changes."""
 
 from typing import TYPE_CHECKING
 
+from tipoff.studies.convergence import summary
 from tipoff.studies.render.chart import AXIS_COLOURS, GREY, Chart, Line, Panel
-from tipoff.studies.render.markup import Html, caption, fold, number, section, table
+from tipoff.studies.render.document import Bullets, Figure, Fold, Part
+from tipoff.studies.render.markup import Html, section
+from tipoff.studies.render.table import Column, Table
 
 if TYPE_CHECKING:
     from tipoff.studies.report.page import Page
 
-WORDS = (
-    "Condition {condition}. Settled rates over element size; between the dotted lines lies what "
-    "the three finest meshes still "
-    "leave open at the finest."
+_RATES = (
+    "Condition {condition}. Settled rates over element size; dotted: uncertainty of the finest "
+    "mesh, from the three finest meshes."
+)
+_METHOD = (
+    "Order and GCI (safety factor 1.25) after Roache and ASME V&V 20. The last column gives the "
+    "method, which is another where the values show no order, or one above that of the method."
+)
+_RIPPLE = (
+    "A payload under constant load slides along straight walls: largest amplitude of the force of "
+    "a face at the facet frequency and its next two multiples, and half-way between them, relative "
+    "to the mean force."
 )
 
 
 def draw(page: "Page") -> Html:
-    """The section. Nothing without its result, and no reminder either: it takes minutes to make."""
+    """The section; empty without a result, which takes minutes to make."""
     found = page.documents.get("convergence")
     if not found:
         return Html("")
     chart = picture(found)
-    drawn = page.figure(chart, WORDS.format(condition=found["condition"])) if chart.panels else ""
-    return section("convergence", "Error of the reference itself", drawn, tables(found))
+    figure = [Figure(chart, _RATES.format(condition=found["condition"]))] if chart.panels else []
+    parts = [*figure, Bullets(summary.lines(found)), *tables(found), *_changes(found)]
+    return section("convergence", "Error of the reference", page.parts(parts))
+
+
+def terminal(found: dict) -> list[Part]:
+    """The sentences and the tables of the refinements."""
+    return [Bullets(summary.lines(found)), *tables(found)]
 
 
 def picture(document: dict) -> Chart:
-    """Settled rates over element size, one panel an axis, with the band of the finest mesh's
-    uncertainty."""
+    """Settled rates over element size, one panel an axis, with the uncertainty of the finest
+    mesh."""
     rows = [
         row
         for row in document["quantities"]
@@ -43,10 +60,10 @@ def picture(document: dict) -> Chart:
 
 
 def _panel(row: dict, colour: str) -> Panel:
-    sizes, values, open_ = [1e3 * size for size in row["sizes"]], row["values"], row["uncertainty"]
+    sizes, values = [1e3 * size for size in row["sizes"]], row["values"]
     bounds = [
         Line([0.0, sizes[0]], [value, value], "uncertainty of the finest mesh", GREY, 1.1, ":")
-        for value in (values[-1] - open_, values[-1] + open_)
+        for value in (values[-1] - row["uncertainty"], values[-1] + row["uncertainty"])
     ]
     return Panel(
         row["quantity"],
@@ -56,118 +73,78 @@ def _panel(row: dict, colour: str) -> Panel:
     )
 
 
-def tables(document: dict) -> Html:
-    """What each table says in words, then the orders and indices, the penalty and the
-    quadrature."""
-    heads = (
-        "quantity",
-        "unit",
-        "values, coarsest first",
-        "order",
-        "± at the finest",
-        "the same (%)",
-        "± as other stages run",
-        "by",
-    )
-    said = "".join(f"<li>{line[0].upper()}{line[1:]}.</li>" for line in document["summary"])
-    parts = [Html(f"<ul>{said}</ul>")]
+def tables(document: dict) -> list[Part]:
+    """One table of orders and uncertainties for each refined parameter."""
+    found: list[Part] = []
     for parameter, factor, unit in (("element size", 1e3, "mm"), ("time step", 1e9, "ns")):
         rows = [row for row in document["quantities"] if row["parameter"] == parameter]
-        sizes = ", ".join(f"{factor * size:.4g}" for size in rows[0]["sizes"])
-        parts += [
-            Html(f"<h3>{parameter.capitalize()}: {sizes} {unit}</h3>"),
-            table(heads, [_row(row) for row in rows], dense=True),
-        ]
-    parts.append(
-        caption(
-            "Order and index (GCI, safety factor 1.25) after Roache and ASME V&V 20. Where the "
-            "values show no order, or none that the "
-            f"method can have, the last column says what was done instead. {_meshes(document)}"
+        sizes = [f"{factor * size:.4g} {unit}" for size in rows[0]["sizes"]]
+        heads: tuple[Column | str, ...] = (
+            f"{parameter}: quantity",
+            "unit",
+            *(Column(size, form=".5g") for size in sizes),
+            "order",
+            Column(f"± at {sizes[-1]}", form=".2g"),
+            Column("GCI", "%", ".2g"),
+            Column(f"± at {factor * rows[0]['nominal_size']:.4g} {unit}", form=".2g"),
+            "method",
         )
-    )
-    return Html("".join([*parts, _changes(document)]))
-
-
-def _row(row: dict) -> tuple:
-    values = ", ".join("–" if value is None else f"{value:.5g}" for value in row["values"])
-    return (
-        row["quantity"],
-        row["unit"],
-        values,
-        number(row["order"]),
-        number(row["uncertainty"], 2),
-        number(row["gci_percent"], 2),
-        number(row["nominal_uncertainty"], 2),
-        row["method"],
-    )
+        shown = [
+            (
+                row["quantity"],
+                row["unit"],
+                *row["values"],
+                row["order"],
+                row["uncertainty"],
+                row["gci_percent"],
+                row["nominal_uncertainty"],
+                row["method"],
+            )
+            for row in rows
+        ]
+        notes = (_meshes(document),) if parameter == "element size" else (_METHOD,)
+        found.append(Table(heads, shown, notes, dense=True))
+    return found
 
 
 def _meshes(document: dict) -> str:
     counts = ", ".join(f"{mesh['elements']:,}" for mesh in document["meshes"])
     return (
-        f"Elements of the meshes: {counts}. A wall has one element through it at least, so "
-        f"coarse meshes differ along it only."
+        f"Elements of the meshes: {counts}. A wall has at least one element through its thickness, "
+        "so coarse meshes differ along the wall only."
     )
 
 
-def _changes(document: dict) -> Html:
-    heads = ("settled x, y, z (deg/s)", "largest change (deg/s)", "status")
+def _changes(document: dict) -> list[Part]:
+    """Ripple, penalty and quadrature; nothing without contact."""
+    if not document["penalty"]:
+        return []
+    slides = {
+        "element_size_m": Column("element size", "mm", "g", 1e3),
+        "points_per_edge": Column("Gauss points per facet edge"),
+        "frequency": Column("facet frequency", "Hz", ".4g"),
+        "facets": Column("facets"),
+        "ripple": Column("ripple", "%", ".2g", 100.0),
+        "background": Column("between multiples", "%", ".2g", 100.0),
+    }
+    settled = {
+        "settled_rate_deg_s": Column("settled x, y, z", "deg/s", ".4g"),
+        "settled_rate_change_deg_s": Column("largest change", "deg/s", ".2g"),
+        "status": Column("status"),
+    }
+    stiffness = {
+        "factor": Column("factor", form="g"),
+        "penalty_n_m3": Column("penalty", "N/m³"),
+    } | settled
+    points = {"points_per_edge": Column("Gauss points per facet edge")} | settled
     size = f"{1e3 * document['coarse_size_m']:g} mm"
-    stiffness = [
-        (f"{row['factor']:g}", number(row["penalty_n_m3"]), *_changed(row))
-        for row in document["penalty"]
-    ]
-    points = [(str(row["points_per_edge"]), *_changed(row)) for row in document["quadrature"]]
-    slides = [
-        (
-            f"{1e3 * row['element_size_m']:g}",
-            str(row["points_per_edge"]),
-            f"{row['frequency']:.4g}",
-            str(row["facets"]),
-            f"{100.0 * row['ripple']:.2g}",
-            f"{100.0 * row['background']:.2g}",
-        )
-        for row in document["ripple"]
-    ]
-    if not stiffness:
-        return Html("")
-    return Html(
-        "".join(
-            [
-                fold(
-                    "ripple of a constant contact force where facets are crossed",
-                    table(
-                        (
-                            "element size (mm)",
-                            "Gauss points per facet edge",
-                            "facets crossed at (Hz)",
-                            "facets",
-                            "ripple (%)",
-                            "beside it (%)",
-                        ),
-                        slides,
-                    )
-                    + caption(
-                        "A payload under constant load slides along straight walls: largest "
-                        "amplitude of a face's force at that frequency and "
-                        "its next two multiples, and half-way between them, over the mean force."
-                    ),
-                )
-                if slides
-                else "",
-                fold(
-                    f"penalty stiffness, {size} elements",
-                    table(("times the scene's", "penalty (N/m³)", *heads), stiffness),
-                ),
-                fold(
-                    f"contact quadrature, {size} elements",
-                    table(("Gauss points per facet edge", *heads), points),
-                ),
-            ]
-        )
-    )
 
+    def fold(title: str, columns: dict[str, Column], rows: list[dict], *notes: str) -> list[Part]:
+        cells = [[row[name] for name in columns] for row in rows]
+        return [Fold(title, [Table(list(columns.values()), cells, notes)])] if rows else []
 
-def _changed(row: dict) -> tuple:
-    rates = ", ".join("–" if rate is None else f"{rate:.4g}" for rate in row["settled_rate_deg_s"])
-    return rates, number(row["settled_rate_change_deg_s"], 2), row["status"]
+    return [
+        *fold("Ripple of a constant contact force", slides, document["ripple"], _RIPPLE),
+        *fold(f"Penalty, {size} elements", stiffness, document["penalty"]),
+        *fold(f"Contact quadrature, {size} elements", points, document["quadrature"]),
+    ]

@@ -1,5 +1,5 @@
-"""What a refinement of the reference is judged by: the state the payload leaves with, the loads of
-the pads that touch, and stress."""
+"""Quantities of the convergence study: settled state of the payload, loads of the pads in contact,
+stress."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -15,8 +15,8 @@ RATE = "settled rate"
 def quantities(
     scene: Scene, runs: Sequence[Trajectory]
 ) -> Iterator[tuple[str, str, Sequence[float | None]]]:
-    """(quantity, unit, value of each run, None where it did not settle); a pad that touches in no
-    run is left out."""
+    """(quantity, unit, value of each run, None where it did not settle); a pad without contact in
+    all runs is left out."""
     for index, axis in enumerate(AXES):
         yield f"{RATE} {axis}", "deg/s", [settled_rate(found)[index] for found in runs]
     yield (
@@ -42,9 +42,9 @@ def quantities(
             "MPa",
             [1e-6 * stress for stress in patches],
         )
-    known = [found.stress for found in runs if found.stress]
-    if len(known) == len(runs):
-        yield stresses.PEAK, "MPa", [1e-6 * stress["peak_stress_pa"] for stress in known]
+    peaks_pa = [found.stress["peak_stress_pa"] for found in runs if found.stress]
+    if len(peaks_pa) == len(runs):
+        yield stresses.PEAK, "MPa", [1e-6 * stress for stress in peaks_pa]
 
 
 def settled_rate(run: Trajectory) -> list[float | None]:

@@ -1,16 +1,15 @@
-"""Ripple of the contact force at the frequency with which a pad crosses the facets of the rail:
-what the mesh alone puts there.
+"""Ripple of the contact force at the facet frequency, at which a pad crosses the facets of the rail.
 
-The payload is pressed into a corner of the rails by a constant load, comes to rest there, and then
-slides along them without friction at a constant speed v. The walls are straight, so whatever a
-face's force does at v / h and its multiples, h the length of a facet, comes from elements and
-quadrature::
+A constant load presses the payload into a corner of the rails; the payload comes to rest and then
+slides along the rails without friction at a constant speed v. The walls are straight, so the force
+of a face at v / h and its multiples, h the length of a facet, comes from elements and quadrature
+alone::
 
     ripple = 2 |sum of w (F - trend) exp(-2 pi i k v t / h)| / (sum of w  mean F),   w Hann's window, k = 1 .. HARMONICS
 
-What is physical is slow: bolts and rail ends pass by in ten facets and more, the payload bounces at
-some hundred Hz. The same sum half-way between the multiples tells how much of that, and of the
-ringing rail, leaks in.
+Physical changes are slower: bolts and rail ends pass in ten facets and more, the payload bounces at
+some hundred Hz. The same sum half-way between the multiples shows the leakage of these and of the
+ringing rail.
 """
 
 from typing import NamedTuple
@@ -29,17 +28,17 @@ HARMONICS = 3
 _SPEED = 6.0  # m/s: a facet passes faster than the payload can follow it
 _LOAD = 1000.0  # N
 _INTERVAL = 2e-5  # s
-# samples at rest, and what each leaves of all velocities: about critical damping of the bounce
+# samples of the settling, and the factor of all velocities in each: about critical damping
 _SETTLING, _KEPT = 400, 0.95
-_LEAST = 5  # facets that a slide must cross
-_TREND = 5  # degree of the polynomial that the slow part of a force is
-_EVEN = 1e-3  # relative difference of facet lengths that still have one frequency
+_LEAST = 5  # facets crossed at least
+_TREND = 5  # degree of the polynomial for the slow part of a force
+_EVEN = 1e-3  # largest relative difference of facet lengths
 _FRICTIONLESS = {"static": 1e-9, "dynamic": 1e-9, "static_speed": 0.01, "dynamic_speed": 0.02}
 
 
 class Ripple(NamedTuple):
-    """``ripple`` (1) of the face that ripples most, ``background`` (1) the same half-way between
-    the multiples; ``frequency`` (Hz) of the first one, ``facets`` crossed, ``load`` (N) of that
+    """``ripple`` (1) of the face with the largest one, ``background`` (1) half-way between the
+    multiples; ``frequency`` (Hz) of the first multiple, ``facets`` crossed, ``load`` (N) of that
     face."""
 
     ripple: float
@@ -50,8 +49,8 @@ class Ripple(NamedTuple):
 
 
 def measure(scene: Scene, numerics: Numerics) -> Ripple | None:
-    """Ripple on the rails of ``scene``; None without contact, where facets differ in length, or
-    where pads cross few."""
+    """Ripple on the rails of ``scene``; None without contact, with facets of different lengths, or
+    with too few of them."""
     if scene.contact is None:
         return None
     pressed = pressing(scene)
@@ -69,10 +68,9 @@ def measure(scene: Scene, numerics: Numerics) -> Ripple | None:
 
 
 def pressing(scene: Scene) -> Scene:
-    """``scene`` with a load into the +y and +z walls, which the pads just touch, and nothing else.
-    Effects that are there stay, because a set of effects of its own would be another kernel to
-    compile."""
-    assert scene.contact is not None  # or there is nothing to press on
+    """``scene`` with a load into the +y and +z walls, which the pads just touch, and no other load.
+    Its effects stay, because another set of effects would be another kernel to compile."""
+    assert scene.contact is not None  # required by ``measure``
     gap = scene.contact.clearance
     changes = {
         "thrust": {"kind": "gaussian", "peak": _LOAD, "width": 1e4, "centre": 0.0, "arm": 1e-6},
@@ -87,7 +85,7 @@ def pressing(scene: Scene) -> Scene:
 
 
 def facet_length(mesh) -> float | None:
-    """Length (m) along X of the facets that pads touch, or None where they differ."""
+    """Length (m) along X of the contact facets, or None where they differ."""
     facets = np.concatenate(
         [group for name, group in mesh.surfaces.items() if name.startswith("contact")]
     )
@@ -101,8 +99,8 @@ def leading_edge(faces) -> float:
 
 
 def slide(loop: Loop, samples: int) -> np.ndarray:
-    """Forces (n,f,3) N on the faces while the payload, first brought to rest under its load,
-    slides."""
+    """Forces (n,f,3) N on the faces while the payload slides, after it came to rest under its
+    load."""
     state = loop.state
     loop.begin()
     for _ in range(_SETTLING):
@@ -122,8 +120,8 @@ def slide(loop: Loop, samples: int) -> np.ndarray:
 
 
 def _advance(loop: Loop) -> None:
-    """One sample on. The energy that was taken to bring the payload to rest is no fault of the run.
-    Raises FloatingPointError where a value became infinite."""
+    """Advance by one sample. The loss of energy by the settling is no fault of the run, so messages
+    are cleared. Raises FloatingPointError where a value became infinite."""
     taken = len(loop.rows)
     while len(loop.rows) == taken:
         loop.message = ""
@@ -150,7 +148,7 @@ def judge(force: np.ndarray, frequency: float, facets: int) -> Ripple:
 
 
 def amplitudes(values: np.ndarray, frequencies: np.ndarray) -> np.ndarray:
-    """Amplitudes (k,f) at ``frequencies`` (k,) Hz of samples (n,f) less their trend."""
+    """Amplitudes (k,f) at ``frequencies`` (k,) Hz of samples (n,f) without their trend."""
     place = np.linspace(-1.0, 1.0, len(values))
     rest = (
         values

@@ -1,13 +1,13 @@
-"""Stage ``convergence``: the error of the finite-element reference itself, on one condition.
+"""Stage ``convergence``: the error of the finite-element reference, on one condition.
 
-Meshes and steps are refined one after the other, and every quantity is judged by its observed order
-(``studies.convergence.extrapolation``); penalty and quadrature are changed and compared, and a
-straight slide shows the ripple that facets put into a constant force
-(``studies.convergence.ripple``). What a finer mesh brings with it: a smaller step, and fewer Gauss
-points per facet, so that they stay about 1 mm apart and their own error shows in the quadrature
-alone. What it may not bring: a wall of the rail has one element through it at least, so coarse
-meshes differ in length and width only; ``meshes`` holds the numbers of elements. Now that the error
-of each mesh is known, both fidelities are timed at equal accuracy (``studies.convergence.equal_accuracy``).
+Meshes and steps are refined separately, and the uncertainty of every quantity is estimated from its
+observed order (``studies.convergence.extrapolation``). Penalty and quadrature are changed and
+compared. A straight slide shows the ripple of a constant force by the facets
+(``studies.convergence.ripple``). A finer mesh has a smaller step and fewer Gauss points per facet,
+which stay about 1 mm apart, so that their error appears in the quadrature alone. A wall has at
+least one element through its thickness, so coarse meshes differ in length and width only;
+``meshes`` holds the numbers of elements. Finally both fidelities are timed at equal accuracy
+(``studies.convergence.equal_accuracy``).
 """
 
 from dataclasses import asdict
@@ -33,8 +33,8 @@ _LONG = 60.0  # s, a run of the reference that is timed once only
 
 def run(study: Study, condition: str | None = None) -> dict:
     """``quantities`` over element size and time step with order and uncertainty, ``penalty``,
-    ``quadrature``, ``ripple``, ``equal_accuracy`` and ``summary`` in words. Raises SceneError for
-    an unknown condition, StudyError where a mesh or a step fails."""
+    ``quadrature``, ``ripple`` and ``equal_accuracy``. Raises SceneError for an unknown condition,
+    StudyError where a mesh or a step fails."""
     name = condition or (study.scene.agreement.refined or tuple(study.conditions))[0]
     scene = study.condition(name)
 
@@ -84,9 +84,6 @@ def run(study: Study, condition: str | None = None) -> dict:
             "quadrature": quadrature,
             "ripple": ripples,
             "equal_accuracy": equal,
-            "summary": summary(name, judged, penalty, quadrature, study.settings.coarse_size)
-            + told(ripples)
-            + ([equal_accuracy.sentence(equal)] if equal else []),
         }, []
 
     return STAGE.run(study, name, make)
@@ -96,17 +93,17 @@ STAGE = Stage(NAME, __name__, str, field="condition")
 stored = STAGE.stored
 
 
-def _finished(study: Study, title: str, asked: list[Run]) -> list[Trajectory]:
-    runs = study.store.fill(title, asked)
+def _finished(study: Study, title: str, wanted: list[Run]) -> list[Trajectory]:
+    runs = study.store.fill(title, wanted)
     require_success(
-        {item.label: found for item, found in zip(asked, runs)}, "judge the convergence"
+        {item.label: found for item, found in zip(wanted, runs)}, "judge the convergence"
     )
     return runs
 
 
 def _meshes(study: Study, name: str) -> list[Run]:
-    """One run a mesh; those that other stages make too keep their name, so that the store has them
-    once."""
+    """One run a mesh; runs that other stages make too keep their name, so that the store has them
+    only once."""
     settings = study.settings
     known = {
         2.0 * settings.coarse_size: "-coarsest",
@@ -135,8 +132,8 @@ def _judged(
     runs: list[Trajectory],
     nominal: float,
 ) -> list[dict]:
-    """One row a quantity. ``nominal_uncertainty`` is that at the ``nominal`` size, with which every
-    other stage runs."""
+    """One row a quantity. ``nominal_uncertainty`` is that at the ``nominal`` size, which all other
+    stages use."""
     rows = []
     for quantity, its_unit, values in quantities(scene, runs):
         found = estimate(sizes, values)
@@ -172,33 +169,33 @@ def _penalties(study: Study, name: str) -> list[dict]:
         for factor in study.settings.penalty_factors
     ]
     known = {1.0: study.coarse(name), 4.0: refined(study, name)["penalty"]}
-    asked = [
+    wanted = [
         known.get(factor)
         or study.coarse(name, {"contact.penalty": factor * stiffness}, f"-penalty-{factor:g}")
         for factor in study.settings.penalty_factors
     ]
-    return _compared(study, "convergence, penalty", name, heads, asked)
+    return _compared(study, "convergence, penalty", name, heads, wanted)
 
 
 def _quadratures(study: Study, name: str) -> list[dict]:
     """Rows by Gauss points per facet edge; none without contact."""
     if study.condition(name).contact is None:
         return []
-    # The rule that a run takes of its own accord needs no second run.
+    # The default rule needs no second run.
     own = Numerics(element_size=study.settings.coarse_size).points_per_edge()
-    asked = [
+    wanted = [
         study.coarse(name)
         if points == own
         else study.coarse(name, tag=f"-quadrature-{points}", quadrature=points)
         for points in study.settings.quadratures
     ]
     heads = [{"points_per_edge": points} for points in study.settings.quadratures]
-    return _compared(study, "convergence, quadrature", name, heads, asked)
+    return _compared(study, "convergence, quadrature", name, heads, wanted)
 
 
 def _ripples(study: Study, scene: Scene) -> list[dict]:
     """Rows by element size, the first with a single Gauss point a facet for comparison; none where
-    the rail lets nothing be told."""
+    ``ripple.measure`` gives None."""
     rows = []
     for size, points in (
         (study.settings.coarse_size, 1),
@@ -227,16 +224,16 @@ def _at_equal_accuracy(
         for row in judged
         if row["parameter"] == "element size" and row["quantity"].startswith(RATE)
     ]
-    uncertain = equal_accuracy.uncertainties(rates)
-    if study.scene.contact is None or uncertain is None:
+    uncertainties = equal_accuracy.uncertainties(rates)
+    if study.scene.contact is None or uncertainties is None:
         return None
-    surrogate = compliant(study, [name]).ask(study, name)
+    surrogate = compliant(study, [name]).request(study, name)
     error = verdicts.settled_change(
         meshes[-1], *study.store.fill("convergence, surrogate", [surrogate])
     )
     if error is None:
         return None
-    mesh = equal_accuracy.coarsest(study.settings.mesh_sizes, uncertain, error)
+    mesh = equal_accuracy.coarsest(study.settings.mesh_sizes, uncertainties, error)
     wall = meshes[study.settings.mesh_sizes.index(mesh.element_size)].cost["wall_s"]
     with Board("speed at equal accuracy", 1) as board:
         (found,) = speedups(
@@ -252,27 +249,16 @@ def _at_equal_accuracy(
         "error_deg_s": error,
         "element_size_m": mesh.element_size,
         "mesh_uncertainty_deg_s": mesh.uncertainty,
-        "surer": mesh.surer,
+        "surer": mesh.sufficient,
     }
 
 
-def told(ripples: list[dict]) -> list[str]:
-    """The ripple of the finest mesh in words, if there is one."""
-    if not ripples:
-        return []
-    finest = ripples[-1]
-    return [
-        f"ripple of a constant contact force at {finest['frequency']:.4g} Hz, at which facets of "
-        f"{1e3 * finest['element_size_m']:.3g} mm are crossed: {100.0 * finest['ripple']:.2g} %"
-    ]
-
-
 def _compared(
-    study: Study, title: str, name: str, heads: list[dict], asked: list[Run]
+    study: Study, title: str, name: str, heads: list[dict], wanted: list[Run]
 ) -> list[dict]:
     """The rows with the settled rates of their runs and the largest change of one (deg/s) against
     the nominal run of the coarse mesh."""
-    nominal, *runs = study.store.fill(title, [study.coarse(name), *asked])
+    nominal, *runs = study.store.fill(title, [study.coarse(name), *wanted])
     return [
         head
         | {
@@ -282,62 +268,3 @@ def _compared(
         }
         for head, found in zip(heads, runs)
     ]
-
-
-def summary(
-    condition: str,
-    judged: list[dict],
-    penalty: list[dict],
-    quadrature: list[dict],
-    coarse_size: float,
-) -> list[str]:
-    """What each table says of the settled rates, one line each; steps are those on elements of
-    ``coarse_size`` (m)."""
-    lines, share = (
-        [],
-        f"{Numerics().safety:g} of the critical step on elements of {1e3 * coarse_size:g} mm",
-    )
-    for parameter, symbol, factor, default in (
-        ("element size", "mm", 1e3, ""),
-        ("time step", "ns", 1e9, f", {share}"),
-    ):
-        rows = [
-            row
-            for row in judged
-            if row["parameter"] == parameter and row["quantity"].startswith(RATE)
-        ]
-        worst = max(rows, key=lambda row: row["nominal_uncertainty"] or 0.0)
-        if worst["uncertainty"] is None:
-            lines.append(
-                f"{parameter} on {condition}: a run did not settle, so nothing is known of its "
-                f"error"
-            )
-            continue
-        lines.append(
-            f"{parameter} on {condition}: settled rates within {worst['nominal_uncertainty']:.2g} "
-            f"deg/s at the "
-            f"default {factor * worst['nominal_size']:.3g} {symbol}{default}, within "
-            f"{max(row['uncertainty'] for row in rows):.2g} deg/s at "
-            f"{factor * worst['sizes'][-1]:.3g} {symbol}"
-        )
-    for title, key, rows in (
-        ("penalty stiffness, times", "factor", penalty),
-        ("Gauss points per facet edge,", "points_per_edge", quadrature),
-    ):
-        if rows:
-            change = verdicts.largest(row["settled_rate_change_deg_s"] for row in rows)
-            odd = "".join(
-                f"; {row[key]:g} {row['status']}"
-                for row in rows
-                if row["settled_rate_change_deg_s"] is None
-            )
-            lines.append(
-                f"{title} {rows[0][key]:g} to {rows[-1][key]:g}: "
-                + (
-                    "no run settled"
-                    if change is None
-                    else f"a settled rate changes by up to {change:.2g} deg/s"
-                )
-                + odd
-            )
-    return lines

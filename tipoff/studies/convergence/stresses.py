@@ -1,11 +1,10 @@
-"""Stresses of a run as numbers that refinement can be judged by: the filtered peak on the patches,
-and the peak of the whole rail.
+"""Stresses of a run under refinement: the filtered peak on the patches, and the peak of the whole
+rail.
 
-Contact rings with the modes of the elements, and the walls ring with it; so the mean stress of each
-patch is filtered as contact forces are (``studies.convergence.contact_loads``) before its von Mises
-stress is taken. The peak of the whole rail sits at a sharp inner corner or at the border of a
-clamp. There the stress of linear elasticity is infinite, and what a mesh shows of it grows with
-every refinement.
+Contact and walls ring with the modes of the elements, so the mean stress of each patch is filtered
+like contact forces (``studies.convergence.contact_loads``) before its von Mises stress is computed.
+The peak of the whole rail is at a sharp inner corner or at the border of a clamp. There the stress
+of linear elasticity is infinite, so the peak grows with every refinement.
 """
 
 from tipoff.highfi.elements.hexahedral_recovery import von_mises
@@ -26,10 +25,10 @@ def patch_peak(scene: Scene, run: Trajectory) -> float | None:
 
 
 def facts(run: Trajectory) -> dict:
-    """Peak stress as rows of result files hold it, all None for a run that knows of none."""
-    known = run.stress or {}
+    """Peak stress as rows of result files hold it, all None for a run without stress."""
+    found = run.stress or {}
     return {
-        name: known.get(name)
+        name: found.get(name)
         for name in (
             "peak_stress_pa",
             "peak_stress_place_m",
@@ -39,4 +38,4 @@ def facts(run: Trajectory) -> dict:
             "largest_strain",
             "largest_rotation_rad",
         )
-    } | {"warnings": known.get("warnings", [])}
+    } | {"warnings": found.get("warnings", [])}

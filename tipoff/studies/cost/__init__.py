@@ -1,4 +1,4 @@
-"""What a run takes, how that grows, and which model to choose for an accuracy or a time."""
+"""Wall time of the models, its growth, and the choice of a model for an accuracy or a time."""
 
 from tipoff.studies.cost import command
 from tipoff.studies.question import Contents, Entry, Result, Section

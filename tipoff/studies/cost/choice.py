@@ -1,12 +1,11 @@
-"""Which model answers a question: the cheapest that reached an accuracy, or the most accurate
-within a time, as measured.
+"""Choice of a model from the measured points of the cost study: the fastest one for an accuracy, or
+the most accurate one for a time.
 
-A point of the cost study counts with its error against the finest mesh and the uncertainty of that
-mesh, of which the larger is what it can be trusted to; the finest mesh itself with its uncertainty.
-That was measured on one condition. On another, each model counts with its error there, and with the
-uncertainty of the reference there, as the agreement study found them, where that is more; one that
-the agreement study does not have, with other modes of the rails or on a coarser mesh than its
-coarse one, is not known there, and never chosen.
+The error bound of a point is the larger of its error against the finest mesh and the uncertainty of
+that mesh, measured on one condition. On another condition the bound is at least the error and the
+uncertainty of the reference that the agreement study measured there. A model that the agreement
+study lacks (other modes of the rails, a coarser mesh than its coarse one) has no bound there and is
+not chosen.
 """
 
 import math
@@ -24,11 +23,11 @@ def choose(
     accuracy: float | None = None,
     budget: float | None = None,
 ) -> dict:
-    """The point of the ``cost`` study, with ``trusted_deg_s`` and ``why`` in words, for an error of
-    the settled rates of at most ``accuracy`` (deg/s) on ``condition`` and a wall time of at most
-    ``budget`` (s).
+    """The point of the ``cost`` study with an error bound ``trusted_deg_s`` of the settled rates of
+    at most ``accuracy`` (deg/s) on ``condition`` and a wall time of at most ``budget`` (s); ``why``
+    is the reason as a sentence.
 
-    Raises StudyError where no model fits, with the nearest that does.
+    Raises StudyError where no model fits, with the nearest ones.
     """
     there = {} if condition == cost["condition"] else elsewhere(agreement, condition)
     points = trusted(cost["points"], cost["band_deg_s"], there)
@@ -47,9 +46,9 @@ def choose(
     )
     best = min(fit, key=by_time if accuracy is not None else by_error)
     reason = (
-        "the cheapest that is so exact"
+        "the fastest with this accuracy"
         if accuracy is not None
-        else "the most exact within the time"
+        else "the most accurate within this time"
     )
     return best | {
         "why": f"{words(best)}: {reason}, of {len(points)} measured on {cost['condition']}"
@@ -58,44 +57,44 @@ def choose(
 
 
 def elsewhere(agreement: dict | None, condition: str) -> dict[str, float]:
-    """What each rung can be trusted to (deg/s) on a condition of the ``agreement`` study, infinite
-    where that is not known; empty without one, or for a condition that it does not have. Of the
-    meshes, ``coarsest_m`` is the coarsest whose error is known."""
+    """Error bounds (deg/s) of the models on a condition of the ``agreement`` study, infinite where
+    unknown; empty without a study or its condition. ``coarsest_m`` (m) is the coarsest mesh with a
+    known error."""
     if agreement is None:
         return {}
-    rungs = {
+    rows_of = {
         "uncalibrated": agreement["uncalibrated"],
         "calibrated": agreement["fitted"] + agreement["held_out"],
         "compliant": agreement["compliant"],
         "modal": agreement["modal"],
     }
     found = {
-        rung: row for rung, rows in rungs.items() for row in rows if row["condition"] == condition
+        name: row for name, rows in rows_of.items() for row in rows if row["condition"] == condition
     }
     if not found:
         return {}
-    unsure = _known(found["compliant"]["reference_uncertainty_deg_s"])
+    uncertainty = _known(found["compliant"]["reference_uncertainty_deg_s"])
     alone = next(
         row
         for row in agreement["simpler"]
         if (row["condition"], row["patterns"], row["coupled"]) == (condition, 1, False)
     )
     return {
-        rung: max(unsure, _known(row["settled_rate_error_deg_s"]))
-        for rung, row in (found | {"along": alone}).items()
-    } | {"highfi": unsure, "coarsest_m": COARSER * agreement["element_size_m"]}
+        name: max(uncertainty, _known(row["settled_rate_error_deg_s"]))
+        for name, row in (found | {"along": alone}).items()
+    } | {"highfi": uncertainty, "coarsest_m": COARSER * agreement["element_size_m"]}
 
 
 def trusted(
     points: list[dict], band: float | None, there: dict[str, float] | None = None
 ) -> list[dict]:
-    """The points that have an error, each with what it can be trusted to (deg/s), at least what is
-    known of its rung ``there``."""
-    known = []
+    """The points that have an error, each with its error bound ``trusted_deg_s``, which is at least
+    the bound of its model ``there``."""
+    found = []
     for point in points:
         error = point["error_deg_s"] if point["error_deg_s"] is not None else band
         if error is not None and point["status"] == "exited":
-            known.append(
+            found.append(
                 point
                 | {
                     "trusted_deg_s": max(
@@ -103,7 +102,7 @@ def trusted(
                     )
                 }
             )
-    return known
+    return found
 
 
 def _elsewhere(point: dict, there: dict[str, float]) -> float:
@@ -120,24 +119,24 @@ def _known(value: float | None) -> float:
 
 
 def _measured(cost: dict, condition: str, there: dict[str, float]) -> str:
-    """What the errors rest on, where they were measured on another condition."""
+    """Origin of the errors, where they were measured on another condition."""
     if condition == cost["condition"]:
         return ""
     return (
-        f"; errors on {condition} as make compare found them"
+        f"; errors on {condition} from make compare"
         if there
-        else f"; the errors are those of {cost['condition']}: nothing is known of {condition}"
+        else f"; the errors are those of {cost['condition']}, none are measured on {condition}"
     )
 
 
 def words(point: dict) -> str:
     """A point in words and units."""
-    trusted_to = (
+    bound = (
         f"{point['trusted_deg_s']:.2g} deg/s"
         if math.isfinite(point["trusted_deg_s"])
         else "error unknown"
     )
-    return f"{point['model']}, {point['numerics']} ({trusted_to}, {point['wall_s']:.2g} s)"
+    return f"{point['model']}, {point['numerics']} ({bound}, {point['wall_s']:.2g} s)"
 
 
 def _within(value: float, limit: float | None) -> bool:
@@ -145,7 +144,7 @@ def _within(value: float, limit: float | None) -> bool:
 
 
 def _refusal(points: list[dict], accuracy: float | None, budget: float | None) -> str:
-    asked = " and ".join(
+    limits = " and ".join(
         filter(
             None,
             [
@@ -156,26 +155,25 @@ def _refusal(points: list[dict], accuracy: float | None, budget: float | None) -
     )
     nearest = []
     in_time = [point for point in points if _within(point["wall_s"], budget)]
-    exact = [point for point in points if _within(point["trusted_deg_s"], accuracy)]
+    accurate = [point for point in points if _within(point["trusted_deg_s"], accuracy)]
     if in_time:
         best = min(in_time, key=lambda point: (point["trusted_deg_s"], point["wall_s"]))
         nearest.append(
-            ("most exact of all: " if budget is None else "most exact in that time: ") + words(best)
+            ("most accurate: " if budget is None else "most accurate in this time: ") + words(best)
         )
-    if exact:
-        best = min(exact, key=lambda point: point["wall_s"])
+    if accurate:
+        best = min(accurate, key=lambda point: point["wall_s"])
         nearest.append(
-            ("fastest of all: " if accuracy is None else "cheapest that is so exact: ")
-            + words(best)
+            ("fastest: " if accuracy is None else "fastest with this accuracy: ") + words(best)
         )
     if not nearest:
         nearest = (
             [
-                "most exact of all: "
+                "most accurate: "
                 + words(min(points, key=lambda p: (p["trusted_deg_s"], p["wall_s"]))),
-                "fastest of all: " + words(min(points, key=lambda p: p["wall_s"])),
+                "fastest: " + words(min(points, key=lambda p: p["wall_s"])),
             ]
             if points
             else ["no model settled"]
         )
-    return f"no model fits {asked}\n  " + "\n  ".join(nearest)
+    return f"no model fits {limits}\n  " + "\n  ".join(nearest)

@@ -15,7 +15,7 @@ def add(app: typer.Typer) -> None:
     common.add(
         app,
         "cost",
-        "What accuracy costs in time, and how it grows with elements, pads, effects; writes "
+        "Error over wall time, and growth of time with elements, pads and effects; writes "
         "cost.json and cost_study.json.",
         run,
     )

@@ -1,103 +1,102 @@
-"""What accuracy costs, on the page."""
+"""Error over wall time, and its growth, on the page."""
 
 from typing import TYPE_CHECKING
 
 from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS
 from tipoff.studies.cost import choice, scaling_page
 from tipoff.studies.render.chart import AMBER, GREY, NAVY, TEAL, VERMILION, Chart, Line, Panel
-from tipoff.studies.render.markup import Html, joined, number, paragraph, table
+from tipoff.studies.render.document import Figure, Heading, Part
+from tipoff.studies.render.markup import Html
+from tipoff.studies.render.table import Column, Table
 
 if TYPE_CHECKING:
     from tipoff.studies.report.page import Page
 
+_ERRORS = (
+    "Condition {condition}. Errors against the finest finite-element mesh, whose uncertainty is the "
+    "band: smaller errors count as the band in the Pareto front. Right: the part of the error that "
+    "a smaller tolerance removes. Labels: element size, tolerance, number of modes."
+)
+
 
 def draw(page: "Page") -> Html:
-    """The section, or how to make what it shows."""
+    """The section, or how to make its result."""
 
     def body(found: dict) -> Html:
-        return joined(
-            page.figure(
-                picture(found),
-                f"Condition {found['condition']}. Error against the finest finite-element mesh, "
-                f"whose own "
-                "uncertainty is the band: an error inside it cannot be told from zero, and counts "
-                "as the band where the front of the "
-                "best is drawn; the finest mesh stands at it. Right: what a tighter tolerance can "
-                "still buy. Labels: element size, "
-                "tolerance.",
-            ),
-            tables(found),
-            Html("<h3>How cost grows</h3>"),
-            page.figure(
-                scaling_page.picture(found["scaling"]),
-                scaling_page.WORDS.format(condition=found["condition"]),
-            ),
-            scaling_page.tables(found["scaling"]),
+        growth = scaling_page.CAPTION.format(condition=found["condition"])
+        return page.parts(
+            [
+                Figure(picture(found), _ERRORS.format(condition=found["condition"])),
+                *tables(found),
+                Heading("Growth of the run time"),
+                Figure(scaling_page.picture(found["scaling"]), growth),
+                *scaling_page.tables(found["scaling"]),
+            ]
         )
 
-    return page.section("cost_study", "cost", "What accuracy costs", body, "cost")
+    return page.section("cost_study", "cost", "Error over wall time", body, "cost")
 
 
-def tables(document: dict) -> Html:
-    """Error against wall time, as numbers."""
-    rows = [
+def tables(document: dict) -> list[Part]:
+    """Errors and wall times of all points, and meshes with the error of each surrogate."""
+    error = Column("error", "deg/s")
+    points = [
         (
-            p["model"],
-            p["numerics"],
-            f"{p['wall_s']:.3g}",
-            "the yardstick" if p["error_deg_s"] is None else number(p["error_deg_s"]),
-            "the yardstick" if p["curve_error"] is None else number(100.0 * p["curve_error"]),
-            number(p["integration_error_deg_s"]),
-            "best at its price" if p["pareto"] else "",
+            point["model"],
+            point["numerics"],
+            point["wall_s"],
+            "reference" if point["error_deg_s"] is None else point["error_deg_s"],
+            "reference" if point["curve_error"] is None else point["curve_error"],
+            point["integration_error_deg_s"],
         )
-        for p in document["points"]
+        for point in document["points"]
     ]
-    same = [
-        (
-            m["model"],
-            f"{m['numerics']}, {1e3 * m['wall_s']:.3g} ms",
-            number(m["error_deg_s"]),
-            f"{m['mesh']}, {m['mesh_wall_s']:.3g} s",
-            "the yardstick" if m["mesh_error_deg_s"] is None else number(m["mesh_error_deg_s"]),
-            f"{m['ratio']:,.0f}",
-        )
-        for m in document["matched"]
-    ]
-    return Html(
-        table(
-            (
-                "model",
-                "numerics",
-                "wall time (s)",
-                "error (deg/s)",
-                "rate L2 (%)",
-                "of which time integration (deg/s)",
-                "",
-            ),
-            rows,
-        )
-        + paragraph(
-            "What the same accuracy costs with finite elements: "
-            "the coarsest mesh that is no less exact than each surrogate."
-        )
-        + table(
-            (
-                "surrogate",
-                "as fast as it is so exact",
-                "error (deg/s)",
-                "mesh",
-                "error (deg/s)",
-                "times as long",
-            ),
-            same,
-        )
+    heads = (
+        "model",
+        "numerics",
+        Column("wall time", "s"),
+        error,
+        Column("rate L2", "%", scale=100.0),
+        Column("error of time integration", "deg/s"),
     )
+    kinds = ["best" if point["pareto"] else "" for point in document["points"]]
+    matched = [
+        (
+            row["model"],
+            row["numerics"],
+            row["wall_s"],
+            row["error_deg_s"],
+            row["mesh"],
+            row["mesh_wall_s"],
+            "reference" if row["mesh_error_deg_s"] is None else row["mesh_error_deg_s"],
+            row["ratio"],
+        )
+        for row in document["matched"]
+    ]
+    columns = (
+        "surrogate",
+        "numerics",
+        Column("wall time", "ms", scale=1e3),
+        error,
+        "mesh",
+        Column("wall time", "s"),
+        error,
+        Column("ratio of wall times", form=",.0f"),
+    )
+    return [
+        Table(heads, points, kinds=kinds, notes=("Bold: points of the Pareto front.",)),
+        Table(
+            columns,
+            matched,
+            title="Each surrogate, and the fastest finite-element mesh whose error is not larger:",
+        ),
+    ]
 
 
 def picture(cost: dict) -> Chart:
-    """Errors of the settled rates and of the curves against wall time, one line per model, with the
-    band of the reference's own uncertainty and the front of the best; and the part of the
-    surrogate's error that a tighter tolerance can buy off."""
+    """Errors of the settled rates and of the curves over wall time, one line per model, with the
+    uncertainty of the finest mesh and the Pareto front; and the surrogate's error of time
+    integration."""
     looks = (("s", "-"), ("^", ":"), ("o", "--"), ("v", "-."), ("D", "-"), ("o", ":"), ("x", ""))
     models = dict.fromkeys(point["model"] for point in cost["points"])
     look = {
@@ -106,7 +105,7 @@ def picture(cost: dict) -> Chart:
             models, (NAVY, GREY, AMBER, TEAL, VERMILION, NAVY, NAVY), looks
         )
     }
-    band = (cost["band_deg_s"], "the reference's own uncertainty") if cost["band_deg_s"] else None
+    band = (cost["band_deg_s"], "uncertainty of the finest mesh") if cost["band_deg_s"] else None
     settled = [
         point
         | {
@@ -137,7 +136,7 @@ def picture(cost: dict) -> Chart:
             None,
         ),
         (
-            "settled rates, of which time integration",
+            "settled rates, error of time integration",
             cost["points"],
             "integration_error_deg_s",
             "error of the settled rates (deg/s)",
@@ -160,13 +159,13 @@ def picture(cost: dict) -> Chart:
 
 
 def _front(cost: dict) -> Line:
-    """Steps from each of the best to the next: errors below the band count as the band."""
-    best = sorted(
+    """Steps along the Pareto front; errors below the band count as the band."""
+    front = sorted(
         (p["wall_s"], p["trusted_deg_s"])
         for p in choice.trusted(cost["points"], cost["band_deg_s"])
         if p["pareto"]
     )
-    walls, errors = [wall for wall, _ in best], [error for _, error in best]
+    walls, errors = [wall for wall, _ in front], [error for _, error in front]
     return Line(
         [
             wall
@@ -174,7 +173,7 @@ def _front(cost: dict) -> Line:
             for wall in pair
         ],
         [error for error in errors for _ in range(2)],
-        "front of the best",
+        "Pareto front",
         "#000000",
         3.0,
         "-",
@@ -185,8 +184,8 @@ def _front(cost: dict) -> Line:
 def _cost_line(
     points: list[dict], error: str, model: str, colour: str, marker: str, dash: str
 ) -> Line:
-    """One model; tolerances are labelled only where they matter, in the panel of the time
-    integration, and once for all models, numbers of modes wherever they are varied."""
+    """One model. Tolerances are labelled for compliant contact in the panel of the time
+    integration only, numbers of modes wherever they are varied."""
     varied = any(point["modes"] for point in points)
     labels = [
         str(point["modes"])

@@ -1,20 +1,18 @@
-"""How cost grows: with the elements of the reference, with the pads of each model, and with the
-effects that are on.
+"""Growth of the run time with the elements of the reference, with the pads of each model, and with
+the active effects.
 
     t = c n^p,   p the slope of a straight line through log t over log n, with its standard error
 
-Elements: a step does the same for each of n elements, so p = 1 per step. A step may be no longer
-than a wave takes through an element, so with all edges shrinking alike a run takes n^(1/3) times as
-many of them: p = 4/3. Less is found on coarse meshes, where much of a step is the same on any mesh
-(t = a + b n beside it says how much), and where the thickness of a wall, one element from edge to
-edge, sets the step.
+Elements: the work of a step is proportional to n elements, so p = 1 per step. The step limit is
+proportional to the edge of an element, so a run has n^(1/3) times as many steps: p = 4/3. Smaller
+values occur on coarse meshes, where much of a step is the same on any mesh (a of t = a + b n), and
+where the thickness of a wall, one element, sets the step.
 
-Pads are taken away or added between the others of the same payload. Its motion is another then, and
-with it how often it touches, so that p of a run is the price of pads in that motion; per step it is
-nearer to the price of the pads themselves. Effects differ in what they are, so that no power of
-their number means anything: what counts is the price of each, and of all over none.
+Pads are removed, or added between the others of the same payload. This changes the motion and its
+contacts, so p of a run includes that change; p of a step has less of it. Effects differ in kind, so
+only the time of each, and of all over none, is given.
 
-Times are of one processor, without compilation, and as in the ablation study: of a whole run of the
+Times are of one processor, without compilation, as in the ablation study: of a whole run of the
 reference, of the time loop of the surrogate.
 """
 
@@ -39,8 +37,8 @@ _REPEATS = {"highfi": 2, "lowfi": 20}
 
 
 def power_law(sizes: Sequence[float], times: Sequence[float]) -> dict:
-    """``exponent`` p of t = c n^p, None of a single size, as a mesh from a file has, and its
-    ``standard_error``, which two points do not have."""
+    """``exponent`` p of t = c n^p, None for a single size (a mesh from a file), and its
+    ``standard_error``, None for two points."""
     if len(set(sizes)) < 2:
         return {"exponent": None, "standard_error": None}
     line = linregress(np.log(sizes), np.log(times))
@@ -53,7 +51,7 @@ def power_law(sizes: Sequence[float], times: Sequence[float]) -> dict:
 def shares(
     sizes: Sequence[float], times: Sequence[float]
 ) -> tuple[float, float] | tuple[None, None]:
-    """a and b of t = a + b n, by least squares of the relative error; None of a single size."""
+    """a and b of t = a + b n, by least squares of the relative error; None for a single size."""
     if len(set(sizes)) < 2:
         return None, None
     design = np.column_stack([1.0 / np.array(times), np.array(sizes) / np.array(times)])
@@ -76,21 +74,21 @@ def fitted(model: str, points: list[dict]) -> dict:
 
 def elements(study: Study, name: str) -> dict:
     """Law over the elements of the reference's meshes, and between its two finest (``finest``); and
-    what a step takes on any mesh with what each element adds (``fixed_s``, ``element_s``). The runs
-    are those of other stages, medians over conditions."""
+    time of a step on any mesh (``fixed_s``) and its increase by each element (``element_s``). The
+    runs are those of other stages, medians over conditions."""
     names = dict.fromkeys([name, *study.scene.agreement.fitted])
     coarsest = 2.0 * study.settings.coarse_size
-    ask = {
+    wanted = {
         coarsest: [study.highfi(name, element_size=coarsest, tag="-coarsest")],
         study.settings.coarse_size: [study.coarse(each) for each in names],
         study.settings.element_size: [study.highfi(each) for each in names],
     }
     runs = iter(
-        study.store.fill("cost, elements", [run for asked in ask.values() for run in asked])
+        study.store.fill("cost, elements", [run for group in wanted.values() for run in group])
     )
     points = [
-        _median([next(runs).cost for _ in asked], "cpu_s") | {"element_size_m": size}
-        for size, asked in ask.items()
+        _median([next(runs).cost for _ in group], "cpu_s") | {"element_size_m": size}
+        for size, group in wanted.items()
     ]
     law = fitted(FINITE_ELEMENTS, points)
     fixed, each = shares(
@@ -104,7 +102,7 @@ def elements(study: Study, name: str) -> dict:
 
 
 def _median(costs: list[dict], time: str) -> dict:
-    """Repeats of a run as one point; the elements are its ``n`` unless said otherwise."""
+    """Repeats of a run as one point; ``n`` is the number of elements."""
     return {
         "n": costs[0].get("elements"),
         "steps": statistics.median(cost["steps"] for cost in costs),
@@ -115,11 +113,11 @@ def _median(costs: list[dict], time: str) -> dict:
 
 
 def pads(study: Study, name: str) -> list[dict]:
-    """Law over the number of pads of each model, the reference on the coarsest mesh, walls from the
-    statics of that mesh. On a mesh from a file, which has no coarser one, the reference is left
-    out: ten of its runs may take hours."""
+    """Law over the number of pads of each model; reference and rail compliance on the coarsest mesh.
+    On a mesh from a file, which has no coarser one, the reference is left out: ten of its runs may
+    take hours."""
     variants = pad_variants(study, name)
-    asked = (
+    wanted = (
         {}
         if isinstance(study.scene.rail, MeshTable)
         else {
@@ -128,20 +126,20 @@ def pads(study: Study, name: str) -> list[dict]:
             ]
         }
     )
-    asked[SPRINGS] = [
+    wanted[SPRINGS] = [
         study.lowfi(name, None, change, f"-pads-{count}") for count, change in variants.items()
     ]
     if study.scene.contact is not None:
-        asked[COMPLIANT] = [
+        wanted[COMPLIANT] = [
             study.lowfi(name, None, change, f"-pads-{count}", _walls(study, name, change))
             for count, change in variants.items()
         ]
-    with Board("cost, pads", len(asked)) as board:
-        return [_over_pads(model, runs, list(variants), board) for model, runs in asked.items()]
+    with Board("cost, pads", len(wanted)) as board:
+        return [_over_pads(model, runs, list(variants), board) for model, runs in wanted.items()]
 
 
 def _over_pads(model: str, runs: list[Run], counts: list[int], board: Board) -> dict:
-    """Runs by turns, so that what else the machine does meets each number of pads alike."""
+    """Alternating runs, so that other load on the machine affects all numbers of pads alike."""
     fidelity, progress = runs[0].fidelity, board.callback(model)
     for run in runs:
         warm_up(run)
@@ -160,7 +158,7 @@ def _over_pads(model: str, runs: list[Run], counts: list[int], board: Board) -> 
 
 
 def pad_variants(study: Study, name: str) -> dict[int, dict]:
-    """Overrides by number of pads, of those that the scene can have."""
+    """Overrides by number of pads, for the numbers that are possible in the scene."""
     scene, found = study.condition(name), {}
     for share in _SHARES:
         count = share * len(scene.pads)
@@ -171,9 +169,9 @@ def pad_variants(study: Study, name: str) -> dict[int, dict]:
 
 
 def with_pads(scene: Scene, count: int) -> dict | None:
-    """Override that leaves ``count`` pads: those of the rear, so that the exit stays where it is,
-    and of a part of a band those farthest apart; or more bands, evenly from the rear to the front
-    one. None where bands do not go into it."""
+    """Override that leaves ``count`` pads: rear ones, so that the exit stays where it is, and of
+    a part of a band those farthest apart; or more bands, evenly spaced from rear to front. None
+    where ``count`` is no multiple of a band."""
     own = sorted(
         (pad.model_dump(mode="json") for pad in scene.pads), key=lambda pad: pad["position"][0]
     )
@@ -198,7 +196,7 @@ def with_pads(scene: Scene, count: int) -> dict | None:
 
 
 def _possible(study: Study, name: str, change: dict, count: int) -> bool:
-    """Whether both models take the scene with these pads."""
+    """Whether both models accept the scene with these pads."""
     from tipoff import highfi
 
     try:
@@ -214,7 +212,8 @@ def _coarsest(study: Study, name: str, change: dict, count: int) -> Run:
 
 
 def _walls(study: Study, name: str, change: dict):
-    """A surrogate's time does not hang on the mesh its walls come from, so the coarsest will do."""
+    """Rail compliance on the coarsest mesh, because the time of a surrogate does not depend on the
+    mesh."""
     from tipoff import highfi
 
     return highfi.condense(
@@ -223,10 +222,10 @@ def _walls(study: Study, name: str, change: dict):
 
 
 def effects(scene: Scene, ablation: dict) -> list[dict]:
-    """What the ablation study measured, for each model: times with ``none`` and with ``all``
-    effects and their ``ratio``; ``ladder``, rungs of effects added to those before, each with the
-    number on; ``effects``, what each costs alone, as the time that all take more than all but it;
-    ``asked``, number and time of those of the scene."""
+    """Times of the ablation study for each model: without effects ``none_s``, with all ``all_s`` and
+    their ``ratio``; ``ladder``, times with growing sets of effects; ``effects``, the time of each,
+    which is that of all effects minus that of all others; ``asked``, number and time of the scene's
+    effects."""
     found = []
     for fidelity, model in (("highfi", FINITE_ELEMENTS), ("lowfi", COMPLIANT)):
         time = {
@@ -262,14 +261,14 @@ def effects(scene: Scene, ablation: dict) -> list[dict]:
 
 
 def _ladder(time: dict[str, float], count: int) -> list[dict]:
-    """No further kernel is compiled for it: the sets of the ablation study that lie inside each
-    other. Friction has nothing to rub on without contact, and no code."""
-    rungs = [
+    """The nested sets of the ablation study, which need no further kernels. There is no friction
+    without contact."""
+    sets = [
         ("none", 0, "no effect"),
         ("all but contact and friction", count - 2, "without contact"),
         ("contact too", count - 1, "without friction"),
         ("friction too", count, "all effects"),
     ]
     if {"without contact", "without friction"} - set(time):
-        rungs = [rungs[0], ("all", count, "all effects")]
-    return [{"added": words, "on": on, "time_s": time[variant]} for words, on, variant in rungs]
+        sets = [sets[0], ("all", count, "all effects")]
+    return [{"added": words, "on": on, "time_s": time[variant]} for words, on, variant in sets]

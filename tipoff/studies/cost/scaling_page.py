@@ -1,18 +1,17 @@
-"""How cost grows on the page: time over elements and over pads with fitted exponents, and what
-effects cost."""
+"""Growth of the run time on the page: time over elements and over pads with fitted exponents, and
+the time of effects."""
 
 import math
 
 from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS, SPRINGS
 from tipoff.studies.render.chart import AMBER, NAVY, VERMILION, Chart, Line, Panel
-from tipoff.studies.render.markup import Html, caption, paragraph, table
+from tipoff.studies.render.document import Part
+from tipoff.studies.render.table import Column, Noted, Table, number
 
-WORDS = (
-    "Time of one processor on {condition}: of a whole run of the reference, of the time loop of "
-    "the surrogate. Left and "
-    "middle: fitted power laws, and dotted the exponent 4/3. Right: over the time without any "
-    "effect; "
-    "the last marker has every effect on, those before it the same without friction, and without "
+CAPTION = (
+    "Processor time on {condition}: of a whole run of the reference, of the time loop of the "
+    "surrogate. Left and middle: fitted power laws, dotted the exponent 4/3. Right: time relative "
+    "to that without effects; the last point has all effects, those before lack friction, then "
     "contact."
 )
 _LOOKS = {
@@ -21,19 +20,14 @@ _LOOKS = {
     COMPLIANT: (VERMILION, "D", "-."),
 }
 _EXPECTED = (
-    "Expected over elements: 1 for a step, and 4/3 for a run, whose steps get shorter with the "
-    "edges of the elements; "
-    "less where much of a step is the same on any mesh, and where the thickness of the walls sets "
-    "the step. Another "
-    "number of pads is another motion of the same payload: rear bands alone, or more bands between "
-    "the outer ones."
+    "Time t = c n^p, p with its standard error. Expected over elements: 1 for a step, 4/3 for a "
+    "run. Smaller values occur where part of a step is the same on any mesh, or where the "
+    "thickness of the walls sets the step. Other numbers of pads also change the motion."
 )
-_PRICES = (
-    "Effects differ in what they are, so no power of their number means anything. First lines: "
-    "times with effects added to "
-    "those above, in brackets over the time without any. Lines below: what each costs alone, "
-    "all effects against all but it; below zero where the motion without it is the dearer one. "
-    "From the ablation study."
+_TIMES = (
+    "In brackets: time relative to that without effects. First rows: nested sets of effects. Rows "
+    "below: time of all effects minus that of all others, negative where the motion without the "
+    "effect takes longer. From the ablation study."
 )
 
 
@@ -61,8 +55,8 @@ def picture(found: dict) -> Chart:
         ),
         Panel(
             "effects",
-            "effects that are on",
-            "time over that without any",
+            "active effects",
+            "time relative to no effects",
             [_ladder(item) for item in found["effects"]],
         ),
     ]
@@ -70,8 +64,7 @@ def picture(found: dict) -> Chart:
 
 
 def _law(law: dict) -> list[Line]:
-    """The points of one model, and the fitted line, which goes through their geometric means, where
-    there is one."""
+    """The points of one model, and the fitted line through their geometric means, if it exists."""
     colour, marker, dash = _LOOKS[law["model"]]
     sizes, times = ([point[key] for point in law["points"]] for key in ("n", "time_s"))
     points = Line(sizes, times, law["model"], colour, 1.6, "", marker=marker)
@@ -84,9 +77,9 @@ def _law(law: dict) -> list[Line]:
 
 def _ladder(item: dict) -> Line:
     colour, marker, dash = _LOOKS[item["model"]]
-    ratios = [rung["time_s"] / item["none_s"] for rung in item["ladder"]]
+    ratios = [step["time_s"] / item["none_s"] for step in item["ladder"]]
     return Line(
-        [rung["on"] for rung in item["ladder"]],
+        [step["on"] for step in item["ladder"]],
         ratios,
         item["model"],
         colour,
@@ -96,21 +89,10 @@ def _ladder(item: dict) -> Line:
     )
 
 
-def tables(found: dict) -> Html:
-    """Exponents, the points they were fitted to, and the price of each effect."""
-    return Html(
-        paragraph(
-            "How cost grows: t = c n",
-            Html("<sup>p</sup>"),
-            ", the exponent p with its standard error.",
-        )
-        + _exponents(found)
-        + caption(_EXPECTED + _shares(found["elements"]))
-        + _meshes(found["elements"])
-        + _pads(found["pads"])
-        + _prices(found["effects"])
-        + caption(_PRICES)
-    )
+def tables(found: dict) -> list[Part]:
+    """Exponents, the points they are fitted to, and the time of each effect."""
+    elements = found["elements"]
+    return [_exponents(found), _meshes(elements), _pads(found["pads"]), _times(found["effects"])]
 
 
 def exponent(law: dict) -> str:
@@ -121,7 +103,7 @@ def exponent(law: dict) -> str:
     return f"{round(law['exponent'], 2) + 0.0:.2f}" + ("" if error is None else f" ± {error:.2f}")
 
 
-def _exponents(found: dict) -> Html:
+def _exponents(found: dict) -> Table:
     elements = found["elements"]
     finest = elements["finest"] | {"model": elements["model"], "points": elements["points"][-2:]}
     laws = [
@@ -129,50 +111,44 @@ def _exponents(found: dict) -> Html:
         ("elements, two finest meshes", finest),
         *(("pads", law) for law in found["pads"]),
     ]
-    return table(
-        ("over", "model", "from", "to", "p of a run", "p of a step"),
-        [
-            (
-                over,
-                law["model"],
-                f"{law['points'][0]['n']:,}",
-                f"{law['points'][-1]['n']:,}",
-                exponent(law["run"]),
-                exponent(law["step"]),
-            )
-            for over, law in laws
-        ],
-    )
+    rows = [
+        (
+            over,
+            law["model"],
+            law["points"][0]["n"],
+            law["points"][-1]["n"],
+            exponent(law["run"]),
+            exponent(law["step"]),
+        )
+        for over, law in laws
+    ]
+    heads = ("over", "model", "from", "to", "p of a run", "p of a step")
+    return Table(heads, rows, (_EXPECTED, _step(elements)))
 
 
-def _shares(law: dict) -> str:
+def _step(law: dict) -> str:
     if law["fixed_s"] is None:
-        return " The mesh is given, so there is but one."
+        return "The mesh is from a file, so there is only one."
     return (
-        f" Here a step takes {1e6 * law['fixed_s']:.3g} µs on any mesh and "
+        f"A step takes {1e6 * law['fixed_s']:.3g} µs on any mesh and "
         f"{1e9 * law['element_s']:.3g} ns for each element."
     )
 
 
-def _meshes(law: dict) -> Html:
-    rows = [
-        (
-            f"{1e3 * point['element_size_m']:g}",
-            f"{point['n']:,}",
-            f"{point['steps']:,.0f}",
-            f"{point['time_s']:.3g}",
-            f"{1e6 * point['step_s']:.3g}",
-            point["repeats"],
-        )
-        for point in law["points"]
-    ]
-    return table(
-        ("element size (mm)", "elements", "steps", "time of a run (s)", "of a step (µs)", "runs"),
-        rows,
-    )
+def _meshes(law: dict) -> Table:
+    columns = {
+        "element_size_m": Column("element size", "mm", "g", 1e3),
+        "n": Column("elements"),
+        "steps": Column("steps", form=",.0f"),
+        "time_s": Column("time of a run", "s"),
+        "step_s": Column("time of a step", "µs", scale=1e6),
+        "repeats": Column("runs"),
+    }
+    rows = [[point[name] for name in columns] for point in law["points"]]
+    return Table(list(columns.values()), rows)
 
 
-def _pads(laws: list[dict]) -> Html:
+def _pads(laws: list[dict]) -> Table:
     rows = [
         (
             law["model"],
@@ -183,37 +159,33 @@ def _pads(laws: list[dict]) -> Html:
         )
         for law in laws
     ]
-    return table(
-        (
-            "pads: time of a run (ms); of a step (µs)",
-            *(str(point["n"]) for point in laws[0]["points"]),
-        ),
-        rows,
-    )
+    counts = [f"pads: {point['n']}" for point in laws[0]["points"]]
+    return Table(["time of a run (ms); of a step (µs)", *counts], rows)
 
 
-def _prices(found: list[dict]) -> Html:
-    """Rungs of the ladder, then each effect alone; the models side by side."""
+def _times(found: list[dict]) -> Table:
+    """Times of the sets of effects, then of each effect, by model."""
     first = found[0]
-    rungs = [
-        (rung["added"], rung["on"], *(_price(item["ladder"][at]["time_s"], item) for item in found))
-        for at, rung in enumerate(first["ladder"])
+    sets = [
+        (item["added"], item["on"], *(_time(model["ladder"][at], model) for model in found))
+        for at, item in enumerate(first["ladder"])
     ]
     alone = [
         (
-            f"{one['effect'].replace('_', ' ')} alone",
+            f"{item['effect'].replace('_', ' ')} alone",
             "",
-            *(_price(item["effects"][at]["time_s"], item) for item in found),
+            *(_time(model["effects"][at], model) for model in found),
         )
-        for at, one in enumerate(first["effects"])
+        for at, item in enumerate(first["effects"])
     ]
-    return table(("effects", "on", *(f"{item['model']} (ms)" for item in found)), [*rungs, *alone])
+    models = [f"{item['model']} (ms)" for item in found]
+    return Table(["effects", "number", *models], [*sets, *alone], (_TIMES,))
 
 
-def _price(seconds: float, item: dict) -> str:
-    return f"{_milliseconds(seconds)} ({seconds / item['none_s']:.2f})"
+def _time(item: dict, model: dict) -> Noted:
+    return Noted(_milliseconds(item["time_s"]), number(item["time_s"] / model["none_s"], ".2f"))
 
 
 def _milliseconds(seconds: float) -> str:
-    """Three digits, or all before the point: models differ by three powers of ten."""
+    """Three digits, or all before the point, because times span three powers of ten."""
     return f"{1e3 * seconds:,.0f}" if abs(seconds) >= 0.1 else f"{1e3 * seconds:.3g}"

@@ -1,14 +1,12 @@
-"""Stage ``cost``: what accuracy costs in time. Error of the settled rates against wall time, both
-fidelities on one condition; and how time grows with elements, pads and effects
-(``studies.cost.scaling``).
+"""Stage ``cost``: error of the settled rates over wall time, both fidelities on one condition; and
+growth of time with elements, pads and effects (``studies.cost.scaling``).
 
-The yardstick is the finest finite-element mesh; its own uncertainty is the band below which no
-error can be told from zero, so an error below it counts as the band where the front of the best is
-drawn. Every model is timed alone, each run with all the machine. The surrogate's time-integration
-error, against its own tightest tolerance, stands beside its error against the yardstick: what
-remains when it is small is the model, and no tolerance can buy it.
+Errors are against the finest finite-element mesh. Its uncertainty is the band below which an error
+cannot be distinguished from zero; a smaller error counts as the band in the Pareto front. Every run
+is timed alone on the machine. The time-integration error of a surrogate is against its tightest
+tolerance; the rest of its error is the error of the model.
 
-``cost.json`` is the bare list of points for other tools, ``cost_study.json`` the whole result.
+``cost.json`` is the list of points for other tools, ``cost_study.json`` the whole result.
 """
 
 import json
@@ -23,7 +21,7 @@ from tipoff.mechanics.trajectory import Trajectory
 from tipoff.studies.ablation import stage as ablation
 from tipoff.studies.agreement import verdicts
 from tipoff.studies.agreement.metrics import compare
-from tipoff.studies.agreement.stage import Rung, refined, rungs
+from tipoff.studies.agreement.stage import Candidate, candidates, refined
 from tipoff.studies.calibration import stage as calibrate
 from tipoff.studies.core import machine
 from tipoff.studies.core.progress import Board
@@ -41,17 +39,17 @@ NAME, POINTS = "cost_study", "cost.json"
 
 def run(study: Study) -> dict:
     """``points``: model, rung, numerics, setting (element size in m or relative tolerance), modes
-    (None where the rung has its own), error_deg_s, curve_error (rate L2), wall_s, pareto;
-    ``band_deg_s``: uncertainty of the yardstick; ``matched``; ``scaling`` over ``elements``,
+    (None where they are not varied), error_deg_s, curve_error (rate L2), wall_s, pareto;
+    ``band_deg_s``: uncertainty of the finest mesh; ``matched``; ``scaling`` over ``elements``,
     ``pads`` and ``effects``."""
     name = _condition(study)
-    ladder = surrogates(study)
+    compared = surrogates(study)
 
     def make() -> tuple[dict, list[Path]]:
         finest, band, points = _reference_points(study, name)
-        for rung in ladder:
-            points += _surrogate_points(study, name, rung, finest, study.settings.tolerances)
-        points += _points_by_modes(study, name, ladder[-1], finest)
+        for candidate in compared:
+            points += _surrogate_points(study, name, candidate, finest, study.settings.tolerances)
+        points += _points_by_modes(study, name, compared[-1], finest)
         growing = {
             "elements": scaling.elements(study, name),
             "pads": scaling.pads(study, name),
@@ -84,13 +82,13 @@ def _condition(study: Study) -> str:
     return (study.scene.agreement.refined or study.fitted())[0]
 
 
-def surrogates(study: Study, conditions: Iterable[str] | None = None) -> list[Rung]:
-    """The rungs of the agreement study for ``conditions``, else for all, and one more between
-    them."""
-    plain, calibrated, compliant, modal = rungs(study, conditions)
+def surrogates(study: Study, conditions: Iterable[str] | None = None) -> list[Candidate]:
+    """The surrogates of the agreement study for ``conditions`` (default: all), and one with part of
+    the rail compliance."""
+    plain, calibrated, compliant, modal = candidates(study, conditions)
     along = {
-        name: known and known.restricted(1, coupled=False)
-        for name, known in compliant.compliance.items()
+        name: whole and whole.restricted(1, coupled=False)
+        for name, whole in compliant.compliance.items()
     }
     return [
         plain,
@@ -104,14 +102,14 @@ def surrogates(study: Study, conditions: Iterable[str] | None = None) -> list[Ru
 def _reference_points(study: Study, name: str) -> tuple[Trajectory, float | None, list[dict]]:
     settings = study.settings
     sizes = (2.0 * settings.coarse_size, settings.coarse_size, settings.element_size)
-    # The last two are runs of the agreement study, not others under another name.
-    asked = [
+    # The last two are runs of the agreement study.
+    wanted = [
         study.highfi(name, element_size=sizes[0], tag="-coarsest"),
         study.coarse(name),
         study.highfi(name),
         *refined(study, name).values(),
     ]
-    coarsest, coarse, finest, *changed = study.store.fill("cost, meshes", asked)
+    coarsest, coarse, finest, *changed = study.store.fill("cost, meshes", wanted)
     band = verdicts.largest(verdicts.settled_change(coarse, run) for run in (finest, *changed))
     points = [
         {
@@ -130,15 +128,14 @@ def _reference_points(study: Study, name: str) -> tuple[Trajectory, float | None
             "status": found.status,
         }
         for size, found, wall in zip(
-            sizes, (coarsest, coarse, finest), _wall_times(asked[: len(sizes)])
+            sizes, (coarsest, coarse, finest), _wall_times(wanted[: len(sizes)])
         )
     ]
     return finest, band, points
 
 
 def _wall_times(runs: list[Run]) -> list[float]:
-    """Seconds that each run takes by itself: in the store they may have been made side by side, on
-    a processor each."""
+    """Wall time (s) of each run alone; the runs of the store may have shared the machine."""
     found = []
     with Board("cost, times", len(runs)) as board:
         for run in runs:
@@ -149,7 +146,7 @@ def _wall_times(runs: list[Run]) -> list[float]:
 
 
 def _errors(finest: Trajectory, found: Trajectory) -> dict[str, float | None]:
-    """Errors against the yardstick: of the settled rates (deg/s) and of the curves (rate L2,
+    """Errors against the finest mesh: of the settled rates (deg/s) and of the curves (rate L2,
     relative)."""
     return {
         "error_deg_s": verdicts.settled_change(finest, found),
@@ -157,30 +154,34 @@ def _errors(finest: Trajectory, found: Trajectory) -> dict[str, float | None]:
     }
 
 
-def _points_by_modes(study: Study, name: str, rung: Rung, finest: Trajectory) -> list[dict]:
-    """What more or fewer modes buy, at the tolerance of all other studies."""
+def _points_by_modes(
+    study: Study, name: str, candidate: Candidate, finest: Trajectory
+) -> list[dict]:
+    """Points with other numbers of modes, at the tolerance of all other studies."""
     return [
         point | {"model": BY_MODES, "numerics": f"{count} mode{'s' * (count > 1)}", "modes": count}
         for count in MODES
-        if count != rung.modes
+        if count != candidate.modes
         for point in _surrogate_points(
-            study, name, rung._replace(modes=count), finest, [Numerics().relative_tolerance]
+            study, name, candidate._replace(modes=count), finest, [Numerics().relative_tolerance]
         )
     ]
 
 
 def _surrogate_points(
-    study: Study, name: str, rung: Rung, finest: Trajectory, tolerances: Iterable[float]
+    study: Study, name: str, candidate: Candidate, finest: Trajectory, tolerances: Iterable[float]
 ) -> list[dict]:
     tolerances = sorted(tolerances)
-    asked = [rung.ask(study, name, relative_tolerance=tolerance) for tolerance in tolerances]
-    warm_up(asked[0])
-    measured = [[timed(run) for _ in range(study.settings.lowfi_repeats)] for run in asked]
+    wanted = [
+        candidate.request(study, name, relative_tolerance=tolerance) for tolerance in tolerances
+    ]
+    warm_up(wanted[0])
+    measured = [[timed(run) for _ in range(study.settings.lowfi_repeats)] for run in wanted]
     runs = [repeats[0][0] for repeats in measured]
     return [
         {
-            "model": rung.title,
-            "rung": rung.name,
+            "model": candidate.title,
+            "rung": candidate.name,
             "setting": tolerance,
             "modes": None,
             "numerics": f"tolerance {tolerance:g}",
@@ -196,11 +197,11 @@ def _surrogate_points(
 
 
 def matched(points: list[dict]) -> list[dict]:
-    """For each surrogate: the cheapest mesh that is as exact, and how many times longer it takes. A
-    surrogate's error is that at its tightest tolerance, for errors of the steps may cancel it by
-    luck; its time that of the loosest one that adds no tenth to it. The finest mesh, the yardstick,
-    is as exact as anything can be told to be. Other numbers of modes are left out, for no tolerance
-    was varied there."""
+    """For each surrogate: the fastest mesh with an error at most as large, and the ratio of wall
+    times. The error of a surrogate is that at its tightest tolerance, because step errors can cancel
+    it by chance; its time is that of the fastest tolerance that adds at most a tenth to it. The
+    error of the finest mesh is zero by definition. Other numbers of modes are left out, because no
+    tolerance was varied there."""
     points = [point for point in points if point["modes"] is None]
     meshes = [point for point in points if point["model"] == FINITE_ELEMENTS]
     found = []
@@ -218,8 +219,8 @@ def matched(points: list[dict]) -> list[dict]:
                 point for point in known if (point["integration_error_deg_s"] or 0.0) <= 0.1 * error
             ]
             point = min(enough, key=lambda point: point["wall_s"])
-            as_exact = [mesh for mesh in meshes if (mesh["error_deg_s"] or 0.0) <= error]
-            mesh = min(as_exact, key=lambda point: point["wall_s"])
+            accurate = [mesh for mesh in meshes if (mesh["error_deg_s"] or 0.0) <= error]
+            mesh = min(accurate, key=lambda point: point["wall_s"])
             found.append(
                 {
                     "model": model,
@@ -236,8 +237,7 @@ def matched(points: list[dict]) -> list[dict]:
 
 
 def marked(points: list[dict], band: float | None) -> list[dict]:
-    """The points, each told whether no other one can be trusted as far and is as fast
-    (``pareto``)."""
+    """The points with ``pareto``: whether no faster point has an error bound as small."""
     known = choice.trusted(points, band)
 
     def beaten(point: dict) -> bool:

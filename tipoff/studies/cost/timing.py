@@ -1,10 +1,8 @@
-"""Timed runs: the same case in both fidelities by turns in one go, compilation apart, scatter
-shown.
+"""Timed runs: the same case in both fidelities, alternately in one process, without compilation.
 
     ratio = median wall time of highfi.run / median wall time of lowfi.run
 
-``low`` and ``high`` are the smallest ratio any pair of repeats gives and the largest, so they are
-the whole scatter.
+``low`` and ``high`` are the smallest and the largest ratio of any pair of repeats.
 """
 
 import statistics
@@ -34,7 +32,7 @@ def timed(
 
 
 def warm_up(run: Run) -> None:
-    """Compile or load what ``run`` needs, by running its first milliseconds."""
+    """Compile or load the kernels of ``run`` by its first milliseconds."""
     prepare(run)
     execute(replace(run, scene=run.scene.replace({"duration": min(run.scene.duration, 1e-3)})))
 

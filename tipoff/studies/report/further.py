@@ -5,10 +5,10 @@ from pathlib import Path
 
 from tipoff.files import read_json
 from tipoff.studies.bench import reference
-from tipoff.studies.convergence import stage as convergence
+from tipoff.studies.convergence import summary
 from tipoff.studies.core.study import read
 from tipoff.studies.cost import scaling_page
-from tipoff.studies.render.document import Part, markdown
+from tipoff.studies.render.document import Bullets, Part, markdown
 from tipoff.studies.render.table import Column, Table, number
 
 
@@ -33,7 +33,7 @@ def _cost(found: dict) -> Table:
             row["error_deg_s"],
             row["wall_s"],
             row["mesh"],
-            "the yardstick" if row["mesh_error_deg_s"] is None else row["mesh_error_deg_s"],
+            "reference" if row["mesh_error_deg_s"] is None else row["mesh_error_deg_s"],
             row["mesh_wall_s"],
             row["ratio"],
         )
@@ -93,13 +93,6 @@ def _ends(law: dict) -> str:
 def _convergence(found: dict) -> list[Part]:
     sizes = [row for row in found["quantities"] if row["parameter"] == "element size"]
     heads = [f"{1e3 * size:g} mm" for size in sizes[0]["sizes"]]
-    summary = convergence.summary(
-        found["condition"],
-        found["quantities"],
-        found["penalty"],
-        found["quadrature"],
-        found["coarse_size_m"],
-    )
     rows = [
         (
             f"{row['quantity']}, {row['unit']}",
@@ -112,7 +105,7 @@ def _convergence(found: dict) -> list[Part]:
     columns = [Column(head, form=".5g") for head in heads]
     return [
         f"Error of the reference itself (`make convergence`, {found['condition']}):",
-        "\n".join(f"- {line}" for line in summary + convergence.told(found["ripple"])),
+        Bullets(summary.lines(found)),
         Table(["quantity", *columns, "order", f"± at {heads[-1]}"], rows),
         _changes(found),
     ]

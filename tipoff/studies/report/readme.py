@@ -178,11 +178,8 @@ def _equal(refined: dict | None, cost: dict | None) -> list[Part]:
 
 
 def _rails(found: list[dict]) -> Table:
-    return Table(
-        rails_page.HEADS,
-        rails_page.rows(found),
-        title="Other rails, each calibrated and judged by itself (`make rails`):",
-    )
+    title = "Other rails, each with its own calibration (`make rails`):"
+    return rails_page.table(found, title=title)
 
 
 def _blind(found: dict) -> Table:
@@ -204,7 +201,7 @@ def _ladder(found: dict) -> list[Part]:
     for point in found["points"]:
         wall = point["wall_s"]
         errors = [
-            "the yardstick" if value is None else scale * value
+            "reference" if value is None else scale * value
             for value, scale in ((point["error_deg_s"], 1.0), (point["curve_error"], 100.0))
         ]
         time = f"{wall:.3g} s" if wall >= 1.0 else f"{1e3 * wall:.2g} ms"

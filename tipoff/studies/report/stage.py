@@ -91,10 +91,10 @@ def _trajectories(study: Study, documents: dict):
 
     asked = [runs.requests(study, fidelity) for fidelity in ("highfi", "lowfi")]
     if documents.get("agreement"):
-        plain, calibrated, *_ = compare.rungs(study)
+        plain, calibrated, *_ = compare.candidates(study)
         asked += [
-            {name: rung.ask(study, name) for name in study.conditions}
-            for rung in (calibrated, plain)
+            {name: candidate.request(study, name) for name in study.conditions}
+            for candidate in (calibrated, plain)
         ]
     return Runs(*(_stored(study, wanted) for wanted in asked))
 

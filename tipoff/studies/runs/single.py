@@ -52,11 +52,12 @@ def chosen(
     if point["rung"] == "highfi":
         asked = study.highfi(condition, element_size=point["setting"])
     else:
-        rung = next(
-            rung for rung in cost.surrogates(whole, [condition]) if rung.name == point["rung"]
+        candidate = next(
+            item for item in cost.surrogates(whole, [condition]) if item.name == point["rung"]
         )
-        rung = rung if point["modes"] is None else rung._replace(modes=point["modes"])
-        asked = rung.ask(study, condition, relative_tolerance=point["setting"])
+        if point["modes"] is not None:
+            candidate = candidate._replace(modes=point["modes"])
+        asked = candidate.request(study, condition, relative_tolerance=point["setting"])
     return _made(study, condition, asked, quiet) | {"chosen": point}
 
 

@@ -1,0 +1,76 @@
+"""Results of the convergence study as sentences."""
+
+from tipoff.highfi.numerics import Numerics
+from tipoff.studies.agreement import verdicts
+from tipoff.studies.convergence import equal_accuracy
+from tipoff.studies.convergence.quantities import RATE
+
+
+def lines(found: dict) -> list[str]:
+    """One sentence for each of: meshes, steps, penalty, quadrature, ripple, equal accuracy, where
+    the result ``found`` has it."""
+    equal = found["equal_accuracy"]
+    return [
+        *refinements(found),
+        *_changes("penalty stiffness, times", "factor", found["penalty"]),
+        *_changes("Gauss points per facet edge,", "points_per_edge", found["quadrature"]),
+        *_ripple(found["ripple"]),
+        *([equal_accuracy.sentence(equal)] if equal else []),
+    ]
+
+
+def refinements(found: dict) -> list[str]:
+    """Uncertainty of the settled rates by mesh and by step."""
+    text, name = [], found["condition"]
+    step = (
+        f", {Numerics().safety:g} of the step limit on elements of "
+        f"{1e3 * found['coarse_size_m']:g} mm"
+    )
+    for parameter, unit, factor, default in (
+        ("element size", "mm", 1e3, ""),
+        ("time step", "ns", 1e9, step),
+    ):
+        rows = [
+            row
+            for row in found["quantities"]
+            if row["parameter"] == parameter and row["quantity"].startswith(RATE)
+        ]
+        worst = max(rows, key=lambda row: row["nominal_uncertainty"] or 0.0)
+        if worst["uncertainty"] is None:
+            text.append(f"{parameter} on {name}: uncertainty unknown, a run did not settle")
+            continue
+        text.append(
+            f"{parameter} on {name}: uncertainty of the settled rates "
+            f"{worst['nominal_uncertainty']:.2g} deg/s at the default "
+            f"{factor * worst['nominal_size']:.3g} {unit}{default}, "
+            f"{max(row['uncertainty'] for row in rows):.2g} deg/s at "
+            f"{factor * worst['sizes'][-1]:.3g} {unit}"
+        )
+    return text
+
+
+def _changes(title: str, key: str, rows: list[dict]) -> list[str]:
+    """Largest change of a settled rate over the ``rows``; none without rows."""
+    if not rows:
+        return []
+    change = verdicts.largest(row["settled_rate_change_deg_s"] for row in rows)
+    odd = "".join(
+        f"; {row[key]:g} {row['status']}"
+        for row in rows
+        if row["settled_rate_change_deg_s"] is None
+    )
+    found = (
+        "no run settled"
+        if change is None
+        else f"a settled rate changes by up to {change:.2g} deg/s"
+    )
+    return [f"{title} {rows[0][key]:g} to {rows[-1][key]:g}: {found}{odd}"]
+
+
+def _ripple(rows: list[dict]) -> list[str]:
+    """Ripple on the finest mesh; none without rows."""
+    return [
+        f"ripple of a constant contact force at the facet frequency {row['frequency']:.4g} Hz, "
+        f"facets of {1e3 * row['element_size_m']:.3g} mm: {100.0 * row['ripple']:.2g} %"
+        for row in rows[-1:]
+    ]
