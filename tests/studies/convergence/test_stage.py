@@ -23,8 +23,8 @@ from tipoff.studies.core import store as store_module
 from tipoff.studies.core.settings import Settings, defaults
 from tipoff.studies.core.study import Study, StudyError
 from tipoff.studies.cost import timing
-from tipoff.studies.report import stage as report
 from tipoff.studies.render.table import inline
+from tipoff.studies.report import stage as report
 from tipoff.studies.report.page import Page
 from tipoff.studies.runs.figures import Runs
 

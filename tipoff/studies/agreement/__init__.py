@@ -1,4 +1,4 @@
-"""How far two trajectories are apart, what that is judged by, and how long it means anything."""
+"""Agreement of the surrogates with the reference: metrics, gates, floor, growth of a disturbance."""
 
 from tipoff.studies.agreement import command
 from tipoff.studies.question import Contents, Entry, Result, Section

@@ -15,7 +15,7 @@ def add(app: typer.Typer) -> None:
     common.add(
         app,
         "compare",
-        "Agreement on fitted and held-out conditions beside the floor, and the speed-up; writes "
+        "Agreement on fitted and held-out conditions with the floor, and the speed-up; writes "
         "agreement.json.",
         run,
     )

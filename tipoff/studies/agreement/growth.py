@@ -1,22 +1,20 @@
-"""How a disturbance of one micrometre grows, and how long two curves can be compared before it has.
+"""Growth of a disturbance of one micrometre, and the time up to which two curves can be compared.
 
     s(t) = largest of |w'(t) - w(t)| over the axes and over the twins w', which start with every
            wall 1 um farther off or nearer
     d_k  = mean of s over the free flight after contact k
     factor d_k / d_(k-1),   exponent ln(d_k / d_(k-1)) / (t_k - t_(k-1)),   t_k the end of contact k
 
-Walls and not the payload are moved, because that is the disturbance of the floor: it meets every
-face whatever way the payload goes, and both models know it. Before the first contact nothing
-differs. The first one turns a length into a rate, d_1; every later one adds such a part of its own,
-so that d_k up to k d_1 is no growth, and more is.
+The walls are moved, not the payload, as for the floor: this affects every face and exists in both
+models. Before the first contact nothing differs. The first contact turns the length into a rate
+d_1; every later one adds a similar part, so that only d_k above k d_1 is growth.
 
 **Horizon**: the first instant at which s passes the gate of the settled rates and is not back below
-it after the same contact. Twins touch at different instants, so that s peaks while one of them is
-in contact and the other not yet; a peak that the contact takes back is a shift of time. Up to the
-horizon of the reference a curve can be compared with its own, from there on it is one of many that
-1 um tells apart. **Sensitive**: 1 um moves a settled rate by more than the gate. **Chaotic**:
-sensitive, and d after the last of n contacts is more than n d_1, so that it is growth from contact
-to contact and not the first one alone that carries 1 um beyond the gate.
+it after the same contact. Twins touch at different instants, so s peaks while only one of them is
+in contact; a peak that ends with the contact is a shift of time. Curves can be compared up to the
+horizon of the reference. **Sensitive**: 1 um changes a settled rate by more than the gate.
+**Chaotic**: sensitive, and d after the last of n contacts is above n d_1, so that growth from
+contact to contact is the cause.
 """
 
 import math
@@ -28,7 +26,7 @@ from tipoff.mechanics.trajectory import Trajectory
 from tipoff.studies.agreement.metrics import common_time
 from tipoff.studies.agreement.verdicts import largest, settled_change
 
-_BOUNCE = 1e-3  # s: touches closer than this are one contact, for in between nothing settles
+_BOUNCE = 1e-3  # s: contacts closer than this count as one
 _DRAWN = 300  # points of a curve that result files keep
 
 
@@ -117,8 +115,8 @@ def separation(time: np.ndarray, nominal: Trajectory, twins: list[Trajectory]) -
 
 
 def contacts(time: np.ndarray, loaded: np.ndarray) -> list[tuple[int, int]]:
-    """First sample of each contact and the one after its last, where ``loaded`` (n,) says when a
-    pad bears a force."""
+    """First sample of each contact and the one after its last; ``loaded`` (n,): a pad bears a
+    force."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], loaded, [False]]).astype(int)))
     spans: list[tuple[int, int]] = []
     for first, after in zip(edges[::2].tolist(), edges[1::2].tolist()):

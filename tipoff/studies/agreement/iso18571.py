@@ -1,5 +1,4 @@
-"""Objective rating of two curves by ISO/TS 18571, built for crash tests and widely understood among
-engineers.
+"""Objective rating of two curves by ISO/TS 18571, developed for crash tests.
 
     R = 0.4 Z + 0.2 E_P + 0.2 E_M + 0.2 E_S          1 is a perfect match, above 0.94 "excellent", below 0.58 "poor"
 

@@ -1,5 +1,4 @@
-"""How far a model is from the reference, from the agreement table that ``tipoff compare`` left for
-this very scene and code."""
+"""Error of a model from the stored agreement table of ``tipoff compare`` for this scene and code."""
 
 from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS
 from tipoff.scenes.scene import NOMINAL
@@ -7,8 +6,7 @@ from tipoff.studies.core.study import Study
 
 
 def rows(study: Study, model: str, calibrated: bool = False, modes: int = 0) -> list[dict]:
-    """Rows of ``model`` in the agreement table; none where no table is kept, or none of this model
-    with its options."""
+    """Rows of ``model`` with its options in the agreement table; none without a current table."""
     from tipoff.studies.agreement import stage as compare
 
     found = compare.stored(study.unrestricted())
@@ -26,8 +24,8 @@ def rows(study: Study, model: str, calibrated: bool = False, modes: int = 0) -> 
 
 
 def missed(study: Study, model: str, condition: str | None = None) -> list[dict]:
-    """Rows, those of ``condition`` if one is given, in which the reference is converged and
-    ``model`` is beyond a gate."""
+    """Rows (of ``condition``, if given) with a converged reference in which ``model`` misses a
+    gate."""
     return [
         row
         for row in rows(study, model)
@@ -40,8 +38,8 @@ def missed(study: Study, model: str, condition: str | None = None) -> list[dict]
 def words(
     study: Study, model: str, condition: str | None = None, calibrated: bool = False, modes: int = 0
 ) -> str:
-    """The error of ``model`` on ``condition``, or its largest over all conditions that are judged,
-    in words."""
+    """The error of ``model`` on ``condition``, or its largest over all conditions with contact and a
+    converged reference, as text."""
     if model == FINITE_ELEMENTS:
         return "the reference itself"
     found = rows(study, model, calibrated, modes)

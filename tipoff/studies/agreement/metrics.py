@@ -1,4 +1,4 @@
-"""How far a surrogate's trajectory is from the reference's, by one set of definitions.
+"""Differences between the trajectories of a surrogate and of the reference.
 
     rate L2 = sqrt( sum_axes int |w - w_ref|^2 dt / sum_axes int |w_ref|^2 dt )       v_x L2 likewise
     settled error = max_axes |w_settled - w_ref,settled|

@@ -1,4 +1,4 @@
-"""Agreement on other rails: what lies beside the folder of a scene."""
+"""Agreement on other rails, from the folders beside that of a scene."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -11,8 +11,8 @@ from tipoff.studies.core.study import Study, read
 
 
 def beside(folder: Path) -> list[dict]:
-    """Agreement and constants of the catalogue's scenes with other rails or pads whose folders lie
-    beside ``folder``, made from the present code."""
+    """Agreement and constants of the catalogue's scenes with other rails or pads, from current
+    results in folders beside ``folder``."""
     found, own = [], digest(scenes.load(folder.name)) if folder.name in scenes.catalog() else None
     for path in sorted(folder.parent.glob("*/agreement.json")):
         name, size = path.parent.name, (read(path) or {}).get("element_size_m")

@@ -1,18 +1,17 @@
-"""Rows of the agreement table: metrics, gates, and beside them the floor and the uncertainty of the
-reference itself.
+"""Rows of the agreement table: metrics, gates, floor, and uncertainty of the reference.
 
-* **Floor**: what +-1 um of clearance changes in a model, by the same two metrics. No agreement
-  finer than that means anything.
-* **Reference uncertainty**: what coming from twice the element size, and there four times the
-  penalty and half the step, change in the settled rates of the reference, each alone. Agreement is
-  claimed only where the largest is at most 0.1 deg/s.
+* **Floor**: change of a model by +-1 um of clearance, in the same two metrics. Smaller differences
+  have no meaning.
+* **Reference uncertainty**: largest change of the settled rates of the reference by the mesh (from
+  twice the element size) and, on that mesh, by four times the penalty or half the step. Agreement
+  requires at most 0.1 deg/s.
 
 * **Gates**: v_x within 0.1 %, rates and settled rates within the limits of the scene's
-  ``[agreement]``; where twice the floor, taken as at most 0.1 deg/s, is above the limit of the
-  settled rates, that counts, for no model could be held to less.
+  ``[agreement]``; the limit of the settled rates is at least twice the floor, of which at most
+  0.1 deg/s counts.
 
-What the mesh changes is measured on every condition. The rest is measured where the scene says;
-other conditions take the largest of those and say so.
+The change by the mesh is measured on every condition, the others on conditions that the scene
+names; the remaining conditions take the largest value, with a mark.
 """
 
 import math
@@ -45,7 +44,7 @@ def gates(scene: Scene) -> dict[str, float]:
 
 @dataclass(frozen=True)
 class Spread:
-    """How far one cause moves one model on one condition: the larger of its cases; None where a run
+    """Change of one model by one cause on one condition, the larger of its cases; None where a run
     did not settle."""
 
     condition: str
@@ -76,16 +75,15 @@ def settled_change(nominal: Trajectory, changed: Trajectory) -> float | None:
 
 
 def largest(values) -> float | None:
-    """Largest of the values that are known, or None."""
+    """Largest of the values that are not None, or None."""
     known = [value for value in values if value is not None]
     return max(known) if known else None
 
 
 @dataclass(frozen=True)
 class Context:
-    """What stands beside the metrics: ``floors``, the spreads of both models when the clearance
-    changes; ``refinements``, those of the reference when mesh, step or penalty do; and the
-    ``gates``."""
+    """Inputs of the verdicts: ``floors``, spreads of both models by the clearance; ``refinements``,
+    spreads of the reference by mesh, step and penalty; ``gates``."""
 
     floors: list[Spread]
     refinements: list[Spread]
@@ -118,7 +116,7 @@ class Context:
             )
             causes[cause] = largest(item.settled_rate_change_deg_s for item in own)
             here.append(measured)
-        # A refinement after which the payload did not settle leaves nothing known.
+        # Unknown where the payload did not settle with a refinement.
         unknown = not causes or any(
             item.settled_rate_change_deg_s is None
             for item in self.refinements
@@ -127,7 +125,7 @@ class Context:
         return None if unknown else largest(causes.values()), causes, all(here)
 
     def converged(self, condition: str) -> bool:
-        """Whether the reference is sure enough there to judge a surrogate by."""
+        """Whether the uncertainty of the reference is at most ``CONVERGED_DEG_S`` there."""
         uncertainty = self.uncertainty(condition)[0]
         return uncertainty is not None and uncertainty <= CONVERGED_DEG_S
 
@@ -179,8 +177,8 @@ def gate(value: float | None, limit: float) -> dict:
 
 
 def verdict(gates: dict[str, dict], converged: bool, touches: bool = True) -> str:
-    """One phrase: the reference first, for without it the rest means little. Free flight tests no
-    contact law, and says so."""
+    """Verdict as a phrase. A reference that is not converged comes first; agreement without contact
+    is marked."""
     if not converged:
         return NOT_CONVERGED
     missed = [

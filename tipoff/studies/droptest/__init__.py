@@ -1,5 +1,4 @@
-"""Drop tests: from the log of an inertial unit to the change of rate by ejection, and what that
-says of a model."""
+"""Drop tests: change of rate by the ejection from logs of an inertial unit, compared with a model."""
 
 from tipoff.studies.droptest import command
 from tipoff.studies.question import Parts, Question

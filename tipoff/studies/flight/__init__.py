@@ -1,5 +1,4 @@
-"""After separation: free rotation, relative motion in orbit, clearance of boxes, and what becomes
-of a payload."""
+"""Flight after separation: free rotation, relative motion in orbit, clearance of boxes."""
 
 from tipoff.studies.flight import command
 from tipoff.studies.question import Parts, Question

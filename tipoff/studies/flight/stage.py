@@ -1,5 +1,5 @@
-"""Stage ``flight``: what becomes of the payload after its exit, for every condition and for many
-cases with errors."""
+"""Stage ``flight``: flight of the payload after its exit, for every condition and for many cases with
+random errors."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -26,8 +26,8 @@ NAME = "flight"
 
 @dataclass(frozen=True)
 class Options:
-    """What ``tipoff flight`` is given beside the scene: distributions, how many cases and their
-    seed, None as the file says, and the name of a ``model``, None for the default."""
+    """Options of ``tipoff flight``: ``vary``, the distributions; number of ``cases`` and their
+    ``seed``, None: those of the file; ``model`` by name, None: the default."""
 
     vary: str = uncertainty.DEFAULT
     cases: int | None = None
@@ -37,8 +37,7 @@ class Options:
 
 def run(study: Study, options: Options = Options()) -> dict:
     """``conditions``, rows as ``studies.flight.summary`` has them; ``cases``, their distributions;
-    ``curves`` of the first conditions. Raises SceneError for a scene that says nothing of a
-    flight."""
+    ``curves`` of the first conditions. Raises SceneError for a scene without ``[flight]``."""
     _require(study)
     changed = {
         name: value
@@ -83,7 +82,7 @@ def run(study: Study, options: Options = Options()) -> dict:
 
 
 def _inputs(study: Study, options: Options) -> list:
-    """The tables of the flight and what varies. Raises SceneError where no flight can be."""
+    """Tables of the flight and distributions. Raises SceneError where no flight is possible."""
     _require(study)
     tables = {
         name: scene.flight and scene.flight.model_dump(mode="json")
@@ -123,8 +122,8 @@ def _require(study: Study) -> None:
 def _conditions(
     study: Study, options: Options
 ) -> tuple[list[dict], list[dict], flown.Flown | None, bodies.Exits | None]:
-    """A row for every condition, curves of the first that settled, what was found for all that did,
-    and their outcomes as arrays."""
+    """A row for every condition, curves of the first that settled, flights of all that settled, and
+    their outcomes as arrays."""
     runs = []
     for name in study.conditions:
         model = population.surrogate(study, options.model, name)
@@ -167,15 +166,14 @@ def _conditions(
 
 
 def _cases(study: Study, options: Options, drawn: Drawn) -> tuple[dict, flown.Flown, Columns]:
-    """Distributions over the cases of ``drawn``, what was found for each that settled, and what
-    these left their rails with."""
+    """Distributions over the cases of ``drawn``, flights of those that settled, and their exit
+    states."""
     model = population.surrogate(study, options.model)
     cases = population.run(study, NAME, model, drawn)
     which = np.flatnonzero(cases.settled)
     if not len(which):
         raise StudyError(
-            f"none of {drawn.asked:,} cases left the rail and settled: nothing flies; store "
-            f"{cases.store}"
+            f"none of {drawn.asked:,} cases left the rail and settled; store {cases.store}"
         )
     variations, rows = Variations(model.scene), drawn.rows(0, drawn.asked)
     parted = bodies.bodies(variations.of(rows[number]) for number in which)
