@@ -46,7 +46,7 @@ def draw(found):
 COMMAND = '''
 from pathlib import Path
 
-from tipoff.studies.commands.asked import guarded, study_of
+from tipoff.studies.commands.running import guarded, study_of
 from tipoff.studies.commands.options import Json, Out, SceneName, Set
 
 

@@ -9,9 +9,9 @@ from typing import Annotated
 
 import typer
 
-from tipoff.studies.commands.asked import guarded
 from tipoff.studies.commands.helptext import flow
 from tipoff.studies.commands.options import Json
+from tipoff.studies.commands.running import guarded
 from tipoff.studies.registry import BENCHMARKS, COMPARISON, ON_DEMAND, QUESTIONS
 from tipoff.studies.report import command as report
 

@@ -5,11 +5,11 @@ from typing import Annotated
 
 import typer
 
-from tipoff.studies.commands.asked import guarded
 from tipoff.studies.commands.options import (
     Json,
     Out,
 )
+from tipoff.studies.commands.running import guarded
 
 
 def add(app: typer.Typer) -> None:

@@ -1,1 +1,1 @@
-"""What all commands share: options, help, and from options to a study."""
+"""What all commands share: options, help text, and running a command."""

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from tipoff.studies.commands.asked import guarded, study_of
 from tipoff.studies.commands.options import ElementSize, Json, Out, SceneName, Set, Workers
+from tipoff.studies.commands.running import guarded, study_of
 
 if TYPE_CHECKING:
     from tipoff.studies.core.study import Study

@@ -4,7 +4,6 @@ from pathlib import Path
 
 import typer
 
-from tipoff.studies.commands.asked import guarded, study_of
 from tipoff.studies.commands.options import (
     ElementSize,
     Json,
@@ -14,6 +13,7 @@ from tipoff.studies.commands.options import (
     Set,
     Workers,
 )
+from tipoff.studies.commands.running import guarded, study_of
 
 
 def add(app: typer.Typer) -> None:

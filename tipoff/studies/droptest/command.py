@@ -5,8 +5,8 @@ from typing import Annotated
 
 import typer
 
-from tipoff.studies.commands.asked import guarded, study_of
 from tipoff.studies.commands.options import Json, Out, SceneName, Set, Surrogate, Workers
+from tipoff.studies.commands.running import guarded, study_of
 
 
 def add(app: typer.Typer) -> None:

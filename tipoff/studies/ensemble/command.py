@@ -5,7 +5,6 @@ from typing import Annotated
 
 import typer
 
-from tipoff.studies.commands.asked import guarded, study_of
 from tipoff.studies.commands.options import (
     CalibrationFile,
     Json,
@@ -17,6 +16,7 @@ from tipoff.studies.commands.options import (
     Surrogate,
     Workers,
 )
+from tipoff.studies.commands.running import guarded, study_of
 
 
 def add(app: typer.Typer) -> None:

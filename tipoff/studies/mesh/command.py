@@ -4,7 +4,6 @@ from pathlib import Path
 
 import typer
 
-from tipoff.studies.commands.asked import guarded, study_of
 from tipoff.studies.commands.options import (
     ElementSize,
     Json,
@@ -12,6 +11,7 @@ from tipoff.studies.commands.options import (
     SceneName,
     Set,
 )
+from tipoff.studies.commands.running import guarded, study_of
 
 
 def add(app: typer.Typer) -> None:

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from tipoff.studies.commands.asked import guarded, quantity, study_of
 from tipoff.studies.commands.options import (
     CalibrationFile,
     CheckpointEvery,
@@ -21,6 +20,7 @@ from tipoff.studies.commands.options import (
     Set,
     Workers,
 )
+from tipoff.studies.commands.running import guarded, quantity, study_of
 
 if TYPE_CHECKING:
     from tipoff.studies.core.study import Study

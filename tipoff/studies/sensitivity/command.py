@@ -5,7 +5,6 @@ from typing import Annotated
 
 import typer
 
-from tipoff.studies.commands.asked import guarded, study_of
 from tipoff.studies.commands.options import (
     ElementSize,
     Json,
@@ -15,6 +14,7 @@ from tipoff.studies.commands.options import (
     Surrogate,
     Workers,
 )
+from tipoff.studies.commands.running import guarded, study_of
 
 
 def add(app: typer.Typer) -> None:

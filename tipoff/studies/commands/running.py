@@ -1,4 +1,4 @@
-"""From the options of a command to a study, and from faults to messages and exit codes."""
+"""Run a command: make its study from the options, turn errors into messages and exit codes."""
 
 import json
 import os
@@ -21,7 +21,11 @@ def study_of(
     checkpoint_every=None,
     resume=True,
 ):
-    """The study that the options of a command ask for. Raises SceneError, every fault listed."""
+    """The study of a scene with the options of a command.
+
+    ``overrides`` are texts "KEY=VALUE"; ``element_size`` is in mm; ``checkpoint_every`` is a time
+    with its unit. Raises SceneError, every fault listed.
+    """
     from tipoff import scenes
     from tipoff.scenes import plausibility
     from tipoff.scenes.faults import Fault, SceneError
@@ -42,15 +46,15 @@ def study_of(
     if every is not None:
         settings = replace(settings, checkpoint_every=every)
     study = Study(found, Path(out) / found.name, settings, tuple(conditions or ()))
-    # a bad override or an unknown condition is a fault of the input, found before anything runs
-    _ = study.conditions
+    _ = study.conditions  # raises for a bad override or an unknown condition before anything runs
     for warning in plausibility.of_all_conditions(found):
         say(f"implausible: {warning}")
     return study
 
 
 def quantity(option: str, text: str | None, unit: str) -> float | None:
-    """A quantity in ``unit``, zero or more; None without one."""
+    """The value of a ``text`` with unit, in ``unit``; None without a text. Raises SceneError for a
+    text that is no quantity of this kind and for a negative value."""
     from tipoff.scenes.faults import Fault, SceneError
     from tipoff.scenes.units import to_si
 
@@ -70,8 +74,11 @@ def guarded(
     as_json: bool = False,
     lines: Callable[[dict], list[str]] | None = None,
 ) -> dict:
-    """Run ``work`` and print its result, as JSON or as the ``lines`` it has for a reader; turn bad
-    input and failed runs into messages and exit codes."""
+    """Run ``work``, print its result as JSON or as text, and return it.
+
+    ``lines`` makes the text from the result. Errors become a message on standard error and an exit
+    code: 1 for a failed run, 2 for bad input, 130 for Ctrl-C.
+    """
     from tipoff.meshes.generator import GmshUnavailable
     from tipoff.scenes.faults import InputError, SceneError
     from tipoff.studies.core.study import StudyError
@@ -84,12 +91,12 @@ def guarded(
         stop(str(fault), 1)
     except KeyboardInterrupt:
         print(
-            "tipoff: stopped; what was finished is kept, and the same command goes on from there",
+            "tipoff: stopped; finished results are stored, and the same command continues",
             file=sys.stderr,
             flush=True,
         )
-        # at once: files are complete at any moment, and a thread that compiles would hold the
-        # process for seconds
+        # No clean-up: files are complete at any time, and a thread that compiles a kernel would
+        # delay the exit by seconds.
         os._exit(130)
     except InputError as fault:
         stop(f"{type(fault).__name__}: {fault}", 2)
