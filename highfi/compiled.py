@@ -8,13 +8,13 @@ from tipoff.highfi.dynamics.system import build
 from tipoff.highfi.numerics import Numerics
 from tipoff.highfi.run import Loop, prepare
 from tipoff.highfi.state import nodes
-from tipoff.kernels.jit import contains, machine_code
+from tipoff.kernels.compiled import effects
 from tipoff.mechanics.ledger import BODY_FORCE
 from tipoff.scenes.effects.friction import coefficient_over_speed
 from tipoff.scenes.scene import Scene
 
-# A function that only this effect calls. Mass offset, initial state and temperature are numbers
-# without code of their own.
+# A kernel that only this effect calls. Mass offset, initial state and temperature change numbers
+# alone and have no code of their own.
 LAWS = {
     "contact": facet.press,
     "friction": coefficient_over_speed,
@@ -26,10 +26,8 @@ LAWS = {
 
 
 def compiled_effects(scene: Scene, numerics: Numerics | None = None) -> dict[str, bool]:
-    """For each effect with code of its own, whether the kernel compiled for ``scene`` contains
-    it."""
+    """For each effect of ``LAWS``, whether the kernel compiled for ``scene`` contains it."""
     numerics = numerics or Numerics()
     system = build(scene, numerics, prepare(scene, numerics))
     loop = Loop(scene, system, choose(system, scene, numerics))
-    code = machine_code(advance, (*loop.arguments(), loop.book, loop.team, 0, 0, 0))
-    return {effect: contains(code, law) for effect, law in LAWS.items()}
+    return effects(advance, (*loop.arguments(), loop.book, loop.team, 0, 0, 0), LAWS)

@@ -1,6 +1,7 @@
-"""Which effects the compiled time loop of a scene really contains, read from its machine code."""
+"""Which effects the compiled time loop of a scene contains, read from its machine code."""
 
-from tipoff.kernels.jit import contains, machine_code
+from tipoff.kernels.compiled import effects
+from tipoff.kernels.jit import machine_code
 from tipoff.lowfi.contact import springs, stick_slip, thermal_offset
 from tipoff.lowfi.contact.compliant import modes, solution
 from tipoff.lowfi.dynamics import equations
@@ -13,8 +14,8 @@ from tipoff.mechanics.rail_compliance import RailCompliance
 from tipoff.scenes.effects.friction import coefficient_over_speed
 from tipoff.scenes.scene import Scene
 
-# A function that only this effect calls. Mass offset, initial state and damping of rails are numbers
-# without code; compliant contact has the temperature in its own code.
+# A kernel that only this effect calls. Mass offset, initial state and damping of rails change
+# numbers alone; compliant contact has the temperature in its own code.
 LAWS = {
     "contact": springs.load,
     "compliance": solution.solve,
@@ -31,28 +32,29 @@ LAWS = {
 def compiled_effects(
     scene: Scene, numerics: Numerics | None = None, compliance: RailCompliance | None = None
 ) -> dict[str, bool]:
-    """For each effect with code of its own, whether the kernel compiled for ``scene``, with
-    compliant contact or springs, contains it."""
-    code = compiled_code(scene, numerics, compliance)
-    return {effect: contains(code, law) for effect, law in LAWS.items()}
+    """For each effect of ``LAWS``, whether the kernel compiled for ``scene``, with compliant
+    contact or springs, contains it."""
+    return effects(integrate, _arguments(scene, numerics, compliance), LAWS)
 
 
 def compiled_code(
     scene: Scene, numerics: Numerics | None = None, compliance: RailCompliance | None = None
 ) -> bytes:
     """Object code of the time loop."""
+    return machine_code(integrate, _arguments(scene, numerics, compliance))
+
+
+def _arguments(scene: Scene, numerics: Numerics | None, compliance: RailCompliance | None) -> tuple:
+    """Arguments of ``integrate``."""
     begun = Run(scene, numerics or Numerics(), compliance)
     sampling = Sampling(begun.interval, begun.last, 0, begun.whole)
-    return machine_code(
-        integrate,
-        (
-            begun.system,
-            begun.plan,
-            begun.tolerance,
-            begun.marks,
-            begun.loop,
-            sampling,
-            begun.rows,
-            begun.forces,
-        ),
+    return (
+        begun.system,
+        begun.plan,
+        begun.tolerance,
+        begun.marks,
+        begun.loop,
+        sampling,
+        begun.rows,
+        begun.forces,
     )
