@@ -263,7 +263,7 @@ def test_page_is_whole_and_self_contained(pipeline):
     page = (pipeline[0] / "report.html").read_text()
     assert [name for name in SECTIONS if f'id="{name}"' not in page] == []
     # studies with targets of their own
-    assert page.count("Not made yet") == len(QUESTIONS) and "BROKEN" not in page
+    assert page.count("No result yet") == len(QUESTIONS) and "BROKEN" not in page
     assert page.count("/*! For license information") <= 1 and 'src="http' not in page
     figures = {path.name for path in (pipeline[0] / "figures").glob("*.png")}
     assert {

@@ -1,6 +1,6 @@
-"""A study as the command line and the page see it: its command, its result files, its sections."""
+"""The record of a study: its command, its results, its sections of the page."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -9,16 +9,15 @@ import typer
 if TYPE_CHECKING:
     from tipoff.studies.core.study import Study
     from tipoff.studies.render.document import Part
-    from tipoff.studies.render.markup import Html
     from tipoff.studies.report.page import Page
 
 
 class Result(NamedTuple):
-    """A result file, or what there is of several, under the ``name`` that the page has for it.
+    """A result of a study, from one result file or several, under its ``name`` on the page.
 
-    ``run`` makes it; ``stored`` finds it, if it was made from the present scene, code and settings.
-    The report makes a result that has no ``stored``, and only shows one that has no ``run``. One
-    that has both is shown where it was made, and made with ``tipoff report --every``.
+    ``run`` makes it. ``stored`` finds it if it was made from the present scene, code and settings.
+    The report makes each result without ``stored``. It shows a result with ``stored`` where there
+    is one; with ``tipoff report --every`` it makes it too if it has ``run``.
     """
 
     name: str
@@ -27,12 +26,16 @@ class Result(NamedTuple):
 
 
 class Section(NamedTuple):
-    """A section of the page. ``anchor``: its identity in HTML. ``link``: words that lead to it.
-    ``draw``: the whole section, or nothing where it has nothing to show."""
+    """A section of the page.
+
+    ``anchor``: its id in HTML. ``link``: the text of the link to it. ``draw``: its parts below the
+    ``title``, or the whole section as HTML; empty where there is nothing to show.
+    """
 
     anchor: str
     link: str
-    draw: Callable[["Page"], "Html"]
+    draw: Callable[["Page"], "str | Sequence[Part]"]
+    title: str = ""
 
 
 class Contents(NamedTuple):
@@ -44,15 +47,15 @@ class Contents(NamedTuple):
 
 @dataclass(frozen=True)
 class Entry:
-    """One study in the registry. ``add_command`` puts its commands under the application. ``load``
-    imports the modules that do the work, which ``--help`` does not wait for."""
+    """One study in the registry. ``add_command`` adds its commands to the application. ``load``
+    imports the modules that do the work; ``--help`` does not call it."""
 
     add_command: Callable[[typer.Typer], None]
     load: Callable[[], Contents] = Contents
 
 
 class Parts(NamedTuple):
-    """What a study with one result does; ``draw`` gives the parts of its section."""
+    """The functions of a study with one result; ``draw`` makes the parts of its section."""
 
     run: Callable[["Study"], dict]
     stored: Callable[["Study"], dict | None]
@@ -63,7 +66,7 @@ class Question(Entry):
     """A study with one result and one section.
 
     ``name``: of its command, stage, result file and make target. ``title``: of its section.
-    ``link``: words that lead to the section. ``load``: imports the modules that do the work.
+    ``link``: the text of the link to the section. ``load``: imports the modules that do the work.
     """
 
     def __init__(
@@ -77,9 +80,9 @@ class Question(Entry):
         def contents() -> Contents:
             run, stored, draw = load()
 
-            def section(page: "Page") -> "Html":
-                return page.section(name, name, title, lambda found: page.parts(draw(found)), name)
+            def section(page: "Page") -> "list[Part]":
+                return page.shown(name, draw, name)
 
-            return Contents((Result(name, run, stored),), (Section(name, link, section),))
+            return Contents((Result(name, run, stored),), (Section(name, link, section, title),))
 
         super().__init__(add_command, contents)

@@ -3,6 +3,7 @@ drift are real figures."""
 
 import pytest
 
+from tipoff.studies.render.table import html
 from tipoff.studies.stability import contacts, guides, thrusts
 from tipoff.studies.stability.page import stability
 
@@ -31,7 +32,7 @@ def test_case_holds_and_its_control_fails(verdicts, name):
 
 
 def test_table_shows_steps_in_microseconds(verdicts):
-    page = stability({"cases": [found._asdict() for found in verdicts.values()]})
+    page = html(stability({"cases": [found._asdict() for found in verdicts.values()]}))
     assert "7.56" in page and "largest step (µs)" in page and page.count("<tr") == len(CHEAP) + 1
     assert page.count('class="good"') == len(CHEAP)
 
@@ -40,9 +41,9 @@ def test_a_case_that_does_not_hold_is_marked(verdicts):
     """Control: one wrong figure, one control that holds too."""
     missed = verdicts["stiff_pad"]._replace(held=False)
     useless = verdicts["stiff_pad"]._replace(control_failed=False)
-    page = stability({"cases": [missed._asdict(), useless._asdict()]})
+    page = html(stability({"cases": [missed._asdict(), useless._asdict()]}))
     assert (
         page.count('class="bad"') == 2
         and "not held" in page
-        and "the simpler one holds too" in page
+        and "the simpler method holds too" in page
     )

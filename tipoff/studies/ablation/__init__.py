@@ -1,4 +1,4 @@
-"""Every effect off, one at a time: what it changes and what it costs."""
+"""Runs without each effect, one at a time: change of the result and of the time."""
 
 from tipoff.studies.ablation import command
 from tipoff.studies.question import Contents, Entry, Result, Section
@@ -9,7 +9,7 @@ def _load() -> Contents:
 
     return Contents(
         (Result("ablation", stage.run),),
-        (Section("ablation", "Ablation", page.draw),),
+        (Section("ablation", "Ablation", page.draw, "Runs without each effect"),),
     )
 
 

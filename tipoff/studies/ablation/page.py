@@ -1,29 +1,28 @@
-"""Every effect off, on the page."""
+"""Runs without each effect, on the page."""
 
 from typing import TYPE_CHECKING
 
-from tipoff.studies.render.markup import Html, caption, joined, table
+from tipoff.studies.render.document import Part
+from tipoff.studies.render.table import Column, Table
 
 if TYPE_CHECKING:
     from tipoff.studies.report.page import Page
 
 
-def draw(page: "Page") -> Html:
-    """The section, or how to make what it shows."""
-    return page.section(
-        "ablation", "ablation", "Only what the scene calls for", ablation, "ablation"
-    )
+def draw(page: "Page") -> list[Part]:
+    """The table, or how to make the result."""
+    return page.shown("ablation", lambda found: [ablation(found)], "ablation")
 
 
-def ablation(document: dict) -> Html:
-    """Every effect off, both fidelities: what it costs and what it changes."""
-    heads = (
+def ablation(document: dict) -> Table:
+    """Time and settled rates of both fidelities without each effect."""
+    columns = (
         "model",
         "variant",
         "status",
-        "time (s)",
-        "time ratio",
-        "ns per step",
+        Column("time", "s"),
+        Column("time ratio", form=".2f"),
+        Column("time per step", "ns", ",.0f"),
         "settled x, y, z (deg/s)",
         "change x, y, z (deg/s)",
         "effects in the compiled kernel",
@@ -33,31 +32,26 @@ def ablation(document: dict) -> Html:
             row["fidelity"],
             row["variant"],
             row["status"],
-            f"{row['time_s']:.3g}",
-            f"{row['time_ratio']:.2f}",
-            f"{row['ns_per_step']:,.0f}",
+            row["time_s"],
+            row["time_ratio"],
+            row["ns_per_step"],
             _three(row["settled_rate_deg_s"], ""),
             _three(row["settled_rate_change_deg_s"], "+"),
             ", ".join(row["compiled"]) or "none",
         )
         for row in document["rows"]
     ]
-    return joined(
-        table(heads, rows),
-        caption(
-            f"Condition {document['condition']}; reference on {1e3 * document['element_size_m']:g} "
-            f"mm elements, surrogate on compliant "
-            "contact. Times, without compilation: of a whole run of the reference, of the time "
-            "loop of the surrogate. The first "
-            "line of each model has every effect on, those the scene lacks with small values; each "
-            "further line takes one away."
-        ),
+    note = (
+        f"Condition {document['condition']}. The first line of each model has all effects; effects "
+        "that the scene lacks have small values. Each further line lacks one effect. Times exclude "
+        "compilation: a whole run of the reference with elements of "
+        f"{1e3 * document['element_size_m']:g} mm, the time loop alone of the surrogate on "
+        "compliant contact."
     )
+    return Table(columns, rows, (note,))
 
 
-def _three(values: list[float] | None, sign: str) -> str:
-    return (
-        "–"
-        if values is None
-        else ", ".join(f"{value:{sign}.3g}" if value else "0" for value in values)
-    )
+def _three(values: list[float] | None, sign: str) -> str | None:
+    if values is None:
+        return None
+    return ", ".join(f"{value:{sign}.3g}" if value else "0" for value in values)

@@ -1,4 +1,4 @@
-"""Speed of both solvers against what one would write today."""
+"""Speed of both solvers, each beside a plain program for the same task."""
 
 from tipoff.studies.bench import command
 from tipoff.studies.question import Contents, Entry, Result, Section
@@ -9,7 +9,7 @@ def _load() -> Contents:
 
     return Contents(
         (Result("bench", stored=lambda study: reference.stored(study.folder.parent)),),
-        (Section("bench", "Solvers", page.draw),),
+        (Section("bench", "Solvers", page.draw, "Speed of the solvers"),),
     )
 
 

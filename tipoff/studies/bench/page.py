@@ -2,101 +2,65 @@
 
 from typing import TYPE_CHECKING
 
-from tipoff.studies.render.markup import Html, caption, section, table
+from tipoff.studies.render.document import Part
+from tipoff.studies.render.table import Column, Table
 
 if TYPE_CHECKING:
     from tipoff.studies.report.page import Page
 
+_REFERENCE: dict[str, Column | str] = {
+    "elements": "elements",
+    "ns_per_element_step": Column("pads pressed", "ns", ".2f"),
+    "ns_free": Column("free", "ns", ".2f"),
+    "ns_one_thread": Column("one thread", "ns", ".2f"),
+    "baseline_ns_per_element_step": Column("SciPy and NumPy", "ns", ".0f"),
+    "ratio": Column("ratio", form=".1f"),
+    "bytes_per_element": Column("bytes per element", form=".0f"),
+    "set_up_s": Column("set-up", "s", ".1f"),
+    "projected_40_ms_s": Column("projected run of 40 ms", "h", ".2g", 1.0 / 3600.0),
+}
+_SURROGATE: dict[str, Column | str] = {
+    "error_percent": Column("error of the settled rate", "%", "g"),
+    "cpu_ms": Column("surrogate", "ms", ".3f"),
+    "baseline_cpu_ms": Column("plain Runge-Kutta", "ms", ".3f"),
+    "ratio": Column("ratio", form=".1f"),
+    "run_cpu_ms": Column("with curves", "ms", ".2f"),
+    "tolerance": Column("tolerance", form="g"),
+    "baseline_dt_s": Column("step of plain Runge-Kutta", "µs", ".3g", 1e6),
+}
 
-def draw(page: "Page") -> Html:
-    """Both solvers against the loops one would write today, where a benchmark was run."""
-    found = page.documents.get("bench")
-    return bench(found["rows"], found["lowfi"]) if found else Html("")
+
+def draw(page: "Page") -> list[Part]:
+    """Both solvers and their baselines; nothing without a benchmark."""
+    found = page.documents.get("bench") or {}
+    parts: list[Part] = [_reference(found["rows"])] if found.get("rows") else []
+    return [*parts, _surrogate(found["lowfi"])] if found.get("lowfi") else parts
 
 
-def bench(rows: list[dict], surrogate: dict | None) -> Html:
-    """Speed of the reference solver by mesh, and of the surrogate by error."""
-    return section(
-        "bench",
-        "Speed of the solvers",
-        _solver(rows) if rows else Html(""),
-        _surrogate(surrogate) if surrogate else Html(""),
-    )
-
-
-def _solver(rows: list[dict]) -> Html:
-    heads = (
-        "elements",
-        "pads pressed (ns)",
-        "free (ns)",
-        "one thread (ns)",
-        "SciPy and NumPy (ns)",
-        "ratio",
-        "bytes per element",
-        "set-up (s)",
-        "40 ms would take (h)",
-    )
-    lines = [
-        (
-            f"{row['elements']:,}",
-            f"{row['ns_per_element_step']:.2f}",
-            f"{row['ns_free']:.2f}",
-            f"{row['ns_one_thread']:.2f}",
-            f"{row['baseline_ns_per_element_step']:.0f}",
-            f"{row['ratio']:.1f}",
-            f"{row['bytes_per_element']:.0f}",
-            f"{row['set_up_s']:.1f}",
-            f"{row['projected_40_ms_s'] / 3600.0:.2g}",
-        )
-        for row in rows
-    ]
+def _reference(rows: list[dict]) -> Table:
+    """Time of the reference by mesh."""
     first = rows[0]
-    return Html(
-        table(heads, lines)
-        + caption(
-            f"Reference: wall time per element and step on {first['threads']} threads, "
-            f"{first['faces_in_contact']} pad faces pressed "
-            f"or none; medians of {first['repeats']} repeats by turns, compilation apart. Beside "
-            f"it central differences with an "
-            f"assembled SciPy matrix and NumPy, without contact. {first['hardware']['cores']} "
-            f"cores of "
-            f"{first['hardware']['processor']}."
-        )
+    machine = first["hardware"]
+    note = (
+        f"Reference: wall time per element and step on {first['threads']} threads, with "
+        f"{first['faces_in_contact']} pad faces pressed or none; median of {first['repeats']} "
+        "repeats without compilation. Baseline: central differences with an assembled SciPy matrix "
+        f"and NumPy, without contact. Machine: {machine['cores']} cores of {machine['processor']}."
+    )
+    return Table(
+        list(_REFERENCE.values()), [[row[key] for key in _REFERENCE] for row in rows], (note,)
     )
 
 
-def _surrogate(found: dict) -> Html:
-    heads = (
-        "error of the settled rate (%)",
-        "surrogate (ms)",
-        "plain Runge-Kutta (ms)",
-        "ratio",
-        "with curves (ms)",
-        "tolerance",
-        "step of the plain one (us)",
-    )
-    lines = [
-        (
-            f"{row['error_percent']:g}",
-            f"{row['cpu_ms']:.3f}",
-            f"{row['baseline_cpu_ms']:.3f}",
-            f"{row['ratio']:.1f}",
-            f"{row['run_cpu_ms']:.2f}",
-            f"{row['tolerance']:g}",
-            f"{1e6 * row['baseline_dt_s']:.3g}",
-        )
-        for row in found["single"]
-    ]
+def _surrogate(found: dict) -> Table:
+    """Time of the surrogate by error."""
     many = found["ensemble"]
-    return Html(
-        table(heads, lines)
-        + caption(
-            f"Surrogate: processor time of one core per case, the coarsest setting whose 95th "
-            f"percentile over {found['varied_cases']} "
-            f"varied cases keeps to the error; set-up apart. An ensemble of {many['cases']:,} "
-            f"cases at the first error, set-up "
-            f"included: {many['cpu_ms_per_case']:.3f} ms of processor time per case, "
-            f"{many['wall_s']:.2g} s in all. "
-            f"{found['hardware']['processor']}."
-        )
+    note = (
+        "Surrogate: processor time of one core per case, without set-up, at the coarsest setting "
+        f"whose 95th percentile over {found['varied_cases']} varied cases is within the error. An "
+        f"ensemble of {many['cases']:,} cases at the first error takes "
+        f"{many['cpu_ms_per_case']:.3f} ms of processor time per case, set-up included, and "
+        f"{many['wall_s']:.2g} s in total. Machine: {found['hardware']['processor']}."
     )
+    rows = [[row[key] for key in _SURROGATE] for row in found["single"]]
+    return Table(list(_SURROGATE.values()), rows, (note,))

@@ -1,4 +1,4 @@
-"""The surrogate's contact taken from the finite elements: rail compliance, constants of springs."""
+"""Contact of the surrogate from the finite elements: rail compliance, constants of springs."""
 
 from tipoff.studies.calibration import command
 from tipoff.studies.question import Contents, Entry, Result, Section
@@ -13,8 +13,8 @@ def _load() -> Contents:
             Result("calibration", stage.run),
         ),
         (
-            Section("compliance", "Compliance", compliance_page.draw),
-            Section("calibration", "Calibration", page.draw),
+            Section("compliance", "Compliance", compliance_page.draw, "Rail compliance"),
+            Section("calibration", "Calibration", page.draw, "Calibration"),
         ),
     )
 

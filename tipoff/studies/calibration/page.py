@@ -1,89 +1,87 @@
 """Calibrated springs on the page."""
 
-from html import escape
 from typing import TYPE_CHECKING
 
-from tipoff.studies.render.markup import Html, caption, code, fold, joined, number, paragraph, table
+from tipoff.studies.render.document import Fold, Part
+from tipoff.studies.render.table import Column, Table, number
 
 if TYPE_CHECKING:
     from tipoff.studies.report.page import Page
 
 _INTERVALS = (
-    "Intervals are linear and take what the fit leaves for scatter about a model that is right. "
-    "Model error is not in "
-    "them: what the surrogate lacks may move its constants by more than they say. "
-    "Not told: the curves do not fix the constant, and no interval is made up."
+    "The intervals are linear and treat the residuals as scatter about a correct model. They do not "
+    "include the model error, which can shift the constants by more. Not determined: the curves do "
+    "not determine the constant, so it has no interval."
 )
 
 
-def draw(page: "Page") -> Html:
-    """The section, or how to make what it shows."""
-    return page.section("calibration", "calibration", "Calibration", calibration, "calibrate")
+def draw(page: "Page") -> list[Part]:
+    """The calibration, or how to make it."""
+    return page.shown("calibration", calibration, "calibrate")
 
 
-def calibration(document: dict) -> Html:
-    """Fitted constants with bounds and reasons, what the curves cannot tell, residuals."""
+def calibration(document: dict) -> list[Part]:
+    """Fitted constants with bounds and reasons, weak directions, residuals."""
+    columns = (
+        "constant",
+        Column("value", form=".5g"),
+        "95 % interval",
+        "unit",
+        Column("lower bound", form=".4g"),
+        Column("upper bound", form=".4g"),
+        "why free, why these bounds",
+    )
+    keys = ("parameters", "values", "intervals", "units", "lower", "upper", "justification")
     rows = [
-        (name, number(value, 5), _interval(ends), unit, number(low, 4), number(high, 4), why)
-        for name, value, ends, unit, low, high, why in zip(
-            *(
-                document[key]
-                for key in (
-                    "parameters",
-                    "values",
-                    "intervals",
-                    "units",
-                    "lower",
-                    "upper",
-                    "justification",
+        (name, value, _interval(ends), *rest)
+        for name, value, ends, *rest in zip(*(document[key] for key in keys))
+    ]
+    residuals = document["residuals"]
+    names = list(dict.fromkeys(name for found in residuals.values() for name in found))
+    return [
+        f"Fitted to {', '.join(document['conditions'])} together; objective "
+        f"{document['objective']:.4g}.",
+        Table(columns, rows, (_INTERVALS,)),
+        Table(
+            ("weak directions, and constants that the curves do not determine",),
+            [(line,) for line in document["weak_directions"] or ["none"]],
+        ),
+        Fold(
+            "Constants of the surrogate (SI)",
+            [
+                Table(
+                    ("key", Column("value", form=".6g")),
+                    [(f"`{key}`", value) for key, value in document["constants"].items()],
                 )
-            )
-        )
+            ],
+        ),
+        Fold("Provenance", [Table(("", ""), list(document["provenance"].items()))]),
+        Fold(
+            "Residuals of each condition",
+            [
+                Table(
+                    ("condition", *(name.replace("_", " ") for name in names)),
+                    [(name, *map(found.get, names)) for name, found in residuals.items()],
+                )
+            ],
+        ),
+        Fold(
+            "Information matrix of the scaled constants",
+            [
+                Table(
+                    ("", *document["parameters"]),
+                    [
+                        (name, *row)
+                        for name, row in zip(document["parameters"], document["information"])
+                    ],
+                )
+            ],
+        ),
     ]
-    weak = (
-        "".join(f"<li>{escape(line)}</li>" for line in document["weak_directions"])
-        or "<li>none</li>"
-    )
-    names = list(dict.fromkeys(key for found in document["residuals"].values() for key in found))
-    residuals = [
-        (condition, *(found.get(name) for name in names))
-        for condition, found in document["residuals"].items()
-    ]
-    information = [
-        (name, *line) for name, line in zip(document["parameters"], document["information"])
-    ]
-    applied = [(code(key), number(value, 6)) for key, value in document["constants"].items()]
-    return joined(
-        paragraph(
-            f"Fitted to {', '.join(document['conditions'])} at once; objective "
-            f"{document['objective']:.4g}."
-        ),
-        table(
-            (
-                "constant",
-                "value",
-                "95 % interval",
-                "unit",
-                "lower bound",
-                "upper bound",
-                "why free, why these bounds",
-            ),
-            rows,
-        ),
-        caption(_INTERVALS),
-        Html(f"<h3>What the curves cannot tell</h3><ul>{weak}</ul>"),
-        fold("constants the surrogate then uses (SI)", table(("key", "value"), applied)),
-        fold("how they were found", table(("", ""), document["provenance"].items())),
-        fold(
-            "residuals per condition",
-            table(("condition", *(name.replace("_", " ") for name in names)), residuals),
-        ),
-        fold(
-            "information matrix of the scaled constants",
-            table(("", *document["parameters"]), information),
-        ),
-    )
 
 
-def _interval(ends: list[float | None]) -> Html | str:
-    return "not told" if None in ends else Html(f"{number(ends[0], 4)} to {number(ends[1], 4)}")
+def _interval(ends: list[float | None]) -> str:
+    low, high = ends
+    if low is None or high is None:
+        return "not determined"
+    return f"{number(low, '.4g')} to {number(high, '.4g')}"

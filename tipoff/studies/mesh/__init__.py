@@ -1,4 +1,4 @@
-"""The rails as the reference will use them."""
+"""The mesh of the rails for the reference."""
 
 from tipoff.studies.mesh import command
 from tipoff.studies.question import Contents, Entry, Result, Section
@@ -9,7 +9,7 @@ def _load() -> Contents:
 
     return Contents(
         (Result("mesh", stage.run),),
-        (Section("mesh", "Mesh", page.draw),),
+        (Section("mesh", "Mesh", page.draw, "Mesh"),),
     )
 
 

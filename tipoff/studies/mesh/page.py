@@ -1,39 +1,32 @@
 """The mesh on the page."""
 
-import base64
-from html import escape
 from typing import TYPE_CHECKING
 
-from tipoff.studies.render.markup import Html, caption, section, table
+from tipoff.studies.render.document import Caption, Image, Notice, Part
+from tipoff.studies.render.table import Column, Table
 
 if TYPE_CHECKING:
     from tipoff.studies.report.page import Page
 
 
-def draw(page: "Page") -> Html:
-    """The section, or how to make what it shows."""
+def draw(page: "Page") -> list[Part]:
+    """The picture of the mesh, its figures, and its surfaces."""
     found = page.documents.get("mesh")
     if not found:
-        return section("mesh", "Mesh", page.missing("mesh", "mesh"))
-    path = page.folder / found["picture"]
-    image = base64.b64encode(path.read_bytes()).decode()
-    areas = [
-        (name.replace("_", " "), item["facets"], f"{1e6 * item['area_m2']:.5g}")
+        return [page.missing("mesh", "mesh")]
+    surfaces = [
+        (name.replace("_", " "), item["facets"], item["area_m2"])
         for name, item in found["surfaces"].items()
     ]
-    words = (
-        f"{found['elements']:,} {found['kind']}, {found['nodes']:,} nodes, elements of about "
-        f"{1e3 * found['element_size_m']:g} mm; edges {1e3 * found['shortest_edge_m']:.3g} to "
-        f"{1e3 * found['longest_edge_m']:.3g} mm, smallest scaled Jacobian "
-        f"{found['smallest_scaled_jacobian']:.3f} (1 for "
-        "a brick and for a regular tetrahedron)."
-    )
-    warned = "".join(f'<div class="notice">{escape(line)}</div>' for line in found["warnings"])
-    return section(
-        "mesh",
-        "Mesh",
-        Html(f'<img alt="mesh of the rails" src="data:image/png;base64,{image}">'),
-        caption(words),
-        table(("surface", "facets", "area (mm²)"), areas),
-        warned,
-    )
+    return [
+        Image(page.folder / found["picture"], "mesh of the rails"),
+        Caption(
+            f"{found['elements']:,} {found['kind']}, {found['nodes']:,} nodes, elements of about "
+            f"{1e3 * found['element_size_m']:g} mm. Edges: {1e3 * found['shortest_edge_m']:.3g} to "
+            f"{1e3 * found['longest_edge_m']:.3g} mm. Smallest scaled Jacobian: "
+            f"{found['smallest_scaled_jacobian']:.3f} (1 for a brick and for a regular "
+            "tetrahedron)."
+        ),
+        Table(("surface", "facets", Column("area", "mm²", ".5g", 1e6)), surfaces),
+        *map(Notice, found["warnings"]),
+    ]

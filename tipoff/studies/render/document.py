@@ -1,8 +1,10 @@
 """What a study reports: paragraphs, lists, tables and figures in order, rendered as HTML, as
 Markdown and for the terminal."""
 
+import base64
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 from markupsafe import Markup
 
@@ -33,6 +35,23 @@ class Notice:
 
 
 @dataclass(frozen=True)
+class Missing:
+    """A paragraph that says how to make a result that is missing."""
+
+    text: str
+
+
+@dataclass(frozen=True)
+class KeyFigures:
+    """Numbers in large type, each with its meaning."""
+
+    items: Sequence[tuple[str, str]]
+
+    def __bool__(self) -> bool:
+        return bool(self.items)
+
+
+@dataclass(frozen=True)
 class Bullets:
     """A list of sentences; each gets its capital and its full stop here."""
 
@@ -55,6 +74,14 @@ class Figure:
 
 
 @dataclass(frozen=True)
+class Image:
+    """An image file that the page contains; ``text`` stands in its place where it is not shown."""
+
+    path: Path
+    text: str
+
+
+@dataclass(frozen=True)
 class Fold:
     """Detail that the page opens on demand; the terminal leaves it out."""
 
@@ -62,7 +89,19 @@ class Fold:
     parts: "Sequence[Part]"
 
 
-Part = str | Heading | Caption | Notice | Bullets | Table | Figure | Fold
+Part = (
+    str
+    | Heading
+    | Caption
+    | Notice
+    | Missing
+    | KeyFigures
+    | Bullets
+    | Table
+    | Figure
+    | Image
+    | Fold
+)
 """A string is a paragraph."""
 
 
@@ -84,6 +123,19 @@ def _html(part: Part, figure: Callable[[Chart | Picture, str], str]) -> Markup:
             return Markup('<p class="caption">{}</p>').format(inline(part.text))
         case Notice():
             return Markup('<div class="notice">{}</div>').format(inline(part.text))
+        case Missing():
+            return Markup('<div class="absent">{}</div>').format(inline(part.text))
+        case KeyFigures():
+            boxes = (
+                Markup("<div><b>{}</b><span>{}</span></div>").format(*map(inline, item))
+                for item in part.items
+            )
+            return Markup('<div class="figures">{}</div>').format(Markup("").join(boxes))
+        case Image():
+            content = base64.b64encode(part.path.read_bytes()).decode()
+            return Markup('<p><img alt="{}" src="data:{};base64,{}"></p>').format(
+                part.text, _MIME[part.path.suffix], content
+            )
         case Bullets():
             lines = map(inline, part.sentences())
             return Markup("<ul>{}</ul>").format(
@@ -100,36 +152,51 @@ def _html(part: Part, figure: Callable[[Chart | Picture, str], str]) -> Markup:
 
 
 def markdown(parts: Sequence[Part]) -> str:
-    """The parts as Markdown, without figures."""
-    shown = [
-        tables.markdown(part)
-        if isinstance(part, Table)
-        else "\n".join(f"- {line}" for line in part.sentences())
-        if isinstance(part, Bullets)
-        else f"### {part.text}"
-        if isinstance(part, Heading)
-        else markdown([part.title, *part.parts])
-        if isinstance(part, Fold)
-        else part
-        if isinstance(part, str)
-        else part.text
-        for part in parts
-        if part and not isinstance(part, Figure)
-    ]
-    return "\n\n".join(shown)
+    """The parts as Markdown, without figures and images."""
+    return "\n\n".join(_markdown(part) for part in parts if part and not isinstance(part, _DRAWN))
+
+
+def _markdown(part: Part) -> str:
+    match part:
+        case Table():
+            return tables.markdown(part)
+        case Bullets():
+            return "\n".join(f"- {line}" for line in part.sentences())
+        case Heading():
+            return f"### {part.text}"
+        case Fold():
+            return markdown([part.title, *part.parts])
+        case _:
+            return _text(part)
 
 
 def terminal(parts: Sequence[Part]) -> str:
-    """The parts for the terminal, without figures and folds."""
-    shown = [
-        tables.terminal(part)
-        if isinstance(part, Table)
-        else "\n".join(part.lines)
-        if isinstance(part, Bullets)
-        else part
-        if isinstance(part, str)
-        else part.text
-        for part in parts
-        if part and not isinstance(part, (Figure, Fold))
-    ]
-    return "\n".join(shown)
+    """The parts for the terminal, without figures, images and folds."""
+    shown = (part for part in parts if part and not isinstance(part, (*_DRAWN, Fold)))
+    return "\n".join(_terminal(part) for part in shown)
+
+
+def _terminal(part: Part) -> str:
+    match part:
+        case Table():
+            return tables.terminal(part)
+        case Bullets():
+            return "\n".join(part.lines)
+        case _:
+            return _text(part)
+
+
+def _text(part: Part) -> str:
+    match part:
+        case str():
+            return part
+        case KeyFigures():
+            return "\n".join(f"{value} {meaning}" for value, meaning in part.items)
+        case Heading() | Caption() | Notice() | Missing():
+            return part.text
+        case _:
+            raise TypeError(f"{type(part).__name__} has no text")
+
+
+_DRAWN = (Figure, Image)
+_MIME = {".png": "image/png", ".webp": "image/webp"}

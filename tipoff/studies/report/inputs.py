@@ -1,5 +1,5 @@
-"""The scene as the report shows it: every value with its unit and where it comes from, and what the
-thrust really delivers."""
+"""The scene as the report shows it: every value with its unit and origin, and the impulse of the
+thrust."""
 
 import math
 import typing
@@ -14,15 +14,16 @@ from tipoff.scenes.effects import thrust_law
 from tipoff.scenes.effects.thrust import GaussiansTable, GaussianTable
 from tipoff.scenes.scene import Scene
 from tipoff.scenes.units import registry
-from tipoff.studies.render.markup import Html, code, fold, number, table, text
+from tipoff.studies.render.document import Fold, Part
+from tipoff.studies.render.table import Table, number
 
 _SCALED = ("m", "s", "N", "Pa", "m/s", "Hz")
 _APART = {"name", "description", "conditions", "provenance", "agreement", "pads"}
 
 
 def values(table_: BaseModel, prefix: str = "") -> Iterator[tuple[str, Any, str, bool]]:
-    """(dotted key, value, SI unit, whether the file states it) of every field that holds a value
-    and is written with the scene."""
+    """(dotted key, value, SI unit, whether the file states it) of every field that has a value and
+    is written with the scene."""
     for name, field in type(table_).model_fields.items():
         value, key = getattr(table_, name), f"{prefix}{name}"
         if value is None or field.exclude or (not prefix and name in _APART):
@@ -57,7 +58,7 @@ def _unit_inside(annotation) -> str:
 
 
 def readable(value: Any, unit: str) -> str:
-    """A value in a unit an engineer reads: degrees, and prefixes that avoid strings of zeros."""
+    """A value with its unit as text: angles in degrees, lengths, times and forces with a prefix."""
     if isinstance(value, (list, tuple)):
         return (
             ", ".join(readable(item, unit) for item in value)
@@ -73,30 +74,24 @@ def readable(value: Any, unit: str) -> str:
     if unit in _SCALED and value != 0.0:
         return f"{registry.Quantity(value, unit).to_compact():.6g~P}"
     symbol = "" if unit in ("", "dimensionless") else f" {registry.Unit(unit):~P}"
-    return Html(number(value, 6) + symbol)
+    return number(value, ".6g") + symbol
 
 
 def provenance(scene: Scene, key: str, stated: bool) -> str:
-    """What the scene says of a key or of the table around it; "default" where the file leaves it
-    out."""
+    """The origin of a key, or of its table, as the scene states it; "default" for a key that the
+    file does not contain."""
     found = origin.of(scene.provenance, key)
     return found if found is not None else "not stated" if stated else "default"
 
 
-def scene_tables(scene: Scene) -> Html:
+def scene_tables(scene: Scene) -> list[Part]:
     """All values, the pads, the conditions, the effects that are absent."""
     rows = []
     for key, value, unit, stated in values(scene):
         if key == "contact.stiffness":
             assert scene.contact is not None
             unit = f"N/m**{scene.contact.exponent:g}"
-        rows.append(
-            (
-                code(key),
-                Html(f"<span>{text(readable(value, unit))}</span>"),
-                provenance(scene, key, stated),
-            )
-        )
+        rows.append((f"`{key}`", readable(value, unit), provenance(scene, key, stated)))
     pads = [
         (
             index + 1,
@@ -116,25 +111,18 @@ def scene_tables(scene: Scene) -> Html:
         )
         for name, overrides in scene.conditions.items()
     ]
-    absent = ", ".join(scene.absent_effects()) or "none"
-    parts = [
-        table(("key", "value", "provenance"), rows),
-        fold(
+    parts: list[Part] = [
+        Table(("key", "value", "provenance"), rows),
+        Fold(
             f"{len(pads)} pads ({provenance(scene, 'pads', True)})",
-            table(("pad", "corner x, y, z", "faces", "size", "inset", "relief"), pads),
+            [Table(("pad", "corner x, y, z", "faces", "size", "inset", "relief"), pads)],
         ),
     ]
     if conditions:
-        parts.append(
-            fold(
-                f"{len(conditions)} conditions",
-                table(("condition", "role", "what differs"), conditions),
-            )
-        )
-    return Html(
-        "".join(parts)
-        + f"<p>Effects this scene does not call for, absent from the compiled code: {absent}.</p>"
-    )
+        table = Table(("condition", "role", "differences from the scene"), conditions)
+        parts.append(Fold(f"{len(conditions)} conditions", [table]))
+    absent = ", ".join(scene.absent_effects()) or "none"
+    return [*parts, f"Effects that this scene lacks; no compiled code contains them: {absent}."]
 
 
 def _role(scene: Scene, name: str) -> str:
@@ -148,13 +136,13 @@ def _role(scene: Scene, name: str) -> str:
     )
 
 
-def thrust_facts(scene: Scene) -> Html:
-    """Impulse, what the duration and a cutoff leave out, and the fit of a measured curve."""
+def thrust_facts(scene: Scene) -> Table:
+    """Impulse, its share outside the duration or the cutoff, and the fit of a measured curve."""
     record = scene.thrust.record()
     delivered = thrust_law.impulse(record, scene.duration)
     rows = [
         ("impulse delivered within the scene", f"{delivered:.6g} N s"),
-        ("velocity it gives the payload alone", f"{delivered / scene.payload.mass:.5g} m/s"),
+        ("velocity change of the payload alone", f"{delivered / scene.payload.mass:.5g} m/s"),
         ("thrust at ignition", f"{thrust_law.sample(record, np.zeros(1))[0]:.4g} N"),
     ]
     if record.pulses is not None:
@@ -183,4 +171,4 @@ def thrust_facts(scene: Scene) -> Html:
                 f"residual {100.0 * fit.relative_residual:.3g} %",
             )
         )
-    return table(("thrust", ""), [(name, Html(f"<span>{words}</span>")) for name, words in rows])
+    return Table(("thrust", ""), rows)

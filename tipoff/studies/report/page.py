@@ -1,10 +1,11 @@
-"""Putting the page together: sections in the order a reader asks, each from its own result file, or
-the target that makes it."""
+"""The page: one section for each study, from its result file; a section without a result names
+the make target of the result."""
 
 import datetime
 from collections.abc import Callable, Sequence
-from html import escape
 from pathlib import Path
+
+from markupsafe import Markup
 
 from tipoff.mechanics.trajectory import versions
 from tipoff.scenes import plausibility
@@ -13,17 +14,28 @@ from tipoff.studies.core import machine
 from tipoff.studies.registry import sections
 from tipoff.studies.render import document
 from tipoff.studies.render.chart import Chart, Picture, to_files, to_html
-from tipoff.studies.render.document import Part
-from tipoff.studies.render.markup import Html, caption, code, number, section, table
-from tipoff.studies.render.style import CSS
-from tipoff.studies.report import inputs
-from tipoff.studies.report.promises import promises, render
+from tipoff.studies.render.document import Caption, KeyFigures, Missing, Notice, Part
+from tipoff.studies.render.markup import Html
+from tipoff.studies.render.table import Column, Table
+from tipoff.studies.report import inputs, template
+from tipoff.studies.report.promises import promises, table
+from tipoff.studies.report.template import Drawn
 from tipoff.studies.runs.figures import Runs
+
+_SETTLED = (
+    "Settled values of the finite-element reference: means over 2 ms after exit and burnout. "
+    "Velocities are in the initial scene axes, rates are inertial in payload body axes. "
+    "Reference ±: the largest change when mesh, step or penalty is refined. Surrogate error: the "
+    "largest error of compliant contact over the axes."
+)
 
 
 class Page:
-    """One report: ``documents`` are result files by stage (None where missing), ``problems`` why a
-    stage has none."""
+    """One report.
+
+    ``documents`` are result files by stage (None where missing). ``problems`` are the reasons why a
+    stage has no result.
+    """
 
     def __init__(
         self, scene: Scene, folder: Path, documents: dict, runs: Runs, problems: dict[str, str]
@@ -38,64 +50,68 @@ class Page:
         self.pictures: list[Path] = []
 
     def render(self) -> str:
-        """The whole page; writes every figure as PNG and SVG on the way."""
+        """The whole page as HTML. Writes every figure as PNG and SVG."""
         from plotly.offline import get_plotlyjs
 
-        known = sections()
-        body = "".join(
-            [
-                self._answer(),
-                self._scene(),
-                *(item.draw(self) for item in known),
-                render(promises(self.rows(), self.documents)),
-                self._colophon(),
-            ]
-        )
-        listed = [
-            ("answer", "Answer"),
-            ("scene", "Scene"),
-            *((item.anchor, item.link) for item in known),
-            ("promises", "Promises"),
-            ("colophon", "Origin"),
+        drawn = [
+            self._drawn("answer", "Answer", "Velocity and rates after exit", self._answer()),
+            self._drawn("scene", "Scene", "Scene", inputs.scene_tables(self.scene)),
         ]
-        links = " ".join(
-            f'<a href="#{name}">{words}</a>' for name, words in listed if f'id="{name}"' in body
+        for item in sections():
+            found = item.draw(self)
+            if isinstance(found, str):  # a section that is HTML already
+                drawn.append(Drawn(item.anchor, item.link, found))
+            else:
+                drawn.append(self._drawn(item.anchor, item.link, item.title, found))
+        checked = promises(self.rows(), self.documents)
+        drawn += [
+            self._drawn("promises", "Promises", "Promises", [table(checked)]),
+            self._drawn("colophon", "Origin", "Origin of the results", self._colophon()),
+        ]
+        shown = [item for item in drawn if item.html]
+        return template.page(
+            f"tipoff: {self.scene.name}", self.scene.description, get_plotlyjs(), shown
         )
-        title = f"tipoff: {escape(self.scene.name)}"
-        return (
-            f'<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{title}</title>'
-            f'<meta name="viewport" content="width=device-width, '
-            f'initial-scale=1"><style>{CSS}</style>'
-            f"<script>{get_plotlyjs()}</script></head><body><header><h1>{title}</h1>"
-            f'<p class="lead">{escape(self.scene.description)}</p><nav>{links}</nav></header>'
-            f"<main>{body}</main></body></html>"
-        )
+
+    def _drawn(self, anchor: str, link: str, title: str, parts: Sequence[Part]) -> Drawn:
+        """A section of ``parts``; empty where there are none."""
+        html = template.section(anchor, title, self.parts(parts)) if parts else ""
+        return Drawn(anchor, link, html)
 
     def section(
-        self, result: str, anchor: str, title: str, body: Callable[[dict], Html], target: str
+        self,
+        result: str,
+        anchor: str,
+        title: str,
+        body: Callable[[dict], str | Sequence[Part]],
+        target: str,
     ) -> Html:
-        """A section whose ``body`` shows a ``result``; without it, the make ``target`` that makes
-        it, or why it is missing."""
+        """A section as HTML; ``body`` shows a ``result``. Without the result it names the make
+        ``target``, or the reason why the result is missing."""
         found = self.documents.get(result)
-        return section(anchor, title, body(found) if found else self.missing(result, target))
+        parts = body(found) if found else [self.missing(result, target)]
+        html = parts if isinstance(parts, str) else self.parts(parts)
+        return Html(template.section(anchor, title, html))
 
-    def missing(self, stage: str, target: str) -> Html:
-        """Why a result is missing, or what makes it."""
+    def shown(self, result: str, body: Callable[[dict], Sequence[Part]], target: str) -> list[Part]:
+        """What ``body`` makes of a ``result``; without the result, how to make it."""
+        found = self.documents.get(result)
+        return list(body(found)) if found else [self.missing(result, target)]
+
+    def missing(self, stage: str, target: str) -> Notice | Missing:
+        """The reason why a result is missing, or the make ``target`` that makes it."""
         if reason := self.problems.get(stage):
-            return Html(f'<div class="notice">{escape(reason)}</div>')
-        return Html(
-            f'<div class="absent">Not made yet: {code(f"make {target} SCENE={self.scene.name}")} '
-            f"makes it.</div>"
-        )
+            return Notice(reason)
+        return Missing(f"No result yet. `make {target} SCENE={self.scene.name}` makes it.")
 
-    def figure(self, chart: Chart | Picture, words: str) -> Html:
-        """A chart with a caption; writes it as PNG and SVG too."""
+    def figure(self, chart: Chart | Picture, words: str) -> Markup:
+        """A chart with a caption as HTML. Writes the chart as PNG and SVG."""
         self.pictures += to_files(chart, self.folder / "figures")
-        return Html(to_html(chart) + caption(words))
+        return Markup(to_html(chart)) + self.parts([Caption(words)])
 
-    def parts(self, parts: Sequence[Part]) -> Html:
+    def parts(self, parts: Sequence[Part]) -> Markup:
         """The parts of a document as HTML."""
-        return Html(document.html(parts, self.figure))
+        return document.html(parts, self.figure)
 
     def rows(self) -> dict[str, list[dict]]:
         """Conditions of both models, as their result files have them."""
@@ -104,94 +120,62 @@ class Page:
             for name in ("highfi", "lowfi")
         }
 
-    def _answer(self) -> Html:
-        """The settled velocities and rates, which is what the reader came for."""
+    def _answer(self) -> list[Part]:
+        """Warnings, wall times, and the settled velocities and rates of all conditions."""
+        warnings = [
+            f"Implausible: {warning}" for warning in plausibility.of_all_conditions(self.scene)
+        ]
+        warnings += [f"{stage}: {reason}" for stage, reason in self.problems.items()]
+        return [*map(Notice, warnings), KeyFigures(self._speeds()), self._settled()]
+
+    def _speeds(self) -> list[tuple[str, str]]:
+        """Wall times of one run and their ratios, each with its meaning; empty before the
+        comparison of both models."""
         agreement = self.documents.get("agreement") or {}
-        uncertain = {row["condition"]: row for row in agreement.get("compliant", [])}
+        if not (speed := agreement.get("speedup_compliant")):
+            return []
+        facts = [
+            (f"{speed['highfi_wall_s']:.3g} s", "one reference run"),
+            (f"{1e3 * speed['lowfi_wall_s']:.3g} ms", "one surrogate run"),
+            (f"{speed['ratio']:,.0f} ×", f"faster ({speed['low']:,.0f} to {speed['high']:,.0f})"),
+        ]
+        if equal := (self.documents.get("convergence") or {}).get("equal_accuracy"):
+            bound = "" if equal["surer"] else "at least, "
+            mesh = f"{1e3 * equal['element_size_m']:g} mm"
+            facts.append((f"{equal['ratio']:,.0f} ×", f"{bound}at equal accuracy (mesh of {mesh})"))
+        return facts
+
+    def _settled(self) -> Table:
+        agreement = self.documents.get("agreement") or {}
+        compared = {row["condition"]: row for row in agreement.get("compliant", [])}
         rows = []
         for found in self.rows()["highfi"]:
-            settled, row = found["settled"], uncertain.get(found["condition"], {})
-            rate = settled and settled["rate_deg_s"]
+            settled, errors = found["settled"] or {}, compared.get(found["condition"], {})
             rows.append(
                 (
                     found["condition"],
                     found["status"],
-                    settled and f"{settled['velocity_m_s'][0]:.4f}",
-                    settled and f"{1e3 * settled['lateral_velocity_m_s']:.3g}",
-                    settled and f"{settled['direction_error_deg']:.3g}",
-                    *([f"{value:+.3f}" for value in rate] if rate else [None] * 3),
-                    number(row.get("reference_uncertainty_deg_s"), 2),
-                    number(row.get("settled_rate_error_deg_s"), 2),
+                    settled.get("velocity_m_s", [None])[0],
+                    settled.get("lateral_velocity_m_s"),
+                    settled.get("direction_error_deg"),
+                    *settled.get("rate_deg_s", [None] * 3),
+                    errors.get("reference_uncertainty_deg_s"),
+                    errors.get("settled_rate_error_deg_s"),
                 )
             )
-        boxes = ""
-        if speed := agreement.get("speedup_compliant"):
-            facts: tuple[tuple[str, str], ...] = (
-                (f"{speed['highfi_wall_s']:.3g} s", "one reference run"),
-                (f"{1e3 * speed['lowfi_wall_s']:.3g} ms", "one surrogate run"),
-                (
-                    f"{speed['ratio']:,.0f} ×",
-                    f"faster ({speed['low']:,.0f} to {speed['high']:,.0f})",
-                ),
-            )
-            if equal := (self.documents.get("convergence") or {}).get("equal_accuracy"):
-                facts += (
-                    (
-                        f"{equal['ratio']:,.0f} ×",
-                        f"{'' if equal['surer'] else 'at least, '}at equal accuracy (mesh of "
-                        f"{1e3 * equal['element_size_m']:g} mm)",
-                    ),
-                )
-            boxes = (
-                '<div class="figures">'
-                + "".join(
-                    f"<div><b>{value}</b><span>{words}</span></div>" for value, words in facts
-                )
-                + "</div>"
-            )
-        notices = "".join(
-            f'<div class="notice">Implausible: {escape(words)}</div>'
-            for words in plausibility.of_all_conditions(self.scene)
+        columns: tuple[Column | str, ...] = (
+            "condition",
+            "status",
+            Column(Markup("v<sub>x</sub> (m/s)"), form=".4f"),
+            Column("lateral v", "mm/s", scale=1e3),
+            Column("off axis", "deg"),
+            *(Column(f"{axis} rate", "deg/s", "+.3f") for axis in ("roll", "y", "z")),
+            Column("reference ±", "deg/s", ".2g"),
+            Column("surrogate error", "deg/s", ".2g"),
         )
-        notices += "".join(
-            f'<div class="notice">{escape(stage)}: {escape(words)}</div>'
-            for stage, words in self.problems.items()
-        )
-        return section(
-            "answer",
-            "What the payload leaves with",
-            notices,
-            boxes,
-            table(
-                (
-                    "condition",
-                    "status",
-                    Html("v<sub>x</sub> (m/s)"),
-                    "lateral v (mm/s)",
-                    "off axis (deg)",
-                    "roll rate (deg/s)",
-                    "y rate (deg/s)",
-                    "z rate (deg/s)",
-                    "reference ± (deg/s)",
-                    "surrogate error (deg/s)",
-                ),
-                rows,
-            ),
-            caption(
-                "Settled values of the finite-element reference: means over 2 ms after exit and "
-                "burnout, "
-                "velocity in initial scene axes, rates inertial in payload body axes. Reference ± "
-                "is what refining mesh, step or "
-                "penalty still changes; surrogate error the largest axis error of compliant "
-                "contact on the same "
-                "condition."
-            ),
-        )
+        return Table(columns, rows, notes=(_SETTLED,))
 
-    def _scene(self) -> Html:
-        return section("scene", "Scene", inputs.scene_tables(self.scene))
-
-    def _colophon(self) -> Html:
+    def _colophon(self) -> list[Part]:
         here = machine.describe()
         facts = [
             ("made", datetime.datetime.now(datetime.UTC).strftime("%Y-%m-%d %H:%M UTC")),
@@ -202,19 +186,14 @@ class Page:
             ),
             ("Python", here["python"]),
             *versions().items(),
-            ("scene hash", code(self.scene.hash)),
+            ("scene hash", f"`{self.scene.hash}`"),
         ]
         keys = [
-            (stage, code(found["key"]))
+            (f"{stage}.json", f"`{found['key']}`")
             for stage, found in self.documents.items()
             if found and stage not in ("view", "rails")
         ]
-        return section(
-            "colophon",
-            "Where these numbers come from",
-            table(("", ""), facts),
-            table(
-                ("result file", "key: hash of scene, code and numerics"),
-                [(f"{stage}.json", key) for stage, key in keys],
-            ),
-        )
+        return [
+            Table(("", ""), facts),
+            Table(("result file", "key: hash of scene, code and numerics"), keys),
+        ]

@@ -1,16 +1,15 @@
-"""The promises of the project, each with what was measured over every stored run, kept or
-broken."""
+"""The promises of the project: for each its limit and the worst value over all stored runs."""
 
 from collections.abc import Iterable
 from typing import NamedTuple
 
 from tipoff.mechanics.promises import FINITE_ELEMENTS, RIGID
-from tipoff.studies.render.markup import Html, section, table
+from tipoff.studies.render.table import Table
 
 
 class Promise(NamedTuple):
-    """A promise: what it says, worst measured value and where, limit, and whether it was kept
-    (None: not measured here)."""
+    """A promise: its text, the worst measured value and its condition, the limit, and whether it is
+    kept (None: not measured)."""
 
     text: str
     worst: str
@@ -74,23 +73,23 @@ def _check(name: str, rows: list[dict], limit: float, words: str) -> Promise:
 
 
 def _worst(rows: Iterable[dict], name: str) -> tuple[float | None, str]:
-    known = [
+    measured = [
         (row["checks"][name], row["condition"])
         for row in rows
         if row["checks"].get(name) is not None
     ]
-    return max(known) if known else (None, "")
+    return max(measured) if measured else (None, "")
 
 
 def _step(rows: list[dict]) -> Promise | None:
-    known = [
+    measured = [
         (row["cost"]["dt_s"] / row["cost"]["dt_limit_s"], row)
         for row in rows
         if row["cost"].get("dt_limit_s")
     ]
-    if not known:
+    if not measured:
         return None
-    ratio, row = max(known, key=lambda pair: pair[0])
+    ratio, row = max(measured, key=lambda pair: pair[0])
     return Promise(
         "no step above the critical one, finite elements",
         f"{1e9 * row['cost']['dt_s']:.4g} ns of {1e9 * row['cost']['dt_limit_s']:.4g} ns, "
@@ -101,12 +100,12 @@ def _step(rows: list[dict]) -> Promise | None:
 
 
 def _surrogate_step(rows: list[dict]) -> Promise | None:
-    known = [
+    measured = [
         (row["cost"]["limit_used"], row["condition"]) for row in rows if "limit_used" in row["cost"]
     ]
-    if not known:
+    if not measured:
         return None
-    used, where = max(known)
+    used, where = max(measured)
     return Promise(
         "no step above the critical one, surrogate",
         f"{used:.3f} of the limit ({where})",
@@ -159,7 +158,7 @@ def _same_bits(speedup: dict) -> Promise | None:
 def _calibration(calibration: dict | None, agreement: dict | None) -> Promise | None:
     if not calibration:
         return None
-    told = (
+    reported = (
         bool(calibration["information"]) and agreement is not None and bool(agreement["held_out"])
     )
     return Promise(
@@ -168,11 +167,11 @@ def _calibration(calibration: dict | None, agreement: dict | None) -> Promise | 
         f"{len(calibration['weak_directions'])} weak directions named, "
         f"{len(agreement['held_out']) if agreement else 0} held-out conditions",
         "",
-        told,
+        reported,
     )
 
 
-def render(found: list[Promise]) -> Html:
+def table(found: list[Promise]) -> Table:
     """The table of promises."""
     rows = [
         (
@@ -184,8 +183,4 @@ def render(found: list[Promise]) -> Html:
         for item in found
     ]
     kinds = [{True: "good", False: "bad", None: ""}[item.kept] for item in found]
-    return section(
-        "promises",
-        "Promises",
-        table(("promise", "worst measured (where)", "limit", ""), rows, kinds=kinds),
-    )
+    return Table(("promise", "worst measured (where)", "limit", ""), rows, kinds=kinds)

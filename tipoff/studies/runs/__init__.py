@@ -13,11 +13,11 @@ def _load() -> Contents:
             Result("lowfi", lambda study: stage.run(study, "lowfi")),
         ),
         (
-            Section("thrust", "Thrust", page.thrust),
-            Section("figure6", "Curves", page.curves),
-            Section("contact-forces", "Contact", page.contact),
-            Section("energy", "Energy", page.energy),
-            Section("stress", "Stress", stress_page.draw),
+            Section("thrust", "Thrust", page.thrust, "Thrust"),
+            Section("figure6", "Curves", page.curves, "Velocity and rates"),
+            Section("contact-forces", "Contact", page.contact, "Contact forces"),
+            Section("energy", "Energy", page.energy, "Energy ledgers"),
+            Section("stress", "Stress", stress_page.draw, "Stress of the rails"),
         ),
     )
 

@@ -1,85 +1,67 @@
 """Runs of both models on the page: thrust, curves, contact forces, energy."""
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from tipoff.studies.render.markup import Html, paragraph, section
+from tipoff.studies.render.document import Figure, Part
 from tipoff.studies.report.inputs import thrust_facts
 from tipoff.studies.runs import figures
 
 if TYPE_CHECKING:
     from tipoff.studies.report.page import Page
 
+_CURVES = (
+    "The paper's Figure 6 for this scene. Broad pale lines: finite elements; thin: compliant "
+    "contact; dashed: springs, calibrated; dotted: springs before calibration. Rates are inertial, "
+    "in payload body axes."
+)
 
-def thrust(page: "Page") -> Html:
+
+def thrust(page: "Page") -> list[Part]:
     """Thrust over time, and its facts."""
-    return section(
-        "thrust",
-        "Thrust",
-        page.figure(figures.thrust_curve(page.scene), "Thrust as both models apply it."),
-        thrust_facts(page.scene),
-    )
+    caption = "Thrust over time, the same in all models."
+    return [Figure(figures.thrust_curve(page.scene), caption), thrust_facts(page.scene)]
 
 
-def curves(page: "Page") -> Html:
+def curves(page: "Page") -> list[Part]:
     """Velocity and rates of all models."""
-    names = [name for name in page.scene.agreement.fitted if name in page.runs.highfi] or list(
-        page.runs.highfi
-    )[:5]
+    fitted = [name for name in page.scene.agreement.fitted if name in page.runs.highfi]
+    names = fitted or list(page.runs.highfi)[:5]
     if not names:
-        return section("figure6", "Velocity and rates", page.missing("highfi", "highfi"))
-    words = (
-        "The paper's Figure 6 for this scene. Broad pale lines: finite elements. Thin lines: "
-        "compliant contact. Dashed: "
-        "springs, calibrated. Dotted: springs before calibration. Rates are inertial, in "
-        "payload body axes. " + ("" if page.runs.calibrated else "Springs are missing.")
-    )
-    return section(
-        "figure6",
-        "Velocity and rates, all models",
-        page.figure(figures.figure6(page.runs, names), words),
-    )
+        return [page.missing("highfi", "highfi")]
+    caption = _CURVES if page.runs.calibrated else f"{_CURVES} There are no runs on springs."
+    return [Figure(figures.figure6(page.runs, names), caption)]
 
 
-def contact(page: "Page") -> Html:
+def contact(page: "Page") -> list[Part]:
     """Contact forces of one condition."""
-    name = _condition(page)
-    if name is None:
-        return section("contact-forces", "Contact forces", page.missing("highfi", "highfi"))
+    return _of_one_condition(page, _contact)
+
+
+def _contact(page: "Page", name: str) -> Part:
     chart = figures.contact_forces(page.scene, page.runs, name)
     if not chart.panels:
-        return section(
-            "contact-forces",
-            "Contact forces",
-            paragraph(f"No pad carries more than 1 N on {name}."),
-        )
-    return section(
-        "contact-forces",
-        "Contact forces",
-        page.figure(
-            chart, f"Magnitude of the force on each pad that is touched, condition {name}."
-        ),
+        return f"No pad carries more than 1 N, condition {name}."
+    return Figure(
+        chart, f"Magnitude of the force on each pad that touches a rail, condition {name}."
     )
 
 
-def energy(page: "Page") -> Html:
+def energy(page: "Page") -> list[Part]:
     """Energy ledgers of one condition."""
-    name = _condition(page)
-    if name is None:
-        return section("energy", "Energy", page.missing("highfi", "highfi"))
-    return section(
-        "energy",
-        "Energy ledgers",
-        page.figure(
-            figures.energy_ledgers(page.runs, name),
-            f"Condition {name}. The transverse ledger leaves out the axial motion, "
-            "so that its hundreds of joules cannot hide the millijoules that decide the rates. "
-            "The dashed residual should lie on "
-            "zero.",
-        ),
+    return _of_one_condition(page, _energy)
+
+
+def _energy(page: "Page", name: str) -> Part:
+    return Figure(
+        figures.energy_ledgers(page.runs, name),
+        f"Energy ledgers, condition {name}. The transverse ledger leaves out the axial motion, so "
+        "that small transverse energies are visible. The dashed residual should be zero.",
     )
 
 
-def _condition(page: "Page") -> str | None:
-    """The condition that is shown alone."""
+def _of_one_condition(page: "Page", draw: Callable[["Page", str], Part]) -> list[Part]:
+    """What ``draw`` makes of the first refined, fitted or other condition with a run."""
     preferred = [*page.scene.agreement.refined, *page.scene.agreement.fitted, *page.runs.highfi]
-    return next((name for name in preferred if name in page.runs.highfi), None)
+    name = next((name for name in preferred if name in page.runs.highfi), None)
+    return [page.missing("highfi", "highfi") if name is None else draw(page, name)]

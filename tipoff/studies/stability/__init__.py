@@ -1,4 +1,4 @@
-"""Hard cases, each beside a weaker method that fails on it."""
+"""Hard cases, each with a simpler method that fails on it."""
 
 from tipoff.studies.question import Contents, Entry, Result, Section
 from tipoff.studies.stability import command
@@ -9,7 +9,7 @@ def _load() -> Contents:
 
     return Contents(
         (Result("stability", stage.run),),
-        (Section("stability", "Hard cases", page.draw),),
+        (Section("stability", "Hard cases", page.draw, "Hard cases"),),
     )
 
 

@@ -1,85 +1,76 @@
 """Hard cases on the page."""
 
-from html import escape
 from typing import TYPE_CHECKING
 
-from tipoff.studies.render.markup import Html, caption, joined, number, paragraph, table
+from tipoff.studies.render.document import Part
+from tipoff.studies.render.table import Column, Noted, Table
 
 if TYPE_CHECKING:
     from tipoff.studies.report.page import Page
 
+_NOTE = (
+    "Largest step: for the surrogate the smallest value of the proven limit, which no step exceeds; "
+    "for the reference the step it took. Critical step: 2 / ω of the linearised case at its "
+    "stiffest, or 2 / rate where friction damps faster; central differences grow beyond it. Energy "
+    "drift: largest residual of the total energy ledger over its scale. A dash: nothing touches or "
+    "vibrates, or the figure does not apply."
+)
 
-def draw(page: "Page") -> Html:
-    """The section, or how to make what it shows."""
-    return page.section("stability", "stability", "Hard cases", stability, "stability")
+
+def draw(page: "Page") -> list[Part]:
+    """The table, or how to make the result."""
+    return page.shown("stability", lambda found: [stability(found)], "stability")
 
 
-def stability(document: dict) -> Html:
-    """Hard cases, held or not, each beside a method that fails."""
-    heads = (
+def stability(document: dict) -> Table:
+    """Hard cases, held or not, each with a simpler method that fails."""
+    columns = (
         "case",
         "model",
         "measured",
         "limit",
-        "largest step (µs)",
-        "critical step (µs)",
-        "energy drift",
+        Column("largest step", "µs", scale=1e6),
+        Column("critical step", "µs", scale=1e6),
+        Column("energy drift", form=".2g"),
         "simpler method",
         "its figure",
         "verdict",
     )
     rows = [
         (
-            _case(c),
+            Noted(c["name"], f"{c['measure']}; {c['note']}" if c["note"] else c["measure"]),
             c["fidelity"],
             _figure(c["figure"]),
-            number(c["limit"]),
-            _micro(c["largest_step_s"]),
-            _micro(c["critical_step_s"]),
-            number(c["energy_drift"], 2),
+            c["limit"],
+            c["largest_step_s"],
+            c["critical_step_s"],
+            c["energy_drift"],
             c["control"],
             _figure(c["control_figure"]),
-            _held(c),
+            _verdict(c),
         )
         for c in document["cases"]
     ]
     kinds = ["good" if c["held"] and c["control_failed"] else "bad" for c in document["cases"]]
-    return joined(
-        paragraph("Each case stands beside a simpler method that must fail on it."),
-        table(heads, rows, kinds=kinds, dense=True),
-        caption(
-            "Largest step: of the surrogate the proven limit at its smallest, which no step "
-            "passed; of the reference the step it took. "
-            "Critical step: 2 / ω of the case made linear at its stiffest, beyond which central "
-            "differences grow, "
-            "or 2 / rate where friction damps faster. Energy drift: largest residual of the total "
-            "energy ledger over its scale. A "
-            "dash: nothing touches or vibrates, or no figure applies."
-        ),
+    return Table(
+        columns,
+        rows,
+        (_NOTE,),
+        "For each case, a simpler method must fail: otherwise the case proves nothing.",
+        kinds=kinds,
+        dense=True,
     )
 
 
-def _case(case: dict) -> Html:
-    """Name, what is measured and a remark in one cell, so that the table keeps to the page."""
-    remark = f"; {case['note']}" if case["note"] else ""
-    return Html(
-        f'{escape(case["name"])}<br><span class="small">{escape(case["measure"] + remark)}</span>'
-    )
+def _figure(value: float | None) -> float | str:
+    return "infinite" if value is None else value
 
 
-def _micro(seconds: float | None) -> str:
-    return "–" if seconds is None else number(1e6 * seconds)
-
-
-def _figure(value: float | None) -> str:
-    return "infinite" if value is None else number(value)
-
-
-def _held(case: dict) -> str:
+def _verdict(case: dict) -> str:
     if not case["held"]:
         return "not held"
     return (
-        "held; the simpler one fails"
+        "held; the simpler method fails"
         if case["control_failed"]
-        else "held, but the simpler one holds too"
+        else "held, but the simpler method holds too"
     )
