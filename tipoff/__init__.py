@@ -1,4 +1,4 @@
-"""Which velocity and which angular rates does a payload leave its rail with?
+"""Predicts the velocity and the angular rates of a payload when it leaves its rail.
 
 >>> import tipoff
 >>> scene = tipoff.load("reference")
@@ -47,7 +47,7 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    """Import a name of the front at its first use, so that ``--help`` is fast."""
+    """Import a name of ``tipoff.front`` at its first use, so that ``--help`` is fast."""
     if name in __all__:
         from tipoff import front
 

@@ -1,4 +1,4 @@
-"""The way in from Python: scenes, runs in any model, ensembles, calibration, comparison."""
+"""The Python interface: scenes, runs in any model, ensembles, calibration, comparison."""
 
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
@@ -32,11 +32,11 @@ def run(
 ) -> Trajectory:
     """Solve ``scene`` in a ``model``: ``compliant``, ``springs`` or ``finite-elements``.
 
-    ``compliance`` is that of the rail, for the model ``compliant``; found where it is not given.
-    ``calibration`` holds constants of ``springs``. ``numerics`` are fields of ``lowfi.Numerics`` or
+    ``compliance`` is that of the rail, for the model ``compliant``; computed where it is not given.
+    ``calibration`` contains constants of ``springs``. ``numerics`` are fields of ``lowfi.Numerics`` or
     ``highfi.Numerics``, such as ``element_size=2e-3`` (m) or ``modes=4``. ``progress`` is called
     with the fraction of the duration done. Raises SceneError, every fault listed, and ValueError
-    for numerics that are out of range; what goes wrong later is the ``status`` of the result.
+    for numerics that are out of range; a failure of the run is the ``status`` of the result.
     """
     _require(scene, model, MODELS)
     if model == FINITE_ELEMENTS:
@@ -47,9 +47,9 @@ def run(
     from tipoff import lowfi
 
     chosen = lowfi.Numerics(**numerics)
-    known = _pressed(scene, model, compliance, calibration)
+    found = _pressed(scene, model, compliance, calibration)
     return lowfi.run(
-        scene, model, compliance=known, calibration=calibration, numerics=chosen, progress=progress
+        scene, model, compliance=found, calibration=calibration, numerics=chosen, progress=progress
     )
 
 
@@ -68,8 +68,8 @@ def ensemble(
 
     ``cases`` are rows of dotted overrides as in ``Scene.replace``; or distributions, by the name or
     path of their file. ``options`` are ``count`` and ``seed``, which replace those of this file,
-    and the numerics of ``run``. ``workers`` is the number of threads. ``store`` is a folder that
-    keeps results, so that an interrupted ensemble continues. The rest is as in ``run``. Raises
+    and the numerics of ``run``. ``workers`` is the number of threads. ``store`` is a folder for
+    results, so that an interrupted ensemble continues. The rest is as in ``run``. Raises
     SceneError, StoreError or ValueError.
     """
     from tipoff import lowfi
@@ -80,16 +80,14 @@ def ensemble(
     if isinstance(cases, (str, Path)):
         cases = uncertainty.load(cases, scene, **drawn)
     elif drawn:
-        raise SceneError(
-            [Fault(scene.name, "count, seed", "given", "none: the cases are listed already")]
-        )
+        raise SceneError([Fault(scene.name, "count, seed", "given", "none with a list of cases")])
     chosen = lowfi.Numerics(**options)
-    known = _pressed(scene, model, compliance, calibration)
+    found = _pressed(scene, model, compliance, calibration)
     return lowfi.run_many(
         scene,
         cases,
         model,
-        compliance=known,
+        compliance=found,
         calibration=calibration,
         numerics=chosen,
         workers=workers,
@@ -134,7 +132,7 @@ def calibrate(
 
 
 def compare(reference: Trajectory, surrogate: Trajectory) -> "Difference":
-    """Differences of ``surrogate`` from ``reference``, two runs of one condition, by every metric of
+    """Differences of ``surrogate`` from ``reference``, two runs of one condition, in all metrics of
     the agreement table."""
     from tipoff.studies.agreement import metrics
 
@@ -151,7 +149,7 @@ def _pressed(
     rails."""
     if scene.contact is None:
         return given
-    if model == COMPLIANT:  # checked before the compliance is found, which takes seconds
+    if model == COMPLIANT:  # checked first, since the compliance takes seconds
         _require_none(scene, model, calibration=calibration)
         return given or compliance(scene)
     return compliance(scene).rigid() if given is None and scene.thermal is not None else given
@@ -164,7 +162,9 @@ def _require(scene: Scene, model: str, models: Sequence[str]) -> None:
 
 def _require_none(scene: Scene, model: str, **given: object) -> None:
     faults = [
-        Fault(f"{scene.name}, model {model}", name, "given", "none: it belongs to another model")
+        Fault(
+            f"{scene.name}, model {model}", name, "given", "none: it is an option of another model"
+        )
         for name, value in given.items()
         if value is not None
     ]

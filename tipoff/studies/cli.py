@@ -1,8 +1,7 @@
-"""The ``tipoff`` command: one sub-command per stage, all of the same shape.
+"""The ``tipoff`` command: one sub-command per stage.
 
-Exit codes: 0 done; 1 a run failed (its status says why); 2 bad input, every fault listed, nothing
-written. Heavy libraries are imported by the command that needs them, so that ``--help`` answers at
-once.
+Exit codes: 0 done; 1 a run failed (its status gives the reason); 2 bad input, every fault listed,
+nothing written. Each command imports the large libraries that it needs, so that ``--help`` is fast.
 """
 
 from typing import Annotated
@@ -21,7 +20,7 @@ EXAMPLES = """Examples:
   tipoff run --condition phi35               # one run of the surrogate: milliseconds
   tipoff run --model finite-elements --element-size 8 --set thrust.peak="7 kN"
   tipoff compare --scene tiny --json         # the agreement table as JSON
-  tipoff highfi --scene my_launcher.toml     # a scene of your own, begun as a copy of one that tipoff scenes lists
+  tipoff highfi --scene my_launcher.toml     # your own scene; copy one with tipoff scenes --show
 """
 
 app = typer.Typer(
@@ -29,7 +28,7 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
     rich_markup_mode="rich",
-    help="Which velocity and which angular rates does a payload leave its rail with?\n\n"
+    help="Predict the velocity and the angular rates of a payload when it leaves its rail.\n\n"
     + EXAMPLES,
 )
 
@@ -46,7 +45,7 @@ def list_scenes(
     show: Annotated[
         str | None,
         typer.Option(
-            "--show", metavar="NAME", help="Print the file of this one, to begin one's own with."
+            "--show", metavar="NAME", help="Print the file of a scene, to copy and change it."
         ),
     ] = None,
     json_: Json = False,
@@ -86,7 +85,7 @@ def list_scenes(
 
 @app.command()
 def doctor() -> None:
-    """Say whether this machine has everything tipoff needs, and what mends it."""
+    """Check whether this machine has everything that tipoff needs, and print how to repair it."""
     from tipoff.studies import doctor as check
 
     raise typer.Exit(check.main())

@@ -1,9 +1,8 @@
-"""Is this machine able to run tipoff? Says in plain words what is missing and the one command that
-mends it.
+"""Checks whether tipoff can run on this machine; prints what is missing and how to repair it.
 
-The mesher gmsh must be installed, but need not load: only solids drawn in CAD call for its system
-libraries, and they say so (`meshes.generator`). This file imports nothing of the project: it must
-work when the rest does not.
+The mesher gmsh must be installed, but it need not load: only CAD solids need its system libraries
+(`meshes.generator` reports them). This file imports nothing of the project, so that it works when
+the rest does not.
 """
 
 import importlib
@@ -12,7 +11,7 @@ import sys
 
 OLDEST_PYTHON = (3, 11)
 
-# h5py is nobody's direct import here: h5netcdf writes no file without it.
+# No module here imports h5py, but h5netcdf needs it to write files.
 MODULES = (
     "numpy", "scipy", "numba", "skfem", "meshio", "pint", "pydantic", "typer", "rich",
     "xarray", "h5netcdf", "h5py", "cma", "matplotlib", "plotly",
@@ -20,7 +19,7 @@ MODULES = (
 
 
 def faults() -> list[str]:
-    """Every reason why tipoff cannot run here, one sentence each; empty when it can."""
+    """Every reason why tipoff cannot run here, one sentence each; empty if it can."""
     found = []
     if sys.version_info < OLDEST_PYTHON:
         found.append(
@@ -36,7 +35,7 @@ def faults() -> list[str]:
 
 
 def main() -> int:
-    """Print the findings; the exit code is 0 when everything is there and 1 otherwise."""
+    """Print the faults; returns the exit code, 0 without faults and 1 otherwise."""
     found = faults()
     for fault in found:
         print(f"tipoff: {fault}", file=sys.stderr)
@@ -55,8 +54,8 @@ def _import_error(name: str) -> Exception | None:
 
 def _python_package_fault(name: str, reason: Exception | str) -> str:
     return (
-        f"the Python package {name} does not load ({reason}). `make` mends it: rm -rf .venv && "
-        f"make .venv/.ready"
+        f"the Python package {name} does not load ({reason}). To repair it: rm -rf .venv && make "
+        ".venv/.ready"
     )
 
 

@@ -1,5 +1,5 @@
-"""All studies. A study is added here and nowhere else: its command, its result and its section of
-the page follow."""
+"""All studies. This is the only place where a study is added: its command, its result and its
+section of the page follow."""
 
 from tipoff.studies import (
     ablation,
@@ -37,7 +37,7 @@ COMPARISON: tuple[Entry, ...] = (
     view.ENTRY,
 )
 ON_DEMAND: tuple[Entry, ...] = (runs.SINGLE, ensemble.ENTRY)
-# Those that answer an engineer's question.
+# Studies that answer a question of an engineer.
 QUESTIONS: tuple[Entry, ...] = (
     blind.QUESTION,
     sensitivity.QUESTION,
@@ -50,7 +50,7 @@ QUESTIONS: tuple[Entry, ...] = (
 )
 BENCHMARKS: tuple[Entry, ...] = (bench.ENTRY,)
 
-# Sections in the order a reader asks; those of all further studies follow.
+# The first sections of the page in their order; those of all other studies follow.
 _FIRST = (
     "mesh",
     "compliance",

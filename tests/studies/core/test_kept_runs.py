@@ -80,7 +80,7 @@ def test_what_was_kept_is_taken_up_unless_that_is_not_wanted(tmp_path, asked, ca
     path.write_bytes(b"half of the run")
     it.store.get(it.highfi("phi15"))
     assert [(call["there"], call["checkpoint_every"]) for call in asked] == [(resume, 5.0)]
-    assert ("phi15 goes on from" in capsys.readouterr().err) == resume
+    assert ("phi15 continues from" in capsys.readouterr().err) == resume
 
 
 def test_damaged_checkpoint_is_named_and_the_run_starts_anew(tmp_path, capsys):
@@ -132,7 +132,7 @@ def test_command_line_hands_its_choice_on(tmp_path, asked):
 
 
 def test_command_killed_and_given_again_ends_with_the_same_bits(tmp_path):
-    """The first life is killed once there is a checkpoint; the second one says that it goes on from
+    """The first life is killed once there is a checkpoint; the second one says that it continues from
     there."""
     command = [sys.executable, "-m", "tipoff.studies.cli", *RUN, "--out"]
     subprocess.run([*command, str(tmp_path / "whole")], cwd=ROOT, check=True, capture_output=True)
@@ -153,7 +153,9 @@ def test_command_killed_and_given_again_ends_with_the_same_bits(tmp_path):
     again = subprocess.run(
         [*command, str(tmp_path / "killed")], cwd=ROOT, check=True, capture_output=True, text=True
     )
-    assert "phi15 goes on from" in again.stderr and "starts from the beginning" not in again.stderr
+    assert (
+        "phi15 continues from" in again.stderr and "starts from the beginning" not in again.stderr
+    )
     whole, resumed = (
         Trajectory.load(next((tmp_path / name / "tiny" / "highfi").iterdir()))
         for name in ("whole", "killed")

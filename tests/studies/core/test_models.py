@@ -56,15 +56,15 @@ def test_the_command_line_has_the_names_of_the_models():
     [
         (
             ["--calibration", "c.toml"],
-            "--calibration: given c.toml, expected none with --model compliant: it belongs to "
+            "--calibration: given c.toml, expected none with --model compliant: it is an option of "
             "springs",
         ),
         (
             ["--model", "finite-elements", "--modes", "4"],
             "--modes: given 4, expected none with --model finite-elements",
         ),
-        (["--model", "springs", "--modes", "4"], "belongs to compliant"),
-        (["--checkpoint-every", "5 s"], "belongs to finite-elements"),
+        (["--model", "springs", "--modes", "4"], "option of compliant"),
+        (["--checkpoint-every", "5 s"], "option of finite-elements"),
         (["--modes", "21"], "a whole number from 0 to 20"),
     ],
 )

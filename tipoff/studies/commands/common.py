@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def add(app: typer.Typer, name: str, summary: str, run: Callable[["Study"], dict]) -> None:
-    """Put a command under ``app``: its ``name``, its help in a ``summary``, and what it runs."""
+    """Add a command to ``app``: its ``name``, its help ``summary``, the function it runs."""
 
     def command(
         scene: SceneName = "reference",

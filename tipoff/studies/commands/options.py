@@ -1,4 +1,4 @@
-"""Options that many commands share, each with its words of help."""
+"""Options that many commands share, with their help."""
 
 from enum import StrEnum
 from pathlib import Path
@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 
-# Written out as in ``mechanics.models``, which loads too much for ``--help`` to answer at once.
+# The names of ``mechanics.models``, repeated because its import would slow ``--help`` down.
 class ModelName(StrEnum):
     """All models."""
 
@@ -17,7 +17,7 @@ class ModelName(StrEnum):
 
 
 class SurrogateName(StrEnum):
-    """All models but the reference."""
+    """All models except the reference."""
 
     compliant = "compliant"
     springs = "springs"
@@ -30,15 +30,18 @@ SceneName = Annotated[
     ),
 ]
 Out = Annotated[
-    Path, typer.Option("--out", metavar="DIR", help="Folder that receives a folder per scene.")
+    Path,
+    typer.Option(
+        "--out", metavar="DIR", help="Folder of the results; each scene has its own folder in it."
+    ),
 ]
 Set = Annotated[
     list[str] | None,
     typer.Option(
         "--set",
         metavar="KEY=VALUE",
-        help='Override, repeatable: --set payload.mass="9 kg"; --set friction=absent drops a '
-        "table.",
+        help='Change of a value, repeatable: --set payload.mass="9 kg"; --set friction=absent '
+        "removes a table.",
     ),
 ]
 Conditions = Annotated[
@@ -56,15 +59,15 @@ RefinedCondition = Annotated[
     ),
 ]
 _COMPLIANT = (
-    "compliant (default): rigid bodies on the rail's static compliance, condensed from "
-    "the finite elements; "
+    "compliant (default): rigid bodies on the static compliance of the rail, condensed from the "
+    "finite elements; "
 )
 Model = Annotated[
     ModelName | None,
     typer.Option(
         "--model",
         help=_COMPLIANT + "springs: one spring and damper at each pad face, "
-        "the paper's method; finite-elements: the reference.",
+        "the method of the paper; finite-elements: the reference.",
     ),
 ]
 Surrogate = Annotated[
@@ -72,7 +75,7 @@ Surrogate = Annotated[
     typer.Option(
         "--model",
         help=_COMPLIANT + "springs: calibrated springs and dampers "
-        "at the pad faces, the paper's method.",
+        "at the pad faces, the method of the paper.",
     ),
 ]
 Modes = Annotated[
@@ -81,7 +84,7 @@ Modes = Annotated[
         "--modes",
         metavar="N",
         min=0,
-        help="Modes of each rail that vibrate, with --model compliant; default: 0.",
+        help="Vibration modes of each rail, with --model compliant; default: 0.",
     ),
 ]
 CalibrationFile = Annotated[
@@ -89,8 +92,8 @@ CalibrationFile = Annotated[
     typer.Option(
         "--calibration",
         metavar="FILE",
-        help="calibration.toml of tipoff "
-        "calibrate, with --model springs; default: the scene's own constants.",
+        help="calibration.toml written by tipoff calibrate, with --model springs; default: the "
+        "constants of the scene.",
     ),
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON on standard output.")]
@@ -100,30 +103,28 @@ ElementSize = Annotated[
         "--element-size",
         metavar="MM",
         min=0.05,
-        help="Element size of the reference in mm; default 2 (scene tiny: 8). What needs many runs "
-        "or "
-        "differences of runs takes twice that.",
+        help="Element size of the reference in mm; default 2 (scene tiny: 8). Studies of many runs "
+        "and of differences of runs use twice this size.",
     ),
 ]
 Workers = Annotated[
     int | None,
-    typer.Option("--workers", metavar="N", min=1, help="Runs side by side; default: all cores."),
+    typer.Option("--workers", metavar="N", min=1, help="Parallel runs; default: all cores."),
 ]
 CheckpointEvery = Annotated[
     str | None,
     typer.Option(
         "--checkpoint-every",
         metavar="TIME",
-        help='How often a run of the reference is kept beside its result-to-be: 30s, "5 min"; '
-        "default: 60 s.",
+        help='Wall time between checkpoints of a run of the reference: 30s, "5 min"; default: 60 s.',
     ),
 ]
 Resume = Annotated[
     bool,
     typer.Option(
         "--resume/--no-resume",
-        help="Let a run of the reference that was interrupted go on from where it was kept last, "
-        "to the same result.",
+        help="Continue an interrupted run of the reference from its checkpoint; the result is the "
+        "same.",
     ),
 ]
 

@@ -1,1 +1,1 @@
-"""A scene under study: its stages, stored runs, settings and models."""
+"""A scene under study: stages, stored runs, settings and models."""

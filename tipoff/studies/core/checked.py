@@ -1,5 +1,4 @@
-"""Input from several places checked as one, so that a user who made two mistakes is told of
-both."""
+"""Checks of several inputs whose faults are reported together."""
 
 from collections.abc import Callable
 from typing import Any
@@ -8,7 +7,7 @@ from tipoff.scenes.faults import Fault, SceneError
 
 
 def together(*makes: Callable[[], Any]) -> list:
-    """What each call returns. Raises SceneError with the faults of all of them."""
+    """The results of all calls, in order. Raises SceneError with the faults of all of them."""
     found: list[Any] = []
     faults: list[Fault] = []
     for make in makes:

@@ -1,4 +1,4 @@
-"""The machine a number was measured on."""
+"""Description of this machine, for results that contain times."""
 
 import os
 import platform

@@ -1,5 +1,5 @@
-"""Which model answers. Compliant contact does, unless another one is asked for by name; options of
-one model given with another are bad input."""
+"""Choice of the model by options: compliant contact by default. An option of one model given with
+another model is bad input."""
 
 from pathlib import Path
 from typing import NamedTuple
@@ -12,8 +12,8 @@ _OWNERS = {"--calibration": SPRINGS, "--modes": COMPLIANT, "--checkpoint-every":
 
 
 class Options(NamedTuple):
-    """A model by ``name``, None where none was named; the file of a ``calibration`` of springs; how
-    many ``modes`` of each rail vibrate on compliant contact."""
+    """Options of a model: its ``name``, None for the default; the file of a ``calibration`` of
+    springs; the number of ``modes`` of each rail on compliant contact."""
 
     name: str | None = None
     calibration: Path | None = None
@@ -21,14 +21,14 @@ class Options(NamedTuple):
 
     @property
     def model(self) -> str:
-        """The name of the model that answers."""
+        """The name of the model."""
         return self.name or COMPLIANT
 
 
 def require(options: Options, **others: object) -> None:
-    """Raises SceneError, every fault listed, for an unknown name and for options of another model
-    than that of the ``options``; ``others`` are further options by the name of their parameter, None
-    where they were not given."""
+    """Raises SceneError, every fault listed, for an unknown name of a model and for options of
+    another model. ``others`` are further options by the name of their parameter, None where they
+    were not given."""
     if options.model not in MODELS:
         raise SceneError([Fault("--model", "name", options.model, f"one of {', '.join(MODELS)}")])
     given: dict[str, object] = {"--calibration": options.calibration, "--modes": options.modes}
@@ -38,7 +38,7 @@ def require(options: Options, **others: object) -> None:
             option,
             "option",
             str(value),
-            f"none with --model {options.model}: it belongs to {_OWNERS[option]}",
+            f"none with --model {options.model}: it is an option of {_OWNERS[option]}",
         )
         for option, value in given.items()
         if value is not None and _OWNERS[option] != options.model
@@ -48,9 +48,8 @@ def require(options: Options, **others: object) -> None:
 
 
 def require_accepted(study: Study, name: str | None, condition: str | None = None) -> None:
-    """Raises StudyError where no model was named and the agreement of the default with the
-    reference is known and missed: on ``condition``, or, without one, on any condition of the
-    scene."""
+    """Raises StudyError where ``name`` is None and the stored agreement table rejects the default
+    model: on ``condition`` or, without one, on any condition of the scene."""
     from tipoff.studies.agreement import kept
 
     if name is not None:
@@ -58,7 +57,7 @@ def require_accepted(study: Study, name: str | None, condition: str | None = Non
     if missed := kept.missed(study, COMPLIANT, condition):
         listed = "\n  ".join(f"{row['condition']}: {row['verdict']}" for row in missed)
         raise StudyError(
-            f"compliant contact misses the reference where that is converged:\n  {listed}\n"
-            f"name a model: --model {FINITE_ELEMENTS} for the reference, --model {COMPLIANT} all "
-            f"the same"
+            f"compliant contact does not agree with the converged reference:\n  {listed}\n"
+            f"name a model: --model {FINITE_ELEMENTS} for the reference, or --model {COMPLIANT} "
+            "to use compliant contact anyway"
         )

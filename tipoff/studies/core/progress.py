@@ -1,5 +1,5 @@
-"""Progress of several runs at once: bars with the time left on a terminal, one line per finished
-run anywhere else."""
+"""Progress of several runs: bars with the time left on a terminal, else one line for each finished
+run."""
 
 import threading
 import time
@@ -18,11 +18,11 @@ from rich.progress import (
 )
 
 console = Console(stderr=True, highlight=False)
-_SHOWN_AFTER = 2.0  # s; what is over sooner needs no bar
+_SHOWN_AFTER = 2.0  # s; shorter work gets no bar
 
 
 class Interrupted(Exception):
-    """Raised inside a run by its progress callback once the user has asked to stop."""
+    """Raised inside a run by its progress callback after Ctrl-C."""
 
 
 class Board:
@@ -60,7 +60,7 @@ class Board:
         self._stop.set()
 
     def callback(self, label: str) -> Callable[[float], None]:
-        """Callback for one run: takes the fraction done, 0 to 1."""
+        """Progress callback of one run; its argument is the fraction done, 0 to 1."""
 
         def report(fraction: float) -> None:
             if self._stop.is_set():
@@ -97,9 +97,12 @@ class Board:
 
 @contextmanager
 def team(board: Board, workers: int) -> Iterator[ThreadPoolExecutor]:
-    """Threads for the runs of ``board``. Whatever ends the block early, Ctrl-C above all, makes
-    running ones stop at their next report: none is waited for (a kernel may still be compiled), and
-    none of those that wait is begun."""
+    """Threads for the runs of ``board``.
+
+    An exception in the block, such as Ctrl-C, stops each run at its next progress report and
+    cancels those that have not begun. It does not wait for the threads, since one may be compiling
+    a kernel.
+    """
     pool = ThreadPoolExecutor(workers)
     try:
         yield pool

@@ -1,9 +1,10 @@
-"""Numerical choices of the studies: how fine, how many repeats. A scene says nothing about them.
+"""Numerical settings of the studies: element sizes, tolerances, repeats. A scene does not contain
+them.
 
 The reference mesh of 2 mm is the finest with which `make report` takes half an hour on two cores.
-What a change of clearance, penalty or step moves is a difference of two runs, and those run on
-twice the element size; so does the mesh that shows what refining still changes. Finer meshes belong
-to the convergence study.
+Effects of a change of clearance, penalty or step are differences of two runs; these runs, and the
+coarser mesh of the refinement check, have twice the element size. Finer meshes belong to the
+convergence study.
 """
 
 import os
@@ -11,7 +12,7 @@ from dataclasses import asdict, dataclass
 
 from tipoff.files import content_hash
 
-_BESIDE_RESULTS = ("workers", "checkpoint_every", "resume")  # how a run is made, not what comes out
+_BESIDE_RESULTS = ("workers", "checkpoint_every", "resume")  # these do not change a result
 
 COARSER = 2.0  # times the element size, where many runs are needed
 
@@ -42,8 +43,7 @@ class Settings:
 
     @property
     def coarse_size(self) -> float:
-        """Element size (m) where many runs are needed and their differences matter more than their
-        values."""
+        """Element size (m) of the runs whose differences are measured."""
         return COARSER * self.element_size
 
     @property
@@ -53,15 +53,14 @@ class Settings:
 
     @property
     def hash(self) -> str:
-        """Digest of the choices that can change a result; how many runs go side by side, and from
-        where, is not one of them."""
+        """Digest of the settings that can change a result: all but ``_BESIDE_RESULTS``."""
         return content_hash(
             {name: value for name, value in asdict(self).items() if name not in _BESIDE_RESULTS}
         )
 
 
 def defaults(scene_name: str) -> Settings:
-    """Settings of a catalogue scene: ``tiny`` is coarse, so that its whole pipeline takes
+    """Settings of a catalogue scene. Those of ``tiny`` are coarse, so that its whole pipeline takes
     seconds."""
     if scene_name == "tiny":
         return Settings(

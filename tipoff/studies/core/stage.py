@@ -1,4 +1,4 @@
-"""What every stage repeats: options, key, result file.
+"""The common part of all stages: options, key, result file.
 
 A stage of a study is written like this:
 
@@ -17,8 +17,8 @@ A stage of a study is written like this:
 
     STAGE = Stage("name", __name__, Options)
 
-``STAGE.stored(study)`` finds a result of the present scene, code and settings, whatever its
-options. ``studies/limits`` is an example, with further ``inputs``.
+``STAGE.stored(study)`` finds a result of the present scene, code and settings, with any options.
+``studies/limits`` is an example, with further ``inputs``.
 """
 
 from collections.abc import Callable
@@ -37,11 +37,13 @@ def _nothing(study: Study, options: Any) -> None:
 
 @dataclass(frozen=True)
 class Stage:
-    """``name``: of the result file. ``module``: the module (``__name__``) whose code, with all that
-    it imports, makes the result. ``options``: their type, a frozen dataclass of JSON values, paths,
-    tuples and other such dataclasses; None where there is nothing to choose. ``inputs``:
-    what else the result depends on, as JSON values; it may raise SceneError, OSError, KeyError,
-    TypeError or ValueError where there is none. ``field``: under which the result holds its options.
+    """One stage.
+
+    ``name``: of the result file. ``module``: the module (``__name__``) whose code, with all that it
+    imports, makes the result. ``options``: their type, a frozen dataclass of JSON values, paths,
+    tuples and other such dataclasses; None without options. ``inputs``: makes the further inputs of
+    the result, as JSON values; it may raise SceneError, OSError, KeyError, TypeError or ValueError
+    where there are none. ``field``: the key of the options in the result.
     """
 
     name: str
@@ -55,17 +57,17 @@ class Stage:
         return TypeAdapter(self.options).dump_python(options, mode="json")
 
     def key(self, study: Study, options: Any) -> str:
-        """Digest of all that the result depends on."""
+        """Digest of everything that the result depends on."""
         inputs = self.inputs(study, options)
         return study.key(self.module, self.name, self.plain(options), inputs)
 
     def run(self, study: Study, options: Any, make: Callable[[], tuple[dict, list[Path]]]) -> dict:
-        """The result: the stored one where nothing changed, else what ``make`` returns, beside the
-        files that it wrote. It holds ``plain(options)`` under ``field``, unless there are none."""
+        """The stored result where nothing changed, else the result of ``make``, which returns it
+        with the files that it wrote. It must contain ``plain(options)`` under ``field``."""
         return study.stage(self.name, self.key(study, options), make)
 
     def stored(self, study: Study) -> dict | None:
-        """The result, if it was made from the present scene, code and settings."""
+        """The stored result if it was made from the present scene, code and settings, else None."""
 
         def key(found: dict) -> str:
             return self.key(study, TypeAdapter(self.options).validate_python(found.get(self.field)))

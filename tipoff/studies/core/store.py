@@ -1,15 +1,15 @@
-"""Results of runs, kept by content: ``out/<scene>/<fidelity>/<label>-<key>.nc``.
+"""Stored results of runs: ``out/<scene>/<fidelity>/<label>-<key>.nc``.
 
     key = SHA-256(physical inputs of the scene, numerics, calibrated constants, rail compliance,
                   code that the fidelity depends on)
 
-A run whose file is there and fits the digest it carries is loaded, any other is made and written
-atomically; so what was interrupted goes on where it stopped, and neither a changed input or source
-nor a damaged file is answered with an old result. A run of the reference in progress is kept beside
-it as ``<label>-<key>.checkpoint``, which is removed once the result is written.
+A run is loaded if its file exists and matches its digest; otherwise it is made and written
+atomically. So an interrupted study continues with the missing runs, and a change of inputs or code
+or a damaged file never gives an old result. A run of the reference in progress has a checkpoint
+``<label>-<key>.checkpoint``, which is removed after the result is written.
 
-Runs go side by side in threads: the kernels release the interpreter, and the mesh generator, which
-insists on the main thread, has been called before.
+Runs are parallel in threads: the kernels release the interpreter. The mesh generator needs the main
+thread, so it is called before.
 """
 
 import functools
@@ -31,8 +31,8 @@ from tipoff.studies.core.progress import Board, say, team
 
 @dataclass(frozen=True)
 class Run:
-    """What is asked for: a fidelity, a label that is unique for the scene, the scene of one
-    condition, and numerics."""
+    """A request for a run: a fidelity, a label that is unique for the scene, the scene of one
+    condition, numerics, and for a surrogate the calibration or the rail compliance."""
 
     fidelity: str
     label: str
@@ -43,7 +43,7 @@ class Run:
 
     @property
     def model(self) -> str:
-        """Name of the model that makes it."""
+        """Name of its model."""
         return (
             FINITE_ELEMENTS if self.fidelity == "highfi" else model_of(self.scene, self.compliance)
         )
@@ -68,8 +68,8 @@ def execute(
     threads: int | None = None,
     **kept: Any,
 ) -> Trajectory:
-    """Run it, without any store; for a run of the reference ``threads``, its own choice when None,
-    and where it is ``kept``, the arguments of ``highfi.run`` on checkpoints."""
+    """Make a run without a store. For the reference, ``threads`` is their number, None for the
+    default, and ``kept`` are the arguments of ``highfi.run`` for checkpoints."""
     if run.fidelity == "highfi":
         from tipoff import highfi
 
@@ -89,7 +89,7 @@ def execute(
 
 
 def prepare(run: Run) -> None:
-    """What must happen in the main thread before ``execute`` may be called in another one."""
+    """The part of a run that needs the main thread; call it before ``execute`` in another thread."""
     if run.fidelity == "highfi":
         from tipoff import highfi
 
@@ -106,22 +106,22 @@ class Store:
         self.checkpoint_every, self.resume = checkpoint_every, resume
 
     def path(self, run: Run) -> Path:
-        """Where the result of ``run`` lies or will lie."""
+        """File of the result of ``run``."""
         return self.folder / run.fidelity / f"{run.label}-{run.key[:8]}.nc"
 
     def checkpoint(self, run: Run) -> Path:
-        """Where ``run`` is kept while it is made."""
+        """File of the checkpoint of ``run``."""
         return self.path(run).with_suffix(".checkpoint")
 
     def load(self, run: Run) -> Trajectory | None:
-        """The stored result, or None when there is none that can be read (a damaged file is named
-        on standard error)."""
+        """The stored result, or None without a readable one. Names a damaged file on standard
+        error."""
         path = self.path(run)
         if not path.is_file():
             return None
         try:
             return Trajectory.load(path)
-        # whatever the netCDF stack raises on damaged bytes, the remedy is the same
+        # damaged bytes raise many types of exceptions in the netCDF libraries
         except Exception as fault:
             say(
                 f"  {path} is damaged or was edited ({type(fault).__name__}), so {run.label} is "
@@ -137,8 +137,7 @@ class Store:
         """Results of ``runs`` in their order; those missing are run, ``workers`` at a time, with
         progress on standard error.
 
-        On Ctrl-C running kernels are told to stop, finished results stay, and KeyboardInterrupt
-        goes on to the caller.
+        Ctrl-C stops the runs in progress and raises KeyboardInterrupt; finished results stay.
         """
         found = {run.key: trajectory for run in runs if (trajectory := self.load(run)) is not None}
         missing = list({run.key: run for run in runs if run.key not in found}.values())
@@ -150,8 +149,7 @@ class Store:
         for run in runs:
             prepare(run)
         made: dict[str, Trajectory] = {}
-        # Side by side each run is best left alone with one processor: threads of one run would wait
-        # for each other.
+        # Parallel runs are fastest with one thread each: threads of one run wait for each other.
         threads = None if min(self.workers, len(runs)) == 1 else 1
         with Board(title, len(runs)) as board, team(board, self.workers) as pool:
             pending = {pool.submit(self._one, run, board, threads): run for run in runs}
@@ -173,8 +171,7 @@ class Store:
         return trajectory
 
     def _kept(self, run: Run, progress: Callable[[float], None], threads: int | None) -> Trajectory:
-        """Run the reference from its checkpoint if there is one that can be used, else from the
-        beginning."""
+        """Run the reference from its checkpoint, or from the beginning without a usable one."""
         from tipoff import highfi
 
         path = self.checkpoint(run)
@@ -190,7 +187,7 @@ class Store:
             resume=True,
         )
         if path.is_file():
-            say(f"  {run.label} goes on from {path}")
+            say(f"  {run.label} continues from {path}")
         try:
             return make()
         except highfi.CheckpointError as fault:

@@ -1,10 +1,10 @@
-"""One scene under study: its conditions, its folder, its stored runs, and stages that are skipped
-when nothing changed.
+"""One scene under study: its conditions, folder, stored runs, and stages that are skipped when
+nothing changed.
 
-A stage leaves ``out/<scene>/<stage>.json`` with the ``key`` of everything it depends on and the
-digests of the ``files`` it wrote. It is made again when the key differs, when one of its files is
-gone or was altered, or when it does not fit the digest that it carries itself. Whatever a stage
-reads is verified by the reader, so nothing is made again from a damaged file.
+A stage writes ``out/<scene>/<stage>.json`` with the ``key`` of everything it depends on and the
+digests of the ``files`` it wrote. It is made again if the key differs, if one of its files is
+missing or changed, or if the result does not match its own digest. Readers verify all files, so a
+stage never uses a damaged one.
 """
 
 import hashlib
@@ -29,7 +29,7 @@ FAILED = ("diverged", "refused")
 
 
 class StudyError(RuntimeError):
-    """A study that cannot go on because runs it needs failed; the message says which and why."""
+    """A study cannot continue because runs that it needs failed; the message names them and why."""
 
 
 @dataclass(frozen=True)
@@ -40,11 +40,12 @@ class Study:
     folder: Path
     settings: Settings
     only: tuple[str, ...] = ()
-    _told: set = field(default_factory=set, repr=False, compare=False)  # stages already announced
+    _announced: set = field(
+        default_factory=set, repr=False, compare=False
+    )  # stages already announced
 
     def unrestricted(self) -> "Study":
-        """The same study of all its conditions: its results do not depend on those that are asked
-        for."""
+        """The same study of all its conditions."""
         return replace(self, only=()) if self.only else self
 
     @cached_property
@@ -93,8 +94,8 @@ class Study:
         element_size: float | None = None,
         **numerics: Any,
     ) -> Run:
-        """A finite-element run of condition ``name``, changed by ``overrides`` and told apart by
-        ``tag``."""
+        """A finite-element run of condition ``name`` with ``overrides``; ``tag`` distinguishes its
+        label. ``element_size`` is in m."""
         from tipoff import highfi
 
         numbers = _numerics(
@@ -105,7 +106,7 @@ class Study:
     def coarse(
         self, name: str, overrides: dict | None = None, tag: str = "", **numerics: Any
     ) -> Run:
-        """The same on the coarse mesh, where differences of runs are measured."""
+        """The same on the coarse mesh, for differences of runs."""
         return self.highfi(name, overrides, f"{tag}-coarse", self.settings.coarse_size, **numerics)
 
     def lowfi(
@@ -136,9 +137,9 @@ class Study:
         )
 
     def rail_compliance(self, scene: Scene, judged: bool = True) -> RailCompliance | None:
-        """Rail compliance under the pads of ``scene``, on the reference's own mesh where agreement
-        is ``judged``. It is found once for a rail and its pads, and kept in this folder by content.
-        None without contact."""
+        """Rail compliance under the pads of ``scene``, on the mesh of the reference where agreement
+        is ``judged``. It is computed once for a rail with its pads and stored in this folder. None
+        without contact."""
         if scene.contact is None:
             return None
         from tipoff.calibration import rail_compliance  # slow to load
@@ -157,7 +158,7 @@ class Study:
         return {name: found.get(digest(scene)) for name, scene in scenes.items()}
 
     def rigid_rails(self, scene: Scene) -> RailCompliance | None:
-        """What springs stand on in ``scene``: rigid rails where they are warm, else None."""
+        """The rails of springs in ``scene``: rigid, with their thermal offset if warm, else None."""
         found = self.rail_compliance(scene) if scene.thermal is not None else None
         return found and found.rigid()
 
@@ -166,7 +167,7 @@ class Study:
         return self.folder / name
 
     def relative(self, path: Path) -> str:
-        """A path as result files hold it: relative to the folder of this scene."""
+        """A path relative to the folder of this scene, as in result files."""
         return path.relative_to(self.folder).as_posix()
 
     def key(self, module: str, *inputs: Any) -> str:
@@ -185,8 +186,8 @@ class Study:
         )
 
     def stage(self, name: str, key: str, make: Callable[[], tuple[dict, list[Path]]]) -> dict:
-        """The stage's result: read when it was made under the same key and its files are whole,
-        else made and written.
+        """The result of a stage: the stored one if its key is the same and its files are intact,
+        else a new one, which is written.
 
         ``make`` returns the result and the files it wrote.
         """
@@ -197,9 +198,9 @@ class Study:
             and known.get("key") == key
             and self.whole(known, f"{name} is made again")
         ):
-            self._tell(name, "nothing changed")
+            self._announce(name, "nothing changed")
             return known
-        self._tell(name, self.scene.name)
+        self._announce(name, self.scene.name)
         result, files = make()
         return write_json(
             path,
@@ -213,35 +214,35 @@ class Study:
         )
 
     def stored(self, name: str, key: Callable[[dict], str]) -> dict | None:
-        """The stage's result, if it has the ``key`` that a result of its settings would be given
-        now; None too where those are of other code, or a file they name is gone."""
+        """The stored result of a stage if it has the ``key`` of a new result with its options.
+        None otherwise, also where the options are invalid now or one of their files is missing."""
         found = read(self.path(f"{name}.json"))
         try:
             return found if found and found["key"] == key(found) else None
         except (SceneError, OSError, KeyError, TypeError, ValueError):
             return None
 
-    def _tell(self, name: str, words: str) -> None:
-        if name not in self._told:
-            say(f"{name}: {words}")
-        self._told.add(name)
+    def _announce(self, name: str, text: str) -> None:
+        if name not in self._announced:
+            say(f"{name}: {text}")
+        self._announced.add(name)
 
     def whole(self, document: dict, remedy: str) -> bool:
-        """Whether every file of a result is there as its stage left it; the first that was altered
-        is said, with the ``remedy``."""
+        """Whether every file of a result exists unchanged; prints the name of the first changed
+        file with the ``remedy``."""
         for name, expected in document.get("files", {}).items():
             path = self.path(name)
             if not path.is_file():
                 return False
             if _digest(path) != expected:
-                say(f"  {path} is not as it was left (damaged, edited, or made again): {remedy}")
+                say(f"  {path} has changed since it was written: {remedy}")
                 return False
         return True
 
 
 def read(path: Path, remedy: str = "the command that wrote it writes it again") -> dict | None:
-    """A stage's result file, or None when it is missing, or does not fit its digest, which is said
-    with the ``remedy``."""
+    """The content of a result file; None if it is missing or does not match its digest. Prints the
+    latter with the ``remedy``."""
     try:
         return read_json(path)
     except DamageError as fault:
@@ -263,7 +264,7 @@ def require_success(runs: dict[str, Trajectory], purpose: str) -> None:
 
 
 def _numerics(kind: type, **values: Any) -> Any:
-    """A fidelity's numerics; a bad value is bad input, reported like a bad scene."""
+    """The numerics of a fidelity. Raises SceneError for a bad value."""
     try:
         return kind(**values)
     except ValueError as fault:

@@ -1,4 +1,4 @@
-"""Words that every command has for the same thing."""
+"""The name of a model in the output of all commands."""
 
 from tipoff.mechanics.models import COMPLIANT, SPRINGS
 from tipoff.mechanics.rail_compliance import RailCompliance
@@ -7,8 +7,8 @@ from tipoff.scenes.scene import Scene
 
 
 def model(scene: Scene, fitted: Calibration | None, compliance: RailCompliance | None) -> str:
-    """The model that this makes, with what its constants are. Springs may stand on rigid walls,
-    where warm rails have bowed them."""
+    """The surrogate model with the origin of its constants. A ``compliance`` without flexibility
+    means springs on rigid walls, which warm rails have."""
     if scene.contact is None:
         return f"{COMPLIANT}, without contact"
     if compliance is not None and compliance.flexibility is not None:

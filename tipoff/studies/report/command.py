@@ -17,7 +17,7 @@ from tipoff.studies.commands.running import guarded, study_of
 
 
 def add(app: typer.Typer) -> None:
-    """Put the command under ``app``."""
+    """Add the command to ``app``."""
     app.command()(report)
 
 
@@ -29,19 +29,19 @@ def report(
         bool,
         typer.Option(
             "--every",
-            help="Make every study that has no present result first (an hour); one "
-            "that the scene gives no occasion for says so on the page.",
+            help="First make every study without a present result (an hour). The page gives the "
+            "reason where the scene does not allow one.",
         ),
     ] = False,
     element_size: ElementSize = None,
     workers: Workers = None,
     json_: Json = False,
 ) -> None:
-    """All of it on one self-contained page; writes report.html and figures/.
+    """Show all results on one self-contained page; writes report.html and figures/.
 
     Makes mesh, highfi, lowfi, calibrate, compare, cost, stability and ablation where they are out
-    of date (half an hour the first time); every other study is shown if it was made, or made with
-    --every.
+    of date (half an hour the first time). The page shows every other study that has a result;
+    --every makes them all.
     """
 
     def work() -> dict:

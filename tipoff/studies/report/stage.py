@@ -1,6 +1,5 @@
-"""Stage ``report``: the stages that compare both models, then one page of their results, and of
-what is there already: the error of the reference, a benchmark, and the studies that answer an
-engineer's questions."""
+"""Stage ``report``: makes the stages that compare both models, then one page of their results and of
+all other stored results."""
 
 from pathlib import Path
 
@@ -17,21 +16,23 @@ from tipoff.studies.runs import stage as runs
 
 
 def run(study: Study, every: bool = False) -> dict:
-    """Runs what is missing and writes report.html; ``failed`` repeats what failed in any stage.
-    With ``every``, each study that has no present result is made too; one that the scene gives no
-    occasion for says so on the page."""
+    """Make missing results and write report.html; ``failed`` contains the failures of all stages.
+
+    With ``every``, each study without a present result is made too; the page gives the reason where
+    the scene does not allow one.
+    """
     documents: dict[str, dict | None] = {}
     problems: dict[str, str] = {}
-    known = results()
-    for name, make_result, stored in known:
+    listed = results()
+    for name, make_result, stored in listed:
         if make_result is None or stored is not None:
             continue
         try:
             documents[name] = make_result(study)
         except StudyError as fault:
             documents[name], problems[name] = None, str(fault)
-    absent = _made(study, known) if every else {}
-    there = {name: stored(study) for name, _, stored in known if stored is not None}
+    absent = _made(study, listed) if every else {}
+    there = {name: stored(study) for name, _, stored in listed if stored is not None}
 
     def make() -> tuple[dict, list[Path]]:
         from tipoff.studies.report.page import Page
@@ -60,11 +61,11 @@ def run(study: Study, every: bool = False) -> dict:
     return study.stage("report", key, make)
 
 
-def _made(study: Study, known: list[Result]) -> dict[str, str]:
-    """Make every optional result that is not present; why not, by name, where the scene or its
-    settings do not allow it."""
+def _made(study: Study, listed: list[Result]) -> dict[str, str]:
+    """Make every missing optional result. Returns the reasons, by name, where the scene or its
+    settings do not allow one."""
     reasons = {}
-    for name, make, stored in known:
+    for name, make, stored in listed:
         if make is None or stored is None:
             continue
         try:
@@ -89,18 +90,20 @@ def _failed(documents: dict, problems: dict[str, str]) -> list[str]:
 def _trajectories(study: Study, documents: dict):
     from tipoff.studies.runs.figures import Runs
 
-    asked = [runs.requests(study, fidelity) for fidelity in ("highfi", "lowfi")]
+    requested = [runs.requests(study, fidelity) for fidelity in ("highfi", "lowfi")]
     if documents.get("agreement"):
         plain, calibrated, *_ = compare.candidates(study)
-        asked += [
+        requested += [
             {name: candidate.request(study, name) for name in study.conditions}
             for candidate in (calibrated, plain)
         ]
-    return Runs(*(_stored(study, wanted) for wanted in asked))
+    return Runs(*(_stored(study, wanted) for wanted in requested))
 
 
-def _stored(study: Study, asked: dict[str, Run]) -> dict:
-    """Only what is there: the page shows results and makes none."""
+def _stored(study: Study, requested: dict[str, Run]) -> dict:
+    """The stored runs: the page makes none."""
     return {
-        name: found for name, run in asked.items() if (found := study.store.load(run)) is not None
+        name: found
+        for name, run in requested.items()
+        if (found := study.store.load(run)) is not None
     }
