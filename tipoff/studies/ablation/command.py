@@ -11,11 +11,11 @@ if TYPE_CHECKING:
 
 
 def add(app: typer.Typer) -> None:
-    """Put the command under ``app``."""
+    """Add the command to ``app``."""
     common.add(
         app,
         "ablation",
-        "Every effect off, one at a time: time, rates, what is compiled; writes ablation.json.",
+        "Run without each effect in turn: time, rates, compiled effects; writes ablation.json.",
         run,
     )
 

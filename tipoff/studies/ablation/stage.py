@@ -1,11 +1,11 @@
-"""Stage ``ablation``: every effect off, one at a time, in both fidelities: what it changes, what it
-costs, and proof that the compiled kernel without it does not contain it.
+"""Stage ``ablation``: runs without each effect, one at a time, in both fidelities: change of rates
+and time, and the effects in each compiled kernel.
 
-The baseline has every effect on: those the scene does not have are added with the small values in
-``ADDED``, except those that need values of the scene's own (contact, friction, platform, and a
-temperature where rails are not known to expand), which count where the scene has them. The scene as
-it asks and the scene without any effect close the table. The surrogate runs all of them by turns,
-so that what else the machine does meets each alike.
+The baseline has all effects: those that the scene lacks are added with the small values in
+``ADDED``, except those that need values of the scene (contact, friction, platform, and temperature
+for a material without expansion). The last lines are the scene itself and the scene without any
+effect. The surrogate runs all variants in turn, so that other load on the machine affects all of
+them alike.
 """
 
 import importlib
@@ -43,8 +43,8 @@ def variants(scene: Scene) -> dict[str, dict]:
 
 
 def run(study: Study) -> dict:
-    """``rows``: per fidelity and variant the processor time, its change, the settled rates' change,
-    the effects compiled."""
+    """``rows``: for each fidelity and variant the processor time (s) and its ratio, the settled
+    rates and their change (deg/s), the effects in the compiled kernel."""
     name = (study.scene.agreement.refined or tuple(study.conditions))[0]
 
     def make() -> tuple[dict, list[Path]]:
@@ -64,16 +64,16 @@ def run(study: Study) -> dict:
 
 
 def _reference(study: Study, name: str, lines: dict[str, dict]):
-    """Runs on the coarse mesh, and the processor time of each: the thread's own, so runs side by
-    side do not disturb it."""
+    """Runs on the coarse mesh, and the processor time (s) of the thread of each, which parallel runs
+    do not change."""
     asked = [study.coarse(name, overrides, _tag(line)) for line, overrides in lines.items()]
     runs = study.store.fill("ablation, highfi", asked)
     return asked, runs, [run.cost.get("cpu_s", run.cost["wall_s"]) for run in runs]
 
 
 def _surrogate(study: Study, name: str, lines: dict[str, dict]):
-    """Runs by turns, and the median time of their loops: set-up and judging, the same for all,
-    would hide what an effect costs."""
+    """Runs in turn, and the median time (s) of their time loops, without set-up and evaluation,
+    which are the same for all."""
     under = study.rail_compliance(study.condition(name))
     asked = [
         study.lowfi(
@@ -126,8 +126,7 @@ def _rows(
 
 
 def compiled(run: Run) -> list[str]:
-    """Effects whose code is in the kernel compiled for ``run``, as the fidelity reads them off
-    it."""
+    """Effects with code in the kernel compiled for ``run``."""
     known = {"compliance": run.compliance} if run.compliance is not None else {}
     present = importlib.import_module(f"tipoff.{run.fidelity}").compiled_effects(
         run.scene, run.numerics, **known

@@ -13,7 +13,7 @@ from tipoff.studies.commands.running import guarded
 
 
 def add(app: typer.Typer) -> None:
-    """Put the command under ``app``."""
+    """Add the command to ``app``."""
     app.command()(bench)
 
 
@@ -29,20 +29,24 @@ def bench(
         ),
     ] = None,
     repeats: Annotated[
-        int, typer.Option(metavar="N", min=1, help="Timed repeats; the median counts.")
+        int, typer.Option(metavar="N", min=1, help="Timed repeats; the result is the median.")
     ] = 5,
     steps: Annotated[
         int | None,
-        typer.Option(metavar="N", min=1, help="Steps of a timed piece; default: by size."),
+        typer.Option(
+            metavar="N", min=1, help="Steps of one timed repeat; default: depends on the mesh."
+        ),
     ] = None,
     cases: Annotated[
-        int, typer.Option(metavar="N", min=1, help="Cases of the surrogate's ensemble.")
+        int, typer.Option(metavar="N", min=1, help="Cases in the ensemble of the surrogate.")
     ] = 2000,
     json_: Json = False,
 ) -> None:
-    """Speed of the reference solver against a SciPy matrix and NumPy on the same mesh, and of the
-    surrogate against plain Runge-Kutta at the same error; writes bench/highfi.json and
-    bench/lowfi.json."""
+    """Measure the speed of both solvers; writes bench/highfi.json and bench/lowfi.json.
+
+    The reference is compared with a SciPy matrix and NumPy on the same mesh, the surrogate with
+    plain Runge-Kutta at the same error.
+    """
 
     def work() -> dict:
         from tipoff.studies.bench import reference, surrogate

@@ -1,4 +1,4 @@
-"""The loop an engineer would write today, as a yardstick of speed: an assembled SciPy matrix and
+"""Baseline for the speed of the reference: central differences with an assembled SciPy matrix and
 NumPy.
 
     f = K @ u,    v -= dt f / m,    u += dt v         K in compressed rows, lumped mass, no contact
@@ -11,7 +11,7 @@ from tipoff.highfi.statics import assembly
 
 
 class CsrLoop:
-    """State of that loop on the first ``most`` elements of a mesh, set in motion."""
+    """State of the baseline on the first ``most`` elements of a mesh, with an initial velocity."""
 
     def __init__(self, mesh: RailMesh, material, step: float, most: int):
         used, local = np.unique(mesh.cells[:most], return_inverse=True)
@@ -27,7 +27,7 @@ class CsrLoop:
         )
 
     def advance(self, count: int) -> None:
-        """``count`` steps."""
+        """Make ``count`` steps."""
         for _ in range(count):
             self.velocity -= self.step * self.inverse_mass * (self.stiffness @ self.displacement)
             self.displacement += self.step * self.velocity

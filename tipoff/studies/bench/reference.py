@@ -1,9 +1,8 @@
-"""Speed of the reference solver against the loop an engineer would write today, by turns on the
-same mesh in one run.
+"""Speed of the reference solver and of its baseline (``csr_loop``), in turn on the same mesh.
 
-Times are wall times of whole steps with contact on: each timed piece starts with the payload one
-micrometre deep in the walls that eight pad faces meet, and ends before it has bounced off.
-Compilation and set-up are apart; the median of the repeats counts.
+Times are wall times of whole steps with contact: each repeat starts with eight pad faces pressed
+1 um into their walls and ends before they separate. Compilation and set-up are excluded; results
+are medians of the repeats.
 """
 
 import resource
@@ -22,15 +21,14 @@ from tipoff.studies.core.progress import say
 from tipoff.studies.core.study import read
 
 SIZES = (0.002, 0.001, 0.0005)  # m: 19,360, 154,880 and 1,239,040 elements of the reference rails
-# elements whose assembly fits into memory with room to spare; a larger matrix is no faster per
-# element
+# elements of the baseline, whose matrix fits into memory; a larger one is no faster per element
 _BASELINE_MOST = 160_000
-_WORK = 4e7  # elements times steps in one timed piece
-_PRESSED = 1e-4  # s that the payload certainly stays pressed
+_WORK = 4e7  # elements times steps in one timed repeat
+_PRESSED = 1e-4  # s, shorter than the contact
 
 
 def pressed(scene: Scene) -> Scene:
-    """``scene`` with the payload set 1 um deep into its +y and +z walls."""
+    """``scene`` with the payload pressed 1 um into its +y and +z walls."""
     assert scene.contact is not None
     depth = scene.contact.clearance + 1e-6
     return scene.replace({"initial.position.y": depth, "initial.position.z": depth})
@@ -39,7 +37,7 @@ def pressed(scene: Scene) -> Scene:
 def run(
     out: Path, sizes: tuple[float, ...] = SIZES, repeats: int = 5, steps: int | None = None
 ) -> dict:
-    """``rows``, one per size, of pieces of ``steps`` steps; also written to
+    """``rows``, one for each element size (m), from repeats of ``steps`` steps; writes
     ``out``/bench/highfi.json."""
     scene = load("reference").condition("phi35")
     rows = []
@@ -51,8 +49,8 @@ def run(
 
 
 def stored(out: Path) -> dict | None:
-    """The ``rows`` of an earlier run, what there is of the surrogate (``lowfi``), and their digest,
-    ``key``; None without any."""
+    """The stored ``rows``, the stored result of the surrogate (``lowfi``), and their digest,
+    ``key``; None without either."""
     found = {
         name: kept
         for name in ("highfi", "lowfi")
@@ -68,17 +66,14 @@ def stored(out: Path) -> dict | None:
 
 
 def line(row: dict) -> str:
-    """One row in words."""
+    """One row as text."""
     return (
         f"  {row['elements']:>9,} elements: {row['ns_per_element_step']:.2f} ns per element and "
-        f"step on {row['threads']} "
-        f"threads with {row['faces_in_contact']} faces pressed, {row['ns_free']:.2f} without; "
-        f"{row['ns_one_thread']:.2f} on "
-        f"one thread; SciPy and NumPy {row['baseline_ns_per_element_step']:.0f}, "
-        f"{row['ratio']:.0f} times as much; set-up "
-        f"{row['set_up_s']:.1f} s; {row['bytes_per_element']:.0f} bytes per element; 40 ms would "
-        f"take "
-        f"{row['projected_40_ms_s'] / 3600.0:.2g} h"
+        f"step on {row['threads']} threads with {row['faces_in_contact']} faces pressed, "
+        f"{row['ns_free']:.2f} without; {row['ns_one_thread']:.2f} on one thread; SciPy and NumPy "
+        f"{row['baseline_ns_per_element_step']:.0f}, {row['ratio']:.0f} times as much; set-up "
+        f"{row['set_up_s']:.1f} s; {row['bytes_per_element']:.0f} bytes per element; projected run "
+        f"of 40 ms: {row['projected_40_ms_s'] / 3600.0:.2g} h"
     )
 
 
@@ -140,7 +135,7 @@ def _measured(scene: Scene, size: float, repeats: int, steps: int | None) -> dic
 
 
 class _Again:
-    """Steps of a loop from its start, each time it is called."""
+    """Makes steps of a loop; ``rewind`` returns to its start."""
 
     def __init__(self, loop):
         self.loop = loop
@@ -158,7 +153,7 @@ class _Again:
 
 
 def _timed(advance: Callable[[int], None], count: int) -> float:
-    """Seconds per step, once the caches are warm."""
+    """Seconds per step with warm caches."""
     advance(max(1, count // 10))
     if isinstance(advance, _Again):
         advance.rewind()
@@ -168,7 +163,7 @@ def _timed(advance: Callable[[int], None], count: int) -> float:
 
 
 def memory(*records) -> int:
-    """Bytes of all arrays in records of records."""
+    """Bytes of all arrays in nested records."""
     return sum(
         item.nbytes if isinstance(item, np.ndarray) else memory(*item)
         for item in records

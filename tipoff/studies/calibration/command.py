@@ -18,7 +18,7 @@ from tipoff.studies.commands.running import guarded, quantity, study_of
 
 
 def add(app: typer.Typer) -> None:
-    """Put the command under ``app``."""
+    """Add the command to ``app``."""
     app.command()(calibrate)
 
 
@@ -31,7 +31,7 @@ def calibrate(
         typer.Option(
             "--reference",
             metavar="[NAME=]FILE",
-            help="Curves of condition NAME in a CSV file, in place of finite elements; repeatable.",
+            help="CSV file with curves of condition NAME, used in place of the reference; repeatable.",
         ),
     ] = None,
     condition: Annotated[
@@ -47,32 +47,29 @@ def calibrate(
         typer.Option(
             "--settled-from",
             metavar="TIME",
-            help="Start of the 2 ms whose means are the settled values; default: the last 2 ms of "
-            "a file.",
+            help="Start of the 2 ms window of the settled values; default: the last 2 ms of a file.",
         ),
     ] = None,
     model: Annotated[
         SurrogateName | None,
-        typer.Option("--model", help="Calibrate this model alone; default: both."),
+        typer.Option("--model", help="Calibrate only this model; default: both."),
     ] = None,
     element_size: ElementSize = None,
     workers: Workers = None,
     json_: Json = False,
 ) -> None:
-    """Take the surrogate's contact from the finite elements; writes compliance.json,
+    """Find the contact of the surrogate from the finite elements; writes compliance.json,
     calibration.json and calibration.toml.
 
-    Compliant contact takes the rail's compliance from statics, without a run of the reference;
-    springs are fitted to the reference's curves. --model compliant or --model springs does one of
-    both.
+    The compliance of the rail comes from statics, without a run of the reference. Springs are
+    fitted to curves of the reference. --model compliant or --model springs does only one of them.
 
-    Curves of another code or of a test may take the place of the reference; curves/ then receives
-    both files:
+    Curves of another code or of a test can replace the reference; the results are then in curves/:
 
       tipoff calibrate --reference phi15=test15.csv --reference phi60=test60.csv --settled-from "44 ms"
 
-    A file has the columns time, velocity_x (inertial, along the rail), rate_x, rate_y and rate_z
-    (inertial, in payload body axes), from ignition on, at any instants, with units in the header,
+    A file has the columns time (from ignition, at any instants), velocity_x (inertial, along the
+    rail), rate_x, rate_y and rate_z (inertial, in payload body axes). Units are in the header,
     rate_x \\[deg/s], or in the second line. Other columns are ignored.
     """
 
@@ -90,7 +87,7 @@ def calibrate(
                         "--reference",
                         "option",
                         "given",
-                        "none with --model compliant: curves are for springs",
+                        "none with --model compliant: only springs are fitted to curves",
                     )
                 ]
             )

@@ -1,7 +1,7 @@
-"""Stage ``compliance``: what compliant contact takes from the finite elements, the rail's
-compliance under the pads, by statics and without a single run of the reference.
+"""Stage ``compliance``: compliance of the rail under the pads, from the statics of the finite
+elements, without a run of the reference.
 
-Where agreement is judged the mesh is the reference's own; elsewhere it is the coarsest whose
+Where agreement is judged, the mesh is that of the reference; elsewhere it is the coarsest mesh whose
 compliance is within 1 % of that.
 """
 
@@ -15,8 +15,8 @@ NAME = "compliance"
 
 
 def run(study: Study) -> dict:
-    """``file``, null for a scene without contact; stations, the compliance under a pad, the seconds
-    it took."""
+    """``file``, null for a scene without contact; number of stations, compliance under a pad (m/N),
+    wall time (s)."""
 
     def make() -> tuple[dict, list[Path]]:
         began = time.perf_counter()

@@ -1,13 +1,13 @@
-"""How long a calibration will take, said before it begins.
+"""Estimate of the duration of a calibration, printed before it begins.
 
     time = ceil(runs / at a time) * elements * steps * ns per element and step
            + evaluations * conditions * time of the surrogate
 
 Elements are counted without a mesh where the rail is the built-in section. Steps and nanoseconds
-come from runs of the reference that are stored, of this scene, else of one beside it, else from a
-benchmark; where nothing was measured typical figures stand in, and the line says so. It may be
-wrong by what other programs take, and by the time after the exit that a run leaves out. It may not
-cost what it tells: after a second it is given up.
+come from stored runs of the reference: of this scene, else of another scene in the same folder,
+else from a benchmark, else from typical values, which the line then states. The estimate neglects
+the load of other programs and that a run ends early, after the exit. It is abandoned after one
+second.
 """
 
 import contextlib
@@ -40,8 +40,8 @@ _LOOKED_AT = 4  # stored runs, newest first
 
 
 class Pace(NamedTuple):
-    """Cost of a reference run: nanoseconds per element and step; its mesh's element size (m),
-    elements and steps, None where only the speed is known; and where it was measured, in words."""
+    """Cost of a reference run: nanoseconds per element and step; element size (m), elements and
+    steps of its mesh, None where only the speed is known; and the source, as text."""
 
     ns: float
     element_size: float | None = None
@@ -50,9 +50,9 @@ class Pace(NamedTuple):
     source: str = ""
 
 
-def calibration(study: Study, asked: Sequence[Run]) -> str:
-    """The line for a calibration on the reference runs ``asked``, found in a second at most."""
-    return _line(study, asked, lambda: _search(study, len(asked)), "the search", "about")
+def calibration(study: Study, requested: Sequence[Run]) -> str:
+    """The line for a calibration on the reference runs ``requested``, found in a second at most."""
+    return _line(study, requested, lambda: _search(study, len(requested)), "the search", "about")
 
 
 def search(study: Study, conditions: int) -> str:
@@ -62,11 +62,11 @@ def search(study: Study, conditions: int) -> str:
 
 
 def _line(
-    study: Study, asked: Sequence[Run], rest: Callable[[], float], name: str, bound: str
+    study: Study, requested: Sequence[Run], rest: Callable[[], float], name: str, bound: str
 ) -> str:
     for package in ("tipoff.calibration", "tipoff.highfi", "h5py"):
-        importlib.import_module(package)  # what is loaded in any case is no delay
-    missing = [run for run in asked if not study.store.path(run).is_file()]
+        importlib.import_module(package)  # needed in any case, so not part of the second
+    missing = [run for run in requested if not study.store.path(run).is_file()]
     together = min(study.settings.workers, len(missing))
     reference, seconds = in_time(lambda: (_references(missing, together, pace(study)), rest())) or (
         None,
@@ -76,26 +76,26 @@ def _line(
 
 
 def work(name: str, seconds: float | None, bound: str = "about") -> str:
-    """What is done after the runs of the reference, and how long it takes where that is known."""
+    """The work after the runs of the reference, with its duration (s) where that is speed."""
     return name if seconds is None else f"{name}, {bound} {span(seconds)}"
 
 
 def words(missing: int, together: int, reference: tuple[float, str] | None, after: str) -> str:
-    """The line: runs ``missing``, so many ``together``, seconds of all and where they are from, and
-    what comes ``after``."""
+    """The line: number of ``missing`` runs, how many run ``together``, seconds of all with their
+    source, and the work ``after`` them."""
     if not missing:
         return f"no reference run to make; {after}"
     head = f"{missing} reference run{'s' if missing > 1 else ''} to make" + (
         f", {together} at a time" if together > 1 else ""
     )
     if reference is None:
-        return f"{head}: how long is not known, nothing like them was run; then {after}"
+        return f"{head}: duration unknown, no similar run is stored; then {after}"
     seconds, source = reference
     return f"{head}: about {span(seconds)}{source}{_COMPILED if _is_cold() else ''}; then {after}"
 
 
 def span(seconds: float) -> str:
-    """A time in words, to about a tenth."""
+    """A time (s) as text, rounded to about a tenth."""
     if seconds < 60.0:
         return f"{max(1, round(seconds)) if seconds < 10.0 else 5 * round(seconds / 5.0)} s"
     if seconds < 600.0:
@@ -115,25 +115,24 @@ def pace(study: Study) -> Pace:
             return (
                 found
                 if same
-                else Pace(found.ns, source=f" (speed as measured in {path.parent.parent.name})")
+                else Pace(found.ns, source=f" (speed from runs of {path.parent.parent.name})")
             )
     try:
         rows = read_json(study.folder.parent / "bench" / "highfi.json")["rows"]
         nearest = min(
             rows, key=lambda row: abs(math.log(row["element_size_m"] / study.settings.element_size))
         )
-        return Pace(float(nearest["ns_one_thread"]), source=" (speed as benchmarked)")
+        return Pace(float(nearest["ns_one_thread"]), source=" (speed from the benchmark)")
     except (OSError, ValueError, KeyError, TypeError):
-        return Pace(_TYPICAL_NS, source=" (typical speed, none measured here yet)")
+        return Pace(_TYPICAL_NS, source=" (typical speed, not measured on this machine)")
 
 
 def in_time(work: Callable):
-    """What ``work`` returns, or None where that takes longer than a second or fails: a forecast is
-    worth no more."""
+    """The result of ``work``, or None where it takes longer than a second or fails."""
     found = []
 
     def attempt() -> None:
-        # whatever it is, the runs themselves will meet it and say it better
+        # the runs report the same fault with a better message
         with contextlib.suppress(Exception):
             found.append(work())
 
@@ -143,36 +142,36 @@ def in_time(work: Callable):
     return found[0] if found else None
 
 
-def _references(missing: Sequence[Run], together: int, known: Pace) -> tuple[float, str] | None:
-    """Seconds of all ``missing`` runs, so many ``together``, those of one mesh after those of
-    another; None as for one of them."""
-    found = [_reference(run, known) for run in missing]
+def _references(missing: Sequence[Run], together: int, speed: Pace) -> tuple[float, str] | None:
+    """Seconds of all ``missing`` runs, ``together`` at a time and mesh by mesh, with the source;
+    None where the duration of one is unknown."""
+    found = [_reference(run, speed) for run in missing]
     each = Counter(one for one in found if one is not None)
     if not each or None in found:
         return None
     return sum(
         math.ceil(count / together) * seconds for (seconds, _), count in each.items()
-    ), known.source
+    ), speed.source
 
 
-def _reference(run: Run, known: Pace) -> tuple[float, str] | None:
-    """Seconds of one run, and where its speed comes from; None for a mesh that cannot be
-    counted."""
+def _reference(run: Run, speed: Pace) -> tuple[float, str] | None:
+    """Seconds of one run, and the source of its speed; None where the number of elements is
+    unknown."""
     size = run.numerics.element_size
-    elements = _elements(run.scene, size, known)
+    elements = _elements(run.scene, size, speed)
     if elements is None:
         return None
-    if known.steps is not None and known.element_size is not None:
-        steps = known.steps * known.element_size / size
+    if speed.steps is not None and speed.element_size is not None:
+        steps = speed.steps * speed.element_size / size
     else:
         material = run.scene.rail.material
         steps = run.scene.duration / (
             _STEP * size * math.sqrt(material.density / material.youngs_modulus)
         )
-    return 1e-9 * elements * steps * known.ns, known.source
+    return 1e-9 * elements * steps * speed.ns, speed.source
 
 
-def _elements(scene: Scene, size: float, known: Pace) -> float | None:
+def _elements(scene: Scene, size: float, speed: Pace) -> float | None:
     if isinstance(scene.rail, SectionTable):
         from tipoff.highfi.rail.scene_mesh import geometry
         from tipoff.meshes import l_rail
@@ -180,13 +179,13 @@ def _elements(scene: Scene, size: float, known: Pace) -> float | None:
         section = geometry(scene)
         assert isinstance(section, l_rail.LRailGeometry)
         return l_rail.elements(section, size)
-    if known.elements is None or known.element_size is None:
+    if speed.elements is None or speed.element_size is None:
         return None
-    return known.elements * (known.element_size / size) ** 3
+    return speed.elements * (speed.element_size / size) ** 3
 
 
 def _stored(path: Path) -> Pace | None:
-    """The cost a stored run kept, without its arrays."""
+    """The cost in the file of a stored run; does not read its arrays."""
     import h5py
 
     try:
@@ -212,13 +211,13 @@ def _search(study: Study, conditions: int) -> float:
 
 
 def _is_cold() -> bool:
-    """Whether kernels have yet to be compiled."""
+    """Whether no kernel is compiled yet."""
     return not any(Path(_numba_settings.CACHE_DIR).rglob("*.nbc"))
 
 
 def _surrogate(folder: Path) -> float:
-    """Seconds of one run of the surrogate on springs: the fastest of those stored last, since the
-    first ones load kernels."""
+    """Seconds of one run on springs: the fastest of the newest stored runs, since the first ones
+    load kernels."""
     import h5py
 
     found = []

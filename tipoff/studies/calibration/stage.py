@@ -1,9 +1,8 @@
-"""Stage ``calibration``: constants of springs from the reference's curves of the fitted conditions,
-and nothing else. Compliant contact has its compliance from statics (``studies.calibration.compliance``).
+"""Stage ``calibration``: constants of springs, fitted to the reference on the fitted conditions.
+Compliant contact is not fitted: its compliance is from statics (``studies.calibration.compliance``).
 
-Curves of another code or of a test may take the place of the reference. What is fitted to them goes
-into a folder of its own, so that the other stages, which compare with the reference, do not replace
-it.
+Curves of another code or of a test can replace the reference. The result is then in a separate
+folder, so that other stages, which compare with the reference, do not replace it.
 """
 
 import math
@@ -28,7 +27,7 @@ FILE = "calibration.toml"
 
 
 def run(study: Study) -> dict:
-    """The calibration as plain values, beside ``calibration.toml``."""
+    """The calibration as JSON values; writes ``calibration.toml``."""
     names = study.fitted()
     requested = _requested(study)
 
@@ -47,11 +46,11 @@ def run(study: Study) -> dict:
 
 
 def of_models(study: Study, model: str | None = None) -> dict:
-    """What the surrogate's ``model`` takes from the finite elements, or both models, None:
-    ``compliance`` and ``springs`` as their result files hold them."""
+    """Calibrate one ``model`` of the surrogate, None for both: ``compliance`` and ``springs`` are as
+    in their result files."""
     found: dict[str, Any] = {"scene": study.scene.name}
     if model != COMPLIANT:
-        study.fitted()  # a scene without any is refused before the compliance is found
+        study.fitted()  # raises before the compliance is computed
     if model != SPRINGS:
         found["compliance"] = compliance.run(study)
     return found | ({"springs": run(study)} if model != COMPLIANT else {})
@@ -80,10 +79,10 @@ def constants(study: Study) -> dict:
 def named(
     references: list[str], condition: str | None, settled_from: float | None
 ) -> list[tuple[str, str]]:
-    """(condition, path) of each ``NAME=FILE``; a file without a name is that of ``condition``, else
-    of the scene itself.
+    """(condition, path) of each ``NAME=FILE``; a file without a name belongs to ``condition``, else
+    to the scene itself.
 
-    Raises SceneError for options that no file is there for.
+    Raises SceneError for options that need a file where there is none.
     """
     pairs = [item.partition("=") for item in references]
     unnamed = [name for name, equals, _ in pairs if not equals]
@@ -98,7 +97,7 @@ def named(
     if idle:
         raise SceneError(
             [
-                Fault(option, given, "no --reference", f"{file} that it speaks of")
+                Fault(option, given, "no --reference", f"{file} for this option")
                 for option, given, file in idle
             ]
         )
@@ -111,8 +110,8 @@ def named(
 def from_files(
     study: Study, files: list[tuple[str, str]], settled_from: float | None = None
 ) -> dict:
-    """The calibration as plain values, from CSV files (condition, path) as ``calibrate.Curves``
-    reads them, beside ``curves/calibration.toml``.
+    """The calibration as JSON values, from CSV files (condition, path) that ``Curves.read_csv``
+    reads; writes ``curves/calibration.toml``.
 
     Raises SceneError listing every fault of every file, CalibrationError for curves that do not fit
     the scene.
@@ -159,34 +158,33 @@ def _fitted(study: Study, references: dict, path: Path) -> tuple[dict, list[Path
 
 
 def rigid_walls(study: Study, names: Iterable[str]) -> RailCompliance | None:
-    """Rigid walls for the conditions of these ``names``, if any of them is warm: they share a
+    """Rigid walls with the thermal offset, if one of the conditions ``names`` is warm; they share a
     rail."""
     return next(filter(None, (study.rigid_rails(study.condition(name)) for name in names)), None)
 
 
 def load(study: Study) -> Calibration:
-    """The calibration of this scene, made if it is not there."""
+    """The calibration of this scene; makes it if it is missing."""
     run(study)
     return Calibration.load(study.path(FILE))
 
 
 def lines(document: dict, folder: Path) -> list[str]:
-    """The compliance and the constants in words, what the curves cannot tell, and where both
-    lie."""
+    """Lines of text: the compliance, the constants with intervals, weak directions, file paths."""
     if "parameters" not in document:
         compliance = _compliance(document["compliance"], folder) if "compliance" in document else []
         return compliance + (lines(document["springs"], folder) if "springs" in document else [])
     found = zip(
         document["parameters"], document["values"], document["units"], document["intervals"]
     )
-    said = [
+    text = [
         f"  {name:22}{value:.5g}{'' if unit == '1' else f' {unit}'}, {interval(ends)}"
         for name, value, unit, ends in found
     ]
-    said += [f"  not told      {words}" for words in document["weak_directions"]]
+    text += [f"  weak          {words}" for words in document["weak_directions"]]
     return [
         f"fitted to {', '.join(document['conditions'])}: objective {document['objective']:.4g}",
-        *said,
+        *text,
         f"  calibration   {folder / document['calibration']}",
     ]
 
@@ -196,20 +194,19 @@ def _compliance(document: dict, folder: Path) -> list[str]:
         return ["no contact: no compliance"]
     largest = max(max(values) for values in document["under_a_pad"]["direct_m_per_n"].values())
     return [
-        f"rail compliance at {document['stations']} stations, {1e3 * document['element_size_m']:g} "
-        f"mm elements: up to "
-        f"{1e9 * largest:.3g} nm/N under a pad",
+        f"rail compliance at {document['stations']} stations, elements of "
+        f"{1e3 * document['element_size_m']:g} mm: up to {1e9 * largest:.3g} nm/N under a pad",
         f"  compliance    {folder / document['file']}",
     ]
 
 
 def interval(ends: list[float | None]) -> str:
-    """The 95 % interval of a constant in words; without ends the curves do not tell it."""
-    return "not told by the curves" if None in ends else f"{ends[0]:.4g} to {ends[1]:.4g}"
+    """The 95 % interval of a constant as text."""
+    return "not determined by the curves" if None in ends else f"{ends[0]:.4g} to {ends[1]:.4g}"
 
 
 def as_dict(found: Calibration) -> dict:
-    """Plain values of a calibration."""
+    """A calibration as JSON values."""
     return {
         "constants": found.constants,
         "parameters": found.parameters,

@@ -1,5 +1,5 @@
-"""What the walls of a rail give way under the rearmost pads, all along their way to the open end,
-as the report shows it."""
+"""Compliance of the walls of a rail under a rearmost pad, over its travel to the open end, for the
+report."""
 
 import itertools
 
@@ -33,8 +33,8 @@ def under_a_pad(scene: Scene, compliance: RailCompliance, mounts: np.ndarray) ->
 
 
 def _spans(facets: np.ndarray) -> list[list[float]]:
-    """Stretches of X (m) that facets with nodes at ``facets`` (m,k) take up, those that touch put
-    together."""
+    """Intervals of X (m) covered by facets with nodes at ``facets`` (m,k); adjacent intervals are
+    merged."""
     spans: list[list[float]] = []
     for low, high in sorted(zip(facets.min(axis=1).tolist(), facets.max(axis=1).tolist())):
         if spans and low <= spans[-1][1] + _SAME:

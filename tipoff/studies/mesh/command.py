@@ -15,7 +15,7 @@ from tipoff.studies.commands.running import guarded, study_of
 
 
 def add(app: typer.Typer) -> None:
-    """Put the command under ``app``."""
+    """Add the command to ``app``."""
     app.command()(mesh)
 
 
@@ -26,7 +26,7 @@ def mesh(
     element_size: ElementSize = None,
     json_: Json = False,
 ) -> None:
-    """Mesh the rails: elements, nodes, named surfaces, quality; writes mesh.json and mesh.vtu."""
+    """Mesh the rails for the reference; writes mesh.json (size, surfaces, quality) and mesh.vtu."""
 
     def work() -> dict:
         from tipoff.studies.mesh import stage

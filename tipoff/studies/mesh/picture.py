@@ -1,5 +1,4 @@
-"""A drawing of the rail mesh: all rails, and one cross-section at full detail, named surfaces
-coloured."""
+"""A drawing of the rail mesh: all rails, and a cross-section of one; named surfaces are coloured."""
 
 from pathlib import Path
 
@@ -44,8 +43,7 @@ def _colours(mesh) -> dict[str, str]:
 
 
 def _boundary(mesh) -> tuple[np.ndarray, list[str]]:
-    """Outer facets (m,4) of the solid and the surface each belongs to, ``rail`` where it has no
-    name."""
+    """Outer facets (m,4) of the mesh and the name of the surface of each, ``rail`` without one."""
     from tipoff.highfi.mesh.rail_mesh import boundary_facets
 
     facets = boundary_facets(mesh.cells)
@@ -58,7 +56,7 @@ def _boundary(mesh) -> tuple[np.ndarray, list[str]]:
 
 
 def _oblique(axes, mesh, colours: dict[str, str]) -> None:
-    """Painter's algorithm on the facets that face the eye."""
+    """Draw the facets that face the viewer, from back to front."""
     from matplotlib.collections import PolyCollection
     from matplotlib.colors import to_rgb
 
@@ -88,13 +86,13 @@ def _oblique(axes, mesh, colours: dict[str, str]) -> None:
 
 
 def _section(axes, mesh, colours: dict[str, str]) -> None:
-    """Elements of the middle layer of the rail at +y +z (of all, where none is there), seen along
-    X, named walls drawn thick."""
+    """Draw the middle layer of the rail at +y +z (of all rails without one there), seen along X, with
+    thick lines for the named surfaces."""
     from matplotlib.collections import LineCollection, PolyCollection
 
     centres = mesh.points[mesh.cells].mean(axis=1)
     corner = (centres[:, 1] > 0.0) & (centres[:, 2] > 0.0)
-    corner |= not corner.any()  # a launcher of one's own may have no rail there
+    corner |= not corner.any()  # a custom launcher may have no rail there
     inside = centres[corner, 0]
     layer = _cut(mesh, corner, inside[np.argmin(np.abs(inside - inside.mean()))])
     axes.add_collection(
@@ -122,7 +120,7 @@ def _section(axes, mesh, colours: dict[str, str]) -> None:
 
 
 def _cut(mesh, among, x: float) -> np.ndarray:
-    """Numbers of the elements ``among`` those marked that the plane at ``x`` (m) cuts."""
+    """Numbers of the elements that the plane at ``x`` (m) cuts, of those marked in ``among``."""
     along = mesh.points[mesh.cells][:, :, 0]
     return np.flatnonzero(among & (along.min(axis=1) < x) & (along.max(axis=1) > x))
 

@@ -1,5 +1,4 @@
-"""Stage ``mesh``: the rails as the reference will use them, with their size, quality and a
-picture."""
+"""Stage ``mesh``: the mesh of the rails for the reference, its size and quality, and a picture."""
 
 from pathlib import Path
 
@@ -11,7 +10,7 @@ from tipoff.studies.core.study import Study
 
 
 def run(study: Study) -> dict:
-    """Elements, nodes, named surfaces with area, quality, and the mesh as ``mesh.vtu``."""
+    """Elements, nodes, areas of named surfaces, quality; writes ``mesh.vtu`` and a picture."""
     name = next(iter(study.conditions))
     asked = study.highfi(name)
 
@@ -51,7 +50,7 @@ def run(study: Study) -> dict:
 
 
 def area(points: np.ndarray, facets: np.ndarray) -> float:
-    """Area (m2) of facets (m,4) or (m,6), exact for plane ones."""
+    """Area (m2) of ``facets`` (m,4) or (m,6) by Gauss quadrature, exact for plane facets."""
     from tipoff.highfi.mesh.facets import gauss
 
     return float(gauss(points[facets], 2)[1].sum())

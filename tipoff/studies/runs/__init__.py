@@ -1,4 +1,4 @@
-"""Every condition of a scene in either model, and single runs."""
+"""Runs of all conditions in both models, and single runs."""
 
 from tipoff.studies.question import Contents, Entry, Result, Section
 from tipoff.studies.runs import command

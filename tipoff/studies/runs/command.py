@@ -27,13 +27,13 @@ if TYPE_CHECKING:
 
 
 def add(app: typer.Typer) -> None:
-    """Put the commands that run every condition under ``app``."""
+    """Add the commands that run every condition to ``app``."""
     app.command()(highfi)
     app.command()(lowfi)
 
 
 def add_run(app: typer.Typer) -> None:
-    """Put the command of a single run under ``app``."""
+    """Add the command of a single run to ``app``."""
     app.command()(run)
 
 
@@ -103,8 +103,8 @@ def run(
         typer.Option(
             "--accuracy",
             metavar="RATE",
-            help="Error of the settled rates to be kept, "
-            '"0.1 deg/s": takes the cheapest model that make cost found so exact.',
+            help="Largest error of the settled rates, "
+            '"0.1 deg/s": chooses the fastest model within it, as measured by tipoff cost.',
         ),
     ] = None,
     budget: Annotated[
@@ -112,8 +112,8 @@ def run(
         typer.Option(
             "--budget",
             metavar="TIME",
-            help='Wall time to be kept, "2 s": takes the '
-            "most exact model that make cost found so fast.",
+            help='Largest wall time, "2 s": chooses the '
+            "most accurate model within it, as measured by tipoff cost.",
         ),
     ] = None,
     element_size: ElementSize = None,
@@ -121,11 +121,11 @@ def run(
     resume: Resume = True,
     json_: Json = False,
 ) -> None:
-    """Run one condition in one model and print what the payload leaves with.
+    """Run one condition in one model and print velocity and rates after the exit.
 
-    The answer names its model and, where tipoff compare measured it, its error. The rail's
-    compliance is found once per rail and pads. --accuracy and --budget choose a model from what
-    tipoff cost measured.
+    The output names the model and, after tipoff compare, its error. The rail compliance is computed
+    once for a rail with its pads. --accuracy and --budget choose a model from the results of tipoff
+    cost.
 
       tipoff run --condition phi35
       tipoff run --condition phi35 --model finite-elements

@@ -56,7 +56,7 @@ def thrust_curve(scene: Scene) -> Chart:
 
 
 def figure6(runs: Runs, conditions: list[str]) -> Chart:
-    """The paper's Figure 6: v_x, then the three rates of each fitted condition, all models."""
+    """Figure 6 of the paper: v_x, then the three rates of each fitted condition, all models."""
     shades = dict(zip(conditions, (NAVY, VERMILION, AMBER, TEAL, GREY) * 4))
     speed = [
         _line(run.time, run.velocity[:, 0], shades[name], kind, legend=False)
@@ -66,12 +66,12 @@ def figure6(runs: Runs, conditions: list[str]) -> Chart:
     ]
     panels = [Panel("(a) velocity along X, all conditions", _MILLISECONDS, "v_x (m/s)", speed)]
     for letter, name in zip("bcdefghijk", conditions):
-        known = {kind: getattr(runs, kind)[name] for kind in _STYLES if name in getattr(runs, kind)}
+        drawn = {kind: getattr(runs, kind)[name] for kind in _STYLES if name in getattr(runs, kind)}
         lines = [
             _line(
                 run.time, np.degrees(run.rate[:, i]), colour, kind, f"rate about {axis.upper()}, "
             )
-            for kind, run in known.items()
+            for kind, run in drawn.items()
             for i, (axis, colour) in enumerate(AXIS_COLOURS.items())
         ]
         panels.append(Panel(f"({letter}) {name}", _MILLISECONDS, "rate (deg/s)", lines))
@@ -84,8 +84,8 @@ def _line(time, values, colour: str, kind: str, name: str = "", legend: bool = T
 
 
 def contact_forces(scene: Scene, runs: Runs, condition: str) -> Chart:
-    """Force on every pad that is ever touched, all models but the uncalibrated one, one
-    condition."""
+    """Force on every pad that touches a rail, one condition, all models except uncalibrated
+    springs."""
     forces = {
         kind: (
             found[condition].time,
@@ -135,8 +135,8 @@ _LEDGER_COLOURS = dict(
 
 
 def energy_ledgers(runs: Runs, condition: str) -> Chart:
-    """Every entry of both ledgers that is not zero, with the residual, all models but the
-    uncalibrated one, one condition."""
+    """Every entry of both ledgers that is not zero, with the residual, one condition, all models
+    except uncalibrated springs."""
     panels = []
     for kind in _COLOURS:
         run = getattr(runs, kind).get(condition)

@@ -1,4 +1,4 @@
-"""One run of one condition in one model, its outcome printed."""
+"""One run of one condition in one model; prints the result."""
 
 from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS, SPRINGS
 from tipoff.studies.agreement import kept
@@ -16,16 +16,18 @@ from tipoff.studies.runs.stage import row
 def run(
     study: Study, condition: str, options: models.Options = models.Options(), quiet: bool = False
 ) -> dict:
-    """The run's result as a stage would hold it; prints it unless ``quiet``. Raises SceneError for
-    an unreadable calibration and for options of another model, StudyError where no model is named
-    and the agreement table rejects the default on ``condition``."""
+    """The result of the run, as in the result file of a stage; prints it unless ``quiet``.
+
+    Raises SceneError for an unreadable calibration and for options of another model, StudyError
+    where no model is named and the agreement table rejects the default on ``condition``.
+    """
     fitted, scene = constants(options.calibration), study.condition(condition)
     if options.model == FINITE_ELEMENTS:
         return _made(study, condition, study.highfi(condition), quiet)
     if options.model == SPRINGS:
         return _made(study, condition, study.lowfi(condition, fitted), quiet)
     models.require_accepted(study, options.name, condition)
-    # checks the number before the rail compliance is found
+    # checks the number of modes before the rail compliance is computed
     vibrating = study.lowfi(condition, modes=options.modes or 0)
     if scene.contact is None:
         return _made(study, condition, vibrating, quiet)
@@ -38,36 +40,37 @@ def run(
 def chosen(
     study: Study, condition: str, accuracy: float | None, budget: float | None, quiet: bool = False
 ) -> dict:
-    """The same in the model that measured cost calls for; ``chosen`` says which and why. Raises
-    StudyError when none fits, or when no cost was measured for this scene and this code."""
-    whole = study.unrestricted()  # results are those of all conditions, whichever one is asked for
+    """The same in the model that the cost study recommends; ``chosen`` is the model and the reason.
+    Raises StudyError where no model meets the limits, or without a cost study of this scene and
+    code."""
+    whole = study.unrestricted()  # stored results are those of all conditions
     measured = cost.stored(whole)
     if measured is None:
         raise StudyError(
-            f"no cost was measured for this scene with this code: run tipoff cost --scene "
+            "there is no cost study of this scene with this code: run tipoff cost --scene "
             f"{study.scene.name} first"
         )
     point = choice.choose(measured, condition, compare.stored(whole), accuracy, budget)
     say(point["why"])
     if point["rung"] == "highfi":
-        asked = study.highfi(condition, element_size=point["setting"])
+        request = study.highfi(condition, element_size=point["setting"])
     else:
         candidate = next(
             item for item in cost.surrogates(whole, [condition]) if item.name == point["rung"]
         )
         if point["modes"] is not None:
             candidate = candidate._replace(modes=point["modes"])
-        asked = candidate.request(study, condition, relative_tolerance=point["setting"])
-    return _made(study, condition, asked, quiet) | {"chosen": point}
+        request = candidate.request(study, condition, relative_tolerance=point["setting"])
+    return _made(study, condition, request, quiet) | {"chosen": point}
 
 
-def _made(study: Study, condition: str, asked: Run, quiet: bool) -> dict:
-    found = study.store.get(asked)
-    calibrated, modes = asked.calibration is not None, getattr(asked.numerics, "modes", 0)
-    result = row(condition, found, study.relative(study.store.path(asked)))
-    result["agreement"] = kept.words(study, asked.model, condition, calibrated, modes)
+def _made(study: Study, condition: str, request: Run, quiet: bool) -> dict:
+    found = study.store.get(request)
+    calibrated, modes = request.calibration is not None, getattr(request.numerics, "modes", 0)
+    result = row(condition, found, study.relative(study.store.path(request)))
+    result["agreement"] = kept.words(study, request.model, condition, calibrated, modes)
     if not quiet:
-        print("\n".join(lines(result, model(asked), study)))
+        print("\n".join(lines(result, model(request), study)))
     return result | {
         "failed": [f"{condition}: {found.status}: {found.message}"]
         if found.status in FAILED
@@ -75,50 +78,49 @@ def _made(study: Study, condition: str, asked: Run, quiet: bool) -> dict:
     }
 
 
-def model(asked: Run) -> str:
-    """What a run is made with, in words."""
-    if asked.fidelity == "highfi":
-        return f"{FINITE_ELEMENTS}, {1e3 * asked.numerics.element_size:g} mm"
+def model(request: Run) -> str:
+    """The model of a run with its numerics."""
+    if request.fidelity == "highfi":
+        return f"{FINITE_ELEMENTS}, {1e3 * request.numerics.element_size:g} mm"
     found, modes = (
-        words.model(asked.scene, asked.calibration, asked.compliance),
-        asked.numerics.modes,
+        words.model(request.scene, request.calibration, request.compliance),
+        request.numerics.modes,
     )
-    return found + (f", {modes} modes of each rail" if modes and asked.model == COMPLIANT else "")
+    return found + (f", {modes} modes of each rail" if modes and request.model == COMPLIANT else "")
 
 
 def lines(result: dict, made_with: str, study: Study) -> list[str]:
-    """The outcome in words and units."""
-    said = [
+    """The result as lines of text with units."""
+    text = [
         f"{study.scene.name} / {result['condition']}, model {made_with}: {result['status']}"
         + (f" ({result['message']})" if result["message"] else "")
     ]
     if result["exit_time_s"] is not None:
-        said.append(f"  exit          {1e3 * result['exit_time_s']:.4g} ms after ignition")
+        text.append(f"  exit          {1e3 * result['exit_time_s']:.4g} ms after ignition")
     if settled := result["settled"]:
-        said.append(
+        text.append(
             "  velocity      "
             + ", ".join(f"{value:.5g}" for value in settled["velocity_m_s"])
             + " m/s (x, y, z)"
         )
-        said.append(
+        text.append(
             "  rate          "
             + ", ".join(f"{value:.4g}" for value in settled["rate_deg_s"])
             + " deg/s (x, y, z)"
         )
-        said.append(
+        text.append(
             f"  direction     {settled['direction_error_deg']:.4g} deg off axis, "
             f"{1e3 * settled['lateral_velocity_m_s']:.4g} mm/s across"
         )
     if result.get("peak_stress_pa") is not None:
         place = ", ".join(f"{1e3 * value:.4g}" for value in result["peak_stress_place_m"])
-        said.append(
+        text.append(
             f"  peak stress   {1e-6 * result['peak_stress_pa']:.4g} MPa (von Mises) at x, y, z = "
-            f"{place} mm, rail "
-            f"{result['peak_stress_rail']}, {1e3 * result['peak_stress_time_s']:.4g} ms after "
-            f"ignition"
+            f"{place} mm, rail {result['peak_stress_rail']}, "
+            f"{1e3 * result['peak_stress_time_s']:.4g} ms after ignition"
         )
-        said += [f"  warning       {words}" for words in result["warnings"]]
-    said.append(f"  agreement     {result['agreement']}")
-    said.append(f"  took          {result['wall_s']:.3g} s, {result['steps']} steps")
-    said.append(f"  trajectory    {study.path(result['trajectory'])}")
-    return said
+        text += [f"  warning       {warning}" for warning in result["warnings"]]
+    text.append(f"  agreement     {result['agreement']}")
+    text.append(f"  took          {result['wall_s']:.3g} s, {result['steps']} steps")
+    text.append(f"  trajectory    {study.path(result['trajectory'])}")
+    return text

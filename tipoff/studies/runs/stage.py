@@ -1,4 +1,4 @@
-"""Stages ``highfi`` and ``lowfi``: every condition of the scene in one fidelity, the surrogate on
+"""Stages ``highfi`` and ``lowfi``: all conditions of the scene in one fidelity; the surrogate uses
 compliant contact."""
 
 import math
@@ -41,11 +41,11 @@ def run(study: Study, fidelity: str) -> dict:
 
 
 def row(name: str, run: Trajectory, path: str) -> dict:
-    """One condition as result files hold it; a run that did not settle has ``settled`` null."""
+    """One condition as in the result files; ``settled`` is null for a run that did not settle."""
     result, cost, checks = run.outcome, run.cost, run.checks
     settled = None
     if result.rate is not None:
-        assert result.direction_error is not None  # all of them are known, or none
+        assert result.direction_error is not None  # a settled run has all of them
         settled = {
             "velocity_m_s": result.velocity,
             "rate_deg_s": [math.degrees(rate) for rate in result.rate],

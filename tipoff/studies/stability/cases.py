@@ -1,5 +1,4 @@
-"""Hard cases, each with a control: a simpler method that must be seen to fail on it, or the case
-proves nothing.
+"""Hard cases, each with a control: a simpler method that must fail, else the case proves nothing.
 
 A case is a function without arguments that returns a ``Verdict``.
 """

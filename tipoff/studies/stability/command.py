@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 def add(app: typer.Typer) -> None:
-    """Put the command under ``app``."""
+    """Add the command to ``app``."""
     common.add(
         app,
         "stability",

@@ -27,8 +27,8 @@ _CARELESS = "explicit Euler, fixed step 0.1 ms"
 def single_pad(
     mass: float, contact: dict | None, pads: list | None = None, end: float = 0.5, **tables
 ) -> Scene:
-    """A payload with one pad above its mass centre, so that contact turns nothing, or with
-    ``pads``; rails to ``end`` (m). SI."""
+    """A payload with one pad above its mass centre, so that contact causes no rotation, or with
+    ``pads``; rails end at ``end`` (m). SI."""
     inertia = 0.4 * mass * 0.05**2
     return parse(
         {
@@ -69,7 +69,7 @@ def power_pad(stiffness: float, exponent: float, clearance: float) -> dict:
 
 
 def run(scene: Scene, relative_tolerance: float = 1e-9) -> Trajectory:
-    """The surrogate's answer."""
+    """The run of the surrogate."""
     from tipoff import lowfi
 
     return lowfi.run(
@@ -85,8 +85,8 @@ def _thrown(
     duration: float,
     mass: float = _MASS,
 ) -> float:
-    """Control: speed (m/s) that explicit Euler gives, started at a penetration (m) and speed (m/s),
-    after ``duration`` (s)."""
+    """Control: speed (m/s) by explicit Euler after ``duration`` (s), from a penetration (m) and a
+    speed (m/s)."""
     return weaker.explicit_euler(
         lambda _, x, __: -stiffness * max(x, 0.0) ** exponent / mass,
         start,
@@ -158,7 +158,7 @@ def flat_pad() -> Verdict:
 
 
 def interference() -> Verdict:
-    """A pad pressed in by 20 um from the start: what it stores becomes motion."""
+    """A pad with a penetration of 20 um at the start: its elastic energy becomes kinetic."""
     depth, exponent = 20e-6, 1.0
     stored = _LINEAR * depth**2 / 2.0
     leaves = math.sqrt(2.0 * stored / _MASS)
@@ -189,8 +189,8 @@ def interference() -> Verdict:
 
 
 def grazing() -> Verdict:
-    """A wall a thousand times stiffer still, passed at 5 m/s: the contact lasts 2 us, a fiftieth of
-    the careless step."""
+    """A wall a thousand times stiffer still, passed at 5 m/s: the contact lasts 2 us, 1/50 of the
+    default step."""
     stiffness, speed, gap = 7e13, 0.05, 1e-4
     found = run(
         single_pad(

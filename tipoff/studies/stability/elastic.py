@@ -68,7 +68,7 @@ class _Rail:
 
 
 def step_above_the_limit() -> Verdict:
-    """Steps 0.1 %, 1 % and 100 % too long are refused; a loop that does not check blows up."""
+    """Steps 0.1 %, 1 % and 100 % above the limit are refused; a loop without this check diverges."""
     from tipoff import highfi
     from tipoff.highfi.dynamics.stable_step import StepError
 
@@ -115,8 +115,8 @@ def long_vibration() -> Verdict:
 
 
 def sliding_over_facets() -> Verdict:
-    """Pads slide over facets half their size: the rates may not depend on where the contact points
-    happen to lie."""
+    """Pads slide over facets half their size: the rates must not depend on the places of the contact
+    points."""
     from tipoff import highfi
 
     scene, choices = (

@@ -29,7 +29,8 @@ _RAIL = {"density": 2810.0, "youngs_modulus": 72e9, "poisson_ratio": 0.33}
 
 
 def zero_clearance() -> Verdict:
-    """The reference with closed gaps and a centred thrust: eight pads touch, none may push."""
+    """The reference scene without clearance and with a centred thrust: eight pads touch without
+    force."""
     scene = load("reference").replace(
         {"contact.clearance": 0.0, "friction": None, "thrust_offset": None, "platform": None}
     )
@@ -105,7 +106,7 @@ def _slider(mu: float, offset: float, duration: float, transition: float) -> Sce
 
 
 def _whole(scene: Scene) -> Trajectory:
-    """The run to the end of the scene, although it may count as jammed on the way."""
+    """The run to the end of the scene, even if it jams before."""
     from tipoff.lowfi import Numerics
     from tipoff.lowfi.run import Run
 
@@ -124,7 +125,7 @@ def _stopped(found: Trajectory, mu: float, offset: float, transition: float) -> 
 
 
 def wedged() -> Verdict:
-    """mu 0.8 with the push at 130 mm, just beyond the lock: it jams, and no exit speed is given."""
+    """mu 0.8 with the push at 130 mm, just beyond the lock: it jams, and there is no exit speed."""
     found, smooth = (_whole(_slider(0.8, 0.130, 0.2, transition)) for transition in (5e-4, 0.05))
     told = run(_slider(0.8, 0.130, 0.2, 5e-4), 1e-7)
     return verdict(
@@ -139,7 +140,7 @@ def wedged() -> Verdict:
 
 
 def nearly_wedged() -> Verdict:
-    """The same at 120 mm: 4 % of the push is left."""
+    """The same at 120 mm: 4 % of the push remains."""
     found, smooth = (_whole(_slider(0.8, 0.120, 0.04, transition)) for transition in (1e-3, 0.5))
     exact = (1.0 - 2.0 * 0.8 * 0.120 / _SPAN) * _PUSH / _MASS
     measured, control = (
@@ -157,7 +158,7 @@ def nearly_wedged() -> Verdict:
     )
 
 
-# of the other inertial axes: a rotation vector (rad) about no axis of the scene's
+# rotation vector (rad) to other inertial axes, about no axis of the scene
 _TURN = (0.7, -1.1, 0.4)
 
 
@@ -217,7 +218,7 @@ def _spinning() -> Scene:
 
 
 def _seen_from(scene: Scene, turn: tuple | None) -> Trajectory:
-    """The run, its bodies turned beforehand about the scene's origin by a rotation vector."""
+    """The run after a rotation of its bodies about the origin of the scene by a rotation vector."""
     from tipoff.lowfi import Numerics, state
     from tipoff.lowfi.dynamics import integrate
     from tipoff.lowfi.run import Run
@@ -238,8 +239,8 @@ def _seen_from(scene: Scene, turn: tuple | None) -> Trajectory:
 
 
 def turning_platform() -> Verdict:
-    """Three full turns during the ejection: what the platform sees may not hang on the inertial
-    axes."""
+    """Three full turns during the ejection: the motion relative to the platform must not depend on
+    the inertial axes."""
     scene = _spinning()
     found, other = _seen_from(scene, None), _seen_from(scene, _TURN)
     ours, theirs = outcome.relative_motion(found), outcome.relative_motion(other)

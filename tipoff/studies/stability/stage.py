@@ -1,5 +1,4 @@
-"""Stage ``stability``: hard cases of both fidelities, each beside a simpler method that fails on
-it."""
+"""Stage ``stability``: hard cases of both fidelities, each with a simpler method that fails."""
 
 from pathlib import Path
 
@@ -10,7 +9,7 @@ from tipoff.studies.stability import cases
 
 
 def run(study: Study) -> dict:
-    """``cases``: one verdict each; ``failed`` names those not held, or whose control did not
+    """``cases``: one verdict each; ``failed``: the cases that are not held or whose control did not
     fail."""
 
     def make() -> tuple[dict, list[Path]]:

@@ -12,7 +12,7 @@ _MASS = 20.0
 def _pushed(
     name: str, thrust: dict, duration: float, exact: float, limit: float, step: float
 ) -> Verdict:
-    """Speed (m/s) after a thrust, beside that of Runge-Kutta at a fixed ``step`` (s)."""
+    """Speed (m/s) after a thrust, and that of Runge-Kutta with a fixed ``step`` (s)."""
     scene = single_pad(
         _MASS,
         None,

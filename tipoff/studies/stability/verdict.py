@@ -1,4 +1,4 @@
-"""The verdict on a hard case: what was measured, beside what the weaker method gives."""
+"""The verdict on a hard case: the measured value and that of a weaker method."""
 
 import math
 from typing import NamedTuple
@@ -38,14 +38,14 @@ class Verdict(NamedTuple):
 
 
 def stability(run: Trajectory, stiffness: float = 0.0, mass: float = 1.0) -> Stability:
-    """What ``run`` says of itself, beside 2 sqrt(m / k) of a ``mass`` (kg) on the steepest
-    ``stiffness`` (N/m) it meets."""
+    """Step limit and energy drift of ``run``, and the critical step 2 sqrt(m / k) of a ``mass`` (kg)
+    on the largest ``stiffness`` (N/m)."""
     critical = 2.0 * math.sqrt(mass / stiffness) if stiffness else None
     return Stability(run.cost.get("dt_limit_s"), critical, run.checks["energy_error"])
 
 
 class Measure(NamedTuple):
-    """What was measured on a case, and the largest value that holds."""
+    """The measured value of a case, and its limit."""
 
     words: str
     figure: float
@@ -53,7 +53,7 @@ class Measure(NamedTuple):
 
 
 class Control(NamedTuple):
-    """A weaker method, and what the same measure gives for it."""
+    """A weaker method, and its value of the same measure."""
 
     words: str
     figure: float
@@ -68,8 +68,8 @@ def verdict(
     holds: bool = True,
     stable: Stability = Stability(),
 ) -> Verdict:
-    """A verdict from both figures; ``holds`` adds conditions that are not numbers (a refusal, a
-    status)."""
+    """The verdict from both figures; ``holds`` is a further condition that is not a number, such as
+    a status."""
     return Verdict(
         name=name,
         fidelity=fidelity,

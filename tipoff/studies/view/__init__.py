@@ -1,5 +1,4 @@
-"""A run to look at: VTK files of its frames for ParaView, and pictures of them where pyvista is
-installed."""
+"""Pictures of a run: VTK files of its frames for ParaView, and images where pyvista is installed."""
 
 from tipoff.studies.question import Contents, Entry, Result
 from tipoff.studies.view import command

@@ -17,7 +17,7 @@ from tipoff.studies.commands.running import guarded, study_of
 
 
 def add(app: typer.Typer) -> None:
-    """Put the command under ``app``."""
+    """Add the command to ``app``."""
     app.command()(view)
 
 
@@ -29,7 +29,7 @@ def view(
     frames: Annotated[
         int,
         typer.Option(
-            "--frames", metavar="N", min=2, help="Instants to write, evenly over the run."
+            "--frames", metavar="N", min=2, help="Number of frames, evenly spread over the run."
         ),
     ] = 60,
     exaggeration: Annotated[
@@ -38,24 +38,24 @@ def view(
             "--exaggeration",
             metavar="X",
             min=1e-6,
-            help="Factor of the rail's deformation in pictures; default: one that shows it.",
+            help="Factor of the deformation of the rail in pictures; default: chosen by its size.",
         ),
     ] = None,
     element_size: ElementSize = None,
     json_: Json = False,
 ) -> None:
-    """Stress and motion of one condition to look at; writes view/CONDITION/ with run.pvd, and
-    pictures where pyvista is installed.
+    """Show stress and motion of one condition; writes view/CONDITION/ with run.pvd, and pictures
+    where pyvista is installed.
 
-    Open run.pvd in ParaView. Rails and payload are there as seen from the platform, undeformed:
-    "Warp By Vector" with the array "displacement (m)" and a scale of some hundreds shows how the
-    rails give way; colour by "von Mises stress (Pa)" or "contact pressure (Pa)", and play.
+    Open run.pvd in ParaView. It shows rails and payload, seen from the platform and undeformed. To
+    see the deformation of the rails, use "Warp By Vector" with the array "displacement (m)" and a
+    scale factor of some hundreds. Colour by "von Mises stress (Pa)" or "contact pressure (Pa)".
 
       tipoff view --condition phi60 --frames 120
       tipoff view --scene my_launcher.toml --element-size 4 --exaggeration 500
 
-    Pictures (peak.png, ejection.webp) need pyvista, which `make pictures` installs; the files for
-    ParaView need nothing more.
+    Pictures (peak.png, ejection.webp) need pyvista, which `make pictures` installs. The files for
+    ParaView do not.
     """
 
     def work() -> dict:
