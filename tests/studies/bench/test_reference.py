@@ -1,4 +1,4 @@
-"""The benchmark: the yardstick does the same work as the solver, and what is written is what was
+"""The benchmark: the baseline does the same work as the solver, and what is written is what was
 measured."""
 
 import json
@@ -18,7 +18,7 @@ from tipoff.studies.report.page import Page
 from tipoff.studies.runs.figures import Runs
 
 
-def test_yardstick_is_central_differences_on_the_assembled_matrix():
+def test_baseline_is_central_differences_on_the_assembled_matrix():
     scene = load("tiny")
     mesh = highfi.prepare(scene, Numerics(element_size=0.016))
     loop = CsrLoop(mesh, scene.rail.material, 1e-8, most=10**6)

@@ -66,16 +66,16 @@ def run(study: Study) -> dict:
 def _reference(study: Study, name: str, lines: dict[str, dict]):
     """Runs on the coarse mesh, and the processor time (s) of the thread of each, which parallel runs
     do not change."""
-    asked = [study.coarse(name, overrides, _tag(line)) for line, overrides in lines.items()]
-    runs = study.store.fill("ablation, highfi", asked)
-    return asked, runs, [run.cost.get("cpu_s", run.cost["wall_s"]) for run in runs]
+    requested = [study.coarse(name, overrides, _tag(line)) for line, overrides in lines.items()]
+    runs = study.store.fill("ablation, highfi", requested)
+    return requested, runs, [run.cost.get("cpu_s", run.cost["wall_s"]) for run in runs]
 
 
 def _surrogate(study: Study, name: str, lines: dict[str, dict]):
     """Runs in turn, and the median time (s) of their time loops, without set-up and evaluation,
     which are the same for all."""
     under = study.rail_compliance(study.condition(name))
-    asked = [
+    requested = [
         study.lowfi(
             name,
             None,
@@ -85,24 +85,24 @@ def _surrogate(study: Study, name: str, lines: dict[str, dict]):
         )
         for line, overrides in lines.items()
     ]
-    for item in asked:
+    for item in requested:
         warm_up(item)
-    rounds = [[timed(item) for item in asked] for _ in range(study.settings.lowfi_repeats)]
+    rounds = [[timed(item) for item in requested] for _ in range(study.settings.lowfi_repeats)]
     times = [
         statistics.median(run.cost["kernel_s"] for run, _, _ in repeats) for repeats in zip(*rounds)
     ]
-    return asked, [run for run, _, _ in rounds[0]], times
+    return requested, [run for run, _, _ in rounds[0]], times
 
 
 def _rows(
     fidelity: str,
     lines: dict[str, dict],
-    asked: list[Run],
+    requested: list[Run],
     runs: list[Trajectory],
     times: list[float],
 ) -> list[dict]:
     rows = []
-    for line, item, run, seconds in zip(lines, asked, runs, times):
+    for line, item, run, seconds in zip(lines, requested, runs, times):
         rate, baseline = run.outcome.rate, runs[0].outcome.rate
         change = (
             None
@@ -127,9 +127,9 @@ def _rows(
 
 def compiled(run: Run) -> list[str]:
     """Effects with code in the kernel compiled for ``run``."""
-    known = {"compliance": run.compliance} if run.compliance is not None else {}
+    arguments = {"compliance": run.compliance} if run.compliance is not None else {}
     present = importlib.import_module(f"tipoff.{run.fidelity}").compiled_effects(
-        run.scene, run.numerics, **known
+        run.scene, run.numerics, **arguments
     )
     return sorted(effect for effect in present if present[effect])
 

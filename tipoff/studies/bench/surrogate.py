@@ -1,12 +1,12 @@
 """Speed of the surrogate at a stated error, by itself and in ensembles, against plain Runge-Kutta
 of order four with fixed steps.
 
-Both solve the same varied cases of the reference scene, drawn as a Monte Carlo study draws them.
-The error of a case is that of its settled rate, largest axis, relative to its largest rate and
-against a run with a tight tolerance; of each method the coarsest setting counts from which on the
-95th percentile keeps to what is asked. Times are processor times of one core: of the surrogate from
-the records to the settled values, exit found and judged; of the baseline the bare integration, to
-an end of the window that it is told.
+Both solve the same varied cases of the reference scene, drawn as in a Monte Carlo study. The error
+of a case is the largest error of its settled rate over the axes, against a run with a tight
+tolerance and relative to the largest rate. Each method uses its coarsest setting for which, and for
+all finer ones, the 95th percentile is within the requested error. Times are processor times of one
+core: for the surrogate from the records to the settled values, with the detection of the exit; for
+the baseline only the integration, to a given end of the window.
 """
 
 import resource
@@ -23,11 +23,11 @@ from tipoff.scenes.scene import Scene, load
 from tipoff.studies.core import machine
 from tipoff.studies.core.progress import say
 
-ASKED = (1.0, 0.1)  # per cent of the settled rate
+REQUESTED = (1.0, 0.1)  # per cent of the settled rate
 TOLERANCES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7)
 STEPS_S = tuple(4e-4 / 2.0 ** (0.5 * k) for k in range(14))
 _TIGHT = 1e-11
-_AROUND = 3  # samples on either side of the window that the baseline's spline sees beyond it
+_AROUND = 3  # samples beyond each end of the window in the spline of the baseline
 _SPREAD = {
     "thrust_offset.misalignment": np.deg2rad(0.4),
     "thrust_offset.eccentricity": 0.6e-3,
@@ -49,11 +49,11 @@ def varied(count: int, seed: int = 2024) -> list[dict[str, float]]:
 
 
 def run(out: Path, cases: int = 2000, few: int = 20, repeats: int = 5) -> dict:
-    """``single``, one row per asked error, and ``ensemble``; also written to
+    """``single``, one row for each requested error, and ``ensemble``; writes
     ``out``/bench/lowfi.json."""
     base, rows = load("reference"), varied(few)
-    yardstick = _Yardstick(base, rows)
-    single = [_single(yardstick, asked, repeats) for asked in ASKED]
+    population = _Population(base, rows)
+    single = [_single(population, requested, repeats) for requested in REQUESTED]
     found = {
         "single": single,
         "ensemble": _ensemble(base, cases, single[0]["tolerance"]),
@@ -68,7 +68,7 @@ def run(out: Path, cases: int = 2000, few: int = 20, repeats: int = 5) -> dict:
 
 
 def lines(found: dict) -> list[str]:
-    """The result in words."""
+    """The result as lines of text."""
     said = [
         f"  surrogate at {row['error_percent']:g} % of the settled rate: {row['cpu_ms']:.3f} ms "
         f"per case, plain Runge-Kutta "
@@ -85,8 +85,8 @@ def lines(found: dict) -> list[str]:
     ]
 
 
-class _Yardstick:
-    """The varied scenes, the settled rates they tend to and where their windows lie."""
+class _Population:
+    """The varied scenes, their settled rates at a tight tolerance and their windows."""
 
     def __init__(self, base, rows):
         from tipoff.lowfi import Numerics, run_many
@@ -112,25 +112,25 @@ class _Yardstick:
         )
 
 
-def _single(yardstick: _Yardstick, asked: float, repeats: int) -> dict:
+def _single(population: _Population, requested: float, repeats: int) -> dict:
     from tipoff import lowfi
 
     tolerance, error = _coarsest(
-        TOLERANCES, lambda setting: yardstick.error(_settled(yardstick, setting)), asked
+        TOLERANCES, lambda setting: population.error(_settled(population, setting)), requested
     )
     dt, baseline_error = _coarsest(
-        STEPS_S, lambda setting: yardstick.error(_plain(yardstick, setting)), asked
+        STEPS_S, lambda setting: population.error(_plain(population, setting)), requested
     )
     adaptive, plain, whole = (
-        _kernel(yardstick, tolerance),
-        _loops(yardstick, dt),
+        _kernel(population, tolerance),
+        _loops(population, dt),
         lowfi.Numerics(relative_tolerance=tolerance),
     )
     pieces = {
         "adaptive": adaptive,
         "plain": plain,
         "whole": lambda: [
-            lowfi.run(scene, "springs", numerics=whole) for scene in yardstick.scenes
+            lowfi.run(scene, "springs", numerics=whole) for scene in population.scenes
         ],
     }
     times: dict[str, list[float]] = {name: [] for name in pieces}
@@ -139,10 +139,10 @@ def _single(yardstick: _Yardstick, asked: float, repeats: int) -> dict:
             piece()  # once unseen: the caches of the machine are then this method's
             began = time.thread_time()
             piece()
-            times[name].append(1e3 * (time.thread_time() - began) / len(yardstick.rows))
+            times[name].append(1e3 * (time.thread_time() - began) / len(population.rows))
     median = {name: statistics.median(values) for name, values in times.items()}
     return {
-        "error_percent": asked,
+        "error_percent": requested,
         "cpu_ms": median["adaptive"],
         "baseline_cpu_ms": median["plain"],
         "ratio": median["plain"] / median["adaptive"],
@@ -154,45 +154,47 @@ def _single(yardstick: _Yardstick, asked: float, repeats: int) -> dict:
     }
 
 
-def _coarsest(settings: tuple[float, ...], error, asked: float) -> tuple[float, float]:
-    """The coarsest of ``settings`` (falling) that keeps to ``asked`` with every finer one, and its
-    error: few cases make a coarse setting pass now and then by luck."""
+def _coarsest(settings: tuple[float, ...], error, requested: float) -> tuple[float, float]:
+    """The coarsest of ``settings`` (falling) whose error, and that of all finer ones, is at most
+    ``requested``, and its error. The finer ones count since a coarse setting can pass by chance."""
     kept = None
     for setting in reversed(settings):
         found = error(setting)
-        if not found <= asked:
+        if not found <= requested:
             break
         kept = setting, found
     if kept is None:
-        raise RuntimeError(f"not even the setting {settings[-1]:g} keeps to {asked:g} %")
+        raise RuntimeError(
+            f"the finest setting, {settings[-1]:g}, has an error above {requested:g} %"
+        )
     return kept
 
 
-def _settled(yardstick: _Yardstick, tolerance: float) -> np.ndarray:
+def _settled(population: _Population, tolerance: float) -> np.ndarray:
     from tipoff.lowfi import Numerics, run_many
 
     return run_many(
-        yardstick.base, yardstick.rows, "springs", numerics=Numerics(relative_tolerance=tolerance)
+        population.base, population.rows, "springs", numerics=Numerics(relative_tolerance=tolerance)
     ).rate.values
 
 
-def _kernel(yardstick: _Yardstick, tolerance: float):
-    """A call that integrates and judges every case, set up beforehand."""
+def _kernel(population: _Population, tolerance: float):
+    """A call that integrates and evaluates every case; set-up is done before."""
     from tipoff.lowfi import Numerics
     from tipoff.lowfi.ensemble import batch
 
-    (job,) = batch.Family(yardstick.base, None, Numerics(relative_tolerance=tolerance)).kernels(
-        yardstick.rows
+    (job,) = batch.Family(population.base, None, Numerics(relative_tolerance=tolerance)).kernels(
+        population.rows
     )
     return job
 
 
-def _loops(yardstick: _Yardstick, dt: float):
+def _loops(population: _Population, dt: float):
     """A call that integrates every case with steps of ``dt`` (s) past the end of its window."""
     from tipoff.lowfi import oracle
 
     jobs = [
-        _plain_job(scene, dt, start) for scene, start in zip(yardstick.scenes, yardstick.starts)
+        _plain_job(scene, dt, start) for scene, start in zip(population.scenes, population.starts)
     ]
     return lambda: [oracle.integrate(*arguments) for arguments, _, _ in jobs]
 
@@ -208,11 +210,11 @@ def _plain_job(scene: Scene, dt: float, start: float) -> tuple[tuple, np.ndarray
     return (*arguments, rows), rows, interval
 
 
-def _plain(yardstick: _Yardstick, dt: float) -> np.ndarray:
+def _plain(population: _Population, dt: float) -> np.ndarray:
     from tipoff.lowfi import oracle
 
     found = []
-    for scene, start in zip(yardstick.scenes, yardstick.starts):
+    for scene, start in zip(population.scenes, population.starts):
         arguments, rows, interval = _plain_job(scene, dt, start)
         oracle.integrate(*arguments)
         found.append(

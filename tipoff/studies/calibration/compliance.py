@@ -26,8 +26,8 @@ def run(study: Study) -> dict:
         from tipoff import highfi
         from tipoff.calibration.rail_compliance import kept_file
 
-        asked = study.highfi(next(iter(study.conditions)))
-        mesh = highfi.prepare(asked.scene, asked.numerics)
+        request = study.highfi(next(iter(study.conditions)))
+        mesh = highfi.prepare(request.scene, request.numerics)
         path = kept_file(study.scene, study.folder, study.settings.element_size)
         return {
             "file": study.relative(path),

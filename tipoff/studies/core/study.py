@@ -192,14 +192,14 @@ class Study:
         ``make`` returns the result and the files it wrote.
         """
         path = self.path(f"{name}.json")
-        known = read(path, f"{name} is made again")
+        found = read(path, f"{name} is made again")
         if (
-            known is not None
-            and known.get("key") == key
-            and self.whole(known, f"{name} is made again")
+            found is not None
+            and found.get("key") == key
+            and self.whole(found, f"{name} is made again")
         ):
             self._announce(name, "nothing changed")
-            return known
+            return found
         self._announce(name, self.scene.name)
         result, files = make()
         return write_json(

@@ -12,13 +12,13 @@ from tipoff.studies.core.study import Study
 def run(study: Study) -> dict:
     """Elements, nodes, areas of named surfaces, quality; writes ``mesh.vtu`` and a picture."""
     name = next(iter(study.conditions))
-    asked = study.highfi(name)
+    request = study.highfi(name)
 
     def make() -> tuple[dict, list[Path]]:
         from tipoff import highfi
         from tipoff.highfi.mesh import cells as checks
 
-        mesh = highfi.prepare(asked.scene, asked.numerics)
+        mesh = highfi.prepare(request.scene, request.numerics)
         for warning in mesh.warnings:
             say(f"mesh: {warning}")
         from tipoff.studies.mesh.picture import draw
@@ -33,7 +33,7 @@ def run(study: Study) -> dict:
             for name, facets in mesh.surfaces.items()
         }
         return {
-            "element_size_m": asked.numerics.element_size,
+            "element_size_m": request.numerics.element_size,
             "elements": len(mesh.cells),
             "kind": checks.kind(mesh.cells).name,
             "nodes": len(mesh.points),
@@ -46,7 +46,7 @@ def run(study: Study) -> dict:
             "picture": study.relative(picture),
         }, [path, picture]
 
-    return study.stage("mesh", study.key(__name__, asked.key), make)
+    return study.stage("mesh", study.key(__name__, request.key), make)
 
 
 def area(points: np.ndarray, facets: np.ndarray) -> float:

@@ -1,5 +1,4 @@
-"""Tables of docs/results.md: the error of the reference itself, what the same accuracy costs, and
-speeds."""
+"""Tables of docs/results.md: balances, time at equal accuracy, error of the reference, speeds."""
 
 from pathlib import Path
 
@@ -13,8 +12,7 @@ from tipoff.studies.render.table import Column, Table, number
 
 
 def details(folder: Path) -> str:
-    """Markdown of the rest: kept promises, what a mesh costs, the error of the reference itself,
-    and speeds."""
+    """Markdown of all these tables; raises DamageError or OSError without the runs of both models."""
     highfi, lowfi = (read_json(folder / f"{name}.json") for name in ("highfi", "lowfi"))
     refined, cost = (read(folder / f"{name}.json") for name in ("convergence", "cost_study"))
     parts: list[Part] = [_promises(highfi, lowfi)]
@@ -57,7 +55,7 @@ def _cost(found: dict) -> Table:
 
 
 def _scaling(found: dict) -> Table:
-    """Exponents over elements and pads, and what all effects cost over none."""
+    """Exponents over elements and pads, and the time ratio of all effects to none."""
     over = found["elements"]
     laws = [
         (f"{_ends(over)} elements", over),
@@ -112,7 +110,7 @@ def _convergence(found: dict) -> list[Part]:
 
 
 def _changes(found: dict) -> Table:
-    """What penalty stiffness and quadrature change."""
+    """Changes by penalty stiffness and quadrature."""
     changed = [
         (f"{row['penalty_n_m3']:.3g} N/m³, {row['factor']:g} times the scene's", row)
         for row in found["penalty"]

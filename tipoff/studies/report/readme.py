@@ -1,5 +1,5 @@
-"""Writes the figures of README.md and docs/results.md from the result files of ``make
-full-report``, so that no number in them is typed by hand.
+"""Writes the tables and pictures of README.md and docs/results.md from the result files of ``make
+full-report``.
 
     python -m tipoff.studies.report.readme [FOLDER]        default out/reference
 """
@@ -42,7 +42,7 @@ def main(folder: Path) -> None:
 
 
 def section(folder: Path) -> str:
-    """Markdown of what was found: agreement, speed-up, other rails, and what accuracy costs."""
+    """Markdown of the results: agreement, speed-up, other rails, time against accuracy."""
     agreement = read_json(folder / "agreement.json")
     refined, cost, blind = (
         read(folder / f"{name}.json") for name in ("convergence", "cost_study", "blind")

@@ -21,12 +21,13 @@ def requests(study: Study, fidelity: str) -> dict[str, Run]:
 
 def run(study: Study, fidelity: str) -> dict:
     """``{"conditions": [...]}``; ``failed`` names conditions that diverged or were refused."""
-    asked = requests(study, fidelity)
+    requested = requests(study, fidelity)
 
     def make() -> tuple[dict, list[Path]]:
-        runs = dict(zip(asked, study.store.fill(fidelity, list(asked.values()))))
+        runs = dict(zip(requested, study.store.fill(fidelity, list(requested.values()))))
         rows = [
-            row(name, runs[name], study.relative(study.store.path(asked[name]))) for name in asked
+            row(name, runs[name], study.relative(study.store.path(requested[name])))
+            for name in requested
         ]
         failed = [
             f"{name}: {found.status}: {found.message}"
@@ -34,10 +35,12 @@ def run(study: Study, fidelity: str) -> dict:
             if found.status in FAILED
         ]
         return {"conditions": rows, "failed": failed}, [
-            study.store.path(item) for item in asked.values()
+            study.store.path(item) for item in requested.values()
         ]
 
-    return study.stage(fidelity, study.key(__name__, [item.key for item in asked.values()]), make)
+    return study.stage(
+        fidelity, study.key(__name__, [item.key for item in requested.values()]), make
+    )
 
 
 def row(name: str, run: Trajectory, path: str) -> dict:

@@ -127,14 +127,14 @@ def _stopped(found: Trajectory, mu: float, offset: float, transition: float) -> 
 def wedged() -> Verdict:
     """mu 0.8 with the push at 130 mm, just beyond the lock: it jams, and there is no exit speed."""
     found, smooth = (_whole(_slider(0.8, 0.130, 0.2, transition)) for transition in (5e-4, 0.05))
-    told = run(_slider(0.8, 0.130, 0.2, 5e-4), 1e-7)
+    jammed = run(_slider(0.8, 0.130, 0.2, 5e-4), 1e-7)
     return verdict(
         "wedged at 1.04 of the lock",
         "lowfi",
         Measure("travel in 0.2 s (mm)", 1e3 * float(found.position[-1, 0]), 0.5),
         Control("friction smoothed over 50 mm/s: travel", 1e3 * float(smooth.position[-1, 0])),
-        f"status {told.status}",
-        holds=told.status == "jammed" and told.outcome.velocity is None,
+        f"status {jammed.status}",
+        holds=jammed.status == "jammed" and jammed.outcome.velocity is None,
         stable=_stopped(found, 0.8, 0.130, 5e-4),
     )
 

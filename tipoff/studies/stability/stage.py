@@ -14,9 +14,9 @@ def run(study: Study) -> dict:
 
     def make() -> tuple[dict, list[Path]]:
         found = []
-        known = cases.cases()
-        with Board("stability", len(known)) as board:
-            for name, case in known.items():
+        listed = cases.cases()
+        with Board("stability", len(listed)) as board:
+            for name, case in listed.items():
                 board.callback(name)(0.0)
                 found.append(case())
                 board.finished(name, "held" if found[-1].held else "NOT held")

@@ -1,14 +1,14 @@
-"""Frames of a run of the reference as seen from the platform: fields on the rails, places of
+"""Frames of a run of the reference, seen from the platform: fields on the rails, positions of
 payload and pads.
 
-The axes are those of the platform, which coincide with scene axes at ignition: in them the rails
-stand still but for their deformation, and the payload moves out of them. Contact pressure is the
+The axes are those of the platform, which coincide with scene axes at ignition. In them the motion of
+the rails is their deformation alone. Contact pressure is the
 penalty law at the nodes of the walls::
 
     p = k_p max(0, -h - relief (xi^4 + eta^4))    for |xi|, |eta| <= 1
     h: height of the node over the pad face
 
-which is what the run integrates at the Gauss points of the facets between them
+which the run integrates at the Gauss points of the facets
 (``highfi.contact.pads``).
 """
 

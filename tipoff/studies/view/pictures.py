@@ -1,9 +1,9 @@
-"""Pictures of a series of frames, drawn off-screen with pyvista: a still of the worst moment, and
-an animation of the ejection.
+"""Pictures of a series of frames, drawn off-screen with pyvista: a still at the peak stress, and an
+animation of the ejection.
 
-Runs as a program of its own (``python -m studies.view.pictures``, an order as JSON on standard
-input), since a graphics library that finds no way to draw may end the process it lives in. The
-rails are drawn deformed by a stated factor, payload and pads to scale.
+Runs as a separate process (``python -m tipoff.studies.view.pictures``, with an order as JSON on
+standard input), since a graphics library that cannot draw may end its process. The rails are drawn
+with their deformation times a factor, payload and pads to scale.
 """
 
 import json

@@ -1,8 +1,8 @@
-"""Stage ``view``: one condition of the reference to look at, as VTK files for ParaView and, with
-pyvista, as pictures.
+"""Stage ``view``: one condition of the reference as VTK files for ParaView and, with pyvista, as
+pictures.
 
-The run is made once more with an observer that writes each frame as it comes, so no more than one
-of them is ever in memory; it ends with the bits of the stored run, which is checked.
+The run is repeated with an observer that writes each frame at once, so that only one frame is in
+memory. Its result must equal the stored run to the bit, which is checked.
 """
 
 import importlib.metadata
@@ -26,15 +26,15 @@ if TYPE_CHECKING:
     from tipoff.studies.view.frames import Camera
 
 FRAMES = 60
-_SHOWN = 8e-3  # m that the largest deformation may take up in a picture
+_SHOWN = 8e-3  # m, the size of the largest deformation in a picture
 _HOW = "pictures need pyvista (0.6 GB): make pictures, or pip install 'tipoff[view]'"
 
 
 def run(
     study: Study, condition: str | None = None, frames: int = FRAMES, factor: float | None = None
 ) -> dict:
-    """Times and files of the frames, the collection ParaView opens, the peak stress, the
-    exaggeration, and pictures or why none.
+    """Times and files of the frames, the collection for ParaView, the peak stress, the
+    exaggeration, and the pictures or the reason why there are none.
 
     Raises SceneError for an unknown condition or fewer than two frames, StudyError where the run
     fails.
@@ -42,14 +42,14 @@ def run(
     if frames < 2:
         raise SceneError([Fault("view", "frames", str(frames), "2 or more")])
     name = condition or (study.scene.agreement.refined or tuple(study.conditions))[0]
-    asked = study.highfi(name)
+    request = study.highfi(name)
 
     def make() -> tuple[dict, list[Path]]:
-        known = study.store.get(asked)
-        require_success({name: known}, "show the run")
+        original = study.store.get(request)
+        require_success({name: original}, "show the run")
         folder = _folder(study, name)
-        taken = _take(study, asked, known, folder, frames)
-        document, files = _document(study, asked, known, folder, taken, factor)
+        taken = _take(study, request, original, folder, frames)
+        document, files = _document(study, request, original, folder, taken, factor)
         drawn, why = _draw(document, folder)
         document |= {"asked_frames": frames, "asked_factor": factor}
         document["pictures"] = {
@@ -60,36 +60,36 @@ def run(
             say(f"view: {why}")
         return document, [*files, *(folder / picture for picture in drawn)]
 
-    return study.stage(f"view/{name}", _key(study, asked, frames, factor), make)
+    return study.stage(f"view/{name}", _key(study, request, frames, factor), make)
 
 
 def stored(study: Study) -> list[dict]:
-    """Results made from the present scene, code and settings, for the report, which makes none."""
+    """The stored results of the present scene, code and settings."""
     found = [
         item
         for path in sorted((study.folder / "view").glob("*.json"))
         if (item := read(path)) is not None
     ]
-    known = {
+    conditions = {
         **{name: study.condition(name) for name in study.scene.conditions},
         "nominal": study.scene,
     }
     return [
         item
         for item in found
-        if item["condition"] in known
+        if item["condition"] in conditions
         and item["key"]
         == _key(study, study.highfi(item["condition"]), item["asked_frames"], item["asked_factor"])
         and study.whole(item, "the report does without it until tipoff view makes it again")
     ]
 
 
-def _key(study: Study, asked: Run, frames: int, factor: float | None) -> str:
-    return study.key(__name__, asked.key, frames, factor, pyvista_version())
+def _key(study: Study, request: Run, frames: int, factor: float | None) -> str:
+    return study.key(__name__, request.key, frames, factor, pyvista_version())
 
 
 def pyvista_version() -> str | None:
-    """The version that is installed, or None."""
+    """The installed version of pyvista, or None."""
     try:
         return importlib.metadata.version("pyvista")
     except importlib.metadata.PackageNotFoundError:
@@ -100,20 +100,19 @@ def _folder(study: Study, name: str) -> Path:
     return study.folder / "view" / name
 
 
-def chosen(frames: int, known: Trajectory) -> list[int]:
-    """Samples to show: evenly spread over the run, one of them moved to the moment of the peak
-    stress."""
-    assert known.stress is not None  # as of every run of the reference that went well
-    last = known.time.size - 1
+def chosen(frames: int, original: Trajectory) -> list[int]:
+    """Samples of the frames: evenly spread over the run, one of them moved to the peak stress."""
+    assert original.stress is not None  # as of every run of the reference that went well
+    last = original.time.size - 1
     samples = sorted({round(place) for place in np.linspace(0, last, min(frames, last + 1))})
-    peak = int(np.abs(known.time - known.stress["peak_stress_time_s"]).argmin())
+    peak = int(np.abs(original.time - original.stress["peak_stress_time_s"]).argmin())
     inner = samples[1:-1] or samples
     nearest = min(inner, key=lambda sample: abs(sample - peak))
     return sorted({peak if sample == nearest else sample for sample in samples})
 
 
 class _Observer:
-    """Writes the chosen samples of a run as they come by."""
+    """Observer that writes the chosen samples of a run."""
 
     def __init__(self, folder: Path, samples: list[int]):
         self.folder, self.samples = folder, set(samples)
@@ -153,19 +152,22 @@ class _Observer:
         )
 
 
-def _take(study: Study, asked: Run, known: Trajectory, folder: Path, frames: int) -> _Observer:
+def _take(study: Study, request: Run, original: Trajectory, folder: Path, frames: int) -> _Observer:
     from tipoff import highfi
 
-    observer = _Observer(folder, chosen(frames, known))
-    highfi.prepare(asked.scene, asked.numerics)
+    observer = _Observer(folder, chosen(frames, original))
+    highfi.prepare(request.scene, request.numerics)
     with Board("view", 1) as board:
         again = highfi.run(
-            asked.scene, asked.numerics, progress=board.callback(asked.label), observer=observer
+            request.scene,
+            request.numerics,
+            progress=board.callback(request.label),
+            observer=observer,
         )
         board.finished(
-            asked.label, f"{len(observer.frames)} frames in {again.cost['wall_s']:.3g} s"
+            request.label, f"{len(observer.frames)} frames in {again.cost['wall_s']:.3g} s"
         )
-    if not (np.array_equal(again.rate, known.rate) and again.stress == known.stress):
+    if not (np.array_equal(again.rate, original.rate) and again.stress == original.stress):
         say(
             "view: the run shown is not the stored one to the last bit, as on another kind of "
             "processor"
@@ -175,8 +177,8 @@ def _take(study: Study, asked: Run, known: Trajectory, folder: Path, frames: int
 
 def _document(
     study: Study,
-    asked: Run,
-    known: Trajectory,
+    request: Run,
+    original: Trajectory,
     folder: Path,
     taken: _Observer,
     factor: float | None,
@@ -189,7 +191,7 @@ def _document(
         vtk_files.write_collection(folder, [frame["time_s"] for frame in taken.frames], paths)
     )
     vtk_files.discard_others(folder, files)
-    stress = known.stress
+    stress = original.stress
     assert stress is not None  # by which the frames were chosen
     at_peak = min(
         range(len(taken.frames)),
@@ -203,21 +205,21 @@ def _document(
         "frame": at_peak,
     }
     return {
-        "condition": asked.label,
+        "condition": request.label,
         "folder": study.relative(folder),
         "collection": study.relative(files[-1]),
         "frames": taken.frames,
         "peak": peak,
         "bounds_m": [taken.low.tolist(), taken.high.tolist()],
-        "element_size_m": asked.numerics.element_size,
+        "element_size_m": request.numerics.element_size,
         "factor": factor or exaggeration(taken.frames),
-        "title": f"{study.scene.name} / {asked.label}",
+        "title": f"{study.scene.name} / {request.label}",
     }, files
 
 
 def exaggeration(frames: list[dict]) -> float:
-    """Factor 1, 2 or 5 times a power of ten that shows the largest deformation well; 1 where there
-    is none."""
+    """Factor, 1, 2 or 5 times a power of ten, at which the largest deformation has the size
+    ``_SHOWN``; 1 without deformation."""
     largest = max(frame["largest_displacement_m"] for frame in frames)
     if largest <= 0.0:
         return 1.0
@@ -235,7 +237,7 @@ def rounded_up(value: float) -> float:
 
 
 def _draw(document: dict, folder: Path) -> tuple[list[str], str]:
-    """Names of the pictures drawn, or none and why."""
+    """Names of the pictures, and the reason where there are none."""
     if pyvista_version() is None:
         return [], _HOW
     order = {
@@ -275,6 +277,6 @@ def _draw(document: dict, folder: Path) -> tuple[list[str], str]:
         complaint = complaints.read().strip().splitlines()
         if child.returncode or "pictures" not in said:
             why = complaint[-1] if complaint else f"exit code {child.returncode}"
-            return [], f"no pictures: pyvista could not draw here ({why})"
+            return [], f"no pictures: pyvista failed ({why})"
         board.finished("pictures", ", ".join(said["pictures"]))
     return said["pictures"], ""

@@ -1,9 +1,9 @@
 """Frames as a time series for ParaView: a .vtu of the rails and one of the bodies a frame, and a
 .pvd that lists them by time.
 
-Places are in platform axes (``studies.view.frames``) and undeformed, so "Warp By Vector" shows the
-deformation at any scale. Fields are single precision, which no eye can tell from double and which
-halves the files. Every file is written atomically, and the list last, so what it names is whole.
+Positions are in platform axes (``studies.view.frames``) and undeformed, so "Warp By Vector" shows
+the deformation at any scale. Fields have single precision, which halves the files. Every file is
+written atomically and the list last, so all files in it are complete.
 """
 
 from pathlib import Path
@@ -28,8 +28,8 @@ COLLECTION = "run.pvd"
 def write_frame(
     folder: Path, index: int, frame: Frame, mesh: RailMesh, boxes: np.ndarray, pads: np.ndarray
 ) -> list[Path]:
-    """Write rails and bodies of one frame; ``boxes`` (b,8,3) m in payload axes and the pads (b,)
-    they belong to."""
+    """Write rails and bodies of one frame; ``boxes`` (b,8,3) m are in payload axes, ``pads`` (b,) are
+    their pads."""
     import meshio
 
     rails = meshio.Mesh(
@@ -74,7 +74,7 @@ def write_collection(folder: Path, times: list[float], frames: list[list[Path]])
 
 
 def discard_others(folder: Path, keep: list[Path]) -> None:
-    """Remove frames of an earlier series that this one does not have."""
+    """Remove frames of an earlier series that are not part of this one."""
     for path in folder.glob("*-[0-9][0-9][0-9][0-9].vtu"):
         if path not in keep:
             path.unlink()
