@@ -63,7 +63,7 @@ def test_the_line_counts_waves_of_runs():
     assert forecast.words(1, 1, (33.0, ""), after).startswith("1 reference run to make: about 35 s")
     assert forecast.words(0, 0, None, after) == "no reference run to make; the search, about 20 s"
     assert forecast.words(2, 2, None, forecast.work("the search", None)).endswith(
-        "was run; then the search"
+        "is stored; then the search"
     )
 
 
