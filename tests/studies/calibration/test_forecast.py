@@ -155,7 +155,7 @@ def test_a_slow_or_failing_look_delays_nothing(tmp_path, monkeypatch):
     monkeypatch.setattr(forecast, "PATIENCE", 0.1)
     monkeypatch.setattr(forecast, "pace", lambda study: time.sleep(1.5))
     began = time.monotonic()
-    assert "not known" in forecast.calibration(of, asked(of))
+    assert "duration unknown" in forecast.calibration(of, asked(of))
     assert time.monotonic() - began < 1.0
     monkeypatch.setattr(forecast, "pace", lambda study: 1 / 0)
-    assert "not known" in forecast.calibration(of, asked(of))
+    assert "duration unknown" in forecast.calibration(of, asked(of))
