@@ -28,14 +28,14 @@ class Result(NamedTuple):
 class Section(NamedTuple):
     """A section of the page.
 
-    ``anchor``: its id in HTML. ``link``: the text of the link to it. ``draw``: its parts below the
-    ``title``, or the whole section as HTML; empty where there is nothing to show.
+    ``anchor``: its id in HTML. ``link``: the text of the link to it. ``draw``: makes its parts,
+    empty where there is nothing to show. ``title``: its heading.
     """
 
     anchor: str
     link: str
-    draw: Callable[["Page"], "str | Sequence[Part]"]
-    title: str = ""
+    draw: Callable[["Page"], "Sequence[Part]"]
+    title: str
 
 
 class Contents(NamedTuple):

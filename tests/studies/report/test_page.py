@@ -17,8 +17,7 @@ from tipoff.studies.core.settings import defaults
 from tipoff.studies.core.study import Study
 from tipoff.studies.cost.page import picture as cost_picture
 from tipoff.studies.render.chart import Chart, Line, Panel, to_files, to_html
-from tipoff.studies.render.markup import table
-from tipoff.studies.render.table import markdown, number
+from tipoff.studies.render.table import Table, markdown, number
 from tipoff.studies.report import inputs, stage
 from tipoff.studies.report.page import Page
 from tipoff.studies.report.promises import promises
@@ -65,11 +64,11 @@ def test_text_from_a_scene_is_escaped(tmp_path):
     scene = scenes.load("tiny").replace({"description": "<script>alert(1)</script>"})
     page = Page(scene, tmp_path, {}, Runs({}, {}, {}), {})
     assert "<script>alert" not in page.render()
-    assert "&lt;b&gt;" in table(("a",), [("<b>",)])
+    assert "&lt;b&gt;" in html([Table(("a",), [("<b>",)])])
 
 
 def test_a_star_leaves_powers_of_ten_as_they_are():
-    assert "1·10<sup>-9</sup>*</td>" in table(("a",), [(_starred(number(1e-9), False),)])
+    assert "1·10<sup>-9</sup>*</td>" in html([Table(("a",), [(_starred(number(1e-9), False),)])])
     assert _starred(number(0.5), True) == "0.5"
 
 

@@ -20,10 +20,12 @@ def _load() -> Contents:
             Result("rails", stored=lambda study: other_rails.beside(study.folder)),
         ),
         (
-            Section("agreement-section", "Agreement", page.draw),
-            Section("growth-section", "Growth of 1 µm", growth_page.draw),
-            Section("speedup", "Speed", speed_page.draw),
-            Section("rails", "Other rails", rails_page.draw),
+            Section("agreement-section", "Agreement", page.draw, "Agreement with the reference"),
+            Section(
+                "growth-section", "Growth of 1 µm", growth_page.draw, "Growth of a 1 µm disturbance"
+            ),
+            Section("speedup", "Speed", speed_page.draw, "Speed"),
+            Section("rails", "Other rails", rails_page.draw, "Other rails"),
         ),
     )
 

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 from tipoff.mechanics.models import FINITE_ELEMENTS
 from tipoff.studies.render.chart import NAVY, VERMILION, Chart, Line, Panel
 from tipoff.studies.render.document import Bullets, Figure, Part
-from tipoff.studies.render.markup import Html, section
 from tipoff.studies.render.table import Column, Table
 
 if TYPE_CHECKING:
@@ -28,13 +27,12 @@ _LOOKS = ((NAVY, 5.0, "-", 0.35), (VERMILION, 1.5, "-", 1.0))
 _MARKERS = "Do"
 
 
-def draw(page: "Page") -> Html:
+def draw(page: "Page") -> list[Part]:
     """The section, where a pad touches a rail."""
     found = (page.documents.get("agreement") or {}).get("growth")
     if not found:
-        return Html("")
-    parts = [Figure(picture(found), _SEPARATION), *tables(found)]
-    return section("growth-section", "Growth of a 1 µm disturbance", page.parts(parts))
+        return []
+    return [Figure(picture(found), _SEPARATION), *tables(found)]
 
 
 def picture(found: list[dict]) -> Chart:

@@ -3,7 +3,6 @@
 from typing import TYPE_CHECKING
 
 from tipoff.studies.render.document import Fold, Part
-from tipoff.studies.render.markup import Html
 from tipoff.studies.render.table import Column, Table, number, percent
 
 if TYPE_CHECKING:
@@ -31,15 +30,9 @@ _HEADS: tuple[Column | str, ...] = (
 )
 
 
-def draw(page: "Page") -> Html:
+def draw(page: "Page") -> list[Part]:
     """The section, or how to make its result."""
-    return page.section(
-        "agreement",
-        "agreement-section",
-        "Agreement with the reference",
-        lambda found: page.parts(agreement(found)),
-        "compare",
-    )
+    return page.shown("agreement", agreement, "compare")
 
 
 def agreement(document: dict) -> list[Part]:

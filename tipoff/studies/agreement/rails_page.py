@@ -3,7 +3,6 @@
 from typing import TYPE_CHECKING
 
 from tipoff.studies.render.document import Part
-from tipoff.studies.render.markup import Html, section
 from tipoff.studies.render.table import Column, Table
 
 if TYPE_CHECKING:
@@ -21,10 +20,10 @@ _HEADS = (
 )
 
 
-def draw(page: "Page") -> Html:
+def draw(page: "Page") -> list[Part]:
     """The section, where other scenes have results."""
     found = page.documents.get("rails")
-    return section("rails", "Other rails", page.parts(parts(found))) if found else Html("")
+    return parts(found) if found else []
 
 
 def parts(found: list[dict]) -> list[Part]:

@@ -5,23 +5,16 @@ from typing import TYPE_CHECKING
 from tipoff.studies import published
 from tipoff.studies.convergence import equal_accuracy
 from tipoff.studies.render.document import Caption, Part
-from tipoff.studies.render.markup import Html
 from tipoff.studies.render.table import Column, Table, span
 
 if TYPE_CHECKING:
     from tipoff.studies.report.page import Page
 
 
-def draw(page: "Page") -> Html:
+def draw(page: "Page") -> list[Part]:
     """The section, or how to make its result."""
     equal = (page.documents.get("convergence") or {}).get("equal_accuracy")
-    return page.section(
-        "agreement",
-        "speedup",
-        "Speed",
-        lambda found: page.parts(speedups(found, equal)),
-        "compare",
-    )
+    return page.shown("agreement", lambda found: speedups(found, equal), "compare")
 
 
 def speedups(document: dict, equal: dict | None = None) -> list[Part]:

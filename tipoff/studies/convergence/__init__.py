@@ -9,7 +9,7 @@ def _load() -> Contents:
 
     return Contents(
         (Result("convergence", stage.run, stage.stored),),
-        (Section("convergence", "Convergence", page.draw),),
+        (Section("convergence", "Convergence", page.draw, "Error of the reference"),),
     )
 
 

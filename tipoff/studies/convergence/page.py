@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 from tipoff.studies.convergence import summary
 from tipoff.studies.render.chart import AXIS_COLOURS, GREY, Chart, Line, Panel
 from tipoff.studies.render.document import Bullets, Figure, Fold, Part
-from tipoff.studies.render.markup import Html, section
 from tipoff.studies.render.table import Column, Table
 
 if TYPE_CHECKING:
@@ -27,15 +26,14 @@ _RIPPLE = (
 )
 
 
-def draw(page: "Page") -> Html:
+def draw(page: "Page") -> list[Part]:
     """The section; empty without a result, which takes minutes to make."""
     found = page.documents.get("convergence")
     if not found:
-        return Html("")
+        return []
     chart = picture(found)
     figure = [Figure(chart, _RATES.format(condition=found["condition"]))] if chart.panels else []
-    parts = [*figure, Bullets(summary.lines(found)), *tables(found), *_changes(found)]
-    return section("convergence", "Error of the reference", page.parts(parts))
+    return [*figure, Bullets(summary.lines(found)), *tables(found), *_changes(found)]
 
 
 def terminal(found: dict) -> list[Part]:

@@ -9,7 +9,7 @@ def _load() -> Contents:
 
     return Contents(
         (Result("cost_study", stage.run),),
-        (Section("cost", "Cost", page.draw),),
+        (Section("cost", "Cost", page.draw, "Error over wall time"),),
     )
 
 

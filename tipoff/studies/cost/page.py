@@ -6,7 +6,6 @@ from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS
 from tipoff.studies.cost import choice, scaling_page
 from tipoff.studies.render.chart import AMBER, GREY, NAVY, TEAL, VERMILION, Chart, Line, Panel
 from tipoff.studies.render.document import Figure, Heading, Part
-from tipoff.studies.render.markup import Html
 from tipoff.studies.render.table import Column, Table
 
 if TYPE_CHECKING:
@@ -19,22 +18,20 @@ _ERRORS = (
 )
 
 
-def draw(page: "Page") -> Html:
+def draw(page: "Page") -> list[Part]:
     """The section, or how to make its result."""
 
-    def body(found: dict) -> Html:
+    def body(found: dict) -> list[Part]:
         growth = scaling_page.CAPTION.format(condition=found["condition"])
-        return page.parts(
-            [
-                Figure(picture(found), _ERRORS.format(condition=found["condition"])),
-                *tables(found),
-                Heading("Growth of the run time"),
-                Figure(scaling_page.picture(found["scaling"]), growth),
-                *scaling_page.tables(found["scaling"]),
-            ]
-        )
+        return [
+            Figure(picture(found), _ERRORS.format(condition=found["condition"])),
+            *tables(found),
+            Heading("Growth of the run time"),
+            Figure(scaling_page.picture(found["scaling"]), growth),
+            *scaling_page.tables(found["scaling"]),
+        ]
 
-    return page.section("cost_study", "cost", "Error over wall time", body, "cost")
+    return page.shown("cost_study", body, "cost")
 
 
 def tables(document: dict) -> list[Part]:

@@ -15,7 +15,6 @@ from tipoff.studies.registry import sections
 from tipoff.studies.render import document
 from tipoff.studies.render.chart import Chart, Picture, to_files, to_html
 from tipoff.studies.render.document import Caption, KeyFigures, Missing, Notice, Part
-from tipoff.studies.render.markup import Html
 from tipoff.studies.render.table import Column, Table
 from tipoff.studies.report import inputs, template
 from tipoff.studies.report.promises import promises, table
@@ -57,12 +56,9 @@ class Page:
             self._drawn("answer", "Answer", "Velocity and rates after exit", self._answer()),
             self._drawn("scene", "Scene", "Scene", inputs.scene_tables(self.scene)),
         ]
-        for item in sections():
-            found = item.draw(self)
-            if isinstance(found, str):  # a section that is HTML already
-                drawn.append(Drawn(item.anchor, item.link, found))
-            else:
-                drawn.append(self._drawn(item.anchor, item.link, item.title, found))
+        drawn += [
+            self._drawn(item.anchor, item.link, item.title, item.draw(self)) for item in sections()
+        ]
         checked = promises(self.rows(), self.documents)
         drawn += [
             self._drawn("promises", "Promises", "Promises", [table(checked)]),
@@ -77,21 +73,6 @@ class Page:
         """A section of ``parts``; empty where there are none."""
         html = template.section(anchor, title, self.parts(parts)) if parts else ""
         return Drawn(anchor, link, html)
-
-    def section(
-        self,
-        result: str,
-        anchor: str,
-        title: str,
-        body: Callable[[dict], str | Sequence[Part]],
-        target: str,
-    ) -> Html:
-        """A section as HTML; ``body`` shows a ``result``. Without the result it names the make
-        ``target``, or the reason why the result is missing."""
-        found = self.documents.get(result)
-        parts = body(found) if found else [self.missing(result, target)]
-        html = parts if isinstance(parts, str) else self.parts(parts)
-        return Html(template.section(anchor, title, html))
 
     def shown(self, result: str, body: Callable[[dict], Sequence[Part]], target: str) -> list[Part]:
         """What ``body`` makes of a ``result``; without the result, how to make it."""
