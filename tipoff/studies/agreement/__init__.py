@@ -1,4 +1,4 @@
-"""Agreement of the surrogates with the reference: metrics, gates, floor, growth of a disturbance."""
+"""Agreement of the surrogates with the reference: metrics, gates, floor, growth."""
 
 from tipoff.studies.agreement import command
 from tipoff.studies.question import Contents, Entry, Result, Section

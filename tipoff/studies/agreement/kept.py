@@ -1,4 +1,4 @@
-"""Error of a model from the stored agreement table of ``tipoff compare`` for this scene and code."""
+"""Error of a model from the stored agreement table for this scene and code."""
 
 from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS
 from tipoff.scenes.scene import NOMINAL

@@ -1,5 +1,5 @@
-"""Stage ``compare``: agreement of the surrogates with the reference on fitted and held-out conditions,
-with the floor and the uncertainty of the reference; growth of a 1 um disturbance; speed-up."""
+"""Stage ``compare``: agreement of the surrogates with the reference on fitted and held-out
+conditions, with the floor and the uncertainty of the reference; growth of a 1 um disturbance; speed-up."""
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import asdict

@@ -1,5 +1,5 @@
-"""The mesh for the speed-up at equal accuracy: the coarsest one whose uncertainty is below the error
-of the surrogate.
+"""The mesh for the speed-up at equal accuracy: the coarsest one whose uncertainty is below the
+error of the surrogate.
 
 With settled rates r, over all axes, and U the uncertainty of the finest mesh from the three finest
 (``studies.convergence``)::

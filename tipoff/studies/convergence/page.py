@@ -1,5 +1,5 @@
-"""Error of the reference on the page and in the terminal: settled rates over element size, and tables
-of the refinements and changes."""
+"""Error of the reference on the page and in the terminal: settled rates over element size, and
+tables of the refinements and changes."""
 
 from typing import TYPE_CHECKING
 

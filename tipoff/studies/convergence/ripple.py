@@ -1,4 +1,4 @@
-"""Ripple of the contact force at the facet frequency, at which a pad crosses the facets of the rail.
+"""Ripple of the contact force at the facet frequency, at which a pad crosses the rail facets.
 
 A constant load presses the payload into a corner of the rails; the payload comes to rest and then
 slides along the rails without friction at a constant speed v. The walls are straight, so the force

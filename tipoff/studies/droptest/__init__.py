@@ -1,4 +1,4 @@
-"""Drop tests: change of rate by the ejection from logs of an inertial unit, compared with a model."""
+"""Drop tests: change of rate by the ejection, from logs, compared with a model."""
 
 from tipoff.studies.droptest import command
 from tipoff.studies.question import Parts, Question

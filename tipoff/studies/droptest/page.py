@@ -1,5 +1,5 @@
-"""Drop tests on the page and in the terminal: filtered rates, their change with uncertainty, and the
-tests among the simulated cases."""
+"""Drop tests on the page and in the terminal: filtered rates, their change with uncertainty, and
+the tests among the simulated cases."""
 
 from collections.abc import Callable
 

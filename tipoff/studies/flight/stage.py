@@ -1,5 +1,5 @@
-"""Stage ``flight``: flight of the payload after its exit, for every condition and for many cases with
-random errors."""
+"""Stage ``flight``: flight of the payload after its exit, for every condition and for many cases
+with random errors."""
 
 from dataclasses import dataclass
 from pathlib import Path

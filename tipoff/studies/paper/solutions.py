@@ -1,5 +1,5 @@
-"""Sets of inputs that give the printed rates: independent searches, their admissible points, and the
-Pareto front.
+"""Sets of inputs that give the printed rates: independent searches, their admissible points, and
+the Pareto front.
 
 Rates are smooth in the inputs until one impact more or less changes them by degrees per second.
 Inside such a basin, Gauss-Newton steps reach zero residuals where the basin contains such a point,
