@@ -75,14 +75,14 @@ def fine_enough(scene: Scene, reference_size: float = REFERENCE_SIZE) -> float:
     """Element size (m) of the coarsest mesh whose compliance is within ``ACCURACY`` of that of
     ``reference_size`` (m)."""
     coarse = 2.0 * reference_size
-    coarser, finer = (_direct(scene, size) for size in (2.0 * coarse, coarse))
+    coarser, finer = (direct(scene, size) for size in (2.0 * coarse, coarse))
     change = float((np.abs(coarser - finer) / finer).max())
     return coarse if change * (coarse - reference_size) / coarse <= ACCURACY else reference_size
 
 
-def _direct(scene: Scene, element_size: float) -> np.ndarray:
-    """Mean displacement (s,f) m/N of each face under a unit force on it, at a few places along the
-    rail."""
+def direct(scene: Scene, element_size: float) -> np.ndarray:
+    """Mean displacement (s,f) m/N of each of f faces under a unit force on it, at s places along the
+    rail, in elements of ``element_size`` (m)."""
     faces = scene_model.built(scene).nominal
     way = (scene.rail.end - faces.half_length - faces.centre[:, 0]).max()
     found = statics.along(scene, element_size, np.linspace(0.0, way, _PLACES), patterns=1)

@@ -37,7 +37,7 @@ _ELEMENTS_PER_THREAD = 4000
 _STEPS_PER_CHECK = 250  # at most, from one check of the balances to the next
 _REPORT_EVERY = 20  # checks from one report of progress to the next
 _ROUNDING = 1e-9
-_MESHES: dict[tuple, RailMesh] = {}
+MESHES: dict[tuple, RailMesh] = {}  # made by this process, by geometry and element size (m)
 _MESH_LOCK = threading.Lock()
 
 
@@ -52,12 +52,12 @@ def prepare(scene: Scene, numerics: Numerics | None = None) -> RailMesh:
     numerics = numerics or Numerics()
     key = (geometry(scene), numerics.element_size)
     with _MESH_LOCK:
-        if key not in _MESHES:
+        if key not in MESHES:
             check_before(scene, numerics.element_size)
             mesh = make_mesh(scene, numerics.element_size)
             check_mesh(scene, numerics.element_size, mesh)
-            _MESHES[key] = mesh
-        mesh = _MESHES[key]
+            MESHES[key] = mesh
+        mesh = MESHES[key]
     check_fit(scene, mesh)
     return mesh
 
@@ -180,7 +180,7 @@ class Loop:
         Compiles the kernels.
         """
         evaluate(*self.arguments(), self.team)
-        self._kick(-0.5 * self.stepping.dt_s)
+        self.kick(-0.5 * self.stepping.dt_s)
         ending.begin(self.constants(), self.state, self.book)
         self.advance_steps(0)
         self._check(keep=True)
@@ -246,7 +246,7 @@ class Loop:
         """Check whether the run may go on, and ``keep`` a sample."""
         state, step = self.state, self.stepping.dt_s
         before = observe.moving(state)
-        self._kick(step)
+        self.kick(step)
         row = observe.sample(self.system, self.team, state, before, observe.moving(state))
         observe.restore(state, before)
         self.message = fault(self, row)
@@ -273,8 +273,8 @@ class Loop:
         warm = self.system.warm
         return self.state.displacement if warm is None else self.state.displacement + warm
 
-    def _kick(self, step: float) -> None:
-        """Advance the velocities alone, over ``step`` (s), by the present forces."""
+    def kick(self, step: float) -> None:
+        """Advance the velocities of nodes and bodies alone, over ``step`` (s), by the present forces."""
         constants, state = self.constants(), self.state
         pose = pose_in_frame(state, constants.payload, constants.frame)
         thrust = thrust_load(constants, state, self.steps * constants.dt)

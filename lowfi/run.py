@@ -145,18 +145,18 @@ class Run:
 
     def begin(self) -> None:
         """Take the first sample; compiles the kernels, or loads them from disk."""
-        self._advance(0)
+        self.advance(0)
 
     def integrate(self, progress) -> None:
         """Advance to the end of the run, some samples at a time where ``progress`` is reported:
         each call of the kernel costs some microseconds for its records."""
         stride = max(1, round(_STRIDE / self.interval)) if progress else self.end + 1
         while self.taken <= self.end and not self.message:
-            self._advance(min(self.taken - 1 + stride, self.end))
+            self.advance(min(self.taken - 1 + stride, self.end))
             if progress:
                 progress(self.taken / (self.end + 1))
 
-    def _advance(self, number: int) -> None:
+    def advance(self, number: int) -> None:
         """Take samples up to ``number``, fewer where exit or jam end the run."""
         sampling = Sampling(self.interval, self.last, number, self.whole)
         status = integrate.integrate(

@@ -142,7 +142,7 @@ def initial(model: Model) -> np.ndarray:
     state, first = np.zeros(STATE_SIZE), model.initial
     payload, platform = model.payload, model.platform
     start = comoving.start(model)
-    _fill(
+    fill(
         state,
         PAYLOAD,
         payload.mass,
@@ -154,7 +154,7 @@ def initial(model: Model) -> np.ndarray:
     )
     state[PLATFORM + QUATERNION] = 1.0
     if platform is not None:
-        _fill(
+        fill(
             state,
             PLATFORM,
             platform.mass,
@@ -168,7 +168,10 @@ def initial(model: Model) -> np.ndarray:
 
 
 @kernel
-def _fill(state, body, mass, inertia, place, velocity, attitude, rate):
+def fill(state, body, mass, inertia, place, velocity, attitude, rate):
+    """Fill the slots of a body, the first of which is ``body``, in ``state`` (STATE_SIZE,): mass
+    (kg), inertia (3,3) kg m2 in body axes, place (m), velocity (m/s), unit quaternion and rate
+    (rad/s) in body axes."""
     orbit, turn, j = rotation.cross(place, velocity), rotation.matrix(attitude), inertia
     spin = rotation.rotate(
         turn,

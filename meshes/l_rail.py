@@ -73,25 +73,25 @@ def build(geometry: LRailGeometry, element_size: float) -> meshio.Mesh:
 def elements(geometry: LRailGeometry, element_size: float) -> int:
     """Elements that ``build`` would make, without making them. Raises ValueError as it does."""
     _check(geometry, element_size)
-    depths, stations = _depths(geometry), _stations(geometry)
+    depths, stations = grid_depths(geometry), grid_stations(geometry)
     layer, across = (
-        _layer_length(stations, element_size),
-        [_divisions(b - a, element_size) for a, b in itertools.pairwise(depths)],
+        layer_length(stations, element_size),
+        [divisions(b - a, element_size) for a, b in itertools.pairwise(depths)],
     )
-    section = sum(across[i] * across[j] for i, j in _section(geometry, depths))
+    section = sum(across[i] * across[j] for i, j in section_cells(geometry, depths))
     return (
         len(_CORNERS)
         * section
-        * sum(_divisions(end - start, layer) for start, end in itertools.pairwise(stations))
+        * sum(divisions(end - start, layer) for start, end in itertools.pairwise(stations))
     )
 
 
-def _depths(geometry: LRailGeometry) -> list[float]:
-    """Grid lines of the section, measured inwards from the outer corner along y and along z."""
+def grid_depths(geometry: LRailGeometry) -> list[float]:
+    """Grid lines (m) of the section, measured inwards from the outer corner along y and along z."""
     return _grid_lines(0.0, geometry.thickness, geometry.mount_width, geometry.leg)
 
 
-def _stations(geometry: LRailGeometry) -> list[float]:
+def grid_stations(geometry: LRailGeometry) -> list[float]:
     """Grid planes along X (m)."""
     return _grid_lines(
         geometry.x_start,
@@ -100,8 +100,8 @@ def _stations(geometry: LRailGeometry) -> list[float]:
     )
 
 
-def _section(geometry: LRailGeometry, depths: list[float]) -> list[tuple[int, int]]:
-    """Intervals of depth along y and along z whose rectangles lie inside the L."""
+def section_cells(geometry: LRailGeometry, depths: list[float]) -> list[tuple[int, int]]:
+    """Intervals (i,j) of ``depths`` (m) along y and along z whose rectangles lie inside the L."""
     return [
         (i, j)
         for i, j in itertools.product(range(len(depths) - 1), repeat=2)
@@ -132,18 +132,19 @@ def _grid_lines(*borders: float) -> list[float]:
     return lines[:1] + [right for left, right in itertools.pairwise(lines) if right - left > _TOUCH]
 
 
-def _layer_length(stations: list[float], element_size: float) -> float:
-    """Length (m) that divides every interval between stations and is close to the element size;
-    where there is none, that size."""
+def layer_length(stations: list[float], element_size: float) -> float:
+    """Length (m) that divides every interval between ``stations`` (m) and is within a tenth of
+    ``element_size`` (m); that size where no length does both."""
     common = (
         math.gcd(*(round((right - left) / _TOUCH) for left, right in itertools.pairwise(stations)))
         * _TOUCH
     )
-    even = common / _divisions(common, element_size)
+    even = common / divisions(common, element_size)
     return even if abs(even - element_size) <= _EVEN * element_size else element_size
 
 
-def _divisions(length: float, element_size: float) -> int:
+def divisions(length: float, element_size: float) -> int:
+    """Elements of about ``element_size`` (m) along ``length`` (m), one at least."""
     return max(1, round(length / element_size))
 
 
@@ -152,10 +153,10 @@ def _corner_rail(
 ) -> tuple[np.ndarray, np.ndarray, dict[str, np.ndarray]]:
     """Points (n,3), hexes (e,8) and facets per surface of the (+,+) rail: a grid along X and
     inwards from the outer corner, axes that are right-handed like x, y and z."""
-    depths, stations = np.array(_depths(geometry)), np.array(_stations(geometry))
+    depths, stations = np.array(grid_depths(geometry)), np.array(grid_stations(geometry))
     fine = bricks.divided(depths, _all_divisions(depths, element_size))
     along = bricks.divided(
-        stations, _all_divisions(stations, _layer_length(list(stations), element_size))
+        stations, _all_divisions(stations, layer_length(list(stations), element_size))
     )
     middle, station = (
         0.5 * (fine[1:] + fine[:-1]),
@@ -188,7 +189,7 @@ def _corner_rail(
 
 
 def _all_divisions(borders: np.ndarray, element_size: float) -> list[int]:
-    return [_divisions(length, element_size) for length in np.diff(borders)]
+    return [divisions(length, element_size) for length in np.diff(borders)]
 
 
 def _mirrored(points, hexes, surfaces):

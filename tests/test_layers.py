@@ -197,10 +197,7 @@ def test_no_module_has_two_names():
 
 
 def test_no_imports_in_a_circle():
-    graph = {
-        name: {used for used in map(digests._module, digests._source(name).imports) if used}
-        for name in digests.closure(*map(_name, product()))
-    }
+    graph = {name: digests.used_by(name) for name in digests.closure(*map(_name, product()))}
     # a package's own file hands on names of its modules, and no module of it needs them
     circles = [circle for circle in _components(graph) if len(circle) > 1]
     assert circles == []

@@ -38,7 +38,7 @@ def _code(names):
 def forget():
     """Let digests be taken anew, as another process would."""
     sources.digest.cache_clear()
-    sources._source.cache_clear()
+    sources.source.cache_clear()
 
 
 def edit(file: Path, old: str, new: str) -> None:

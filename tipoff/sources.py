@@ -44,7 +44,7 @@ class Source(NamedTuple):
 @functools.cache
 def digest(*modules: str) -> str:
     """Hexadecimal SHA-256 of the code that ``modules`` (dotted names) depend on."""
-    parts = [f"{name} {_source(name).code}" for name in closure(*modules)]
+    parts = [f"{name} {source(name).code}" for name in closure(*modules)]
     return hashlib.sha256("\n".join(parts).encode()).hexdigest()
 
 
@@ -60,8 +60,13 @@ def closure(*modules: str) -> list[str]:
         if path(name) is None:
             raise ModuleNotFoundError(f"the project has no module {name}")
         found.add(name)
-        waiting += [used for used in map(_module, _source(name).imports) if used]
+        waiting += used_by(name)
     return sorted(found)
+
+
+def used_by(module: str) -> set[str]:
+    """Dotted names of the modules of the project that ``module`` imports itself."""
+    return {used for used in map(_module, source(module).imports) if used}
 
 
 def path(module: str) -> Path | None:
@@ -84,7 +89,7 @@ def _module(name: str) -> str | None:
 
 
 @functools.cache
-def _source(module: str) -> Source:
+def source(module: str) -> Source:
     """The source of ``module``. It is stored beside the kernels under the digest of the file, since
     parsing all files takes a second."""
     file = path(module)

@@ -32,7 +32,7 @@ def distinct(mesh: RailMesh) -> list[tuple[RailMesh, list[np.ndarray]]]:
     found: list[tuple[RailMesh, list[np.ndarray]]] = []
     for piece in pieces(mesh):
         for first, images in found:
-            if (signs := _mirror(first, piece)) is not None:
+            if (signs := mirror(first, piece)) is not None:
                 images.append(signs)
                 break
         else:
@@ -50,7 +50,7 @@ def _part(mesh: RailMesh, own: np.ndarray) -> RailMesh:
     return RailMesh(mesh.points[inside], number[mesh.cells[inside[mesh.cells[:, 0]]]], surfaces)
 
 
-def _mirror(first: RailMesh, other: RailMesh) -> np.ndarray | None:
+def mirror(first: RailMesh, other: RailMesh) -> np.ndarray | None:
     """Signs of y and z that turn the points of ``first`` into those of ``other``, bit for bit and
     numbered alike; None without."""
     groups = [

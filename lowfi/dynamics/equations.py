@@ -94,23 +94,25 @@ def add_thrust(thrust, offset, reacts, time, bodies, out):
     force, point = line_of_action(offset, size, body)
     push(out, PAYLOAD + VELOCITY, PAYLOAD + MOMENT, force, point, 1.0)
     velocity = slot.velocity_at(body, point)
-    _book(
+    add_power(
         bodies.ledger, slot.THRUST, slot.THRUST_AXIAL, force, velocity, body.velocity[0], 1.0, out
     )
     react(bodies.platform, reacts, bodies, force, point, out)
 
 
 @inlined
-def _book(ledger, entry, axial_entry, force, velocity, axial_speed, sign, out):
-    """Add the power of a force on a point, and its axial part, to the ledger."""
+def add_power(ledger, entry, axial_entry, force, velocity, axial_speed, sign, out):
+    """Add ``sign`` times the power (W) of a force (N) on a point that moves at ``velocity`` (m/s),
+    and its axial part, to two slots of ``out``; nothing without a ledger."""
     if ledger is not None:
         out[entry] += sign * rotation.dot(force, velocity)
         out[axial_entry] += sign * force[0] * axial_speed
 
 
 @inlined
-def _outside(ledger, force, point, out):
-    """Count a force from outside among the impulses."""
+def add_outside_impulse(ledger, force, point, out):
+    """Add a force (N) from outside, and its moment, to the rates of the impulses in ``out``; nothing
+    without a ledger."""
     if ledger is not None:
         push(out, IMPULSE, TURN, force, point, 1.0)
 
@@ -135,7 +137,7 @@ def _offset_line(offset, size, body):
 def react(platform, reacts, bodies, force, point, out):
     """Add the reaction of the thrust: on a free platform, or outside (exhaust, fixed platform)."""
     if platform is None:
-        _outside(bodies.ledger, force, point, out)
+        add_outside_impulse(bodies.ledger, force, point, out)
     if platform is not None:
         _react_on_free_platform(reacts, bodies, force, point, out)
 
@@ -146,9 +148,9 @@ def _react_on_free_platform(reacts, bodies, force, point, out):
         base = bodies.base
         push(out, PLATFORM + VELOCITY, PLATFORM + MOMENT, force, point, -1.0)
         velocity, speed = slot.velocity_at(base, point), base.velocity[0]
-        _book(bodies.ledger, slot.THRUST, slot.THRUST_AXIAL, force, velocity, speed, -1.0, out)
+        add_power(bodies.ledger, slot.THRUST, slot.THRUST_AXIAL, force, velocity, speed, -1.0, out)
     else:
-        _outside(bodies.ledger, force, point, out)
+        add_outside_impulse(bodies.ledger, force, point, out)
 
 
 @inlined
@@ -169,8 +171,8 @@ def _add_body_force_on_platform(force, platform, bodies, out):
 def _add_body_force(force, mass, first, ledger, body, out):
     weight = (mass * force.x, mass * force.y, mass * force.z)
     push(out, first + VELOCITY, first + MOMENT, weight, body.place, 1.0)
-    _outside(ledger, weight, body.place, out)
-    _book(
+    add_outside_impulse(ledger, weight, body.place, out)
+    add_power(
         ledger,
         slot.BODY_FORCE,
         slot.BODY_FORCE_AXIAL,
@@ -283,7 +285,7 @@ def _add_contact_power(ledger, pad, axial_speed, out):
 def _add_friction(friction, pad, bodies, axial_speed, out):
     if friction is not None:
         _pair(bodies.platform, bodies.ledger, pad.drag, pad.point, out)
-        _book(
+        add_power(
             bodies.ledger,
             slot.FRICTION,
             slot.FRICTION_AXIAL,
@@ -319,7 +321,7 @@ def _pair(platform, ledger, force, point, out):
     ground."""
     push(out, PAYLOAD + VELOCITY, PAYLOAD + MOMENT, force, point, 1.0)
     if platform is None:
-        _outside(ledger, force, point, out)
+        add_outside_impulse(ledger, force, point, out)
     if platform is not None:
         push(out, PLATFORM + VELOCITY, PLATFORM + MOMENT, force, point, -1.0)
 

@@ -172,7 +172,7 @@ def test_the_stage_calibrates_with_the_workers_asked_for(monkeypatch, tmp_path):
     monkeypatch.setattr(calibration, "run", run)
     study = Study(scene(), tmp_path, Settings(workers=3))
     with pytest.raises(calibration.CalibrationError, match="enough"):
-        stage._fitted(study, own_curves(), tmp_path / "none.toml")
+        stage.fit(study, own_curves(), tmp_path / "none.toml")
     assert given["workers"] == 3
 
 

@@ -13,11 +13,11 @@ from tipoff.meshes import generator
 from tipoff.meshes.l_rail import (
     SURFACES,
     LRailGeometry,
-    _depths,
-    _divisions,
-    _layer_length,
-    _section,
-    _stations,
+    divisions,
+    grid_depths,
+    grid_stations,
+    layer_length,
+    section_cells,
 )
 
 _TOUCH = 1e-9  # m
@@ -34,16 +34,16 @@ def corner_rail(geometry: LRailGeometry, element_size: float):
 def _draw(gmsh, geometry: LRailGeometry, element_size: float) -> None:
     """Mesh one rail: a section of rectangles, extruded interval by interval so that the mounts are
     surfaces of their own."""
-    depths, stations = _depths(geometry), _stations(geometry)
+    depths, stations = grid_depths(geometry), grid_stations(geometry)
     section = _draw_section(gmsh, geometry, depths, element_size)
-    layer = _layer_length(stations, element_size)
+    layer = layer_length(stations, element_size)
     for start, end in itertools.pairwise(stations):
         made = gmsh.model.geo.extrude(
             [(2, surface) for surface in section],
             end - start,
             0.0,
             0.0,
-            numElements=[_divisions(end - start, layer)],
+            numElements=[divisions(end - start, layer)],
             recombine=True,
         )
         # gmsh lists, for each surface extruded, its far copy, then the volume, then the sides.
@@ -63,7 +63,7 @@ def _draw_section(
         geometry.inner_corner_y + geometry.thickness,
         geometry.inner_corner_z + geometry.thickness,
     )
-    cells = _section(geometry, depths)
+    cells = section_cells(geometry, depths)
     corners = sorted(
         {(i + di, j + dj) for i, j in cells for di, dj in itertools.product((0, 1), repeat=2)}
     )
@@ -76,7 +76,7 @@ def _draw_section(
         for following, interval in (((i + 1, j), i), ((i, j + 1), j)):
             if following in point:
                 line[(i, j), following] = tag = geo.addLine(point[i, j], point[following])
-                count = _divisions(depths[interval + 1] - depths[interval], element_size)
+                count = divisions(depths[interval + 1] - depths[interval], element_size)
                 geo.mesh.setTransfiniteCurve(tag, count + 1)
     section = []
     for i, j in cells:

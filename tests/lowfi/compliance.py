@@ -108,7 +108,7 @@ def state_of(model, pose: Pose, twist: np.ndarray = np.zeros(12)) -> np.ndarray:
         (slot.PAYLOAD, model.payload, pose.place, pose.attitude, twist[:6]),
         (slot.PLATFORM, model.platform, pose.base_place, pose.base_attitude, twist[6:]),
     ):
-        slot._fill(
+        slot.fill(
             state,
             first,
             body.mass,

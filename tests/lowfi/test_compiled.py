@@ -110,8 +110,8 @@ def test_temperature_is_compiled_for_a_warm_scene_only():
     assert lowfi.compiled_effects(warm, compliance=compliance.rigid()) == lowfi.compiled_effects(
         cold
     ) | {"thermal": True}
-    assert contains(compiled_code(warm, compliance=compliance), thermal_offset._fill)
-    assert not contains(compiled_code(cold, compliance=compliance), thermal_offset._fill)
+    assert contains(compiled_code(warm, compliance=compliance), thermal_offset.fill)
+    assert not contains(compiled_code(cold, compliance=compliance), thermal_offset.fill)
 
 
 def test_compliant_contact_stands_in_the_place_of_the_contact_law():

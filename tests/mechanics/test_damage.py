@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from tests.mechanics.test_trajectory import random_trajectory
-from tests.scenes.test_calibration import CALIBRATION, _as_lists
+from tests.scenes.test_calibration import CALIBRATION, as_lists
 from tipoff import scenes
 from tipoff.mechanics.rail_compliance import PATTERNS, RailCompliance, digest
 from tipoff.mechanics.trajectory import Trajectory
@@ -49,7 +49,7 @@ KINDS = {
 def same(one, other) -> bool:
     """Whether two records hold the same, to the bit."""
     if isinstance(one, Calibration):
-        return _as_lists(one) == _as_lists(other)
+        return as_lists(one) == as_lists(other)
     return one.hash == other.hash
 
 

@@ -29,7 +29,7 @@ CALIBRATION = Calibration(
 )
 
 
-def _as_lists(calibration):
+def as_lists(calibration):
     return {
         name: np.asarray(value).tolist() if name == "information" else value
         for name, value in vars(calibration).items()
@@ -38,7 +38,7 @@ def _as_lists(calibration):
 
 def test_round_trip(tmp_path):
     CALIBRATION.save(tmp_path / "c.toml")
-    assert _as_lists(Calibration.load(tmp_path / "c.toml")) == _as_lists(CALIBRATION)
+    assert as_lists(Calibration.load(tmp_path / "c.toml")) == as_lists(CALIBRATION)
 
 
 @given(

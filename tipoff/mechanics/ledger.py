@@ -31,14 +31,15 @@ ENTRIES = (
     "released",
     "contact_axial",
 )
-_STATE = [ENTRIES.index(name) for name in ("kinetic", "strain", "contact_stored")]
+# entries that depend on the present state alone
+STATE = [ENTRIES.index(name) for name in ("kinetic", "strain", "contact_stored")]
 _WORK = [ENTRIES.index(name) for name in WORK]
 _SPENT = [i for i in range(len(ENTRIES)) if i not in _WORK]
 
 
 def residual(entries: np.ndarray) -> np.ndarray:
     """Residual (J) at each sample of a ledger (n, len(ENTRIES))."""
-    initial = entries[0, _STATE].sum()
+    initial = entries[0, STATE].sum()
     return initial + entries[:, _WORK].sum(axis=1) - entries[:, _SPENT].sum(axis=1)
 
 
@@ -67,7 +68,7 @@ def transverse_error(
     rounding."""
     size = terms(entries if total is None else total)
     scale = promises.scale(
-        np.abs(entries[:, _STATE].sum(axis=1)).max(),
+        np.abs(entries[:, STATE].sum(axis=1)).max(),
         size,
         promised.transverse_energy_error,
         promised.rounding,

@@ -13,11 +13,12 @@ def evaluate(warm, face, station, s, changes):
     """Fill T and its slope along the rail under ``face``, ``s`` (m) from a station, where that
     distance changes by ``changes`` with the place."""
     if warm is not None:
-        _fill(warm, face, station, s, changes)
+        fill(warm, face, station, s, changes)
 
 
 @inlined
-def _fill(warm, face, station, s, changes):
+def fill(warm, face, station, s, changes):
+    """The work of ``evaluate`` on rails that are warm."""
     for a in range(PATTERNS):
         c = warm.cubic[station, face, a]
         warm.offset[face, a] = c[0] + s * (c[1] + s * (c[2] + s * c[3]))

@@ -71,7 +71,7 @@ class Ringing:
         """
         loop, step, w = self.loop, self.loop.stepping.dt_s, 2.0 * math.pi * self.frequency
         before = loop.state.velocity.copy()
-        loop._kick(step)
+        loop.kick(step)
         q, v = (
             float((self.weight * part).sum())
             for part in (loop.state.displacement, 0.5 * (before + loop.state.velocity))

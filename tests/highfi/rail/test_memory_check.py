@@ -112,7 +112,7 @@ def test_mesh_of_a_file_that_leaves_too_little_is_refused(monkeypatch):
     scene = load("channel")
     mesh = highfi.prepare(scene)
     elements, nodes = mesh.cells.shape
-    runs._MESHES.clear()
+    runs.MESHES.clear()
     monkeypatch.setattr(
         memory_estimate, "available", lambda: 0.9 * memory_estimate.of_mesh(elements, nodes, 0)
     )
@@ -129,7 +129,7 @@ def test_mesh_of_a_file_that_leaves_too_little_is_refused(monkeypatch):
 @pytest.mark.parametrize("command", ["highfi", "bench"])
 def test_commands_say_so_without_a_traceback(tmp_path, monkeypatch, command):
     monkeypatch.setattr(memory_estimate, "available", lambda: 100_000_000)
-    runs._MESHES.clear()
+    runs.MESHES.clear()
     result = CliRunner().invoke(
         app, [command, "--element-size", "1", "--out", str(tmp_path / "out")]
     )

@@ -10,6 +10,7 @@ from tests.exact import thermal as exact
 from tests.highfi import tets
 from tests.highfi.blocks import ALUMINIUM, block, static
 from tipoff import scenes
+from tipoff.highfi.elements import hexahedron
 from tipoff.highfi.mesh.rail_mesh import read
 from tipoff.highfi.rail.scene_mesh import make_mesh
 from tipoff.highfi.statics import assembly, thermal
@@ -94,7 +95,7 @@ def test_curvature():
 def test_plain_bubbles_would_bend_the_strip_otherwise(monkeypatch):
     """Control: loads without the part that the bubbles take leave a curvature that is off by more
     than a tenth."""
-    mesh, formulation = strip(divisions=(20, 1, 1)), assembly._FORMULATION[8]
+    mesh, formulation = strip(divisions=(20, 1, 1)), hexahedron
     direct = formulation.expansion
 
     def on_corners_only(corners, law):

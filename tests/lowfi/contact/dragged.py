@@ -43,8 +43,8 @@ def _thrust_and_drag(thrust, offset, reacts, time, bodies, out):
     equations.push(
         out, slot.PAYLOAD + slot.VELOCITY, slot.PAYLOAD + slot.MOMENT, force, body.place, 1.0
     )
-    equations._outside(bodies.ledger, force, body.place, out)
-    equations._book(
+    equations.add_outside_impulse(bodies.ledger, force, body.place, out)
+    equations.add_power(
         bodies.ledger,
         slot.THRUST,
         slot.THRUST_AXIAL,

@@ -32,7 +32,7 @@ def put_away(tolerance: float, last: int, path) -> Run:
     numerics = Numerics(relative_tolerance=tolerance)
     run = Run(ASKED, numerics)
     run.begin()
-    run._advance(last)
+    run.advance(last)
     assert run.taken == last + 1
     np.savez(
         path,

@@ -81,9 +81,9 @@ def test_time_follows_elements_steps_and_speed(tmp_path):
         stored(of.folder / "lowfi" / f"{name}.nc", wall_s=seconds)
     known = forecast.pace(of)
     assert known.ns == 10.0 and known.source == ""
-    each, _ = forecast._reference(asked(of)[0], known)
+    each, _ = forecast.reference_seconds(asked(of)[0], known)
     assert each == pytest.approx(1e-8 * 19360 * 170_000)
-    finer, _ = forecast._reference(asked(study(tmp_path, element_size=0.001))[0], known)
+    finer, _ = forecast.reference_seconds(asked(study(tmp_path, element_size=0.001))[0], known)
     assert finer == pytest.approx(16.0 * each)
     line = forecast.calibration(of, asked(of))
     assert (
@@ -110,7 +110,7 @@ def test_a_calibration_on_curves_says_its_own(tmp_path):
 
 def test_curves_are_fitted_after_the_time_was_said(tmp_path, capsys, monkeypatch):
     """Control: a second call fits nothing and says nothing of it."""
-    monkeypatch.setattr(stage, "_fitted", lambda *asked: ({}, []))
+    monkeypatch.setattr(stage, "fit", lambda *asked: ({}, []))
     path = tmp_path / "phi15.csv"
     lines = [f"{0.5 * n},{0.1 * n},1,2,3" for n in range(120)]
     path.write_text(

@@ -63,5 +63,5 @@ def test_nothing_is_told_where_there_is_nothing_to_tell(monkeypatch):
     ) == pytest.approx(0.008)
     assert ripple.facet_length(highfi.prepare(scene, Numerics(element_size=0.016))) is None
     assert ripple.measure(scene, Numerics(element_size=0.016)) is None
-    monkeypatch.setattr(ripple, "_LEAST", 7)  # the pads cross six
+    monkeypatch.setattr(ripple, "LEAST_FACETS", 7)  # the pads cross six
     assert ripple.measure(scene, Numerics(element_size=0.008)) is None

@@ -137,7 +137,7 @@ def test_a_result_that_is_only_shown_is_not_shown_when_it_was_edited(study, caps
 
 
 def test_pictures_of_a_view_that_were_altered_are_not_shown(study, monkeypatch):
-    monkeypatch.setattr(view, "_key", lambda *_: "k")
+    monkeypatch.setattr(view, "key_of", lambda *_: "k")
     (study.folder / "view").mkdir(parents=True)
     picture = study.path("view/peak.png")
     picture.write_bytes(b"picture")

@@ -130,7 +130,7 @@ def test_a_run_is_not_answered_by_a_model_that_its_agreement_rejects(study, monk
         ]
     }
     monkeypatch.setattr("tipoff.studies.agreement.stage.stored", lambda _: missed)
-    monkeypatch.setattr(single, "_made", lambda *_: {"made": True})
+    monkeypatch.setattr(single, "result_of", lambda *_: {"made": True})
     monkeypatch.setattr(Study, "rail_compliance", lambda *_, **__: None)
     with pytest.raises(StudyError, match="phi15: misses: rate L2 2 x limit"):
         single.run(replace(study, only=("phi15",)), "phi15")

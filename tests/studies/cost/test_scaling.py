@@ -123,9 +123,9 @@ TIMES = {
 def test_mesh_from_a_file_is_not_run_ten_times(monkeypatch, tmp_path):
     """Control: the built-in rail has a coarse mesh, and the reference is asked."""
     monkeypatch.setattr(
-        scaling, "_over_pads", lambda model, runs, counts, board: {"model": model, "counts": counts}
+        scaling, "over_pads", lambda model, runs, counts, board: {"model": model, "counts": counts}
     )
-    monkeypatch.setattr(scaling, "_walls", lambda study, name, change: None)
+    monkeypatch.setattr(scaling, "coarse_walls", lambda study, name, change: None)
     models = {
         name: [
             law["model"]

@@ -226,13 +226,13 @@ def test_names_tell_folders_apart():
         Path("/b/y/log.toml"),
         Path("/b/y/other.toml"),
     ]
-    assert stage._names(places) == ["a/x/log", "b/x/log", "y/log", "other"]
+    assert stage.short_names(places) == ["a/x/log", "b/x/log", "y/log", "other"]
 
 
 def test_a_log_under_two_spellings_is_one(tmp_path):
     (path,) = _tests_in(tmp_path, "monday")
     with pytest.raises(SceneError, match="twice"):
-        stage._analysed([path, tmp_path / "monday" / ".." / "monday" / "log.toml"])
+        stage.analysed([path, tmp_path / "monday" / ".." / "monday" / "log.toml"])
 
 
 def test_bad_logs_are_listed_and_nothing_is_written(tmp_path):
@@ -311,7 +311,9 @@ def test_verdict_for_models_that_fit_that_are_too_narrow_and_too_wide(tmp_path, 
     )
     rates = np.random.default_rng(2).normal(0.0, width, (400, 3))
     found = stage.result(study, drops, population(rates))
-    table = next(part for part in page._comparison(found) if part.heads[0] == "all tests together")
+    table = next(
+        part for part in page.table_of_comparison(found) if part.heads[0] == "all tests together"
+    )
     assert f"The tests {p} the" in table.notes[0]
     assert [row[1] for row in table.rows] == [
         found["together"][name] for name in ("p_distance", "p_spread", "p")

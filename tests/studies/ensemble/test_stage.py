@@ -40,7 +40,7 @@ def test_default_errors_run_and_are_kept(tmp_path):
     assert "300 cases = 300 ok + 0 refused + 0 failed" in first.stdout
     assert "truncated-normal" in first.stdout and "redraw" in first.stdout
     found = json.loads((tmp_path / "reference" / "ensemble.json").read_text())
-    assert tables.terminal(page._quantiles(found)) in first.stdout
+    assert tables.terminal(page.table_of_quantiles(found)) in first.stdout
     assert (
         found["run"]["cases"] == found["settled"] == 300 and found["run"]["cpu_ms_per_case"] > 0.0
     )

@@ -144,7 +144,7 @@ def test_limitations_are_remarked():
 
 def test_a_condition_without_a_flight_shows_its_status():
     row = {"condition": "phi0", "status": "jammed", "flown": None}
-    table = section._conditions({"conditions": [row]}, ["miss_m"], [])
+    table = section.table_of_conditions({"conditions": [row]}, ["miss_m"], [])
     assert table.rows == [(Noted("phi0", "jammed"), None)]
 
 

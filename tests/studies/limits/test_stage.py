@@ -174,7 +174,7 @@ def test_the_map_agrees_with_the_rates_of_its_pairs(study, found):
 def test_limits_that_no_tolerance_or_every_tolerance_keeps_are_reported(study, monkeypatch):
     """0.3 mm of thrust eccentricity alone give 3.1 deg/s: no misalignment keeps 2 deg/s unless that
     error is zero."""
-    monkeypatch.setattr(limits, "_RAYS", 1)
+    monkeypatch.setattr(limits, "RAYS", 1)
     monkeypatch.setattr(
         "tipoff.studies.render.chart.to_files", lambda *_: []
     )  # drawn in another test
@@ -235,7 +235,7 @@ def test_values_are_kept_with_names_units_and_scale(study, found, monkeypatch):
 @pytest.mark.parametrize("tolerances, advised", [("advised", 1.0), ("table3", None)])
 def test_the_paper_advises_one_set_alone(study, monkeypatch, tolerances, advised):
     options = Options(limits=("6 deg/s",), probability=PROBABILITY, cases=30, tolerances=tolerances)
-    searches = limits._Search(
+    searches = limits.Search(
         study,
         options,
         exceedance.limits(options.limits),
@@ -245,12 +245,12 @@ def test_the_paper_advises_one_set_alone(study, monkeypatch, tolerances, advised
         lambda _: None,
     )
     monkeypatch.setattr(within.Cases, "values", lambda *_: np.zeros((30, len(answers.ALL))))
-    monkeypatch.setattr(limits._Search, "_map", lambda *_: None)
+    monkeypatch.setattr(limits.Search, "pairs", lambda *_: None)
     row = row_of(found := searches.all(), "together")
     assert (row["advised"] and row["advised"]["tolerance"]) == advised
     assert row_of(found, "misalignment")["advised"]["tolerance"] == pytest.approx(0.2)
-    advice = pictures._table(found).heads.index("the paper advises")
-    assert pictures._table(found).rows[-1][advice] == advised
+    advice = pictures.table_of(found).heads.index("the paper advises")
+    assert pictures.table_of(found).rows[-1][advice] == advised
 
 
 def test_section_of_the_page(found):
@@ -261,7 +261,7 @@ def test_section_of_the_page(found):
         and "assumed" in shown
         and "thrust misalignment" in shown
     )
-    assert tables.terminal(pictures._table(found)) in document.terminal(pictures.summary(found))
+    assert tables.terminal(pictures.table_of(found)) in document.terminal(pictures.summary(found))
     assert {
         f"figures/limits-{name}.{kind}" for name in ("curves", "map") for kind in ("png", "svg")
     } == set(found["files"])

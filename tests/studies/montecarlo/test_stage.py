@@ -97,12 +97,12 @@ def counted(cases, lost):
 def test_a_part_of_the_cases_is_their_first_whether_they_settled_or_not():
     """Case 1,000 is not among the first thousand because an earlier one did not settle."""
     found = counted(1200, slice(0, 300))
-    item = montecarlo._quantity(answers.RATES[0], found)
+    item = montecarlo.quantity_row(answers.RATES[0], found)
     assert item["first"][2]["value"] == pytest.approx(649.5) and item["quantiles"][2][
         "value"
     ] == pytest.approx(749.5)
     assert sum(item["histogram"]["first"]) > 0.0
-    assert montecarlo._quantity(answers.RATES[0], counted(1200, slice(0, 1000)))["first"] is None
+    assert montecarlo.quantity_row(answers.RATES[0], counted(1200, slice(0, 1000)))["first"] is None
     rows = spread.convergence(answers.RATES[0].of(found.results), (0.5,))
     assert [(row["cases"], round(row["value"], 6)) for row in rows] == [
         (500, 399.5),
@@ -141,11 +141,11 @@ def test_cases_that_do_not_settle_elsewhere_are_reported_and_stop_nothing(study,
     touching = Study(load("reference"), study.folder, study.settings)
     # no springs calibrated
     assert (
-        montecarlo._models(touching, Options(cases=120), "compliant", counted(120, slice(0, 9)))
+        montecarlo.compared(touching, Options(cases=120), "compliant", counted(120, slice(0, 9)))
         is None
     )
     monkeypatch.setattr(montecarlo.calibrate, "stored", lambda _: {"key": "k"})
-    models = montecarlo._models(
+    models = montecarlo.compared(
         touching, Options(cases=120), "compliant", counted(120, slice(0, 9))
     )
     assert models["both_settled"] == 0 and models["quantities"] == []
@@ -216,7 +216,7 @@ def test_section_of_the_page(found):
 
 def test_the_terminal_shows_the_tables_of_the_page(found):
     shown = terminal(pictures.summary(found))
-    for table in (pictures._quantities(found), pictures._tails(found)):
+    for table in (pictures.table_of_quantities(found), pictures.table_of_tails(found)):
         assert tables.terminal(table) in shown
     assert "readings with other distributions of the rates: two normal components" in shown
 

@@ -71,7 +71,7 @@ def test_every_quantity_of_every_condition_is_shown(quick):
     found = quick[1]
     conditions = found["exit"]["conditions"]
     assert [row["condition"] for row in conditions] == list(published.angles())
-    table = section._at_exit(found["exit"])
+    table = section.table_at_exit(found["exit"])
     assert "paper prints rates" in table.notes[0]
     for item, (label, *values) in zip(answers.ALL, table.rows, strict=True):
         assert label == f"{item.label} ({item.unit})" and label in page(found)
@@ -89,7 +89,7 @@ def test_a_condition_that_does_not_settle_has_no_values_and_shows_its_status(qui
     cases = [Case("exited", "", ended, 10, 0.0)] * 5
     cases[2] = Case("time_limit", "", Outcome(), 10, 0.0)
     odd = found | {"exit": exits.summary(columns.of(cases))}
-    table = section._at_exit(odd["exit"])
+    table = section.table_at_exit(odd["exit"])
     assert table.rows[4][1:] == (5.0, 5.0, None, 5.0, 5.0)
     assert table.heads[3] == "3 at 35 deg, time limit"
     for text in (page(odd), shown(odd)):

@@ -162,7 +162,7 @@ def test_ranges_say_how_few_searches_they_come_from(quick, tmp_path, monkeypatch
     none = paper.run(Study(BASE, tmp_path / "none", Settings(workers=1)), SMALL)
     for text in (page(none), shown(none)):
         assert "None of 2 searches found an admissible set" in text and "no range is known" in text
-    assert {row[5] for row in section._inputs(none).rows} == {None}
+    assert {row[5] for row in section.table_of_inputs(none).rows} == {None}
 
 
 def test_headline_has_our_cost_of_the_present_code_only(quick, monkeypatch):

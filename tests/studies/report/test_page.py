@@ -11,7 +11,7 @@ from tests.studies.synthetic import flight
 from tipoff import scenes
 from tipoff.studies import registry
 from tipoff.studies.agreement import rails_page
-from tipoff.studies.agreement.page import _starred
+from tipoff.studies.agreement.page import starred
 from tipoff.studies.calibration.page import calibration
 from tipoff.studies.core.settings import defaults
 from tipoff.studies.core.study import Study
@@ -68,8 +68,8 @@ def test_text_from_a_scene_is_escaped(tmp_path):
 
 
 def test_a_star_leaves_powers_of_ten_as_they_are():
-    assert "1·10<sup>-9</sup>*</td>" in html([Table(("a",), [(_starred(number(1e-9), False),)])])
-    assert _starred(number(0.5), True) == "0.5"
+    assert "1·10<sup>-9</sup>*</td>" in html([Table(("a",), [(starred(number(1e-9), False),)])])
+    assert starred(number(0.5), True) == "0.5"
 
 
 def test_chart_is_drawn_twice(tmp_path):

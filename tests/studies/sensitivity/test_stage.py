@@ -94,7 +94,10 @@ def test_the_command(tiny, tmp_path, monkeypatch):
         >= max(abs(value - attitude[0]) for value in attitude)
         > 0.0
     )
-    for shown in (section._largest(table, found["paper"]), section._indices(found["sobol"])):
+    for shown in (
+        section.table_of_largest(table, found["paper"]),
+        section.table_of_indices(found["sobol"]),
+    ):
         assert tables.terminal(shown) in result.stdout
     sobol = found["sobol"]
     assert [item["name"] for item in sobol["quantities"]] == [item.name for item in answers.ALL]
@@ -150,12 +153,12 @@ def test_tables_of_warm_rails_have_the_walls_of_the_model(tmp_path, monkeypatch)
     )
     rigid = SimpleNamespace(flexibility=None)
     model = Surrogate(study.scene.replace({"contact.stiffness": 1e9}), None, rigid)
-    made = sensitivity._tables(study, model, sensitivity.Options())
+    made = sensitivity.tables(study, model, sensitivity.Options())
     assert [found.compliance for found in models] == [rigid] * 2 and len(made) == 2
     assert models[1].scene.contact == study.scene.contact
     for table in made:
         assert {row["symbol"] for row in table["rows"]} == {"baseline", "k", "c", "d", "clearance"}
-    (compliant,) = sensitivity._tables(
+    (compliant,) = sensitivity.tables(
         study, model._replace(compliance=SimpleNamespace(flexibility=1.0)), sensitivity.Options()
     )
     assert {row["symbol"] for row in compliant["rows"]} == {"baseline", "penalty", "clearance"}

@@ -192,7 +192,7 @@ def test_the_command_with_contact(tmp_path, monkeypatch):
     assert result.exit_code == 0
     found = read(tmp_path / "tiny" / "sweeps.json")
     for launch in found["launches"]:
-        for table in (sections._verdicts(launch), sections._largest(launch)):
+        for table in (sections.table_of_verdicts(launch), sections.table_of_largest(launch)):
             assert tables.terminal(table) in result.stdout
     given = found["launches"][0]
     assert (
@@ -209,7 +209,9 @@ def test_the_command_with_contact(tmp_path, monkeypatch):
             and factor["largest"][item.name] == np.nanmax(abs(cases), axis=1).tolist()
         )
         row = next(
-            row for row in sections._largest(given).rows if row[0] == f"{item.label} ({item.unit})"
+            row
+            for row in sections.table_of_largest(given).rows
+            if row[0] == f"{item.label} ({item.unit})"
         )
         assert row[1] == np.nanmax(abs(cases))
     page = html(sections.draw(found))

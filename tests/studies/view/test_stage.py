@@ -243,7 +243,7 @@ def test_pictures_are_drawn_and_embedded(viewed, monkeypatch):
     monkeypatch.setattr(view, "pyvista_version", lambda: "there")
     study, found = viewed
     folder = study.path(found["folder"])
-    drawn, why = view._draw(
+    drawn, why = view.draw_pictures(
         found | {"frames": found["frames"][:4], "peak": found["peak"] | {"frame": 3}}, folder
     )
     assert (drawn, why) == (["peak.png", "ejection.webp"], "")

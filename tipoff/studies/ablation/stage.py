@@ -50,7 +50,7 @@ def run(study: Study) -> dict:
     def make() -> tuple[dict, list[Path]]:
         lines = variants(study.condition(name))
         rows = _rows("highfi", lines, *_reference(study, name, lines)) + _rows(
-            "lowfi", lines, *_surrogate(study, name, lines)
+            "lowfi", lines, *timed_surrogate(study, name, lines)
         )
         return {
             "condition": name,
@@ -71,7 +71,7 @@ def _reference(study: Study, name: str, lines: dict[str, dict]):
     return requested, runs, [run.cost.get("cpu_s", run.cost["wall_s"]) for run in runs]
 
 
-def _surrogate(study: Study, name: str, lines: dict[str, dict]):
+def timed_surrogate(study: Study, name: str, lines: dict[str, dict]):
     """Runs in turn, and the median time (s) of their time loops, without set-up and evaluation,
     which are the same for all."""
     under = study.rail_compliance(study.condition(name))

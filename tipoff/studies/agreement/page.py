@@ -161,12 +161,12 @@ def _agreement_row(row: dict) -> tuple:
         row["condition"],
         row["role"].replace("_", " "),
         row["rate_relative_l2"],
-        _starred(percent(row["floor_l2"]), floor_here),
+        starred(percent(row["floor_l2"]), floor_here),
         row["velocity_relative_l2"],
         row["settled_rate_error_deg_s"],
         row["settled_rate_error_xyz_deg_s"],
-        _starred(number(row["floor_deg_s"]), floor_here),
-        _starred(number(row["reference_uncertainty_deg_s"]), uncertainty_here),
+        starred(number(row["floor_deg_s"]), floor_here),
+        starred(number(row["reference_uncertainty_deg_s"]), uncertainty_here),
         row["iso18571"],
         row["sprague_geers_magnitude"],
         row["sprague_geers_phase"],
@@ -174,7 +174,7 @@ def _agreement_row(row: dict) -> tuple:
     )
 
 
-def _starred(shown: str, measured_here: bool) -> str:
+def starred(shown: str, measured_here: bool) -> str:
     """A number, with a star where it was measured on other conditions."""
     return shown if measured_here else f"{shown}*"
 

@@ -145,7 +145,7 @@ def in_time(work: Callable):
 def _references(missing: Sequence[Run], together: int, speed: Pace) -> tuple[float, str] | None:
     """Seconds of all ``missing`` runs, ``together`` at a time and mesh by mesh, with the source;
     None where the duration of one is unknown."""
-    found = [_reference(run, speed) for run in missing]
+    found = [reference_seconds(run, speed) for run in missing]
     each = Counter(one for one in found if one is not None)
     if not each or None in found:
         return None
@@ -154,7 +154,7 @@ def _references(missing: Sequence[Run], together: int, speed: Pace) -> tuple[flo
     ), speed.source
 
 
-def _reference(run: Run, speed: Pace) -> tuple[float, str] | None:
+def reference_seconds(run: Run, speed: Pace) -> tuple[float, str] | None:
     """Seconds of one run, and the source of its speed; None where the number of elements is
     unknown."""
     size = run.numerics.element_size

@@ -38,7 +38,7 @@ def run(study: Study) -> dict:
         references = dict(zip(names, study.store.fill("highfi", requested)))
         require_success(references, "calibrate")
         try:
-            return _fitted(study, references, study.path(FILE))
+            return fit(study, references, study.path(FILE))
         except calibration.CalibrationError as fault:
             raise StudyError(f"cannot calibrate: {fault}") from None
 
@@ -135,13 +135,15 @@ def from_files(
 
     def make() -> tuple[dict, list[Path]]:
         say(f"  {forecast.search(study, len(references))}")
-        return _fitted(study, references, study.path(f"curves/{FILE}"))
+        return fit(study, references, study.path(f"curves/{FILE}"))
 
     sources = {name: item.source for name, item in references.items()}
     return study.stage("curves/calibration", study.key(__name__, sources), make)
 
 
-def _fitted(study: Study, references: dict, path: Path) -> tuple[dict, list[Path]]:
+def fit(study: Study, references: dict, path: Path) -> tuple[dict, list[Path]]:
+    """Fit the constants to ``references`` (condition: run or curves) and write them to ``path``: the
+    calibration as plain values, and the files written. Raises CalibrationError."""
     from tipoff import calibration
 
     with Board("calibrate", 1) as board:

@@ -30,7 +30,7 @@ _LOAD = 1000.0  # N
 _INTERVAL = 2e-5  # s
 # samples of the settling, and the factor of all velocities in each: about critical damping
 _SETTLING, _KEPT = 400, 0.95
-_LEAST = 5  # facets crossed at least
+LEAST_FACETS = 5  # facets crossed at least
 _TREND = 5  # degree of the polynomial for the slow part of a force
 _EVEN = 1e-3  # largest relative difference of facet lengths
 _FRICTIONLESS = {"static": 1e-9, "dynamic": 1e-9, "static_speed": 0.01, "dynamic_speed": 0.02}
@@ -60,7 +60,7 @@ def measure(scene: Scene, numerics: Numerics) -> Ripple | None:
     if not length:
         return None
     facets = int((pressed.rail.end - leading_edge(system.faces)) / length)
-    if facets < _LEAST:
+    if facets < LEAST_FACETS:
         return None
     loop = Loop(pressed, system, choose(system, pressed, numerics), processors())
     force = slide(loop, round(facets * length / _SPEED / _INTERVAL))

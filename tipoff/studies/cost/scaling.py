@@ -131,14 +131,14 @@ def pads(study: Study, name: str) -> list[dict]:
     ]
     if study.scene.contact is not None:
         wanted[COMPLIANT] = [
-            study.lowfi(name, None, change, f"-pads-{count}", _walls(study, name, change))
+            study.lowfi(name, None, change, f"-pads-{count}", coarse_walls(study, name, change))
             for count, change in variants.items()
         ]
     with Board("cost, pads", len(wanted)) as board:
-        return [_over_pads(model, runs, list(variants), board) for model, runs in wanted.items()]
+        return [over_pads(model, runs, list(variants), board) for model, runs in wanted.items()]
 
 
-def _over_pads(model: str, runs: list[Run], counts: list[int], board: Board) -> dict:
+def over_pads(model: str, runs: list[Run], counts: list[int], board: Board) -> dict:
     """Alternating runs, so that other load on the machine affects all numbers of pads alike."""
     fidelity, progress = runs[0].fidelity, board.callback(model)
     for run in runs:
@@ -211,7 +211,7 @@ def _coarsest(study: Study, name: str, change: dict, count: int) -> Run:
     return study.highfi(name, change, f"-pads-{count}", 2.0 * study.settings.coarse_size)
 
 
-def _walls(study: Study, name: str, change: dict):
+def coarse_walls(study: Study, name: str, change: dict):
     """Rail compliance on the coarsest mesh, because the time of a surrogate does not depend on the
     mesh."""
     from tipoff import highfi

@@ -54,7 +54,7 @@ def draw(found: dict) -> list[Part]:
         Figure(rates, _RATES),
         _changes(found["tests"]),
         Figure(cloud, words),
-        *_comparison(found),
+        *table_of_comparison(found),
         _budgets(found["tests"]),
         *_notes(found["tests"]),
     ]
@@ -71,7 +71,7 @@ def terminal(found: dict) -> list[Part]:
         population.model_line(found),
         *_warning(found),
         _changes(found["tests"]),
-        *_comparison(found),
+        *table_of_comparison(found),
         *_notes(found["tests"]),
     ]
 
@@ -80,7 +80,7 @@ def _warning(found: dict) -> list[Part]:
     return [Notice(_SIMULATED)] if any(row["simulated"] for row in found["tests"]) else []
 
 
-def _comparison(found: dict) -> list[Part]:
+def table_of_comparison(found: dict) -> list[Part]:
     """Tables that compare the tests with the simulated cases."""
     return [_standing(found), _together(found), _cases(found["cases"]), _power(found["power"])]
 

@@ -53,7 +53,7 @@ def run(study: Study, options: Options = Options()) -> dict:
     too few cases settle.
     """
     drops, drawn = together(
-        lambda: _analysed(options.logs or sheet.SAMPLES), lambda: _drawn(study, options)
+        lambda: analysed(options.logs or sheet.SAMPLES), lambda: _drawn(study, options)
     )
     if options.logs:
         options = replace(options, logs=tuple(path.resolve() for path in options.logs))
@@ -110,7 +110,7 @@ def _digest(path: Path) -> list[str]:
         raise SceneError([Fault(str(path), "file", str(error), "a readable CSV file")]) from error
 
 
-def _analysed(paths: Sequence[Path]) -> list[Drop]:
+def analysed(paths: Sequence[Path]) -> list[Drop]:
     """Every log under a unique name. Raises SceneError listing every fault of every log."""
     drops, different = [], {path.resolve(): path for path in reversed(paths)}
     places = [path.resolve() for path in paths]
@@ -119,7 +119,7 @@ def _analysed(paths: Sequence[Path]) -> list[Drop]:
         for place, path in different.items()
         if places.count(place) > 1
     ]
-    for path, name in zip(paths, _names(places)):
+    for path, name in zip(paths, short_names(places)):
         try:
             drops.append(analyse(path)._replace(name=name))
         except SceneError as error:
@@ -129,7 +129,7 @@ def _analysed(paths: Sequence[Path]) -> list[Drop]:
     return drops
 
 
-def _names(places: list[Path]) -> list[str]:
+def short_names(places: list[Path]) -> list[str]:
     """Names of the sheets without suffix, with as many parent folders as make them unique."""
     names = [place.stem for place in places]
     for depth in range(2, max(len(place.parts) for place in places)):

@@ -35,7 +35,7 @@ def summary(found: dict) -> list[Part]:
         else ""
     )
     memory = f"{cost['peak_memory_bytes'] / 1e6:.0f} MB of memory at most"
-    tables = [_quantiles(found)] if found["quantiles"] else []
+    tables = [table_of_quantiles(found)] if found["quantiles"] else []
     return [
         Bullets(run),
         *_varied(found["cases"].get("vary", {})),
@@ -50,7 +50,8 @@ def _varied(vary: dict) -> list[Part]:
     return [Table(["varied input", "distribution", "beyond its bounds"], rows)] if rows else []
 
 
-def _quantiles(found: dict) -> Table:
+def table_of_quantiles(found: dict) -> Table:
+    """Quantiles of each result with their bounds."""
     rows = [
         (_LABELS[name], *(estimate(row) for row in rows))
         for name, rows in found["quantiles"].items()

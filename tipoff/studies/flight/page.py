@@ -70,7 +70,7 @@ def draw(found: dict) -> list[Part]:
     return [
         _setup(found),
         *(Figure(*item) for item in charts(found)),
-        _conditions(found, [item.name for item in answers.ALL], [_EXITS], ".4g"),
+        table_of_conditions(found, [item.name for item in answers.ALL], [_EXITS], ".4g"),
         *_flights(found),
         _cases(found["cases"]),
     ]
@@ -87,7 +87,9 @@ def terminal(found: dict) -> list[Part]:
     ]
 
 
-def _conditions(found: dict, shown: Sequence[str], notes: Sequence[str], form=".3g") -> Table:
+def table_of_conditions(
+    found: dict, shown: Sequence[str], notes: Sequence[str], form=".3g"
+) -> Table:
     """The quantities ``shown`` of every condition; a condition without a flight has its status."""
     rows = [
         (row["condition"], *(row["flown"][name] for name in shown))
@@ -102,7 +104,10 @@ def _conditions(found: dict, shown: Sequence[str], notes: Sequence[str], form=".
 def _flights(found: dict) -> list[Part]:
     """Tables of the flight of every condition."""
     notes = [_BOXES] * (not found["flight"]["no_clearance"]) + remarks(found)
-    return [_conditions(found, _TARGET, notes), _conditions(found, _ROTATION, [_CONE])]
+    return [
+        table_of_conditions(found, _TARGET, notes),
+        table_of_conditions(found, _ROTATION, [_CONE]),
+    ]
 
 
 def _cases(many: dict) -> Table:

@@ -82,10 +82,10 @@ def summary(found: dict) -> list[Part]:
         f"{found['confidence']:.0%} confidence; {found['cases']:,} cases"
     )
     odd = [f"{row['words']}: {line}" for row in found["rows"] for line in _odd(row)]
-    return [Bullets([run, population.model_line(found), *odd]), _table(found)]
+    return [Bullets([run, population.model_line(found), *odd]), table_of(found)]
 
 
-def _table(found: dict) -> Table:
+def table_of(found: dict) -> Table:
     """One row for each factor, without the columns that are empty in all rows."""
     columns = [(head, [cell(row) for row in found["rows"]]) for head, cell in _COLUMNS]
     shown = [column for column in columns if any(cell is not None for cell in column[1])]

@@ -30,7 +30,7 @@ from tipoff.studies.populations.population import Surrogate
 
 NAME = "limits"
 PAIR = ("misalignment", "mass_eccentricity")
-_RAYS = 5  # rays between the axes of the map of two tolerances
+RAYS = 5  # rays between the axes of the map of two tolerances
 _REACH = 5.0  # largest multiple of a whole set
 
 
@@ -48,9 +48,7 @@ def run(study: Study, options: Options = Options()) -> dict:
         from tipoff.studies.render.chart import to_files
 
         with Board(NAME, 1) as board:
-            found = _Search(
-                study, options, limits, cases, model, margin, board.callback(NAME)
-            ).all()
+            found = Search(study, options, limits, cases, model, margin, board.callback(NAME)).all()
             board.finished(NAME, f"{found['evaluations']:,} sets of {cases:,} cases")
         return found, [
             path
@@ -68,7 +66,7 @@ def _margin(study: Study, options: Options) -> constants.Margin:
 STAGE = Stage(NAME, __name__, Options, _margin)
 
 
-class _Search:
+class Search:
     """All searches of one study."""
 
     def __init__(
@@ -107,7 +105,7 @@ class _Search:
         self.report, self.evaluations = report, 0
         # Halvings and refinements of each full search, and about five evaluations of each search
         # that starts near its result.
-        self.expected = (len(self.factors) + 1) * (14 + 5 * (len(self.others) + 2)) + 9 * _RAYS
+        self.expected = (len(self.factors) + 1) * (14 + 5 * (len(self.others) + 2)) + 9 * RAYS
 
     def all(self) -> dict:
         """The whole result."""
@@ -131,7 +129,7 @@ class _Search:
             "limits": [limit._asdict() for limit in self.limits],
             **shown,
             "rows": rows,
-            "map": self._map(searched[PAIR[0]].scale or 0.1),
+            "map": self.pairs(searched[PAIR[0]].scale or 0.1),
             "evaluations": self.evaluations,
         }
 
@@ -237,12 +235,12 @@ class _Search:
             "certified": count <= self.allowed,
         }
 
-    def _map(self, start: float) -> dict | None:
+    def pairs(self, start: float) -> dict | None:
         """Certified pairs of two tolerances on rays from one axis to the other; each search starts
         at the last result. None where there is no such pair."""
         pair, points = [self.factors[name] for name in PAIR], []
-        for number in range(_RAYS + 2):
-            angle = 0.5 * math.pi * number / (_RAYS + 1)
+        for number in range(RAYS + 2):
+            angle = 0.5 * math.pi * number / (RAYS + 1)
             shares = [round(part, 12) for part in (math.cos(angle), math.sin(angle))]
             edge = 1.0 / max(shares)  # there one of both reaches its largest searched tolerance
             ray = {name: share * factor.most for name, share, factor in zip(PAIR, shares, pair)}

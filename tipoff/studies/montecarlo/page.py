@@ -66,9 +66,9 @@ def draw(found: dict) -> list[Part]:
     return [
         Bullets(_run(found)),
         histograms,
-        _quantities(found),
+        table_of_quantities(found),
         Fold("All quantiles, also of the paper's number of cases", [_quantiles(found)]),
-        _tails(found),
+        table_of_tails(found),
         convergence,
         Heading("Effect of the reading of the paper's Table 3"),
         _readings(found),
@@ -81,7 +81,7 @@ def draw(found: dict) -> list[Part]:
 def summary(found: dict) -> list[Part]:
     """Quantiles and probabilities above limits, for the terminal."""
     lines = [*_run(found), *_different(found["readings"]), *_model_error(found["models"])]
-    return [Bullets(lines), _quantities(found), _tails(found)]
+    return [Bullets(lines), table_of_quantities(found), table_of_tails(found)]
 
 
 def _run(found: dict) -> list[str]:
@@ -241,7 +241,8 @@ def _models(models: dict) -> Chart:
     return Chart("montecarlo-models", panels, columns=3, height=300)
 
 
-def _quantities(found: dict) -> Table:
+def table_of_quantities(found: dict) -> Table:
+    """Mean, standard deviation and quantiles with bounds of each quantity."""
     rows = []
     for item in found["quantities"]:
         quantiles = {row["share"]: row for row in item["quantiles"]}
@@ -275,7 +276,8 @@ def _quantiles(found: dict) -> Table:
     return Table(["quantity", "cases", "sd", *below], rows, (_BOUNDS,), dense=True)
 
 
-def _tails(found: dict) -> Table:
+def table_of_tails(found: dict) -> Table:
+    """Probability above each limit, with bounds."""
     rows = [
         (
             row["limit"],

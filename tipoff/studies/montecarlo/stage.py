@@ -73,7 +73,7 @@ def run(study: Study, options: Options = Options()) -> dict:
             "settled": settled,
             "confidence": spread.CONFIDENCE,
             "paper_cases": min(PAPER, options.cases),
-            "quantities": [_quantity(item, found) for item in answers.ALL],
+            "quantities": [quantity_row(item, found) for item in answers.ALL],
             "tails": [_tail(limit, np.degrees(found.results.rate)) for limit in limits],
             "convergence": [
                 {"name": item.name, **row}
@@ -81,7 +81,7 @@ def run(study: Study, options: Options = Options()) -> dict:
                 for row in spread.convergence(item.of(found.results), _CONVERGING)
             ],
             "readings": _readings(study, options, model, found),
-            "models": _models(study, options, model.name, found),
+            "models": compared(study, options, model.name, found),
         }
         return made, [
             path
@@ -106,7 +106,9 @@ def _settled(quantity: answers.Quantity, found: Population, first: int | None = 
     return quantity.of(found.results)[:first][found.settled[:first]]
 
 
-def _quantity(quantity: answers.Quantity, found: Population) -> dict:
+def quantity_row(quantity: answers.Quantity, found: Population) -> dict:
+    """Moments, quantiles and histogram of ``quantity`` over the settled cases, and quantiles over
+    those of the paper's first thousand (None without any), in the units of the quantity."""
     values, first = _settled(quantity, found), _settled(quantity, found, PAPER)
     return {
         "name": quantity.name,
@@ -175,7 +177,7 @@ def _apart(here: list[np.ndarray], values: list[np.ndarray]) -> dict:
     }
 
 
-def _models(study: Study, options: Options, model: str, found: Population) -> dict | None:
+def compared(study: Study, options: Options, model: str, found: Population) -> dict | None:
     """The first 1,000 cases with springs and with compliant contact. None without contact, where
     both are the same model, and without a calibration for the scene. ``quantities`` is empty where
     no case settled in both models."""

@@ -66,8 +66,8 @@ def draw(found: dict) -> list[Part]:
         Figure(beside, _BESIDE),
         _table2(best),
         *_deviations(best),
-        _at_exit(found["exit"]),
-        _inputs(found),
+        table_at_exit(found["exit"]),
+        table_of_inputs(found),
         Fold("Reasons for the bounds", [_reasons(found["inputs"])]),
         Fold("All searches", [_searches(found["searches"])]),
         *_headline(found),
@@ -79,8 +79,8 @@ def terminal(found: dict) -> list[Part]:
     """The tables of the best set, its inputs and its exit state, and the names of the files."""
     return [
         _fit(found),
-        _inputs(found),
-        _at_exit(found["exit"]),
+        table_of_inputs(found),
+        table_at_exit(found["exit"]),
         *_headline(found),
         Bullets(found["slips"]),
         f"Scene {found['scene_file']}, data {found['data']}.",
@@ -264,7 +264,7 @@ def _deviations(best: dict) -> list[Part]:
     ]
 
 
-def _at_exit(found: dict) -> Table:
+def table_at_exit(found: dict) -> Table:
     """Exit state with the best set by condition; a dash where it did not settle."""
     conditions = [
         Column(
@@ -335,7 +335,8 @@ def _headline(found: dict) -> list[Part]:
     return [Table(heads, rows, () if ours else (missing,))]
 
 
-def _inputs(found: dict) -> Table:
+def table_of_inputs(found: dict) -> Table:
+    """One row for each input of the search."""
     rows = [
         (
             item["name"].replace("_", " "),

@@ -23,16 +23,16 @@ def run(
     """
     fitted, scene = constants(options.calibration), study.condition(condition)
     if options.model == FINITE_ELEMENTS:
-        return _made(study, condition, study.highfi(condition), quiet)
+        return result_of(study, condition, study.highfi(condition), quiet)
     if options.model == SPRINGS:
-        return _made(study, condition, study.lowfi(condition, fitted), quiet)
+        return result_of(study, condition, study.lowfi(condition, fitted), quiet)
     models.require_accepted(study, options.name, condition)
     # checks the number of modes before the rail compliance is computed
     vibrating = study.lowfi(condition, modes=options.modes or 0)
     if scene.contact is None:
-        return _made(study, condition, vibrating, quiet)
+        return result_of(study, condition, vibrating, quiet)
     found = study.rail_compliance(scene, judged=False)
-    return _made(
+    return result_of(
         study, condition, study.lowfi(condition, compliance=found, modes=options.modes or 0), quiet
     )
 
@@ -61,10 +61,10 @@ def chosen(
         if point["modes"] is not None:
             candidate = candidate._replace(modes=point["modes"])
         request = candidate.request(study, condition, relative_tolerance=point["setting"])
-    return _made(study, condition, request, quiet) | {"chosen": point}
+    return result_of(study, condition, request, quiet) | {"chosen": point}
 
 
-def _made(study: Study, condition: str, request: Run, quiet: bool) -> dict:
+def result_of(study: Study, condition: str, request: Run, quiet: bool) -> dict:
     found = study.store.get(request)
     calibrated, modes = request.calibration is not None, getattr(request.numerics, "modes", 0)
     result = row(condition, found, study.relative(study.store.path(request)))

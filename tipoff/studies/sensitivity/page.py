@@ -101,7 +101,7 @@ def draw(found: dict) -> list[Part]:
     tables = [
         table
         for item in found["tables"]
-        for table in (_largest(item, found["paper"]), _beside_paper(item, found["paper"]))
+        for table in (table_of_largest(item, found["paper"]), _beside_paper(item, found["paper"]))
     ]
     return [
         Bullets([population.model_line(found)]),
@@ -109,7 +109,7 @@ def draw(found: dict) -> list[Part]:
         *tables,
         Heading("All inputs together"),
         _used(found["sobol"]),
-        _indices(found["sobol"]),
+        table_of_indices(found["sobol"]),
         *(Figure(*item) for item in pictures(found)),
         _inputs(found["sobol"]),
     ]
@@ -119,13 +119,13 @@ def summary(found: dict) -> list[Part]:
     """The largest changes and the total indices, for the terminal."""
     return [
         Bullets([population.model_line(found)]),
-        *(_largest(item, found["paper"]) for item in found["tables"]),
+        *(table_of_largest(item, found["paper"]) for item in found["tables"]),
         _used(found["sobol"]),
-        _indices(found["sobol"]),
+        table_of_indices(found["sobol"]),
     ]
 
 
-def _largest(item: dict, paper: dict) -> Table:
+def table_of_largest(item: dict, paper: dict) -> Table:
     """The largest change of each quantity by a contact constant, by the clearance, and in the
     paper's Table 2."""
     sources = (item["largest"], item["largest_clearance"], paper["largest"])
@@ -159,7 +159,7 @@ def _used(sobol: dict) -> str:
     )
 
 
-def _indices(sobol: dict) -> Table:
+def table_of_indices(sobol: dict) -> Table:
     """Spread, sum of the first-order indices and largest total indices of each quantity."""
     rows = []
     for item in sobol["quantities"]:

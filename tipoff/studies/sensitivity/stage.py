@@ -51,7 +51,7 @@ def run(study: Study, options: Options = Options()) -> dict:
             "asked": STAGE.plain(options),
             **population.answering(study, model),
             "citation": published.CITATION,
-            "tables": _tables(study, model, options),
+            "tables": tables(study, model, options),
             "paper": _paper(),
             "sobol": _sobol(study, model, options),
         }
@@ -90,7 +90,7 @@ def _require(study: Study, options: Options) -> None:
         raise SceneError(faults)
 
 
-def _tables(study: Study, model: Surrogate, options: Options) -> list[dict]:
+def tables(study: Study, model: Surrogate, options: Options) -> list[dict]:
     """One table for the constants of the surrogate, and one for those of the scene where a
     calibration changed them."""
     if model.scene.contact is None:

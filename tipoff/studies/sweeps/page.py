@@ -55,8 +55,8 @@ def draw(found: dict) -> list[Part]:
     for launch in launches:
         parts += [
             Heading(_title(launch)),
-            _verdicts(launch),
-            _largest(launch),
+            table_of_verdicts(launch),
+            table_of_largest(launch),
             Fold("Slopes, and the largest values by size", _details(launch)),
         ]
     figures = [Figure(*item) for item in pictures(found)]
@@ -67,7 +67,7 @@ def summary(found: dict) -> list[Part]:
     """Runs, verdicts and the largest values, for the terminal."""
     parts: list[Part] = [Bullets([population.model_line(found)]), _counts(found["launches"])]
     for launch in found["launches"]:
-        parts += [Heading(_title(launch)), _verdicts(launch), _largest(launch)]
+        parts += [Heading(_title(launch)), table_of_verdicts(launch), table_of_largest(launch)]
     return parts
 
 
@@ -93,7 +93,8 @@ def _counts(launches: list[dict]) -> Table:
     )
 
 
-def _verdicts(launch: dict) -> Table:
+def table_of_verdicts(launch: dict) -> Table:
+    """Verdict of each rate over the sizes of an error, beside that of the paper."""
     rows = [
         (
             *_error(factor, name, factor["paper"]),
@@ -139,7 +140,7 @@ def _error(factor: dict, name: str, size: float | None) -> tuple:
     return (f"{factor['label']} ({factor['unit']})", size) if name == first else ("", "")
 
 
-def _largest(launch: dict) -> Table:
+def table_of_largest(launch: dict) -> Table:
     """The largest magnitude of every quantity over sizes and directions."""
     factors = launch["factors"]
     rows = [

@@ -50,7 +50,7 @@ def run(
         folder = _folder(study, name)
         taken = _take(study, request, original, folder, frames)
         document, files = _document(study, request, original, folder, taken, factor)
-        drawn, why = _draw(document, folder)
+        drawn, why = draw_pictures(document, folder)
         document |= {"asked_frames": frames, "asked_factor": factor}
         document["pictures"] = {
             Path(picture).stem: study.relative(folder / picture) for picture in drawn
@@ -60,7 +60,7 @@ def run(
             say(f"view: {why}")
         return document, [*files, *(folder / picture for picture in drawn)]
 
-    return study.stage(f"view/{name}", _key(study, request, frames, factor), make)
+    return study.stage(f"view/{name}", key_of(study, request, frames, factor), make)
 
 
 def stored(study: Study) -> list[dict]:
@@ -79,12 +79,14 @@ def stored(study: Study) -> list[dict]:
         for item in found
         if item["condition"] in conditions
         and item["key"]
-        == _key(study, study.highfi(item["condition"]), item["asked_frames"], item["asked_factor"])
+        == key_of(
+            study, study.highfi(item["condition"]), item["asked_frames"], item["asked_factor"]
+        )
         and study.whole(item, "the report does without it until tipoff view makes it again")
     ]
 
 
-def _key(study: Study, request: Run, frames: int, factor: float | None) -> str:
+def key_of(study: Study, request: Run, frames: int, factor: float | None) -> str:
     return study.key(__name__, request.key, frames, factor, pyvista_version())
 
 
@@ -236,7 +238,7 @@ def rounded_up(value: float) -> float:
     return next(step * power for step in steps if value <= step * power * (1.0 + 1e-9))
 
 
-def _draw(document: dict, folder: Path) -> tuple[list[str], str]:
+def draw_pictures(document: dict, folder: Path) -> tuple[list[str], str]:
     """Names of the pictures, and the reason where there are none."""
     if pyvista_version() is None:
         return [], _HOW

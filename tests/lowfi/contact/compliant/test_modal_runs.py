@@ -38,7 +38,7 @@ def sampled(run: Run) -> np.ndarray:
     run.begin()
     found = [run.loop.work.copy()]
     while run.taken <= run.end and not run.message:
-        run._advance(run.taken)
+        run.advance(run.taken)
         found.append(run.loop.work.copy())
     return np.array(found[: run.taken])  # nothing was left to learn before the last one asked for
 
@@ -144,7 +144,7 @@ def test_a_rail_rings_out():
         exact, abs=1e-6 * np.abs(start).max()
     )
     stored, spent = (
-        found.energy[:, ledger._STATE].sum(axis=1),
+        found.energy[:, ledger.STATE].sum(axis=1),
         found.energy[:, ledger.ENTRIES.index("structural_damping")],
     )
     assert stored[-1] < 0.5 * stored[0] and spent[-1] == pytest.approx(
@@ -177,7 +177,7 @@ def test_ledgers_and_momentum(condition, changes):
     # tens of times what it may.
     assert (
         work_of_modes(asked, compliance, coarse, states)
-        > 1e-3 * np.abs(coarse.transverse_energy[:, ledger._STATE].sum(axis=1)).max()
+        > 1e-3 * np.abs(coarse.transverse_energy[:, ledger.STATE].sum(axis=1)).max()
     )
 
 
