@@ -7,6 +7,7 @@ from tests.highfi.support import COARSE, tiny
 from tipoff import highfi
 
 
+@pytest.mark.case("O50")
 @pytest.mark.parametrize("velocity", [(1000.0, 0.0, 0.0), (4330.1, 3061.9, -5303.3)])
 def test_a_uniform_velocity_changes_nothing(velocity):
     """To 1e-9, at 1 km/s along the axis and 7.5 km/s across all of them; the ledgers close as at

@@ -103,6 +103,7 @@ def both(scene, quadrature: int = 4) -> tuple:
     )
 
 
+@pytest.mark.case("O52")
 @pytest.mark.slow
 @pytest.mark.parametrize(
     "event",

@@ -31,6 +31,7 @@ def energy(run, entry: str) -> np.ndarray:
     return run.energy[:, ledger.ENTRIES.index(entry)]
 
 
+@pytest.mark.case("X21")
 @pytest.mark.parametrize("depth", [1e-3, 3.5e-3])
 def test_back_into_the_mouth_behind_the_surface(depth):
     """The run ends where the pad meets the end of the rail, with the speed it came with."""
@@ -60,6 +61,7 @@ def test_back_into_the_mouth_behind_the_surface(depth):
     )
 
 
+@pytest.mark.case("X21")
 @pytest.mark.parametrize("depth", [-1e-4, 0.02])
 def test_back_into_the_mouth_elsewhere(depth):
     """Over the surface, or behind the whole wall, nothing is in the way."""
@@ -68,6 +70,7 @@ def test_back_into_the_mouth_elsewhere(depth):
     assert energy(run, "kinetic").max() <= energy(run, "kinetic")[0] * (1.0 + 1e-12)
 
 
+@pytest.mark.case("X21")
 def test_two_kilometres_away():
     """Nothing is felt there; where the wall is, the same crossing is."""
     crossing = {

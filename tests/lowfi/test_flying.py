@@ -50,6 +50,7 @@ def assert_same(flown, rest, velocity: tuple) -> None:
     assert np.abs(np.subtract(flown.outcome.exit_platform_velocity, moving)).max() <= 1e-9
 
 
+@pytest.mark.case("O50")
 @pytest.mark.parametrize("velocity", FLIGHTS)
 def test_springs(velocity):
     assert_same(
@@ -57,6 +58,7 @@ def test_springs(velocity):
     )
 
 
+@pytest.mark.case("O50")
 @pytest.mark.parametrize("velocity", FLIGHTS)
 def test_compliant_contact(velocity):
     compliance = reference_compliance()

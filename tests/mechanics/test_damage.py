@@ -77,6 +77,7 @@ def targets(path, content: bytes) -> list[int]:
     return places + list(range(len(content) - 80, len(content)))
 
 
+@pytest.mark.case("X25")
 @pytest.mark.parametrize("name", KINDS)
 def test_one_flipped_bit_anywhere_is_refused_or_changed_nothing(tmp_path, name):
     """Only a file of which a user may leave the digest out has bits that change nothing: those that

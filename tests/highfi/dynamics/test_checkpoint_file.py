@@ -1,4 +1,5 @@
-"""X20: only a whole checkpoint of the very same run is taken up, and none is ever half written."""
+"""X20: only a whole checkpoint of the same run is resumed, and a reader never finds an incomplete
+file."""
 
 import os
 import random
@@ -27,6 +28,7 @@ def kept(tmp_path) -> Checkpoint:
     return kept
 
 
+@pytest.mark.case("X25")
 def test_one_flipped_bit_anywhere_is_refused(kept):
     content = kept.path.read_bytes()
     places = [*range(90), *random.Random(7).sample(range(90, len(content)), 60), len(content) - 1]

@@ -27,6 +27,7 @@ def short_rail(start: float = START) -> dict:
     return RAIL | {"start": start, "end": start + WIDTH}
 
 
+@pytest.mark.case("X22")
 @SPEEDS
 @TOLERANCES
 def test_a_wall_shorter_than_a_step(speed, tolerance):
@@ -127,6 +128,7 @@ def one_pad(**changes):
     )
 
 
+@pytest.mark.case("X22")
 @SPEEDS
 @pytest.mark.parametrize("tolerance", [1e-4, 1e-6])
 def test_a_short_wall_that_gives_way(monkeypatch, speed, tolerance):
@@ -183,6 +185,7 @@ def thrown_back(depth: float, away: float = 0.0):
     )
 
 
+@pytest.mark.case("X21")
 @pytest.mark.parametrize("given", [False, True], ids=["springs", "compliant"])
 def test_back_into_the_mouth(given):
     """A pad behind the surface strikes the rail's end; over the surface, or behind the whole wall,
@@ -231,6 +234,7 @@ def unwatched_on(asked, compliance):
     return run.trajectory()
 
 
+@pytest.mark.case("X21")
 @pytest.mark.parametrize("given", [False, True], ids=["springs", "compliant"])
 def test_two_kilometres_away(given):
     """A payload beside its rails feels none of them: not the wall it is behind, nor the one whose

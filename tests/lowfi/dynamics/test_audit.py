@@ -75,6 +75,7 @@ def test_hundreds_of_touches_keep_the_ledger_closed():
     assert audit.errors(free.loop.audit, 1e-6, 1e-4)[0] > 1e-6
 
 
+@pytest.mark.case("X24")
 def test_a_wall_stiffer_than_numbers_resolve_diverges():
     """At 1e30 N/m^1.5 the penetration is below the last digit of a place. The message says what was
     tried."""
@@ -115,6 +116,7 @@ def test_energy_given_back_by_lost_contacts_is_an_error():
     assert run.trajectory().status == "diverged"
 
 
+@pytest.mark.case("X24")
 @pytest.mark.parametrize("duration", [1e-3, pytest.param(0.058, marks=pytest.mark.slow)])
 def test_compliant_walls_at_100_m_s_across(duration):
     """Pads go a hundred times deeper than the clearance. In the long run they come back to the

@@ -101,6 +101,21 @@ def test_axisymmetric_precession(tolerance):
     assert np.hypot(*wobble) / 0.2 > 1.0 + 1e-3
 
 
+@pytest.mark.case("X26")
+@pytest.mark.parametrize("tolerance", [1e-7, 1e-9])
+@pytest.mark.parametrize("duration", [0.06, 10.0])
+def test_inertia_of_a_needle(duration, tolerance):
+    """1e-9, 1 and 1 kg m2 at 3 rad/s about the first axis: the rate stays constant, and the norm of
+    the quaternion and the energy hold."""
+    inertia = (1e-9, 1.0, 1.0)
+    run = spin(inertia, (3.0, 0.0, 0.0), duration, tolerance, 0.01 * duration)
+    assert run.status == "time_limit" and run.message == ""
+    assert run.rate == pytest.approx(np.tile([3.0, 0.0, 0.0], (run.time.size, 1)), abs=1e-9)
+    assert abs(np.linalg.norm(run.quaternion, axis=1) - 1.0).max() <= 1e-12
+    assert run.quaternion[-1, 0] == pytest.approx(math.cos(1.5 * duration), abs=1e-8)
+    assert run.checks["energy_error"] <= 1e-6
+
+
 @pytest.mark.case("O37")
 @pytest.mark.parametrize("tolerance, error", [(1e-8, 1e-5), (1e-11, 1e-7)])
 def test_body_fixed_thrust(tolerance, error):

@@ -71,6 +71,7 @@ def said(store: Store):
     return store.digest(), store.failures(), messages, [array.tobytes() for array in results]
 
 
+@pytest.mark.case("X25")
 def test_any_bit_of_any_file_is_found_and_mended(whole, tmp_path, capsys):
     """Places move through the files, from one to the next; lists of failures are hit more often."""
     path, told = whole

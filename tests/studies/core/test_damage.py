@@ -90,6 +90,7 @@ def test_a_stage_is_never_made_again_from_a_damaged_trajectory(engine, study, ca
         assert runs.run(study, "highfi") == again and "is made again" not in capsys.readouterr().err
 
 
+@pytest.mark.case("X25")
 @pytest.mark.parametrize("share", np.linspace(0.0, 1.0, 12))
 def test_a_flipped_bit_anywhere_in_a_stored_run_has_it_made_again(engine, study, capsys, share):
     run = study.highfi("phi15")
