@@ -1,4 +1,4 @@
-"""Scenes whose constants are known, and a search small enough for a test."""
+"""Scenes with given constants, and a search small enough for a test."""
 
 import functools
 from pathlib import Path
@@ -23,8 +23,8 @@ TRUTH = {
 
 @functools.cache
 def scene() -> scenes.Scene:
-    """The reference scene asked to fit two conditions, its constants wrong by 30 % and more; d is
-    known."""
+    """The reference scene with two conditions to fit, its constants wrong by 30 % and more; d has
+    its true value."""
     return scenes.load("reference").replace(
         {
             "agreement.fitted": list(CONDITIONS),
@@ -44,7 +44,7 @@ def own_curves() -> dict[str, Trajectory]:
 
 def write_curves(path: Path, run: Trajectory, keep: slice | np.ndarray = slice(None)) -> Path:
     """A CSV file of samples of a run in units of a test stand, as another code would write it, with
-    a column nobody asked for."""
+    a column that is not needed."""
     columns = np.column_stack(
         [1e3 * run.time, run.velocity[:, 0], np.degrees(run.rate), np.zeros(run.time.size)]
     )[keep]

@@ -1,5 +1,5 @@
-"""Curves of another code or of a test in place of the reference: what is read, what is refused, and
-what comes back."""
+"""Curves of another code or of a test instead of the reference: reading, refusals, and the fitted
+constants."""
 
 import hashlib
 import json
@@ -63,9 +63,10 @@ def test_constants_come_back_from_files(tmp_path):
         )
 
 
-def test_any_sampling_tells_the_same(tmp_path):
-    """A third of the samples at random leaves the truth where it was, but for straight lines across
-    some 0.3 ms. Control: the scene's own constants, wrong by 30 %, stay far away."""
+def test_any_sampling_has_the_same_minimum(tmp_path):
+    """With a third of the samples, chosen at random, the minimum stays at the true constants,
+    except for linear interpolation over some 0.3 ms. Control: the scene's own constants, wrong by
+    30 %, stay far away."""
     generator, thinned = np.random.default_rng(3), {}
     for name, run in own_curves().items():
         keep = np.flatnonzero(generator.random(run.time.size) < 1.0 / 3.0)
@@ -96,8 +97,8 @@ def test_a_quoted_header_cell_may_hold_line_breaks(tmp_path):
     assert (first.rate == second.rate).all() and (first.time == second.time).all()
 
 
-def test_the_window_begins_where_it_is_told(tmp_path):
-    """v_x rises by 0.2 m/s a ms: its mean over 1 to 3 ms is 0.4 m/s, and what comes after is left
+def test_the_window_begins_at_the_given_time(tmp_path):
+    """v_x rises by 0.2 m/s a ms: its mean over 1 to 3 ms is 0.4 m/s, and later samples are left
     out."""
     path = tmp_path / "a.csv"
     path.write_text("\n".join([HEAD, *LINES]))

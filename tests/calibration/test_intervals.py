@@ -1,5 +1,5 @@
-"""Error bars: none where the data know nothing, the right size where theory gives it, and as many
-hits as they claim."""
+"""Error bars: none where the data contain no information, the right size where theory gives it, and
+the stated coverage."""
 
 import numpy as np
 import pytest
@@ -46,7 +46,7 @@ def bounce(law: HuntCrossley, speed: float, mass: float = 20.0) -> tuple[float, 
     return -found.y_events[1][0][1] / speed, found.y_events[0][0][0]
 
 
-def known(of_bounces) -> np.ndarray:
+def bounce_information(of_bounces) -> np.ndarray:
     """Information on ln k, ln n and ln a in what ``of_bounces`` makes of the bounces."""
     middle = np.full(3, 0.5)  # inside the unit cube, where differences are central
 
@@ -58,7 +58,7 @@ def known(of_bounces) -> np.ndarray:
 
 
 @pytest.mark.case("O43")
-def test_restitution_alone_tells_dissipation_and_nothing_else():
+def test_restitution_alone_identifies_dissipation_only():
     """e depends on a v alone (Hunt and Crossley), so k and n have no error bar; a has one."""
     bounces = np.array([bounce(PAD, speed) for speed in SPEEDS])
     np.testing.assert_allclose(
@@ -66,7 +66,7 @@ def test_restitution_alone_tells_dissipation_and_nothing_else():
         [hunt_crossley_restitution(PAD.dissipation * speed) for speed in SPEEDS],
         rtol=1e-6,
     )
-    matrix = known(lambda found: found[:, 0])
+    matrix = bounce_information(lambda found: found[:, 0])
     values = np.linalg.eigvalsh(matrix)
     assert values[1] < 1e-10 * values[2]
     half = intervals.half_widths(matrix, 1e-4, SPEEDS.size)
@@ -75,9 +75,9 @@ def test_restitution_alone_tells_dissipation_and_nothing_else():
     assert "stiffness" in sentences and "exponent" in sentences and "dissipation" not in sentences
 
 
-def test_penetration_beside_restitution_tells_all_three():
-    """Control: with the depth of each bounce k and n show, and have error bars."""
-    matrix = known(lambda found: np.concatenate([found[:, 0], np.log(found[:, 1])]))
+def test_penetration_and_restitution_identify_all_three():
+    """Control: with the depth of each bounce k and n are identifiable and have error bars."""
+    matrix = bounce_information(lambda found: np.concatenate([found[:, 0], np.log(found[:, 1])]))
     assert np.linalg.matrix_rank(matrix, tol=1e-10 * np.linalg.eigvalsh(matrix)[-1]) == 3
     assert np.isfinite(intervals.half_widths(matrix, 1e-4, 2 * SPEEDS.size)).all()
 
@@ -135,10 +135,10 @@ def refits(count: int):
 
 
 @pytest.mark.case("O45")
-def test_intervals_hold_the_truth_as_often_as_they_say():
-    """1000 refits: 931 to 967 hits are the 99 % band of 95 %. Control: normal quantile and r'r/n,
-    which forget what a fit of two constants to eight forces takes away, miss more than twice as
-    often."""
+def test_intervals_have_their_stated_coverage():
+    """1000 refits: 931 to 967 hits are the 99 % band of 95 %. Control: with the normal quantile and
+    r'r/n, which ignore the degrees of freedom of a fit of two constants to eight forces, there are
+    more than twice as many misses."""
     hits, naive = np.zeros(2), np.zeros(2)
     for error, matrix, squares in refits(1000):
         hits += np.abs(error) <= intervals.half_widths(matrix, squares, DEPTH.size)
@@ -151,9 +151,9 @@ def test_intervals_hold_the_truth_as_often_as_they_say():
 
 def test_samples_that_repeat_each_other_are_no_new_ones():
     """1 + 2 sum rho^k = (1 + rho)/(1 - rho). The largest sum errs upwards, so a single curve counts
-    as few samples as it has independent ones, or fewer, half of all curves at least half as many;
-    and the same samples twice as they did once. Control: counted one by one correlated samples
-    would be nine times too many."""
+    at most as many samples as it has independent ones, and half of all curves at least half as
+    many; samples that are repeated count once. Control: correlated samples counted singly would be
+    nine times too many."""
     generator = np.random.default_rng(7)
     for rho, tau in ((0.0, 1.0), (0.8, 9.0)):
         curves = [correlated(generator, 4000, rho) for _ in range(40)]
@@ -169,9 +169,9 @@ def test_samples_that_repeat_each_other_are_no_new_ones():
 
 
 def test_intervals_of_a_curve_do_not_shrink_with_its_sampling():
-    """A level read off correlated noise, 400 samples each worth 1/9. Counted by their correlation
-    at least nine in ten intervals hold the truth (the correlation itself is read off 400
-    residuals); counted whole only about half do."""
+    """A constant level in correlated noise, with 400 samples that count as 400/9. With the count
+    from their correlation, which is estimated from the 400 residuals, at least nine in ten
+    intervals contain the true value; with the full count only about half do."""
     generator, hits = np.random.default_rng(9), np.zeros(2)
     for _ in range(400):
         noise = correlated(generator, 400, 0.8)
@@ -184,13 +184,13 @@ def test_intervals_of_a_curve_do_not_shrink_with_its_sampling():
     assert hits[0] >= 0.9 * 400 and hits[1] < 0.6 * 400, hits
 
 
-def test_fewer_residuals_than_parameters_tell_nothing():
+def test_fewer_residuals_than_parameters_give_no_interval():
     assert np.isinf(intervals.half_widths(np.eye(3), 1.0, 3.0)).all()
     assert np.isinf(intervals.deviations(np.zeros((2, 2)), 1.0)).all()
 
 
 def test_a_direction_called_weak_has_no_interval():
-    """Only what takes part in it loses its own: the third parameter keeps what theory gives."""
+    """Only its parameters lose their interval: the third parameter keeps that of theory."""
     direction = np.array([0.8, -0.6, 0.0])
     half = intervals.deviations(np.diag([4.0, 4.0, 4.0]), 1.0, [direction])
     assert np.isinf(half[:2]).all() and half[2] == pytest.approx(0.5)

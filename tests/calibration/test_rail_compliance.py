@@ -1,4 +1,4 @@
-"""Which mesh the rail's compliance is condensed from."""
+"""Choice of the mesh from which the compliance of the rail is condensed."""
 
 import numpy as np
 import pytest
@@ -25,9 +25,9 @@ def test_the_coarsest_mesh_within_one_per_cent(monkeypatch, slope, expected):
 
 
 @pytest.mark.slow
-def test_the_estimate_is_what_the_reference_s_own_mesh_shows():
-    """The rail of the reference scene at 8 and 4 mm: the change to 2 mm is foreseen to a quarter,
-    and is above 1 %."""
+def test_the_estimate_agrees_with_the_mesh_of_the_reference():
+    """The rail of the reference scene at 8 and 4 mm: the predicted change to 2 mm is right to a
+    quarter, and above 1 %."""
     scene = load("reference")
     coarsest, coarse, own = (rail_compliance.direct(scene, size) for size in (8e-3, 4e-3, 2e-3))
     foreseen = 0.5 * np.abs(coarse - coarsest) / coarse
@@ -35,7 +35,7 @@ def test_the_estimate_is_what_the_reference_s_own_mesh_shows():
     assert rail_compliance.fine_enough(scene) == REFERENCE
 
 
-def test_a_size_that_is_asked_for_is_taken(monkeypatch):
+def test_a_given_size_is_used(monkeypatch):
     monkeypatch.setattr(rail_compliance, "fine_enough", lambda *_: pytest.fail("chose a mesh"))
     monkeypatch.setattr(rail_compliance.statics, "condense", lambda scene, size: size)
     assert calibration.compliance(load("tiny"), 8e-3) == 8e-3

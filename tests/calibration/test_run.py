@@ -1,4 +1,4 @@
-"""The whole fit on curves whose constants are known, and what it refuses."""
+"""The whole fit on curves with given constants, and the input that it refuses."""
 
 import dataclasses
 import math
@@ -42,7 +42,7 @@ def test_recovers_known_constants_from_a_wrong_start(fitted):
 
 
 def test_uncalibrated_start_is_far(fitted):
-    """Control: the constants the fit started from are nowhere near."""
+    """Control: the start of the fit is far from the true constants."""
     free = parameters.free(scene())
     objective = Objective(
         scene(),
@@ -59,7 +59,7 @@ def test_information_is_symmetric_and_positive(fitted):
     assert np.linalg.eigvalsh(matrix)[0] >= -1e-12 * np.trace(matrix)
 
 
-def test_names_the_depth_it_cannot_tell(fitted):
+def test_names_the_depth_that_is_not_identifiable(fitted):
     """Penetrations of some micrometres stay far below d: refitting c hides any change of d."""
     (sentence,) = [
         text for text in fitted.weak_directions if "damping_depth held at 5e-05 m" in text
@@ -82,16 +82,16 @@ def test_values_lie_within_their_bounds_and_are_justified(fitted):
 
 
 def test_intervals_of_exact_curves_are_narrow_and_hold_the_values(fitted):
-    """Nothing scatters, so nothing but the search's last digits is left."""
+    """Without scatter only the last digits of the search are left."""
     for (low, high), value in zip(fitted.intervals, fitted.values):
         assert low <= value <= high and high - low < 1e-4 * value
     assert "model error is not in them" in fitted.provenance["intervals"]
 
 
-def test_no_interval_where_the_curves_do_not_tell():
-    """Noise of a hundredth: a told constant keeps its interval; one on its bound, one in a weak
-    direction and one whose interval would be wider than its bounds have none. Of 800 samples at
-    least half count: the correlation is read off 200 at a time."""
+def test_no_interval_without_information():
+    """Noise of a hundredth: an identifiable constant keeps its interval. A constant on its bound,
+    one in a weak direction and one whose interval would be wider than its bounds have none. At
+    least half of 800 samples count: the correlation is estimated from 200 at a time."""
     noise = 0.01 / np.sqrt(800.0) * np.random.default_rng(1).standard_normal((200, 4))
     part = Parts(noise[:, 0] / VELOCITY_WEIGHT, noise[:, 1:], np.zeros(3))
     free = parameters.free(scene())
@@ -124,7 +124,7 @@ def test_travels_as_a_file_and_drives_the_surrogate(fitted, tmp_path):
 
 
 def test_same_seed_same_bits(fitted):
-    """Threads finish in any order; the result must not know."""
+    """Threads finish in any order; the result must not depend on it."""
     again = calibration.run(scene(), own_curves(), plan=SMALL)
     assert again.constants == fitted.constants and again.objective == fitted.objective
     assert (again.information == fitted.information).all()
@@ -162,7 +162,7 @@ def test_same_bits_with_any_number_of_workers(monkeypatch):
     assert (one.information == two.information).all() and one.objective > 0.0 and pools == [1, 2]
 
 
-def test_the_stage_calibrates_with_the_workers_asked_for(monkeypatch, tmp_path):
+def test_the_stage_calibrates_with_the_given_workers(monkeypatch, tmp_path):
     given = {}
 
     def run(asked, references, **others):

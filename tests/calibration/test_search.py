@@ -1,4 +1,5 @@
-"""The search on a function with many basins and a jump, and the algebra of what data know."""
+"""The search on a function with many basins and a jump, and the algebra of the information in
+data."""
 
 import numpy as np
 import pytest
@@ -21,8 +22,8 @@ START = np.array([0.2, 0.75, 0.05])
 
 
 def test_finds_the_deepest_basin():
-    """Two basins a coordinate make 8; three starts after 128 points find the one, and least squares
-    its last digits."""
+    """Two basins per coordinate make 8; three starts after 128 points find the deepest, and least
+    squares its last digits."""
     for seed in range(3):
         found = search(rugged, START, Plan(points=128, starts=3, evaluations=150), seed)
         np.testing.assert_allclose(found.shares, TARGET, atol=1e-6)

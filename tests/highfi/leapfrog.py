@@ -1,7 +1,6 @@
-"""The plain central difference loop, with nothing in it but the operator under test and, where
-asked, nodal forces.
+"""The plain central difference loop: the operator under test and, optionally, nodal forces.
 
-    v(n+1/2) = v(n-1/2) - dt M^-1 K u(n),    u(n+1) = u(n) + dt v(n+1/2)
+v(n+1/2) = v(n-1/2) - dt M^-1 K u(n),    u(n+1) = u(n) + dt v(n+1/2)
 """
 
 import numpy as np
@@ -70,7 +69,7 @@ def driven(operator, step, load, displacement, velocity):
 
     load(time, displacement) gives them in N, in any shape that broadcasts to (n,3). The velocity
     given is that at the start; from then on it lags by half a step. Yields the time (s) of the
-    displacement after each step, for as long as it is asked.
+    displacement after each step, without end.
     """
     inverse_mass = np.where(operator.free, 1.0 / operator.mass, 0.0)
     resistance = np.empty_like(displacement)

@@ -87,7 +87,7 @@ def loop_on(scene, mesh: RailMesh, numerics: Numerics = Numerics()) -> Loop:
 
 
 class Stopped(Exception):
-    """The end of the part of a run that a test lets happen."""
+    """Ends a run after the part that a test needs."""
 
 
 class _StopAt:

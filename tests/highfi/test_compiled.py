@@ -39,8 +39,8 @@ def test_each_other_effect_is_compiled_where_it_is_present_only(effect):
 
 
 def test_code_read_from_the_disk_cache_is_the_code_that_runs():
-    """A second process finds the kernel compiled; what it reads must not depend on who compiled
-    it."""
+    """A second process finds the kernel compiled; the code it reads must not depend on the process
+    that compiled it."""
     ask = (
         "from tipoff import highfi; from tests.highfi.support import COARSE, tiny; "
         "print(highfi.compiled_effects(tiny(friction=None), COARSE))"

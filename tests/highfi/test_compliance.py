@@ -1,5 +1,5 @@
 """Compliance of the walls under pads: a beam with a closed form, reciprocity, scaling, mirror
-images, refinement, and what a rail on three mounts must show."""
+images, refinement, and properties of a rail on three mounts."""
 
 from dataclasses import replace
 
@@ -70,7 +70,7 @@ def beam_theory(first, second):
 
 @pytest.mark.case("O6")
 def test_beam_under_two_pads():
-    """Means and slopes of the deflection under either pad, wherever the pads stand on the mesh."""
+    """Means and slopes of the deflection under either pad, wherever the pads are on the mesh."""
     rear, front, travel = 0.20, 0.45, (0.0, 0.05, 0.0973)
     found = compliance.of_mesh(
         beam(), elastic(), pads(rear, front), (0.0, LENGTH), travel, patterns=2
@@ -79,7 +79,7 @@ def test_beam_under_two_pads():
         places = [rear + moved, front + moved]
         for i, j in ((0, 0), (0, 1), (1, 1)):
             exact = beam_theory(places[i], places[j])
-            # under its own pressure a slope has a local part, which beams do not know
+            # under its own pressure a slope has a local part, which beam theory does not have
             here = (1, 1) if i == j else (2, 2)
             assert matrix[i, :, j][: here[0], : here[1]] == pytest.approx(
                 exact[: here[0], : here[1]], rel=0.01
@@ -106,8 +106,9 @@ def test_a_pad_over_the_end_keeps_its_last_whole_place():
     assert (over.matrix == last.matrix).all()
 
 
-def test_half_a_wall_is_pressed_where_it_is():
-    """A wall that ends under the middle of a pad answers as to the half of the pad over it."""
+def test_half_a_wall_is_pressed_at_its_place():
+    """A wall that ends under the middle of a pad has the compliance under the half of the pad over
+    it."""
     wall = (0.0, LENGTH + HALF)  # as if a wall went on where the beam ends
     half = compliance.of_mesh(beam(), elastic(), pads(LENGTH), wall, (0.0,), patterns=1)
     short = compliance.of_mesh(
@@ -123,7 +124,7 @@ def test_half_a_wall_is_pressed_where_it_is():
     assert 4.0 * half.matrix[0] == pytest.approx(short.matrix[0], rel=1e-3)
 
 
-def test_stiffer_material_gives_way_less_by_the_ratio_of_the_moduli():
+def test_compliance_falls_with_the_modulus():
     soft, hard = (
         compliance.of_mesh(
             beam((10, 1, 2)), elastic(modulus, 0.33), pads(0.3), (0.0, LENGTH), (0.0,)
@@ -185,7 +186,7 @@ def test_reciprocity_and_positive_definiteness(reference):
     assert sorted(np.unique(reference.rail, return_counts=True)[1]) == [4, 4, 4, 4]
 
 
-def test_rail_gives_way_between_mounts_and_at_its_end(reference):
+def test_rail_is_compliant_between_mounts_and_at_its_end(reference):
     first, second, cross = direct_and_cross(reference)
     # the section is the same on both sides of its corner
     assert first == pytest.approx(second, rel=1e-6)
@@ -202,7 +203,7 @@ def test_mirrored_rails_share_one_solution(monkeypatch):
     monkeypatch.setattr(pieces, "mirror", lambda *_: None)
     each = compliance.along(scene, 0.008, (0.0, 0.03), patterns=3).matrix
     assert np.abs(once - each).max() < 1e-9 * np.abs(each).max()
-    # rear pads on the other rails; faces of different rails do not feel each other
+    # rear pads on the other rails; faces of different rails have no effect on each other
     for corner in (2, 4, 6):
         assert once[:, corner : corner + 2, :, corner : corner + 2] == pytest.approx(
             once[:, :2, :, :2], rel=1e-9, abs=1e-15
@@ -211,8 +212,8 @@ def test_mirrored_rails_share_one_solution(monkeypatch):
 
 
 def test_compliance_converges_with_the_mesh(reference):
-    """The wall of 4 mm is one element thick: what 2 mm change is 5 % of the direct compliance, and
-    half of what 4 mm changed."""
+    """The wall of 4 mm is one element thick: elements of 2 mm change the direct compliance by 5 %,
+    half as much as those of 4 mm did."""
     coarse, fine = (
         direct_and_cross(compliance.along(scenes.load("reference"), size, TRAVEL[:2], patterns=1))
         for size in (0.008, 0.002)

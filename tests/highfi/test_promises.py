@@ -1,5 +1,5 @@
-"""The promises of every reference run: both ledgers, momenta, step, friction; and that a fault in
-them would be seen."""
+"""The accuracy limits of every reference run: both ledgers, momenta, step, friction; and that an
+error in them would be found."""
 
 import numpy as np
 import pytest
@@ -61,8 +61,8 @@ def test_promises_hold_with_other_effects(change):
 
 
 def test_spurious_contact_energy_is_seen():
-    """Stiffening pressed contact by 1 % creates 1 % of its stored energy out of nothing; the ledger
-    must show just that."""
+    """Contact that is stiffened by 1 % while pressed creates 1 % of its stored energy; the ledger
+    must show that amount."""
     loop = loop_on(tiny(), highfi.prepare(tiny(), COARSE), COARSE)
     loop.begin()
     created = 0.0
@@ -85,9 +85,9 @@ def test_spurious_contact_energy_is_seen():
 
 
 def test_energy_of_points_that_cross_the_edge_is_released():
-    """Pads without a crown are pressed up to their edge, and slide: points leave it loaded and meet
-    it loaded. The ledger closes only with what they carry off and bring in; with crowned pads there
-    is nothing to release."""
+    """Pads without a crown are pressed up to their edge and slide, so points enter and leave
+    contact under load. The ledger closes only with their energy; with crowned pads none is
+    released."""
     early = {"duration": "14 ms", "contact__clearance": "0.05 mm"}
     flat = [pad.model_dump() | {"relief": 0.0} for pad in tiny().pads]
     entry = ledger.ENTRIES.index("released")

@@ -1,9 +1,9 @@
-"""The limit that justifies the surrogate: on the penalty of the reference at rigid walls it is the
-reference with an infinitely stiff rail.
+"""The limit that justifies the surrogate: with the penalty of the reference and rigid walls it is
+the reference with an infinitely stiff rail.
 
-A rail of modulus E gives way by force/E, so what that changes of a smooth event falls as 1/E, until
-penalty, step or quadrature are larger. The penalty is a hundredth of the catalogue's or less, for a
-rail to be stiff beside it; pads are flat and lie on whole facets.
+The deflection of a rail of modulus E is proportional to 1/E, and so is its effect on a smooth
+event, until the effect of penalty, step or quadrature is larger. The penalty is a hundredth of the
+catalogue's or less, so that a rail is stiff beside it; pads are flat and lie on whole facets.
 """
 
 import dataclasses
@@ -17,8 +17,7 @@ from tipoff import highfi, lowfi, scenes
 STIFFER = (4.0, 16.0, 64.0)
 DURATION, APPROACH = 6e-3, 0.01  # s, m/s
 SPEED = 5.0  # m/s
-# m/s2: at 1 g the pads tilt by 16 mrad, by which the two may differ in where a force on an edge
-# points
+# m/s2: at 1 g the pads tilt by 16 mrad, and the directions of a force on an edge may differ by that
 G = 9.80665 / 50.0
 
 
@@ -55,7 +54,7 @@ def launcher(
 
 
 def comes_against(start: float, stiffer: float) -> scenes.Scene:
-    """Slides from X = ``start`` (m) and comes against four walls."""
+    """Slides from X = ``start`` (m) and touches four walls."""
     return launcher(
         stiffer,
         1.8e10,
@@ -131,8 +130,9 @@ def test_difference_of_the_fidelities_falls_with_the_stiffness_of_the_rail(event
 
 @pytest.mark.slow
 def test_the_limit_ends_at_the_quadrature_of_the_reference():
-    """A rail a thousand times stiffer: the rates differ by no 1/E any more, on the rail's own walls
-    as much as on rigid ones; with four times as many Gauss points of a facet they do again."""
+    """On a rail a thousand times stiffer the difference of the rates is no longer proportional to
+    1/E, with the rail's own compliance as with rigid walls; with four times as many Gauss points of
+    a facet it is again."""
     stiff = {quadrature: both(comes_against(0.0, 1024.0), quadrature) for quadrature in (4, 8)}
     before = apart(*both(comes_against(0.0, 256.0))[:2])
     (velocity, rate), finer = (apart(*stiff[quadrature][:2]) for quadrature in (4, 8))

@@ -34,7 +34,7 @@ def energy(run, entry: str) -> np.ndarray:
 @pytest.mark.case("X21")
 @pytest.mark.parametrize("depth", [1e-3, 3.5e-3])
 def test_back_into_the_mouth_behind_the_surface(depth):
-    """The run ends where the pad meets the end of the rail, with the speed it came with."""
+    """The run ends where the pad meets the end of the rail, at its initial speed."""
     asked = thrown_back(depth)
     assert (asked.contact.clearance, asked.pads[0].length, asked.rail.end) == pytest.approx(
         (CLEARANCE, 2.0 * HALF, END)
@@ -64,7 +64,7 @@ def test_back_into_the_mouth_behind_the_surface(depth):
 @pytest.mark.case("X21")
 @pytest.mark.parametrize("depth", [-1e-4, 0.02])
 def test_back_into_the_mouth_elsewhere(depth):
-    """Over the surface, or behind the whole wall, nothing is in the way."""
+    """Over the surface, or behind the whole wall, the pad meets nothing."""
     run = highfi.run(thrown_back(depth), COARSE)
     assert run.status != "diverged" and run.message == "" and not run.pad_force.any()
     assert energy(run, "kinetic").max() <= energy(run, "kinetic")[0] * (1.0 + 1e-12)
@@ -72,7 +72,7 @@ def test_back_into_the_mouth_elsewhere(depth):
 
 @pytest.mark.case("X21")
 def test_two_kilometres_away():
-    """Nothing is felt there; where the wall is, the same crossing is."""
+    """No contact there. Control: the same crossing at the wall has contact."""
     crossing = {
         "initial__position__z": CLEARANCE + 5e-5,
         "initial__velocity__x": 1.0,
@@ -90,7 +90,7 @@ def test_two_kilometres_away():
 
 
 def test_back_through_the_wall():
-    """A pad behind a wall of 4 mm that comes back strikes it there, without having felt it."""
+    """A pad behind a wall of 4 mm that comes back strikes its back, and had no contact before."""
     run = highfi.run(
         tiny(**SHORT, initial__position__y=CLEARANCE + 4.5e-3, initial__velocity__y=-1.0), COARSE
     )

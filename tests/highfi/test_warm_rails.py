@@ -1,5 +1,5 @@
-"""Uneven temperature in the reference: the motion starts in the warm rails' equilibrium, contact
-meets the bowed walls, the ledgers close."""
+"""Uneven temperature in the reference: the motion starts in the equilibrium of the warm rails,
+contact is with the bowed walls, the ledgers close."""
 
 import numpy as np
 import pytest
@@ -27,7 +27,7 @@ def warm():
 
 
 def test_no_difference_of_temperature_leaves_contact_where_it_was():
-    """The time loop knows nothing else of it, so a run is the same to the bit."""
+    """The time loop depends on temperature in no other way, so a run has the same bits."""
     zero, plain = (begun(scene).system.surface for scene in (tiny(thermal__mean=0.0), tiny()))
     assert all(
         np.array_equal(getattr(zero, name), getattr(plain, name))
@@ -56,15 +56,15 @@ def test_ledgers_close_and_momentum_is_kept(cold, warm):
 
 
 def test_rails_do_not_ring():
-    """Until the first touch they move to the bit as cold ones do, by recoil alone, though they are
-    bowed by thousands of times as much."""
+    """Until the first touch they move like cold ones, bit for bit, by recoil alone, though their
+    bow is thousands of times larger."""
     loop, plain = stopped(10, tiny(**WARM)), stopped(10)
     assert np.array_equal(loop.state.displacement, plain.state.displacement)
     assert np.abs(loop.deformed()).max() > 1e3 * np.abs(plain.deformed()).max()
 
 
 def test_contact_meets_the_bowed_walls():
-    """The nodes that contact sees stand where the static solution has them, and no others."""
+    """The nodes that contact uses, and no others, are displaced as in the static solution."""
     scene = tiny(**WARM)
     loop = begun(scene)
     system = loop.system
@@ -115,7 +115,7 @@ def test_a_bow_that_closes_the_clearance_is_warned_about():
     )
 
 
-def test_walls_of_the_surrogate_stand_where_those_of_the_reference_do():
+def test_warm_walls_of_the_surrogate_are_those_of_the_reference():
     """The six patterns of a pad face at ignition against the nodes under it, within a sixth of what
     the wall moves over its length."""
     scene = tiny(**WARM)

@@ -1,5 +1,5 @@
-"""The stale kernel: a compiled caller keeps its old callee inside unless its place in the cache is
-named by all the code it depends on; and words compile nothing."""
+"""A changed callee: a compiled caller contains its old callee unless its place in the cache depends
+on all the code it uses. Changed comments compile nothing."""
 
 import os
 import shutil
@@ -22,7 +22,7 @@ ASK = (
     "from tipoff.highfi.caller import doubled; "
     "print(doubled(), sum(doubled.stats.cache_misses.values()))"
 )
-# The trap as Numba leaves it: all kernels in one place, told apart by their own code alone.
+# Numba's own cache: all kernels in one place, distinguished by their own code alone.
 STAMP = "    return hashlib.sha256(settings.encode()).hexdigest()[:16]"
 
 
@@ -73,7 +73,7 @@ def test_an_edited_callee_is_used(project):
     assert found == [(2.0, 1), (6.0, 1), (2.0, 0)]
 
 
-def test_words_compile_nothing(project):
+def test_comments_compile_nothing(project):
     """Docstrings and comments above a kernel move its lines and change its file."""
     write_callee(project, 1.0)
     assert ask(project) == (2.0, 1)
@@ -85,8 +85,8 @@ def test_words_compile_nothing(project):
 
 
 def test_without_the_digest_the_old_callee_is_used(project):
-    """Control: this is the wrong result that the digest prevents. If Numba mends it, the digest can
-    go."""
+    """Control: the wrong result that the digest prevents. The digest is not needed any more if
+    Numba changes this."""
     source = project / "tipoff" / "kernels" / "jit.py"
     text = source.read_text()
     assert STAMP in text

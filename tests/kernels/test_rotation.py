@@ -1,4 +1,4 @@
-"""Quaternions and matrices against scipy, and the exactness that `step` claims."""
+"""Quaternions and matrices against scipy, and the exactness of `step`."""
 
 import numpy as np
 import pytest

@@ -33,8 +33,8 @@ def reference_compliance() -> RailCompliance:
 
 
 def handmade(scene: Scene, entries: dict, rail=None) -> RailCompliance:
-    """Walls whose flexibility is zero but for ``entries``: (face, pattern, face, pattern) -> m/N,
-    everywhere the same; one rail holds all faces, or ``rail`` (f,) tells."""
+    """Walls whose flexibility is zero except for ``entries``: (face, pattern, face, pattern) ->
+    m/N, the same everywhere; one rail holds all faces, or ``rail`` (f,) gives the rail of each."""
     faces = models.build(scene).faces
     count = faces.axis.size
     flexibility = np.zeros((2, count, PATTERNS, count, PATTERNS))
@@ -54,7 +54,7 @@ def handmade(scene: Scene, entries: dict, rail=None) -> RailCompliance:
 
 
 def in_one_cell(monkeypatch) -> None:
-    """Runs use compliant contact with one cell on each pad face from here on."""
+    """From now on runs use compliant contact with one cell on each pad face."""
     monkeypatch.setattr(record, "build", partial(record.build, cells=1))
 
 

@@ -237,8 +237,8 @@ def _turned_eccentricity(eccentricity: dict, matrix: np.ndarray) -> dict:
 
 
 def independent(kind: str, seeds) -> list[dict]:
-    """One scene for each of ``seeds``, drawn by itself: examples that Hypothesis draws in a row
-    resemble each other."""
+    """One scene for each of ``seeds``, drawn separately: successive examples of Hypothesis resemble
+    each other."""
     found = []
     for number in seeds:
         drawn = []

@@ -87,8 +87,8 @@ def numerics(tolerance: float) -> lowfi.Numerics:
 
 
 def unwatched(asked: scenes.Scene, numerics: lowfi.Numerics, change=None) -> Run:
-    """A run over the scene's whole duration, from its state at ignition or what ``change`` makes of
-    it: no exit and no jam ends it."""
+    """A run over the scene's whole duration, from its state at ignition or that of ``change``: no
+    exit and no jam ends it."""
     run = Run(asked, numerics)
     if change is not None:
         run.loop = integrate.ready(
@@ -125,8 +125,8 @@ def drop(
     """A body thrown at ``v`` (m/s) along -z onto its pads' wall; ``duration`` (s) is that of the
     contact, roughly.
 
-    It also slides along the rail at ``along`` (m/s), so that nobody takes it for jammed in a long
-    contact. Returns what was measured and the trajectory.
+    It also slides along the rail at ``along`` (m/s), so that a long contact is no jam. Returns what
+    was measured and the trajectory.
     """
     gap = contact["clearance"]
     length = gap / v + 1.3 * duration

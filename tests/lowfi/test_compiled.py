@@ -55,7 +55,7 @@ print(evaluate(reference.replace({"friction": None, "platform": None})),
 
 
 @pytest.mark.slow
-def test_pruned_kernels_know_no_friction(tmp_path):
+def test_pruned_kernels_have_no_friction(tmp_path):
     """In a fresh interpreter and cache: without the table nothing compiles the friction law, with
     it something does."""
     ran = subprocess.run(
@@ -104,7 +104,7 @@ def test_without_any_effect_nothing_of_them_is_compiled():
 
 @pytest.mark.slow
 def test_temperature_is_compiled_for_a_warm_scene_only():
-    """A contact law asks where the warm walls stand; compliant contact has code of its own."""
+    """Contact laws need the places of warm walls; compliant contact has code of its own."""
     cold, compliance = load("reference"), reference_compliance()
     warm = cold.replace({"thermal.mean": 20.0})
     assert lowfi.compiled_effects(warm, compliance=compliance.rigid()) == lowfi.compiled_effects(
@@ -114,7 +114,7 @@ def test_temperature_is_compiled_for_a_warm_scene_only():
     assert not contains(compiled_code(cold, compliance=compliance), thermal_offset.fill)
 
 
-def test_compliant_contact_stands_in_the_place_of_the_contact_law():
+def test_compliant_contact_replaces_the_contact_law():
     """Nothing of its package is in a kernel without it."""
     scene = load("reference")
     assert lowfi.compiled_effects(

@@ -26,8 +26,8 @@ CONDITIONS = [
 @pytest.mark.case("X2")
 @pytest.mark.parametrize("tolerance", [1e-6, 1e-9])
 def test_zero_clearance_and_centred_thrust(tolerance):
-    """Pads that just touch feel nothing from an axial push through the mass centre: J/m, no rates,
-    no chatter."""
+    """Pads that just touch have no force under an axial push through the mass centre: J/m, no
+    rates, no chatter."""
     push = {"kind": "constant", "force": 2000.0, "duration": 0.05}
     centred = scene(
         0.2, 1e-3, pads=corners(), rail=SHORT, contact=PAPER_PAD | {"clearance": 0.0}, thrust=push
@@ -49,7 +49,7 @@ def test_zero_clearance_and_centred_thrust(tolerance):
 
 @pytest.mark.parametrize("name, condition", CONDITIONS)
 def test_promises(name, condition):
-    """What every result file prints, on both catalogue scenes."""
+    """The checks of every result file, on both catalogue scenes."""
     run = lowfi.run(load(name).condition(condition), "springs")
     assert run.status == "exited"
     checks = run.checks
@@ -133,7 +133,8 @@ def test_agrees_with_the_plain_rewrite(name, condition):
 
 
 def test_settled_rate_is_converged():
-    """At most 0.1 % from a tolerance a thousand times finer, and better by orders in between."""
+    """At most 0.1 % from a tolerance a thousand times finer, and orders of magnitude closer in
+    between."""
     asked, errors = load("sensitive").condition("phi35"), []
     fine = np.array(
         lowfi.run(asked, "springs", numerics=lowfi.Numerics(relative_tolerance=2e-10)).outcome.rate
@@ -147,7 +148,7 @@ def test_settled_rate_is_converged():
 
 
 def test_mirror_image():
-    """y to -y turns roll and yaw round and leaves pitch, whatever order the pads come in."""
+    """y to -y reverses roll and yaw and leaves pitch, for any order of the pads."""
     asked = load("sensitive").condition("phi35")
     mirror = asked.replace(
         {

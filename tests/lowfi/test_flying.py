@@ -1,4 +1,4 @@
-"""A velocity that payload and platform share changes nothing, nor does the place they fly by at."""
+"""A velocity that payload and platform share changes nothing, nor does the place of the scene."""
 
 import numpy as np
 import pytest
@@ -91,8 +91,8 @@ def test_rows_of_an_ensemble_are_single_runs():
 
 
 def test_origin():
-    """Payload, rails and platform 100 km along the axis: no more than what their places, rounded to
-    1 nm, change."""
+    """Payload, rails and platform 100 km along the axis: the change is no larger than that of a
+    shift by the rounding of places, 1 nm."""
 
     def moved(way: float):
         rail = REFERENCE.rail

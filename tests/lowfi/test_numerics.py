@@ -1,5 +1,5 @@
-"""The integrator by itself, its stability limit, what a bad setting answers, and runs that cannot
-end well."""
+"""The integrator by itself, its stability limit, refused settings, and runs that end without a
+result."""
 
 import numpy as np
 import pytest
@@ -60,7 +60,7 @@ def test_bad_numerics_are_refused(bad):
 
 
 def test_a_loose_tolerance_stays_below_the_proven_limit():
-    """Where the error control would allow more, the limit of the contact holds the step."""
+    """Where the error control would allow longer steps, the limit of the contact bounds them."""
     resting = scene(
         0.05,
         1e-3,

@@ -1,12 +1,13 @@
-"""What must hold in every scene: promises, symmetries, time reversal without losses. Scenes are
+"""Properties of every scene: accuracy limits, symmetries, time reversal without losses. Scenes are
 drawn at random.
 
-Contact makes small differences grow, by how much depends on the scene. So each comparison brings
-its own yardstick: the same scene with its state at ignition nudged by as much as one step may err.
-Two runs are compared as long as what the nudge changes is below a thousandth of the motion; a wrong
-sign or a lost term is a million times larger from the first contact on. Where both take the same
-steps ten nudges are allowed, for a pad that just touches may by rounding be open in one and closed
-in the other, which makes one step different; where they take different steps, one nudge for each.
+Contact amplifies small differences, by a factor that depends on the scene. So each comparison has
+its own measure: the same scene with its state at ignition changed by the error of one step. Two
+runs are compared as long as the effect of that change is below a thousandth of the motion; a wrong
+sign or a lost term is a million times larger from the first contact on. Runs with the same steps
+may differ by ten times that effect, since a pad that just touches may by rounding be open in one
+and closed in the other, which makes one step different; runs with different steps, by the effect
+itself.
 """
 
 import numpy as np
@@ -69,12 +70,12 @@ def mapped(values: np.ndarray, matrix: np.ndarray) -> np.ndarray:
 
 
 def assert_equal_motion(
-    found: np.ndarray, expected: np.ndarray, yardstick: np.ndarray, factor: float = 10.0
+    found: np.ndarray, expected: np.ndarray, perturbed: np.ndarray, factor: float = 10.0
 ) -> None:
-    """Two runs' speeds (n,6) agree within ``factor`` times the response to the nudge, as long as
-    that tells anything."""
+    """Two runs' speeds (n,6) agree within ``factor`` times the response to the perturbation, as
+    long as that is small beside the motion."""
     size = max(np.abs(expected).max(), LEAST)
-    response = np.maximum.accumulate(np.abs(yardstick - expected).max(axis=1))
+    response = np.maximum.accumulate(np.abs(perturbed - expected).max(axis=1))
     telling = response < 1e-3 * size
     assert telling[0]
     excess = np.abs(found - expected).max(axis=1) - factor * response - 1e-12 * size
@@ -82,8 +83,8 @@ def assert_equal_motion(
 
 
 def check_promises(raw: dict) -> None:
-    """A run as the user gets it: an honest status, finite numbers, closed balances, losses that
-    lose, steps below the limit."""
+    """A run with default numerics: right status, finite numbers, closed balances, losses that are
+    not negative, steps below the limit."""
     run = lowfi.run(scene_of(raw), "springs", numerics=Numerics(relative_tolerance=TOLERANCE))
     assert run.status in ("exited", "time_limit", "jammed"), run.message
     # the exit time may stand alone
@@ -115,24 +116,24 @@ def check_promises(raw: dict) -> None:
 
 
 def check_symmetries(raw: dict) -> None:
-    """The mirror image, the scene turned by a right angle, and its pads in the opposite order move
-    alike."""
-    base, yardstick = speeds(moved(raw)), speeds(moved(raw, nudged))
+    """The mirror image, the scene turned by a right angle, and its pads in the opposite order have
+    the same motion."""
+    base, perturbed = speeds(moved(raw)), speeds(moved(raw, nudged))
     for matrix in (MIRROR, QUARTER_TURN):
         assert_equal_motion(
-            speeds(moved(transformed(raw, matrix))), mapped(base, matrix), mapped(yardstick, matrix)
+            speeds(moved(transformed(raw, matrix))), mapped(base, matrix), mapped(perturbed, matrix)
         )
-    assert_equal_motion(speeds(moved(raw | {"pads": raw["pads"][::-1]})), base, yardstick)
+    assert_equal_motion(speeds(moved(raw | {"pads": raw["pads"][::-1]})), base, perturbed)
     if "platform" in raw and "gravity" not in raw:
-        check_other_axes(raw, base, yardstick)
+        check_other_axes(raw, base, perturbed)
 
 
-def check_other_axes(raw: dict, base: np.ndarray, yardstick: np.ndarray) -> None:
+def check_other_axes(raw: dict, base: np.ndarray, perturbed: np.ndarray) -> None:
     """With both bodies turned anyhow at ignition all velocities are turned alike, and rates in body
     axes are the same."""
     run = moved(raw, lambda start: turned_state(start, turning.TURN))
     expected, nudge = (
-        np.hstack([turning.turned(values[:, :3]), values[:, 3:]]) for values in (base, yardstick)
+        np.hstack([turning.turned(values[:, :3]), values[:, 3:]]) for values in (base, perturbed)
     )
     assert_equal_motion(speeds(run), expected, nudge, factor=run.loop.counts.steps)
 
@@ -148,21 +149,21 @@ def reversed_motion(end: np.ndarray):
 
 
 def check_reversal(raw: dict) -> None:
-    """Without losses the motion run backwards is the motion."""
+    """Without losses the reversed motion is the motion run backwards."""
     there = moved(raw)
     end = there.loop.end.copy()
     back = moved(raw, lambda _: reversed_motion(end))
-    yardstick = moved(raw, lambda _: nudged(reversed_motion(end)))
+    perturbed = moved(raw, lambda _: nudged(reversed_motion(end)))
     assert_equal_motion(
         -speeds(back),
         speeds(there)[::-1],
-        -speeds(yardstick),
+        -speeds(perturbed),
         factor=there.loop.counts.steps,
     )
 
 
 def test_a_wrong_sign_is_seen():
-    """Control: a mirror image that keeps the sign of one product of inertia does not move alike."""
+    """Control: a mirror image that keeps the sign of one product of inertia has another motion."""
     offset = {"eccentricity": {"axial": 1e-3, "radial": 0.3}}
     raw = {
         "name": "free",

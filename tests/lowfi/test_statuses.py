@@ -1,4 +1,4 @@
-"""Every run says what became of it, and no number stands behind a status that has none."""
+"""Every run has a status, and only a status with a result has numbers."""
 
 import dataclasses
 
@@ -26,9 +26,8 @@ def ended(name: str):
 
 
 @pytest.mark.parametrize("name", ENDS)
-def test_status_and_what_stands_behind_it(name):
-    """Settled values with an exit and with nothing else; a reason with a failure; finite samples
-    always."""
+def test_status_and_its_values(name):
+    """Settled values only with an exit; a reason with a failure; finite samples always."""
     run = ended(name)
     assert run.status == STATUS.get(name, name)
     assert all(
@@ -54,7 +53,7 @@ def test_exit_without_a_settled_window_has_no_settled_values():
 
 
 def test_saved_results_hold_no_number_either(tmp_path):
-    """Control: of all the ends only the exit brings a rate back from disk."""
+    """Control: of all statuses only the exit has a rate when it is read back."""
     for name in ENDS:
         path = tmp_path / f"{name}.nc"
         ended(name).save(path)
@@ -65,8 +64,8 @@ def test_saved_results_hold_no_number_either(tmp_path):
 
 
 def test_tables_of_runs_hold_none_either():
-    """In an ensemble the settled values of all but the exited are NaN, which no mean can swallow
-    unseen."""
+    """In an ensemble the settled values of all runs but the exited are NaN, so that a mean over
+    them is NaN too."""
     rows = [overrides for name, (overrides, numerics) in ENDS.items() if not numerics]
     found = lowfi.run_many(BASE, rows, "springs")
     assert found.status.values.tolist() == ["exited", "time_limit", "jammed", "diverged"]

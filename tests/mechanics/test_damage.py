@@ -1,5 +1,5 @@
-"""A file that is read back and does not fit its digest is refused, wherever the damage is: one
-flipped bit, or an edit."""
+"""A file that does not agree with its digest is refused, wherever the damage is: one flipped bit,
+or an edit."""
 
 import hashlib
 import json
@@ -61,7 +61,7 @@ def flipped(content: bytes, place: int) -> bytes:
 
 
 def targets(path, content: bytes) -> list[int]:
-    """Bytes all over a file, and inside what it tells: numbers of an array, and text of an
+    """Bytes all over a file, and inside its contents: numbers of an array, and text of an
     attribute."""
     places = np.linspace(0, len(content) - 1, PLACES).astype(int).tolist()
     if path.suffix == ".nc":
@@ -80,8 +80,8 @@ def targets(path, content: bytes) -> list[int]:
 @pytest.mark.case("X25")
 @pytest.mark.parametrize("name", KINDS)
 def test_one_flipped_bit_anywhere_is_refused_or_changed_nothing(tmp_path, name):
-    """Only a file of which a user may leave the digest out has bits that change nothing: those that
-    say that there is one."""
+    """Bits that change nothing exist only in a file whose digest is optional: those that mark the
+    digest."""
     make, load, error = KINDS[name]
     path, saved = tmp_path / name, make()
     saved.save(path)
@@ -154,8 +154,8 @@ def test_other_programs_read_what_carries_a_digest(tmp_path):
 
 
 def test_a_calibration_edited_on_purpose_needs_no_digest(tmp_path):
-    """With the digest it is refused, and told what to do; without, or with no digest at all, it is
-    taken."""
+    """With the digest it is refused, and the error names the remedy; without a digest it is
+    accepted."""
     path = tmp_path / "calibration.toml"
     calibration().save(path)
     edited = path.read_text(encoding="utf-8").replace(
@@ -194,7 +194,7 @@ def test_json_carries_its_digest_and_stays_plain(tmp_path):
     for place in range(len(content)):
         path.write_bytes(flipped(content, place))
         try:
-            # a blank of the layout, or a digit that no double can tell
+            # a blank of the layout, or a digit below the precision of a double
             assert read_json(path) == plain, place
         except DamageError as fault:
             assert str(path) in str(fault) and fault.reason

@@ -1,4 +1,5 @@
-"""The two ledgers: zero when consistent, and the transverse one sees what the total one cannot."""
+"""The two ledgers: zero when consistent, and the transverse one shows an error that the total one
+cannot."""
 
 import numpy as np
 

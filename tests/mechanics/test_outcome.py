@@ -62,7 +62,8 @@ def test_means_over_the_window(settled, start, rows):
 
 
 def test_a_window_that_ends_with_the_scene_is_whole():
-    """By rounding the last step may end a little before. Control: a nanosecond is no rounding."""
+    """The last step may end a little earlier, by rounding. Control: a nanosecond is more than
+    rounding."""
     for short, status in ((1e-16, "exited"), (1e-9, "time_limit")):
         made = book()
         ending.leave(made, 0.04, marks())

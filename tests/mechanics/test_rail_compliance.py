@@ -44,7 +44,7 @@ def test_what_was_saved_is_loaded(compliance, tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["walls.npz"]
 
 
-def test_warm_walls_are_saved_too_and_older_files_know_of_none(compliance, tmp_path):
+def test_warm_walls_are_saved_too_and_older_files_have_none(compliance, tmp_path):
     path, warm = tmp_path / "walls.npz", np.random.default_rng(9).random((5, 5, FACES, PATTERNS))
     known = replace(compliance, warm=warm)
     known.save(path)
@@ -64,7 +64,7 @@ def test_warm_walls_are_saved_too_and_older_files_know_of_none(compliance, tmp_p
         ("springs", lambda compliance: compliance.rigid(), "without thermal offset"),
     ],
 )
-def test_a_warm_scene_asks_for_walls_that_know_of_it(compliance, model, wrong, words):
+def test_a_warm_scene_needs_warm_walls(compliance, model, wrong, words):
     with pytest.raises(SceneError, match=words):
         lowfi.run(SCENE.replace({"thermal.mean": 20.0}), model, compliance=wrong(compliance))
 
@@ -155,7 +155,7 @@ def test_another_rail_or_other_pads_are_refused(compliance, change):
     ],
     ids=str,
 )
-def test_what_walls_do_not_depend_on_is_free_to_change(compliance, change):
+def test_other_keys_of_the_scene_may_change(compliance, change):
     compliance.require(SCENE.replace(change))
 
 

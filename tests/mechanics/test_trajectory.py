@@ -125,7 +125,7 @@ def test_no_nan_in_arrays(name, bad):
         ({"numerics": {"a": {"b": np.float64("nan")}}}, "numerics.a.b"),
     ],
 )
-def test_no_nan_in_what_is_said_beside(parts, place):
+def test_no_nan_in_attributes(parts, place):
     with pytest.raises(ValueError, match=f"^{place}: NaN"):
         random_trajectory(**parts)
 
@@ -141,7 +141,7 @@ def test_no_nan_in_what_is_said_beside(parts, place):
         ("pad_force", (7, 3)),
     ],
 )
-def test_arrays_that_do_not_fit(name, shape):
+def test_arrays_of_the_wrong_shape(name, shape):
     with pytest.raises(ValueError, match="has shape"):
         random_trajectory(**{name: np.zeros(shape)})
 

@@ -150,7 +150,7 @@ def test_a_solid_with_a_hole_is_filled_to_its_volume(tmp_path):
     assert len(np.unique(facets)) - len(edges) + len(facets) == 0
 
 
-def test_split_tetrahedra_say_that_they_are_skewed(tmp_path):
+def test_split_tetrahedra_give_a_warning_of_skew(tmp_path):
     surfaces = {
         "contact_top": [flat(2, 0.008, [(0, 0), (0.04, 0.02)])],
         "mount": [flat(2, 0.0, [(0, 0), (0.04, 0.02)])],
@@ -163,7 +163,7 @@ def test_split_tetrahedra_say_that_they_are_skewed(tmp_path):
     assert any("skewed" in words for words in mesh.warnings)
 
 
-def test_a_tube_is_its_section_in_layers_that_keep_to_the_planes_asked_for(tmp_path):
+def test_a_tube_is_its_section_in_layers_on_the_given_planes(tmp_path):
     planes = np.array([[0.033, 0.0, 0.0], [0.5, 0.0, 0.0]])
     points, hexes = solid.build(drawn(tmp_path / "tube.step", tube), 0.002, planes)
     stations = np.unique(points[:, 0])
@@ -177,12 +177,12 @@ def test_a_tube_is_its_section_in_layers_that_keep_to_the_planes_asked_for(tmp_p
     )
 
 
-def test_a_plate_drawn_out_bends_as_it_should_and_one_of_split_tetrahedra_does_not(tmp_path):
-    """Timoshenko's beam knows nothing of the plate's width, which the clamp holds: 2 % more at this
-    width, found by refining.
+def test_an_extruded_plate_bends_correctly_and_one_of_split_tetrahedra_does_not(tmp_path):
+    """Timoshenko's beam has no effect of the plate's width, which the clamp holds: 2 % more at this
+    width, found by refinement.
 
-    Control: the same plate in split tetrahedra, with a hole of no weight, is stiffer by far, which
-    is what the warning is about.
+    Control: the same plate in split tetrahedra, with a hole too small to matter, is far stiffer,
+    and the warning is about that.
     """
     exact = elasticity.timoshenko_cantilever(1, 0.1, 0.02, 0.004, **ALUMINIUM)[0]
     good = lowest_frequency(*solid.build(drawn(tmp_path / "plate.step", tilted_plate), 0.004, NONE))

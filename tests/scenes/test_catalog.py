@@ -1,5 +1,4 @@
-"""The catalogue holds what DESIGN.md prints, in SI, and every condition means what its table
-says."""
+"""The catalogue holds its published numbers, in SI, and every condition is that of its table."""
 
 import math
 
@@ -210,7 +209,7 @@ def test_h10_starts_off_centre():
     assert load("reference").condition("h10").initial.position.y == pytest.approx(20e-6, rel=1e-14)
 
 
-def test_provenance_tells_paper_from_assumption():
+def test_provenance_separates_paper_and_assumption():
     provenance = load("reference").provenance
     assert provenance["rail.material.youngs_modulus"] == "paper"
     assert provenance["contact.clearance"] == "assumed"
@@ -218,7 +217,7 @@ def test_provenance_tells_paper_from_assumption():
     assert load("sensitive").provenance["payload.mass"] == provenance["payload.mass"]
 
 
-def test_another_material_tells_all_of_itself_and_where_from():
+def test_another_material_has_all_its_values_and_sources():
     """Titanium expands a third as much as the aluminium it replaces. Control: another thickness
     keeps the material."""
     other, own = load("titanium"), load("reference")

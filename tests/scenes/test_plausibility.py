@@ -1,4 +1,4 @@
-"""Values that pass and yet look like a slip of units are named, on both sides of each bound."""
+"""Valid values that look like an error of units are named, on both sides of each bound."""
 
 import math
 
@@ -41,7 +41,7 @@ def test_slips_of_units_are_seen():
         assert any("wave speed" in text for text in parse(small(**slip)).warnings)
 
 
-def test_without_a_size_nothing_is_said_of_density():
+def test_without_a_size_density_is_not_judged():
     assert not any("density" in text for text in parse(small(payload__mass="1e6 kg")).warnings)
 
 
@@ -95,7 +95,7 @@ def test_a_sink_is_judged_by_the_clearance(side, warned):
 
 
 def test_a_small_clearance_is_no_slip_of_units():
-    """Springs that give way by 4 um beside a play of 1 um, or none, are a tight fit."""
+    """Springs that deflect by 4 um beside a clearance of 1 um, or none, are a tight fit."""
     scene = load("reference")
     assert (
         scene.replace({"contact.clearance": "1 um"}).warnings
@@ -133,7 +133,7 @@ def test_no_body_in_a_box_has_more_inertia_than_mass_at_its_corners(factor, warn
     assert bool(scene.warnings) == warned
 
 
-def test_without_a_size_pads_say_how_wide_the_payload_is():
+def test_without_a_size_pads_give_the_width_of_the_payload():
     scene = load("reference").replace({"payload.size": None})
     assert scene.warnings == []
     # 9.9 kg at most 0.1 m off the axis in y and z: 0.198
@@ -179,7 +179,7 @@ def test_no_condition_of_the_catalogue_is_implausible(name):
     assert not any(found.values())
 
 
-def test_what_is_implausible_in_a_condition_alone_is_said_once():
+def test_an_implausible_condition_is_reported_once():
     """Load comes with the conditions here: without them nothing presses a pad."""
     slip = small(
         contact=CONTACT | {"stiffness": "70000 N/m**1.5"},

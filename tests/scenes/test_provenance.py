@@ -35,7 +35,7 @@ def test_an_overridden_key_is_the_users_and_others_keep_their_origin():
     } == {"payload.mass": "user"}
 
 
-def test_a_table_passes_its_text_on_and_says_that_a_part_is_the_users():
+def test_a_table_keeps_its_text_and_names_the_part_of_the_user():
     found = load("reference").replace({"payload.inertia.xx": 0.07})
     assert changed(found, "payload.inertia.xx", "payload.inertia.yy", "payload.inertia.xz") == [
         "user",
@@ -70,7 +70,7 @@ def test_an_entry_of_a_list_and_the_table_around_a_table():
     assert "8 pads (assumed, in part user)" in inputs.scene_tables(found)
 
 
-def test_a_whole_table_takes_what_was_said_of_its_keys_with_it():
+def test_a_replaced_table_loses_the_provenance_of_its_keys():
     friction = {"static": 0.3, "dynamic": 0.3, "static_speed": "1 mm/s", "dynamic_speed": "2 mm/s"}
     assert changed(
         load("reference").replace({"friction": friction}), "friction.static", "friction"
@@ -78,7 +78,7 @@ def test_a_whole_table_takes_what_was_said_of_its_keys_with_it():
     assert changed(load("reference").replace({"friction": None}), "friction.static") == [None]
 
 
-def test_provenance_that_is_given_stands():
+def test_given_provenance_is_kept():
     found = load("reference").replace(
         {"payload.mass": "12 kg", "provenance.payload.mass": "measured"}
     )
@@ -145,7 +145,7 @@ def test_a_condition():
 
 
 @pytest.mark.parametrize("name", catalog())
-def test_the_catalogue_says_where_its_own_changes_come_from(name):
+def test_the_catalogue_has_the_provenance_of_its_own_changes(name):
     assert not {key: text for key, text in load(name).provenance.items() if "user" in text}
 
 

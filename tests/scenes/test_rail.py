@@ -1,5 +1,5 @@
-"""A rail given as a file: how it is chosen, that it counts by what it holds, and that every wrong
-key is named."""
+"""A rail given as a file: how it is chosen, that its content counts, and that every wrong key is
+named."""
 
 import pytest
 
@@ -112,7 +112,7 @@ def test_a_file_that_cannot_be_read(tmp_path, name):
         parse(meshed(tmp_path / name))
 
 
-def test_a_calibration_asks_for_the_lengths_its_bounds_scale_with(file):
+def test_a_calibration_needs_the_lengths_of_its_bounds(file):
     bare = parse(meshed(file) | {"contact": CONTACT})
     with pytest.raises(SceneError) as caught:
         parameters.free(bare)

@@ -57,7 +57,7 @@ BAD = {
     ),
     "duration": ("duration", True, "quantity in s"),
 }
-# Duration and sampling interval together: what is given, and what the fault says.
+# Duration and sampling interval together: values, and the text of the fault.
 BAD_SAMPLING = [
     ({"output__interval": "31 ms"}, "output.interval", "0.031 s", "3e-08 s to 0.03 s"),
     (
@@ -339,7 +339,7 @@ def test_conditions_given_by_a_program_may_be_numbers():
         scene.replace({"conditions.a": {"payload.mass": -11.0}})
 
 
-def test_faults_of_files_name_the_file_that_was_asked_for(tmp_path):
+def test_faults_of_files_name_the_requested_file(tmp_path):
     write(tmp_path, "base.toml", 'extends = "reference"\n[contact]\nclearance = "1 kg"\n')
     child = write(tmp_path, "child.toml", 'extends = "base.toml"\n[payload]\nmass = "0 kg"\n')
     with pytest.raises(SceneError) as caught:

@@ -1,5 +1,5 @@
-"""A scene as an object: overrides, immutability, hashes, and the way out to a result file and
-back."""
+"""A scene as an object: overrides, immutability, hashes, and writing to and reading from a result
+file."""
 
 import copy
 import json

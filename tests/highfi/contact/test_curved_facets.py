@@ -45,8 +45,8 @@ def test_a_curved_facet_lies_in_its_hull_and_not_in_that_of_its_nodes():
 
 @pytest.mark.parametrize("corners", [TRIANGLE[:, :2], np.array([[0.0, 0], [1, 0], [1, 1], [0, 1]])])
 def test_weights_of_a_point_are_those_of_the_place_it_was_made_from(corners):
-    """In facets with every node out of place. One beyond their hull is in none, though the rule may
-    stop at a place inside."""
+    """All nodes of the facets are moved out of place. A point beyond the hull of a facet is in
+    none, though the iteration may stop at a place inside."""
     random = np.random.default_rng(1)
     shape, _ = facets.gauss(np.column_stack([corners, np.zeros(len(corners))])[None], 6)
     for _ in range(20):
@@ -85,7 +85,7 @@ def pressed(mesh, depth, numerics=Numerics(), only_corners=False):
 
 
 def test_a_bulge_is_touched_before_the_corners_are():
-    """Control: a search that looks at corners only passes over the facets that carry the load."""
+    """Control: a search among the corners alone misses the facets that carry the load."""
     bulge = 2e-6
     force, _ = pressed(rail(bulge), -0.5 * bulge)
     assert force[1] < -1.0
@@ -122,8 +122,8 @@ def contact_share(system) -> np.ndarray:
 
 @pytest.mark.parametrize("divisions", [(1, 1, 1), (2, 1, 2), (3, 4, 3)])
 def test_the_bound_on_contact_stiffness_holds(divisions):
-    """And is within three times of it. Sums with signs come within 9 %, but nothing proves that
-    they are never less."""
+    """The bound is at most three times the stiffness. Sums with signs come within 9 %, but they are
+    not proven to be bounds."""
     system = build(scene(1e9, 0.0, PENALTY, 1e-4, 1e-6), Numerics(), rail(0.0, divisions))
     highest = np.linalg.eigvalsh(contact_share(system))[-1]
     assert highest <= contact_frequency_squared(system) <= 3.0 * highest

@@ -42,15 +42,15 @@ def test_each_rail_has_a_group_of_its_own():
     assert all(len(side) == 1 for side in sides) and len(set.union(*sides)) == 4
 
 
-def test_no_node_has_room_in_two_groups():
+def test_no_node_belongs_to_two_groups():
     surface = system().surface
     nodes = [nodes_of(surface, group) for group in range(4)]
     assert np.concatenate(nodes).size == np.unique(np.concatenate(nodes)).size
     assert np.diff(surface.groups.first_node).tolist() == [part.size for part in nodes[:-1]]
 
 
-def test_faces_that_share_a_node_are_never_parted():
-    """0 and 4 share no node, but each shares one with 2; face 3 can meet nothing."""
+def test_faces_that_share_a_node_are_in_one_group():
+    """Faces 0 and 4 share no node, but each shares one with face 2; face 3 can meet no node."""
     nodes = [np.array(part, dtype=np.int64) for part in ([1, 2], [3, 9], [2, 5], [], [5, 7])]
     found = group_faces(nodes, [10, 20, 30, 0, 40], clamped=np.array([3, 4, 7]))
     assert found.face.tolist() == [0, 2, 4, 1, 3] and found.first_face.tolist() == [0, 3, 4, 5]

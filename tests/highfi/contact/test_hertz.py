@@ -1,9 +1,8 @@
-"""Hertz's impact on a meshed half-space: the contact law comes out of the elements instead of being
-put in.
+"""Hertz's impact on a meshed half-space: the contact law is a result of the elements, not an input.
 
 A quarter of the half-space is meshed, finest under the ball. The ball is rigid and the half-space
-carries the compliance of both, (1 - nu^2) / E = 1 / E*, as Hertz's law knows only E*. Impact is
-quasi-static, as in Hertz's theory: waves cross the contact thousands of times while it lasts.
+carries the compliance of both, (1 - nu^2) / E = 1 / E*, since Hertz's law depends on E* alone. The
+impact is quasi-static, as in Hertz's theory: waves cross the contact thousands of times during it.
 """
 
 from dataclasses import replace

@@ -201,9 +201,9 @@ def test_equal_rods_swap_their_speeds(elements, fraction):
 
 @pytest.mark.case("O3")
 def test_wrong_penalties_are_seen():
-    """Controls of the collision: a soft penalty makes it last too long. One that is too stiff for
-    the mesh keeps below the limit of linear stability, yet creates energy whenever it switches, and
-    at nine tenths of the limit it does so in plenty."""
+    """Controls of the collision: with a soft penalty it lasts too long. A penalty that is too stiff
+    for the mesh is below the limit of linear stability, yet creates energy at each switch of
+    contact; at nine tenths of the limit it creates much."""
     soft, stiff = collide(100, 0.9, 0.1), collide(100, 0.9, 3.0)
     assert soft["duration"] > 1.02 * 2.0 * LENGTH / SPEED
     assert stiff["energy"] > 0.1

@@ -55,8 +55,8 @@ def assert_same(found: Trajectory, expected: Trajectory) -> None:
 
 
 def test_run_stopped_at_37_percent_goes_on_to_the_same_bits(tmp_path):
-    """The first fraction the second part reports shows that it did not start anew, which would give
-    the same bits too."""
+    """The first fraction that the second part reports shows that it did not start at the beginning,
+    which would give the same bits too."""
     seen = []
 
     def stop(fraction):
@@ -87,8 +87,8 @@ def test_any_sample_is_a_place_to_stop(tmp_path, samples):
 
 
 def test_columns_go_on_to_the_same_bits(tmp_path):
-    """The finer mesh is extruded and uses the other elastic kernel, whose arrays have nodes of no
-    element between the rails."""
+    """The finer mesh is extruded and uses the other elastic kernel. Its arrays also hold nodes
+    between the rails that belong to no element."""
     scene, numerics = (
         tiny(duration="9 ms", contact__clearance="0.05 mm"),
         Numerics(element_size=0.004),
@@ -172,8 +172,8 @@ found.save(sys.argv[2])
 
 
 def test_killed_again_and_again_it_ends_with_the_same_bits(tmp_path):
-    """SIGKILL at seeded moments, first of the set-up, then of the integration; each life begins where the
-    file of the last one ends."""
+    """SIGKILL at seeded moments, first in the set-up, then in the integration. Each process begins
+    where the file of the one before ends."""
     whole()  # compiles what the children load
     moments, path, result = random.Random(20), tmp_path / "run", tmp_path / "result.nc"
     reader = Checkpoint(path, 0.0, begun(), COARSE)

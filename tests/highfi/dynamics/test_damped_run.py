@@ -146,8 +146,8 @@ def test_damping_is_compiled_only_where_the_scene_has_it():
 
 
 def test_no_damping_is_the_limit_of_little():
-    """At the same step a faint damping changes the rates in proportion: what it tends to is the run
-    without it."""
+    """At the same step small damping changes the rates in proportion, and the limit is the run
+    without damping."""
     step = Numerics(element_size=0.008, step=5e-7)
     rates = [
         highfi.run(tiny(**EARLY, **change), step).rate

@@ -1,5 +1,5 @@
-"""Structural damping in the full time loop: how fast modes of a bar die away, and what it does to
-frame, ledgers, bits and code."""
+"""Structural damping in the full time loop: how fast modes of a bar decay, and its effect on frame,
+ledgers, bits and code."""
 
 import math
 from dataclasses import replace
@@ -168,8 +168,8 @@ def test_faint_damping_over_a_hundred_thousand_cycles(safety):
 @pytest.mark.case("O15")
 @pytest.mark.parametrize("ratio", [0.05, 0.9])
 def test_step_of_a_damped_rail_keeps_below_the_damped_limit(ratio):
-    """Damped by ``ratio`` in the highest mode. Control: at the undamped limit, which a code that
-    forgets would take, it blows up."""
+    """The highest mode has the damping ``ratio``. Control: at the undamped limit the motion grows
+    without bound."""
     highest, shape = highest_mode(loop_on(scene(), bar(2)).system.operator)
     frequency = highest / (2.0 * math.pi)
     # An interval that the raster of steps does not divide: the largest step that lands on every

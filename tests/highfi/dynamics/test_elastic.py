@@ -44,7 +44,8 @@ def test_columns_and_elements_carry_the_same_run():
 @pytest.mark.case("X20")
 @pytest.mark.parametrize("kernel", ["columns", "elements"])
 def test_threads_do_not_change_a_bit(kernel):
-    """Three threads cut the four rails where no rail ends, so that shares hang on each other."""
+    """Three threads divide the four rails inside a rail, so that their shares depend on each
+    other."""
     alone = run(kernel)
     assert np.abs(alone.pad_force).max() > 0.0
     for threads in (2, 3):

@@ -20,7 +20,7 @@ def assert_same(found, expected) -> None:
 
 
 def test_sampling_changes_no_bit():
-    """From a sample in 0.05 ms to one in the whole of the flight."""
+    """From one sample in 0.05 ms to one in the whole flight."""
     fine, *others = (
         highfi.run(tiny(output__interval=interval), COARSE)
         for interval in ("0.05 ms", "1 ms", "7 ms", "25 ms")
@@ -32,8 +32,9 @@ def test_sampling_changes_no_bit():
 
 
 def test_an_interval_that_divides_no_peak():
-    """The step divides it, and so is another one, by less than one in the steps of 50 us: what then
-    differs is the error of the scheme, of which that changes little."""
+    """The step divides the interval, so another interval has another step. They differ by less than
+    one in the number of steps in 50 us, so the outcomes differ by a small part of the error of the
+    scheme."""
     whole, other = (
         highfi.run(tiny(output__interval=interval), COARSE) for interval in ("0.1 ms", "0.73 ms")
     )

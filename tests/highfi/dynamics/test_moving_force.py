@@ -76,6 +76,6 @@ def test_moving_force(elements, fraction, ratio, factor, place):
 
 @pytest.mark.case("O16")
 def test_moving_force_on_locking_elements():
-    """Control: without bubbles the same mesh does not get near."""
+    """Control: the same mesh without bubbles is far off."""
     _, deflection = midspan(40, 0.5, 0.9, bubbles=False)
     assert deflection.max() < 0.5 * 1.70545 * STATIC

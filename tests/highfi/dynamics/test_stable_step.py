@@ -1,5 +1,4 @@
-"""The stable step: what bounds it, what a run may choose, and what happens to a loop that does not
-ask."""
+"""The stable step: its bounds, the steps a run may choose, and a loop that ignores them."""
 
 import numpy as np
 import pytest
@@ -66,8 +65,9 @@ def test_step_above_the_limit_is_refused_with_both_numbers(ratio):
 
 @pytest.mark.case("X13")
 @pytest.mark.parametrize("ratio", OVERSTEPS)
-def test_loop_that_does_not_ask_blows_up(operator, highest, ratio):
-    """Control: the steps refused above are fatal, and the one just below the limit is not."""
+def test_loop_without_the_check_diverges(operator, highest, ratio):
+    """Control: a run with one of the refused steps diverges, and one with the step just below the
+    limit does not."""
     largest = {}
     for factor in (ratio, 0.999):
         displacement, velocity = random_state(operator)
@@ -111,7 +111,7 @@ def test_bounds_enclose_the_highest_frequency(operator, springs):
 
 
 @pytest.mark.case("X14")
-def test_sliver_costs_what_its_edge_says():
+def test_step_of_a_sliver_follows_from_its_edge():
     """A 5 um layer brings the step down to its thickness over the pressure wave speed, 0.811 ns."""
     stations = [0.0, 0.005, 0.005005, 0.010005]
     sliver = assembly.build(block((3, 1, 1), (0.010, 0.005, 0.005), stations), **ALUMINIUM)

@@ -1,9 +1,9 @@
 """X18: the frame of the rails turns three full turns while the payload leaves it. Nothing seen from
-the frame may hang on the inertial axes, nor jump at a full turn.
+the frame may depend on the inertial axes, nor jump at a full turn.
 
-Really 38 s at 0.5 rad/s. Aluminium would take 1e8 steps, so the scene is the tiny one on a longer
-rail, played 300 times as slowly: with stiffnesses divided by 300^2 it takes as many steps as a
-quick one. A thrust across the rail holds the payload in a corner, since in the clearance
+The turns take 38 s at 0.5 rad/s. Aluminium would take 1e8 steps, so the scene is the tiny one on a
+longer rail, played 300 times as slowly: with stiffnesses divided by 300^2 it takes as many steps as
+a quick one. A thrust across the rail holds the payload in a corner, since in the clearance
 centrifugal force would make any rounding error grow by exp(0.5 * 38) = 1e8; the axis lies 0.08 deg
 off the rail's, so that Coriolis force presses too.
 """
@@ -108,8 +108,8 @@ def test_three_turns_seen_from_the_platform(safety):
 
 @pytest.mark.case("X18")
 def test_no_output_jumps_at_a_full_turn():
-    """Nothing moves by more in one sample than its rate allows. Control: angles that wrap jump by a
-    whole turn."""
+    """Nothing changes by more in one sample than its rate allows. Control: angles that wrap jump by
+    a whole turn."""
     run = ejected(0.9)
     turning.assert_smooth(run, TURNING.output.interval, np.linalg.norm(RATE))
     assert turning.largest_jump(turning.principal(run.quaternion)) > 5.0

@@ -52,8 +52,8 @@ def test_patch_has_constant_stress_at_every_corner():
 
 
 def test_recovery_agrees_with_the_integration_points_of_the_element():
-    """The plain formulas here and those the stiffness is integrated with are written apart and must
-    be the same modes."""
+    """The formulas here and those that integrate the stiffness are written separately and must
+    describe the same modes."""
     corners, law = distorted(), hexahedron.elasticity(72e9, 0.33)
     displacement = np.random.default_rng(4).standard_normal((4, 8, 3))
     places = hexahedron.basis(corners).X.T

@@ -133,8 +133,8 @@ def test_turned_rail_has_turned_forces(rail):
 
 @pytest.mark.case("O12")
 def test_rigid_motion_stores_no_energy(rail):
-    """In the frame that turns with the platform a spin is no displacement; what is left is small,
-    and it must be free."""
+    """In the frame that turns with the platform a rotation is no displacement. The small rotation
+    that is left must store no energy."""
     operator = assembly.build(rail, **ALUMINIUM)
     rigid = np.array([0.3, -0.2, 0.5]) + np.cross([0.7, -0.4, 0.2], rail.points)
     strained = np.random.default_rng(2).standard_normal(rail.points.shape)

@@ -84,8 +84,8 @@ def test_twist_of_one_element_per_section():
 
 @pytest.mark.case("O10")
 def test_trapezoids_are_warned_of():
-    """Leaning sections, at 45 degrees in turn, leave 5 % and 3 % of the bending: reading such a
-    mesh says so."""
+    """Sections inclined by 45 degrees in turn leave 5 % and 3 % of the bending, and reading such a
+    mesh gives a warning."""
     good, bad = cantilever(6), cantilever(6, lean=1.0)
     assert translations(bad, built(bad))[1:] == pytest.approx([0.047, 0.030], abs=0.002)
     facets = boundary_facets(good.cells)

@@ -35,7 +35,7 @@ def at_nodes(mesh, law, displacement):
 
 
 def prepared(mesh, law=LAW):
-    """What the kernels look at ``mesh`` with, every element a class of its own."""
+    """Records with which the kernels examine ``mesh``, every element a class of its own."""
     classes = np.arange(len(mesh.cells), dtype=np.uint32)
     return peaks.build(mesh.points, mesh.cells, classes, law, np.arange(len(mesh.points)))
 

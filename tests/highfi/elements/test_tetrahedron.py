@@ -1,5 +1,5 @@
 """The ten-node tetrahedron: constant strain on distorted and curved meshes, bending, mass, and the
-step it forces."""
+step that it needs."""
 
 import numpy as np
 import pytest
@@ -24,8 +24,8 @@ def beam(divisions=COARSE) -> RailMesh:
 
 
 def patch(curved: bool) -> tuple[RailMesh, np.ndarray]:
-    """A cube of 48 tetrahedra, its inner corner out of place, its inner edges curved where asked;
-    and which nodes are inside."""
+    """A cube of 48 tetrahedra with its inner corner out of place, and optionally curved inner
+    edges; and which nodes are inside."""
     mesh = tets.split(block((2, 2, 2), (1.0, 1.0, 1.0)))
     inside = np.setdiff1d(np.arange(len(mesh.points)), boundary_facets(mesh.cells))
     random, points = np.random.default_rng(5), mesh.points.copy()
@@ -40,8 +40,8 @@ def patch(curved: bool) -> tuple[RailMesh, np.ndarray]:
 
 
 def strained(mesh, inside, matrix):
-    """Displacement (n,3) of the patch when its surface is strained evenly and its inner nodes find
-    their own places."""
+    """Displacement (n,3) of the patch when its surface has a constant strain and its inner nodes
+    are free."""
     displacement = (mesh.points @ PATCH_GRADIENT.T).ravel()
     free = (3 * inside[:, None] + np.arange(3)).ravel()
     displacement[free] = 0.0
@@ -70,8 +70,8 @@ def test_patch_has_constant_stress(curved):
 
 @pytest.mark.case("O9")
 def test_four_points_fail_the_patch_test_between_curved_edges():
-    """Control: the rule that is exact for straight edges lets inner nodes of a curved patch
-    wander."""
+    """Control: with the rule that is exact for straight edges, inner nodes of a curved patch are
+    displaced."""
     mesh, inside = patch(curved=True)
     strain = tetrahedron.kinematics(mesh.points[mesh.cells], 2)
     law = hexahedron.elasticity(1e6, 0.25)

@@ -152,7 +152,7 @@ def by_place(points, *groups):
     ],
 )
 def test_gmsh_makes_the_same_mesh(change, size):
-    """Points, elements and surfaces are equal up to their numbers. gmsh places nodes of a
+    """Points, elements and surfaces are equal except for their numbers. gmsh places nodes of a
     transfinite side by integrating along it, to 5e-14 m."""
     geometry = GEOMETRY._replace(**change)
     theirs, hexes, surfaces = gmsh_rails.corner_rail(geometry, size)

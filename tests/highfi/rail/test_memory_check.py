@@ -1,5 +1,5 @@
-"""Memory is asked for before it is taken: what a run will need, what there is, and the refusal when
-that is less."""
+"""Memory is checked before it is used: what a run will need, what is available, and the refusal
+when that is less."""
 
 import importlib
 
@@ -30,7 +30,7 @@ MEMINFO = "MemTotal:       16000000 kB\nMemFree:         1000000 kB\nMemAvailabl
         ("tiny", 0.005),
     ],
 )
-def test_elements_are_foretold(name, size):
+def test_number_of_elements_is_predicted(name, size):
     section = geometry(load(name))
     mesh = l_rail.build(section, size)
     assert l_rail.elements(section, size) == sum(
@@ -55,7 +55,7 @@ def files(folder, **contents):
     return folder
 
 
-def test_machine_says_what_is_left(tmp_path):
+def test_available_memory_is_read_from_the_machine(tmp_path):
     assert memory_estimate.available(tmp_path) is None
     assert memory_estimate.available(files(tmp_path, **{"proc/meminfo": MEMINFO})) == 8_192_000_000
 
@@ -92,8 +92,8 @@ def test_control_group_and_those_around_it_count(tmp_path, line, folder, names):
 
 
 def test_section_that_does_not_fit_is_refused_before_it_is_meshed(monkeypatch):
-    """Both numbers are named, and a size that fits: at that size the check passes. Control: without
-    it the mesh would be begun."""
+    """The fault has both numbers and a size that fits; at that size the check passes. Control:
+    without the check the mesh would be begun."""
     monkeypatch.setattr(memory_estimate, "available", lambda: 2_000_000_000)
     monkeypatch.setattr(runs, "make_mesh", lambda *_: pytest.fail("meshed"))
     with pytest.raises(SceneError) as caught:
@@ -107,8 +107,8 @@ def test_section_that_does_not_fit_is_refused_before_it_is_meshed(monkeypatch):
 
 
 def test_mesh_of_a_file_that_leaves_too_little_is_refused(monkeypatch):
-    """7,240 hexahedra, most of them alike; a limit below what they take, and one that only many
-    shapes would break."""
+    """7,240 hexahedra, most of one shape. One limit is below what they need, and one is exceeded
+    only if all shapes differ."""
     scene = load("channel")
     mesh = highfi.prepare(scene)
     elements, nodes = mesh.cells.shape
@@ -127,7 +127,7 @@ def test_mesh_of_a_file_that_leaves_too_little_is_refused(monkeypatch):
 
 
 @pytest.mark.parametrize("command", ["highfi", "bench"])
-def test_commands_say_so_without_a_traceback(tmp_path, monkeypatch, command):
+def test_commands_report_it_without_a_traceback(tmp_path, monkeypatch, command):
     monkeypatch.setattr(memory_estimate, "available", lambda: 100_000_000)
     runs.MESHES.clear()
     result = CliRunner().invoke(
@@ -141,7 +141,7 @@ def test_commands_say_so_without_a_traceback(tmp_path, monkeypatch, command):
     )
 
 
-def test_other_systems_are_not_asked(monkeypatch):
+def test_other_systems_are_not_checked(monkeypatch):
     monkeypatch.setattr(memory_estimate, "available", lambda: None)
     assert highfi.prepare(tiny(), Numerics(element_size=0.008)).cells.size
 

@@ -66,7 +66,8 @@ def test_both_fidelities_leave_the_channels():
     )
     assert reference.status == surrogate.status == "exited"
     assert_promises(reference)
-    # Thrust sets both; only friction of impacts, which a rigid wall makes harder, tells them apart.
+    # Both follow from the thrust; they differ by the friction of impacts, which are harder on a
+    # rigid wall.
     assert surrogate.outcome.exit_time == pytest.approx(reference.outcome.exit_time, rel=1e-2)
     assert surrogate.outcome.velocity[0] == pytest.approx(reference.outcome.velocity[0], rel=1e-2)
 
@@ -102,9 +103,9 @@ def test_walls_that_the_scene_places_elsewhere_are_all_named():
     assert "-0.088 m" in faults["rail.start"] and "0.00025 m" in faults["rail.clearance"]
 
 
-def test_another_clearance_is_a_shim_under_the_pads(tmp_path):
-    """Moving pads out by 0.05 mm does what moving walls in does. Control: left out, the change
-    would be seen twenty times over."""
+def test_another_clearance_moves_the_pads(tmp_path):
+    """Moving the pads out by 0.05 mm has the effect of moving the walls in. Control: without it the
+    difference would be twenty times larger."""
     wide = tiny(
         duration="8 ms", thrust_offset__misalignment__axial="1 deg", contact__clearance="0.25 mm"
     )

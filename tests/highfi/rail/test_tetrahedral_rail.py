@@ -72,8 +72,8 @@ def shared_nodes(operator, elements) -> int:
 
 @pytest.mark.case("X20")
 def test_slabs_with_one_between_share_no_node():
-    """Else two threads would add to one node at once. Control: filed by the mean of their nodes,
-    tetrahedra of such slabs meet."""
+    """Otherwise two threads would add to one node at once. Control: with tetrahedra sorted by the
+    mean of their nodes such slabs share nodes."""
     mesh = tets.split(block((24, 2, 2), (0.24, 0.02, 0.02)))
     operator = assembly.build(mesh, **ALUMINIUM)
     elements = general_elements(mesh.points, operator, np.arange(len(mesh.points)))
@@ -88,8 +88,8 @@ def test_slabs_with_one_between_share_no_node():
 
 
 def compliance(mesh) -> float:
-    """Give (m/N) of the wall contact_y of one rail between two mounts, under a smooth pressure of 1
-    N that leaves facets no say."""
+    """Compliance (m/N) of the wall contact_y of one rail between two mounts, under a smooth
+    pressure of 1 N, so that it does not depend on the facets."""
     operator, quads = assembly.build(mesh, **ALUMINIUM), mesh.surfaces["contact_y"]
     quads = quads[(mesh.points[quads].mean(axis=1)[:, 1:] > 0.0).all(axis=1)]
     shape, area = facets.gauss(mesh.points[quads], 6)
@@ -107,7 +107,7 @@ def compliance(mesh) -> float:
 
 
 @pytest.mark.gmsh
-def test_the_wall_is_the_same_spring():
+def test_the_compliance_of_the_wall_is_that_of_hexahedra():
     """Against hexahedra of 2 mm: one layer of tetrahedra of 20 mm is 30 % too stiff, halved 6 %;
     hexahedra of 4 mm 5 %."""
     rails = geometry(tiny())

@@ -1,5 +1,5 @@
-"""What a rail matters that no pad touches: whether a run may leave it out, not yet touched or
-never."""
+"""Effect of a rail that no pad touches: whether a run may leave it out, before the first touch or
+altogether."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -87,10 +87,10 @@ def test_on_a_fixed_platform_an_untouched_rail_stays_at_rest():
 @pytest.mark.slow
 @pytest.mark.parametrize("condition", ["phi0", "phi15", "phi35"])
 def test_on_a_free_platform_it_cannot_be_left_out(condition):
-    """Two rails are never touched; made rigid they change a settled rate by 2e-7 (phi35) to 1.3e-6
-    (phi0) of it. The others lie up to 5 nm off their place when they are touched first, for the
-    platform's acceleration bends them: one stepped only from then on would be that far off, which
-    the floor of the scene turns into as much as 2e-5 of a rate."""
+    """Two rails are never touched; as rigid ones they change a settled rate by 2e-7 (phi35) to
+    1.3e-6 (phi0) of it. The acceleration of the platform bends the others, so at first touch they
+    are up to 5 nm away from their place. A rail that is integrated only from then on would have
+    that error, which the conditioning of the scene turns into up to 2e-5 of a rate."""
     scene, numerics = load("reference").condition(condition), Numerics()
     mesh = highfi.prepare(scene, numerics)
     system = build(scene, numerics, mesh)

@@ -1,5 +1,5 @@
-"""Uneven temperature: free bodies bow without stress, held ones are stressed as in the books, and a
-rail beyond its mounts bows as a strip."""
+"""Uneven temperature: free bodies bow without stress, held ones have the stress of the closed
+forms, and a rail beyond its mounts bows as a strip."""
 
 from dataclasses import replace
 
@@ -67,8 +67,8 @@ def without_rigid_motion(points, displacement):
     "gradient", [UPWARD, EXPANSION * np.array([300.0, -700.0, 2000.0])], ids=["height", "oblique"]
 )
 def test_a_free_strip_bows_without_stress(kind, gradient):
-    """Every node where the exact field has it: curvature alpha dT / h, the Poisson-like bow across
-    the width, and the growth."""
+    """Every node is where the exact field places it: curvature alpha dT / h, the anticlastic bow
+    across the width, and the growth."""
     mesh = strip(kind)
     wanted = without_rigid_motion(
         mesh.points, exact.free_displacement(mesh.points, WARMER, gradient)
@@ -93,8 +93,8 @@ def test_curvature():
 
 
 def test_plain_bubbles_would_bend_the_strip_otherwise(monkeypatch):
-    """Control: loads without the part that the bubbles take leave a curvature that is off by more
-    than a tenth."""
+    """Control: loads without the part of the bubbles give a curvature that is off by more than a
+    tenth."""
     mesh, formulation = strip(divisions=(20, 1, 1)), hexahedron
     direct = formulation.expansion
 
@@ -119,7 +119,7 @@ def test_plain_bubbles_would_bend_the_strip_otherwise(monkeypatch):
 
 @pytest.mark.parametrize("kind", ["hex", "tet"])
 def test_uniform_growth_of_distorted_elements(kind):
-    """A patch test: u = e X at every node of a free body, whatever its elements look like."""
+    """A patch test: u = e X at every node of a free body, whatever the shape of its elements."""
     mesh = strip("hex", (6, 2, 2))
     inside = ((mesh.points > 0.0) & (mesh.points < [LENGTH, WIDTH, HEIGHT])).all(axis=1)
     points = mesh.points.copy()
@@ -168,7 +168,8 @@ def on_a_clamp(gradient, element_size=0.004):
 def test_rail_beyond_its_mount_bows_as_a_strip():
     """The L section is free of stress a leg's length away from the clamp, so the line of its outer
     corner has the curvature alpha dT / h in both planes. A clamp that holds only the corner lets
-    the legs bow within it: the end is where k L^2 / 2 says for a strip up to a leg longer."""
+    the legs bow within it: the end is displaced by k L^2 / 2 of a
+    strip that is up to a leg longer."""
     gradient = np.array([0.0, 500.0, -200.0])
     mesh, found = on_a_clamp(gradient)
     x, y, z = mesh.points.T

@@ -1,5 +1,5 @@
-"""Modes of a clamped rail and what the walls under pads see of them: beam theory, and a full set
-that makes up the compliance."""
+"""Modes of a clamped rail and the displacement of the walls under pads in them: beam theory, and a
+full set that adds up to the compliance."""
 
 import numpy as np
 import pytest
@@ -51,7 +51,7 @@ def without(found, modes):
 
 
 @pytest.mark.case("O7")
-def test_all_modes_make_up_the_compliance(coarse):
+def test_all_modes_add_up_to_the_compliance(coarse):
     size = np.abs(coarse.matrix).max()
     assert np.abs(without(coarse, 180)).max() < 1e-8 * size
     # Controls: without the mode that bends the beam under its pads most is missing, and its mass
@@ -64,8 +64,8 @@ def test_all_modes_make_up_the_compliance(coarse):
     assert np.abs(without(heavier, 180)).max() > 1e-4 * size
 
 
-def test_what_modes_leave_is_never_negative(coarse):
-    """And falls with every further mode."""
+def test_residual_compliance_is_never_negative(coarse):
+    """It decreases with every further mode."""
     size = np.abs(coarse.matrix).max()
     before = without(coarse, 0)
     for modes in (1, 2, 5, 20, 60):

@@ -1,5 +1,5 @@
-"""Peak stress of a run: found where and when a plain look at every sample finds it, on any number
-of threads; wall gauges."""
+"""Peak stress of a run: place and time are those of a plain evaluation at every sample, with any
+number of threads; wall gauges."""
 
 import numpy as np
 import pytest
@@ -110,8 +110,8 @@ def test_any_number_of_threads_finds_the_same_corner(threads):
 
 
 def test_strain_and_rotation_of_a_distorted_mesh():
-    """A gradient known everywhere: its symmetric part has the norm found as strain, its
-    antisymmetric part that of the rotation."""
+    """A constant gradient: its symmetric part has the norm found as strain, its antisymmetric part
+    that of the rotation."""
     mesh = block((3, 2, 2), (0.03, 0.02, 0.02))
     points = mesh.points + 1e-3 * np.random.default_rng(8).uniform(-1.0, 1.0, mesh.points.shape)
     gradient = 1e-4 * np.random.default_rng(9).standard_normal((3, 3))

@@ -29,7 +29,7 @@ TWO_TOLERANCES = pytest.mark.parametrize("tolerance", [1e-7, 1e-9])
     ],
 )
 def test_impact_spot_values(p_mm, closing, force):
-    """F = max(0, k p^e + c s(p/d) p') at the paper's pad, through the load a face feels."""
+    """F = max(0, k p^e + c s(p/d) p') at the paper's pad, from the load on a face."""
     record = scene(1e-3, 1e-4, contact=PAPER_PAD).contact.record()
     turn, zero = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0), (0.0, 0.0, 0.0)
     body = state.Motion(zero, (0.0, 0.0, -closing / 1e3), turn, zero)
@@ -112,8 +112,8 @@ def test_thousandfold_stiffness(tolerance):
 @pytest.mark.case("O19")
 @pytest.mark.parametrize("av", [0.15, 0.75, 3.0])
 def test_hunt_crossley_restitution(av):
-    """a v (1 + e) = ln[(1 + a v)/(1 - a v e)], whatever k, m and n; the linear law 1 - 2 a v / 3
-    misses."""
+    """a v (1 + e) = ln[(1 + a v)/(1 - a v e)] for any k, m and n; control: the linear law 1 - 2 a v
+    / 3 is off."""
     expected, results = exact.hunt_crossley_restitution(av), []
     for n, mass, tolerance in (
         (1.0, 20.0, 1e-7),

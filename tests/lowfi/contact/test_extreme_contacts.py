@@ -1,6 +1,5 @@
 """Contacts at the ends of their range: pads pressed in from the start, grazing, very short, pushed
-over the rail's end; slopes that are infinite or nothing at first contact, and a body that weighs a
-gram."""
+over the rail's end; slopes that are infinite or zero at first contact, and a body of one gram."""
 
 import math
 
@@ -31,8 +30,8 @@ DEFAULT_STEP = 1e-4  # s: what a careless user of a fixed-step code would take
     [(LINEAR, 14.0e-3, 37.417e-3), (PAPER_PAD | {"damping": 0.0}, 1.58392e-3, 12.585e-3)],
 )
 def test_initial_interference(contact, stored, leaves, tolerance):
-    """Pressed in by 20 um: E = k p^(e+1)/(e+1) per pad stands in the ledger from the start and
-    becomes m v^2 / 2."""
+    """Pressed in by 20 um: E = k p^(e+1)/(e+1) per pad is in the ledger from the start and becomes
+    m v^2 / 2."""
     # The body starts 20 um deeper than centred with no clearance.
     run = lowfi.run(
         scene(
@@ -64,7 +63,7 @@ def test_initial_interference(contact, stored, leaves, tolerance):
 @pytest.mark.parametrize(
     "contact, stored", [(LINEAR, 14.0e-3), (PAPER_PAD | {"damping": 0.0}, 1.58392e-3)]
 )
-def test_opposed_interference_holds_itself(contact, stored, tolerance):
+def test_opposed_interference_is_in_equilibrium(contact, stored, tolerance):
     """Walls 20 um closer than the pads on either side: no net force, no motion, both pads named,
     twice the energy throughout."""
     opposed = [
@@ -87,7 +86,7 @@ def test_opposed_interference_holds_itself(contact, stored, tolerance):
 
 @pytest.mark.case("X4")
 @TWO_TOLERANCES
-def test_grazing_contact_is_felt(tolerance):
+def test_grazing_contact_is_found(tolerance):
     """A rough wall approached at 1 um/s while passing at 5 m/s."""
     run = lowfi.run(
         scene(
@@ -108,7 +107,7 @@ def test_grazing_contact_is_felt(tolerance):
 
 @pytest.mark.case("X4")
 @TWO_TOLERANCES
-def test_contact_shorter_than_a_step_is_felt(tolerance):
+def test_contact_shorter_than_a_step_is_found(tolerance):
     """A wall so stiff that the contact lasts 2 us, while the first step of free flight that meets
     it is a thousand times longer."""
     run = lowfi.run(

@@ -91,7 +91,7 @@ def test_creep_of_the_smoothed_law(tolerance):
     ratio = exact.creep_ratio(math.radians(15.0), 0.3)
     assert ratio == pytest.approx(0.719707, abs=1e-6)
     run = on_slope(math.radians(15.0), 0.0, 0.05, 2e-4, tolerance)
-    # a creep is slower than a jam; it has settled before that is known
+    # a creep is slower than the limit of a jam; it has settled before the jam is found
     assert run.status == "jammed" and run.time[-1] >= 5e-3
     assert run.velocity[-1, 0] == pytest.approx(ratio * 2e-4, rel=1e-4)
     # Control: the straight-line law mu s / v_s would creep at tan(15 deg) / mu of it.

@@ -1,8 +1,8 @@
-"""A slider between two walls without clearance, pushed beside its middle: what friction leaves of
-the push, and when it jams.
+"""A slider between two walls without clearance, pushed beside its middle: the net push with
+friction, and the offset at which it jams.
 
-Two pads carry N = F r / s each, so friction takes 2 mu F r / s, and all of it from r = s / (2 mu)
-on.
+Two pads carry N = F r / s each, so friction takes 2 mu F r / s, and all of the push from r = s / (2
+mu) on.
 """
 
 import numpy as np
@@ -68,7 +68,7 @@ def mean_acceleration(run, start: float = 0.02, end: float = 0.04) -> float:
 @pytest.mark.case("O28")
 @TWO_TOLERANCES
 @pytest.mark.parametrize("offset, share", [(0.060, 0.820), (0.0006, 0.9982)])
-def test_what_friction_leaves_of_the_push(tolerance, offset, share):
+def test_net_push_with_friction(tolerance, offset, share):
     """F (1 - 2 mu r / s) within 0.5 % of F."""
     assert exact.net_share(0.3, offset, SPAN) == pytest.approx(share, rel=1e-12)
     run = lowfi.run(
@@ -123,7 +123,7 @@ def test_exit_speed_with_friction(tolerance, mu, offset, speed):
 @TWO_TOLERANCES
 def test_wedged_slider_stays_where_it_is(tolerance):
     """mu 0.8 at 130 mm: it moves by less than 0.5 mm in 0.2 s, creeps below the smoothing speed,
-    and no run calls that an exit."""
+    and the run has no exit."""
     transition = 5e-4
     asked = slider(0.8, 0.130, 0.2, transition)
     run = lowfi.run(asked, "springs", numerics=Numerics(relative_tolerance=tolerance))

@@ -1,5 +1,5 @@
-"""Friction that sticks: a block on a slope, a slider that jams with and without a platform, and no
-end of slips anywhere."""
+"""Friction that sticks: a block on a slope, a slider that jams with and without a platform, and a
+finite number of slips."""
 
 import math
 
@@ -80,7 +80,7 @@ def passive(run) -> bool:
 @pytest.mark.case("O24")
 @TWO_TOLERANCES
 def test_stopping_distance_and_time(tolerance):
-    """v^2 / (2 mu g) and v / (mu g), but for what the springs give."""
+    """v^2 / (2 mu g) and v / (mu g), except for the deflection of the springs."""
     run = on_slope(0.0, 2.0, 0.8, tolerance)
     distance, time = exact.stopping(2.0, 0.3, G)
     assert run.status == "jammed" and passive(run)
@@ -142,8 +142,8 @@ def test_no_creep(tolerance, downhill, speed, push):
 @pytest.mark.parametrize("damping", [0.0, 1e2, 1e5])
 @pytest.mark.parametrize("speed", [0.05, -0.05])
 def test_slips_come_to_an_end(damping, speed, push):
-    """Whatever the damping, even none: a face is held for good after a few slips, though it may
-    ring on its spring."""
+    """With any damping, even none, a face sticks for good after a few slips, though it may vibrate
+    on its spring."""
     run = on_slope(math.radians(15.0), speed, 0.5, damping=damping, thrust=push(1e-12))
     assert run.cost["events"] < 20 and passive(run)
     assert np.ptp(run.position[run.time > 0.4, 0]) <= 2.0 * GIVES
@@ -268,7 +268,7 @@ def test_same_bits_in_an_ensemble():
             assert np.array_equal(case[name].values, getattr(alone.outcome, name)), (row, name)
 
 
-def test_compiled_only_where_asked_for():
+def test_compiled_only_where_the_scene_has_it():
     present = lowfi.compiled_effects(load("sensitive").replace(WEDGED))
     assert present["sticking"] and not present["friction"]
 

@@ -1,5 +1,5 @@
-"""Contact springs at warm walls: their offset, one potential behind its forces, and what a warm
-wall is the same as."""
+"""Contact springs at warm walls: their offset, one potential of their forces, and changes of the
+scene that are equal to a warm wall."""
 
 from dataclasses import replace
 
@@ -33,7 +33,7 @@ def standing_away(scene, distance, flexible=None):
     return found if flexible else found.rigid()
 
 
-def test_where_walls_stand():
+def test_places_of_the_walls():
     """The mean over a face of the six patterns, as a spline of its place, straight beyond the
     ends."""
     scene, compliance = REFERENCE.replace(WARM), reference_compliance().rigid()
@@ -96,9 +96,9 @@ def test_force_is_along_the_gradient_of_the_penetration():
 @pytest.mark.parametrize(
     "flexible", [None, {(face, 0, face, 0): 3e-8 for face in range(16)}], ids=["law", "compliant"]
 )
-def test_walls_that_stand_away_evenly_are_a_wider_clearance(flexible):
-    """20 um more on every side, by temperature or by the clearance: the same motion, which without
-    them is another."""
+def test_an_even_offset_is_a_wider_clearance(flexible):
+    """20 um more on every side, by temperature or by the clearance, give the same motion; without
+    them it differs."""
     scene, more = REFERENCE.condition("phi35"), 2e-5
     compliance = standing_away(scene, np.full(4, more), flexible)
     warm = lowfi.run(
@@ -134,7 +134,7 @@ def test_ledgers_on_a_wavy_wall(flexible):
 
 @pytest.mark.slow
 def test_the_plain_equations_agree():
-    """Fixed steps of 5 us, over all impacts. Control: cold rails are touched otherwise."""
+    """Fixed steps of 5 us, over all impacts. Control: with cold rails the contacts differ."""
     scene, compliance = REFERENCE.condition("phi35").replace(WARM), reference_compliance().rigid()
     run = lowfi.run(scene, "springs", numerics=TIGHT, compliance=compliance)
     plain = oracle.solve(scene, 10, compliance=compliance)
@@ -146,7 +146,7 @@ def test_the_plain_equations_agree():
 
 @pytest.mark.slow
 def test_ensembles_vary_the_temperature():
-    """Every case as ``lowfi.run`` has it, to the bit; without walls every warm one is refused."""
+    """Every case has the bits of ``lowfi.run``; without walls every warm case is refused."""
     scene, compliance = REFERENCE.condition("phi35"), reference_compliance().rigid()
     rows = [{"thermal.mean": mean} for mean in (0.0, 20.0, 60.0)] + [{"payload.mass": 10.0}]
     found = lowfi.run_many(scene, rows, "springs", compliance=compliance)

@@ -31,9 +31,9 @@ def short_rail(start: float = START) -> dict:
 @SPEEDS
 @TOLERANCES
 def test_a_wall_shorter_than_a_step(speed, tolerance):
-    """A pad meets the wall's surface 0.3 of the way over it, at a hundredth of its speed v along: v
-    cos(w t) after the time t it presses, which ends with the wall or at pi / w. Each of the few
-    steps meanwhile errs by ``tolerance`` times the speed."""
+    """A pad meets the wall's surface 0.3 of the way over it, at a hundredth of its axial speed. It
+    moves as v cos(w t) until the wall ends or until pi / w. Each of the few steps has an error of
+    ``tolerance`` times the speed."""
     across, over = 0.01 * speed, WIDTH / speed
     contact_time = START / speed + 0.3 * over
     asked = scene(
@@ -49,7 +49,7 @@ def test_a_wall_shorter_than_a_step(speed, tolerance):
     error = 3.0 * tolerance * across
     assert run.status != "diverged" and run.velocity[-1, 2] == pytest.approx(expected, abs=error)
     assert run.checks["energy_error"] <= 1e-6
-    # Control: what looks only at the ends of its steps flies past.
+    # Control: a method that checks only the ends of its steps misses the wall.
     blind = oracle.solve(asked, 1, samples=8).velocity[-1, 2]
     assert blind == pytest.approx(-across, rel=1e-12) and abs(expected + across) > 3.0 * error
 
@@ -57,8 +57,8 @@ def test_a_wall_shorter_than_a_step(speed, tolerance):
 @TOLERANCES
 def test_a_touch_between_two_ends(tolerance):
     """Pulled off the wall by 1 g, the pad touches only while it is over it: the gap is open at both
-    ends of the wall. It bounces, and comes off earlier by what the spring saves of the free flight
-    through the surface."""
+    ends of the wall. It bounces, and comes off earlier than in free flight through the surface, by
+    an amount that the spring determines."""
     speed, depth, g, stiffness = 5.0, 5e-8, 9.80665, 7e9
     top = (START + 0.5 * WIDTH) / speed  # when it would be deepest
     late = math.sqrt(2.0 * depth / g)
@@ -83,7 +83,7 @@ def test_a_touch_between_two_ends(tolerance):
 
 def test_a_wall_reached_and_left_over_the_same_end():
     """Thrown at the rail's mouth from outside against a pull of 1 g, the pad turns 1 mm inside it
-    and bounces there; in free flight all of that is one step."""
+    and bounces there; free flight takes one step for all of that."""
     inside, g, across = 1e-3, 9.80665, 0.05
     begin = 5e-3
     back = math.sqrt(2.0 * g * (begin + inside))
@@ -131,7 +131,7 @@ def one_pad(**changes):
 @pytest.mark.case("X22")
 @SPEEDS
 @pytest.mark.parametrize("tolerance", [1e-4, 1e-6])
-def test_a_short_wall_that_gives_way(monkeypatch, speed, tolerance):
+def test_a_short_compliant_wall(monkeypatch, speed, tolerance):
     """A pad of one cell presses with the share of it that is over the wall: m y'' = -k share(t) y,
     against another solver."""
     in_one_cell(monkeypatch)
@@ -149,7 +149,7 @@ def test_a_short_wall_that_gives_way(monkeypatch, speed, tolerance):
     expected = pressed_by_a_share(speed, across, contact_time, over)
     error = run.cost["steps"] * tolerance * across
     assert run.status != "diverged" and run.velocity[-1, 1] == pytest.approx(expected, abs=error)
-    assert abs(expected - across) > 5.0 * error  # control: the speed of a pad that felt nothing
+    assert abs(expected - across) > 5.0 * error  # control: the speed without contact
 
 
 def pressed_by_a_share(speed: float, across: float, contact_time: float, over: float) -> float:
@@ -189,7 +189,7 @@ def thrown_back(depth: float, away: float = 0.0):
 @pytest.mark.parametrize("given", [False, True], ids=["springs", "compliant"])
 def test_back_into_the_mouth(given):
     """A pad behind the surface strikes the rail's end; over the surface, or behind the whole wall,
-    it flies in. Nowhere does it gain energy."""
+    it flies in. It never gains energy."""
     for depth in (1e-5, 1e-3, 3.9e-3):
         asked = thrown_back(depth)
         run = lowfi.run(
@@ -216,8 +216,8 @@ def test_back_into_the_mouth(given):
         gained = run.energy[:, ledger.ENTRIES.index("kinetic")].max() - 0.5 * 9.9 * (36.0 + 0.01)
         assert gained <= 0.5 * STIFFNESS * 5e-7**2 * 1.01
         assert depth == 5e-7 or not run.pad_force.any()
-    # Control: where nothing else moves across the rail, that energy is all there is, and it came
-    # from nothing.
+    # Control: where nothing else moves across the rail, that energy is the whole transverse energy,
+    # and it was created.
     asked = thrown_back(5e-7)
     run = unwatched_on(asked, handmade(asked, {}) if given else None)
     assert (
@@ -226,7 +226,7 @@ def test_back_into_the_mouth(given):
 
 
 def unwatched_on(asked, compliance):
-    """A run over the scene's whole duration, whoever leaves or stops meanwhile."""
+    """A run over the scene's whole duration, also after an exit or a jam."""
     run = Run(asked, lowfi.Numerics(), compliance)
     run.whole = True
     run.begin()
@@ -237,8 +237,8 @@ def unwatched_on(asked, compliance):
 @pytest.mark.case("X21")
 @pytest.mark.parametrize("given", [False, True], ids=["springs", "compliant"])
 def test_two_kilometres_away(given):
-    """A payload beside its rails feels none of them: not the wall it is behind, nor the one whose
-    plane it has crossed by a hundredth of a millimetre."""
+    """A payload far beside its rails has no contact: neither with the wall it is behind, nor with
+    the one whose plane it has crossed by a hundredth of a millimetre."""
     asked = one_pad(
         initial={"position": {"y": 2000.0, "z": CLEARANCE + 1e-5}, "velocity": {"x": 1.0}}
     )
@@ -261,8 +261,8 @@ def test_two_kilometres_away(given):
     [(-0.0045, 1.0, 7e7, "strikes the back"), (0.0, -1.0, 1e3, "is pressed through a wall")],
 )
 def test_the_back_of_a_wall(start, speed, stiffness, words):
-    """A wall is 4 mm thick: a pad behind it that comes back strikes it there, and one that presses
-    as deep is through."""
+    """A wall is 4 mm thick: a pad behind it that comes back strikes its back, and one that is
+    pressed in as deep has passed through."""
     asked = scene(
         0.02,
         1e-4,
@@ -279,9 +279,9 @@ def test_the_back_of_a_wall(start, speed, stiffness, words):
 
 
 def test_a_pad_half_over_the_end_moves_in_and_out():
-    """Pressed, its middle 2 um past the end for a tenth of a millisecond and back, its rear half on
-    the rail all the time: it leaves with its energy and may bring it back, but not that of what it
-    sank meanwhile."""
+    """The middle of a pressed pad is 2 um past the end for a tenth of a millisecond and then comes
+    back; its rear half stays on the rail. It takes its stored energy out and may bring it back, but
+    not the energy of what it sank in between."""
     weight = MASS * 9.80665
     pull, deep = 1000.0, weight / K
     back = math.sqrt(2.0 * pull * 3e-6)
@@ -299,7 +299,7 @@ def test_a_pad_half_over_the_end_moves_in_and_out():
     assert "strikes" not in run.message and pressed[0] and pressed[-1] and not pressed.all()
     gained = -run.energy[-1, ledger.ENTRIES.index("released")]
     sunk = 0.5 * 9.80665 * (run.time[-1] - np.count_nonzero(pressed) * 1e-5) ** 2
-    # the time off the rail is known to a sample
+    # the time off the rail has an error of one sample
     assert gained == pytest.approx(weight * sunk, rel=0.3)
     scale = run.energy[:, ledger.ENTRIES.index("kinetic")].max()
     assert run.status == "diverged" and run.checks["energy_error"] == pytest.approx(

@@ -1,5 +1,5 @@
-"""Runs keep what they promise of their ledgers, by smaller steps if need be, or say that they
-diverged and give no rates."""
+"""Runs keep the limits of their ledgers, with smaller steps where needed, or they are diverged and
+give no rates."""
 
 import numpy as np
 import pytest
@@ -38,8 +38,8 @@ RATTLING = REFERENCE.replace(
 
 
 def assert_kept(run) -> None:
-    """An accepted run keeps every promise; one that diverged says which it broke, and gives no
-    rate."""
+    """An accepted run keeps every accuracy limit; the message of a diverged one names the limit
+    that it broke, and it has no rate."""
     words = promises.broken(run.checks, promises.RIGID)
     assert (run.status == "diverged") == bool(words), words
     if words:
@@ -55,7 +55,7 @@ def test_a_few_random_scenes_keep_their_promises(kind):
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", EFFECTS)
 def test_random_scenes_keep_their_promises(kind):
-    """A hundred of each kind, and no more than three of them by giving up."""
+    """A hundred of each kind, of which at most three diverge."""
     runs = [lowfi.run(scene_of(raw), "springs") for raw in independent(kind, range(100))]
     for run in runs:
         assert_kept(run)
@@ -63,8 +63,8 @@ def test_random_scenes_keep_their_promises(kind):
 
 
 def test_hundreds_of_touches_keep_the_ledger_closed():
-    """Without what the ledger asks of steps in contact (control) they add up to more than is
-    promised."""
+    """Control: without the requirement of the ledger on steps in contact their errors add up to
+    more than the limit."""
     run = lowfi.run(RATTLING, "springs")
     assert_kept(run)
     assert run.status == "time_limit" and run.cost["events"] > 200
@@ -77,8 +77,8 @@ def test_hundreds_of_touches_keep_the_ledger_closed():
 
 @pytest.mark.case("X24")
 def test_a_wall_stiffer_than_numbers_resolve_diverges():
-    """At 1e30 N/m^1.5 the penetration is below the last digit of a place. The message says what was
-    tried."""
+    """At 1e30 N/m^1.5 the penetration is below the last digit of a position. The message names the
+    steps that were tried."""
     run = lowfi.run(REFERENCE.replace({"contact.stiffness": 1e30}), "springs")
     assert_kept(run)
     assert run.status == "diverged" and "run again" in run.message and run.cost["reruns"] >= 1
@@ -89,8 +89,8 @@ def test_a_wall_stiffer_than_numbers_resolve_diverges():
 
 
 def test_a_broken_ledger_is_run_again_with_smaller_steps():
-    """Energy that one run loses and the next does not: asked for is the loose one, given the
-    tight one, to the same bits."""
+    """One run loses energy and the next does not: the result has the bits of the tighter
+    tolerance."""
     first = Run(REFERENCE, lowfi.Numerics())
     first.begin()
     first.integrate(None)
@@ -105,8 +105,8 @@ def test_a_broken_ledger_is_run_again_with_smaller_steps():
 
 
 def test_energy_given_back_by_lost_contacts_is_an_error():
-    """A run that finds less released than before has made energy: both ledgers count it, though
-    they close."""
+    """A run in which the released energy decreases has created energy: both ledgers count it,
+    though they close."""
     run = Run(REFERENCE, lowfi.Numerics())
     run.begin()
     run.integrate(None)
@@ -120,7 +120,7 @@ def test_energy_given_back_by_lost_contacts_is_an_error():
 @pytest.mark.parametrize("duration", [1e-3, pytest.param(0.058, marks=pytest.mark.slow)])
 def test_compliant_walls_at_100_m_s_across(duration):
     """Pads go a hundred times deeper than the clearance. In the long run they come back to the
-    walls from outside, which makes energy of nothing."""
+    walls from outside, which creates energy."""
     run = lowfi.run(
         REFERENCE.replace({"initial.velocity.y": 100.0, "duration": duration}),
         compliance=reference_compliance(),
@@ -132,8 +132,7 @@ def test_compliant_walls_at_100_m_s_across(duration):
 
 
 def test_a_case_of_an_ensemble_is_run_again_too():
-    """Rows are what single runs are, bit for bit, those that diverge and those that are run again
-    included."""
+    """Rows have the bits of single runs, also rows that diverge or are run again."""
     rows = [{"contact.stiffness": value} for value in (1e10, 1e18, 1e30)]
     found = lowfi.run_many(REFERENCE, rows, "springs")
     for number, row in enumerate(rows):
@@ -161,8 +160,8 @@ def test_a_case_of_an_ensemble_is_run_again_too():
     ],
 )
 def test_an_aligned_ejection_is_off_by_rounding_only(changes):
-    """Nothing moves across the rail and no moment acts: what is left of either is rounding, and no
-    broken promise."""
+    """There is no motion across the rail and no moment: the rest of either is rounding and breaks
+    no limit."""
     run = lowfi.run(REFERENCE.replace(changes), "springs")
     assert run.status == "exited" and run.checks["transverse_energy_error"] <= 1e-5
     assert (
@@ -172,7 +171,7 @@ def test_an_aligned_ejection_is_off_by_rounding_only(changes):
 
 
 def test_forces_that_cancel_leave_a_momentum_of_rounding():
-    """A payload at rest between pads that hold each other: momentum zero, of forces of a kilonewton
+    """A payload at rest between opposed pads: the momentum is zero, the forces are a kilonewton
     each."""
     opposed = [
         {"position": (0.0, 0.0, side * 0.1), "normals": [sign]}

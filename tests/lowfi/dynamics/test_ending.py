@@ -57,8 +57,8 @@ def test_sampling_changes_no_bit(condition, compliance):
 
 
 def test_an_ensemble_depends_on_no_interval_and_mixes_no_rows():
-    """Rows that differ in the interval alone, and with it in other numbers, are what they are by
-    themselves."""
+    """Rows that differ in the interval alone, or in other numbers too, have the results of single
+    runs."""
     base = load("reference")
     rows = [
         {"output.interval": 1e-4},
@@ -82,7 +82,7 @@ def test_an_ensemble_depends_on_no_interval_and_mixes_no_rows():
     ],
 )
 def test_rows_with_records_of_their_own_are_not_mixed(key, values):
-    """Numbers that a table of the scene holds are written over from row to row, in place."""
+    """Numbers of a table of the scene are replaced in place from row to row."""
     base = free(0.6, 1e-3, thrust={"kind": "constant", "force": 200.0, "duration": 0.05})
     found = assert_rows_are_runs(base, [{key: value} for value in values])
     assert len(set(found.exit_time.values)) == len(values)
@@ -151,9 +151,9 @@ def pushed(tolerance: float, interval: float):
     )
 
 
-def test_exit_and_means_are_as_exact_as_the_steps():
-    """Both errors are below the tolerance, and the same whatever is sampled. From samples 5 ms
-    apart they could not be."""
+def test_errors_of_exit_and_means_are_below_the_tolerance():
+    """Both errors are below the tolerance, and the same for any sampling. Samples 5 ms apart alone
+    would give larger ones."""
     for tolerance in (1e-6, 1e-8, 1e-10):
         errors = pushed(tolerance, 5e-5)
         assert max(errors) < tolerance
@@ -270,7 +270,7 @@ def test_jam_on_both_sides_of_its_duration(fall, jams, interval):
 
 @pytest.mark.parametrize("interval", ["0.05 ms", "29 ms"])
 def test_a_jam_is_found_with_few_samples(interval):
-    """A push of 5 N leaves the reference's payload where it is; in an ensemble too."""
+    """A push of 5 N does not move the reference's payload; in an ensemble too."""
     asked = REFERENCE.condition("phi15").replace({"thrust.peak": 5.0})
     seen, case = [], lowfi.run_many(asked, [{"output.interval": interval}], "springs")
     run = lowfi.run(asked.replace({"output.interval": interval}), "springs", progress=seen.append)

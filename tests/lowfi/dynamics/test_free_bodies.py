@@ -258,7 +258,7 @@ def test_steps_stop_at_the_corners_of_the_thrust(tolerance):
 @pytest.mark.parametrize("tolerance", [2e-7, 1e-9])
 @pytest.mark.parametrize("rescale, speed", [(False, 4.986501), (True, 5.0)])
 def test_cut_gaussian(rescale, speed, tolerance):
-    """100 N s with sigma 4 ms cut at 3 sigma: 4.986501 m/s, or 5 when rescaled; the result says
+    """100 N s with sigma 4 ms cut at 3 sigma: 4.986501 m/s, or 5 when rescaled; the result states
     which."""
     thrust = {
         "kind": "gaussian",

@@ -1,4 +1,4 @@
-"""X20: a run that is put away at 37 % and taken up by another program ends in the same bits."""
+"""X20: a run that is stopped at 37 % and resumed by another program ends in the same bits."""
 
 import numpy as np
 import pytest
@@ -26,7 +26,7 @@ ARRAYS = (
 )
 
 
-def put_away(tolerance: float, last: int, path) -> Run:
+def stopped_run(tolerance: float, last: int, path) -> Run:
     """A run that was stopped at sample ``last``, made anew from the scene and the arrays in a
     file."""
     numerics = Numerics(relative_tolerance=tolerance)
@@ -54,14 +54,14 @@ def put_away(tolerance: float, last: int, path) -> Run:
 def test_resumed_run_ends_in_the_same_bits(tolerance, tmp_path):
     whole = lowfi.run(ASKED, "springs", numerics=Numerics(relative_tolerance=tolerance))
     last = round(0.37 * (whole.time.size - 1))
-    run = put_away(tolerance, last, tmp_path / "run.npz")
+    run = stopped_run(tolerance, last, tmp_path / "run.npz")
     run.integrate(None)
     resumed = run.trajectory()
     assert resumed.status == whole.status == "exited" and resumed.outcome == whole.outcome
     assert all(np.array_equal(getattr(resumed, name), getattr(whole, name)) for name in ARRAYS)
     # Control: with the state alone kept, and not the size of the next step and the stages, it ends
     # elsewhere.
-    poor = put_away(tolerance, last, tmp_path / "run.npz")
+    poor = stopped_run(tolerance, last, tmp_path / "run.npz")
     fresh = integrate.ready(poor.system, poor.loop.end, poor.interval)
     fresh.clock.now, fresh.counts.samples = poor.loop.clock.now, last + 1
     fresh.counts.segment = poor.loop.counts.segment

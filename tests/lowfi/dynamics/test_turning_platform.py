@@ -1,10 +1,10 @@
-"""X18: the platform turns three full turns while it ejects. What it sees must not depend on inertial
-axes, nor jump at a full turn.
+"""X18: the platform turns three full turns while it ejects. Motion relative to it must not depend
+on inertial axes, nor jump at a full turn.
 
-Really 38 s at 0.5 rad/s, so the payload creeps: 0.1 m/s along a rail of 3 m. A thrust across the
-rail holds it in a corner, since in the clearance centrifugal force would make any rounding error
-grow by exp(0.5 * 38) = 1e8; the axis lies 0.4 deg off the rail's, so that Coriolis force presses
-too.
+The turns take 38 s at 0.5 rad/s, so the payload creeps: 0.1 m/s along a rail of 3 m. A thrust
+across the rail holds it in a corner, since in the clearance centrifugal force would make any
+rounding error grow by exp(0.5 * 38) = 1e8; the axis lies 0.4 deg off the rail's, so that Coriolis
+force presses too.
 """
 
 import numpy as np
@@ -85,9 +85,9 @@ def test_three_turns_seen_from_the_platform(tolerance):
 
 @pytest.mark.case("X18")
 def test_no_output_jumps_at_a_full_turn():
-    """Nothing moves by more in one sample than its rate allows. Controls: angles that wrap jump by
-    a whole turn, and a relative velocity without the frame's turning is nowhere near what the
-    payload does on the rail."""
+    """Nothing changes by more in one sample than its rate allows. Controls: angles that wrap jump
+    by a whole turn, and a relative velocity without the rotation of the frame differs much from the
+    payload's motion on the rail."""
     run = ejected(7e-13)
     turning.assert_smooth(run, 0.02, np.linalg.norm(RATE))
     assert turning.largest_jump(turning.principal(run.quaternion)) > 5.0

@@ -1,5 +1,5 @@
 """Damage to the store of an ensemble, in results, lists of failures or descriptions of arrays, is
-said and mended to the same bits."""
+reported and repaired to the same bits."""
 
 import json
 import shutil
@@ -51,7 +51,7 @@ def chunk(store: Store, number: int) -> Chunk:
 
 
 def fill(store: Store) -> list[int]:
-    """Run what is missing, and say which chunks that were."""
+    """Run the missing chunks and return their numbers."""
     pending = store.pending()
     for number in pending:
         store.write(chunk(store, number))
@@ -60,21 +60,21 @@ def fill(store: Store) -> list[int]:
 
 @pytest.fixture
 def whole(tmp_path):
-    """A store that is full, and what it says."""
+    """A full store, and its contents."""
     store = opened(tmp_path / "store")
     assert fill(store) == [0, 1, 2]
-    return tmp_path / "store", said(store)
+    return tmp_path / "store", state_of(store)
 
 
-def said(store: Store):
+def state_of(store: Store):
     results, messages = store.results()
     return store.digest(), store.failures(), messages, [array.tobytes() for array in results]
 
 
 @pytest.mark.case("X25")
-def test_any_bit_of_any_file_is_found_and_mended(whole, tmp_path, capsys):
-    """Places move through the files, from one to the next; lists of failures are hit more often."""
-    path, told = whole
+def test_any_bit_of_any_file_is_found_and_repaired(whole, tmp_path, capsys):
+    """The damaged places differ from file to file; lists of failures are damaged more often."""
+    path, expected = whole
     for number, file in enumerate(sorted(item for item in path.rglob("*") if item.is_file())):
         content = file.read_bytes()
         for place in [
@@ -87,7 +87,7 @@ def test_any_bit_of_any_file_is_found_and_mended(whole, tmp_path, capsys):
             capsys.readouterr()
             store = opened(path)
             again = fill(store)
-            assert said(store) == told, (file, place)
+            assert state_of(store) == expected, (file, place)
             line = capsys.readouterr().err
             assert again or "written again" in line or json.loads(damaged) == json.loads(content), (
                 file,
@@ -108,7 +108,7 @@ def test_any_bit_of_any_file_is_found_and_mended(whole, tmp_path, capsys):
     ],
 )
 def test_an_edited_list_of_failures_is_found(whole, capsys, change):
-    path, told = whole
+    path, expected = whole
     file = path / "done" / "000001.json"
     mark = json.loads(file.read_text())
     change(mark)
@@ -121,7 +121,7 @@ def test_an_edited_list_of_failures_is_found(whole, capsys, change):
         ):
             ask()
     assert not store.holds(12) and store.holds(3)
-    assert fill(store) == [1] and said(store) == told
+    assert fill(store) == [1] and state_of(store) == expected
     assert (
         f"{file} is damaged or was edited: the cases 8 to 15 are run again"
         in capsys.readouterr().err
@@ -130,20 +130,20 @@ def test_an_edited_list_of_failures_is_found(whole, capsys, change):
 
 def test_a_list_of_failures_of_another_ensemble_is_none_of_this_one(whole, tmp_path):
     """A chunk copied from elsewhere, numbers and all: its own digests fit."""
-    path, told = whole
+    path, expected = whole
     other = opened(tmp_path / "other", IDENTITY | {"scene": "another"})
     fill(other)
     shutil.copyfile(tmp_path / "other" / "done" / "000002.json", path / "done" / "000002.json")
     store = opened(path)
-    assert fill(store) == [2] and said(store) == told
+    assert fill(store) == [2] and state_of(store) == expected
 
 
 def test_descriptions_are_written_again_only_for_whose_store_it_is(whole, capsys):
-    path, told = whole
+    path, expected = whole
     description = path / "cases.zarr" / "zarr.json"
     content = description.read_text()
     # words of the scene are no part of the identity
-    assert said(opened(path, scene="other words")) == told
+    assert state_of(opened(path, scene="other words")) == expected
     assert capsys.readouterr().err == "" and description.read_text() == content
     with pytest.raises(StoreError, match="holds another ensemble: cases differ"):
         opened(path, IDENTITY | {"cases": {"seed": 2}})
@@ -153,7 +153,9 @@ def test_descriptions_are_written_again_only_for_whose_store_it_is(whole, capsys
         StoreError, match="no store of an ensemble, or its cases.zarr/zarr.json is damaged"
     ):
         opened(path, IDENTITY | {"cases": {"seed": 2}})
-    assert said(opened(path)) == told and json.loads(description.read_text()) == json.loads(content)
+    assert state_of(opened(path)) == expected and json.loads(description.read_text()) == json.loads(
+        content
+    )
     for mark in (path / "done").iterdir():
         mark.unlink()
     description.write_text("{")
@@ -162,9 +164,9 @@ def test_descriptions_are_written_again_only_for_whose_store_it_is(whole, capsys
 
 
 def test_an_array_that_claims_another_length_is_described_again(whole, capsys):
-    """Cases that nobody asked for would stand among the results, as not run."""
-    path, told = whole
+    """Cases that were not requested would be among the results, as not run."""
+    path, expected = whole
     file = path / "cases.zarr" / "status" / "zarr.json"
     file.write_text(file.read_text().replace(str(CASES), str(CASES + 1), 1))
-    assert said(opened(path)) == told
+    assert state_of(opened(path)) == expected
     assert f"{file} is damaged or was edited: it is written again" in capsys.readouterr().err

@@ -1,5 +1,5 @@
-"""Draws by case number: the same bits however they are cut, and statistics that closed forms
-know."""
+"""Draws by case number: the same bits for any division into parts, and statistics of closed
+forms."""
 
 import numpy as np
 import pytest
@@ -41,7 +41,7 @@ def test_a_case_far_out_costs_no_more_than_the_first():
     assert Points(drawn(2**40, "random", a=(0.0, 1.0))).draw(10**12, 10**12 + 1).shape == (1, 1)
 
 
-def test_each_way_of_sampling_is_what_it_says():
+def test_each_kind_of_sampling():
     asked = drawn(256, "random", a=(0.0, 1.0), b=(0.0, 1.0))
     plain, hypercube, sobol = (
         Points(asked._replace(sampling=how)).draw(0, 256)
@@ -116,7 +116,7 @@ def test_variance_shares_of_the_linear_tip_off():
     assert (abs(variances - exact) < 3.0 * errors).all()
     assert np.sqrt(exact.sum()) == pytest.approx(3.121965, abs=1e-6)
     assert exact / exact.sum() == pytest.approx([0.678342, 0.222686, 0.098972], abs=1e-6)
-    # A sum of independent terms: no term knows of another, in any of the draws.
+    # A sum of independent terms: they are uncorrelated in any of the draws.
     total = terms.sum(axis=0).var()
     covariances = 2.0 * np.sqrt(
         sum(exact[i] * exact[j] for i, j in ((0, 1), (0, 2), (1, 2))) / count

@@ -110,7 +110,7 @@ def test_a_damaged_chunk_is_found_and_run_again(tmp_path, digest, harm, number):
     assert store.digest() == digest
 
 
-def test_a_full_disk_says_so_and_the_store_goes_on(tmp_path, digest, monkeypatch):
+def test_a_full_disk_is_reported_and_the_store_resumes(tmp_path, digest, monkeypatch):
     asked, real, left = ensemble(), stores.write_json, [2]
 
     def full(path, value):

@@ -1,5 +1,5 @@
-"""Tables of cases in CSV files: units in a line or in the cells, bad cells for the scene to refuse,
-bad headers at once."""
+"""Tables of cases in CSV files: units in a line or in the cells, bad cells that the scene refuses,
+bad headers that are refused at once."""
 
 import numpy as np
 import pytest

@@ -1,5 +1,4 @@
-"""The table of a flight: orbits everyone knows, what it refuses, and that no ejection depends on
-it."""
+"""The table of a flight: common orbits, refused values, and that no ejection depends on it."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""The list of effects is all that the program knows of them: one more entry is one more effect."""
+"""All effects come from one list: one more entry is one more effect."""
 
 import re
 from pathlib import Path

@@ -1,5 +1,4 @@
-"""The table of the law that sticks, beside the two-step law that is meant where a table names
-none."""
+"""The table of the law that sticks, and the two-step law, which is the default."""
 
 import pytest
 
@@ -17,7 +16,7 @@ def test_record():
 
 
 def test_a_table_without_a_law_is_two_step():
-    """Named or not, it is one scene: same records, same hash, same file."""
+    """With or without the name it is the same scene: same records, same hash, same file."""
     silent, named = (
         parse(small(contact=CONTACT, friction=table))
         for table in (FRICTION, FRICTION | {"law": "two-step"})

@@ -1,5 +1,5 @@
-"""Temperature of the rails as a scene states it: units of differences, what it needs beside it, its
-fields, and that it costs nobody else their hash."""
+"""Temperature of the rails as a scene states it: units of differences, required keys, its fields,
+and that other scenes keep their hash."""
 
 import numpy as np
 import pytest
@@ -70,7 +70,7 @@ def test_every_fault_at_once():
     }
 
 
-def test_rails_must_be_known_to_expand():
+def test_rails_need_an_expansion():
     """In a file, by an override, and in a case of an ensemble, of one key or of the other."""
     assert "rail.material.expansion" in refused(warm(expansion=None))["thermal"]
     cold, found = parse(small()), parse(warm())

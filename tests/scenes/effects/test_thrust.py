@@ -55,11 +55,11 @@ def test_cut_at_three_sigma(rescale, speed, words):
 
 @pytest.mark.case("O41")
 def test_the_two_readings_differ_by_more_than_the_tolerance():
-    """Control: taking one for the other is an error of 0.27 %, 2700 times the tolerance."""
+    """Control: one in place of the other is an error of 0.27 %, 2700 times the tolerance."""
     assert 1.0 - kept_by_cut(3.0) == pytest.approx(2.7e-3, rel=1e-3)
 
 
-def test_nothing_cut_is_said():
+def test_a_description_without_a_cut():
     said = table(**O41).describe(DURATION)
     assert "not cut" in said["text"] and said["cutoff_widths"] == "none"
     assert said["impulse_delivered_Ns"] == pytest.approx(100.0, rel=1e-6)
@@ -148,7 +148,7 @@ def test_the_fit_recovers_a_gaussian(tmp_path, use):
 
 
 def test_a_poor_fit_is_reported(tmp_path):
-    """A square push has no Gaussian shape: the residual says so, and the two impulses differ."""
+    """A square push has no Gaussian shape: the residual shows it, and the two impulses differ."""
     time = np.linspace(0.0, 0.04, 161)
     force = np.where(np.abs(time - 0.02) < 0.01 - 1e-9, 1e3, 0.0)
     said = table(kind="measured", file=curve_file(tmp_path, time, force)).describe(DURATION)

@@ -1,4 +1,4 @@
-"""Runs on rails that vibrate: a moving force, a rail that rings out, ledgers, and the limit of
+"""Runs on rails that vibrate: a moving force, free vibration of a rail, ledgers, and the limit of
 rails without inertia."""
 
 from dataclasses import replace
@@ -29,7 +29,7 @@ VIBRATING, TIGHT_VIBRATING = Numerics(modes=4), replace(TIGHT, modes=4)
 # A beam as in tests/highfi/dynamics/test_moving_force.py.
 LENGTH, WIDTH, HEIGHT, MODULUS, DENSITY = 0.8, 0.02, 0.01, 72e9, 2810.0
 CRITICAL = np.pi / LENGTH * elasticity.bar_speed(MODULUS, DENSITY) * HEIGHT / np.sqrt(12.0)
-# N/m and m of the spring that is the force: it changes by 1e-4 as the beam gives way
+# N/m and m of the spring that is the force: it changes by 1e-4 as the beam deflects
 STIFFNESS, PUSHED = 1.0, 1e-3
 
 
@@ -40,7 +40,7 @@ def sampled(run: Run) -> np.ndarray:
     while run.taken <= run.end and not run.message:
         run.advance(run.taken)
         found.append(run.loop.work.copy())
-    return np.array(found[: run.taken])  # nothing was left to learn before the last one asked for
+    return np.array(found[: run.taken])  # a run may end before the last one requested
 
 
 def crossing(ratio: float):
@@ -119,7 +119,7 @@ def test_moving_force(monkeypatch, ratio, factor, place):
 
 
 def test_a_rail_rings_out():
-    """Every mode by itself is a damped oscillator, and the ledger tells where its energy went."""
+    """Every mode by itself is a damped oscillator, and the ledger accounts for its energy."""
     still = {
         "thrust.peak": 0.0,
         "duration": 2e-3,
@@ -158,7 +158,7 @@ def test_a_rail_rings_out():
     "condition, changes", [("phi35", {}), ("h7", DAMPED)], ids=["phi35", "damped, over the end"]
 )
 def test_ledgers_and_momentum(condition, changes):
-    """As the user gets it; residuals fall with the tolerance."""
+    """With default numerics; residuals fall with the tolerance."""
     asked, compliance = REFERENCE.condition(condition).replace(changes), reference_compliance()
     run = Run(asked, VIBRATING, compliance)
     states, fine = sampled(run), lowfi.run(asked, numerics=TIGHT_VIBRATING, compliance=compliance)
@@ -182,7 +182,7 @@ def test_ledgers_and_momentum(condition, changes):
 
 
 def test_no_step_is_too_long_for_the_highest_mode():
-    """At a tolerance that lets errors grow to centimetres a second the proven limit alone holds the
+    """At a tolerance that allows errors of centimetres per second the proven limit alone bounds the
     steps, and no mode grows."""
     asked, compliance = REFERENCE.condition("phi60"), reference_compliance()
     loose, fine = (
@@ -216,8 +216,9 @@ def work_of_modes(scene, compliance, run, states) -> float:
 
 
 def test_rails_without_inertia_are_the_walls_of_statics():
-    """Frequencies to infinity at the same statics: what vibration changes falls with their square,
-    four times for twice as fast, and touches at another phase of it may hide a little of that."""
+    """Frequencies go to infinity at the same statics: the effect of vibration falls with their
+    square, four times for twice the frequency. Touches at another phase of the vibration may hide a
+    little of it."""
     asked, compliance = REFERENCE.condition("phi60"), reference_compliance()
     static = lowfi.run(asked, numerics=TIGHT, compliance=compliance).outcome.rate
     change = []

@@ -1,5 +1,5 @@
-"""Modes of the rails on compliant contact: one potential behind all forces, the step limit, and
-who may ask for them."""
+"""Modes of the rails on compliant contact: one potential of all forces, the step limit, and the
+compliances that have modes."""
 
 from dataclasses import replace
 
@@ -46,8 +46,8 @@ def rails(system):
 
 @pytest.mark.parametrize("name", POSES)
 def test_forces_are_the_gradient_of_the_energy(vibrating, name):
-    """By either body's ways and turns at modes held still, and by every mode: q'' = -dE/dq -
-    omega^2 q - d q'."""
+    """For translations and rotations of either body with the modes fixed, and for every mode: q'' =
+    -dE/dq - omega^2 q - d q'."""
     model, system, modes = vibrating
     pose, h, twists = pose_of(model, name, BASES["moved and turned"]), 1e-9, np.eye(12)
     out = [derivative(system, model, pose, twist, modes) for twist in twists]
@@ -103,9 +103,9 @@ def pull_of_modes(system, model, pose, modes) -> float:
 
 
 @pytest.mark.parametrize("name", ["both legs", "rails of both sides"])
-def test_limit_holds_the_spectrum(vibrating, name):
-    """Every eigenvalue of the whole lies below the bound, which is not far above; the highest mode
-    alone would not do."""
+def test_limit_bounds_the_spectrum(vibrating, name):
+    """Every eigenvalue of the coupled system lies below the bound, which is not far above; the
+    highest mode alone would be no bound."""
     model, system, modes = vibrating
     pose, bodies = pose_of(model, name), (model.payload, model.platform)
     metric = np.zeros((12 + modes.size // 2,) * 2)

@@ -1,5 +1,5 @@
-"""Runs on compliant contact: limits that are a spring, ledgers, symmetries, the step limit, and a
-wall pulled into contact."""
+"""Runs on compliant contact: limits in which it is a spring, ledgers, symmetries, the step limit,
+and a wall pulled into contact."""
 
 import numpy as np
 import pytest
@@ -86,8 +86,8 @@ def speeds(run) -> np.ndarray:
 @pytest.mark.parametrize("friction", [0.0, 0.2])
 @pytest.mark.parametrize("given", [None, 3e7], ids=["rigid", "in series"])
 def test_one_cell_is_a_spring(monkeypatch, friction, given):
-    """A flat pad of one cell on a rigid wall is penalty times area; on a wall that only gives way
-    as a whole, two springs in series."""
+    """A flat pad of one cell on a rigid wall is penalty times area; on a wall that only translates,
+    two springs in series."""
     rub = RUB | {"static": friction, "dynamic": friction}
     together = STIFFNESS if given is None else 1.0 / (1.0 / STIFFNESS + 1.0 / given)
     asked = on_springs(rub, together)
@@ -170,8 +170,8 @@ def pulled_exactly(coupling: float, time: np.ndarray) -> np.ndarray:
 
 
 def test_a_wall_pulled_into_touch(monkeypatch):
-    """Pressing one leg brings the other to a pad that stands still with its gap open: found, and
-    pushed off as two springs say."""
+    """Pressing one leg brings the other to a pad at rest with an open gap: the contact is found,
+    and its force is that of two springs."""
     in_one_cell(monkeypatch)
     asked, compliance = pulled(-6e-8)
     run = lowfi.run(asked, numerics=TIGHT, compliance=compliance)
@@ -192,7 +192,7 @@ def test_a_wall_pulled_into_touch(monkeypatch):
 
 @pytest.mark.parametrize("condition", ["phi35", "h4", "h7", "h8", "h9"])
 def test_ledgers_and_momentum(condition):
-    """As the user gets it, with pads that leave the rail's end under load (h7 to h9); residuals
+    """With default numerics, and pads that leave the rail's end under load (h7 to h9); residuals
     fall with the tolerance."""
     asked, compliance = REFERENCE.condition(condition), reference_compliance()
     coarse, fine = (
@@ -280,8 +280,8 @@ def test_order_of_the_pads():
 
 
 def test_no_step_above_the_proven_limit():
-    """Under a thousandfold penalty, at a tolerance that lets errors grow to centimetres a second,
-    the limit alone holds the steps, and the motion with them."""
+    """Under a thousandfold penalty, at a tolerance that allows errors of centimetres per second,
+    the limit alone bounds the steps and the motion."""
     stiff = REFERENCE.condition("phi60").replace({"contact.penalty": 1.8e15})
     run = lowfi.run(
         stiff,
@@ -296,8 +296,8 @@ def test_no_step_above_the_proven_limit():
 @pytest.mark.parametrize("condition", ["phi0", "h7", "h9"])
 def test_no_touch_is_missed(condition):
     """Narrow gaps and long steps: a pad that touches late in the step in which it leaves, or only
-    with an edge, is felt as in short steps. A contact that is missed is worth degrees; the error of
-    the steps, on h7 grown by ten touches, hundredths."""
+    with an edge, has the force of short steps. A missed contact changes the rate by degrees per
+    second; the error of the steps, which ten touches amplify on h7, by hundredths."""
     asked = load("sensitive").condition(condition)
     long, short = (
         lowfi.run(

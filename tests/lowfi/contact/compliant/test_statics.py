@@ -1,5 +1,5 @@
-"""Statics of compliant contact: one potential behind all forces, one solution, and the finite
-elements it came from."""
+"""Statics of compliant contact: one potential of all forces, one solution, and agreement with the
+finite elements of the compliance."""
 
 import numpy as np
 import pytest
@@ -134,9 +134,9 @@ def test_forces_are_the_gradient_of_the_energy(reference, name, base):
 
 
 @pytest.mark.parametrize("name", POSES)
-def test_tangent_bounds_what_the_forces_change_by(reference, name):
-    """Trace of M^-1 T against differences of the forces; the rest, that of the forces' own arms and
-    of the slopes they lean on, is a few thousandths of it."""
+def test_tangent_bounds_the_change_of_the_forces(reference, name):
+    """Trace of M^-1 T against differences of the forces. The rest, from the arms of the forces and
+    the slopes of the walls, is a few thousandths of it."""
     _, model, system = reference
     pose, h = pose_of(model, name, BASES["moved and turned"]), 1e-9
     metric = np.zeros((12, 12))
@@ -165,8 +165,8 @@ def test_tangent_bounds_what_the_forces_change_by(reference, name):
 
 @pytest.mark.parametrize("name", POSES)
 def test_one_solution_whatever_the_first_guess(reference, name):
-    """U = F P(U) by the plain equations; walls with a fresh, a wild and the right first guess
-    agree."""
+    """U = F P(U) by the plain equations; a zero, a random and the right first guess give the same
+    walls."""
     compliance, model, system = reference
     pose, workspace = pose_of(model, name), system.compliance.workspace
     random = np.random.default_rng(8)
@@ -194,7 +194,7 @@ def test_one_solution_whatever_the_first_guess(reference, name):
 
 
 def test_any_pose_is_solved(reference):
-    """From a graze to millimetres deep, over the ends too, from guesses as wild: the forces are
+    """From first touch to millimetres deep, also over the ends, from random guesses: the forces are
     those of the displacements."""
     _, model, system = reference
     random, workspace, worst = np.random.default_rng(1), system.compliance.workspace, 0.0
@@ -281,9 +281,9 @@ def pressed_elements(scene, face, travel, aside=0.0, points_per_edge=4):
     "travel, error", [(0.008, 0.05), (0.056, 0.025)], ids=["at a mount", "between mounts"]
 )
 def test_force_is_that_of_the_finite_elements(reference, travel, error):
-    """One pad: pressure in six patterns under ten by ten cells against pressure free to be
-    anything. Nothing is fitted. A mount leaves only the leg's own bending, which knows less of the
-    patterns."""
+    """One pad: pressure in six patterns on ten by ten cells against a pressure that is free at
+    every point. Nothing is fitted. At a mount only the leg's own bending is left, which the
+    patterns describe less well."""
     compliance, model, system = reference
     face, force = 0, pressed_elements(REFERENCE, 0, travel)
     active = np.arange(len(system.faces)) == face
@@ -303,8 +303,8 @@ def test_force_is_that_of_the_finite_elements(reference, travel, error):
     "aside", [CLEARANCE, -CLEARANCE], ids=["to the free edge", "to the corner"]
 )
 def test_a_pad_aside_meets_a_softer_or_stiffer_leg(reference, aside):
-    """The same as with finite elements under the pad where it really stands, though the walls were
-    found midway between the rails."""
+    """The force is that of finite elements under the pad at its real place, though the compliance
+    was found midway between the rails."""
     compliance, model, system = reference
     face, travel, depth = 0, 0.056, 2e-5
     active = np.arange(len(system.faces)) == face

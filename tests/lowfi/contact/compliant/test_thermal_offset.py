@@ -1,5 +1,5 @@
-"""Warm rails on compliant contact: one potential behind all forces, and displacement that starts
-from where they stand."""
+"""Warm rails on compliant contact: one potential of all forces, and displacement that starts at the
+warm walls."""
 
 import numpy as np
 import pytest
@@ -80,7 +80,7 @@ def test_forces_are_the_gradient_of_the_energy(heated, name):
 
 
 @pytest.mark.parametrize("name", PRESSED[:1])
-def test_displacement_starts_where_the_walls_stand(heated, name):
+def test_displacement_starts_at_the_warm_walls(heated, name):
     """U = W + F P, W being the sum of the fields."""
     compliance, model, system = heated
     travel, pose, workspace = POSES[name][0], pose_of(model, name), system.compliance.workspace
@@ -121,8 +121,8 @@ def test_ledgers_and_momentum(condition):
 
 @pytest.mark.slow
 def test_nothing_warm_is_the_same_as_no_temperature():
-    """Zero by every field; and the fields the other way round move the rates the other way, to
-    first order."""
+    """Zero in every field is no temperature, and opposite fields change the rates in the opposite
+    way, to first order."""
     cold = REFERENCE.condition("phi35")
     small = {key: 0.02 * value for key, value in FIELD.items()}
     tight = Numerics(relative_tolerance=1e-10)
@@ -146,9 +146,9 @@ def test_nothing_warm_is_the_same_as_no_temperature():
 
 @pytest.mark.slow
 def test_both_fidelities_agree_on_warm_rails():
-    """Elements of 4 mm in both, 20 K with the sun on one side: within what agreement may be claimed
-    for, where the temperature is worth ten times as much. Control: the other way round, or
-    forgotten, it is missed."""
+    """Elements of 4 mm in both, 20 K with the sun on one side: within the limits of agreement,
+    while the temperature changes the rates by ten times as much. Control: with the opposite
+    temperature, or none, they are missed."""
     cold, sun = (
         REFERENCE.condition("phi35"),
         {"thermal.mean": 20.0, "thermal.gradient.y": 100.0, "thermal.gradient.z": -50.0},
