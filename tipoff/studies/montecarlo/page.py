@@ -242,7 +242,7 @@ def _models(models: dict) -> Chart:
 
 
 def table_of_quantities(found: dict) -> Table:
-    """Mean, standard deviation and quantiles with bounds of each quantity."""
+    """Standard deviation and quantiles of each quantity."""
     rows = []
     for item in found["quantities"]:
         quantiles = {row["share"]: row for row in item["quantiles"]}
