@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tipoff.kernels import rotation
-from tipoff.kernels.jit import inlined, kernel
+from tipoff.kernels.jit import entry, inlined
 from tipoff.mechanics import comoving
 from tipoff.mechanics.model import Model
 
@@ -167,7 +167,7 @@ def initial(model: Model) -> np.ndarray:
     return state
 
 
-@kernel
+@entry
 def fill(state, body, mass, inertia, place, velocity, attitude, rate):
     """Fill the slots of a body, the first of which is ``body``, in ``state`` (STATE_SIZE,): mass
     (kg), inertia (3,3) kg m2 in body axes, place (m), velocity (m/s), unit quaternion and rate

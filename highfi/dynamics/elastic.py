@@ -11,10 +11,10 @@ from tipoff.highfi.extruded.kernel import column_force
 from tipoff.highfi.state.nodes import hold, move_nodes, sum_turning
 from tipoff.highfi.state.threads import barrier
 from tipoff.highfi.statics.operator import add_internal_force
-from tipoff.kernels.jit import kernel
+from tipoff.kernels.jit import entry, kernel
 
 
-@kernel
+@entry
 def elastic_force(rail, displacement, force, turn, team):
     """Set ``force`` (n,3) to K u (N), and ``turn`` (b,3) to each block's part of the sum of u x K u
     (N m); one thread's work."""

@@ -34,10 +34,10 @@ from tipoff.highfi.dynamics.loads import (
 from tipoff.highfi.state.pose import drift_body, pose_in_frame, small_turn, triple
 from tipoff.highfi.state.threads import barrier, reset_queue
 from tipoff.kernels import rotation
-from tipoff.kernels.jit import inlined, kernel
+from tipoff.kernels.jit import entry, inlined, kernel
 
 
-@kernel
+@entry
 def evaluate(constants, state, active, team):
     """All forces at the present places of rails at rest in their frame, by one thread."""
     rail = constants.rail
@@ -73,7 +73,7 @@ def _less(a, b):
     return (a[0] - b[0], a[1] - b[1], a[2] - b[2])
 
 
-@inlined
+@entry(forceinline=True)
 def kick_bodies(constants, state, pose, thrust, dt):
     """Advance all velocities but those of the nodes over ``dt`` by the present forces; counts the
     external impulse."""
@@ -152,7 +152,7 @@ def _drift_frame(frame, drive, state, pose, dt):
             state.rail_momentum[i] += momentum[i]
 
 
-@kernel
+@entry
 def advance(constants, state, active, book, team, thread, first_step, steps):
     """Take ``steps`` steps from step number ``first_step``, as one ``thread`` of ``team``; all its
     threads must be called.

@@ -10,10 +10,10 @@ import numpy as np
 from tipoff.highfi.extruded.mesh import LANES
 from tipoff.highfi.state.pose import triple
 from tipoff.kernels import rotation
-from tipoff.kernels.jit import kernel
+from tipoff.kernels.jit import entry, kernel
 
 
-@kernel
+@entry
 def kick_nodes(inverse_mass, velocity, resistance, acceleration, dt):
     """w += dt (acceleration - r / m) for all nodes; ``acceleration`` (m/s2) of the body force in
     frame axes."""

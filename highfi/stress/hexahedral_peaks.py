@@ -11,7 +11,7 @@ import numpy as np
 
 from tipoff.highfi.elements import hexahedral_recovery
 from tipoff.highfi.stress.peak import measure, note
-from tipoff.kernels.jit import inlined, kernel
+from tipoff.kernels.jit import entry, inlined, kernel
 from tipoff.kernels.memory import aligned
 
 CORNERS = 8
@@ -71,7 +71,7 @@ def _of_classes(corners: np.ndarray, law: np.ndarray) -> tuple[np.ndarray, np.nd
     return amplitude.reshape(-1, 24 * _LANES), slope, bubble
 
 
-@kernel
+@entry
 def find(displacement, recovery, peak, space, first, last):
     """Raise ``peak`` to what elements ``first`` to ``last`` have under displacement (n,3) m;
     ``space`` (SIZE,) is workspace."""

@@ -12,7 +12,7 @@ import numpy as np
 
 from tipoff.highfi.elements import tetrahedral_recovery
 from tipoff.highfi.stress.peak import measure, note
-from tipoff.kernels.jit import inlined, kernel
+from tipoff.kernels.jit import entry, inlined, kernel
 from tipoff.kernels.memory import aligned
 
 NODES = 10
@@ -53,7 +53,7 @@ def build(
     return Recovery(number[cells].astype(np.uint32), shape_class, aligned(slope))
 
 
-@kernel
+@entry
 def find(displacement, recovery, peak, space, first, last):
     """Raise ``peak`` to what elements ``first`` to ``last`` have under displacement (n,3) m;
     ``space`` (SIZE,) is workspace."""

@@ -19,7 +19,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tipoff.kernels import rotation
-from tipoff.kernels.jit import inlined, kernel
+from tipoff.kernels.jit import entry, inlined
 from tipoff.lowfi import state as slot
 from tipoff.lowfi.contact import stick_slip
 from tipoff.lowfi.contact.compliant.modes import energies
@@ -246,7 +246,7 @@ def _record(tolerance, mass, loop, found):
     return not audit.failed
 
 
-@kernel
+@entry
 def errors(audit, total, transverse):
     """Relative errors of the total and the transverse ledger at the ends of all steps, of which
     ``total`` and ``transverse`` are promised."""
@@ -261,7 +261,7 @@ def errors(audit, total, transverse):
     )
 
 
-@kernel
+@entry
 def usage(audit, total, transverse):
     """Largest share that a ledger uses of half of what is promised: above one, smaller steps are
     needed."""

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from tipoff.kernels.jit import inlined, kernel
+from tipoff.kernels.jit import entry, inlined, kernel
 from tipoff.lowfi import state as slot
 from tipoff.lowfi.contact.stick_slip import clear
 from tipoff.lowfi.dynamics import ending, stick_slip
@@ -26,7 +26,7 @@ def ready(system, state: np.ndarray, first_step: float) -> Loop:
     return loop
 
 
-@kernel
+@entry
 def reset(system, state, first_step, loop):
     """Bring a used loop back to the start of a run."""
     _reset_clock(loop.clock, first_step)
@@ -86,7 +86,7 @@ def _reset_stick(stick):
             clear(stick[i])
 
 
-@kernel
+@entry
 def integrate(system, plan, tolerance, marks, loop, sampling, rows, forces):
     """Take samples up to ``sampling.number`` into ``rows`` (n, SAMPLE_SIZE) and ``forces`` (n, f,
     3), and after the last one go on to the end of the scene; fewer, when the settled window is
@@ -128,7 +128,7 @@ def integrate(system, plan, tolerance, marks, loop, sampling, rows, forces):
     return ENDED if status == SAMPLED else status
 
 
-@inlined
+@kernel
 def _reach(system, plan, tolerance, marks, loop, whole, time):
     """Step until ``time`` (s) is reached: SAMPLED, or why it is not."""
     while loop.clock.now < time:

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tipoff.kernels.jit import kernel
+from tipoff.kernels.jit import entry, kernel
 from tipoff.lowfi import state as slot
 from tipoff.lowfi.contact.wall_ends import DEPTH
 from tipoff.lowfi.dynamics import audit
@@ -36,7 +36,7 @@ class Cases(NamedTuple):
     reach: np.ndarray  # (n,) m, as in ``Tolerance``
 
 
-@kernel
+@entry
 def run_cases(common, plan, control, marks, cases, loop, results):
     """Fill ``results`` (n, RESULT_SIZE), one row per case. ``control`` is the tolerance, but for the
     reach, and the first step (s). A case whose ledgers need smaller steps is left open."""

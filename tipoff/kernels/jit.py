@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeVar, overload
 
 import numba
 from numba.core.caching import _CacheLocator
+from numba.core.registry import CPUDispatcher
 
 from tipoff import sources
 
@@ -33,7 +34,9 @@ class Compiler(Protocol):
     @overload
     def __call__(self, function: _Function, /) -> "Dispatcher[_Function]": ...
     @overload
-    def __call__(self, /, *, inline: Literal["never", "always"]) -> "Compiler": ...
+    def __call__(self, /, *, inline: Literal["always"]) -> "Compiler": ...
+    @overload
+    def __call__(self, /, *, forceinline: bool) -> "Compiler": ...
 
 
 def kernel_digest(module: str) -> str:
@@ -92,21 +95,49 @@ if "NUMBA_OPT" not in os.environ:
 _settings.CACHE_LOCATOR_CLASSES = f"{__name__}.KernelCacheLocator,UserProvidedCacheLocator"
 _settings.CACHE_DIR = str(sources.cache_folder() / "kernels")
 
+
+class _Part(CPUDispatcher):
+    """A kernel that only kernels call, compiled without the wrappers that take it to Python.
+
+    They unpack and count the references of every array in the records, which is a third of all that
+    LLVM would have to compile. A call from Python compiles a caller that has them.
+    """
+
+    def __call__(self, *arguments):
+        if not hasattr(self, "_caller"):
+            part = self
+            self._caller = numba.njit(lambda *arguments: part(*arguments), error_model="numpy")
+        return self._caller(*arguments)
+
+
+def _part(function=None, /, **options):
+    """Decorator that makes a ``_Part`` of a function, bare or with options."""
+    if function is None:
+        return functools.partial(_part, **options)
+    dispatcher = njit(function, _nrt=False, no_cpython_wrapper=True, **options)
+    dispatcher.__class__ = _Part
+    return dispatcher
+
+
 if TYPE_CHECKING:
     njit: Compiler
+    entry: Compiler
     kernel: Compiler
     inlined: Compiler
 else:
     # error_model="numpy": division by zero gives inf, which reaches the status check, instead of an
     # exception inside a kernel.
-    njit = functools.partial(numba.njit, cache=True, error_model="numpy", nogil=True)
+    njit = functools.partial(
+        numba.njit, cache=True, error_model="numpy", nogil=True, no_cfunc_wrapper=True
+    )
     # For kernels that neither make nor return arrays: without reference counts, which cost more
     # than the arithmetic where records of arrays are handed from function to function, and half the
-    # time to compile.
-    kernel = functools.partial(njit, _nrt=False)
+    # time to compile. ``entry`` is for those that Python calls.
+    entry = functools.partial(njit, _nrt=False)
+    kernel = _part
     # The same for what innermost loops call with whole records: each call would copy some hundred
     # words of array headers.
-    inlined = functools.partial(kernel, forceinline=True)
+    inlined = functools.partial(_part, forceinline=True)
 
 
 def machine_code(kernel, arguments: tuple) -> bytes:

@@ -7,7 +7,7 @@ does not depend on the sampling interval. The definitions are those of ``mechani
 import numpy as np
 
 from tipoff.kernels import rotation
-from tipoff.kernels.jit import inlined, kernel
+from tipoff.kernels.jit import entry, inlined, kernel
 from tipoff.mechanics.outcome import JAM_DURATION, SETTLE_WINDOW, Outcome, window_start
 
 # A row: payload and platform, each with place (m), velocity (m/s), quaternion and rate in body axes
@@ -35,7 +35,7 @@ AFTER = 1e-3
 _ROUNDING = 1e-12  # relative: a scene that ends with the window holds all of it
 
 
-@kernel
+@entry
 def reset(book):
     """Set a book (BOOK_SIZE,) to the start of a run."""
     book[:] = 0.0
@@ -113,7 +113,7 @@ def is_over(book, now):
     return now >= book[DONE] + AFTER
 
 
-@inlined
+@entry(forceinline=True)
 def is_left_out(book, time, interval):
     """Whether the sample at ``time`` (s) is left out: it is too late, or the sample one ``interval``
     (s) earlier was the last one."""
