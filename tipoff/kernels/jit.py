@@ -8,13 +8,14 @@ of the code that the module depends on (``sources``).
 
 import functools
 import hashlib
-import os
 from collections.abc import Callable
-from types import CodeType, FunctionType
+from types import CodeType, FunctionType, SimpleNamespace
 from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeVar, overload
 
 import numba
 from numba.core.caching import _CacheLocator
+from numba.core.codegen import JITCodeLibrary
+from numba.core.compiler import Compiler
 from numba.core.registry import CPUDispatcher
 
 from tipoff import sources
@@ -27,16 +28,16 @@ _settings: Any = numba.config
 _Function = TypeVar("_Function", bound=Callable[..., object])
 
 
-class Compiler(Protocol):
+class Decorator(Protocol):
     """A decorator that makes a kernel of a function, bare or with options. A kernel is called like
     the function and has the attributes of a Numba dispatcher."""
 
     @overload
     def __call__(self, function: _Function, /) -> "Dispatcher[_Function]": ...
     @overload
-    def __call__(self, /, *, inline: Literal["always"]) -> "Compiler": ...
+    def __call__(self, /, *, inline: Literal["always"]) -> "Decorator": ...
     @overload
-    def __call__(self, /, *, forceinline: bool) -> "Compiler": ...
+    def __call__(self, /, *, forceinline: bool) -> "Decorator": ...
 
 
 def kernel_digest(module: str) -> str:
@@ -86,58 +87,83 @@ def _digest_of_code(code: CodeType) -> str:
     return hashlib.sha256(repr(parts).encode()).hexdigest()[:8]
 
 
-# A kernel is compiled again inside each kernel that calls it, from code that is already optimised.
-# At level 3 the first pass splits vectors of states into scalars, and the next pass does not undo
-# it: the surrogate then takes half as long again.
-if "NUMBA_OPT" not in os.environ:
-    _settings.OPT = type(_settings.OPT)("max")
-
 _settings.CACHE_LOCATOR_CLASSES = f"{__name__}.KernelCacheLocator,UserProvidedCacheLocator"
 _settings.CACHE_DIR = str(sources.cache_folder() / "kernels")
 
 
-class _Part(CPUDispatcher):
-    """A kernel that only kernels call, compiled without the wrappers that take it to Python.
+class _PartLibrary(JITCodeLibrary):
+    """LLVM code of a kernel that only kernels call, neither optimised nor made machine code."""
 
-    They unpack and count the references of every array in the records, which is a third of all that
-    LLVM would have to compile. A call from Python compiles a caller that has them.
+    def finalize(self) -> None:
+        """Link the kernels that this one calls."""
+        for library in dict.fromkeys(self._linking_libraries):
+            self._reload_init.update(library._reload_init)
+            self._final_module.link_in(library._get_module_for_linking(), preserve=True)
+        self._finalize_dynamic_globals()
+        self._finalized = True
+
+    def get_pointer_to_function(self, name: str) -> int:
+        """Zero: there is no machine code."""
+        return 0
+
+    @property
+    def codegen(self):
+        """Code generator for those that ask for one: without machine code there is no place for
+        the environment of the function."""
+        return SimpleNamespace(set_env=lambda name, environment: None)
+
+
+class _PartCompiler(Compiler):
+    """Numba's compiler with libraries of parts."""
+
+    def define_pipelines(self) -> list:
+        """Numba's passes, which lower to the library that is set here."""
+        state = self.state
+        state.library = _PartLibrary(state.targetctx.codegen(), state.func_id.func_qualname)
+        return super().define_pipelines()
+
+
+class _Part(CPUDispatcher):
+    """A kernel that only kernels call.
+
+    LLVM sees its code once, inside the kernel that Python calls. Numba alone would optimise it and
+    make machine code for every caller on the way, with wrappers that unpack all arrays of the
+    records: two thirds of the time to compile, and the result was slower. A call from Python, as in
+    a test, compiles a caller.
     """
+
+    def __init__(self, function: Callable, **options: Any):
+        flags = {"nopython": True, "_nrt": False, "no_cpython_wrapper": True}
+        super().__init__(
+            function, targetoptions=_OPTIONS | flags | options, pipeline_class=_PartCompiler
+        )
 
     def __call__(self, *arguments):
         if not hasattr(self, "_caller"):
             part = self
-            self._caller = numba.njit(lambda *arguments: part(*arguments), error_model="numpy")
+            self._caller = numba.njit(lambda *arguments: part(*arguments), **_OPTIONS)
         return self._caller(*arguments)
 
 
-def _part(function=None, /, **options):
-    """Decorator that makes a ``_Part`` of a function, bare or with options."""
-    if function is None:
-        return functools.partial(_part, **options)
-    dispatcher = njit(function, _nrt=False, no_cpython_wrapper=True, **options)
-    dispatcher.__class__ = _Part
-    return dispatcher
-
+# error_model="numpy": division by zero gives inf, which reaches the status check, instead of an
+# exception inside a kernel.
+_OPTIONS = {"error_model": "numpy", "nogil": True, "no_cfunc_wrapper": True}
 
 if TYPE_CHECKING:
-    njit: Compiler
-    entry: Compiler
-    kernel: Compiler
-    inlined: Compiler
+    njit: Decorator
+    entry: Decorator
+    kernel: Decorator
+    inlined: Decorator
 else:
-    # error_model="numpy": division by zero gives inf, which reaches the status check, instead of an
-    # exception inside a kernel.
-    njit = functools.partial(
-        numba.njit, cache=True, error_model="numpy", nogil=True, no_cfunc_wrapper=True
-    )
+    njit = functools.partial(numba.njit, cache=True, **_OPTIONS)
     # For kernels that neither make nor return arrays: without reference counts, which cost more
     # than the arithmetic where records of arrays are handed from function to function, and half the
-    # time to compile. ``entry`` is for those that Python calls.
+    # time to compile. ``entry`` is for those that Python calls, ``kernel`` for all others.
     entry = functools.partial(njit, _nrt=False)
-    kernel = _part
+    kernel = _Part
     # The same for what innermost loops call with whole records: each call would copy some hundred
     # words of array headers.
-    inlined = functools.partial(_part, forceinline=True)
+    inlined = functools.partial(_Part, forceinline=True)
 
 
 def machine_code(kernel, arguments: tuple) -> bytes:
