@@ -75,7 +75,8 @@ def test_surrogate_is_timed_by_turns(monkeypatch, tmp_path):
     monkeypatch.setattr(Study, "rail_compliance", lambda *_: None)
     study = Study(scenes.load("tiny"), tmp_path, replace(defaults("tiny"), lowfi_repeats=3))
     lines = {"a": {}, "b": {"friction": None}}
-    _, runs, times = ablation.timed_surrogate(study, "phi15", lines)
+    requested = ablation.surrogate_runs(study, "phi15", lines)
+    runs, times = ablation.timed_surrogate(study, requested)
     assert order == ["phi15-a", "phi15-b"] * 3
     assert [run.label for run in runs] == ["phi15-a", "phi15-b"] and times == [3.0, 4.0]
 

@@ -18,9 +18,10 @@ from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.effects.registry import EFFECTS
 from tipoff.scenes.scene import Scene
 from tipoff.studies.core import machine
+from tipoff.studies.core.compiling import compile_ahead, warm_up
 from tipoff.studies.core.store import Run
 from tipoff.studies.core.study import Study
-from tipoff.studies.cost.timing import timed, warm_up
+from tipoff.studies.cost.timing import timed
 
 ADDED = {effect.key: effect.example for effect in EFFECTS if effect.example}
 
@@ -49,8 +50,11 @@ def run(study: Study) -> dict:
 
     def make() -> tuple[dict, list[Path]]:
         lines = variants(study.condition(name))
-        rows = _rows("highfi", lines, *_reference(study, name, lines)) + _rows(
-            "lowfi", lines, *timed_surrogate(study, name, lines)
+        reference = [study.coarse(name, changes, _tag(line)) for line, changes in lines.items()]
+        surrogate = surrogate_runs(study, name, lines)
+        compile_ahead("ablation, kernels", reference + surrogate, study.settings.workers)
+        rows = _rows("highfi", lines, reference, *_timed_reference(study, reference)) + _rows(
+            "lowfi", lines, surrogate, *timed_surrogate(study, surrogate)
         )
         return {
             "condition": name,
@@ -63,35 +67,38 @@ def run(study: Study) -> dict:
     return study.stage("ablation", study.key(__name__, name, ADDED), make)
 
 
-def _reference(study: Study, name: str, lines: dict[str, dict]):
-    """Runs on the coarse mesh, and the processor time (s) of the thread of each, which parallel runs
-    do not change."""
-    requested = [study.coarse(name, overrides, _tag(line)) for line, overrides in lines.items()]
-    runs = study.store.fill("ablation, highfi", requested)
-    return requested, runs, [run.cost.get("cpu_s", run.cost["wall_s"]) for run in runs]
-
-
-def timed_surrogate(study: Study, name: str, lines: dict[str, dict]):
-    """Runs in turn, and the median time (s) of their time loops, without set-up and evaluation,
-    which are the same for all."""
-    under = study.rail_compliance(study.condition(name))
-    requested = [
+def surrogate_runs(study: Study, name: str, lines: dict[str, dict]) -> list[Run]:
+    """A run of the surrogate for each line: on the rail compliance, unless there is no contact."""
+    compliance = study.rail_compliance(study.condition(name))
+    return [
         study.lowfi(
             name,
             None,
-            overrides,
+            changes,
             _tag(line),
-            None if overrides.get("contact", "kept") is None else under,
+            None if changes.get("contact", "kept") is None else compliance,
         )
-        for line, overrides in lines.items()
+        for line, changes in lines.items()
     ]
-    for item in requested:
-        warm_up(item)
-    rounds = [[timed(item) for item in requested] for _ in range(study.settings.lowfi_repeats)]
+
+
+def _timed_reference(study: Study, runs: list[Run]) -> tuple[list[Trajectory], list[float]]:
+    """The results, and the processor time (s) of the thread of each, which parallel runs do not
+    change."""
+    found = study.store.fill("ablation, highfi", runs)
+    return found, [run.cost.get("cpu_s", run.cost["wall_s"]) for run in found]
+
+
+def timed_surrogate(study: Study, runs: list[Run]) -> tuple[list[Trajectory], list[float]]:
+    """The results of runs in turn, and the median time (s) of their time loops, without set-up and
+    evaluation, which are the same for all."""
+    for run in runs:
+        warm_up(run)
+    rounds = [[timed(run) for run in runs] for _ in range(study.settings.lowfi_repeats)]
     times = [
         statistics.median(run.cost["kernel_s"] for run, _, _ in repeats) for repeats in zip(*rounds)
     ]
-    return requested, [run for run, _, _ in rounds[0]], times
+    return [run for run, _, _ in rounds[0]], times
 
 
 def _rows(

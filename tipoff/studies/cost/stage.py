@@ -24,12 +24,13 @@ from tipoff.studies.agreement.metrics import compare
 from tipoff.studies.agreement.stage import Candidate, candidates, refined
 from tipoff.studies.calibration import stage as calibrate
 from tipoff.studies.core import machine
+from tipoff.studies.core.compiling import warm_up
 from tipoff.studies.core.progress import Board
 from tipoff.studies.core.stage import Stage
 from tipoff.studies.core.store import Run
 from tipoff.studies.core.study import Study
 from tipoff.studies.cost import choice, scaling
-from tipoff.studies.cost.timing import timed, warm_up
+from tipoff.studies.cost.timing import timed
 
 BY_MODES = f"{COMPLIANT}, modes varied"
 MODES = (1, 2, 8)  # of each rail, beside those of the agreement study

@@ -8,13 +8,13 @@
 import statistics
 import time
 from collections.abc import Callable
-from dataclasses import replace
 
 import numpy as np
 
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.studies.core import machine
-from tipoff.studies.core.store import Run, execute, prepare
+from tipoff.studies.core.compiling import warm_up
+from tipoff.studies.core.store import Run, execute
 
 
 def timed(
@@ -29,12 +29,6 @@ def timed(
         time.perf_counter() - wall - compiling,
         time.process_time() - processor - compiling,
     )
-
-
-def warm_up(run: Run) -> None:
-    """Compile or load the kernels of ``run`` by its first milliseconds."""
-    prepare(run)
-    execute(replace(run, scene=run.scene.replace({"duration": min(run.scene.duration, 1e-3)})))
 
 
 def speedups(

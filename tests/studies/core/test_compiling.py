@@ -1,0 +1,39 @@
+"""Kernels that several runs need are compiled side by side, each once."""
+
+import pytest
+
+from tipoff import lowfi, scenes
+from tipoff.studies.core import compiling
+from tipoff.studies.core.store import Run
+
+FLYING = scenes.load("tiny").replace({"contact": None, "friction": None})
+
+
+@pytest.fixture
+def runs(monkeypatch, tmp_path):
+    """A free flight with and without gravity, and one that needs the kernel of the first."""
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
+    changes = ({}, {"gravity.x": "1 m/s**2"}, {"payload.mass": "3 kg"})
+    return [
+        Run("lowfi", f"{number}", FLYING.replace(change), lowfi.Numerics())
+        for number, change in enumerate(changes)
+    ]
+
+
+def compiled(folder):
+    """Number of machine codes of the time loop below ``folder``."""
+    return len(list(folder.glob("kernels/*integrate*/**/integrate.integrate-*.nbc")))
+
+
+def test_each_kernel_is_compiled_once(runs, tmp_path, capfd):
+    compiling.compile_ahead("kernels", runs, workers=2)
+    assert compiled(tmp_path) == 2
+    assert "kernels 2/2" in capfd.readouterr().err
+    compiling.compile_ahead("kernels", runs, workers=2)
+    assert capfd.readouterr().err == ""
+
+
+@pytest.mark.parametrize("count, workers", [(3, 1), (1, 2)])
+def test_a_run_alone_compiles_its_own(runs, tmp_path, count, workers):
+    compiling.compile_ahead("kernels", runs[:count], workers)
+    assert compiled(tmp_path) == 0

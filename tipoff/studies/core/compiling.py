@@ -1,0 +1,64 @@
+"""Kernels compiled before the runs that need them, side by side in processes.
+
+Numba compiles one kernel at a time in a process, so that threads which make runs with different
+effects would wait for each other.
+"""
+
+from collections.abc import Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures.process import BrokenProcessPool
+from dataclasses import replace
+from multiprocessing import get_context
+from pathlib import Path
+
+from tipoff import sources
+from tipoff.files import content_hash
+from tipoff.kernels.jit import kernel_digest
+from tipoff.studies.core.progress import Board, say
+from tipoff.studies.core.store import Run, execute, prepare
+
+
+def warm_up(run: Run) -> None:
+    """Compile or load the kernels of ``run`` by its first milliseconds."""
+    prepare(run)
+    execute(replace(run, scene=run.scene.replace({"duration": min(run.scene.duration, 1e-3)})))
+
+
+def compile_ahead(title: str, runs: Sequence[Run], workers: int) -> None:
+    """Compile the kernels of ``runs`` that no earlier call has compiled, ``workers`` at a time, with
+    progress under ``title`` on standard error.
+
+    Runs with the same model and the same effects count as one. With one worker, or one kernel to
+    compile, this does nothing, and the run compiles its own.
+    """
+    missing: dict[Path, Run] = {}
+    for run in runs:
+        if not (mark := _mark(run)).is_file():
+            missing.setdefault(mark, run)
+    if min(workers, len(missing)) < 2:
+        return
+    pool = ProcessPoolExecutor(workers, mp_context=get_context("spawn"))
+    try:
+        with Board(title, len(missing)) as board:
+            pending = {}
+            for mark, run in missing.items():
+                board.callback(run.label)(0.0)
+                pending[pool.submit(warm_up, run)] = mark, run
+            for future in as_completed(pending):
+                mark, run = pending[future]
+                future.result()
+                mark.parent.mkdir(parents=True, exist_ok=True)
+                mark.touch()
+                board.finished(run.label, "compiled")
+    except BrokenProcessPool:
+        say("  a process that compiled kernels was ended; the runs compile their own")
+    finally:
+        pool.shutdown(wait=False, cancel_futures=True)
+
+
+def _mark(run: Run) -> Path:
+    """File in the cache of kernels that says that those of ``run`` are there."""
+    key = content_hash(
+        kernel_digest(f"tipoff.{run.fidelity}"), run.model, run.scene.absent_effects()
+    )
+    return sources.cache_folder() / "kernels" / f"compiled-{key[:16]}"
