@@ -26,12 +26,12 @@ PART = 0.1
 
 
 def deviations(
-    matrix: np.ndarray, variance: float, untold: Sequence[np.ndarray] = ()
+    matrix: np.ndarray, variance: float, unobserved: Sequence[np.ndarray] = ()
 ) -> np.ndarray:
     """Standard deviations (p,) of parameters with the information ``matrix`` (p,p) on residuals of
     that variance.
 
-    Infinite for parameters with a part in a direction of no information, or in one of ``untold``,
+    Infinite for parameters with a part in a direction of no information, or in one of ``unobserved``,
     unit vectors (p,).
     """
     values, vectors = np.linalg.eigh(matrix)
@@ -39,13 +39,13 @@ def deviations(
     found = np.sqrt(
         variance * (vectors**2 / np.maximum(values, max(least, np.finfo(float).tiny))).sum(axis=1)
     )
-    for direction in [*vectors.T[values <= least], *untold]:
+    for direction in [*vectors.T[values <= least], *unobserved]:
         found[np.abs(direction) >= PART] = np.inf
     return found
 
 
 def half_widths(
-    matrix: np.ndarray, squares: float, count: float, untold: Sequence[np.ndarray] = ()
+    matrix: np.ndarray, squares: float, count: float, unobserved: Sequence[np.ndarray] = ()
 ) -> np.ndarray:
     """Half widths (p,) of the intervals from the sum of squared residuals and the number of
     independent ones.
@@ -56,7 +56,7 @@ def half_widths(
     if freedom <= 0.0:
         return np.full(len(matrix), np.inf)
     return scipy.stats.t.ppf(0.5 + 0.5 * LEVEL, freedom) * deviations(
-        matrix, squares / freedom, untold
+        matrix, squares / freedom, unobserved
     )
 
 

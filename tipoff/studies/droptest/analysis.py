@@ -7,7 +7,7 @@ import numpy as np
 
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.studies.droptest import events as finding
-from tipoff.studies.droptest.calibrated import Calibrated, calibrated, untold
+from tipoff.studies.droptest.calibrated import Calibrated, calibrated, missing_information
 from tipoff.studies.droptest.channel_class import filtered
 from tipoff.studies.droptest.events import WINDOWS, Events, Spans, inside
 from tipoff.studies.droptest.log import Log, read
@@ -82,7 +82,7 @@ def _require_whole(log: Log, spans: Spans, source: str) -> None:
 
 
 def _notes(sheet: Sheet, log: Log, events: Events, unrest: float) -> list[str]:
-    notes = [*log.notes, *untold(sheet, log)]
+    notes = [*log.notes, *missing_information(sheet, log)]
     if events.given:
         notes.append("release and ignition as the sheet gives them")
     if events.later:

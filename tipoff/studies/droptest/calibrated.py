@@ -50,7 +50,7 @@ def calibrated(sheet: Sheet, log: Log) -> Calibrated:
     return Calibrated(log.time, rate @ (turn @ inverse).T, force, log.temperature)
 
 
-def untold(sheet: Sheet, log: Log) -> list[str]:
+def missing_information(sheet: Sheet, log: Log) -> list[str]:
     """In words, what the sheet gives a coefficient for and the log has no column for."""
     notes = []
     if log.acceleration is None and np.any(sheet.gyro.g_sensitivity):
