@@ -23,6 +23,7 @@ from tipoff.studies.core import store as store_module
 from tipoff.studies.core.settings import Settings, defaults
 from tipoff.studies.core.study import Study, StudyError
 from tipoff.studies.cost import timing
+from tipoff.studies.render import document
 from tipoff.studies.render.table import inline
 from tipoff.studies.report import stage as report
 from tipoff.studies.report.page import Page
@@ -30,6 +31,11 @@ from tipoff.studies.runs.figures import Runs
 
 SURROGATE_ERROR = 1.2  # deg/s
 NOMINAL_PENALTY = scenes.load("tiny").contact.penalty
+
+
+def page_of(study, found):
+    """A report with this study alone."""
+    return Page(study.scene, study.folder, {"convergence": found}, Runs({}, {}, {}), {})
 
 
 def settled(run):
@@ -91,8 +97,8 @@ def asked(monkeypatch):
         return motion(run, status=made.failing.get(run.label, "exited"))
 
     monkeypatch.setattr(store_module, "execute", execute)
-    for module in (store_module, timing):
-        monkeypatch.setattr(module, "prepare", lambda run: None)
+    monkeypatch.setattr(store_module, "prepare", lambda run: None)
+    monkeypatch.setattr(timing, "warm_up", lambda run: None)
     monkeypatch.setattr(timing, "execute", lambda run, progress=None: motion(run))
     monkeypatch.setattr(Study, "rail_compliances", lambda study, names: dict.fromkeys(names))
     monkeypatch.setattr(convergence.ripple, "measure", rippling)
@@ -189,7 +195,7 @@ def test_stress_is_judged_on_patches_and_never_at_its_peak(tmp_path, monkeypatch
         None,
     )
     assert peak["order"] < 0.0 and "mesh-dependent" in peak["method"]
-    shown = draw(Page(study.scene, study.folder, {"convergence": found}, Runs({}, {}, {}), {}))
+    shown = document.markdown(draw(page_of(study, found)))
     assert "patch stress below 1 kHz" in shown and "mesh-dependent" in shown
 
 
@@ -217,8 +223,8 @@ def test_ripple_of_both_meshes_beside_that_of_a_single_point(study):
     ] == [(0.016, 1, 0.04), (0.016, 8, 0.005), (0.008, 8, 0.005)]
     line = summary.lines(found)[-2]
     assert line.startswith("ripple") and "750 Hz, facets of 8 mm: 0.5 %" in line
-    shown = draw(Page(study.scene, study.folder, {"convergence": found}, Runs({}, {}, {}), {}))
-    assert "<th>ripple (%)</th>" in shown
+    shown = document.markdown(draw(page_of(study, found)))
+    assert "ripple (%)" in shown
 
 
 @pytest.mark.parametrize("error, size, sufficient", [(0.5, 16e-3, True), (0.4, 4e-3, False)])
@@ -320,23 +326,23 @@ def test_stored_result_counts_only_while_nothing_changed(study):
 
 def test_page_shows_the_study_only_where_there_is_one(study):
     found = convergence.run(study)
-    page = Page(study.scene, study.folder, {"convergence": found}, Runs({}, {}, {}), {})
-    shown = draw(page)
-    assert 'id="convergence"' in shown and 'id="chart-convergence"' in shown
+    page = page_of(study, found)
+    shown = document.html(draw(page), page.figure)
+    assert 'id="chart-convergence"' in shown
     assert all(f"{inline(line[1:])}." in shown for line in summary.lines(found))
     assert study.path("figures/convergence.png").is_file()
-    assert draw(Page(study.scene, study.folder, {}, Runs({}, {}, {}), {})) == ""
+    assert draw(Page(study.scene, study.folder, {}, Runs({}, {}, {}), {})) == []
 
 
 def test_page_without_a_settled_run_has_no_figure(study, asked):
     asked.failing = {"phi15-4mm": "jammed"}
-    page = Page(
-        study.scene, study.folder, {"convergence": convergence.run(study)}, Runs({}, {}, {}), {}
-    )
-    assert "chart-convergence" not in draw(page) and page.pictures == []
+    page = page_of(study, convergence.run(study))
+    shown = document.html(draw(page), page.figure)
+    assert "ripple" in shown and "chart-convergence" not in shown and page.pictures == []
 
 
-def test_command_prints_the_summary_or_the_result(tmp_path, asked):
+def test_command_prints_the_summary_or_the_result(tmp_path, asked, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "300")  # no cell of a table is wrapped
     arguments = [
         "convergence",
         "--scene",

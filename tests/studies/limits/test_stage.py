@@ -191,7 +191,7 @@ def test_limits_that_no_tolerance_or_every_tolerance_keeps_are_reported(study, m
             found["map"] is None
         ) == (state == "none")
         assert row_of(found, "thrust_eccentricity")["nominal"]["state"] == "found"
-        shown = document.terminal(pictures.summary(found))
+        shown = document.markdown(pictures.summary(found))
         assert ("exceeded even at zero" in shown) == (state == "none")
     monkeypatch.setattr(
         limits.constants,

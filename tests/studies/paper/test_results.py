@@ -78,8 +78,9 @@ def test_every_quantity_of_every_condition_is_shown(quick):
         assert values == [row[item.name] for row in conditions]
 
 
-def test_a_condition_that_does_not_settle_has_no_values_and_shows_its_status(quick):
+def test_a_condition_that_does_not_settle_has_no_values_and_shows_its_status(quick, monkeypatch):
     """Control: the other four keep theirs."""
+    monkeypatch.setenv("COLUMNS", "500")  # no cell of a table is wrapped
     found, ended = (
         quick[1],
         Outcome(
