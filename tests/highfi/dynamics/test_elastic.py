@@ -10,7 +10,7 @@ from tipoff.highfi.dynamics.step_size import choose
 from tipoff.highfi.dynamics.system import build, general_elements
 from tipoff.highfi.run import Loop
 
-NUMERICS = Numerics(element_size=0.004)
+NUMERICS = Numerics(element_size=0.008)
 
 
 def begun(kernel: str, threads: int = 1, **overrides) -> Loop:
