@@ -10,14 +10,14 @@ from pathlib import Path
 import pytest
 
 from tipoff.kernels import rotation
-from tipoff.kernels.jit import contains
+from tipoff.kernels.jit import contains, entry, kernel
 
 ROOT = Path(__file__).resolve().parents[2]
 CALLER = (
-    "from tipoff.highfi.callee import value\nfrom tipoff.kernels.jit import njit\n\n\n@njit\ndef "
+    "from tipoff.highfi.callee import value\nfrom tipoff.kernels.jit import entry\n\n\n@entry\ndef "
     'doubled():\n    """Twice the value."""\n    return 2.0 * value()\n'
 )
-CALLEE = 'from tipoff.kernels.jit import njit\n\n\n@njit\ndef value():\n    """A value."""\n    return {}\n'
+CALLEE = 'from tipoff.kernels.jit import kernel\n\n\n@kernel\ndef value():\n    """A value."""\n    return {}\n'
 ASK = (
     "from tipoff.highfi.caller import doubled; "
     "print(doubled(), sum(doubled.stats.cache_misses.values()))"
@@ -71,6 +71,35 @@ def test_an_edited_callee_is_used(project):
         write_callee(project, value)
         found.append(ask(project))
     assert found == [(2.0, 1), (6.0, 1), (2.0, 0)]
+
+
+def test_only_kernels_that_python_calls_have_machine_code(project):
+    write_callee(project, 1.0)
+    assert ask(project) == (2.0, 1)
+    stored = [path.name.partition("-")[0] for path in (project / "cache").rglob("*.nbc")]
+    assert stored == ["caller.doubled"]
+
+
+@kernel
+def root(number):
+    """Square root of a number, as a kernel that only kernels call."""
+    if number < 0.0:
+        raise ValueError("a negative number")
+    return number**0.5
+
+
+@entry
+def sum_of_roots(one, other):
+    """Sum of two square roots."""
+    return root(one) + root(other)
+
+
+def test_python_calls_a_kernel_and_meets_its_exceptions():
+    """Control: that the caller has the same kernel inside."""
+    assert root(9.0) == 3.0 and sum_of_roots(9.0, 16.0) == 7.0
+    for call in (lambda: root(-1.0), lambda: sum_of_roots(1.0, -1.0)):
+        with pytest.raises(ValueError, match="a negative number"):
+            call()
 
 
 def test_comments_compile_nothing(project):
