@@ -151,6 +151,10 @@ def _elements(mesh: meshio.Mesh, wanted: Kind) -> np.ndarray:
     return np.concatenate(blocks).astype(np.int64) if blocks else np.empty((0, 8), dtype=np.int64)
 
 
+def _is_surface(name: str) -> bool:
+    return name.startswith("contact") or name == "mount"
+
+
 def _named_facets(mesh: meshio.Mesh, wanted: Kind) -> dict[str, np.ndarray]:
     """Facets of each contact or mount group, from gmsh's physical tags or from the cell sets of
     other formats."""
@@ -165,15 +169,16 @@ def _named_facets(mesh: meshio.Mesh, wanted: Kind) -> dict[str, np.ndarray]:
                 if dimension == 2:
                     groups.setdefault(name, []).append(facets[physical[index] == tag])
         for name, members in mesh.cell_sets.items():
-            # A format that gives both (gmsh 4.1) gives the same group twice.
-            if name not in mesh.field_data and members[index] is not None:
+            # A format that gives both (gmsh 4.1) gives the same group twice. Other sets, such as
+            # the entities that bound another one, are no lists of facets.
+            if _is_surface(name) and name not in mesh.field_data and members[index] is not None:
                 groups.setdefault(name, []).append(
                     facets[np.asarray(members[index], dtype=np.int64)]
                 )
     merged = {
         name: np.concatenate(parts).astype(np.int64)
         for name, parts in groups.items()
-        if name.startswith("contact") or name == "mount"
+        if _is_surface(name)
     }
     return {name: facets for name, facets in merged.items() if len(facets)}
 

@@ -283,11 +283,15 @@ def test_slivers_and_skewed_elements_are_warned_about(built):
 
 @pytest.mark.gmsh
 @pytest.mark.parametrize("version, binary", [(2.2, 0), (4.1, 0), (4.1, 1)])
-def test_files_of_gmsh_are_read_in_its_own_formats(tmp_path, version, binary):
-    """A brick of 20 x 10 x 5 mm meshed and named in gmsh itself, as a user would."""
+@pytest.mark.parametrize("divisions", [1, 4])
+def test_files_of_gmsh_are_read_in_its_own_formats(tmp_path, version, binary, divisions):
+    """A brick of 20 x 10 x 5 mm meshed and named in gmsh itself, as a user would. Format 4.1 lists
+    the entities that bound each face, whose numbers are larger than those of a few facets."""
     with generator.session("brick") as gmsh:
         gmsh.model.occ.addBox(0.0, 0.0, 0.0, 0.020, 0.010, 0.005)
         gmsh.model.occ.synchronize()
+        for _, edge in gmsh.model.getEntities(1):
+            gmsh.model.mesh.setTransfiniteCurve(edge, divisions + 1)
         gmsh.model.mesh.setTransfiniteAutomatic()
         sides = {
             tuple(np.round(gmsh.model.occ.getCenterOfMass(2, tag), 6)): tag
