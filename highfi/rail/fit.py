@@ -1,4 +1,4 @@
-"""Check that the walls of a rail file are those of its scene.
+"""Checks that the walls of a rail file are those of its scene, and that each solid is held.
 
 The reference uses the file, the surrogate only the scene. So the walls of a file must end where the
 scene says, lie under every pad face, and have the clearance of the scene from it, to a micrometre.
@@ -7,13 +7,66 @@ scene says, lie under every pad face, and have the clearance of the scene from i
 import numpy as np
 
 from tipoff.highfi.contact import surface
-from tipoff.highfi.mesh.rail_mesh import RailMesh
+from tipoff.highfi.mesh import pieces
+from tipoff.highfi.mesh.rail_mesh import MeshError, RailMesh
 from tipoff.mechanics import model as scene_model
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.rail import GeometryTable, MeshTable, SectionTable
 from tipoff.scenes.scene import Scene
 
 _SAME = 1e-6  # m: below what a rail is made to, above the rounding of any mesh format
+_LIKE = 1e-3  # relative: a length that is the rail's in another unit, or along another axis
+_UNITS = {"millimetres": 1e3, "centimetres": 1e2, "inches": 1.0 / 0.0254}  # of them in a metre
+
+
+def check_frame(scene: Scene, rail: MeshTable | GeometryTable, mesh: RailMesh) -> None:
+    """Raise SceneError where the walls of a file have the length of the scene's in another unit or
+    along another axis."""
+    lengths = np.ptp(_corners(mesh).reshape(-1, 3), axis=0)
+    longest = int(lengths.argmax())
+    ratio = lengths[longest] / (rail.end - rail.start)
+    key, faults = f"rail.{rail.GIVEN_BY}", []
+    for unit, count in _UNITS.items():
+        if abs(ratio / count - 1.0) < _LIKE:
+            given = f"walls {lengths[longest]:.6g} m long in {rail.path().name}"
+            wanted = f"{rail.end - rail.start:.6g} m; the file seems to be in {unit}, not in metres"
+            faults.append(Fault(scene.name, key, given, wanted))
+            ratio /= count
+    if longest != 0 and abs(ratio - 1.0) < _LIKE:
+        given = f"walls along {'xyz'[longest]} in {rail.path().name}"
+        faults.append(Fault(scene.name, key, given, "scene axes, x along the rail to its open end"))
+    if faults:
+        raise SceneError(faults)
+
+
+def check_held(rail: MeshTable | GeometryTable, mesh: RailMesh) -> None:
+    """Raise MeshError with the solids of a file that no facet of ``mount`` holds."""
+    held = np.zeros(len(mesh.points), dtype=bool)
+    held[mesh.surfaces["mount"]] = True
+    loose = [mesh.points[own] for own in pieces.nodes(mesh) if not held[own].any()]
+    if loose:
+        raise MeshError(
+            f"{rail.path()} cannot be used:\n  "
+            + "\n  ".join(
+                f"a solid without a facet of 'mount', {_reach(points)}: it would be loose, or it "
+                "shares no nodes with the solid that it touches"
+                for points in loose
+            )
+        )
+
+
+def _reach(points: np.ndarray) -> str:
+    spans = zip("xyz", points.min(axis=0), points.max(axis=0))
+    return ", ".join(f"{axis} {low:.6g} to {high:.6g} m" for axis, low, high in spans)
+
+
+def _corners(mesh: RailMesh) -> np.ndarray:
+    """Nodes (m,k,3) m of all facets of the walls."""
+    return mesh.points[
+        np.concatenate(
+            [facets for name, facets in mesh.surfaces.items() if name.startswith("contact")]
+        )
+    ]
 
 
 def check_fit(scene: Scene, mesh: RailMesh) -> None:
@@ -21,10 +74,7 @@ def check_fit(scene: Scene, mesh: RailMesh) -> None:
     scene."""
     if isinstance(scene.rail, SectionTable) or scene.contact is None:
         return
-    facets = np.concatenate(
-        [quads for name, quads in mesh.surfaces.items() if name.startswith("contact")]
-    )
-    corners = mesh.points[facets]
+    corners = _corners(mesh)
     rail, clearance = scene.rail, scene.contact.clearance
     faults = _end_faults(rail, corners) + _wall_faults(scene, rail, clearance, corners)
     if faults:

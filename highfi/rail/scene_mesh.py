@@ -18,6 +18,7 @@ from tipoff.highfi.mesh.rail_mesh import (
     read,
     slivers,
 )
+from tipoff.highfi.rail.fit import check_frame, check_held
 from tipoff.highfi.statics import assembly
 from tipoff.meshes import l_rail, msh, solid
 from tipoff.scenes.faults import Fault, SceneError
@@ -48,9 +49,14 @@ def make_mesh(scene: Scene, element_size: float) -> RailMesh:
     if not scene.rail.is_as_found():
         raise MeshError(f"{scene.rail.path()} has changed since the scene was read")
     if isinstance(scene.rail, GeometryTable):
-        return with_steps(along_x(read(_meshed(scene.rail, element_size))), scene.rail.material)
+        mesh = read(_meshed(scene.rail, element_size))
+        check_held(scene.rail, mesh)
+        return with_steps(along_x(mesh), scene.rail.material)
+    mesh = read(scene.rail.path())
+    check_frame(scene, scene.rail, mesh)  # a mesh in millimetres would fill the memory
+    check_held(scene.rail, mesh)
     # before the split, because its messages give the element numbers of the file
-    mesh = with_steps(read(scene.rail.path()), scene.rail.material)
+    mesh = with_steps(mesh, scene.rail.material)
     return along_x(split.to_size(mesh, element_size))
 
 

@@ -129,6 +129,42 @@ def test_a_pad_over_no_wall_is_named():
     assert given == [f"a face {normal} with no wall under its track" for normal in ("+y", "+z")]
 
 
+@pytest.mark.parametrize(
+    "factor, axes, words",
+    [
+        (1e3, [0, 1, 2], ["in millimetres"]),
+        (1.0 / 0.0254, [0, 1, 2], ["in inches"]),
+        (1.0, [2, 0, 1], ["walls along y"]),
+        (1e3, [1, 2, 0], ["in millimetres", "walls along z"]),
+    ],
+)
+def test_another_unit_or_axis_is_named_before_memory_is_taken(tmp_path, factor, axes, words):
+    """Split to the element size, a mesh in millimetres would have 1e9 times as many elements."""
+    mesh = channel.build()
+    mesh.points = factor * mesh.points[:, axes]
+    scene = from_file(channels(), saved(mesh, tmp_path / "rails.msh"))
+    with pytest.raises(SceneError) as caught:
+        highfi.prepare(scene)
+    assert [fault.key for fault in caught.value.faults] == ["rail.mesh"] * len(words)
+    for fault, word in zip(caught.value.faults, words):
+        assert word in f"{fault.given} {fault.expected}"
+
+
+@pytest.mark.parametrize("model", ["reference", "compliance"])
+def test_a_solid_that_nothing_holds_is_named(tmp_path, model):
+    """The mount facets of y < 0 are missing. Control: with all of them the file is used."""
+    mesh = channel.build()
+    mount, physical = mesh.field_data["mount"][0], mesh.cell_data["gmsh:physical"]
+    for block, tags in zip(mesh.cells, physical):
+        if block.type == "quad":
+            tags[(tags == mount) & (mesh.points[block.data][:, :, 1].mean(axis=1) < 0.0)] = 0
+    scene = from_file(channels(), saved(mesh, tmp_path / "rails.msh"))
+    with pytest.raises(MeshError, match=r"without a facet of 'mount'.* y -") as caught:
+        highfi.prepare(scene) if model == "reference" else highfi.condense(scene, 0.004)
+    assert str(caught.value).count("loose") == 1
+    assert highfi.prepare(channels()).cells.size
+
+
 @pytest.mark.parametrize("off, refused", [(0.5e-6, False), (2e-6, True)])
 def test_a_wall_out_of_place_on_both_sides_of_the_bound(tmp_path, off, refused):
     mesh = channel.build()
