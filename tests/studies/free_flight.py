@@ -12,6 +12,9 @@ import math
 from tipoff import scenes
 
 IMPULSE, ARM, INERTIA, WIDTH = 100.0, 0.15, 0.55, 1e-3  # N s, m, kg m2, s
+# Of the whole Gaussian, after ignition three widths before its peak. Before that the payload would
+# move so little that its first step ends without the energy that it should have.
+SHARE = 0.5 * (1.0 + math.erf(3.0 / math.sqrt(2.0)))
 # deg/s of the total rate per radian of misalignment
 RATE_PER_RADIAN = math.degrees(IMPULSE * ARM / INERTIA)
 RATE_PER_METRE = math.degrees(IMPULSE / INERTIA)  # and per metre of an eccentricity
@@ -31,8 +34,8 @@ def scene() -> scenes.Scene:
             "payload.inertia.xy": None,
             "payload.inertia.xz": None,
             "thrust.width": WIDTH,
-            "thrust.centre": 8.0 * WIDTH,
-            "thrust.peak": IMPULSE / (WIDTH * math.sqrt(2.0 * math.pi)),
+            "thrust.centre": 3.0 * WIDTH,
+            "thrust.peak": IMPULSE / (WIDTH * math.sqrt(2.0 * math.pi) * SHARE),
             "thrust.arm": ARM,
             "thrust_offset.misalignment.axial": 0.0,
         }

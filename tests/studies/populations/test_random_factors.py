@@ -148,7 +148,7 @@ def test_linear_tip_off_on_a_launch_without_contact(tmp_path):
         (Reading("components", rule="none"), np.sqrt(2.0) * exact),
     ):
         found = population.run(
-            study, "linear", model, random_factors.source(scene, reading, 3000, 1)
+            study, "linear", model, random_factors.source(scene, reading, 8000, 1)
         )
         assert found.settled.all()
         for quantity in answers.RATES[1:]:
