@@ -25,6 +25,7 @@ def compiled(folder):
     return len(list(folder.glob("kernels/*integrate*/**/integrate.integrate-*.nbc")))
 
 
+@pytest.mark.slow
 def test_each_kernel_is_compiled_once(runs, tmp_path, capfd):
     compiling.compile_ahead("kernels", runs, workers=2)
     assert compiled(tmp_path) == 2

@@ -114,7 +114,7 @@ def test_a_search_nears_the_rates_it_is_shown(monkeypatch, truth):
     monkeypatch.setattr(
         published, "sensitivity", lambda: published.Sensitivity(rates[1:4], changed)
     )
-    plan = solutions.Plan(points=40, descents=3, pool=2, hops=4, kept=5)
+    plan = solutions.Plan(points=24, descents=2, pool=2, hops=2, kept=5)
     found = solutions.run(lambda tolerance: misfit.Launcher(BASE, tolerance), 0.0, 2, plan)
     generator = np.random.default_rng([2, 7])
     drawn = [
