@@ -35,7 +35,7 @@ _numba_settings: Any = numba.config
 _TYPICAL_NS = 11.0
 _TYPICAL_RUN = 3e-3  # s, the surrogate there
 _STEP = 0.7  # dt sqrt(E / rho) / h of meshes of the built-in section
-_COMPILED = " and a minute or two to compile, this once"
+_COMPILED = " and half a minute to compile, this once"
 _LOOKED_AT = 4  # stored runs, newest first
 
 
