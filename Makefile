@@ -12,9 +12,9 @@ ASKED = --scene $(SCENE) --out $(OUT)
 READY = .venv/.ready
 CHECKED = .venv/.checked
 # Tests that take a second or two each where kernels are compiled.
-QUICK = tests/test_layers.py tests/test_sources.py tests/kernels tests/scenes tests/mechanics tests/meshes \
+QUICK = tests/test_layers.py tests/test_sources.py tests/scenes tests/mechanics tests/meshes \
   $(patsubst %,tests/highfi/%,elements mesh statics extruded contact/test_hertz.py test_compliance.py) \
-  $(patsubst %,tests/highfi/dynamics/test_%.py,stable_step waves bars moving_force) \
+  $(patsubst %,tests/highfi/dynamics/test_%.py,stable_step waves bars) \
   $(patsubst %,tests/lowfi/test_%.py,ejection flying numerics statuses tip_off) \
   $(patsubst %,tests/lowfi/contact/test_%.py,thermal_offset extreme_contacts friction) tests/lowfi/dynamics/test_momentum.py \
   tests/studies/test_names.py tests/studies/agreement tests/studies/cost/test_choice.py tests/studies/sweeps/test_knee.py \

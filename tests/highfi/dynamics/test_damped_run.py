@@ -97,10 +97,8 @@ def test_a_rail_that_turns_with_its_frame_is_not_damped():
 @pytest.mark.case("X20")
 @pytest.mark.parametrize("kernel", ["columns", "elements"])
 def test_threads_and_a_resume_do_not_change_a_bit(tmp_path, kernel):
-    """The second part of the run that is resumed is carried by another number of threads."""
-    whole, other, half, second = (
-        test_kernels.begun(kernel, threads, **DAMPED) for threads in (1, 2, 1, 3)
-    )
+    """One thread makes the whole run; the run that is resumed ends with three."""
+    whole, half, second = (test_kernels.begun(kernel, threads, **DAMPED) for threads in (1, 1, 3))
     expected = finished(whole)
     assert np.abs(expected.pad_force).max() > 1.0 and expected.energy[-1, ENTRY] > 0.0
     for _ in range(45):
@@ -110,18 +108,16 @@ def test_threads_and_a_resume_do_not_change_a_bit(tmp_path, kernel):
     saved = kept.read()
     assert np.abs(saved["state.history.force"]).max() > 0.0
     restore(second, saved)
-    for result in (finished(other), finished(second)):
-        for name in (
-            "position",
-            "rate",
-            "platform_velocity",
-            "pad_force",
-            "energy",
-            "transverse_energy",
-        ):
-            np.testing.assert_array_equal(
-                getattr(result, name), getattr(expected, name), err_msg=name
-            )
+    result = finished(second)
+    for name in (
+        "position",
+        "rate",
+        "platform_velocity",
+        "pad_force",
+        "energy",
+        "transverse_energy",
+    ):
+        np.testing.assert_array_equal(getattr(result, name), getattr(expected, name), err_msg=name)
 
 
 @pytest.mark.case("X20")

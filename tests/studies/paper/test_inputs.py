@@ -108,6 +108,7 @@ def test_misfit_of_printed_rates_is_zero(monkeypatch, truth):
     assert misfit.excess(quiet) == pytest.approx(np.array([[0.0] * 3, [0.0, 0.0, 0.2]]))
 
 
+@pytest.mark.slow
 def test_a_search_nears_the_rates_it_is_shown(monkeypatch, truth):
     """Printed rates of a known body: from afar the search ends far nearer than where it began."""
     _, rates, changed = truth
