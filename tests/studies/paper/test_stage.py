@@ -182,6 +182,16 @@ def test_headline_has_our_cost_of_the_present_code_only(quick, monkeypatch):
     assert paper.run(study, SMALL) == fresh
 
 
+@pytest.fixture
+def interruptible():
+    """Ctrl-C raises KeyboardInterrupt; in a job that a shell started in the background it would be
+    ignored."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+@pytest.mark.usefixtures("interruptible")
 @pytest.mark.parametrize("begins", ["while it waits", "before it waits"])
 def test_interrupt_ends_the_running_search_and_begins_no_other(tmp_path, monkeypatch, begins):
     """Whether Ctrl-C comes when all searches are asked for, or when only the first one is."""
