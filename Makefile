@@ -90,7 +90,7 @@ view: $(READY) ## one run to look at: VTK files for ParaView, and pictures if `m
 pictures: $(READY) ## add pyvista (0.6 GB) to .venv, with which `make view` draws too
 	.venv/bin/python -m pip install --quiet --disable-pip-version-check --no-deps -r requirements-view.lock
 
-convergence: $(READY) ## the error of the reference itself: meshes, steps, penalty, quadrature (minutes)
+convergence: $(READY) ## the error of the reference itself: meshes, steps, interface stiffness, quadrature (minutes)
 	$(TIPOFF) convergence $(ASKED)
 
 rails: $(READY) ## two more rails, calibrated and judged at 4 mm: they stand on the page of SCENE

@@ -29,7 +29,7 @@ def fault(loop, row: np.ndarray) -> str:
         return (
             f"transverse energy is off by {loss:.3g} J, its scale being {loop.scale:.3g} J, {now}"
         )
-    if loop.system.model.penalty is not None:
+    if loop.system.model.interface_stiffness is not None:
         if (speed := _approach_speed(loop)) > FASTEST_APPROACH:
             return (
                 f"payload and rails approach at up to {speed:.3g} m/s, contact search allows "

@@ -161,7 +161,7 @@ class Loop:
             drive=s.drive,
             thrust=m.thrust,
             thrust_offset=m.thrust_offset,
-            penalty=m.penalty,
+            interface_stiffness=m.interface_stiffness,
             friction=m.friction,  # type: ignore[arg-type]  # sticking is refused by prepare
             body_force=m.body_force,
             exit=self.exit,

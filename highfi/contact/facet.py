@@ -37,7 +37,7 @@ class Touch(NamedTuple):
     faces: Faces
     active: Active
     pose: Pose
-    penalty: float  # N/m3
+    interface_stiffness: float  # N/m3
     dt: float  # s
 
 
@@ -231,7 +231,7 @@ def press(touch, friction, face, facet):
                 point = _Point(face=face, facet=facet, q=q, xi=xi, eta=eta)
                 arm = rotation.rotate(pose.turn, y)
                 slide = _sliding_velocity(pose, arm, _blend(surface, q, velocities))
-                weight = touch.penalty * surface.area[facet, q]
+                weight = touch.interface_stiffness * surface.area[facet, q]
                 energy = 0.5 * weight * penetration * penetration
                 touch.load.stored += energy
                 if max(abs(xi), abs(eta)) > _BORDER:

@@ -43,10 +43,10 @@ _MARGIN = 1e-3  # m along the rail by which the searched window is wider than th
 
 
 @inlined
-def contact_forces(penalty, constants, state, active, pose, team):
+def contact_forces(interface_stiffness, constants, state, active, pose, team):
     """Fill ``state.contact``, ``state.loads``, ``state.face_force`` and ``active``; every thread of
     ``team`` takes a part of it."""
-    if penalty is not None:
+    if interface_stiffness is not None:
         group = take(team)
         while group < constants.surface.groups.first_face.size - 1:
             _forces_of_group(constants, state, active, pose, group)
@@ -69,7 +69,7 @@ def _forces_of_group(constants, state, active, pose, group):
         faces=constants.faces,
         active=active,
         pose=pose,
-        penalty=constants.penalty,
+        interface_stiffness=constants.interface_stiffness,
         dt=constants.dt,
     )
     _clear(touch.load)

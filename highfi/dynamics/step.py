@@ -46,12 +46,12 @@ def evaluate(constants, state, active, team):
     hold_blocks(rail, state, 0, 1)
     pose = pose_in_frame(state, constants.payload, constants.frame)
     reset_queue(team)
-    contact_forces(constants.penalty, constants, state, active, pose, team)
-    collect(constants.penalty, constants, state, active)
+    contact_forces(constants.interface_stiffness, constants, state, active, pose, team)
+    collect(constants.interface_stiffness, constants, state, active)
 
 
 @inlined
-def collect(penalty, constants, state, active):
+def collect(interface_stiffness, constants, state, active):
     """Sum up: ``state.reaction``, and contact into the resistance."""
     state.reaction[:] = 0.0
     for part in range(state.turning.shape[0]):
@@ -59,7 +59,7 @@ def collect(penalty, constants, state, active):
             state.reaction[i] += state.clamping[part, i]
             state.reaction[3 + i] += state.clamping[part, 3 + i] - state.turning[part, i]
     collect_damping(state.history, state)
-    if penalty is not None:
+    if interface_stiffness is not None:
         collect_contact(constants.rail, constants.surface, state, active)
 
 
@@ -176,11 +176,11 @@ def advance(constants, state, active, book, team, thread, first_step, steps):
         barrier(team)
         move_and_load(rail, frame, state, team, thread, dt)
         pose = pose_in_frame(state, constants.payload, frame)
-        contact_forces(constants.penalty, constants, state, active, pose, team)
+        contact_forces(constants.interface_stiffness, constants, state, active, pose, team)
         finish_load(rail, state, team, thread, dt)
         barrier(team)
         if thread == 0:
-            collect(constants.penalty, constants, state, active)
+            collect(constants.interface_stiffness, constants, state, active)
             thrust = thrust_load(constants, state, (n + 1) * dt)
             add_work(constants, state, active, pose, thrust, 0.0)
             damping = max(damping, state.load[0].damping_ratio)

@@ -1,4 +1,4 @@
-"""Critical step of the coupled system: rail, penalty contact, payload.
+"""Critical step of the coupled system: rail, contact, payload.
 
 Contact adds G k G' to the stiffness, where a column of G is the gap of one Gauss point. In the mass
 metric
@@ -42,7 +42,7 @@ from tipoff.scenes.effects.structural_damping import Damping
 
 def contact_frequency_squared(system: System) -> float:
     """Upper bound (1/s2) of what contact adds to the largest squared frequency."""
-    if system.model.penalty is None:
+    if system.model.interface_stiffness is None:
         return 0.0
     surface, rail, payload = system.surface, system.rail, system.model.payload
     area = np.zeros(rail.mass.size)
@@ -61,7 +61,7 @@ def contact_frequency_squared(system: System) -> float:
         ).max()
     )
     body = (size * (1.0 / payload.mass + reach)).sum()
-    return system.model.penalty * tilt * ((area * rail.inverse_mass).max() + body)
+    return system.model.interface_stiffness * tilt * ((area * rail.inverse_mass).max() + body)
 
 
 def damping_ratio(damping: Damping | None, rail: float, contact: float) -> float:

@@ -112,7 +112,7 @@ class Constants(NamedTuple):
     drive: Drive
     thrust: Thrust
     thrust_offset: ThrustOffset | None
-    penalty: float | None  # N/m3, contact pressure over penetration
+    interface_stiffness: float | None  # N/m3, contact pressure over penetration
     friction: Friction | None
     body_force: BodyForce | None
     exit: Exit

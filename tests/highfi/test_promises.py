@@ -72,7 +72,9 @@ def test_spurious_contact_energy_is_seen():
         if stored > 3e-6:
             created = 0.01 * stored
     loop.system = loop.system._replace(
-        model=loop.system.model._replace(penalty=1.01 * loop.system.model.penalty)
+        model=loop.system.model._replace(
+            interface_stiffness=1.01 * loop.system.model.interface_stiffness
+        )
     )
     loop.integrate(None)
     found = loop.trajectory({}, COARSE)

@@ -1,10 +1,10 @@
-"""The limit that justifies the surrogate: with the penalty of the reference and rigid walls it is
-the reference with an infinitely stiff rail.
+"""The limit that justifies the surrogate: with the interface stiffness of the reference and rigid
+walls it is the reference with an infinitely stiff rail.
 
 The deflection of a rail of modulus E is proportional to 1/E, and so is its effect on a smooth
-event, until the effect of penalty, step or quadrature is larger. The penalty is a hundredth of the
-catalogue's or less, so that a rail is stiff beside it; pads are flat and lie on whole facets.
-"""
+event, until the effect of interface stiffness, step or quadrature is larger. The interface
+stiffness is a hundredth of the catalogue's or less, so that a rail is stiff beside it; pads are
+flat and lie on whole facets."""
 
 import dataclasses
 
@@ -23,7 +23,7 @@ G = 9.80665 / 50.0
 
 def launcher(
     stiffer: float,
-    penalty: float,
+    interface_stiffness: float,
     duration: float,
     initial: dict,
     pad_at: float | None = None,
@@ -45,7 +45,9 @@ def launcher(
     ]
     for pad in raw["pads"] if pad_at else []:
         pad["position"][0] = float(np.copysign(pad_at, pad["position"][0]))
-    raw["contact"] = scene.contact.model_dump(mode="json") | {"penalty": penalty}
+    raw["contact"] = scene.contact.model_dump(mode="json") | {
+        "interface_stiffness": interface_stiffness
+    }
     raw["thrust"] = {"kind": "constant", "force": 0.0, "duration": duration}
     return scenes.parse(
         raw | {"name": "stiff", "duration": duration, "initial": initial} | other,
@@ -66,11 +68,11 @@ def comes_against(start: float, stiffer: float) -> scenes.Scene:
 def tips_off(stiffer: float) -> scenes.Scene:
     """O30: rests on the lower walls, its front pads about to leave them, the rear ones 40 ms
     later."""
-    penalty, area = 1.8e9, 0.016**2
-    sunk = 20.0 * G / (4.0 * penalty * area)
+    interface_stiffness, area = 1.8e9, 0.016**2
+    sunk = 20.0 * G / (4.0 * interface_stiffness * area)
     return launcher(
         stiffer,
-        penalty,
+        interface_stiffness,
         56e-3,
         {"position": {"x": 0.022, "z": -0.25e-3 - sunk}, "velocity": {"x": SPEED}},
         0.1,

@@ -177,7 +177,7 @@ def forces_of(
     )[across]
     phi = xi[:, None] ** POWERS[:, 0] * (eta + aside / half[1])[:, None] ** POWERS[:, 1]
     area = 4.0 * np.abs(half).prod() / cells**2
-    return model.penalty * area * phi.T @ np.maximum(0.0, depth - phi @ displacement)
+    return model.interface_stiffness * area * phi.T @ np.maximum(0.0, depth - phi @ displacement)
 
 
 def flexibility_at(compliance: RailCompliance, travel: float) -> np.ndarray:

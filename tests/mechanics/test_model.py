@@ -24,7 +24,7 @@ WHOLE = dict(
     mass_offset={"eccentricity": {"axial": "1 mm", "radial": "90 deg"}},
 )
 RECORDS = {
-    "contact": ("contact", "penalty"),
+    "contact": ("contact", "interface_stiffness"),
     "friction": ("friction",),
     "platform": ("platform",),
     "gravity": ("body_force",),
@@ -33,7 +33,14 @@ RECORDS = {
 
 def test_every_effect_absent_is_none():
     found = model.build(parse(small()))
-    for name in ("thrust_offset", "contact", "penalty", "friction", "platform", "body_force"):
+    for name in (
+        "thrust_offset",
+        "contact",
+        "interface_stiffness",
+        "friction",
+        "platform",
+        "body_force",
+    ):
         assert getattr(found, name) is None, name
     assert found.initial == Initial()
     assert found.initial == Initial(*[(0.0, 0.0, 0.0)] * 6)
@@ -44,7 +51,7 @@ def test_every_effect_present_is_a_record():
     assert None not in (
         found.thrust_offset,
         found.contact,
-        found.penalty,
+        found.interface_stiffness,
         found.friction,
         found.platform,
         found.body_force,

@@ -148,7 +148,7 @@ def test_another_rail_or_other_pads_are_refused(compliance, change):
     [
         {},
         {"contact.clearance": 3e-4},
-        {"contact.penalty": 1e12},
+        {"contact.interface_stiffness": 1e12},
         {"payload.mass": 11.0},
         {"friction": None},
         {"rail.damping": {"ratios": [0.01, 0.02], "frequencies": [1000.0, 5000.0]}},

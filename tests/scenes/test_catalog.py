@@ -47,7 +47,7 @@ DESIGN = {
     "rail.material.youngs_modulus": 72e9,
     "rail.material.poisson_ratio": 0.33,
     "contact.clearance": 0.25e-3,
-    "contact.penalty": 1.8e12,
+    "contact.interface_stiffness": 1.8e12,
     "contact.stiffness": 70000.0 * 1000.0**1.5,
     "contact.exponent": 1.5,
     "contact.damping": 60e3,

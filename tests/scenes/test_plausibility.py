@@ -51,8 +51,8 @@ def test_without_a_size_density_is_not_judged():
         ("contact.stiffness", "70000 N/m**1.5", "70000 N/mm**1.5", "in mm instead of m"),
         ("contact.stiffness", "70 N/mm**1.5", "70 kN/mm**1.5", "in kN instead of N"),
         ("contact.stiffness", "70 N/m**1.5", "70 kN/mm**1.5", "in kN and mm instead of N and m"),
-        ("contact.penalty", "1800 N/m**3", "1800 N/mm**3", "in mm instead of m"),
-        ("contact.penalty", "1.8 N/mm**3", "1.8 kN/mm**3", "in kN instead of N"),
+        ("contact.interface_stiffness", "1800 N/m**3", "1800 N/mm**3", "in mm instead of m"),
+        ("contact.interface_stiffness", "1.8 N/mm**3", "1.8 kN/mm**3", "in kN instead of N"),
     ],
 )
 def test_a_stiffness_in_another_unit_sinks_too_far(key, slip, right, meant):

@@ -166,7 +166,7 @@ POSITIVE = [
     "rail__material__density kg/m**3",
     "rail__material__youngs_modulus Pa",
     "contact__stiffness N/m**1.5",
-    "contact__penalty N/m**3",
+    "contact__interface_stiffness N/m**3",
     "thrust__width s",
     "friction__static_speed m/s",
     "duration s",

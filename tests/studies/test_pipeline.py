@@ -158,7 +158,7 @@ def test_compliant_contact_needs_no_fit(pipeline):
     assert result(pipeline[0], "compliance")["stations"] >= 2
 
 
-def test_both_models_move_alike_with_the_penalty_they_share(pipeline):
+def test_both_models_move_alike_with_the_interface_stiffness_they_share(pipeline):
     """Control: neither stays where it was."""
     found = result(pipeline[0], "agreement")["stiffer"]
     assert [row["condition"] for row in found] == list(load("tiny").agreement.refined)

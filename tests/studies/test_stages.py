@@ -176,8 +176,11 @@ def test_refinements_change_one_thing_each(tmp_path):
     )
     assert coarse.numerics.element_size == 2.0 * nominal.numerics.element_size
     assert runs["step"].numerics == replace(coarse.numerics, safety=0.5 * coarse.numerics.safety)
-    assert runs["penalty"].scene.contact.penalty == 4.0 * coarse.scene.contact.penalty
-    assert runs["penalty"].numerics == coarse.numerics
+    assert (
+        runs["interface_stiffness"].scene.contact.interface_stiffness
+        == 4.0 * coarse.scene.contact.interface_stiffness
+    )
+    assert runs["interface_stiffness"].numerics == coarse.numerics
     assert runs["step"].scene.hash == coarse.scene.hash == nominal.scene.hash
 
 

@@ -84,7 +84,7 @@ class Model(NamedTuple):
     reacts_on_platform: bool
     thrust_offset: thrust_offset.ThrustOffset | None
     contact: contact.Laws | None
-    penalty: float | None
+    interface_stiffness: float | None
     friction: Friction | Sticking | None
     platform: Platform | None
     body_force: BodyForce | None
@@ -150,7 +150,7 @@ def built(scene: Scene, earlier: Built | None = None) -> Built:
             else contact.laws(scene.contact.record())
             if scene.contact
             else None,
-            penalty=scene.contact.penalty if scene.contact else None,
+            interface_stiffness=scene.contact.interface_stiffness if scene.contact else None,
             # Friction without contact has no normal force to act on, so it is absent too.
             friction=(
                 old.model.friction

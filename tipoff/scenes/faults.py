@@ -44,6 +44,7 @@ def within(key: str, given: str, expected: str) -> PydanticCustomError:
 _VARIANTS = ("thrust", "contact", "friction", "rail")
 # variants that the presence of a key chooses
 _FILED = (("rail", "mesh"), ("rail", "geometry"))
+_RENAMED = {"contact.penalty": "contact.interface_stiffness"}
 _WORDS = {
     "extra_forbidden": "no such key",
     "missing": "this key",
@@ -56,6 +57,12 @@ _WORDS = {
     "bool_parsing": "true or false",
     "bool_type": "true or false",
 }
+
+
+def renamed(key: str) -> str | None:
+    """What to write instead of a dotted ``key`` that had this name once; None for other keys."""
+    new = _RENAMED.get(key)
+    return new and f"the key {new}, with the same value and unit"
 
 
 def _key(error: ErrorDetails) -> str:
@@ -87,6 +94,8 @@ def _given(error: ErrorDetails) -> str:
 
 def _expected(error: ErrorDetails) -> str:
     kind, message = error["type"], error["msg"]
+    if kind == "extra_forbidden" and (instead := renamed(_key(error))):
+        return instead
     if kind == "extra_forbidden" and error["loc"][:2] in _FILED:
         return f"no such key beside {error['loc'][1]}"
     if kind in _WORDS:

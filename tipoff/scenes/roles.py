@@ -4,6 +4,7 @@ provenance."""
 from typing import Any
 
 from tipoff.scenes import names
+from tipoff.scenes.faults import renamed
 from tipoff.scenes.overrides import is_key
 
 
@@ -28,7 +29,7 @@ def faults(raw: dict[str, Any], scene_type: type) -> list[tuple[str, str, str]]:
         if name in lists.get("fitted", [])
     ]
     return found + [
-        (f"provenance.{key}", repr(text), "the dotted key of a quantity")
+        (f"provenance.{key}", repr(text), renamed(key) or "the dotted key of a quantity")
         for key, text in provenance.items()
         if not is_key(scene_type, key)
     ]

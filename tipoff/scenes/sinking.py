@@ -7,13 +7,12 @@ about the mass centre over the distance L of the outermost pads::
 
     F = P sin t + m |g_yz| + M / L
 
-    springs     p = (F / k)^(1 / e)          finite elements and compliant contact     p = F / (k_p A)
+    springs     p = (F / k)^(1 / e)          finite elements and compliant contact     p = F / (k_i A)
 
 A is the area of the smallest face. Springs stand for rail and contact together, and may sink up to
 the clearance. Where the clearance is smaller, the limit is 1 % of the shortest side of a pad, a
-strain at which any metal yields. The penalty stands for asperities and coating alone, beside a rail
-that bends: a tenth of that.
-"""
+strain at which any metal yields. The interface stiffness stands for asperities and coating alone,
+beside a rail that bends: a tenth of that."""
 
 from collections.abc import Iterator
 from typing import NamedTuple
@@ -64,7 +63,9 @@ def warnings(scene) -> list[str]:
     area = min(pad.length * pad.width for pad in scene.pads)
     springs = (
         _Spring("stiffness", contact.stiffness, contact.exponent, contact.exponent, 1.0, 1.0, ""),
-        _Spring("penalty", contact.penalty, 1.0, 3.0, area, 0.1, "a tenth of "),
+        _Spring(
+            "interface_stiffness", contact.interface_stiffness, 1.0, 3.0, area, 0.1, "a tenth of "
+        ),
     )
     found = []
     for spring in springs:

@@ -24,7 +24,7 @@ from pydantic import AfterValidator, Field, ValidationError
 from tipoff.scenes import overrides as keys
 from tipoff.scenes import reading
 from tipoff.scenes.distributions import BY_NAME, Distribution
-from tipoff.scenes.faults import Fault, SceneError, faults_of
+from tipoff.scenes.faults import Fault, SceneError, faults_of, renamed
 from tipoff.scenes.scene import Scene
 from tipoff.scenes.table import Table, at_least_one
 
@@ -125,7 +125,8 @@ def _distribution(
 ) -> Distribution | None:
     place = f"vary.{key}"
     if (unit := keys.unit(Scene, key)) is None:
-        expected = "a key that holds a number" if keys.is_key(Scene, key) else "no such key"
+        known = keys.is_key(Scene, key)
+        expected = renamed(key) or ("a key that holds a number" if known else "no such key")
         faults.append(Fault(source, place, repr(table), expected))
         return None
     name = table.get("distribution")

@@ -1,9 +1,10 @@
 """Pressure of one crowned pad face on its wall, cell by cell.
 
-With the lever (p_0, a, b) of the rigid face and the displacement U of its wall (``mechanics.rail_compliance``),
-in the middle of each cell::
+With the lever (p_0, a, b) of the rigid face, the displacement U of its wall
+(``mechanics.rail_compliance``) and the interface stiffness k (N/m3), in the middle of each cell::
 
-    p = p_0 + a xi + b eta - relief (xi^4 + eta^4) - sum_a U_a phi_a(xi', eta'),   pressure = penalty max(0, p)
+    p = p_0 + a xi + b eta - relief (xi^4 + eta^4) - sum_a U_a phi_a(xi', eta')
+    pressure = k max(0, p)
 
 where the crown is its mean over the cell, and xi' = xi + shift, eta' = eta + aside is the place on
 the wall. The compliance belongs to pads midway between all rails; 0.25 mm aside, the leg of an L,
@@ -91,7 +92,7 @@ def row_depth(compliance, face, xi, displacement):
 
 @kernel
 def press(compliance, face):
-    """Fill the face's force (p,) N and its moments, sums over the pressed cells of penalty dA xi'^i
+    """Fill the face's force (p,) N and its moments, sums over the pressed cells of k dA xi'^i
     eta'^j."""
     force, moment, lever = (
         compliance.workspace.force[face],
@@ -100,7 +101,7 @@ def press(compliance, face):
     )
     relief, half = compliance.relief[face], compliance.half[face]
     count = compliance.node.size
-    stiffness = compliance.penalty * 4.0 * half[0] * abs(half[1]) / (count * count)
+    stiffness = compliance.interface_stiffness * 4.0 * half[0] * abs(half[1]) / (count * count)
     force[:] = 0.0
     moment[:] = 0.0
     for row in range(count):
@@ -178,15 +179,15 @@ def deepest(compliance, face, displacement):
 
 @kernel
 def stored(compliance, face):
-    """Energy (J) in the penalty of the face, and what of it is lost per metre of travel over an end
-    of the rail."""
+    """Energy (J) in the interface of the face, and what of it is lost per metre of travel over an
+    end of the rail."""
     lever, relief, half = (
         compliance.workspace.lever[face],
         compliance.relief[face],
         compliance.half[face],
     )
     count = compliance.node.size
-    stiffness = compliance.penalty * 4.0 * half[0] * abs(half[1]) / (count * count)
+    stiffness = compliance.interface_stiffness * 4.0 * half[0] * abs(half[1]) / (count * count)
     energy, fading = 0.0, 0.0
     for row in range(count):
         xi = compliance.node[row]

@@ -1,6 +1,6 @@
 """Forces of compliant contact on the payload, from the gradient of one potential::
 
-    E = sum over cells of penalty dA max(0, p)^2 / 2 + P' F P / 2
+    E = sum over cells of k dA max(0, p)^2 / 2 + P' F P / 2
 
 (modes have a potential of their own). They are: P_1 against the normal, at the centre of pressure;
 and along X, where the rail is softer or stiffer ahead and where its bent wall slopes (xi' moves
@@ -99,8 +99,8 @@ def axial_force(compliance, count):
 
 @kernel
 def energy(compliance, count):
-    """Energy (J) in rail and penalty under the ``count`` faces solved for: P' F P is P' (U - T - W
-    q)."""
+    """Energy (J) in rail and interface under the ``count`` faces solved for: P' F P is P' (U - T -
+    W q)."""
     total = 0.0
     for i in range(count):
         face = compliance.workspace.order[i]

@@ -68,7 +68,7 @@ class Compliance(NamedTuple):
     half: np.ndarray  # (f, 2) m, half length and half width
     across: np.ndarray  # (f,) m, place of the middle of each face across rail and normal, centred
     relief: np.ndarray  # (f,) m, of the crown at the edges
-    penalty: float  # N/m3
+    interface_stiffness: float  # N/m3
     start: float  # m, X of the rear end of the rail
     end: float  # m, X of the open end
     node: np.ndarray  # (c,) middles of the cells in xi and eta
@@ -102,7 +102,7 @@ def build(
 ) -> Compliance:
     """Record of ``found`` for the faces of ``model``, which has contact; ``modes`` of each rail
     vibrate, under the ``damping`` of the rails."""
-    assert model.penalty is not None
+    assert model.interface_stiffness is not None
     faces, platform = (
         model.faces,
         model.platform.mass_centre if model.platform is not None else (0.0, 0.0, 0.0),
@@ -126,7 +126,7 @@ def build(
         half=found.half,
         across=nominal[np.arange(faces.axis.size), 3 - faces.axis],
         relief=faces.relief,
-        penalty=float(model.penalty),
+        interface_stiffness=float(model.interface_stiffness),
         start=float(model.rail_start),
         end=float(model.rail_end),
         node=0.5 * (edges[1:] + edges[:-1]),

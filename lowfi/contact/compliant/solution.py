@@ -2,14 +2,13 @@
 piecewise linear equations.
 
     U = T + F P(U) + W q,    (1 + F K) dU = T + F P + W q - U,
-    K_iab = dP_ia/d(-U_ib) = sum over pressed cells of penalty dA phi_a phi_b
+    K_iab = dP_ia/d(-U_ib) = sum over pressed cells of k dA phi_a phi_b
 
 F is the flexibility without the modes, W q the displacement by the modes
-(``lowfi.contact.compliant.modes``), T the thermal offset (``lowfi.contact.compliant.thermal_offset``).
-P is the gradient of a convex potential, so the solution is unique. While the set of pressed cells
-does not change the equations are linear, and the last correction is exact. The first guess is the
-displacement of the solution before.
-"""
+(``lowfi.contact.compliant.modes``), T the thermal offset
+(``lowfi.contact.compliant.thermal_offset``). P is the gradient of a convex potential, so the
+solution is unique. While the set of pressed cells does not change the equations are linear, and the
+last correction is exact. The first guess is the displacement of the solution before."""
 
 import numpy as np
 

@@ -17,7 +17,7 @@ from tipoff.highfi.numerics import Numerics
 from tipoff.highfi.run import Loop
 
 TRIANGLE = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0.5, 0, 0], [0.5, 0.5, 0], [0, 0.5, 0]])
-PENALTY = 1e12
+INTERFACE_STIFFNESS = 1e12
 
 
 @pytest.mark.parametrize("quadrature", range(1, 13))
@@ -73,7 +73,9 @@ def rail(bulge: float, divisions=(2, 1, 2)) -> RailMesh:
 def pressed(mesh, depth, numerics=Numerics(), only_corners=False):
     """Force (N) on a payload whose face stands ``depth`` (m) beyond the plane y = 0, and the
     loop."""
-    found = scene(1.0, 0.0, PENALTY, 1e-4, 1e-6).replace({"initial.position.y": GAP + depth})
+    found = scene(1.0, 0.0, INTERFACE_STIFFNESS, 1e-4, 1e-6).replace(
+        {"initial.position.y": GAP + depth}
+    )
     system = build(found, numerics, mesh)
     if only_corners:
         system = system._replace(
@@ -101,7 +103,9 @@ def test_an_even_press_gives_pressure_times_area(quadrature):
     negative shares."""
     depth = 1e-6
     force, loop = pressed(rail(0.0), depth, Numerics(quadrature=quadrature))
-    assert force == pytest.approx([0.0, -PENALTY * depth * WIDTH**2, 0.0], rel=1e-9, abs=1e-9)
+    assert force == pytest.approx(
+        [0.0, -INTERFACE_STIFFNESS * depth * WIDTH**2, 0.0], rel=1e-9, abs=1e-9
+    )
     total = -loop.state.resistance.sum(axis=0)
     assert total == pytest.approx(-force, rel=1e-9, abs=1e-9)
 
@@ -117,19 +121,23 @@ def contact_share(system) -> np.ndarray:
             (nodes[:, None], nodes),
             np.einsum("q,qa,qb->ab", area, surface.shape, surface.shape),
         )
-    return system.model.penalty * root[:, None] * matrix * root
+    return system.model.interface_stiffness * root[:, None] * matrix * root
 
 
 @pytest.mark.parametrize("divisions", [(1, 1, 1), (2, 1, 2), (3, 4, 3)])
 def test_the_bound_on_contact_stiffness_holds(divisions):
     """The bound is at most three times the stiffness. Sums with signs come within 9 %, but they are
     not proven to be bounds."""
-    system = build(scene(1e9, 0.0, PENALTY, 1e-4, 1e-6), Numerics(), rail(0.0, divisions))
+    system = build(
+        scene(1e9, 0.0, INTERFACE_STIFFNESS, 1e-4, 1e-6), Numerics(), rail(0.0, divisions)
+    )
     highest = np.linalg.eigvalsh(contact_share(system))[-1]
     assert highest <= contact_frequency_squared(system) <= 3.0 * highest
 
 
 def test_points_between_nodes_can_be_faster_than_nodes():
     """At most 5/3 as fast, at the centre of a triangle; on bilinear facets never."""
-    system = build(scene(1.0, 0.0, PENALTY, 1e-4, 1e-6), Numerics(quadrature=5), rail(0.0))
+    system = build(
+        scene(1.0, 0.0, INTERFACE_STIFFNESS, 1e-4, 1e-6), Numerics(quadrature=5), rail(0.0)
+    )
     assert 1.0 < magnification(system.surface) <= 5.0 / 3.0

@@ -23,7 +23,7 @@ INTERVAL = 5e-7  # s
 TWO_STEPS = pytest.mark.parametrize("safety", [0.9, 0.45])
 
 
-def scene(mass, speed, penalty, duration, interval):
+def scene(mass, speed, interface_stiffness, duration, interval):
     """A payload whose one flat face moves along +y at a surface in the plane y = 0, GAP away and
     wider than it."""
     return parse(
@@ -46,7 +46,12 @@ def scene(mass, speed, penalty, duration, interval):
                 "material": {"density": DENSITY, "youngs_modulus": MODULUS, "poisson_ratio": 0.0},
             },
             "thrust": {"kind": "constant", "force": 0.0, "duration": duration},
-            "contact": {"law": "linear", "clearance": GAP, "stiffness": 1.0, "penalty": penalty},
+            "contact": {
+                "law": "linear",
+                "clearance": GAP,
+                "stiffness": 1.0,
+                "interface_stiffness": interface_stiffness,
+            },
             "initial": {"velocity": {"y": speed}},
         },
         bare_numbers_are_si=True,
@@ -75,15 +80,17 @@ def integrate(loop):
 
 
 def strike(elements, stiffness, safety=0.9, speed=3.0):
-    """Drive the wall into a rod of `elements`; the penalty is `stiffness` times that of an element,
-    E / h.
+    """Drive the wall into a rod of `elements`; the interface stiffness is `stiffness` times that of
+    an element, E / h.
 
     Returns the impulse (N s), twice the time of the force's centroid since first touch (s), and
     restitution.
     """
-    penalty = stiffness * MODULUS * elements / LENGTH
+    interface_stiffness = stiffness * MODULUS * elements / LENGTH
     rod, numerics = rail(elements, LENGTH, clamped=False), Numerics(safety=safety)
-    rows, force = integrate(loop_on(scene(WALL, speed, penalty, 150e-6, INTERVAL), rod, numerics))
+    rows, force = integrate(
+        loop_on(scene(WALL, speed, interface_stiffness, 150e-6, INTERVAL), rod, numerics)
+    )
     assert force[-1] == 0.0
     time = INTERVAL * np.arange(force.size) - GAP / speed
     impulse = rows[-1, observe.LINEAR + 1] - WALL * rows[-1, observe.VELOCITY + 1]
@@ -111,15 +118,15 @@ def test_rod_strikes_a_wall(elements, safety):
     assert found["duration"] == pytest.approx(EXACT["duration"], rel=0.02)
     # An impulse within 1 % is a restitution within 2 %.
     assert found["restitution"] == pytest.approx(1.0, abs=0.02)
-    # Control: a tenth of the penalty lets the rod dwell too long.
+    # Control: a tenth of the interface stiffness lets the rod dwell too long.
     assert strike(elements, 0.1, safety)["duration"] > 1.02 * EXACT["duration"]
 
 
 @pytest.mark.case("O31")
 @TWO_STEPS
-def test_rod_converges_with_the_penalty(safety):
-    """With the penalty at a fixed share of E / h both are refined together; the duration's error
-    falls faster than k^-1/2."""
+def test_rod_converges_with_the_interface_stiffness(safety):
+    """With the interface stiffness at a fixed share of E / h both are refined together; the
+    duration's error falls faster than k^-1/2."""
     errors = np.array(
         [
             strike(elements, 0.3, safety)["duration"] / EXACT["duration"] - 1.0
@@ -127,7 +134,8 @@ def test_rod_converges_with_the_penalty(safety):
         ]
     )
     assert (np.log2(errors[1:] / errors[:-1]) <= -0.4).all()
-    # Control: on the coarsest mesh this penalty fails O4, so there is something to converge from.
+    # Control: on the coarsest mesh this interface stiffness fails O4, so there is something to
+    # converge from.
     assert errors[0] > 0.02
 
 
@@ -136,14 +144,14 @@ def test_rod_converges_with_the_penalty(safety):
 @pytest.mark.parametrize("stiffness, answer", [(7e7, 1.679252e-3), (2.8e8, 0.839626e-3)])
 def test_body_bounces_off_a_linear_pad(stiffness, answer, safety):
     """20 kg on a clamped surface: T = pi sqrt(m / k), and at every sample p = N / k."""
-    mass, speed, penalty = 20.0, 0.05, stiffness / AREA
+    mass, speed, interface_stiffness = 20.0, 0.05, stiffness / AREA
     expected = contact.power_law_collision(mass, speed, stiffness, 1.0)
     assert expected["duration"] == pytest.approx(answer, rel=1e-6)
     flight = GAP / speed + 1.2 * answer
     interval = flight / 1000
     ground, numerics = rail(1, WIDTH, clamped=True), Numerics(safety=safety)
     rows, force = integrate(
-        loop_on(scene(mass, speed, penalty, flight, interval), ground, numerics)
+        loop_on(scene(mass, speed, interface_stiffness, flight, interval), ground, numerics)
     )
     place, velocity = rows[:, observe.POSITION + 1] - GAP, rows[-1, observe.VELOCITY + 1]
     # It flies straight before and after, so both ends of the contact are known exactly.

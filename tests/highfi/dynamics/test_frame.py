@@ -47,7 +47,7 @@ def test_bar_turning_about_its_root_stretches():
 
 @pytest.mark.case("O32")
 def test_momenta_without_outside_load():
-    """Payload, four elastic rails and free platform through penalty and friction: p and L stay
+    """Payload, four elastic rails and free platform through contact and friction: p and L stay
     fixed over 1e5 steps."""
     scene = tiny(
         thrust={"kind": "constant", "force": 0.0, "duration": 1e-3, "arm": 0.1},

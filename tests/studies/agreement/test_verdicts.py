@@ -22,7 +22,7 @@ def constant(*rate, **parts):
 
 CONVERGED = [
     Spread("phi15", "reference", "mesh", 0.001, 0.02),
-    Spread("phi15", "reference", "penalty", 0.002, 0.05),
+    Spread("phi15", "reference", "interface_stiffness", 0.002, 0.05),
 ]
 FLOORS = [
     Spread("phi15", "reference", "clearance", 0.004, 0.01),
@@ -108,7 +108,10 @@ def test_floor_is_the_own_one_where_measured_else_the_largest():
         0.006,
         False,
     )
-    assert own["reference_uncertainty_by_cause_deg_s"] == {"mesh": 0.02, "penalty": 0.05}
+    assert own["reference_uncertainty_by_cause_deg_s"] == {
+        "mesh": 0.02,
+        "interface_stiffness": 0.05,
+    }
 
 
 def test_run_that_did_not_settle_never_passes():
@@ -136,8 +139,8 @@ def test_spread_takes_the_larger_side():
 
 
 def test_every_condition_of_the_reference_has_an_uncertainty_of_its_own(monkeypatch):
-    """By mesh, step and penalty. Control: where a scene refines one only, the others borrow, and
-    say so."""
+    """By mesh, step and interface stiffness. Control: where a scene refines one only, the others
+    borrow, and say so."""
     scene = load("reference")
     for refined, expected in (
         (scene.agreement.refined, set(scene.conditions)),
@@ -151,7 +154,7 @@ def test_every_condition_of_the_reference_has_an_uncertainty_of_its_own(monkeypa
         )
         context = Context([], compare.refinements(study), GATES)
         assert {name for name in study.conditions if context.uncertainty(name)[2]} == expected
-        assert list(context.uncertainty("h4")[1]) == ["mesh", "step", "penalty"]
+        assert list(context.uncertainty("h4")[1]) == ["mesh", "step", "interface_stiffness"]
 
 
 @pytest.fixture(scope="module")

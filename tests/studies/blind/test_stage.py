@@ -54,8 +54,8 @@ def test_drawn_conditions_are_all_held_out():
 
 
 def test_no_drawn_condition_borrows_its_uncertainty(monkeypatch):
-    """Mesh, step and penalty on each. Control: a scene that refines one only has the others borrow,
-    and says so."""
+    """Mesh, step and interface stiffness on each. Control: a scene that refines one only has the
+    others borrow, and says so."""
     drawn = blind.draw(study_of(), Options(cases=3, seed=1))
     alone = replace(drawn, scene=drawn.scene.replace({"agreement.refined": ["blind2"]}))
     monkeypatch.setattr(

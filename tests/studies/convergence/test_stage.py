@@ -30,7 +30,7 @@ from tipoff.studies.report.page import Page
 from tipoff.studies.runs.figures import Runs
 
 SURROGATE_ERROR = 1.2  # deg/s
-NOMINAL_PENALTY = scenes.load("tiny").contact.penalty
+NOMINAL_INTERFACE_STIFFNESS = scenes.load("tiny").contact.interface_stiffness
 
 
 def page_of(study, found):
@@ -44,9 +44,13 @@ def settled(run):
     if run.fidelity == "lowfi":
         return 3.0 + 1e-3 * 16.0 + 0.1 * 0.9**2 + SURROGATE_ERROR, 1.0, 2.0
     size, dt = 1e3 * run.numerics.element_size, step(run)
-    penalty = run.scene.contact.penalty / NOMINAL_PENALTY if run.scene.contact else 1.0
+    interface_stiffness = (
+        run.scene.contact.interface_stiffness / NOMINAL_INTERFACE_STIFFNESS
+        if run.scene.contact
+        else 1.0
+    )
     return (
-        3.0 + 1e-3 * size**2 + 0.1 * dt**2 + 0.01 * math.log2(penalty),
+        3.0 + 1e-3 * size**2 + 0.1 * dt**2 + 0.01 * math.log2(interface_stiffness),
         {8.0: 1.3}.get(size, 1.0),
         2.0,
     )
@@ -199,19 +203,22 @@ def test_stress_is_judged_on_patches_and_never_at_its_peak(tmp_path, monkeypatch
     assert "patch stress below 1 kHz" in shown and "mesh-dependent" in shown
 
 
-def test_penalty_and_quadrature_are_compared_with_the_nominal_run(study):
+def test_interface_stiffness_and_quadrature_are_compared_with_the_nominal_run(study):
     found = convergence.run(study)
-    assert [item["factor"] for item in found["penalty"]] == [0.25, 1.0, 4.0, 16.0]
-    assert [item["settled_rate_change_deg_s"] for item in found["penalty"]] == pytest.approx(
-        [0.02, 0.0, 0.02, 0.04]
+    assert [item["factor"] for item in found["interface_stiffness"]] == [0.25, 1.0, 4.0, 16.0]
+    assert [
+        item["settled_rate_change_deg_s"] for item in found["interface_stiffness"]
+    ] == pytest.approx([0.02, 0.0, 0.02, 0.04])
+    assert (
+        found["interface_stiffness"][3]["interface_stiffness_n_m3"]
+        == 16.0 * NOMINAL_INTERFACE_STIFFNESS
     )
-    assert found["penalty"][3]["penalty_n_m3"] == 16.0 * NOMINAL_PENALTY
     changes = {
         item["points_per_edge"]: item["settled_rate_change_deg_s"] for item in found["quadrature"]
     }
     assert changes == {2: 0.0, 4: 0.0, 8: 0.0}
     assert summary.lines(found)[2:4] == [
-        "penalty stiffness, times 0.25 to 16: a settled rate changes by up to 0.04 deg/s",
+        "interface stiffness, times 0.25 to 16: a settled rate changes by up to 0.04 deg/s",
         "Gauss points per facet edge, 2 to 8: a settled rate changes by up to 0 deg/s",
     ]
 
@@ -245,8 +252,8 @@ def test_speed_is_measured_on_the_coarsest_sufficient_mesh(
 
 
 def test_no_run_is_made_twice_and_none_again(study, asked):
-    """The run on the coarse mesh serves all four tables: it is one mesh, one step, one penalty, and
-    eight points are its own rule."""
+    """The run on the coarse mesh serves all four tables: it is one mesh, one step, one interface
+    stiffness, and eight points are its own rule."""
     convergence.run(study)
     assert sorted(asked) == sorted(
         [
@@ -257,10 +264,10 @@ def test_no_run_is_made_twice_and_none_again(study, asked):
                 "-4mm",
                 "-step-coarse",
                 "-safety-0.225-coarse",
-                "-penalty-0.25-coarse",
-                "-penalty-coarse",
+                "-interface-0.25-coarse",
+                "-interface-coarse",
                 # the last is the surrogate
-                "-penalty-16-coarse",
+                "-interface-16-coarse",
                 "-quadrature-2-coarse",
                 "-quadrature-4-coarse",
             )
@@ -279,7 +286,7 @@ def test_four_meshes_of_the_reference():
 
 
 def test_run_that_did_not_settle_leaves_its_error_unknown(study, asked):
-    asked.failing = {"phi15-4mm": "jammed", "phi15-penalty-16-coarse": "diverged"}
+    asked.failing = {"phi15-4mm": "jammed", "phi15-interface-16-coarse": "diverged"}
     found = convergence.run(study)
     x = row(found, "element size", "settled rate x")
     assert (x["uncertainty"], x["nominal_uncertainty"], x["method"]) == (
@@ -289,7 +296,7 @@ def test_run_that_did_not_settle_leaves_its_error_unknown(study, asked):
     )
     assert "unknown" in summary.lines(found)[0]
     assert row(found, "element size", "contact impulse, pad 2")["uncertainty"] == 0.0
-    assert found["penalty"][3]["settled_rate_deg_s"] == [None] * 3
+    assert found["interface_stiffness"][3]["settled_rate_deg_s"] == [None] * 3
     assert summary.lines(found)[2].endswith("up to 0.02 deg/s; 16 diverged")
 
 
@@ -300,11 +307,11 @@ def test_mesh_that_diverges_stops_the_stage(study, asked):
     assert not study.path("convergence.json").exists()
 
 
-def test_scene_without_contact_has_no_loads_and_no_penalty(tmp_path, asked):
+def test_scene_without_contact_has_no_loads_and_no_interface_stiffness(tmp_path, asked):
     scene = scenes.load("tiny").replace({"contact": None, "friction": None})
     found = convergence.run(Study(scene, tmp_path, defaults("tiny")))
     assert (
-        found["penalty"] == found["quadrature"] == []
+        found["interface_stiffness"] == found["quadrature"] == []
         and found["equal_accuracy"] is None
         and len(summary.lines(found)) == 2
     )

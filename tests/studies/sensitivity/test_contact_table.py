@@ -87,8 +87,8 @@ def test_the_constants_of_a_law_are_lowered_and_raised(law, symbols):
     assert found[-1].overrides["contact.clearance"] - scene.contact.clearance == pytest.approx(1e-6)
     assert [item.symbol for item in contact_table.changes(scene, COMPLIANT)] == [
         "baseline",
-        "penalty",
-        "penalty",
+        "interface stiffness",
+        "interface stiffness",
         "clearance",
     ]
 

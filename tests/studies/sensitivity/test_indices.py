@@ -117,7 +117,7 @@ def test_components_are_those_of_the_effects(tmp_path):
     found = tolerances.load(tolerances.DEFAULT, SCENE, SPRINGS)
     points = indices.points(8, len(found.inputs), seed=2)
     drawn = {item.key: item.values(column) for item, column in zip(found.inputs, points.T)}
-    assert "contact.penalty" in found.left_out and len(found.inputs) == 21
+    assert "contact.interface_stiffness" in found.left_out and len(found.inputs) == 21
     for number, row in enumerate(found.rows(points)):
         scene = SCENE.replace(row)
         direction = thrust_offset.record(scene.thrust_offset, None, 0.1).direction
@@ -165,6 +165,6 @@ def test_an_input_that_a_scene_lacks_is_left_out_with_the_reason():
     assert left_out({"friction": None})["friction.dynamic"] == "the scene has no friction"
     assert "zero" in left_out({"payload.inertia.xy": 0.0})["payload.inertia.xy"]
     compliant = tolerances.load(tolerances.DEFAULT, SCENE)
-    assert "contact.stiffness" in compliant.left_out and "contact.penalty" in [
+    assert "contact.stiffness" in compliant.left_out and "contact.interface_stiffness" in [
         item.key for item in compliant.inputs
     ]

@@ -136,7 +136,7 @@ def test_the_command(tiny, tmp_path, monkeypatch):
 
 def test_tables_of_warm_rails_have_the_walls_of_the_model(tmp_path, monkeypatch):
     """Both the calibrated constants and those of the scene. Constants of the law change, not the
-    penalty of compliant contact."""
+    interface stiffness of compliant contact."""
     models = []
 
     def run(_study, _name, model, source, _tolerance):
@@ -161,7 +161,11 @@ def test_tables_of_warm_rails_have_the_walls_of_the_model(tmp_path, monkeypatch)
     (compliant,) = sensitivity.tables(
         study, model._replace(compliance=SimpleNamespace(flexibility=1.0)), sensitivity.Options()
     )
-    assert {row["symbol"] for row in compliant["rows"]} == {"baseline", "penalty", "clearance"}
+    assert {row["symbol"] for row in compliant["rows"]} == {
+        "baseline",
+        "interface stiffness",
+        "clearance",
+    }
 
 
 def test_cases_that_do_not_settle(tiny, tmp_path, monkeypatch):

@@ -7,8 +7,10 @@ is::
     Hunt-Crossley   k p^e (1 + a q)                                                     (Hunt and Crossley 1975)
     linear          k p + c q
 
-The finite-element reference uses the penalty k_p (N/m3): pressure k_p p on the crowned pads,
-without damping. Stored energy is k p^(e+1) / (e+1) in each law.
+These laws are those of springs. The finite elements and compliant contact have the interface
+stiffness k_i (N/m3), pressure over approach of what lies between payload and rail: asperities,
+coating and pad material in series. The pressure on the crowned pads is k_i p, without damping.
+Stored energy is k p^(e+1) / (e+1) in each law.
 """
 
 from typing import Annotated, Any, Literal, NamedTuple
@@ -22,8 +24,8 @@ from tipoff.scenes.table import Table
 from tipoff.scenes.units import (
     ContactDamping,
     Dissipation,
+    InterfaceStiffness,
     NonNegativeLength,
-    PenaltyStiffness,
     PositiveLength,
     PositiveNumber,
     parse,
@@ -36,7 +38,7 @@ class _ContactTable(Table):
     clearance: NonNegativeLength
     exponent: PositiveNumber = 1.5
     stiffness: float
-    penalty: PenaltyStiffness = 1.8e12
+    interface_stiffness: InterfaceStiffness = 1.8e12
 
     @field_validator("stiffness", mode="before")
     @classmethod

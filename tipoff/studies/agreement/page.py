@@ -64,8 +64,8 @@ def _notes(document: dict) -> tuple[str, ...]:
         f"Floor: change of either model by ±{1e6 * document['clearance_change_m']:g} µm of "
         "clearance.",
         "Reference ±: largest change of its settled rates by the mesh (from twice the element "
-        "size) and, on that coarse mesh, by half the step or four times the penalty. Above "
-        f"{document['converged_deg_s']:g} deg/s the reference is not converged.",
+        "size) and, on that coarse mesh, by half the step or four times the interface "
+        f"stiffness. Above {document['converged_deg_s']:g} deg/s the reference is not converged.",
         "A star marks the largest value of other conditions. ISO 18571 is the mean rating of the "
         "three rates (1 is perfect); Sprague and Geers (S-G) is over the three rates together.",
     )
@@ -112,7 +112,7 @@ def _simpler(document: dict) -> Fold:
 
 
 def _stiffer(found: list[dict]) -> list[Part]:
-    """Changes of both models, and of their difference, with four times the penalty."""
+    """Changes of both models, and of their difference, with four times the interface stiffness."""
     if not found:
         return []
     columns = {
@@ -125,11 +125,12 @@ def _stiffer(found: list[dict]) -> list[Part]:
     rows = [(item["condition"], *(item[key] for key in columns)) for item in found]
     note = (
         "Settled rates, the reference on the coarse mesh. Where both models change alike, the "
-        "penalty makes the result uncertain but not the agreement."
+        "interface stiffness makes the result uncertain but not the agreement."
     )
     return [
         Fold(
-            "Four times the penalty in both models", [Table(["condition", *titles], rows, (note,))]
+            "Four times the interface stiffness in both models",
+            [Table(["condition", *titles], rows, (note,))],
         )
     ]
 

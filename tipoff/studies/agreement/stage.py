@@ -79,7 +79,7 @@ def compliant(study: Study, conditions: Iterable[str]) -> Candidate:
 def run(study: Study) -> dict:
     """``uncalibrated``, ``fitted``, ``held_out``, ``compliant`` and ``modal`` rows; measured
     ``floor`` and ``refinement``; ``growth`` of a 1 um disturbance; ``speedup`` of calibrated springs
-    and ``speedup_compliant``; ``simpler`` rail compliance; ``stiffer`` penalty."""
+    and ``speedup_compliant``; ``simpler`` rail compliance; ``stiffer`` interface stiffness."""
     study.fitted()
     _, calibrated, static, modal = compared = candidates(study)
     gates = verdicts.gates(study.scene)
@@ -175,9 +175,9 @@ def _simpler(study: Study, compliant: Candidate, highfi: dict[str, Trajectory]) 
 
 
 def _stiffer(study: Study, compliant: Candidate) -> list[dict]:
-    """Changes of settled rates (deg/s) in both models by four times the penalty, and their
-    differences before and after, the reference on the coarse mesh. Both models share the penalty,
-    so its uncertainty does not affect their difference."""
+    """Changes of settled rates (deg/s) in both models by four times the interface stiffness, and
+    their differences before and after, the reference on the coarse mesh. Both models share the
+    interface stiffness, so its uncertainty does not affect their difference."""
     names = [
         name
         for name in study.conditions
@@ -186,13 +186,15 @@ def _stiffer(study: Study, compliant: Candidate) -> list[dict]:
     groups = {
         name: (
             study.coarse(name),
-            refined(study, name)["penalty"],
+            refined(study, name)["interface_stiffness"],
             compliant.request(study, name),
-            compliant.request(study, name, _more_penalty(study), "-penalty"),
+            compliant.request(study, name, _more_interface_stiffness(study), "-interface"),
         )
         for name in names
     }
-    runs = iter(study.store.fill("penalty", [run for group in groups.values() for run in group]))
+    runs = iter(
+        study.store.fill("interface stiffness", [run for group in groups.values() for run in group])
+    )
     found = []
     for name, group in groups.items():
         reference, stiff_reference, surrogate, stiff_surrogate = (next(runs) for _ in group)
@@ -272,8 +274,8 @@ def clearances(study: Study) -> list[tuple[str, float]]:
 
 def refinements(study: Study) -> list[Spread]:
     """Spread of the reference under each refinement alone: from the coarse mesh to its own on every
-    condition, which also reveals chaotic ones; step and penalty on the coarse mesh, on the scene's
-    refined conditions."""
+    condition, which also reveals chaotic ones; step and interface stiffness on the coarse mesh, on
+    the scene's refined conditions."""
     found, groups = [], _refinement_runs(study)
     runs = study.store.fill(
         "refinement", [run for group in groups.values() for run in group.values()]
@@ -296,16 +298,18 @@ def _refinement_runs(study: Study) -> dict[str, dict[str, Run]]:
 
 
 def refined(study: Study, name: str) -> dict[str, Run]:
-    """Runs on the coarse mesh with half the step and with four times the penalty."""
+    """Runs on the coarse mesh with half the step and with four times the interface stiffness."""
     runs = {"step": study.coarse(name, tag="-step", safety=0.45)}
     if study.scene.contact is not None:
-        runs["penalty"] = study.coarse(name, _more_penalty(study), "-penalty")
+        runs["interface_stiffness"] = study.coarse(
+            name, _more_interface_stiffness(study), "-interface"
+        )
     return runs
 
 
-def _more_penalty(study: Study) -> dict[str, float]:
+def _more_interface_stiffness(study: Study) -> dict[str, float]:
     assert study.scene.contact is not None  # as for every caller
-    return {"contact.penalty": 4.0 * study.scene.contact.penalty}
+    return {"contact.interface_stiffness": 4.0 * study.scene.contact.interface_stiffness}
 
 
 def _speedups(study: Study, compared: list[Candidate]) -> list[dict]:

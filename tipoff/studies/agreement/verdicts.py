@@ -3,8 +3,8 @@
 * **Floor**: change of a model by +-1 um of clearance, in the same two metrics. Smaller differences
   have no meaning.
 * **Reference uncertainty**: largest change of the settled rates of the reference by the mesh (from
-  twice the element size) and, on that mesh, by four times the penalty or half the step. Agreement
-  requires at most 0.1 deg/s.
+  twice the element size) and, on that mesh, by four times the interface stiffness or half the step.
+  Agreement requires at most 0.1 deg/s.
 
 * **Gates**: v_x within 0.1 %, rates and settled rates within the limits of the scene's
   ``[agreement]``; the limit of the settled rates is at least twice the floor, of which at most
@@ -83,7 +83,7 @@ def largest(values) -> float | None:
 @dataclass(frozen=True)
 class Context:
     """Inputs of the verdicts: ``floors``, spreads of both models by the clearance; ``refinements``,
-    spreads of the reference by mesh, step and penalty; ``gates``."""
+    spreads of the reference by mesh, step and interface stiffness; ``gates``."""
 
     floors: list[Spread]
     refinements: list[Spread]

@@ -30,8 +30,8 @@ def convergence(
     workers: Workers = None,
     json_: Json = False,
 ) -> None:
-    """Error of the reference by mesh, step, penalty and quadrature; takes minutes; writes
-    convergence.json."""
+    """Error of the reference by mesh, step, interface stiffness and quadrature; takes minutes;
+    writes convergence.json."""
 
     def work() -> dict:
         from tipoff.studies.convergence import stage

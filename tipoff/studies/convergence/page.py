@@ -114,8 +114,8 @@ def _meshes(document: dict) -> str:
 
 
 def _changes(document: dict) -> list[Part]:
-    """Ripple, penalty and quadrature; nothing without contact."""
-    if not document["penalty"]:
+    """Ripple, interface stiffness and quadrature; nothing without contact."""
+    if not document["interface_stiffness"]:
         return []
     slides = {
         "element_size_m": Column("element size", "mm", "g", 1e3),
@@ -132,7 +132,7 @@ def _changes(document: dict) -> list[Part]:
     }
     stiffness = {
         "factor": Column("factor", form="g"),
-        "penalty_n_m3": Column("penalty", "N/m³"),
+        "interface_stiffness_n_m3": Column("interface stiffness", "N/m³"),
     } | settled
     points = {"points_per_edge": Column("Gauss points per facet edge")} | settled
     size = f"{1e3 * document['coarse_size_m']:g} mm"
@@ -143,6 +143,6 @@ def _changes(document: dict) -> list[Part]:
 
     return [
         *fold("Ripple of a constant contact force", slides, document["ripple"], _RIPPLE),
-        *fold(f"Penalty, {size} elements", stiffness, document["penalty"]),
+        *fold(f"Interface stiffness, {size} elements", stiffness, document["interface_stiffness"]),
         *fold(f"Contact quadrature, {size} elements", points, document["quadrature"]),
     ]

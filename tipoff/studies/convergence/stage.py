@@ -1,14 +1,13 @@
 """Stage ``convergence``: the error of the finite-element reference, on one condition.
 
 Meshes and steps are refined separately, and the uncertainty of every quantity is estimated from its
-observed order (``studies.convergence.extrapolation``). Penalty and quadrature are changed and
-compared. A straight slide shows the ripple of a constant force by the facets
+observed order (``studies.convergence.extrapolation``). Interface stiffness and quadrature are
+changed and compared. A straight slide shows the ripple of a constant force by the facets
 (``studies.convergence.ripple``). A finer mesh has a smaller step and fewer Gauss points per facet,
 which stay about 1 mm apart, so that their error appears in the quadrature alone. A wall has at
 least one element through its thickness, so coarse meshes differ in length and width only;
 ``meshes`` holds the numbers of elements. Finally both fidelities are timed at equal accuracy
-(``studies.convergence.equal_accuracy``).
-"""
+(``studies.convergence.equal_accuracy``)."""
 
 from dataclasses import asdict
 from pathlib import Path
@@ -32,9 +31,9 @@ _LONG = 60.0  # s, a run of the reference that is timed once only
 
 
 def run(study: Study, condition: str | None = None) -> dict:
-    """``quantities`` over element size and time step with order and uncertainty, ``penalty``,
-    ``quadrature``, ``ripple`` and ``equal_accuracy``. Raises SceneError for an unknown condition,
-    StudyError where a mesh or a step fails."""
+    """``quantities`` over element size and time step with order and uncertainty,
+    ``interface_stiffness``, ``quadrature``, ``ripple`` and ``equal_accuracy``. Raises SceneError
+    for an unknown condition, StudyError where a mesh or a step fails."""
     name = condition or (study.scene.agreement.refined or tuple(study.conditions))[0]
     scene = study.condition(name)
 
@@ -59,8 +58,8 @@ def run(study: Study, condition: str | None = None) -> dict:
                 steps[0].cost["dt_s"],
             ),
         ]
-        penalty, quadrature, ripples = (
-            _penalties(study, name),
+        interface_stiffness, quadrature, ripples = (
+            _interfaces(study, name),
             _quadratures(study, name),
             _ripples(study, scene),
         )
@@ -80,7 +79,7 @@ def run(study: Study, condition: str | None = None) -> dict:
                 for size, found in zip(study.settings.mesh_sizes, meshes)
             ],
             "quantities": judged,
-            "penalty": penalty,
+            "interface_stiffness": interface_stiffness,
             "quadrature": quadrature,
             "ripple": ripples,
             "equal_accuracy": equal,
@@ -158,23 +157,25 @@ def _judged(
     return rows
 
 
-def _penalties(study: Study, name: str) -> list[dict]:
-    """Rows by penalty stiffness; none without contact."""
+def _interfaces(study: Study, name: str) -> list[dict]:
+    """Rows by interface stiffness; none without contact."""
     contact = study.condition(name).contact
     if contact is None:
         return []
-    stiffness = contact.penalty
+    stiffness = contact.interface_stiffness
     heads = [
-        {"factor": factor, "penalty_n_m3": factor * stiffness}
-        for factor in study.settings.penalty_factors
+        {"factor": factor, "interface_stiffness_n_m3": factor * stiffness}
+        for factor in study.settings.interface_stiffness_factors
     ]
-    known = {1.0: study.coarse(name), 4.0: refined(study, name)["penalty"]}
+    known = {1.0: study.coarse(name), 4.0: refined(study, name)["interface_stiffness"]}
     wanted = [
         known.get(factor)
-        or study.coarse(name, {"contact.penalty": factor * stiffness}, f"-penalty-{factor:g}")
-        for factor in study.settings.penalty_factors
+        or study.coarse(
+            name, {"contact.interface_stiffness": factor * stiffness}, f"-interface-{factor:g}"
+        )
+        for factor in study.settings.interface_stiffness_factors
     ]
-    return _compared(study, "convergence, penalty", name, heads, wanted)
+    return _compared(study, "convergence, interface stiffness", name, heads, wanted)
 
 
 def _quadratures(study: Study, name: str) -> list[dict]:

@@ -7,12 +7,12 @@ from tipoff.studies.convergence.quantities import RATE
 
 
 def lines(found: dict) -> list[str]:
-    """One sentence for each of: meshes, steps, penalty, quadrature, ripple, equal accuracy, where
-    the result ``found`` has it."""
+    """One sentence for each of: meshes, steps, interface stiffness, quadrature, ripple, equal
+    accuracy, where the result ``found`` has it."""
     equal = found["equal_accuracy"]
     return [
         *refinements(found),
-        *_changes("penalty stiffness, times", "factor", found["penalty"]),
+        *_changes("interface stiffness, times", "factor", found["interface_stiffness"]),
         *_changes("Gauss points per facet edge,", "points_per_edge", found["quadrature"]),
         *_ripple(found["ripple"]),
         *([equal_accuracy.sentence(equal)] if equal else []),

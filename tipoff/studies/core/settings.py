@@ -2,10 +2,9 @@
 them.
 
 The reference mesh of 2 mm is the finest with which `make report` takes half an hour on two cores.
-Effects of a change of clearance, penalty or step are differences of two runs; these runs, and the
-coarser mesh of the refinement check, have twice the element size. Finer meshes belong to the
-convergence study.
-"""
+Effects of a change of clearance, interface stiffness or step are differences of two runs; these
+runs, and the coarser mesh of the refinement check, have twice the element size. Finer meshes belong
+to the convergence study."""
 
 import os
 from dataclasses import asdict, dataclass
@@ -25,7 +24,7 @@ class Settings:
     clock) of a run of the reference, and whether one that was interrupted may ``resume``. What the
     convergence study compares, coarsest first: meshes by ``mesh_ratios`` to ``element_size``, one
     of them 1; ``safeties`` of the step, from that of every other stage down; ``quadratures``; and
-    factors of the scene's penalty stiffness."""
+    factors of the scene's interface stiffness."""
 
     element_size: float = 0.002
     tolerances: tuple[float, ...] = (1e-2, 1e-4, 1e-6, 1e-8)
@@ -36,7 +35,7 @@ class Settings:
     mesh_ratios: tuple[float, ...] = (4.0, 2.0, 1.0, 0.5)
     safeties: tuple[float, ...] = (0.9, 0.45, 0.225)
     quadratures: tuple[int, ...] = (2, 4, 8)
-    penalty_factors: tuple[float, ...] = (0.25, 1.0, 4.0, 16.0)
+    interface_stiffness_factors: tuple[float, ...] = (0.25, 1.0, 4.0, 16.0)
     workers: int = os.cpu_count() or 1
     checkpoint_every: float = 60.0
     resume: bool = True

@@ -110,10 +110,10 @@ def _convergence(found: dict) -> list[Part]:
 
 
 def _changes(found: dict) -> Table:
-    """Changes by penalty stiffness and quadrature."""
+    """Changes by interface stiffness and quadrature."""
     changed = [
-        (f"{row['penalty_n_m3']:.3g} N/m³, {row['factor']:g} times the scene's", row)
-        for row in found["penalty"]
+        (f"{row['interface_stiffness_n_m3']:.3g} N/m³, {row['factor']:g} times the scene's", row)
+        for row in found["interface_stiffness"]
     ] + [
         (f"{row['points_per_edge']} x {row['points_per_edge']} Gauss points per facet", row)
         for row in found["quadrature"]

@@ -108,14 +108,14 @@ def _pair(row: dict) -> str:
 
 
 def _stiffer(found: list[dict]) -> list[Part]:
-    """How the models move together where the reference is not converged in the penalty, which both
-    share."""
+    """How the models move together where the reference is not converged in the interface stiffness,
+    which both share."""
     moved = [row for row in found if (row["reference_change_deg_s"] or 0.0) > CONVERGED_DEG_S]
     if not moved:
         return []
     return [
-        "Where four times the penalty alone takes the reference's convergence, on the coarse mesh, "
-        "and the surrogate on compliant contact with\nthe same penalty:",
+        "Where four times the interface stiffness alone takes the reference's convergence, on "
+        "the coarse mesh, and the surrogate on compliant\ncontact with the same interface stiffness:",
         "\n".join(
             f"- {row['condition']}: the reference moves by "
             f"{number(row['reference_change_deg_s'], '.2g')} deg/s, the surrogate by "

@@ -16,7 +16,7 @@ from tipoff.scenes.scene import Scene
 from tipoff.studies import published
 
 # The changes of Table 2: 70,000 to 66,000 and 74,000; 60 to 50 and 70; 0.30 to 0.25 and 0.35.
-# Compliant contact has the penalty alone.
+# Compliant contact has the interface stiffness alone.
 _STIFFNESS, _DAMPING = 4.0 / 70.0, 10.0 / 60.0
 _MOVED = {
     "stiffness": ("k", _STIFFNESS),
@@ -24,7 +24,7 @@ _MOVED = {
     "damping_depth": ("d", _DAMPING),
     "dissipation": ("a", _DAMPING),
 }
-_COMPLIANT = {"penalty": ("penalty", _STIFFNESS)}
+_COMPLIANT = {"interface_stiffness": ("interface stiffness", _STIFFNESS)}
 CLEARANCE = 1e-6  # m
 _NEARLY_ZERO = 0.05
 

@@ -31,7 +31,7 @@ _NAMES = {
     "contact.exponent": "contact exponent",
     "contact.damping": "contact damping",
     "contact.damping_depth": "depth of full damping",
-    "contact.penalty": "penalty of the walls",
+    "contact.interface_stiffness": "interface stiffness of the walls",
     "contact.clearance": "clearance",
     "friction.dynamic": "friction",
     "thrust.peak": "thrust peak",

@@ -28,7 +28,7 @@ from tipoff.scenes import overrides as keys
 from tipoff.scenes import reading
 from tipoff.scenes.distributions import BY_NAME, Distribution
 from tipoff.scenes.effects.contact import LinearTable
-from tipoff.scenes.faults import Fault, SceneError, faults_of
+from tipoff.scenes.faults import Fault, SceneError, faults_of, renamed
 from tipoff.scenes.scene import Scene
 from tipoff.studies.populations.derived import friction
 
@@ -159,7 +159,9 @@ def _input(
     place = f"{kind}.{key}"
     unit = keys.unit(Scene, _stored(key))
     if unit is None:
-        faults.append(Fault(source, place, repr(table), "a key that holds a number"))
+        faults.append(
+            Fault(source, place, repr(table), renamed(key) or "a key that holds a number")
+        )
         return None
     if (name := table.get("distribution")) not in BY_NAME:
         faults.append(
@@ -182,7 +184,7 @@ def _idle(item: Input, scene: Scene, model: str) -> str | None:
         return f"the scene has no {table}"
     if model == COMPLIANT and item.key in _SPRINGS:
         return "compliant contact has no such constant"
-    if model == SPRINGS and item.key == "contact.penalty":
+    if model == SPRINGS and item.key == "contact.interface_stiffness":
         return "only compliant contact uses it"
     if item.key == "contact.exponent" and isinstance(scene.contact, LinearTable):
         return "the law is linear"

@@ -3,7 +3,7 @@ payload and pads.
 
 The axes are those of the platform, which coincide with scene axes at ignition. In them the motion of
 the rails is their deformation alone. Contact pressure is the
-penalty law at the nodes of the walls::
+pressure of the interface at the nodes of the walls::
 
     p = k_p max(0, -h - relief (xi^4 + eta^4))    for |xi|, |eta| <= 1
     h: height of the node over the pad face
@@ -103,12 +103,12 @@ class Camera:
         self, displacement: np.ndarray, turn: np.ndarray, centre: np.ndarray
     ) -> np.ndarray:
         """Contact pressure (n,) Pa; ``turn`` and ``centre`` of the payload in frame axes."""
-        pressure, faces, penalty = (
+        pressure, faces, interface_stiffness = (
             np.zeros(len(displacement)),
             self.system.faces,
-            self.system.model.penalty,
+            self.system.model.interface_stiffness,
         )
-        if penalty is None:
+        if interface_stiffness is None:
             return pressure
         place = (
             self.system.mesh.points[self._walls] - self.system.origin + displacement[self._walls]
@@ -121,7 +121,7 @@ class Camera:
             height = faces.sign[face] * (seen[:, axis] - faces.centre[face, axis])
             under = (np.abs(along) <= 1.0) & (np.abs(across) <= 1.0) & (np.abs(height) < _PAD_DEPTH)
             depth = np.where(under, -height - faces.relief[face] * (along**4 + across**4), 0.0)
-            pressure[self._walls] += penalty * np.maximum(depth, 0.0)
+            pressure[self._walls] += interface_stiffness * np.maximum(depth, 0.0)
         return pressure
 
 

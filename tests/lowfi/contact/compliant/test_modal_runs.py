@@ -60,7 +60,7 @@ def crossing(ratio: float):
     duration = LENGTH / (ratio * CRITICAL)
     asked = on_springs(
         RUB | {"static": 0.0, "dynamic": 0.0},
-        penalty=STIFFNESS / 0.016**2,
+        interface_stiffness=STIFFNESS / 0.016**2,
         pads=pads,
         duration=duration,
         payload=heavy | {"mass": 1e4},

@@ -40,7 +40,10 @@ RUB = {"static": 0.2, "dynamic": 0.2, "static_speed": 0.01, "dynamic_speed": 0.0
 
 
 def on_springs(
-    friction: dict, stiffness: float = STIFFNESS, penalty: float = STIFFNESS / AREA, **changes
+    friction: dict,
+    stiffness: float = STIFFNESS,
+    interface_stiffness: float = STIFFNESS / AREA,
+    **changes,
 ):
     """Flat pads between endless rails, with a spring of ``stiffness`` (N/m) for contact: IMPACT
     without damping, with the exponent 1."""
@@ -59,7 +62,7 @@ def on_springs(
         "stiffness": stiffness,
         "damping": 0.0,
         "damping_depth": 1.0,
-        "penalty": penalty,
+        "interface_stiffness": interface_stiffness,
     }
     return parse(
         {
@@ -86,8 +89,8 @@ def speeds(run) -> np.ndarray:
 @pytest.mark.parametrize("friction", [0.0, 0.2])
 @pytest.mark.parametrize("given", [None, 3e7], ids=["rigid", "in series"])
 def test_one_cell_is_a_spring(monkeypatch, friction, given):
-    """A flat pad of one cell on a rigid wall is penalty times area; on a wall that only translates,
-    two springs in series."""
+    """A flat pad of one cell on a rigid wall is interface stiffness times area; on a wall that only
+    translates, two springs in series."""
     rub = RUB | {"static": friction, "dynamic": friction}
     together = STIFFNESS if given is None else 1.0 / (1.0 / STIFFNESS + 1.0 / given)
     asked = on_springs(rub, together)
@@ -280,9 +283,9 @@ def test_order_of_the_pads():
 
 
 def test_no_step_above_the_proven_limit():
-    """Under a thousandfold penalty, at a tolerance that allows errors of centimetres per second,
-    the limit alone bounds the steps and the motion."""
-    stiff = REFERENCE.condition("phi60").replace({"contact.penalty": 1.8e15})
+    """Under a thousandfold interface stiffness, at a tolerance that allows errors of centimetres
+    per second, the limit alone bounds the steps and the motion."""
+    stiff = REFERENCE.condition("phi60").replace({"contact.interface_stiffness": 1.8e15})
     run = lowfi.run(
         stiff,
         numerics=Numerics(relative_tolerance=1e-2, speed_floor=10.0),

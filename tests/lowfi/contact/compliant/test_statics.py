@@ -219,9 +219,9 @@ def test_any_pose_is_solved(reference):
 
 def pressed_elements(scene, face, travel, aside=0.0, points_per_edge=4):
     """Force (N) as a function of the depth (m) a crowned pad face is pressed into the rail of
-    elements of 4 mm, ``aside`` (m) of where it stands midway between the rails: penalty at Gauss
-    points of each facet, each one's pressure felt at every other, by Newton's rule with the points
-    that touch."""
+    elements of 4 mm, ``aside`` (m) of where it stands midway between the rails: interface stiffness
+    at Gauss points of each facet, each one's pressure felt at every other, by Newton's rule with
+    the points that touch."""
     nominal = models.built(scene).nominal
     faces = nominal._replace(
         wall=nominal.wall + np.array(scene.platform.record().mass_centre)[nominal.axis]
@@ -247,7 +247,7 @@ def pressed_elements(scene, face, travel, aside=0.0, points_per_edge=4):
     ]
     where, which = np.nonzero((np.abs(local) < 1.0).all(axis=2))
     spring, crown = (
-        scene.contact.penalty * area[where, which],
+        scene.contact.interface_stiffness * area[where, which],
         faces.relief[face] * (local[where, which] ** 4).sum(axis=1),
     )
     nodes, place = np.unique(wall[where], return_inverse=True)
