@@ -23,6 +23,7 @@ def table(name: str, **values):
     "drawn, exact",
     [
         (table("uniform", low=-1.0, high=3.0), stats.uniform(-1.0, 4.0)),
+        (table("log-uniform", low=0.25, high=4.0), stats.loguniform(0.25, 4.0)),
         (table("normal", mean=2.0, sd=0.5), stats.norm(2.0, 0.5)),
         (
             table("truncated-normal", mean=2.0, sd=0.5, low=1.5, high=4.0, rule="redraw"),
@@ -72,6 +73,7 @@ def test_every_number_depends_on_its_own_probability_alone():
         table("normal", mean=0.1, sd=0.3),
         table("rayleigh", scale=0.3),
         table("uniform", low=0.1, high=0.7),
+        table("log-uniform", low=0.1, high=0.7),
         table("truncated-normal", mean=0.1, sd=0.3, low=0.0, high=0.5, rule="redraw"),
     ):
         whole = drawn.ppf(u)

@@ -73,7 +73,8 @@ class Plate(NamedTuple):
 
 
 class Model(NamedTuple):
-    """All records of one scene. ``rail_start`` and ``rail_end`` (m) are X in platform axes."""
+    """All records of one scene. ``rail_start`` and ``rail_end`` (m) are X in platform axes;
+    ``interface_stiffness`` (N/m3) is that of interface and pad layer in series."""
 
     payload: Payload
     faces: Faces
@@ -150,7 +151,7 @@ def built(scene: Scene, earlier: Built | None = None) -> Built:
             else contact.laws(scene.contact.record())
             if scene.contact
             else None,
-            interface_stiffness=scene.contact.interface_stiffness if scene.contact else None,
+            interface_stiffness=scene.contact.series_stiffness() if scene.contact else None,
             # Friction without contact has no normal force to act on, so it is absent too.
             friction=(
                 old.model.friction

@@ -14,7 +14,7 @@ from typing import Annotated, Any, Literal
 
 import numpy as np
 from pydantic import BeforeValidator, ValidationInfo, field_validator
-from scipy.special import log1p, ndtr, ndtri
+from scipy.special import exp2, log1p, ndtr, ndtri
 
 from tipoff.scenes.table import Table
 from tipoff.scenes.units import parse
@@ -72,6 +72,20 @@ class Uniform(_Limits):
     def ppf(self, u: np.ndarray) -> np.ndarray:
         """Quantiles (SI) of probabilities ``u``, any shape."""
         return self.low + u * (self.high - self.low)
+
+
+class LogUniform(_Limits):
+    """The logarithm from that of ``low`` to that of ``high`` alike: of a number that is known to an
+    order of magnitude."""
+
+    distribution: Literal["log-uniform"]
+    provenance: str = ""
+
+    _sized = field_validator("low")(_positive)
+
+    def ppf(self, u: np.ndarray) -> np.ndarray:
+        """Quantiles (SI) of probabilities ``u``, any shape."""
+        return self.low * exp2(u * np.log2(self.high / self.low))
 
 
 class Normal(Table):
@@ -132,10 +146,11 @@ def _between(a: float, b: float, u: np.ndarray) -> np.ndarray:
     return ndtri(below + u * (ndtr(b) - below))
 
 
-Distribution = Fixed | Uniform | Normal | TruncatedNormal | Rayleigh
+Distribution = Fixed | Uniform | LogUniform | Normal | TruncatedNormal | Rayleigh
 BY_NAME: dict[str, type[Distribution]] = {
     "fixed": Fixed,
     "uniform": Uniform,
+    "log-uniform": LogUniform,
     "normal": Normal,
     "truncated-normal": TruncatedNormal,
     "rayleigh": Rayleigh,

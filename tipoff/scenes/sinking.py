@@ -23,6 +23,7 @@ from tipoff.scenes import moments
 from tipoff.scenes.effects import registry, thrust
 
 _STRAIN = 0.01  # of a pad's shortest side
+_LAYER = "pad_layer"
 _THOUSAND = 1e3  # between N and kN, and between m and mm
 
 
@@ -63,9 +64,7 @@ def warnings(scene) -> list[str]:
     area = min(pad.length * pad.width for pad in scene.pads)
     springs = (
         _Spring("stiffness", contact.stiffness, contact.exponent, contact.exponent, 1.0, 1.0, ""),
-        _Spring(
-            "interface_stiffness", contact.interface_stiffness, 1.0, 3.0, area, 0.1, "a tenth of "
-        ),
+        *_layers(contact, area),
     )
     found = []
     for spring in springs:
@@ -75,7 +74,7 @@ def warnings(scene) -> list[str]:
             meant = next(
                 (
                     f"; {words} it would be {_length(spring.sink(force, factor))}"
-                    for words, factor in _units_meant(text, spring.lengths)
+                    for words, factor in _units_meant(text, spring)
                     if spring.sink(force, factor) <= plausible
                 ),
                 "",
@@ -88,15 +87,28 @@ def warnings(scene) -> list[str]:
     return found
 
 
+def _layers(contact, area: float) -> Iterator[_Spring]:
+    """The interface; and with the layer of the pad, which is soft, what both are in series, up to
+    the whole base."""
+    yield _Spring(
+        "interface_stiffness", contact.interface_stiffness, 1.0, 3.0, area, 0.1, "a tenth of "
+    )
+    if contact.pad_layer is not None:
+        yield _Spring(_LAYER, contact.series_stiffness(), 1.0, 3.0, area, 1.0, "")
+
+
 def _given(scene, spring: _Spring) -> str:
     """The stiffness as the scene was given it, else in SI."""
     given = scene.given(f"contact.{spring.key}")
     return given if isinstance(given, str) else f"{spring.value:.4g} N/m**{spring.lengths:g}"
 
 
-def _units_meant(text: str, lengths: float) -> Iterator[tuple[str, float]]:
+def _units_meant(text: str, spring: _Spring) -> Iterator[tuple[str, float]]:
     """Units that the number may have been meant in, in words, and how much stiffer each is than the
-    one it was given in."""
+    one it was given in; none for a layer, which is given by its thickness and modulus."""
+    if spring.key == _LAYER:
+        return
+    lengths = spring.lengths
     small, large = "mm" not in text, "N" in text and "kN" not in text
     if small:
         yield "in mm instead of m", _THOUSAND**lengths

@@ -6,7 +6,7 @@ sampling method::
     sampling = "sobol"                     # or "latin-hypercube", "random"
 
     [vary."thrust_offset.misalignment.axial"]
-    distribution = "normal"     # fixed, uniform, truncated-normal, rayleigh: see distributions.py
+    distribution = "normal"     # fixed, uniform, log-uniform ...: see distributions.py
     mean = "0 deg"
     sd = "0.033 deg"
 

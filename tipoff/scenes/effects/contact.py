@@ -7,10 +7,17 @@ is::
     Hunt-Crossley   k p^e (1 + a q)                                                     (Hunt and Crossley 1975)
     linear          k p + c q
 
-These laws are those of springs. The finite elements and compliant contact have the interface
-stiffness k_i (N/m3), pressure over approach of what lies between payload and rail: asperities,
-coating and pad material in series. The pressure on the crowned pads is k_i p, without damping.
-Stored energy is k p^(e+1) / (e+1) in each law.
+Stored energy is k p^(e+1) / (e+1) in each law. These laws are those of springs. The finite
+elements and compliant contact have a pressure over approach k_i (N/m3) on the crowned pads, without
+damping: the interface stiffness of asperities and coating, in series with the material of the pad,
+if the scene states its layer of thickness t::
+
+    1 / k_i = 1 / interface_stiffness + t / M
+    M = E                                       a layer that is free to bulge sideways
+    M = E (1 - nu) / ((1 + nu) (1 - 2 nu))      one that cannot: thin beside its width, and bonded
+
+Source of M: Johnson, Contact Mechanics, Cambridge 1985, section 4.3. Values of the interface
+stiffness with their sources are in ``docs/interface_stiffness.md``.
 """
 
 from typing import Annotated, Any, Literal, NamedTuple
@@ -20,18 +27,35 @@ from pydantic import Field, ValidationInfo, field_validator
 
 from tipoff.kernels.jit import njit
 from tipoff.scenes.effects.effect import Effect
-from tipoff.scenes.table import Table
+from tipoff.scenes.table import Table, is_absent
 from tipoff.scenes.units import (
     ContactDamping,
     Dissipation,
     InterfaceStiffness,
     NonNegativeLength,
+    PoissonRatio,
     PositiveLength,
     PositiveNumber,
+    Pressure,
     parse,
 )
 
 EFFECT = Effect("contact")
+
+
+class PadLayerTable(Table):
+    """``[contact.pad_layer]``: pad material of ``thickness`` (m) and ``youngs_modulus`` (Pa) in
+    front of a stiff payload. With a ``poisson_ratio`` it cannot bulge sideways."""
+
+    thickness: PositiveLength
+    youngs_modulus: Pressure
+    poisson_ratio: PoissonRatio | None = None
+
+    def stiffness(self) -> float:
+        """Pressure over compression (N/m3)."""
+        nu = self.poisson_ratio or 0.0
+        confined = (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu))
+        return self.youngs_modulus * confined / self.thickness
 
 
 class _ContactTable(Table):
@@ -39,6 +63,21 @@ class _ContactTable(Table):
     exponent: PositiveNumber = 1.5
     stiffness: float
     interface_stiffness: InterfaceStiffness = 1.8e12
+    pad_layer: PadLayerTable | None = Field(None, exclude_if=is_absent)
+
+    def series_stiffness(self) -> float:
+        """Pressure over approach (N/m3) of the interface and the layer of the pad in series."""
+        if self.pad_layer is None:
+            return self.interface_stiffness
+        return 1.0 / (1.0 / self.interface_stiffness + 1.0 / self.pad_layer.stiffness())
+
+    def stiffened(self, factor: float) -> dict[str, float]:
+        """Overrides (SI) of a scene for ``factor`` times the ``series_stiffness``."""
+        found = {"contact.interface_stiffness": factor * self.interface_stiffness}
+        if self.pad_layer is not None:
+            modulus = factor * self.pad_layer.youngs_modulus
+            found["contact.pad_layer.youngs_modulus"] = modulus
+        return found
 
     @field_validator("stiffness", mode="before")
     @classmethod

@@ -104,9 +104,9 @@ def ensemble(
       mean = "9.9 kg"
       sd = "20 g"
 
-    Other distributions: fixed (value), uniform (low, high), truncated-normal (mean, sd, low, high,
-    rule "redraw" or "clip") and rayleigh (scale). A table has dotted keys in its first line, units
-    in the second or in each cell, and one case in every further line.
+    Other distributions: fixed (value), uniform and log-uniform (low, high), truncated-normal (mean,
+    sd, low, high, rule "redraw" or "clip") and rayleigh (scale). A table has dotted keys in its
+    first line, units in the second or in each cell, and one case in every further line.
 
       tipoff ensemble --cases 1000000
       tipoff ensemble --vary my_errors.toml --sampling sobol --cases 4096
