@@ -7,31 +7,49 @@ meshed as an extrusion of this section in quadrilaterals. Any other solid is fil
 of twice the element size, each split into four hexahedra at the centres of its edges and faces;
 such elements are skewed, which shortens the step and makes thin walls too stiff. Quadratic
 tetrahedra, on request, have ten nodes, about ``element_size`` apart, and edges that follow curved
-faces.
+faces. Boxes that name parts of the faces are drawn onto them (``meshes.imprint``).
 """
 
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
-from tipoff.meshes import bricks, generator
+from tipoff.meshes import bricks, generator, imprint
+from tipoff.meshes.tetrahedra import Cost, filled
 
 _SAME = 1e-9  # m: two planes closer than this are one
 _TIE = 1e-6  # divisions
 _PROBES = 9  # points of an edge at which its curvature is tested
-_TETRAHEDRON = [0, 1, 2, 3, 4, 5, 6, 7, 9, 8]  # nodes of gmsh's quadratic tetrahedron in VTK order
+
+
+class Meshed(NamedTuple):
+    """Elements of a solid."""
+
+    points: np.ndarray  # (n,3) m
+    cells: np.ndarray  # (e,8) hexahedra or (e,10) tetrahedra, VTK order
+    areas: dict[str, float]  # m2 of the faces of the solid in the boxes of each surface
+
+
+class Filling(NamedTuple):
+    """How solids that are neither bricks nor extrusions are filled."""
+
+    tetrahedra: bool = False  # else each is split into four hexahedra; bricks too have these
+    cost: Cost = lambda points, cells: 0.0  # of a mesh, by which the best one is taken
+    enough: float = 0.0  # cost below which no further mesh is tried
+
+
+_HEXAHEDRA = Filling()
 
 
 def build(
-    path: Path, element_size: float, planes: np.ndarray, tetrahedra: bool = False
-) -> tuple[np.ndarray, np.ndarray]:
-    """Points (n,3) m and hexahedra (e,8), or tetrahedra (e,10), VTK order, of every solid in a
-    file, whatever its length unit.
+    path: Path, element_size: float, boxes: imprint.Boxes, filling: Filling = _HEXAHEDRA
+) -> Meshed:
+    """Elements about ``element_size`` (m) of every solid in a file, whatever its length unit, with
+    the borders of the ``boxes`` between elements.
 
-    ``planes`` (p,3) m: places along x, y and z at which elements should have borders. Bricks have
-    them at all of these, an extruded section at those along x, tetrahedra at none. Raises
-    ValueError for a file without a solid that gmsh can read, GmshUnavailable where gmsh does not
-    load.
+    Raises ValueError for a file without a solid that gmsh can read, imprint.Outside for boxes in
+    which no face lies, GmshUnavailable where gmsh does not load.
     """
     with generator.session("solid") as gmsh:
         gmsh.option.setString("Geometry.OCCTargetUnit", "M")
@@ -41,23 +59,30 @@ def build(
             raise ValueError(f"gmsh does not read it ({fault})") from fault
         gmsh.model.occ.removeAllDuplicates()  # solids that touch share the face between them
         gmsh.model.occ.synchronize()
-        volumes = [tag for _, tag in gmsh.model.getEntities(3)]
-        if not volumes:
+        if not gmsh.model.getEntities(3):
             raise ValueError("it holds no solid")
-        if not tetrahedra and _is_bricks(gmsh):
-            return _bricks(gmsh, volumes, element_size, planes)
+        areas = imprint.areas(gmsh, boxes)
         try:
-            if tetrahedra:
-                return _tetrahedra(gmsh, element_size)
-            return (
-                _extruded(gmsh, element_size, planes)
-                if _is_extruded(gmsh)
-                else _split_tetrahedra(gmsh, element_size)
-            )
+            return Meshed(*_elements(gmsh, element_size, boxes, filling), areas)
         except Exception as fault:  # gmsh knows no other class
             raise ValueError(
                 f"gmsh cannot fill it with elements of {element_size:g} m ({fault})"
             ) from fault
+
+
+def _elements(
+    gmsh, element_size: float, boxes: imprint.Boxes, filling: Filling
+) -> tuple[np.ndarray, np.ndarray]:
+    every = [box for given in boxes.values() for box in given]
+    planes = np.reshape(every, (-1, 3))
+    if not filling.tetrahedra and _is_bricks(gmsh):
+        volumes = [tag for _, tag in gmsh.model.getEntities(3)]
+        return _bricks(gmsh, volumes, element_size, planes)
+    if not filling.tetrahedra and _is_extruded(gmsh):
+        return _extruded(gmsh, element_size, every)
+    faces = [tag for _, tag in gmsh.model.getEntities(2)]
+    imprint.draw(gmsh, every, [faces] * len(every))
+    return filled(gmsh, element_size, not filling.tetrahedra, filling.cost, filling.enough)
 
 
 def _vertices(gmsh, dimension: int, tag: int) -> np.ndarray:
@@ -128,20 +153,18 @@ def _is_extruded(gmsh) -> bool:
     return True
 
 
-def _extruded(gmsh, element_size: float, planes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _extruded(gmsh, element_size: float, boxes: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+    planes = np.reshape(boxes, (-1, 3))
     x = _different(_vertices(gmsh, 3, -1)[:, 0], planes[:, 0])
     stations = _divided(x, element_size)
-    ends = [
-        tag
-        for _, tag in gmsh.model.getEntities(2)
-        if np.abs(_vertices(gmsh, 2, tag)[:, 0] - x[0]).max() < _SAME
-    ]
+    _draw_on_section(gmsh, boxes, x[[0, -1]])
+    ends = _faces_at(gmsh, x[0])
     _set_size(gmsh, 2.0 * element_size)
     gmsh.option.setNumber("Mesh.RecombineAll", 1)
     # halves every side, so that no triangle is left over
     gmsh.option.setNumber("Mesh.SubdivisionAlgorithm", 1)
     gmsh.model.mesh.generate(2)
-    places, quads = _elements(gmsh, "Quadrangle", ends)
+    places, quads = _quadrilaterals(gmsh, ends)
     used, number = np.unique(quads, return_inverse=True)
     section, quads = places[used, 1:], number.reshape(-1, 4)
     a, b, c = (section[quads[:, i]] for i in range(3))
@@ -156,23 +179,30 @@ def _extruded(gmsh, element_size: float, planes: np.ndarray) -> tuple[np.ndarray
     return points, np.concatenate([layer[:-1], layer[1:]], axis=2).reshape(-1, 8)
 
 
-def _split_tetrahedra(gmsh, element_size: float) -> tuple[np.ndarray, np.ndarray]:
-    _set_size(gmsh, 2.0 * element_size)
-    gmsh.option.setNumber("Mesh.SubdivisionAlgorithm", 2)
-    gmsh.model.mesh.generate(3)
-    return _elements(gmsh, "Hexahedron", [tag for _, tag in gmsh.model.getEntities(3)])
+def _draw_on_section(gmsh, boxes: list[np.ndarray], ends: np.ndarray) -> None:
+    """Draw the borders of ``boxes`` onto an extrusion from one of its ``ends`` (2,) m to the other;
+    its end face gets those of boxes that reach an end."""
+    first = _faces_at(gmsh, ends[0])
+    sides = [
+        tag
+        for _, tag in gmsh.model.getEntities(2)
+        if tag not in (*first, *_faces_at(gmsh, ends[1]))
+    ]
+    whole, faces = [], []
+    for box in boxes:
+        reaches = box[0, 0] < ends[0] + imprint.SAME or box[1, 0] > ends[1] - imprint.SAME
+        faces.append(sides + first if reaches else sides)
+        whole.append(np.array([[ends[0] - 1.0, *box[0, 1:]], [ends[1] + 1.0, *box[1, 1:]]]))
+    imprint.draw(gmsh, whole, faces)
 
 
-def _tetrahedra(gmsh, element_size: float) -> tuple[np.ndarray, np.ndarray]:
-    _set_size(gmsh, 2.0 * element_size)
-    # edges bent around a hole must not fold the elements behind them
-    gmsh.option.setNumber("Mesh.HighOrderOptimize", 1)
-    gmsh.model.mesh.generate(3)
-    gmsh.model.mesh.setOrder(2)
-    points, nodes = _elements(
-        gmsh, "Tetrahedron", [tag for _, tag in gmsh.model.getEntities(3)], order=2
-    )
-    return points, nodes[:, _TETRAHEDRON]
+def _faces_at(gmsh, x: float) -> list[int]:
+    """Faces in the plane at ``x`` (m)."""
+    return [
+        tag
+        for _, tag in gmsh.model.getEntities(2)
+        if np.abs(_vertices(gmsh, 2, tag)[:, 0] - x).max() < _SAME
+    ]
 
 
 def _set_size(gmsh, size: float) -> None:
@@ -180,15 +210,11 @@ def _set_size(gmsh, size: float) -> None:
     gmsh.option.setNumber("Mesh.MeshSizeMax", size)
 
 
-def _elements(
-    gmsh, family: str, entities: list[int], order: int = 1
-) -> tuple[np.ndarray, np.ndarray]:
-    """All points (n,3) m of the mesh and the nodes (e,k) of the elements of one family in some
-    entities."""
+def _quadrilaterals(gmsh, faces: list[int]) -> tuple[np.ndarray, np.ndarray]:
+    """All points (n,3) m of the mesh and the corners (e,4) of the quadrilaterals on some faces."""
     tags, places, _ = gmsh.model.mesh.getNodes()
     number = np.zeros(int(tags.max()) + 1, dtype=np.int64)
     number[tags.astype(np.int64)] = np.arange(len(tags))
-    kind = gmsh.model.mesh.getElementType(family, order)
-    nodes = [gmsh.model.mesh.getElementsByType(kind, entity)[1] for entity in entities]
-    count = gmsh.model.mesh.getElementProperties(kind)[3]
-    return places.reshape(-1, 3), number[np.concatenate(nodes).astype(np.int64)].reshape(-1, count)
+    kind = gmsh.model.mesh.getElementType("Quadrangle", 1)
+    nodes = [gmsh.model.mesh.getElementsByType(kind, face)[1] for face in faces]
+    return places.reshape(-1, 3), number[np.concatenate(nodes).astype(np.int64)].reshape(-1, 4)

@@ -75,6 +75,11 @@ def weights(nodes: np.ndarray, target: np.ndarray) -> tuple[np.ndarray, np.ndarr
     return values, np.maximum(outside, missed) < INSIDE
 
 
+def area(points: np.ndarray, facets: np.ndarray) -> float:
+    """Area (m2) of ``facets`` (m,4) or (m,6) by Gauss quadrature, exact for plane facets."""
+    return float(gauss(points[facets], 2)[1].sum())
+
+
 def gauss(nodes: np.ndarray, quadrature: int) -> tuple[np.ndarray, np.ndarray]:
     """Shape functions (q,k) and areas (m,q) in m2 at the Gauss points of facets with nodes (m,k,3)
     m.

@@ -48,13 +48,15 @@ class RailMesh:
     points (n,3) m; cells (e,k) point numbers, k = 8 or 10, VTK order, positive Jacobian; surfaces:
     name -> (m,f) point numbers of facets, four corners or three and three middles, corners
     counter-clockwise seen from outside the solid; warnings: what costs time or accuracy without
-    being wrong.
+    being wrong; drawn: areas (m2) of the surfaces on the solid that was meshed, None for a mesh
+    made elsewhere.
     """
 
     points: np.ndarray
     cells: np.ndarray
     surfaces: dict[str, np.ndarray]
     warnings: tuple[str, ...] = field(default=())
+    drawn: dict[str, float] | None = None
 
 
 def read(source) -> RailMesh:

@@ -7,7 +7,7 @@ scene says, lie under every pad face, and have the clearance of the scene from i
 import numpy as np
 
 from tipoff.highfi.contact import surface
-from tipoff.highfi.mesh import pieces
+from tipoff.highfi.mesh import facets, pieces
 from tipoff.highfi.mesh.rail_mesh import MeshError, RailMesh
 from tipoff.mechanics import model as scene_model
 from tipoff.scenes.faults import Fault, SceneError
@@ -16,6 +16,7 @@ from tipoff.scenes.scene import Scene
 
 _SAME = 1e-6  # m: below what a rail is made to, above the rounding of any mesh format
 _LIKE = 1e-3  # relative: a length that is the rail's in another unit, or along another axis
+_AREA = 0.05  # relative: more than facets of a curved face lose, less than a box cuts off
 _UNITS = {"millimetres": 1e3, "centimetres": 1e2, "inches": 1.0 / 0.0254}  # of them in a metre
 
 
@@ -24,19 +25,56 @@ def check_frame(scene: Scene, rail: MeshTable | GeometryTable, mesh: RailMesh) -
     along another axis."""
     lengths = np.ptp(_corners(mesh).reshape(-1, 3), axis=0)
     longest = int(lengths.argmax())
-    ratio = lengths[longest] / (rail.end - rail.start)
+    unit, along_x = _unit(rail, lengths)
     key, faults = f"rail.{rail.GIVEN_BY}", []
-    for unit, count in _UNITS.items():
-        if abs(ratio / count - 1.0) < _LIKE:
-            given = f"walls {lengths[longest]:.6g} m long in {rail.path().name}"
-            wanted = f"{rail.end - rail.start:.6g} m; the file seems to be in {unit}, not in metres"
-            faults.append(Fault(scene.name, key, given, wanted))
-            ratio /= count
-    if longest != 0 and abs(ratio - 1.0) < _LIKE:
+    if unit:
+        given = f"walls {lengths[longest]:.6g} m long in {rail.path().name}"
+        wanted = f"{rail.end - rail.start:.6g} m; the file seems to be in {unit}, not in metres"
+        faults.append(Fault(scene.name, key, given, wanted))
+    if not along_x:
         given = f"walls along {'xyz'[longest]} in {rail.path().name}"
         faults.append(Fault(scene.name, key, given, "scene axes, x along the rail to its open end"))
     if faults:
         raise SceneError(faults)
+
+
+def unit_of(rail: MeshTable | GeometryTable, extent: np.ndarray) -> str:
+    """What a file whose solid has this ``extent`` (2,3) m seems to have for metres and for X, as the
+    end of a message; nothing where both are right."""
+    unit, along_x = _unit(rail, np.ptp(extent, axis=0))
+    words = [f"the file seems to be in {unit}, not in metres"] if unit else []
+    if not along_x:
+        words.append("its longest axis is not x, along which the scene has the rail")
+    return "".join(f"; {each}" for each in words)
+
+
+def _unit(rail: MeshTable | GeometryTable, lengths: np.ndarray) -> tuple[str, bool]:
+    """The unit in which the longest of three ``lengths`` is that of the rail, nothing for metres or
+    for none, and whether it lies along X where it is that of the rail at all."""
+    longest = int(lengths.argmax())
+    ratio = lengths[longest] / (rail.end - rail.start)
+    units = [name for name, count in _UNITS.items() if abs(ratio / count - 1.0) < _LIKE]
+    is_known = bool(units) or abs(ratio - 1.0) < _LIKE
+    return units[0] if units else "", longest == 0 or not is_known
+
+
+def check_areas(rail: GeometryTable, mesh: RailMesh) -> None:
+    """Raise MeshError with every surface of a meshed solid whose area is not that of the solid's
+    faces in its boxes."""
+    faults = []
+    for name, drawn in (mesh.drawn or {}).items():
+        found = facets.area(mesh.points, mesh.surfaces[name])
+        if abs(found - drawn) > _AREA * drawn:
+            faults.append(
+                f"surface '{name}': {1e6 * found:,.6g} mm2 of facets in its boxes, where the solid "
+                f"has {1e6 * drawn:,.6g} mm2"
+            )
+    if faults:
+        raise MeshError(
+            f"{rail.path()} cannot be used:\n  "
+            + "\n  ".join(faults)
+            + "\n  a box ends within an element, or elements are too large for a curved face"
+        )
 
 
 def check_held(rail: MeshTable | GeometryTable, mesh: RailMesh) -> None:
@@ -64,7 +102,7 @@ def _corners(mesh: RailMesh) -> np.ndarray:
     """Nodes (m,k,3) m of all facets of the walls."""
     return mesh.points[
         np.concatenate(
-            [facets for name, facets in mesh.surfaces.items() if name.startswith("contact")]
+            [group for name, group in mesh.surfaces.items() if name.startswith("contact")]
         )
     ]
 

@@ -2,30 +2,20 @@
 file."""
 
 from dataclasses import replace
+from functools import partial
 
 import meshio
 import numpy as np
 
 from tipoff.files import content_hash
-from tipoff.highfi.dynamics import stable_step
 from tipoff.highfi.mesh import split
-from tipoff.highfi.mesh.rail_mesh import (
-    MeshError,
-    RailMesh,
-    along_x,
-    boundary_facets,
-    listed,
-    read,
-    slivers,
-)
-from tipoff.highfi.rail.fit import check_frame, check_held
-from tipoff.highfi.statics import assembly
-from tipoff.meshes import l_rail, msh, solid
+from tipoff.highfi.mesh.rail_mesh import MeshError, RailMesh, along_x, boundary_facets, read
+from tipoff.highfi.rail import step_cost
+from tipoff.highfi.rail.fit import check_areas, check_frame, check_held, unit_of
+from tipoff.meshes import imprint, l_rail, msh, solid
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.rail import GeometryTable, SectionTable
 from tipoff.scenes.scene import Scene
-
-_SAME = 1e-6  # m, how far a node of a facet may lie outside the box that names it
 
 
 def geometry(scene: Scene) -> l_rail.LRailGeometry | str:
@@ -49,73 +39,48 @@ def make_mesh(scene: Scene, element_size: float) -> RailMesh:
     if not scene.rail.is_as_found():
         raise MeshError(f"{scene.rail.path()} has changed since the scene was read")
     if isinstance(scene.rail, GeometryTable):
-        mesh = read(_meshed(scene.rail, element_size))
+        meshed, areas = _meshed(scene.rail, element_size)
+        mesh = replace(read(meshed), drawn=areas)
+        check_areas(scene.rail, mesh)
         check_held(scene.rail, mesh)
-        return with_steps(along_x(mesh), scene.rail.material)
+        mesh = along_x(mesh)
+        mesh = step_cost.with_sliver_steps(mesh, scene.rail.material)
+        return step_cost.with_run_time(mesh, scene, element_size)
     mesh = read(scene.rail.path())
     check_frame(scene, scene.rail, mesh)  # a mesh in millimetres would fill the memory
     check_held(scene.rail, mesh)
     # before the split, because its messages give the element numbers of the file
-    mesh = with_steps(mesh, scene.rail.material)
-    return along_x(split.to_size(mesh, element_size))
+    mesh = step_cost.with_sliver_steps(mesh, scene.rail.material)
+    mesh = along_x(split.to_size(mesh, element_size))
+    return step_cost.with_run_time(mesh, scene, min(element_size, step_cost.spacing(mesh)))
 
 
-def _meshed(rail: GeometryTable, element_size: float) -> meshio.Mesh:
+def _meshed(rail: GeometryTable, element_size: float) -> tuple[meshio.Mesh, dict[str, float]]:
     """The solid of a CAD file as elements, the facets of its boundary named after the boxes they
-    lie in."""
+    lie in, and the area (m2) of the solid's own faces there."""
     boxes = {
         name: np.array([(box.low, box.high) for box in given])
         for name, given in rail.surfaces.items()
     }
+    cost = partial(step_cost.ratio, rail.material, element_size)
+    filling = solid.Filling(rail.elements == "tet10", cost, step_cost.MOST)
     try:
-        planes = np.concatenate(list(boxes.values())).reshape(-1, 3)
-        points, cells = solid.build(
-            rail.path(), element_size, planes, tetrahedra=rail.elements == "tet10"
-        )
+        points, cells, areas = solid.build(rail.path(), element_size, boxes, filling)
+    except imprint.Outside as fault:
+        raise MeshError(
+            f"{rail.path()} cannot be used: {fault}{unit_of(rail, fault.extent)}"
+        ) from fault
     except ValueError as fault:
         raise MeshError(f"{rail.path()} cannot be used: {fault}") from fault
     facets = boundary_facets(cells)
     nodes = points[facets][:, None]
     inside = {
-        name: ((nodes > box[:, 0, None] - _SAME) & (nodes < box[:, 1, None] + _SAME))
+        name: ((nodes > box[:, 0, None] - imprint.SAME) & (nodes < box[:, 1, None] + imprint.SAME))
         .all(axis=(2, 3))
         .any(axis=1)
         for name, box in boxes.items()
     }
-    if empty := [name for name, found in inside.items() if not found.any()]:
-        spans = zip("xyz", points.min(axis=0), points.max(axis=0))
-        reach = ", ".join(f"{axis} {low:.6g} to {high:.6g}" for axis, low, high in spans)
-        raise MeshError(
-            f"{rail.path()} cannot be used: no face of the solid ({reach} m) lies in the boxes of "
-            f"{', '.join(empty)}"
-        )
-    return msh.tagged(points, cells, {name: facets[found] for name, found in inside.items()})
-
-
-def with_steps(mesh: RailMesh, material) -> RailMesh:
-    """``mesh``; where it has slivers, with a warning that gives the step (s) they require."""
-    thin = slivers(mesh.points, mesh.cells)
-    if not len(thin):
-        return mesh
-
-    def largest_step(cells):
-        part = assembly.build(
-            replace(mesh, cells=cells),
-            material.density,
-            material.youngs_modulus,
-            material.poisson_ratio,
-        )
-        return stable_step.critical_step(stable_step.element_bound(part))
-
-    forced, other = (
-        largest_step(mesh.cells[thin]),
-        largest_step(np.delete(mesh.cells, thin, axis=0)),
-    )
-    words = (
-        f"slivers {listed(thin)} force a step of at most {forced:.3g} s, the other elements "
-        f"one of {other:.3g} s"
-    )
-    return replace(mesh, warnings=(*mesh.warnings, words))
+    return msh.tagged(points, cells, {name: facets[found] for name, found in inside.items()}), areas
 
 
 def _l_section(scene: Scene, rail: SectionTable) -> l_rail.LRailGeometry:

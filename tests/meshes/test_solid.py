@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from tests.exact import elasticity
+from tests.highfi import tets
 from tests.highfi.blocks import ALUMINIUM, modes
 from tests.highfi.mesh.test_rail_mesh import facet_vectors
 from tests.highfi.mesh.test_split import ordered
@@ -15,13 +16,14 @@ from tipoff.highfi.elements import hexahedron, tetrahedron
 from tipoff.highfi.mesh import facets
 from tipoff.highfi.mesh.cells import corner_jacobians
 from tipoff.highfi.mesh.rail_mesh import MeshError, RailMesh, boundary_facets, read
+from tipoff.highfi.rail import step_cost
 from tipoff.highfi.rail.scene_mesh import make_mesh
 from tipoff.highfi.statics import assembly
-from tipoff.meshes import generator, l_rail, solid
+from tipoff.meshes import generator, l_rail, solid, tetrahedra
 from tipoff.scenes import SceneError, parse
 
 pytestmark = pytest.mark.gmsh
-NONE = np.empty((0, 3))
+NONE: dict = {}
 INNER, OUTER, LEG, START, END = 0.10025, 0.10425, 0.024, -0.088, 0.132
 
 
@@ -133,7 +135,7 @@ def test_the_built_in_rails_drawn_in_cad_are_the_built_in_mesh(tmp_path, size):
 
 
 def test_a_solid_with_a_hole_is_filled_to_its_volume(tmp_path):
-    points, hexes = solid.build(drawn(tmp_path / "block.step", drilled), 0.002, NONE)
+    points, hexes, _ = solid.build(drawn(tmp_path / "block.step", drilled), 0.002, NONE)
     jacobian, _ = corner_jacobians(points, hexes)
     assert jacobian.min() > 0.0
     assert points.min(axis=0) == pytest.approx(0.0, abs=1e-9) and points.max(
@@ -164,8 +166,10 @@ def test_split_tetrahedra_give_a_warning_of_skew(tmp_path):
 
 
 def test_a_tube_is_its_section_in_layers_on_the_given_planes(tmp_path):
-    planes = np.array([[0.033, 0.0, 0.0], [0.5, 0.0, 0.0]])
-    points, hexes = solid.build(drawn(tmp_path / "tube.step", tube), 0.002, planes)
+    boxes = {"mount": np.array([[[0.033, -1.0, -1.0], [0.5, 1.0, 1.0]]])}
+    points, hexes, areas = solid.build(drawn(tmp_path / "tube.step", tube), 0.002, boxes)
+    around, end = math.tau * (0.020 + 0.016), math.pi * (0.020**2 - 0.016**2)
+    assert areas["mount"] == pytest.approx((0.2 - 0.033) * around + end, rel=1e-6)
     stations = np.unique(points[:, 0])
     assert corner_jacobians(points, hexes)[0].min() > 0.0
     assert np.abs(stations - 0.033).min() < 1e-12 and stations[[0, -1]] == pytest.approx(
@@ -185,14 +189,16 @@ def test_an_extruded_plate_bends_correctly_and_one_of_split_tetrahedra_does_not(
     and the warning is about that.
     """
     exact = elasticity.timoshenko_cantilever(1, 0.1, 0.02, 0.004, **ALUMINIUM)[0]
-    good = lowest_frequency(*solid.build(drawn(tmp_path / "plate.step", tilted_plate), 0.004, NONE))
+    good = lowest_frequency(
+        *solid.build(drawn(tmp_path / "plate.step", tilted_plate), 0.004, NONE)[:2]
+    )
     assert good == pytest.approx(exact, rel=0.02)
     file = drawn(tmp_path / "hole.step", lambda occ: tilted_plate(occ, hole=True))
-    assert lowest_frequency(*solid.build(file, 0.004, NONE)) > 1.05 * exact
+    assert lowest_frequency(*solid.build(file, 0.004, NONE)[:2]) > 1.05 * exact
     # In tetrahedra of second order it bends as the good one does.
-    assert lowest_frequency(*solid.build(file, 0.004, NONE, tetrahedra=True)) == pytest.approx(
-        good, rel=0.01
-    )
+    assert lowest_frequency(
+        *solid.build(file, 0.004, NONE, solid.Filling(tetrahedra=True))[:2]
+    ) == pytest.approx(good, rel=0.01)
 
 
 def test_a_drilled_block_in_tetrahedra_follows_its_hole(tmp_path):
@@ -214,6 +220,49 @@ def test_a_drilled_block_in_tetrahedra_follows_its_hole(tmp_path):
     assert volume == pytest.approx(0.008 * area, rel=1e-3)
 
 
+def perforated(occ):
+    """A strip of 220 x 24 x 4 mm with eight holes of 8 mm."""
+    holes = [(3, occ.addCylinder(30 + 20 * i, 12, -1, 0, 0, 6, 4)) for i in range(8)]
+    occ.cut([(3, occ.addBox(0, 0, 0, 220, 24, 4))], holes)
+
+
+@pytest.mark.parametrize("elements", ["hex8", "tet10"])
+def test_the_best_of_several_fillings_is_taken_and_a_slow_one_warned_about(tmp_path, elements):
+    """At 2 mm the step is within six times those of cubes, or nearly so in skewed hexahedra. At 4 mm
+    elements of 8 mm bend around holes of 8 mm: no filling is good, and the time of a run is told.
+    Control: the first filling alone, with elements of one size, needs five times the steps."""
+    surfaces = {
+        "contact_top": [flat(2, 0.004, [(0, 0), (0.22, 0.024)])],
+        "mount": [flat(2, 0.0, [(0, 0), (0.22, 0.024)])],
+    }
+    path = drawn(tmp_path / "strip.step", perforated)
+    scene = scene_of(path, surfaces, 0.0, 0.22).replace({"rail.elements": elements})
+    found = {}
+    for size in (0.002, 0.004):
+        mesh = make_mesh(scene, size)
+        found[size] = step_cost.ratio(scene.rail.material, size, mesh.points, mesh.cells)
+        told = [words for words in mesh.warnings if "times the steps of cubes" in words]
+        assert bool(told) == (found[size] > step_cost.MOST)
+        assert all("on one core" in words for words in told)
+    assert found[0.002] < 6.5 and 6.5 < found[0.004] < 13.0
+    with generator.session("one") as gmsh:
+        gmsh.model.occ.importShapes(str(path))
+        gmsh.model.occ.dilate(gmsh.model.occ.getEntities(3), 0, 0, 0, 1e-3, 1e-3, 1e-3)
+        gmsh.model.occ.synchronize()
+        gmsh.option.setNumber("Mesh.MeshSizeMin", 0.008)
+        gmsh.option.setNumber("Mesh.MeshSizeMax", 0.008)
+        gmsh.model.mesh.generate(3)
+        gmsh.model.mesh.setOrder(1)
+        tags, places, _ = gmsh.model.mesh.getNodes()
+        corners = gmsh.model.mesh.getElementsByType(4)[1].reshape(-1, 4)
+    number = np.zeros(int(tags.max()) + 1, dtype=int)
+    number[tags.astype(int)] = np.arange(len(tags))
+    plain = tets.quadratic(places.reshape(-1, 3), number[corners.astype(int)])
+    if elements == "hex8":
+        plain = tetrahedra.as_hexahedra(*plain)
+    assert step_cost.ratio(scene.rail.material, 0.004, *plain) > 3.0 * found[0.004]
+
+
 def test_files_and_boxes_that_cannot_be_used(tmp_path):
     (tmp_path / "text.step").write_text("no drawing")
     with pytest.raises(
@@ -225,7 +274,7 @@ def test_files_and_boxes_that_cannot_be_used(tmp_path):
         "contact_v": [flat(2, 0.2, [(0, 0), (1, 1)])],
     }
     with pytest.raises(
-        MeshError, match="x -0.088 to 0.132, .* lies in the boxes of contact_w, contact_v"
+        MeshError, match="x -0.088 to 0.132, .* lies in box 1 of contact_w, .*; box 1 of contact_v"
     ):
         make_mesh(scene_of(drawn(tmp_path / "rails.step", l_sections), misplaced), 0.008)
 

@@ -9,6 +9,7 @@ import pytest
 from tipoff import scenes
 from tipoff.files import write_json
 from tipoff.highfi.compiled import LAWS as highfi_laws
+from tipoff.highfi.mesh.facets import area
 from tipoff.lowfi.compiled import LAWS as lowfi_laws
 from tipoff.scenes.effects.registry import EFFECTS
 from tipoff.studies.ablation import stage as ablation
@@ -17,7 +18,6 @@ from tipoff.studies.core import machine
 from tipoff.studies.core.settings import Settings, defaults
 from tipoff.studies.core.study import Study
 from tipoff.studies.cost import stage as cost
-from tipoff.studies.mesh.stage import area
 from tipoff.studies.stability import weaker_methods
 from tipoff.studies.sweeps import stage as sweeps
 

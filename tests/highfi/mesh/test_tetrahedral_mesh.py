@@ -12,7 +12,7 @@ from tests.highfi.blocks import ALUMINIUM, block
 from tipoff.highfi.elements import tetrahedron
 from tipoff.highfi.mesh import cells, facets
 from tipoff.highfi.mesh.rail_mesh import MeshError, along_x, boundary_facets, read
-from tipoff.highfi.rail.scene_mesh import with_steps
+from tipoff.highfi.rail.step_cost import with_sliver_steps
 from tipoff.meshes import generator, msh
 
 
@@ -126,7 +126,7 @@ def test_a_sliver_is_named_with_its_altitude_and_the_step_it_forces():
     data = mesh.cells[0].data
     edges = data[:, cells.TETRAHEDRON.edges]
     mesh.points[data[:, 4:].ravel()] = mesh.points[edges].mean(axis=2).reshape(-1, 3)
-    sliver, step = with_steps(read(mesh), SimpleNamespace(**ALUMINIUM)).warnings
+    sliver, step = with_sliver_steps(read(mesh), SimpleNamespace(**ALUMINIUM)).warnings
     thin = ", ".join(map(str, np.flatnonzero(cells.thickness(mesh.points, data) < 2e-5) + 1))
     assert (
         thin

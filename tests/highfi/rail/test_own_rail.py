@@ -216,9 +216,15 @@ def test_slivers_are_warned_about_with_the_step_they_force(tmp_path):
     ns."""
     mesh = l_rail.build(geometry(tiny()), 0.004)
     mesh.points[np.isclose(mesh.points[:, 0], -0.084), 0] = -0.088 + 5e-6
-    cost, step = highfi.prepare(from_file(tiny(), saved(mesh, tmp_path / "rails.msh"))).warnings
+    cost, step, run = highfi.prepare(
+        from_file(tiny(), saved(mesh, tmp_path / "rails.msh"))
+    ).warnings
     assert "slivers: elements 1, " in cost
     assert "force a step of at most 8.1" in step and "e-10 s" in step
+    # A cube of 4 mm is crossed in 0.45 us, so all 58 ms take 570 times its steps.
+    times, steps = float(run.split("need ")[1].split()[0]), float(run.split("mm: ")[1].split()[0])
+    assert times == pytest.approx(570.0, rel=0.05) and "cubes of 4 mm" in run
+    assert steps == pytest.approx(tiny().duration / (0.9 * 8.13e-10), rel=0.01)
 
 
 @pytest.mark.gmsh

@@ -89,11 +89,18 @@ def execute(
 
 
 def prepare(run: Run) -> None:
-    """The part of a run that needs the main thread; call it before ``execute`` in another thread."""
+    """The part of a run that needs the main thread; call it before ``execute`` in another thread.
+    Prints each warning about its mesh once."""
     if run.fidelity == "highfi":
         from tipoff import highfi
 
-        highfi.prepare(run.scene, run.numerics)
+        for warning in highfi.prepare(run.scene, run.numerics).warnings:
+            if warning not in _SAID:
+                _SAID.add(warning)
+                say(f"  mesh: {warning}")
+
+
+_SAID: set[str] = set()  # warnings about meshes that this process has printed
 
 
 class Store:

@@ -33,4 +33,9 @@ def mesh(
 
         return stage.run(study_of(scene, out, set_, element_size=element_size))
 
-    guarded(work, json_)
+    found = guarded(work, json_)
+    if not json_:
+        from tipoff.studies.mesh import page
+        from tipoff.studies.render import document
+
+        print(document.terminal([page.surfaces(found)]))

@@ -14,10 +14,6 @@ def draw(page: "Page") -> list[Part]:
     found = page.documents.get("mesh")
     if not found:
         return [page.missing("mesh", "mesh")]
-    surfaces = [
-        (name.replace("_", " "), item["facets"], item["area_m2"])
-        for name, item in found["surfaces"].items()
-    ]
     return [
         Image(page.folder / found["picture"], "mesh of the rails"),
         Caption(
@@ -27,6 +23,20 @@ def draw(page: "Page") -> list[Part]:
             f"{found['smallest_scaled_jacobian']:.3f} (1 for a brick and for a regular "
             "tetrahedron)."
         ),
-        Table(("surface", "facets", Column("area", "mm²", ".5g", 1e6)), surfaces),
+        surfaces(found),
         *map(Notice, found["warnings"]),
     ]
+
+
+def surfaces(found: dict) -> Table:
+    """The named surfaces: their facets, their area, and for a solid the area of its own faces."""
+    columns: list[Column | str] = ["surface", "facets", Column("area", "mm²", ".5g", 1e6)]
+    rows = [
+        [name.replace("_", " "), item["facets"], item["area_m2"]]
+        for name, item in found["surfaces"].items()
+    ]
+    drawn = [item["drawn_area_m2"] for item in found["surfaces"].values()]
+    if None not in drawn:
+        columns.append(Column("area in the drawing", "mm²", ".5g", 1e6))
+        rows = [[*row, area] for row, area in zip(rows, drawn)]
+    return Table(columns, rows)

@@ -17,6 +17,7 @@ def run(study: Study) -> dict:
     def make() -> tuple[dict, list[Path]]:
         from tipoff import highfi
         from tipoff.highfi.mesh import cells as checks
+        from tipoff.highfi.mesh import facets
 
         mesh = highfi.prepare(request.scene, request.numerics)
         for warning in mesh.warnings:
@@ -29,8 +30,12 @@ def run(study: Study) -> dict:
         lengths = checks.edge_lengths(mesh.points, mesh.cells)
         _, scaled = checks.jacobians(mesh.points, mesh.cells)
         surfaces = {
-            name: {"facets": len(facets), "area_m2": area(mesh.points, facets)}
-            for name, facets in mesh.surfaces.items()
+            name: {
+                "facets": len(group),
+                "area_m2": facets.area(mesh.points, group),
+                "drawn_area_m2": mesh.drawn[name] if mesh.drawn else None,
+            }
+            for name, group in mesh.surfaces.items()
         }
         return {
             "element_size_m": request.numerics.element_size,
@@ -47,13 +52,6 @@ def run(study: Study) -> dict:
         }, [path, picture]
 
     return study.stage("mesh", study.key(__name__, request.key), make)
-
-
-def area(points: np.ndarray, facets: np.ndarray) -> float:
-    """Area (m2) of ``facets`` (m,4) or (m,6) by Gauss quadrature, exact for plane facets."""
-    from tipoff.highfi.mesh.facets import gauss
-
-    return float(gauss(points[facets], 2)[1].sum())
 
 
 def _save(mesh, path: Path) -> None:

@@ -1,0 +1,103 @@
+"""What the worst elements of a mesh cost: its step against that of good hexahedra, and the time of a
+run.
+
+No frequency of a mesh exceeds the highest one of its elements (``stable_step.element_bound``), and
+thin or folded elements have the highest. So only the worst ones by two measures are assembled: the
+thickness, and the smallest Jacobian over the two longest edges, which sees folds of curved elements
+too.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from tipoff.highfi.dynamics import stable_step
+from tipoff.highfi.mesh.cells import edge_lengths, jacobians, thickness
+from tipoff.highfi.mesh.rail_mesh import RailMesh, listed, slivers
+from tipoff.highfi.numerics import Numerics
+from tipoff.highfi.statics import assembly
+from tipoff.meshes.bricks import CUBE
+from tipoff.scenes.rail import MaterialTable
+from tipoff.scenes.scene import Scene
+
+MOST = 6.0  # times the steps of hexahedra of the same size, beyond which a mesh is warned about
+_WORST = 500  # elements assembled for each measure
+# ns of one core for one step of one element with a matrix of its own, by its number of nodes
+_NANOSECONDS = {8: 250.0, 10: 900.0}
+
+
+def ratio(
+    material: MaterialTable, element_size: float, points: np.ndarray, cells: np.ndarray
+) -> float:
+    """How many times the steps of cubes of ``element_size`` (m) a mesh needs, infinite where an
+    element is inverted."""
+    jacobian, _ = jacobians(points, cells)
+    if not (jacobian > 0.0).all():
+        return np.inf
+    cube = RailMesh(element_size * CUBE, np.arange(8)[None], {})
+    worst = cells[_worst(points, cells, jacobian.min(axis=1))]
+    return largest_step(cube, material) / largest_step(RailMesh(points, worst, {}), material)
+
+
+def largest_step(mesh: RailMesh, material: MaterialTable) -> float:
+    """Step (s) at which every element of a mesh is stable, whatever is held."""
+    part = assembly.build(
+        mesh, material.density, material.youngs_modulus, material.poisson_ratio, fixed=()
+    )
+    return stable_step.critical_step(stable_step.element_bound(part))
+
+
+def with_sliver_steps(mesh: RailMesh, material: MaterialTable) -> RailMesh:
+    """``mesh``; where it has slivers, with a warning that gives the step (s) they require."""
+    thin = slivers(mesh.points, mesh.cells)
+    if not len(thin):
+        return mesh
+    forced, other = (
+        largest_step(replace(mesh, cells=cells), material)
+        for cells in (mesh.cells[thin], np.delete(mesh.cells, thin, axis=0))
+    )
+    words = (
+        f"slivers {listed(thin)} force a step of at most {forced:.3g} s, the other elements "
+        f"one of {other:.3g} s"
+    )
+    return replace(mesh, warnings=(*mesh.warnings, words))
+
+
+def with_run_time(mesh: RailMesh, scene: Scene, size: float) -> RailMesh:
+    """``mesh``; where it needs more than ``MOST`` times the steps of cubes of ``size`` (m), with a
+    warning that gives the expected time of a run."""
+    times = ratio(scene.rail.material, size, mesh.points, mesh.cells)
+    if times <= MOST:
+        return mesh
+    cube = RailMesh(size * CUBE, np.arange(8)[None], {})
+    step = Numerics().safety * largest_step(cube, scene.rail.material) / times
+    steps, elements = scene.duration / step, len(mesh.cells)
+    seconds = 1e-9 * _NANOSECONDS[mesh.cells.shape[1]] * steps * elements
+    words = (
+        f"thin or bent elements need {times:.3g} times the steps of cubes of {1e3 * size:.3g} mm: "
+        f"{steps:.3g} steps of {step:.3g} s for all of {scene.duration:.3g} s, with {elements:,} "
+        f"elements about {_in_words(seconds)} on one core"
+    )
+    return replace(mesh, warnings=(*mesh.warnings, words))
+
+
+def spacing(mesh: RailMesh) -> float:
+    """Median distance (m) of nodes along the shortest edges of hexahedra, along all edges of
+    tetrahedra."""
+    edges = edge_lengths(mesh.points, mesh.cells)
+    if mesh.cells.shape[1] == 8:
+        return float(np.median(edges.min(axis=1)))
+    return 0.5 * float(np.median(edges))
+
+
+def _worst(points: np.ndarray, cells: np.ndarray, jacobian: np.ndarray) -> np.ndarray:
+    edges = np.sort(edge_lengths(points, cells), axis=1)
+    heights = jacobian / (edges[:, -1] * edges[:, -2])
+    return np.union1d(np.argsort(thickness(points, cells))[:_WORST], np.argsort(heights)[:_WORST])
+
+
+def _in_words(seconds: float) -> str:
+    for unit, length in (("days", 86400.0), ("hours", 3600.0), ("minutes", 60.0)):
+        if seconds >= 2.0 * length:
+            return f"{seconds / length:.2g} {unit}"
+    return f"{seconds:.2g} s"

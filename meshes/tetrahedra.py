@@ -1,0 +1,168 @@
+"""Quadratic tetrahedra of a solid in gmsh, and hexahedra made of them.
+
+Tetrahedra between other planes than those of a grid are of mixed quality, and the worst one sets the
+time step of all. So several meshes are made, with and without Netgen's optimisation, with and without
+smaller elements where faces are curved, and the first good one or else the best one is taken. Edges
+that follow a curved face may fold the elements behind them; high-order optimisation moves their
+nodes, and what it cannot unfold gets straight edges.
+"""
+
+from collections.abc import Callable
+from itertools import combinations
+from typing import NamedTuple
+
+import numpy as np
+
+_VTK = [0, 1, 2, 3, 4, 5, 6, 7, 9, 8]  # nodes of gmsh's quadratic tetrahedron in VTK order
+_EDGES = {
+    frozenset(edge): node
+    for node, edge in enumerate(((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3)), start=4)
+}
+_FACES = list(combinations(range(4), 3))
+_PER_TURN = 8  # edges of elements around a cylinder
+_STRAIGHT = 0.05  # scaled Jacobian below which the edges of an element become straight
+_PASSES = 20
+# Corners of the reference tetrahedron, and the three neighbours of each in right-handed order.
+_AROUND = ((1, 2, 3), (0, 3, 2), (0, 1, 3), (0, 2, 1))
+
+# (points, cells) -> how many times the steps of good hexahedra of this size the mesh needs
+Cost = Callable[[np.ndarray, np.ndarray], float]
+
+
+class Way(NamedTuple):
+    """One way to fill a solid."""
+
+    per_turn: int  # smaller elements where a face turns, so many in a full turn; 0: none
+    optimised: bool  # by Netgen
+
+
+_WAYS = (Way(_PER_TURN, False), Way(_PER_TURN, True), Way(0, True), Way(0, False))
+
+
+def filled(
+    gmsh, element_size: float, hexahedra: bool, cost: Cost, enough: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Points (n,3) m and tetrahedra (e,10), VTK order, with nodes about ``element_size`` (m) apart,
+    or hexahedra (4e,8) instead: the first mesh whose ``cost`` is at most ``enough``, else the one
+    with the lowest."""
+    gmsh.option.setNumber("Mesh.MeshSizeMin", 0.5 * element_size)
+    gmsh.option.setNumber("Mesh.MeshSizeMax", 2.0 * element_size)
+    best, lowest = None, np.inf
+    for way in _WAYS:
+        points, cells = _straightened(*_made(gmsh, way))
+        if hexahedra:
+            points, cells = as_hexahedra(points, cells)
+        found = cost(points, cells)
+        if best is None or found < lowest:
+            best, lowest = (points, cells), found
+        if lowest <= enough:
+            break
+    assert best is not None
+    return best
+
+
+def _made(gmsh, way: Way) -> tuple[np.ndarray, np.ndarray]:
+    gmsh.model.mesh.clear()
+    gmsh.option.setNumber("Mesh.MeshSizeFromCurvature", way.per_turn)
+    gmsh.model.mesh.generate(3)
+    if way.optimised:
+        gmsh.model.mesh.optimize("Netgen")
+    gmsh.model.mesh.setOrder(2)
+    gmsh.model.mesh.optimize("HighOrderElastic")
+    tags, places, _ = gmsh.model.mesh.getNodes()
+    number = np.zeros(int(tags.max()) + 1, dtype=np.int64)
+    number[tags.astype(np.int64)] = np.arange(len(tags))
+    kind = gmsh.model.mesh.getElementType("Tetrahedron", 2)
+    nodes = gmsh.model.mesh.getElementsByType(kind)[1].astype(np.int64)
+    return _compact(places.reshape(-1, 3), number[nodes].reshape(-1, 10)[:, _VTK])
+
+
+def _straightened(points: np.ndarray, cells: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The same with straight edges on all elements that curved ones fold, or nearly so, once split
+    into hexahedra."""
+    points = points.copy()
+    for _ in range(_PASSES):
+        folded = split_quality(points, cells) < _STRAIGHT
+        bent = np.zeros(len(cells), dtype=bool)
+        for edge, node in _EDGES.items():
+            start, end = sorted(edge)
+            middle = 0.5 * (points[cells[:, start]] + points[cells[:, end]])
+            bent |= (points[cells[:, node]] != middle).any(axis=1)
+            points[cells[folded, node]] = middle[folded]
+        if not (folded & bent).any():
+            break
+    return points, cells
+
+
+def split_quality(points: np.ndarray, cells: np.ndarray) -> np.ndarray:
+    """Smallest scaled Jacobian (e,) at the corners of the four hexahedra in each of the tetrahedra
+    (e,10)."""
+    places, hexes = _split(points, cells)
+    corners = places[hexes]
+    neighbours = np.array(
+        [[1, 3, 4], [2, 0, 5], [3, 1, 6], [0, 2, 7], [7, 5, 0], [4, 6, 1], [5, 7, 2], [6, 4, 3]]
+    )
+    edges = corners[:, neighbours] - corners[:, :, None]
+    scaled = np.linalg.det(edges) / np.linalg.norm(edges, axis=-1).prod(axis=-1)
+    return scaled.min(axis=1).reshape(4, -1).min(axis=0)
+
+
+def as_hexahedra(points: np.ndarray, cells: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Points (m,3) m and hexahedra (4e,8), VTK order, of tetrahedra (e,10): one at each corner of
+    each, between the middles of its edges and faces and its own; curved edges stay on their
+    faces."""
+    places, hexes = _split(points, cells)
+    return _compact(places, hexes.reshape(4, -1, 8).swapaxes(0, 1).reshape(-1, 8))
+
+
+def _split(points: np.ndarray, cells: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Points and hexahedra (4e,8), those at the first corners first."""
+    nodes = points[cells]
+    corners = np.concatenate([cells[:, face] for face in _FACES])
+    _, first, number = np.unique(
+        np.sort(corners, axis=1), axis=0, return_index=True, return_inverse=True
+    )
+    # Middles by the quadratic shape functions: -1/9 and 4/9 in a face, -1/8 and 1/4 in the solid.
+    face_middles = np.concatenate(
+        [
+            (
+                4.0 * nodes[:, [_EDGES[frozenset(edge)] for edge in combinations(face, 2)]]
+                - nodes[:, list(face)]
+            ).sum(axis=1)
+            / 9.0
+            for face in _FACES
+        ]
+    )
+    middles = (2.0 * nodes[:, 4:].sum(axis=1) - nodes[:, :4].sum(axis=1)) / 8.0
+    of_face = len(points) + number.reshape(len(_FACES), -1)
+    own = len(points) + len(first) + np.arange(len(cells))
+
+    def edge(*ends: int) -> np.ndarray:
+        return cells[:, _EDGES[frozenset(ends)]]
+
+    def face(*ends: int) -> np.ndarray:
+        return of_face[[set(each) for each in _FACES].index(set(ends))]
+
+    hexes = [
+        np.stack(
+            [
+                cells[:, a],
+                edge(a, b),
+                face(a, b, c),
+                edge(a, c),
+                edge(a, d),
+                face(a, b, d),
+                own,
+                face(a, c, d),
+            ],
+            axis=1,
+        )
+        for a, (b, c, d) in enumerate(_AROUND)
+    ]
+    return np.concatenate([points, face_middles[first], middles]), np.concatenate(hexes)
+
+
+def _compact(points: np.ndarray, cells: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The same without points that no element uses."""
+    used, number = np.unique(cells, return_inverse=True)
+    return points[used], number.reshape(cells.shape)

@@ -1,0 +1,102 @@
+"""Boxes that end within a face of a solid: their borders become borders of elements, and the areas are
+those of the drawing."""
+
+import math
+
+import numpy as np
+import pytest
+
+from tests.meshes.test_solid import drawn, drilled, flat, scene_of, tilted_plate
+from tipoff.highfi.mesh import facets
+from tipoff.highfi.mesh.rail_mesh import MeshError, boundary_facets
+from tipoff.highfi.rail.fit import check_areas
+from tipoff.highfi.rail.scene_mesh import make_mesh
+from tipoff.meshes import solid
+
+pytestmark = pytest.mark.gmsh
+TOP = flat(2, 0.008, [(0, 0), (0.04, 0.02)])
+# Two clamped patches below the block of 40 x 20 x 8 mm, one beside its hole, one cut by it.
+BESIDE = flat(2, 0.0, [(0.0031, 0.0027), (0.0113, 0.0171)])
+ACROSS = flat(2, 0.0, [(0.02, 0.0027), (0.04, 0.01)])
+
+
+def block(path, mount, **rail):
+    """The drilled block, its whole top a wall."""
+    surfaces = {"contact_top": [TOP], "mount": mount}
+    scene = scene_of(drawn(path / "block.step", drilled), surfaces, 0.0, 0.04)
+    return scene.replace({f"rail.{key}": value for key, value in rail.items()})
+
+
+def area_of(mesh, name):
+    return facets.area(mesh.points, mesh.surfaces[name])
+
+
+@pytest.mark.parametrize("elements", ["hex8", "tet10"])
+def test_a_box_that_cuts_through_a_face_keeps_all_of_its_area(tmp_path, elements):
+    """Control: facets that lie wholly in the boxes of a mesh without their borders cover less."""
+    scene = block(tmp_path, [BESIDE, ACROSS], elements=elements)
+    mesh = make_mesh(scene, 0.002)
+    area = 0.0082 * 0.0144 + 0.02 * 0.0073 - math.pi * 0.005**2 / 4.0
+    assert mesh.drawn["mount"] == pytest.approx(area, rel=1e-6)
+    assert area_of(mesh, "mount") == pytest.approx(area, rel=5e-3)
+    whole = make_mesh(block(tmp_path, [flat(2, 0.0, [(0, 0), (0.04, 0.02)])]), 0.002)
+    loose = whole.points[boundary_facets(whole.cells)]
+    below = loose[(loose[:, :, 2] < 1e-9).all(axis=1)]
+    kept = [
+        np.all(
+            (below > np.array(box["low"]) - 1e-6) & (below < np.array(box["high"]) + 1e-6), (1, 2)
+        )
+        for box in (BESIDE, ACROSS)
+    ]
+    assert facets.gauss(below[np.any(kept, axis=0)], 2)[1].sum() < 0.8 * area
+
+
+def test_a_box_that_cuts_the_side_of_an_extrusion_keeps_all_of_its_area(tmp_path):
+    """A tilted plate of 100 x 20 x 4 mm, of which a box holds the 3 mm of the side and the 7 mm of
+    the width nearest to one edge; the mesh stays one of layers."""
+    turn = np.array([[math.cos(0.5), -math.sin(0.5)], [math.sin(0.5), math.cos(0.5)]])
+    low, high = turn @ [-0.010, -0.002], turn @ [-0.010, 0.002]
+    cut = (turn @ [-0.003, -0.002])[1]
+    boxes = {
+        "mount": np.array([[[0.021, -1.0, -1.0], [0.047, 1.0, cut]]]),
+        "contact": np.array([[[-1.0, -1.0, -1.0], [2.0, 1.0, 1.0]]]),
+    }
+    points, hexes, areas = solid.build(drawn(tmp_path / "plate.step", tilted_plate), 0.004, boxes)
+    on_side = min(0.004, 0.004 * (cut - low[1]) / (high[1] - low[1]))
+    above = on_side if cut < high[1] else 0.004
+    top = max(0.0, (cut - high[1]) / math.sin(0.5))
+    exact = 0.026 * (0.007 + above + top)
+    assert areas["mount"] == pytest.approx(exact, rel=1e-6)
+    assert areas["contact"] == pytest.approx(2 * (0.1 * 0.024 + 0.02 * 0.004), rel=1e-6)
+    sides = boundary_facets(hexes)
+    nodes = points[sides]
+    inside = (
+        (nodes[:, :, 0] > 0.021 - 1e-6)
+        & (nodes[:, :, 0] < 0.047 + 1e-6)
+        & (nodes[:, :, 2] < cut + 1e-6)
+    ).all(axis=1)
+    assert facets.area(points, sides[inside]) == pytest.approx(exact, rel=1e-6)
+    assert len(points) % len(np.unique(points[:, 0].round(9))) == 0
+
+
+def test_every_box_on_no_face_is_named(tmp_path):
+    """Others of the same surface lie on faces."""
+    high = flat(2, 0.001, [(0.0, 0.0), (0.04, 0.02)])
+    with pytest.raises(MeshError, match="lies in box 2 of mount, .0, 0, 0.001"):
+        make_mesh(block(tmp_path, [BESIDE, high]), 0.004)
+
+
+def test_a_surface_of_another_area_than_drawn_is_refused(tmp_path):
+    scene = block(tmp_path, [BESIDE, ACROSS], elements="tet10")
+    mesh = make_mesh(scene, 0.004)
+    lost = mesh.surfaces | {"mount": mesh.surfaces["mount"][::2]}
+    with pytest.raises(MeshError, match="'mount': .* mm2 of facets .* has 244.445 mm2"):
+        check_areas(scene.rail, mesh.__class__(mesh.points, mesh.cells, lost, (), mesh.drawn))
+
+
+def test_a_drawing_without_units_in_millimetres_is_named_before_it_is_meshed(tmp_path):
+    """BREP files have no unit. The block would have 1e9 times as many elements."""
+    surfaces = {"contact_top": [TOP], "mount": [BESIDE]}
+    scene = scene_of(drawn(tmp_path / "block.brep", drilled), surfaces, 0.0, 0.04)
+    with pytest.raises(MeshError, match="x 0 to 40, .* seems to be in millimetres"):
+        make_mesh(scene, 0.002)
