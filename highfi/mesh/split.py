@@ -24,12 +24,26 @@ _CUBE = np.concatenate([np.insert(_SQUARE, 2, level, axis=1) for level in (0, 1)
 def to_size(mesh: RailMesh, element_size: float) -> RailMesh:
     """``mesh`` split so that its shortest edges, as a rule across a wall, come near to
     ``element_size`` (m); never coarser."""
-    size = float(np.median(edge_lengths(mesh.points, mesh.cells).min(axis=1)))
+    count = parts(mesh, element_size)
     if kind(mesh.cells) is HEXAHEDRON:
-        return split(mesh, max(1, round(size / element_size)))
-    for _ in range(round(math.log2(size / element_size))):
+        return split(mesh, count)
+    for _ in range(round(math.log2(count))):
         mesh = halved(mesh)
     return mesh
+
+
+def parts(mesh: RailMesh, element_size: float) -> int:
+    """Elements that ``to_size`` makes along every edge of each one: a power of two for
+    tetrahedra."""
+    ratio = shortest(mesh) / element_size
+    if kind(mesh.cells) is HEXAHEDRON:
+        return max(1, round(ratio))
+    return 2 ** max(0, round(math.log2(ratio)))
+
+
+def shortest(mesh: RailMesh) -> float:
+    """Median of the shortest edge (m) of each element."""
+    return float(np.median(edge_lengths(mesh.points, mesh.cells).min(axis=1)))
 
 
 def split(mesh: RailMesh, parts: int) -> RailMesh:

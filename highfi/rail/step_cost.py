@@ -22,8 +22,10 @@ from tipoff.scenes.scene import Scene
 
 MOST = 6.0  # times the steps of hexahedra of the same size, beyond which a mesh is warned about
 _WORST = 500  # elements assembled for each measure
-# ns of one core for one step of one element with a matrix of its own, by its number of nodes
-_NANOSECONDS = {8: 250.0, 10: 900.0}
+# ns of one core for one step of one element, by its number of nodes: where many elements share a
+# matrix, and where each has its own
+_SHARED, _OWN = {8: 45.0, 10: 150.0}, {8: 250.0, 10: 900.0}
+_FEW = 0.1  # matrices per element
 
 
 def ratio(
@@ -69,16 +71,26 @@ def with_run_time(mesh: RailMesh, scene: Scene, size: float) -> RailMesh:
     times = ratio(scene.rail.material, size, mesh.points, mesh.cells)
     if times <= MOST:
         return mesh
-    cube = RailMesh(size * CUBE, np.arange(8)[None], {})
-    step = Numerics().safety * largest_step(cube, scene.rail.material) / times
-    steps, elements = scene.duration / step, len(mesh.cells)
-    seconds = 1e-9 * _NANOSECONDS[mesh.cells.shape[1]] * steps * elements
+    step, seconds = run_time(mesh, scene)
+    steps = scene.duration / step
     words = (
         f"thin or bent elements need {times:.3g} times the steps of cubes of {1e3 * size:.3g} mm: "
-        f"{steps:.3g} steps of {step:.3g} s for all of {scene.duration:.3g} s, with {elements:,} "
-        f"elements about {_in_words(seconds)} on one core"
+        f"{steps:.3g} steps of {step:.3g} s for all of {scene.duration:.3g} s, with "
+        f"{len(mesh.cells):,} elements about {in_words(seconds)} on one core"
     )
     return replace(mesh, warnings=(*mesh.warnings, words))
+
+
+def run_time(mesh: RailMesh, scene: Scene) -> tuple[float, float]:
+    """Estimate of the step (s) on a mesh and of the time (s) that one core takes for the whole
+    duration of ``scene``."""
+    jacobian, _ = jacobians(mesh.points, mesh.cells)
+    worst = mesh.cells[_worst(mesh.points, mesh.cells, jacobian.min(axis=1))]
+    limit = largest_step(RailMesh(mesh.points, worst, {}), scene.rail.material)
+    step, count = Numerics().safety * limit, len(mesh.cells)
+    is_shared = len(assembly.shape_classes(mesh)[1]) < _FEW * count
+    nanoseconds = (_SHARED if is_shared else _OWN)[mesh.cells.shape[1]]
+    return step, 1e-9 * nanoseconds * scene.duration / step * count
 
 
 def spacing(mesh: RailMesh) -> float:
@@ -96,7 +108,8 @@ def _worst(points: np.ndarray, cells: np.ndarray, jacobian: np.ndarray) -> np.nd
     return np.union1d(np.argsort(thickness(points, cells))[:_WORST], np.argsort(heights)[:_WORST])
 
 
-def _in_words(seconds: float) -> str:
+def in_words(seconds: float) -> str:
+    """A time (s) in its unit."""
     for unit, length in (("days", 86400.0), ("hours", 3600.0), ("minutes", 60.0)):
         if seconds >= 2.0 * length:
             return f"{seconds / length:.2g} {unit}"

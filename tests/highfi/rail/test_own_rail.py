@@ -165,6 +165,18 @@ def test_a_solid_that_nothing_holds_is_named(tmp_path, model):
     assert highfi.prepare(channels()).cells.size
 
 
+def test_a_rail_without_mounts_is_refused_wherever_it_gives_way():
+    """By the reference and by compliant contact. Springs stand on rigid rails, which are part of the
+    platform whatever holds them."""
+    scene = tiny(rail__mounts=[])
+    for make in (highfi.prepare, lambda each: highfi.condense(each, 0.008)):
+        with pytest.raises(SceneError) as caught:
+            make(scene)
+        assert [fault.key for fault in caught.value.faults] == ["rail.mounts"]
+    held, loose = lowfi.run(tiny(), "springs"), lowfi.run(scene, "springs")
+    np.testing.assert_array_equal(loose.rate, held.rate)
+
+
 @pytest.mark.parametrize("off, refused", [(0.5e-6, False), (2e-6, True)])
 def test_a_wall_out_of_place_on_both_sides_of_the_bound(tmp_path, off, refused):
     mesh = channel.build()

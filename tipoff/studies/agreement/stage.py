@@ -12,7 +12,7 @@ from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS, SPRINGS
 from tipoff.mechanics.rail_compliance import PATTERNS, RailCompliance
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.calibration import Calibration
-from tipoff.studies.agreement import growth, metrics, verdicts
+from tipoff.studies.agreement import file_mesh, growth, metrics, verdicts
 from tipoff.studies.agreement.verdicts import Context, Spread, spread
 from tipoff.studies.calibration import stage as calibrate
 from tipoff.studies.core.progress import Board
@@ -274,9 +274,10 @@ def clearances(study: Study) -> list[tuple[str, float]]:
 
 def refinements(study: Study) -> list[Spread]:
     """Spread of the reference under each refinement alone: from the coarse mesh to its own on every
-    condition, which also reveals chaotic ones; step and interface stiffness on the coarse mesh, on
-    the scene's refined conditions."""
-    found, groups = [], _refinement_runs(study)
+    condition, which also reveals chaotic ones (``file_mesh`` where both are the same); step and
+    interface stiffness on the coarse mesh, on the scene's refined conditions."""
+    found, groups = file_mesh.spreads(study), _refinement_runs(study)
+    known = {item.condition for item in found}
     runs = study.store.fill(
         "refinement", [run for group in groups.values() for run in group.values()]
     )
@@ -284,7 +285,9 @@ def refinements(study: Study) -> list[Spread]:
         _, *causes = group
         coarse, *changed = [runs.pop(0) for _ in group]
         found += [
-            spread(name, "reference", cause, coarse, [one]) for cause, one in zip(causes, changed)
+            spread(name, "reference", cause, coarse, [one])
+            for cause, one in zip(causes, changed)
+            if not (cause == "mesh" and name in known)
         ]
     return found
 

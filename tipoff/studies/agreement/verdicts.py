@@ -25,6 +25,7 @@ VELOCITY_LIMIT = 0.001
 CONVERGED_DEG_S = 0.1
 FLOOR_CAP_DEG_S = 0.1
 NOT_CONVERGED = "reference not converged"
+NOT_KNOWN = "convergence of the reference not known"
 _SHORT = {
     "rate_relative_l2": "rate L2",
     "velocity_relative_l2": "v_x L2",
@@ -124,6 +125,14 @@ class Context:
         )
         return None if unknown else largest(causes.values()), causes, all(here)
 
+    def known(self, condition: str) -> bool:
+        """Whether every refinement that was wanted on this condition could be run."""
+        return all(
+            item.rate_relative_l2 is not None
+            for item in self.refinements
+            if item.condition == condition
+        )
+
     def converged(self, condition: str) -> bool:
         """Whether the uncertainty of the reference is at most ``CONVERGED_DEG_S`` there."""
         uncertainty = self.uncertainty(condition)[0]
@@ -163,7 +172,9 @@ def row(
         "gates": gates,
         "passes": all(item["passes"] for item in gates.values()),
         "touches": bool(reference.pad_force.any()),
-        "verdict": verdict(gates, converged, bool(reference.pad_force.any())),
+        "verdict": verdict(gates, converged, bool(reference.pad_force.any()))
+        if context.known(condition)
+        else NOT_KNOWN,
     }
 
 

@@ -20,6 +20,7 @@ SAFETY_FACTOR = 1.25
 METHOD_ORDER = 2.0  # central differences in time, displacements of the elements
 _LEAST_ORDER = 0.5
 _RANGE_FACTOR = 3.0
+_GRIDS = 3
 _STEEPEST = 60.0  # an order beyond this is a difference that vanished
 
 
@@ -68,6 +69,8 @@ def estimate(sizes: Sequence[float], values: Sequence[float | None]) -> Estimate
     sizes, finest = sizes[-3:], [value for value in values[-3:] if value is not None]
     if len(finest) < len(values[-3:]):
         return Estimate(None, None, None, "a run did not settle")
+    if len(finest) < _GRIDS:
+        return Estimate(None, None, None, "not known from fewer than three grids")
     if max(finest) == min(finest):
         return _estimate(None, 0.0, finest, "no change at all")
     order = observed_order(sizes, finest)

@@ -59,10 +59,14 @@ def picture(document: dict) -> Chart:
 
 def _panel(row: dict, colour: str) -> Panel:
     sizes, values = [1e3 * size for size in row["sizes"]], row["values"]
-    bounds = [
-        Line([0.0, sizes[0]], [value, value], "uncertainty of the finest mesh", GREY, 1.1, ":")
-        for value in (values[-1] - row["uncertainty"], values[-1] + row["uncertainty"])
-    ]
+    bounds = (
+        [
+            Line([0.0, sizes[0]], [value, value], "uncertainty of the finest mesh", GREY, 1.1, ":")
+            for value in (values[-1] - row["uncertainty"], values[-1] + row["uncertainty"])
+        ]
+        if row["uncertainty"] is not None
+        else []
+    )
     return Panel(
         row["quantity"],
         "element size (mm)",

@@ -13,6 +13,7 @@ from dataclasses import asdict
 from pathlib import Path
 
 from tipoff.highfi.numerics import Numerics
+from tipoff.highfi.rail import refinement
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.scene import Scene
 from tipoff.studies.agreement import verdicts
@@ -20,13 +21,14 @@ from tipoff.studies.agreement.stage import compliant, refined
 from tipoff.studies.convergence import contact_loads, equal_accuracy, ripple, stresses
 from tipoff.studies.convergence.extrapolation import Estimate, estimate
 from tipoff.studies.convergence.quantities import RATE, quantities, settled_rate
-from tipoff.studies.core.progress import Board
+from tipoff.studies.core.progress import Board, say
 from tipoff.studies.core.stage import Stage
 from tipoff.studies.core.store import Run
 from tipoff.studies.core.study import Study, require_success
 from tipoff.studies.cost.timing import speedups
 
 NAME = "convergence"
+_LEAST = 3  # meshes, of which an order can be observed
 _LONG = 60.0  # s, a run of the reference that is timed once only
 
 
@@ -38,16 +40,18 @@ def run(study: Study, condition: str | None = None) -> dict:
     scene = study.condition(name)
 
     def make() -> tuple[dict, list[Path]]:
-        meshes = _finished(study, "convergence, meshes", _meshes(study, name))
+        asked, sizes = mesh_sizes(study, scene)
+        nominal = sizes[asked.index(study.settings.element_size)]
+        meshes = _finished(study, "convergence, meshes", _meshes(study, name, asked))
         steps = _finished(study, "convergence, steps", _steps(study, name))
         judged = [
             *_judged(
                 scene,
                 "element size",
                 "m",
-                list(study.settings.mesh_sizes),
+                sizes,
                 meshes,
-                study.settings.element_size,
+                nominal,
             ),
             *_judged(
                 scene,
@@ -63,7 +67,7 @@ def run(study: Study, condition: str | None = None) -> dict:
             _quadratures(study, name),
             _ripples(study, scene),
         )
-        equal = _at_equal_accuracy(study, name, judged, meshes)
+        equal = _at_equal_accuracy(study, name, judged, dict(zip(sizes, meshes)))
         return {
             "condition": name,
             "element_size_m": study.settings.element_size,
@@ -76,7 +80,7 @@ def run(study: Study, condition: str | None = None) -> dict:
                     "dt_s": found.cost["dt_s"],
                     "wall_s": found.cost["wall_s"],
                 }
-                for size, found in zip(study.settings.mesh_sizes, meshes)
+                for size, found in zip(sizes, meshes)
             ],
             "quantities": judged,
             "interface_stiffness": interface_stiffness,
@@ -100,7 +104,25 @@ def _finished(study: Study, title: str, wanted: list[Run]) -> list[Trajectory]:
     return runs
 
 
-def _meshes(study: Study, name: str) -> list[Run]:
+def mesh_sizes(study: Study, scene: Scene) -> tuple[list[float], list[float]]:
+    """Element sizes (m) to ask for, coarsest first, and those of the meshes that they give. A file
+    gives one mesh for several sizes: the size of the other stages, or else the smallest, stands for
+    them, and finer ones follow until there are three, where they fit."""
+    given = list(study.settings.mesh_sizes)
+    own: dict[float, float] = {}
+    for asked, size in zip(given, refinement.sizes(scene, given)):
+        if own.get(size) != study.settings.element_size:
+            own[size] = asked
+    while len(own) < _LEAST:
+        finer = 0.5 * min(own)
+        if reason := refinement.too_fine(scene, finer):
+            say(f"  a finer mesh is left out: {reason}")
+            break
+        own[finer] = finer
+    return list(own.values()), list(own)
+
+
+def _meshes(study: Study, name: str, sizes: list[float]) -> list[Run]:
     """One run a mesh; runs that other stages make too keep their name, so that the store has them
     only once."""
     settings = study.settings
@@ -111,7 +133,7 @@ def _meshes(study: Study, name: str) -> list[Run]:
     }
     return [
         study.highfi(name, element_size=size, tag=known.get(size, f"-{1e3 * size:g}mm"))
-        for size in settings.mesh_sizes
+        for size in sizes
     ]
 
 
@@ -216,7 +238,7 @@ def _ripples(study: Study, scene: Scene) -> list[dict]:
 
 
 def _at_equal_accuracy(
-    study: Study, name: str, judged: list[dict], meshes: list[Trajectory]
+    study: Study, name: str, judged: list[dict], meshes: dict[float, Trajectory]
 ) -> dict | None:
     """The speed-up of compliant contact over the coarsest mesh whose uncertainty is below its
     error; None where nothing touches, or where it or a mesh did not settle."""
@@ -230,12 +252,12 @@ def _at_equal_accuracy(
         return None
     surrogate = compliant(study, [name]).request(study, name)
     error = verdicts.settled_change(
-        meshes[-1], *study.store.fill("convergence, surrogate", [surrogate])
+        list(meshes.values())[-1], *study.store.fill("convergence, surrogate", [surrogate])
     )
     if error is None:
         return None
-    mesh = equal_accuracy.coarsest(study.settings.mesh_sizes, uncertainties, error)
-    wall = meshes[study.settings.mesh_sizes.index(mesh.element_size)].cost["wall_s"]
+    mesh = equal_accuracy.coarsest(list(meshes), uncertainties, error)
+    wall = meshes[mesh.element_size].cost["wall_s"]
     with Board("speed at equal accuracy", 1) as board:
         (found,) = speedups(
             study.highfi(name, element_size=mesh.element_size),

@@ -37,7 +37,7 @@ def refinements(found: dict) -> list[str]:
         ]
         worst = max(rows, key=lambda row: row["nominal_uncertainty"] or 0.0)
         if worst["uncertainty"] is None:
-            text.append(f"{parameter} on {name}: uncertainty unknown, a run did not settle")
+            text.append(f"{parameter} on {name}: uncertainty unknown, {worst['method']}")
             continue
         text.append(
             f"{parameter} on {name}: uncertainty of the settled rates "
