@@ -1,7 +1,7 @@
 """Which effects the compiled time loop of a scene contains, read from its machine code."""
 
 from tipoff.highfi.contact import facet
-from tipoff.highfi.dynamics import damping, loads
+from tipoff.highfi.dynamics import damping, loads, mounts
 from tipoff.highfi.dynamics.step import advance
 from tipoff.highfi.dynamics.step_size import choose
 from tipoff.highfi.dynamics.system import build
@@ -21,6 +21,7 @@ LAWS = {
     BODY_FORCE: loads._add_weight,
     "platform": nodes._move_in_frame,
     "rail.damping": damping._damp_component,
+    "rail.mount_stiffness": mounts._force,
     "thrust_offset": loads._offset_line,
 }
 

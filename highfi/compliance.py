@@ -6,8 +6,8 @@
 C is the displacement of the wall under pad face i, averaged with pattern a, caused by the pressure
 pattern b under face j: with the pattern 1 the mean displacement under a unit force. F is the
 flexibility of ``mechanics.rail_compliance``: displacement and pressure are both approximated by the
-polynomials phi. K is that of the whole rail, clamped at its mounts, so a face also displaces the
-walls of the other faces on its rail. Inertia is left out. Both are symmetric (Maxwell and Betti). The
+polynomials phi. K is that of the whole rail, held at its mounts, so a face also displaces the walls
+of the other faces on its rail. Inertia is left out. Both are symmetric (Maxwell and Betti). The
 thermal displacement of the same walls (``statics.thermal``) is computed for one of each field of
 which [thermal] is a sum.
 
@@ -33,6 +33,7 @@ from tipoff.highfi.statics.pressure import Pressed, pressed
 from tipoff.highfi.statics.solve import Clamped
 from tipoff.mechanics import model as scene_model
 from tipoff.mechanics.rail_compliance import MODES, PATTERNS, RailCompliance, digest
+from tipoff.scenes.effects.mount_stiffness import MountStiffness
 from tipoff.scenes.effects.thermal import FIELDS
 from tipoff.scenes.rail import MaterialTable
 from tipoff.scenes.scene import Scene
@@ -114,6 +115,7 @@ def along(
         travel,
         patterns,
         modes,
+        scene.rail.joint(),
     )
 
 
@@ -125,9 +127,10 @@ def of_mesh(
     travel: Sequence[float] | np.ndarray,
     patterns: int = PATTERNS,
     modes: int = 0,
+    joint: MountStiffness | None = None,
 ) -> Compliance:
     """The same for a mesh whose points are in the axes of ``faces.centre`` and ``faces.wall``,
-    between the X (m) of ``reach``.
+    between the X (m) of ``reach``, on rigid mounts or on a ``joint``.
 
     Raises MeshError where a rail under a face has no mount, ValueError for a number of patterns or
     modes there is not.
@@ -154,7 +157,7 @@ def of_mesh(
             continue
         # One more that answers nothing is what a face without a wall, number -1, points at.
         answer, heated, frequency, swung = patches.solved(
-            material, 0.5 * (reach[0] + reach[1]), modes
+            material, joint, 0.5 * (reach[0] + reach[1]), modes
         )
         between = np.pad(answer, [(0, 1), (0, 0), (0, 1), (0, 0)])
         heated, swung = (np.pad(moved, [(0, 1), (0, 0), (0, 0)]) for moved in (heated, swung))
@@ -239,13 +242,17 @@ class _Patches:
         return number
 
     def solved(
-        self, material: MaterialTable, middle: float, modes: int
+        self, material: MaterialTable, joint: MountStiffness | None, middle: float, modes: int
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """Displacement (m,p,m,p) in m of all places under the loads of all, normals of the faces
         positive, and (m,p,t) under one of each field of temperature around X = ``middle`` (m);
         frequencies (n,) rad/s of the lowest modes and their displacement (m,p,n)."""
         operator = assembly.build(
-            self._rail, material.density, material.youngs_modulus, material.poisson_ratio
+            self._rail,
+            material.density,
+            material.youngs_modulus,
+            material.poisson_ratio,
+            joint=joint,
         )
         clamped, loads = Clamped(operator), self._loads()
         warm = loads.T @ thermal.of_fields(self._rail, operator, material, clamped, middle).reshape(

@@ -7,6 +7,7 @@ elements of two even slabs share no node, nor do those of two odd ones.
 """
 
 from tipoff.highfi.dynamics.damping import add_damping
+from tipoff.highfi.dynamics.mounts import add_mounts
 from tipoff.highfi.extruded.kernel import column_force
 from tipoff.highfi.state.nodes import hold, move_nodes, sum_turning
 from tipoff.highfi.state.threads import barrier
@@ -15,12 +16,15 @@ from tipoff.kernels.jit import entry, kernel
 
 
 @entry
-def elastic_force(rail, displacement, force, turn, team):
-    """Set ``force`` (n,3) to K u (N), and ``turn`` (b,3) to each block's part of the sum of u x K u
-    (N m); one thread's work."""
+def elastic_force(rail, displacement, force, turn, mounting, team):
+    """Set ``force`` (n,3) to K u (N) with that of the joints, ``turn`` (b,3) to each block's part
+    of the sum of u x K u (N m), and ``mounting`` (b,6) to the sums of the joints, None without;
+    one thread's work."""
     for chunk in range(turn.shape[0]):
         _force_of_chunk(rail.columns, displacement, force, chunk, turn, team.lanes[0])
     _force_of_elements(rail.elements, rail, displacement, force, turn, team.lanes[0])
+    for block in range(turn.shape[0]):
+        add_mounts(rail.mounts, rail, displacement, force, block, turn[block], mounting)
 
 
 @kernel
@@ -105,6 +109,7 @@ def _share(columns, team, thread):
 @kernel
 def _load_chunk(columns, rail, state, chunk, lanes, dt):
     _force_of_chunk(columns, state.displacement, state.resistance, chunk, state.turning, lanes)
+    _join(rail, state, chunk)
     _damp(rail.damping, rail, state, chunk, dt, lanes)
     hold(
         rail,
@@ -112,6 +117,19 @@ def _load_chunk(columns, rail, state, chunk, lanes, dt):
         rail.first_clamped[chunk],
         rail.first_clamped[chunk + 1],
         state.clamping[chunk],
+    )
+
+
+@kernel
+def _join(rail, state, block):
+    add_mounts(
+        rail.mounts,
+        rail,
+        state.displacement,
+        state.resistance,
+        block,
+        state.turning[block],
+        state.mounting,
     )
 
 
@@ -181,5 +199,6 @@ def _load_slabs(elements, rail, state, team, thread, dt):
             rail, state.displacement, state.resistance, state.turning, thread, team.size, lanes
         )
         for block in range(thread, state.turning.shape[0], team.size):
+            _join(rail, state, block)
             _damp(rail.damping, rail, state, block, dt, lanes)
         hold_blocks(rail, state, thread, team.size)

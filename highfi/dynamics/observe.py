@@ -91,7 +91,8 @@ def sample(system, team, state: records.State, before: Moving, after: Moving) ->
 
 def _strain(rail, state, team) -> float:
     force = zeros(state.displacement.shape, order="F")
-    elastic_force(rail, state.displacement, force, np.empty_like(state.turning), team)
+    mounting = None if state.mounting is None else np.empty_like(state.mounting)
+    elastic_force(rail, state.displacement, force, np.empty_like(state.turning), mounting, team)
     # Not a BLAS product: its threads would wait for each other where several runs share the
     # processor.
     return 0.5 * float((state.displacement * force).sum())

@@ -8,7 +8,8 @@ with w the highest frequency of M^-1 K in rad/s and z its damping ratio when the
 by half a step (Belytschko, Liu, Moran, Nonlinear Finite Elements, 2000, section 6.2). Two bounds of
 w are offered. `element_bound` is a theorem: no frequency of the assembled system exceeds the
 highest one of its elements (Irons; Hughes, The Finite Element Method, 1987, section 7.3.2),
-whatever is fixed. `operator_bound` is sharper and takes contact springs into account.
+whatever is fixed; joints under the mounts add at most their own largest eigenvalue to w^2.
+`operator_bound` is sharper and takes contact springs into account.
 """
 
 import math
@@ -18,6 +19,7 @@ import numpy as np
 from scipy.linalg import eigh_tridiagonal
 
 from tipoff.highfi.statics.assembly import Operator
+from tipoff.highfi.statics.mounts import largest_share
 from tipoff.highfi.statics.operator import internal_force
 from tipoff.scenes.faults import InputError
 
@@ -40,7 +42,7 @@ class FrequencyBound(NamedTuple):
 
 def element_bound(operator: Operator) -> float:
     """Upper bound (rad/s) of every frequency of the mesh: the highest of K_e x = w^2 M_e x over the
-    element classes.
+    element classes, and the share of joints.
 
     M_e holds the mass the element itself brings to its nodes. Assembling elements and fixing nodes
     can only lower the highest frequency; contact springs, which raise it, are not in it.
@@ -50,6 +52,8 @@ def element_bound(operator: Operator) -> float:
         part = scale[start : start + _BATCH]
         matrices = operator.stiffness[start : start + _BATCH] * part[:, :, None] * part[:, None, :]
         highest = max(highest, np.linalg.eigvalsh(matrices).max())
+    if operator.joints is not None:
+        highest += largest_share(operator.joints, operator.mass)
     return math.sqrt(highest)
 
 
@@ -61,7 +65,7 @@ def operator_bound(
     iterations: int = 200,
 ) -> FrequencyBound:
     """Upper estimate (rad/s) of the highest frequency of the free nodes, by Lanczos iteration on
-    M^-1/2 (K + S) M^-1/2.
+    M^-1/2 (K + S) M^-1/2, K with the joints under the mounts.
 
     added_stiffness (n,3) N/m is the diagonal S of contact springs, none if absent. With Ritz value
     t and residual r, an eigenvalue lies in [t - r, t + r]. That it is the highest one is not a
@@ -86,7 +90,10 @@ def operator_bound(
         internal_force(
             displacement, operator.cells, operator.shape_class, operator.stiffness, force
         )
-        return (force + springs * displacement) * inverse_root_mass
+        total = force + springs * displacement
+        if operator.joints is not None:
+            total += (operator.joints @ displacement.ravel()).reshape(total.shape)
+        return total * inverse_root_mass
 
     cap = element_bound(operator) ** 2 + (springs * inverse_root_mass**2).max()
     ritz, residual, used = _lanczos(apply, inverse_root_mass > 0.0, cap, tolerance, iterations)

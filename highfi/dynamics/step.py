@@ -14,7 +14,8 @@ space. With it linear *and* angular momentum are exact; the sum of clamp forces 
 u x f. F_c and T_c are contact on all rail nodes, clamped or not. As K u has no resultant and no
 moment about the undeformed places, both sums need the dense nodal arrays for u x K u only. The same
 holds for the part of structural damping (``damping``) that is proportional to K; the part
-proportional to mass is summed node by node.
+proportional to mass is summed node by node. So are the forces of joints under the mounts and their
+damping (``mounts``), which have a resultant; all nodes of the rail then move.
 
 All threads of the team move and load nodes and search contact; before that the first one moves the
 bodies.
@@ -31,6 +32,7 @@ from tipoff.highfi.dynamics.loads import (
     body_force_in_frame,
     thrust_load,
 )
+from tipoff.highfi.dynamics.mounts import collect_mounts
 from tipoff.highfi.state.pose import drift_body, pose_in_frame, small_turn, triple
 from tipoff.highfi.state.threads import barrier, reset_queue
 from tipoff.kernels import rotation
@@ -41,7 +43,7 @@ from tipoff.kernels.jit import entry, inlined, kernel
 def evaluate(constants, state, active, team):
     """All forces at the present places of rails at rest in their frame, by one thread."""
     rail = constants.rail
-    elastic_force(rail, state.displacement, state.resistance, state.turning, team)
+    elastic_force(rail, state.displacement, state.resistance, state.turning, state.mounting, team)
     begin_damping(state.history, state)
     hold_blocks(rail, state, 0, 1)
     pose = pose_in_frame(state, constants.payload, constants.frame)
@@ -58,6 +60,7 @@ def collect(interface_stiffness, constants, state, active):
         for i in range(3):
             state.reaction[i] += state.clamping[part, i]
             state.reaction[3 + i] += state.clamping[part, 3 + i] - state.turning[part, i]
+    collect_mounts(state.mounting, state)
     collect_damping(state.history, state)
     if interface_stiffness is not None:
         collect_contact(constants.rail, constants.surface, state, active)

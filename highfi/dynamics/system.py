@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tipoff.highfi.contact import surface
+from tipoff.highfi.dynamics import mounts
 from tipoff.highfi.extruded import mesh as extruded
 from tipoff.highfi.mesh.rail_mesh import RailMesh
 from tipoff.highfi.numerics import Numerics
@@ -47,7 +48,11 @@ def build(scene: Scene, numerics: Numerics, mesh: RailMesh) -> System:
     model = scene_model.build(scene)
     material = scene.rail.material
     operator = assembly.build(
-        mesh, material.density, material.youngs_modulus, material.poisson_ratio
+        mesh,
+        material.density,
+        material.youngs_modulus,
+        material.poisson_ratio,
+        joint=scene.rail.joint(),
     )
     moving = np.where(operator.free, operator.mass, 0.0)
     frame, origin, offset = None, np.zeros(3), np.zeros(3)
@@ -93,7 +98,9 @@ def _warmed(
     if model.thermal is None:
         return None
     found = zeros(rail.points.shape, order="F")
-    found[number] = thermal.displacement(mesh, scene.rail.material, model.thermal)
+    found[number] = thermal.displacement(
+        mesh, scene.rail.material, model.thermal, scene.rail.joint()
+    )
     return found
 
 
@@ -126,6 +133,7 @@ def _rail(
         elements=elements,
         blocks=blocks,
         damping=damping,
+        mounts=mounts.build(operator.joints, number, blocks),
     )
     return rail, number
 
@@ -232,6 +240,7 @@ def initial_state(system: System) -> tuple[records.State, records.Active]:
         contact=np.zeros(nodes),
         turning=np.zeros((blocks, 3)),
         clamping=np.zeros((blocks, 6)),
+        mounting=None if system.rail.mounts is None else np.zeros((blocks, 6)),
         reaction=np.zeros(6),
         motion=records.Motion(
             velocity=np.zeros(3), turn=np.zeros(9), rate=np.zeros(3), acceleration=np.zeros(3)
@@ -274,4 +283,5 @@ def _history(rail: records.Rail, nodes: tuple[int, ...], blocks: int) -> records
         force=zeros(nodes, order="F"),
         drag=np.zeros((blocks, 6)),
         loss=np.zeros(blocks),
+        mounting=None if rail.mounts is None else np.zeros((blocks, 6)),
     )

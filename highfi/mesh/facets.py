@@ -88,9 +88,18 @@ def gauss(nodes: np.ndarray, quadrature: int) -> tuple[np.ndarray, np.ndarray]:
     length at least as many per area, and no fewer than three. All areas are positive; shape
     functions at the corners of a triangle may be negative.
     """
+    shape, _, area = oriented(nodes, quadrature)
+    return shape, area
+
+
+def oriented(nodes: np.ndarray, quadrature: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Shape functions (q,k), unit normals (m,q,3) out of the solid and areas (m,q) in m2 at the
+    points of ``gauss``."""
     shape, along, weight = _bilinear(quadrature) if nodes.shape[1] == 4 else _quadratic(quadrature)
     r, s = np.einsum("dqa,mai->dmqi", along, nodes)
-    return shape, np.linalg.norm(np.cross(r, s), axis=2) * weight
+    across = np.cross(r, s)
+    length = np.linalg.norm(across, axis=2)
+    return shape, across / length[:, :, None], length * weight
 
 
 def _bilinear(quadrature: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

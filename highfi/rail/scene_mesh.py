@@ -27,7 +27,8 @@ def geometry(scene: Scene) -> l_rail.LRailGeometry | str:
     if isinstance(scene.rail, SectionTable):
         return _l_section(scene, scene.rail)
     return content_hash(
-        scene.rail.model_dump(mode="json", exclude={"damping"}) | scene.rail.contents()
+        scene.rail.model_dump(mode="json", exclude={"damping", "mount_stiffness"})
+        | scene.rail.contents()
     )
 
 

@@ -34,6 +34,16 @@ class Elements(NamedTuple):
     slabs: np.ndarray
 
 
+class Mounts(NamedTuple):
+    """Stiffness of the joints under the mounts, between m nodes and their neighbours."""
+
+    node: np.ndarray  # (m,) numbers of the nodes, ascending
+    first_node: np.ndarray  # (b+1,) place in ``node`` of the first one of each block
+    first: np.ndarray  # (m+1,) place in ``neighbour`` of the first one of each node
+    neighbour: np.ndarray  # (p,) node numbers, the node itself among them
+    stiffness: np.ndarray  # (p,3,3) N/m
+
+
 class Rail(NamedTuple):
     """Nodes of the rails and their elasticity, which is given by columns or by elements."""
 
@@ -46,6 +56,7 @@ class Rail(NamedTuple):
     elements: Elements | None  # of any other mesh
     blocks: np.ndarray  # (b+1,) first node of each block, the nodes that are processed together
     damping: Damping | None
+    mounts: Mounts | None  # None: rigid mounts
 
 
 class Groups(NamedTuple):
@@ -144,9 +155,11 @@ class History(NamedTuple):
     elastic: np.ndarray  # (n,3) N, K u
     displacement: np.ndarray  # (n,3) m
     force: np.ndarray  # (n,3) N, what damping adds to the resistance
-    # (b,6) N and N m, force and moment about the frame's origin of the part proportional to mass
+    # (b,6) N and N m, force and moment about the frame's origin of what has a resultant: the part
+    # proportional to mass, and that of joints
     drag: np.ndarray
     loss: np.ndarray  # (b,) J, energy taken over the step
+    mounting: np.ndarray | None  # (b,6) N and N m, ``State.mounting`` one step ago
 
 
 class State(NamedTuple):
@@ -160,6 +173,7 @@ class State(NamedTuple):
     contact: np.ndarray  # (n,3) N, on its way into the resistance, else zero
     turning: np.ndarray  # (b,3) N m, sum of u x resistance before contact
     clamping: np.ndarray  # (b,6) N and N m, resistance of the clamped nodes and its moment
+    mounting: np.ndarray | None  # (b,6) N and N m, force of the joints and its moment
     reaction: np.ndarray  # (6,) N and N m, minus the resistance of all moving nodes and its moment
     motion: Motion
     rail_momentum: np.ndarray  # (3,) kg m/s, sum of m w over the moving nodes

@@ -4,7 +4,8 @@
 
 Elements that are translations of each other have the same matrix, so one matrix is stored per class
 of them. A structured mesh has a handful of classes, which stay in the fastest cache while the
-kernel streams over the elements.
+kernel streams over the elements. Joints under the mounts have a sparse matrix of their own
+(``statics.mounts``).
 """
 
 from types import ModuleType
@@ -16,7 +17,9 @@ from scipy.sparse import coo_array, csr_array
 from tipoff.highfi.elements import hexahedron, tetrahedron
 from tipoff.highfi.mesh.cells import thickness
 from tipoff.highfi.mesh.rail_mesh import RailMesh
+from tipoff.highfi.statics import mounts
 from tipoff.kernels.memory import aligned
+from tipoff.scenes.effects.mount_stiffness import MountStiffness
 
 _SAME_SHAPE = 1e-9  # of the thinnest element: node coordinates that differ by less make one class
 _FORMULATION = {8: hexahedron, 10: tetrahedron}  # by the nodes of an element
@@ -33,6 +36,7 @@ class Operator(NamedTuple):
     node_mass: np.ndarray  # (c,k) kg, share of one element in the mass of its nodes
     mass: np.ndarray  # (n,) kg
     free: np.ndarray  # (n,) False where the node is fixed
+    joints: csr_array | None = None  # (3n,3n) N/m, stiffness of the joints under the mounts
 
 
 def build(
@@ -41,9 +45,10 @@ def build(
     youngs_modulus: float,
     poisson_ratio: float,
     fixed: tuple[str, ...] = ("mount",),
+    joint: MountStiffness | None = None,
 ) -> Operator:
     """Operator of a homogeneous isotropic solid: density kg/m3, Young's modulus Pa, nodes of the
-    `fixed` surfaces held.
+    `fixed` surfaces held, those of ``mount`` by the springs of a `joint` if there is one.
 
     Raises ValueError for constants no stable material has.
     """
@@ -58,10 +63,20 @@ def build(
         mesh.cells.ravel(), node_mass[shape_class].ravel(), minlength=len(mesh.points)
     )
     free = np.ones(len(mesh.points), dtype=np.bool_)
+    joints = None
     for name in fixed:
-        free[mesh.surfaces[name]] = False
+        if joint is not None and name == "mount":
+            joints = mounts.stiffness(mesh.points, mesh.surfaces[name], joint)
+        else:
+            free[mesh.surfaces[name]] = False
     return Operator(
-        mesh.cells.astype(np.uint32), shape_class, aligned(stiffness), node_mass, mass, free
+        cells=mesh.cells.astype(np.uint32),
+        shape_class=shape_class,
+        stiffness=aligned(stiffness),
+        node_mass=node_mass,
+        mass=mass,
+        free=free,
+        joints=joints,
     )
 
 
@@ -95,13 +110,14 @@ def shape_classes(mesh: RailMesh) -> tuple[np.ndarray, np.ndarray]:
 
 
 def sparse(operator: Operator) -> csr_array:
-    """Assembled stiffness (3n,3n) in N/m, degrees of freedom node * 3 + component, for static and
-    modal solutions."""
+    """Assembled stiffness (3n,3n) in N/m with that of the joints, degrees of freedom node * 3 +
+    component, for static and modal solutions."""
     size = 3 * len(operator.mass)
     width = operator.stiffness.shape[1]
     freedoms = (3 * operator.cells[:, :, None] + np.arange(3)).reshape(-1, width)
     rows = np.repeat(freedoms, width, axis=1).ravel()
     columns = np.tile(freedoms, (1, width)).ravel()
-    return coo_array(
+    solid = coo_array(
         (operator.stiffness[operator.shape_class].ravel(), (rows, columns)), shape=(size, size)
     ).tocsr()
+    return solid if operator.joints is None else solid + operator.joints

@@ -1,4 +1,6 @@
-"""Linear statics of a clamped rail: K u = f over the free nodes, one factor for many loads."""
+"""Linear statics of a rail held by its mounts: K u = f over the free nodes, one factor for many
+loads.
+"""
 
 import numpy as np
 from scipy.sparse import csc_array, csr_array
@@ -13,7 +15,8 @@ class Clamped:
     that are ``free``. Raises MeshError where nothing holds it."""
 
     def __init__(self, operator: assembly.Operator):
-        if operator.free.all():
+        self._joints = operator.joints
+        if operator.free.all() and (self._joints is None or not self._joints.nnz):
             raise MeshError(
                 "a rail that pads press, or that is warm, has no mount: nothing holds it"
             )
@@ -35,8 +38,10 @@ class Clamped:
         return self._factor.solve(loads)
 
     def displaced(self, loads: np.ndarray, held: np.ndarray) -> np.ndarray:
-        """Displacement (3n,c) m under ``loads`` (3n,c) N, the fixed degrees of freedom at those of
-        ``held`` (3n,c) m."""
+        """Displacement (3n,c) m under ``loads`` (3n,c) N, the fixed degrees of freedom, or what
+        joints hold on to, displaced by ``held`` (3n,c) m."""
+        if self._joints is not None:
+            loads = loads + self._joints @ held
         found = np.where(self.free[:, None], 0.0, held)
         found[self.free] = self._factor.solve(loads[self.free] - self._free_rows @ found)
         return found

@@ -2,6 +2,8 @@
 
     K u = f,    f = integral B' D m e dV,    m = (1, 1, 1, 0, 0, 0),    u = s (X - X_m) at the mounts
 
+or, where mounts are joints of stiffness S, (K + S) u = f + S s (X - X_m),
+
 with the free strain e and the strain s of the platform of ``scenes.effects.thermal``, and the
 elements of the dynamics, whose bubbles e loads too. The rails are linear: their motion after ignition
 is the same from u as from the undeformed rails without [thermal], so the time loop does not use u.
@@ -18,17 +20,27 @@ from tipoff.highfi.mesh import pieces
 from tipoff.highfi.mesh.rail_mesh import RailMesh
 from tipoff.highfi.statics import assembly
 from tipoff.highfi.statics.solve import Clamped
+from tipoff.scenes.effects.mount_stiffness import MountStiffness
 from tipoff.scenes.effects.thermal import FIELDS, Thermal, fields
 from tipoff.scenes.rail import MaterialTable
 
 
-def displacement(mesh: RailMesh, material: MaterialTable, thermal: Thermal) -> np.ndarray:
-    """Displacement (n,3) m of rails with points in scene axes. Raises MeshError where one has no
-    mount."""
+def displacement(
+    mesh: RailMesh,
+    material: MaterialTable,
+    thermal: Thermal,
+    joint: MountStiffness | None = None,
+) -> np.ndarray:
+    """Displacement (n,3) m of rails with points in scene axes on rigid mounts, or on a ``joint``.
+    Raises MeshError where one has no mount."""
     found = np.empty_like(mesh.points)
     for nodes, rail in zip(pieces.nodes(mesh), pieces.pieces(mesh)):
         operator = assembly.build(
-            rail, material.density, material.youngs_modulus, material.poisson_ratio
+            rail,
+            material.density,
+            material.youngs_modulus,
+            material.poisson_ratio,
+            joint=joint,
         )
         found[nodes] = (
             of_fields(rail, operator, material, Clamped(operator), thermal.middle) @ thermal.amounts

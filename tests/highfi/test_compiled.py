@@ -10,13 +10,18 @@ from tipoff import highfi
 from tipoff.highfi.compiled import LAWS
 
 DAMPED = {"rail__damping__ratios": [0.01, 0.01], "rail__damping__frequencies": ["500 Hz", "5 kHz"]}
+SOFT = {"rail__mount_stiffness__normal": 1e13, "rail__mount_stiffness__shear": 5e12}
 FOUND = ("friction", "platform")  # kernels that other tests compile too
 
 
 def check(effect: str) -> None:
     """Read from the machine code: what the scene has is there, what it has not is not, and one
     change changes nothing else. Without contact there is no friction either."""
-    added = {"gravity": {"gravity__z": -9.80665}, "rail.damping": DAMPED}
+    added = {
+        "gravity": {"gravity__z": -9.80665},
+        "rail.damping": DAMPED,
+        "rail.mount_stiffness": SOFT,
+    }
     present = highfi.compiled_effects(tiny(), COARSE)
     assert present == {name: name not in added for name in LAWS}
     changed = highfi.compiled_effects(tiny(**added.get(effect, {effect: None})), COARSE)

@@ -97,6 +97,7 @@ def test_reference_has_no_other_effects():
         "gravity",
         "thermal",
         "rail.damping",
+        "rail.mount_stiffness",
     ]
 
 

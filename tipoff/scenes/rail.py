@@ -5,7 +5,8 @@ centre at ignition, +X to the open end), with the walls one ``clearance`` off th
 surrogate does not use the file: ``start`` and ``end`` give the ends of the walls, pads and
 clearance their distance. The reference refuses a file that differs from them (``highfi.rail.fit``).
 Any kind of rail may have a ``damping`` (``scenes.effects.structural_damping``), which acts in the
-reference and on the modes of compliant contact.
+reference and on the modes of compliant contact, and a ``mount_stiffness``
+(``scenes.effects.mount_stiffness``), without which its mounts are rigid.
 """
 
 import hashlib
@@ -25,6 +26,7 @@ from pydantic import (
     model_validator,
 )
 
+from tipoff.scenes.effects.mount_stiffness import MountStiffness, MountStiffnessTable
 from tipoff.scenes.effects.structural_damping import DampingTable
 from tipoff.scenes.table import Table, at_least_one, is_absent
 from tipoff.scenes.units import (
@@ -68,13 +70,15 @@ class MaterialTable(Table):
 
 
 class _RailTable(Table):
-    """Keys of every rail: start and end of its walls along X (m), material, damping."""
+    """Keys of every rail: start and end of its walls along X (m), material, damping, stiffness of
+    its mounts."""
 
     GIVEN_BY: ClassVar[str]
     start: Length
     end: Length
     material: MaterialTable
     damping: DampingTable | None = None
+    mount_stiffness: MountStiffnessTable | None = Field(None, exclude_if=is_absent)
 
     _forward = field_validator("end")(_beyond_start)
 
@@ -82,13 +86,17 @@ class _RailTable(Table):
         """The keys that name files, each with the digest of the content of its file."""
         return {}
 
+    def joint(self) -> MountStiffness | None:
+        """Plain record of the joints under the mounts; None where these are rigid."""
+        return self.mount_stiffness.record() if self.mount_stiffness else None
+
     def gap(self, clearance: float) -> float:
         """Distance (m) of the walls from the pads in a scene with this clearance (m)."""
         return clearance
 
 
 class SectionTable(_RailTable):
-    """Built-in L sections from ``start`` to ``end`` along X, clamped to the platform at
+    """Built-in L sections from ``start`` to ``end`` along X, held by the platform at
     ``mounts``."""
 
     GIVEN_BY = "section"

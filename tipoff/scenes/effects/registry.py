@@ -11,6 +11,7 @@ from tipoff.scenes.effects import (
     gravity,
     initial,
     mass_offset,
+    mount_stiffness,
     platform,
     structural_damping,
     thermal,
@@ -29,6 +30,7 @@ EFFECTS: tuple[Effect, ...] = (
     gravity.EFFECT,
     thermal.EFFECT,
     structural_damping.EFFECT,
+    mount_stiffness.EFFECT,
 )
 
 

@@ -1,0 +1,48 @@
+"""``[rail.mount_stiffness]``: what it takes, and what it changes of a scene."""
+
+import pytest
+
+from tests.scenes.support import SMALL, refused, small
+from tipoff.mechanics.rail_compliance import digest
+from tipoff.scenes import load, parse
+from tipoff.scenes.effects.mount_stiffness import MountStiffness
+
+JOINT = {"normal": "1e13 N/m^3", "shear": "5000 N/mm^3"}
+
+
+def keys(faults):
+    return [fault.key for fault in faults]
+
+
+def with_joint(**changed):
+    return small(rail=SMALL["rail"] | {"mount_stiffness": JOINT | changed})
+
+
+def test_stiffness_in_any_unit():
+    assert parse(with_joint()).rail.joint() == MountStiffness(1e13, pytest.approx(5e12, rel=1e-14))
+    assert load("reference").rail.joint() is None
+
+
+@pytest.mark.parametrize("value", ["0 N/m^3", "-1 N/m^3", "1e13 N/m", "inf N/m^3"])
+def test_each_stiffness_is_positive_and_per_area(value):
+    assert keys(refused(with_joint(shear=value))) == ["rail.mount_stiffness.shear"]
+
+
+def test_both_keys_or_no_table():
+    both = ["rail.mount_stiffness.normal", "rail.mount_stiffness.shear"]
+    assert keys(refused(small(rail=SMALL["rail"] | {"mount_stiffness": {}}))) == both
+    raw = small(rail=SMALL["rail"] | {"mount_stiffness": {"normal": "1e13 N/m^3"}})
+    assert keys(refused(raw)) == ["rail.mount_stiffness.shear"]
+
+
+def test_a_scene_without_it_is_the_same_as_before():
+    """The key is in no record of such a scene; set and dropped again it leaves nothing."""
+    plain = parse(small())
+    assert "mount_stiffness" not in plain.physics()["rail"]
+    soft = plain.replace({"rail.mount_stiffness.normal": 1e13, "rail.mount_stiffness.shear": 5e12})
+    assert soft.hash != plain.hash and digest(soft) != digest(plain)
+    assert parse(soft.resolved(), bare_numbers_are_si=True).hash == soft.hash
+    dropped = soft.replace({"rail.mount_stiffness": None})
+    assert dropped.hash == plain.hash and digest(dropped) == digest(plain)
+    key = "rail.mount_stiffness"
+    assert key in plain.absent_effects() and key not in soft.absent_effects()
