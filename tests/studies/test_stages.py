@@ -13,6 +13,7 @@ from tipoff.highfi.mesh.facets import area
 from tipoff.lowfi.compiled import LAWS as lowfi_laws
 from tipoff.scenes.effects.registry import EFFECTS
 from tipoff.studies.ablation import stage as ablation
+from tipoff.studies.agreement import interface, refined
 from tipoff.studies.agreement import stage as compare
 from tipoff.studies.core import machine
 from tipoff.studies.core.settings import Settings, defaults
@@ -168,20 +169,33 @@ def test_closed_gap_is_only_opened(tmp_path):
 
 
 def test_refinements_change_one_thing_each(tmp_path):
+    """And only those of the scene's refined conditions are by more than the mesh."""
     study = Study(scenes.load("tiny"), tmp_path, defaults("tiny"))
-    runs, coarse, nominal = (
-        compare.refined(study, "phi15"),
-        study.coarse("phi15"),
-        study.highfi("phi15"),
-    )
-    assert coarse.numerics.element_size == 2.0 * nominal.numerics.element_size
-    assert runs["step"].numerics == replace(coarse.numerics, safety=0.5 * coarse.numerics.safety)
-    assert (
-        runs["interface_stiffness"].scene.contact.interface_stiffness
-        == 4.0 * coarse.scene.contact.interface_stiffness
-    )
-    assert runs["interface_stiffness"].numerics == coarse.numerics
-    assert runs["step"].scene.hash == coarse.scene.hash == nominal.scene.hash
+    groups = refined.groups(study, "phi15")
+    coarse, nominal = study.coarse("phi15"), study.highfi("phi15")
+    assert [run.numerics for run in groups["mesh"].runs] == [coarse.numerics, nominal.numerics]
+    half = replace(coarse.numerics, safety=0.5 * coarse.numerics.safety)
+    assert [run.numerics for run in groups["step"].runs] == [coarse.numerics, half]
+    own = coarse.numerics.points_per_edge()
+    assert [run.numerics.points_per_edge() for run in groups["cells"].runs] == [own // 2, own, 12]
+    for group in groups.values():
+        assert list(group.sizes) == sorted(group.sizes, reverse=True)
+        assert {run.scene.hash for run in group.runs} == {nominal.scene.hash}
+    used = {cause: group.runs[group.used] for cause, group in groups.items()}
+    assert used["mesh"].numerics == nominal.numerics
+    assert used["step"].numerics == used["cells"].numerics == coarse.numerics
+    assert list(refined.groups(study, "phi60")) == ["mesh"]
+
+
+def test_the_interface_stiffness_is_changed_alone(tmp_path):
+    """At a quarter, once and four times; once is the run that other stages use."""
+    study = Study(scenes.load("tiny"), tmp_path, defaults("tiny"))
+    coarse = study.coarse("phi15")
+    runs = [interface.reference(study, "phi15", factor) for factor in interface.FACTORS]
+    found = [run.scene.contact.interface_stiffness for run in runs]
+    assert found == [factor * coarse.scene.contact.interface_stiffness for factor in (0.25, 1, 4)]
+    assert {run.numerics for run in runs} == {coarse.numerics}
+    assert runs[1].label == coarse.label and runs[1].scene.hash == coarse.scene.hash
 
 
 def test_machine_is_described():

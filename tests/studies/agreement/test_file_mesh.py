@@ -9,11 +9,9 @@ import pytest
 from tests.studies.synthetic import flight
 from tipoff.highfi.rail import memory_estimate, refinement
 from tipoff.scenes import load
-from tipoff.studies.agreement import stage as compare
-from tipoff.studies.agreement import verdicts
+from tipoff.studies.agreement import refined, verdicts
 from tipoff.studies.agreement.verdicts import NOT_KNOWN, Context
-from tipoff.studies.convergence import stage as convergence
-from tipoff.studies.convergence.extrapolation import estimate
+from tipoff.studies.core.extrapolation import estimate
 from tipoff.studies.core.settings import Settings
 from tipoff.studies.core.study import Study
 
@@ -39,7 +37,7 @@ def study(monkeypatch):
 
 
 def by_mesh(study):
-    return [item for item in compare.refinements(study) if item.cause == "mesh"]
+    return [item for item in refined.refinements(study) if item.cause == "mesh"]
 
 
 def test_sizes_are_those_of_the_meshes_that_the_file_gives():
@@ -48,12 +46,15 @@ def test_sizes_are_those_of_the_meshes_that_the_file_gives():
     assert refinement.sizes(load("reference"), asked) == asked
 
 
-def test_the_file_is_split_once_more_and_twice_the_change_is_the_error(study):
-    """Control: the runs in elements of 8 and 4 mm, which are the same mesh, do not differ."""
+def test_the_file_is_split_once_more_and_first_order_is_assumed(study):
+    """Half the error is the change, the other half has a factor of three. Control: the runs in
+    elements of 8 and 4 mm, which are the same mesh, do not differ."""
     found = by_mesh(study)
     assert [item.condition for item in found] == list(study.conditions)
     for item in found:
-        assert item.settled_rate_change_deg_s == pytest.approx(SLOPE * FILE_SIZE, rel=1e-6)
+        change = 0.5 * SLOPE * FILE_SIZE
+        assert item.settled_rate_change_deg_s == pytest.approx(change, rel=1e-6)
+        assert item.uncertainty_deg_s == pytest.approx(change + 3.0 * change, rel=1e-6)
     name = next(iter(study.conditions))
     runs = study.store.fill("same", [study.coarse(name), study.highfi(name)])
     assert verdicts.settled_change(*runs) == 0.0
@@ -65,7 +66,7 @@ def test_convergence_is_not_known_where_the_finer_mesh_does_not_fit(study, monke
         monkeypatch.setattr(memory_estimate, "available", lambda: 1e6)
     else:
         monkeypatch.setattr(refinement, "LONGEST", 1.0)
-    context = Context([], compare.refinements(study), verdicts.gates(study.scene))
+    context = Context([], refined.refinements(study), verdicts.gates(study.scene))
     name = next(iter(study.conditions))
     still = flight(lambda t: np.zeros((t.size, 3)))
     row = verdicts.row(name, "held_out", still, still, context)
@@ -78,12 +79,12 @@ def test_meshes_of_the_convergence_study_differ(study, monkeypatch):
     uncertainty is told. Control: equal meshes alone seem to be exact."""
     name = next(iter(study.conditions))
     scene = study.condition(name)
-    asked, sizes = convergence.mesh_sizes(study, scene)
+    asked, sizes = refined.mesh_sizes(study, scene, study.settings.mesh_sizes, 3)
     assert asked == [0.004, 0.002]
     assert sizes == pytest.approx([0.004, 0.002])
     one = Study(study.scene, study.folder, Settings(element_size=0.016))
     monkeypatch.setattr(refinement, "LONGEST", 1.0)
-    asked, sizes = convergence.mesh_sizes(one, scene)
+    asked, sizes = refined.mesh_sizes(one, scene, one.settings.mesh_sizes, 3)
     assert asked == [0.016] and sizes == pytest.approx([0.004])
     assert estimate(sizes, [3.0]).uncertainty is None
     assert estimate([4.0, 2.0, 1.0], [3.0, 3.0, 3.0]).uncertainty == 0.0

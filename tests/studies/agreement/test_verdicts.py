@@ -9,7 +9,8 @@ from tests.studies.synthetic import flight
 from tipoff import highfi, lowfi
 from tipoff.scenes import load
 from tipoff.studies.agreement import metrics, verdicts
-from tipoff.studies.agreement import stage as compare
+from tipoff.studies.agreement import refined as refined_runs
+from tipoff.studies.agreement.refinement import Refinement
 from tipoff.studies.agreement.verdicts import Context, Spread
 from tipoff.studies.core.settings import Settings
 from tipoff.studies.core.study import Study
@@ -20,10 +21,11 @@ def constant(*rate, **parts):
     return flight(lambda t: np.tile(np.radians(rate), (t.size, 1)), **parts)
 
 
-CONVERGED = [
-    Spread("phi15", "reference", "mesh", 0.001, 0.02),
-    Spread("phi15", "reference", "interface_stiffness", 0.002, 0.05),
-]
+def refined(cause, uncertainty):
+    return Refinement("phi15", "reference", cause, [4.0, 2.0], 0.001, 0.01, uncertainty, 1.0, "GCI")
+
+
+CONVERGED = [refined("mesh", 0.02), refined("cells", 0.05)]
 FLOORS = [
     Spread("phi15", "reference", "clearance", 0.004, 0.01),
     Spread("phi15", "surrogate", "clearance", 0.003, 0.03),
@@ -94,7 +96,7 @@ def test_gates_are_those_of_the_scene_or_twice_the_floor():
 
 
 def test_reference_that_is_not_converged_forbids_any_claim():
-    found = row(constant(3.0, 0.0, 4.0), [Spread("phi15", "reference", "mesh", 0.1, 0.18)])
+    found = row(constant(3.0, 0.0, 4.0), [refined("mesh", 0.18)])
     assert found["verdict"] == "reference not converged"
     assert found["reference_uncertainty_deg_s"] == 0.18
     assert row(constant(3.0, 0.0, 4.0), [])["verdict"] == "reference not converged"
@@ -108,10 +110,7 @@ def test_floor_is_the_own_one_where_measured_else_the_largest():
         0.006,
         False,
     )
-    assert own["reference_uncertainty_by_cause_deg_s"] == {
-        "mesh": 0.02,
-        "interface_stiffness": 0.05,
-    }
+    assert own["reference_uncertainty_by_cause_deg_s"] == {"mesh": 0.02, "cells": 0.05}
 
 
 def test_run_that_did_not_settle_never_passes():
@@ -139,8 +138,8 @@ def test_spread_takes_the_larger_side():
 
 
 def test_every_condition_of_the_reference_has_an_uncertainty_of_its_own(monkeypatch):
-    """By mesh, step and interface stiffness. Control: where a scene refines one only, the others
-    borrow, and say so."""
+    """By mesh, step and cells, and not by the interface stiffness. Control: where a scene refines one
+    only, the others borrow, and say so."""
     scene = load("reference")
     for refined, expected in (
         (scene.agreement.refined, set(scene.conditions)),
@@ -152,9 +151,9 @@ def test_every_condition_of_the_reference_has_an_uncertainty_of_its_own(monkeypa
         monkeypatch.setattr(
             type(study.store), "fill", lambda store, title, runs: [flight() for _ in runs]
         )
-        context = Context([], compare.refinements(study), GATES)
+        context = Context([], refined_runs.refinements(study), GATES)
         assert {name for name in study.conditions if context.uncertainty(name)[2]} == expected
-        assert list(context.uncertainty("h4")[1]) == ["mesh", "step", "interface_stiffness"]
+        assert list(context.uncertainty("h4")[1]) == ["mesh", "step", "cells"]
 
 
 @pytest.fixture(scope="module")

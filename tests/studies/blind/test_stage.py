@@ -8,7 +8,7 @@ import pytest
 from tests.studies.synthetic import flight
 from tipoff import scenes
 from tipoff.scenes.faults import SceneError
-from tipoff.studies.agreement import stage as compare
+from tipoff.studies.agreement import refined
 from tipoff.studies.agreement.verdicts import Context
 from tipoff.studies.blind import stage as blind
 from tipoff.studies.blind.stage import Options
@@ -54,15 +54,15 @@ def test_drawn_conditions_are_all_held_out():
 
 
 def test_no_drawn_condition_borrows_its_uncertainty(monkeypatch):
-    """Mesh, step and interface stiffness on each. Control: a scene that refines one only has the
-    others borrow, and says so."""
+    """Mesh, step and cells on each. Control: a scene that refines one only has the others borrow, and
+    says so."""
     drawn = blind.draw(study_of(), Options(cases=3, seed=1))
     alone = replace(drawn, scene=drawn.scene.replace({"agreement.refined": ["blind2"]}))
     monkeypatch.setattr(
         type(drawn.store), "fill", lambda store, title, runs: [flight() for _ in runs]
     )
     for study, measured in ((drawn, [True, True, True]), (alone, [False, True, False])):
-        context = Context([], compare.refinements(study), {})
+        context = Context([], refined.refinements(study), {})
         assert [context.uncertainty(name)[2] for name in drawn.conditions] == measured
 
 

@@ -8,6 +8,7 @@ from tipoff.studies.commands import common
 
 if TYPE_CHECKING:
     from tipoff.studies.core.study import Study
+    from tipoff.studies.render.document import Part
 
 
 def add(app: typer.Typer) -> None:
@@ -18,6 +19,7 @@ def add(app: typer.Typer) -> None:
         "Agreement on fitted and held-out conditions with the floor, and the speed-up; writes "
         "agreement.json.",
         run,
+        shown,
     )
 
 
@@ -26,3 +28,10 @@ def run(study: "Study") -> dict:
     from tipoff.studies.agreement import stage
 
     return stage.run(study)
+
+
+def shown(found: dict) -> list["Part"]:
+    """The verdicts for the terminal."""
+    from tipoff.studies.agreement import page
+
+    return page.terminal(found)

@@ -12,7 +12,7 @@ from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS, SPRINGS
 from tipoff.mechanics.rail_compliance import PATTERNS, RailCompliance
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.calibration import Calibration
-from tipoff.studies.agreement import file_mesh, growth, metrics, verdicts
+from tipoff.studies.agreement import growth, interface, metrics, refined, verdicts
 from tipoff.studies.agreement.verdicts import Context, Spread, spread
 from tipoff.studies.calibration import stage as calibrate
 from tipoff.studies.core.progress import Board
@@ -79,7 +79,8 @@ def compliant(study: Study, conditions: Iterable[str]) -> Candidate:
 def run(study: Study) -> dict:
     """``uncalibrated``, ``fitted``, ``held_out``, ``compliant`` and ``modal`` rows; measured
     ``floor`` and ``refinement``; ``growth`` of a 1 um disturbance; ``speedup`` of calibrated springs
-    and ``speedup_compliant``; ``simpler`` rail compliance; ``stiffer`` interface stiffness."""
+    and ``speedup_compliant``; ``simpler`` rail compliance; other values of the ``interface``
+    stiffness."""
     study.fitted()
     _, calibrated, static, modal = compared = candidates(study)
     gates = verdicts.gates(study.scene)
@@ -88,7 +89,7 @@ def run(study: Study) -> dict:
         wanted = {name: study.highfi(name) for name in study.conditions}
         highfi = dict(zip(wanted, study.store.fill("highfi", list(wanted.values()))))
         require_success(highfi, "compare")
-        changes, floor = refinements(study), floors(study, "reference", study.coarse)
+        changes, floor = refined.refinements(study), floors(study, "reference", study.coarse)
         own = {
             candidate.name: floors(study, candidate.title, partial(candidate.request, study))
             for candidate in compared
@@ -99,6 +100,12 @@ def run(study: Study) -> dict:
             )
             for candidate in compared
         }
+        own_context = Context([*floor, *own[static.name]], changes, gates)
+        on_coarse = static._replace(
+            compliance=study.rail_compliances(study.conditions, study.settings.coarse_size)
+        )
+        stiffnesses = interface.rows(study, on_coarse.request, own_context)
+        table["compliant"] = interface.combined(table["compliant"], stiffnesses)
         groups = {
             role: [row for row in table["calibrated"] if row["role"] == role]
             for role in ("fitted", "held_out")
@@ -117,7 +124,7 @@ def run(study: Study) -> dict:
             "refinement": [asdict(item) for item in changes],
             "growth": [asdict(item) for item in _growths(study, static, table["compliant"])],
             "simpler": _simpler(study, static, highfi),
-            "stiffer": _stiffer(study, static),
+            "interface": stiffnesses,
             **dict(zip(("speedup", "speedup_compliant"), _speedups(study, [calibrated, static]))),
         }, []
 
@@ -171,42 +178,6 @@ def _simpler(study: Study, compliant: Candidate, highfi: dict[str, Trajectory]) 
                     "settled_rate_error_deg_s": difference.settled_rate_error_deg_s,
                 }
             )
-    return found
-
-
-def _stiffer(study: Study, compliant: Candidate) -> list[dict]:
-    """Changes of settled rates (deg/s) in both models by four times the interface stiffness, and
-    their differences before and after, the reference on the coarse mesh. Both models share the
-    interface stiffness, so its uncertainty does not affect their difference."""
-    names = [
-        name
-        for name in study.conditions
-        if name in study.scene.agreement.refined and study.scene.contact is not None
-    ]
-    groups = {
-        name: (
-            study.coarse(name),
-            refined(study, name)["interface_stiffness"],
-            compliant.request(study, name),
-            compliant.request(study, name, _more_interface_stiffness(study), "-interface"),
-        )
-        for name in names
-    }
-    runs = iter(
-        study.store.fill("interface stiffness", [run for group in groups.values() for run in group])
-    )
-    found = []
-    for name, group in groups.items():
-        reference, stiff_reference, surrogate, stiff_surrogate = (next(runs) for _ in group)
-        found.append(
-            {
-                "condition": name,
-                "reference_change_deg_s": verdicts.settled_change(reference, stiff_reference),
-                "surrogate_change_deg_s": verdicts.settled_change(surrogate, stiff_surrogate),
-                "apart_deg_s": verdicts.settled_change(reference, surrogate),
-                "apart_with_more_deg_s": verdicts.settled_change(stiff_reference, stiff_surrogate),
-            }
-        )
     return found
 
 
@@ -270,49 +241,6 @@ def clearances(study: Study) -> list[tuple[str, float]]:
         for sign, value in (("plus", nominal + change), ("minus", nominal - change))
         if value >= 0.0
     ]
-
-
-def refinements(study: Study) -> list[Spread]:
-    """Spread of the reference under each refinement alone: from the coarse mesh to its own on every
-    condition, which also reveals chaotic ones (``file_mesh`` where both are the same); step and
-    interface stiffness on the coarse mesh, on the scene's refined conditions."""
-    found, groups = file_mesh.spreads(study), _refinement_runs(study)
-    known = {item.condition for item in found}
-    runs = study.store.fill(
-        "refinement", [run for group in groups.values() for run in group.values()]
-    )
-    for name, group in groups.items():
-        _, *causes = group
-        coarse, *changed = [runs.pop(0) for _ in group]
-        found += [
-            spread(name, "reference", cause, coarse, [one])
-            for cause, one in zip(causes, changed)
-            if not (cause == "mesh" and name in known)
-        ]
-    return found
-
-
-def _refinement_runs(study: Study) -> dict[str, dict[str, Run]]:
-    return {
-        name: {"coarse": study.coarse(name), "mesh": study.highfi(name)}
-        | (refined(study, name) if name in study.scene.agreement.refined else {})
-        for name in study.conditions
-    }
-
-
-def refined(study: Study, name: str) -> dict[str, Run]:
-    """Runs on the coarse mesh with half the step and with four times the interface stiffness."""
-    runs = {"step": study.coarse(name, tag="-step", safety=0.45)}
-    if study.scene.contact is not None:
-        runs["interface_stiffness"] = study.coarse(
-            name, _more_interface_stiffness(study), "-interface"
-        )
-    return runs
-
-
-def _more_interface_stiffness(study: Study) -> dict[str, float]:
-    assert study.scene.contact is not None  # as for every caller
-    return {"contact.interface_stiffness": 4.0 * study.scene.contact.interface_stiffness}
 
 
 def _speedups(study: Study, compared: list[Candidate]) -> list[dict]:

@@ -2,24 +2,26 @@
 
 * **Floor**: change of a model by +-1 um of clearance, in the same two metrics. Smaller differences
   have no meaning.
-* **Reference uncertainty**: largest change of the settled rates of the reference by the mesh (from
-  twice the element size) and, on that mesh, by four times the interface stiffness or half the step.
-  Agreement requires at most 0.1 deg/s.
+* **Reference uncertainty**: the largest of those of its settled rates by mesh, step and contact
+  cells (``agreement.refinement``). Agreement requires at most 0.1 deg/s. The interface stiffness is
+  no part of it: it is physics, which both models share (``agreement.interface``).
 
 * **Gates**: v_x within 0.1 %, rates and settled rates within the limits of the scene's
   ``[agreement]``; the limit of the settled rates is at least twice the floor, of which at most
   0.1 deg/s counts.
 
-The change by the mesh is measured on every condition, the others on conditions that the scene
+The uncertainty by the mesh is measured on every condition, the others on conditions that the scene
 names; the remaining conditions take the largest value, with a mark.
 """
 
 import math
 from dataclasses import dataclass
+from typing import TypeVar
 
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.scene import Scene
 from tipoff.studies.agreement.metrics import compare, settled_rate_errors
+from tipoff.studies.agreement.refinement import Refinement
 
 VELOCITY_LIMIT = 0.001
 CONVERGED_DEG_S = 0.1
@@ -81,13 +83,16 @@ def largest(values) -> float | None:
     return max(known) if known else None
 
 
+_Measured = TypeVar("_Measured", Spread, Refinement)
+
+
 @dataclass(frozen=True)
 class Context:
     """Inputs of the verdicts: ``floors``, spreads of both models by the clearance; ``refinements``,
-    spreads of the reference by mesh, step and interface stiffness; ``gates``."""
+    those of the reference by mesh, step and cells; ``gates``."""
 
     floors: list[Spread]
-    refinements: list[Spread]
+    refinements: list[Refinement]
     gates: dict[str, float]
 
     def limits(self, floor_deg_s: float | None) -> dict[str, float]:
@@ -115,11 +120,11 @@ class Context:
             own, measured = _own(
                 [item for item in self.refinements if item.cause == cause], condition
             )
-            causes[cause] = largest(item.settled_rate_change_deg_s for item in own)
+            causes[cause] = largest(item.uncertainty_deg_s for item in own)
             here.append(measured)
-        # Unknown where the payload did not settle with a refinement.
+        # Unknown where the payload did not settle with a refinement, or a mesh is not refined.
         unknown = not causes or any(
-            item.settled_rate_change_deg_s is None
+            item.uncertainty_deg_s is None
             for item in self.refinements
             if item.condition == condition
         )
@@ -139,7 +144,7 @@ class Context:
         return uncertainty is not None and uncertainty <= CONVERGED_DEG_S
 
 
-def _own(spreads: list[Spread], condition: str) -> tuple[list[Spread], bool]:
+def _own(spreads: list[_Measured], condition: str) -> tuple[list[_Measured], bool]:
     own = [item for item in spreads if item.condition == condition]
     return (own, True) if own else (spreads, False)
 

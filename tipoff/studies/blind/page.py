@@ -18,7 +18,7 @@ def draw(found: dict) -> list[Part]:
     note = (
         f"Drawn from the distributions “{options['vary']}” with seed {found['seed']}{origin}. Every "
         "condition has its own floor and its own uncertainty of the reference by mesh, step and "
-        "interface stiffness."
+        "contact cells."
     )
     return [
         f"Compliant contact, nothing fitted: {summary(compliant)}.",

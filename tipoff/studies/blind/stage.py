@@ -13,8 +13,8 @@ from tipoff.files import content_hash
 from tipoff.lowfi.ensemble.rows import Drawn
 from tipoff.mechanics.models import SPRINGS
 from tipoff.scenes import uncertainty
+from tipoff.studies.agreement import refined, verdicts
 from tipoff.studies.agreement import stage as compare
-from tipoff.studies.agreement import verdicts
 from tipoff.studies.agreement.verdicts import Context
 from tipoff.studies.calibration import stage as calibrate
 from tipoff.studies.core.stage import Stage
@@ -48,7 +48,7 @@ def run(study: Study, options: Options = Options()) -> dict:
         highfi = dict(zip(wanted, drawn.store.fill("highfi", list(wanted.values()))))
         require_success(highfi, "judge blind conditions")
         changes, floor, gates = (
-            compare.refinements(drawn),
+            refined.refinements(drawn),
             compare.floors(drawn, "reference", drawn.coarse),
             verdicts.gates(study.scene),
         )

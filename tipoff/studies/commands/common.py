@@ -11,10 +11,18 @@ from tipoff.studies.commands.running import guarded, study_of
 
 if TYPE_CHECKING:
     from tipoff.studies.core.study import Study
+    from tipoff.studies.render.document import Part
 
 
-def add(app: typer.Typer, name: str, summary: str, run: Callable[["Study"], dict]) -> None:
-    """Add a command to ``app``: its ``name``, its help ``summary``, the function it runs."""
+def add(
+    app: typer.Typer,
+    name: str,
+    summary: str,
+    run: Callable[["Study"], dict],
+    shown: Callable[[dict], list["Part"]] | None = None,
+) -> None:
+    """Add a command to ``app``: its ``name``, its help ``summary``, the function it runs, and what
+    of the result is ``shown`` in the terminal."""
 
     def command(
         scene: SceneName = "reference",
@@ -24,9 +32,13 @@ def add(app: typer.Typer, name: str, summary: str, run: Callable[["Study"], dict
         workers: Workers = None,
         json_: Json = False,
     ) -> None:
-        guarded(
+        found = guarded(
             lambda: run(study_of(scene, out, set_, element_size=element_size, workers=workers)),
             json_,
         )
+        if shown is not None and not json_:
+            from tipoff.studies.render import document
+
+            print(document.terminal(shown(found)))
 
     app.command(name, help=summary)(command)

@@ -1,27 +1,29 @@
 """Stage ``convergence``: the error of the finite-element reference, on one condition.
 
 Meshes and steps are refined separately, and the uncertainty of every quantity is estimated from its
-observed order (``studies.convergence.extrapolation``). Interface stiffness and quadrature are
-changed and compared. A straight slide shows the ripple of a constant force by the facets
+observed order (``studies.core.extrapolation``). Deflection and natural frequencies of the rail
+(``studies.convergence.statics``) stand beside the settled rates. Interface stiffness and quadrature
+are changed and compared. A straight slide shows the ripple of a constant force by the facets
 (``studies.convergence.ripple``). A finer mesh has a smaller step and fewer Gauss points per facet,
 which stay about 1 mm apart, so that their error appears in the quadrature alone. A wall has at
 least one element through its thickness, so coarse meshes differ in length and width only;
 ``meshes`` holds the numbers of elements. Finally both fidelities are timed at equal accuracy
 (``studies.convergence.equal_accuracy``)."""
 
+from collections.abc import Iterable, Sequence
 from dataclasses import asdict
 from pathlib import Path
+from typing import NamedTuple
 
 from tipoff.highfi.numerics import Numerics
-from tipoff.highfi.rail import refinement
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.scene import Scene
-from tipoff.studies.agreement import verdicts
-from tipoff.studies.agreement.stage import compliant, refined
-from tipoff.studies.convergence import contact_loads, equal_accuracy, ripple, stresses
-from tipoff.studies.convergence.extrapolation import Estimate, estimate
+from tipoff.studies.agreement import interface, refined, verdicts
+from tipoff.studies.agreement.stage import compliant
+from tipoff.studies.convergence import contact_loads, equal_accuracy, ripple, statics, stresses
 from tipoff.studies.convergence.quantities import RATE, quantities, settled_rate
-from tipoff.studies.core.progress import Board, say
+from tipoff.studies.core.extrapolation import Estimate, estimate
+from tipoff.studies.core.progress import Board
 from tipoff.studies.core.stage import Stage
 from tipoff.studies.core.store import Run
 from tipoff.studies.core.study import Study, require_success
@@ -40,27 +42,16 @@ def run(study: Study, condition: str | None = None) -> dict:
     scene = study.condition(name)
 
     def make() -> tuple[dict, list[Path]]:
-        asked, sizes = mesh_sizes(study, scene)
+        asked, sizes = refined.mesh_sizes(study, scene, study.settings.mesh_sizes, _LEAST)
         nominal = sizes[asked.index(study.settings.element_size)]
-        meshes = _finished(study, "convergence, meshes", _meshes(study, name, asked))
-        steps = _finished(study, "convergence, steps", _steps(study, name))
+        meshes = _finished(study, "convergence, meshes", refined.meshes(study, name, asked))
+        steps = _finished(
+            study, "convergence, steps", refined.steps(study, name, study.settings.safeties)
+        )
+        by_mesh = [*quantities(scene, meshes), *statics.quantities(scene, asked)]
         judged = [
-            *_judged(
-                scene,
-                "element size",
-                "m",
-                sizes,
-                meshes,
-                nominal,
-            ),
-            *_judged(
-                scene,
-                "time step",
-                "s",
-                [found.cost["dt_s"] for found in steps],
-                steps,
-                steps[0].cost["dt_s"],
-            ),
+            *_judged(_Parameter("element size", "m", sizes, nominal), by_mesh),
+            *_judged(_time_step(steps), quantities(scene, steps)),
         ]
         interface_stiffness, quadrature, ripples = (
             _interfaces(study, name),
@@ -104,73 +95,41 @@ def _finished(study: Study, title: str, wanted: list[Run]) -> list[Trajectory]:
     return runs
 
 
-def mesh_sizes(study: Study, scene: Scene) -> tuple[list[float], list[float]]:
-    """Element sizes (m) to ask for, coarsest first, and those of the meshes that they give. A file
-    gives one mesh for several sizes: the size of the other stages, or else the smallest, stands for
-    them, and finer ones follow until there are three, where they fit."""
-    given = list(study.settings.mesh_sizes)
-    own: dict[float, float] = {}
-    for asked, size in zip(given, refinement.sizes(scene, given)):
-        if own.get(size) != study.settings.element_size:
-            own[size] = asked
-    while len(own) < _LEAST:
-        finer = 0.5 * min(own)
-        if reason := refinement.too_fine(scene, finer):
-            say(f"  a finer mesh is left out: {reason}")
-            break
-        own[finer] = finer
-    return list(own.values()), list(own)
+class _Parameter(NamedTuple):
+    """What is refined: its name, unit, ``sizes``, coarsest first, and the ``nominal`` one, which all
+    other stages use."""
+
+    name: str
+    unit: str
+    sizes: list[float]
+    nominal: float
 
 
-def _meshes(study: Study, name: str, sizes: list[float]) -> list[Run]:
-    """One run a mesh; runs that other stages make too keep their name, so that the store has them
-    only once."""
-    settings = study.settings
-    known = {
-        2.0 * settings.coarse_size: "-coarsest",
-        settings.coarse_size: "-coarse",
-        settings.element_size: "",
-    }
-    return [
-        study.highfi(name, element_size=size, tag=known.get(size, f"-{1e3 * size:g}mm"))
-        for size in sizes
-    ]
-
-
-def _steps(study: Study, name: str) -> list[Run]:
-    known = {Numerics().safety: study.coarse(name), 0.45: refined(study, name)["step"]}
-    return [
-        known.get(safety) or study.coarse(name, tag=f"-safety-{safety:g}", safety=safety)
-        for safety in study.settings.safeties
-    ]
+def _time_step(steps: list[Trajectory]) -> _Parameter:
+    sizes = [found.cost["dt_s"] for found in steps]
+    return _Parameter("time step", "s", sizes, sizes[0])
 
 
 def _judged(
-    scene: Scene,
-    parameter: str,
-    unit: str,
-    sizes: list[float],
-    runs: list[Trajectory],
-    nominal: float,
+    parameter: _Parameter, values_of: Iterable[tuple[str, str, Sequence[float | None]]]
 ) -> list[dict]:
-    """One row a quantity. ``nominal_uncertainty`` is that at the ``nominal`` size, which all other
-    stages use."""
+    """One row a quantity. ``nominal_uncertainty`` is that at the nominal size."""
     rows = []
-    for quantity, its_unit, values in quantities(scene, runs):
-        found = estimate(sizes, values)
-        at_nominal, finest = values[sizes.index(nominal)], values[-1]
-        if quantity == stresses.PEAK and parameter == "element size":
+    for quantity, its_unit, values in values_of:
+        found = estimate(parameter.sizes, values)
+        at_nominal, finest = values[parameter.sizes.index(parameter.nominal)], values[-1]
+        if quantity == stresses.PEAK and parameter.unit == "m":
             found = Estimate(found.order, None, None, stresses.SINGULAR)
         rows.append(
             {
                 "quantity": quantity,
                 "unit": its_unit,
-                "parameter": parameter,
-                "sizes": sizes,
-                "size_unit": unit,
-                "values": values,
+                "parameter": parameter.name,
+                "sizes": parameter.sizes,
+                "size_unit": parameter.unit,
+                "values": list(values),
                 **asdict(found),
-                "nominal_size": nominal,
+                "nominal_size": parameter.nominal,
                 "nominal_uncertainty": None
                 if found.uncertainty is None or at_nominal is None or finest is None
                 else found.uncertainty + abs(at_nominal - finest),
@@ -184,19 +143,12 @@ def _interfaces(study: Study, name: str) -> list[dict]:
     contact = study.condition(name).contact
     if contact is None:
         return []
-    stiffness = contact.interface_stiffness
+    factors = study.settings.interface_stiffness_factors
     heads = [
-        {"factor": factor, "interface_stiffness_n_m3": factor * stiffness}
-        for factor in study.settings.interface_stiffness_factors
+        {"factor": factor, "interface_stiffness_n_m3": factor * contact.series_stiffness()}
+        for factor in factors
     ]
-    known = {1.0: study.coarse(name), 4.0: refined(study, name)["interface_stiffness"]}
-    wanted = [
-        known.get(factor)
-        or study.coarse(
-            name, {"contact.interface_stiffness": factor * stiffness}, f"-interface-{factor:g}"
-        )
-        for factor in study.settings.interface_stiffness_factors
-    ]
+    wanted = [interface.reference(study, name, factor) for factor in factors]
     return _compared(study, "convergence, interface stiffness", name, heads, wanted)
 
 
@@ -204,14 +156,7 @@ def _quadratures(study: Study, name: str) -> list[dict]:
     """Rows by Gauss points per facet edge; none without contact."""
     if study.condition(name).contact is None:
         return []
-    # The default rule needs no second run.
-    own = Numerics(element_size=study.settings.coarse_size).points_per_edge()
-    wanted = [
-        study.coarse(name)
-        if points == own
-        else study.coarse(name, tag=f"-quadrature-{points}", quadrature=points)
-        for points in study.settings.quadratures
-    ]
+    wanted = refined.quadratures(study, name, study.settings.quadratures)
     heads = [{"points_per_edge": points} for points in study.settings.quadratures]
     return _compared(study, "convergence, quadrature", name, heads, wanted)
 

@@ -51,6 +51,12 @@ class Settings:
         return tuple(ratio * self.element_size for ratio in self.mesh_ratios)
 
     @property
+    def judged_sizes(self) -> tuple[float, ...]:
+        """Element sizes (m) from which the reference is judged: those of the convergence study that
+        are no smaller than its own, which is the last."""
+        return tuple(ratio * self.element_size for ratio in self.mesh_ratios if ratio >= 1.0)
+
+    @property
     def hash(self) -> str:
         """Digest of the settings that can change a result: all but ``_BESIDE_RESULTS``."""
         return content_hash(

@@ -136,24 +136,30 @@ class Study:
             compliance or self.rigid_rails(scene),
         )
 
-    def rail_compliance(self, scene: Scene, judged: bool = True) -> RailCompliance | None:
-        """Rail compliance under the pads of ``scene``, on the mesh of the reference where agreement
-        is ``judged``. It is computed once for a rail with its pads and stored in this folder. None
-        without contact."""
+    def rail_compliance(
+        self, scene: Scene, judged: bool = True, element_size: float | None = None
+    ) -> RailCompliance | None:
+        """Rail compliance under the pads of ``scene``, on elements of ``element_size`` (m; None:
+        those of the reference) where agreement is ``judged``. It is computed once for a rail with
+        its pads and stored in this folder. None without contact."""
         if scene.contact is None:
             return None
         from tipoff.calibration import rail_compliance  # slow to load
 
-        size = self.settings.element_size
+        size = element_size or self.settings.element_size
         if not judged and not rail_compliance.kept_file(scene, self.folder, size).is_file():
             size = rail_compliance.fine_enough(scene, size)
         return rail_compliance.kept(scene, self.folder, size, say)
 
-    def rail_compliances(self, names: Iterable[str]) -> dict[str, RailCompliance | None]:
+    def rail_compliances(
+        self, names: Iterable[str], element_size: float | None = None
+    ) -> dict[str, RailCompliance | None]:
         """The same for each condition by name; conditions with the same rail and pads share it."""
         scenes = {name: self.condition(name) for name in names}
         found = {
-            digest(scene): self.rail_compliance(scene) for scene in scenes.values() if scene.contact
+            digest(scene): self.rail_compliance(scene, element_size=element_size)
+            for scene in scenes.values()
+            if scene.contact
         }
         return {name: found.get(digest(scene)) for name, scene in scenes.items()}
 

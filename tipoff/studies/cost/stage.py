@@ -19,9 +19,10 @@ from tipoff.lowfi.numerics import Numerics
 from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.studies.ablation import stage as ablation
-from tipoff.studies.agreement import verdicts
+from tipoff.studies.agreement import refined, verdicts
 from tipoff.studies.agreement.metrics import compare
-from tipoff.studies.agreement.stage import Candidate, candidates, refined
+from tipoff.studies.agreement.stage import Candidate, candidates
+from tipoff.studies.agreement.verdicts import Context
 from tipoff.studies.calibration import stage as calibrate
 from tipoff.studies.core import machine
 from tipoff.studies.core.compiling import warm_up
@@ -103,15 +104,9 @@ def surrogates(study: Study, conditions: Iterable[str] | None = None) -> list[Ca
 def _reference_points(study: Study, name: str) -> tuple[Trajectory, float | None, list[dict]]:
     settings = study.settings
     sizes = (2.0 * settings.coarse_size, settings.coarse_size, settings.element_size)
-    # The last two are runs of the agreement study.
-    wanted = [
-        study.highfi(name, element_size=sizes[0], tag="-coarsest"),
-        study.coarse(name),
-        study.highfi(name),
-        *refined(study, name).values(),
-    ]
-    coarsest, coarse, finest, *changed = study.store.fill("cost, meshes", wanted)
-    band = verdicts.largest(verdicts.settled_change(coarse, run) for run in (finest, *changed))
+    wanted = refined.meshes(study, name, sizes)  # runs of the agreement study
+    coarsest, coarse, finest = study.store.fill("cost, meshes", wanted)
+    band = Context([], refined.refinements(study, [name]), {}).uncertainty(name)[0]
     points = [
         {
             "model": FINITE_ELEMENTS,
@@ -128,9 +123,7 @@ def _reference_points(study: Study, name: str) -> tuple[Trajectory, float | None
             "wall_s": wall,
             "status": found.status,
         }
-        for size, found, wall in zip(
-            sizes, (coarsest, coarse, finest), _wall_times(wanted[: len(sizes)])
-        )
+        for size, found, wall in zip(sizes, (coarsest, coarse, finest), _wall_times(wanted))
     ]
     return finest, band, points
 

@@ -24,7 +24,7 @@ from tipoff.studies.runs.figures import Runs
 _SETTLED = (
     "Settled values of the finite-element reference: means over 2 ms after exit and burnout. "
     "Velocities are in the initial scene axes, rates are inertial in payload body axes. "
-    "Reference ±: the largest change when mesh, step or interface stiffness is refined. Surrogate "
+    "Reference ±: the largest uncertainty by mesh, step and contact cells. Surrogate "
     "error: the largest error of compliant contact over the axes."
 )
 

@@ -12,7 +12,7 @@ from tipoff.files import read_json, write_text
 from tipoff.mechanics.models import COMPLIANT, FINITE_ELEMENTS
 from tipoff.studies.agreement import growth_page, rails_page
 from tipoff.studies.agreement.other_rails import beside
-from tipoff.studies.agreement.verdicts import CONVERGED_DEG_S
+from tipoff.studies.agreement.page import by_factor
 from tipoff.studies.convergence import equal_accuracy
 from tipoff.studies.core.study import read
 from tipoff.studies.render.document import Part, markdown
@@ -49,7 +49,7 @@ def section(folder: Path) -> str:
     )
     parts: list[Part] = [
         _agreement(agreement),
-        *_stiffer(agreement["stiffer"]),
+        *by_factor(agreement["interface"]),
         *_growth(agreement["growth"]),
         _speed(agreement),
         *_equal(refined, cost),
@@ -105,26 +105,6 @@ def _pair(row: dict) -> str:
         f"{percent(row['rate_relative_l2'], '.2g')} / "
         f"{number(row['settled_rate_error_deg_s'], '.2g')}"
     )
-
-
-def _stiffer(found: list[dict]) -> list[Part]:
-    """How the models move together where the reference is not converged in the interface stiffness,
-    which both share."""
-    moved = [row for row in found if (row["reference_change_deg_s"] or 0.0) > CONVERGED_DEG_S]
-    if not moved:
-        return []
-    return [
-        "Where four times the interface stiffness alone takes the reference's convergence, on "
-        "the coarse mesh, and the surrogate on compliant\ncontact with the same interface stiffness:",
-        "\n".join(
-            f"- {row['condition']}: the reference moves by "
-            f"{number(row['reference_change_deg_s'], '.2g')} deg/s, the surrogate by "
-            f"{number(row['surrogate_change_deg_s'], '.2g')}; "
-            f"{number(row['apart_deg_s'], '.2g')} apart before, "
-            f"{number(row['apart_with_more_deg_s'], '.2g')} after"
-            for row in moved
-        ),
-    ]
 
 
 def _growth(found: list[dict]) -> list[Part]:

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tipoff.studies.convergence import extrapolation
+from tipoff.studies.core import extrapolation
 
 # Pressure recovery of a supersonic inlet on three grids, coarsest first: NASA Glenn, NPARC Alliance
 # CFD verification tutorial, "Examining spatial (grid) convergence".
@@ -57,19 +57,67 @@ def test_second_order_series_is_bounded_by_five_quarters_of_its_error(limit, slo
 @pytest.mark.parametrize(
     "values, order, uncertainty, words",
     [
-        ((1.0, 3.0, 2.0), None, 3.0, "not monotone: three times half the range"),
-        ((1.0, 2.0, 2.0), None, 1.5, "not monotone: three times half the range"),
-        ((0.0, 1.0, 5.0), -2.0, 7.5, "order below 0.5: three times half the range"),
-        ((0.0, 1.0, 2.0), 0.0, 3.0, "order below 0.5: three times half the range"),
-        ((0.0, 8.0, 9.0), 3.0, 1.25 / 3.0, "GCI, order limited to 2"),
+        ((1.0, 3.0, 2.0), None, 3.0, "alternating: first order, factor 3"),
+        ((1.0, 3.0, 0.5), None, 7.5, extrapolation.NOT_CONVERGED),
+        ((1.0, 2.0, 2.0), None, 0.75, "alternating: first order, factor 3"),
+        ((0.0, 1.0, 5.0), -2.0, 15.0, extrapolation.NOT_CONVERGED),
+        ((0.0, 1.0, 2.0), 0.0, 6.0, extrapolation.NOT_CONVERGED),
+        ((0.0, 8.0, 9.0), 3.0, 2.0, "GCI, order limited to 2, factor 3"),
+        (
+            (0.0, 5.0, 9.0),
+            math.log2(1.25),
+            12.0 / (math.sqrt(2.0) - 1.0),
+            "GCI, order limited to 0.5, factor 3",
+        ),
         ((7.0, 7.0, 7.0), None, 0.0, "no change at all"),
         ((None, 3.0, 2.0), None, None, "a run did not settle"),
+        ((3.0, 2.0), None, 3.0, "two values: first order, factor 3"),
+        ((2.0, 2.0), None, 0.0, "no change at all"),
+        ((2.0,), None, None, "one grid: not known"),
     ],
 )
 def test_values_that_show_no_order_say_so(values, order, uncertainty, words):
-    found = extrapolation.estimate(SIZES, values)
+    found = extrapolation.estimate(SIZES[-len(values) :], values)
     assert (found.uncertainty, found.method) == (pytest.approx(uncertainty), words)
     assert found.order == (None if order is None else pytest.approx(order, abs=1e-9))
+
+
+@given(
+    limit=st.floats(0.5, 5.0),
+    slope=st.sampled_from([-0.3, 0.3]),
+    order=st.floats(0.51, 2.0),
+    ratio=st.floats(1.5, 3.0),
+)
+def test_the_error_lies_within_the_estimate_and_beyond_the_last_change(limit, slope, order, ratio):
+    """Series of known order and limit: the estimate is 1.25 times the error at every order between
+    a half and two. Control: the last change, taken as the uncertainty, misses the error where the
+    order is low and the ratio small."""
+    sizes = (ratio**2, ratio, 1.0)
+    values = [limit + slope * size**order for size in sizes]
+    error, change = abs(slope), abs(values[1] - values[2])
+    assert extrapolation.estimate(sizes, values).uncertainty == pytest.approx(
+        1.25 * error, rel=1e-5
+    )
+    assert (change < error) == (ratio**order < 2.0) or ratio**order == pytest.approx(2.0)
+
+
+@pytest.mark.parametrize("order", [1.0, 1.5, 2.0])
+def test_two_grids_bound_the_error_of_any_order_from_the_first(order):
+    """Control: of order 0.3 they do not, which is why a third grid is run."""
+    values = [1.0 + 0.1 * size**order for size in (2.0, 1.0)]
+    assert extrapolation.estimate((2.0, 1.0), values).uncertainty >= 0.1
+    shallow = [1.0 + 0.1 * size**0.3 for size in (2.0, 1.0)]
+    assert extrapolation.estimate((2.0, 1.0), shallow).uncertainty < 0.1
+
+
+@given(st.lists(st.floats(-1.0, 1.0), min_size=3, max_size=3, unique=True))
+def test_an_oscillating_series_is_never_called_converged_by_its_last_change(values):
+    """Changes that do not fall say so, and their bound is above the last change."""
+    found = extrapolation.estimate(SIZES, values)
+    first, last = abs(values[0] - values[1]), abs(values[1] - values[2])
+    assert (found.method == extrapolation.NOT_CONVERGED) == (last >= first)
+    if last >= first:
+        assert found.uncertainty >= 3.0 * last
 
 
 def test_only_the_three_finest_grids_count():

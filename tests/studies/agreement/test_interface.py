@@ -1,0 +1,141 @@
+"""Agreement at other values of the interface stiffness, on stubbed runs."""
+
+import math
+from functools import partial
+
+import numpy as np
+import pytest
+
+from tests.studies.synthetic import flight
+from tipoff.scenes import load
+from tipoff.studies.agreement import interface, page, verdicts
+from tipoff.studies.agreement.refinement import Refinement
+from tipoff.studies.agreement.verdicts import Context
+from tipoff.studies.core.settings import defaults
+from tipoff.studies.core.store import Store
+from tipoff.studies.core.study import Study
+from tipoff.studies.render import document
+
+GATES = {"rate_relative_l2": 0.05, "velocity_relative_l2": 1e-3, "settled_rate_error_deg_s": 0.1}
+
+
+def context(uncertainty=0.01):
+    found = Refinement("phi15", "reference", "mesh", [2.0, 1.0], 0.0, 0.0, uncertainty, 1.0, "GCI")
+    return Context([], [found], GATES)
+
+
+@pytest.fixture
+def study(tmp_path):
+    return Study(load("tiny"), tmp_path, defaults("tiny"))
+
+
+def settle(monkeypatch, apart, grows=0.0):
+    """Runs whose rate about y rises with the stiffness, in the surrogate off by ``apart(factor)``;
+    a changed clearance moves it by ``grows`` (deg/s) after the last of three contacts. Returns the
+    labels of the runs that were asked for."""
+    nominal = load("tiny").contact
+    asked = []
+
+    def motion(run):
+        factor = run.scene.contact.interface_stiffness / nominal.interface_stiffness
+        rate = 3.0 + 0.2 * math.log2(factor)
+        rate += apart(factor) if run.fidelity == "lowfi" else 0.0
+        twin = run.scene.contact.clearance != nominal.clearance
+        force = np.zeros((601, 16, 3))
+        for begin, end in ((60, 100), (180, 220), (300, 340)):
+            force[begin:end, 0, 1] = 10.0
+
+        def rates(t):
+            later = np.select([t > 0.017, t > 0.011, t > 0.005], [1.0, 0.1, 0.01], 0.0)
+            return np.outer(np.radians(rate + twin * grows * later), [0.0, 1.0, 0.0])
+
+        return flight(rates, pad_force=force)
+
+    def fill(store, title, runs):
+        asked.extend(run.label for run in runs)
+        return [motion(run) for run in runs]
+
+    monkeypatch.setattr(Store, "fill", fill)
+    return asked
+
+
+def rows(study, uncertainty=0.01):
+    def request(study, name, overrides, tag):
+        return study.lowfi(name, None, overrides, tag)
+
+    return interface.rows(study, request, context(uncertainty))
+
+
+def test_both_models_move_and_agree_at_every_factor(study, monkeypatch):
+    """The reference moves by 0.4 deg/s either way, four times its limit of convergence: that is no
+    part of its uncertainty. No twin is run where the models agree."""
+    asked = settle(monkeypatch, lambda factor: 0.01)
+    found = rows(study)
+    assert [(row["factor"], row["verdict"]) for row in found] == [
+        (0.25, "agrees"),
+        (1.0, "agrees"),
+        (4.0, "agrees"),
+    ]
+    assert [row["reference_change_deg_s"] for row in found] == pytest.approx([0.4, 0.0, 0.4])
+    assert not any("clearance" in label for label in asked)
+    (whole,) = interface.combined([agreeing()], found)
+    assert whole["passes"] and whole["verdict"] == "agrees"
+
+
+def agreeing():
+    return {
+        "condition": "phi15",
+        "passes": True,
+        "reference_converged": True,
+        "verdict": "agrees",
+    }
+
+
+def test_a_miss_at_one_factor_is_a_miss_of_the_condition(study, monkeypatch):
+    """Control: the same row where the reference is not converged is judged at no factor."""
+    asked = settle(monkeypatch, lambda factor: 0.3 * (factor == 4.0))
+    found = rows(study)
+    assert [row["passes"] for row in found] == [True, True, False]
+    assert "misses: " in found[2]["verdict"] and found[2]["chaotic"] is False
+    assert sum("clearance" in label for label in asked) == 2
+    (whole,) = interface.combined([agreeing()], found)
+    assert (whole["passes"], whole["verdict"]) == (
+        False,
+        "misses at 4 times the interface stiffness",
+    )
+    unknown = rows(study, uncertainty=0.2)
+    assert {row["verdict"] for row in unknown} == {verdicts.NOT_CONVERGED}
+    (same,) = interface.combined([agreeing()], unknown)
+    assert same["passes"]
+
+
+def test_a_chaotic_reference_is_not_judged(study, monkeypatch):
+    """1 um of clearance grows a hundredfold over three contacts. Control: above, where it does not
+    grow, the same difference is a miss."""
+    settle(monkeypatch, lambda factor: 0.3 * (factor == 4.0), grows=5.0)
+    found = rows(study)
+    assert [row["verdict"] for row in found] == ["agrees", "agrees", interface.CHAOTIC]
+    (whole,) = interface.combined([agreeing()], found)
+    assert whole["passes"] and [item["verdict"] for item in whole["interface"]][2] == (
+        interface.CHAOTIC
+    )
+
+
+def test_verdicts_are_on_the_page_in_markdown_and_in_the_terminal(study, monkeypatch):
+    settle(monkeypatch, lambda factor: 0.3 * (factor == 4.0))
+    found = rows(study)
+    words = (
+        "1 of 1 judged conditions agree at 0.25 times, 1 of 1 judged conditions agree at 1 times"
+    )
+    for text in (
+        document.markdown(page.interface(found)),
+        document.markdown(page.by_factor(found)),
+        document.terminal(page.by_factor(found)),
+    ):
+        assert words in " ".join(text.split()) and "misses: " in text and "phi15" in text
+    assert page.interface([]) == page.by_factor([]) == []
+
+
+def test_a_scene_without_contact_has_no_interface(study):
+    free = Study(study.scene.replace({"contact": None}), study.folder, study.settings)
+    assert interface.rows(free, partial(pytest.fail), context()) == []

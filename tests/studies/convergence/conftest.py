@@ -1,0 +1,42 @@
+"""The convergence study on stubbed runs."""
+
+from typing import ClassVar
+
+import pytest
+
+from tests.studies.convergence import stub
+from tipoff import scenes
+from tipoff.studies.convergence import stage as convergence
+from tipoff.studies.core import store as store_module
+from tipoff.studies.core.settings import defaults
+from tipoff.studies.core.study import Study
+from tipoff.studies.cost import timing
+
+
+@pytest.fixture
+def asked(monkeypatch):
+    """Labels of the runs that were made, in order; ``asked.failing`` maps a label to what became of
+    it instead."""
+
+    class Labels(list):
+        failing: ClassVar[dict[str, str]] = {}
+
+    made = Labels()
+
+    def execute(run, progress=None, threads=None, **kept):
+        made.append(run.label)
+        return stub.motion(run, status=made.failing.get(run.label, "exited"))
+
+    monkeypatch.setattr(store_module, "execute", execute)
+    monkeypatch.setattr(store_module, "prepare", lambda run: None)
+    monkeypatch.setattr(timing, "warm_up", lambda run: None)
+    monkeypatch.setattr(timing, "execute", lambda run, progress=None: stub.motion(run))
+    monkeypatch.setattr(Study, "rail_compliances", lambda study, names: dict.fromkeys(names))
+    monkeypatch.setattr(convergence.ripple, "measure", stub.rippling)
+    monkeypatch.setattr(convergence.statics, "quantities", stub.resting)
+    return made
+
+
+@pytest.fixture
+def study(tmp_path, asked):
+    return Study(scenes.load("tiny"), tmp_path / "tiny", defaults("tiny"))

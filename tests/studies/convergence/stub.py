@@ -1,0 +1,75 @@
+"""Stubbed runs of the convergence study, whose rates follow a law."""
+
+import math
+
+import numpy as np
+
+from tests.studies.synthetic import flight
+from tipoff import scenes
+from tipoff.studies.convergence.ripple import Ripple
+
+SURROGATE_ERROR = 1.2  # deg/s
+NOMINAL_INTERFACE_STIFFNESS = scenes.load("tiny").contact.interface_stiffness
+
+
+def settled(run):
+    """Rates (deg/s): x errs with the square of the element size (mm) and of the step, y jumps to
+    and fro, z never changes; the surrogate is off by ``SURROGATE_ERROR`` from the finest mesh."""
+    if run.fidelity == "lowfi":
+        return 3.0 + 1e-3 * 16.0 + 0.1 * 0.9**2 + SURROGATE_ERROR, 1.0, 2.0
+    size, dt = 1e3 * run.numerics.element_size, step(run)
+    interface_stiffness = (
+        run.scene.contact.interface_stiffness / NOMINAL_INTERFACE_STIFFNESS
+        if run.scene.contact
+        else 1.0
+    )
+    return (
+        3.0 + 1e-3 * size**2 + 0.1 * dt**2 + 0.01 * math.log2(interface_stiffness),
+        {8.0: 1.3}.get(size, 1.0),
+        2.0,
+    )
+
+
+def step(run):
+    """The step (s), as if the limit were 1 s."""
+    return run.numerics.safety if run.fidelity == "highfi" else 1.0
+
+
+def motion(run, **parts):
+    force = np.zeros((601, 16, 3))
+    if run.scene.contact:
+        force[:, 2, 1] = 20.0
+    cost = {
+        "wall_s": 1.0,
+        "compile_s": 0.0,
+        "steps": 10,
+        "dt_s": step(run),
+        "elements": 8,
+        "ns_per_element_step": 1.0,
+    }
+    return flight(
+        lambda t: np.tile(np.radians(settled(run)), (t.size, 1)),
+        pad_force=force,
+        cost=cost,
+        **parts,
+    )
+
+
+def rippling(scene, numerics):
+    """A ripple that falls with the points on a facet; none without contact."""
+    return scene.contact and Ripple(0.04 / numerics.points_per_edge(), 1e-3, 750.0, 6, 200.0)
+
+
+def resting(scene, sizes):
+    """A deflection that errs with the size itself; none without contact."""
+    if scene.contact:
+        yield "deflection under 100 N", "µm", [10.0 - 100.0 * size for size in sizes]
+
+
+def row(found, parameter, quantity):
+    (matching,) = [
+        item
+        for item in found["quantities"]
+        if (item["parameter"], item["quantity"]) == (parameter, quantity)
+    ]
+    return matching

@@ -1,0 +1,168 @@
+"""Agreement at a quarter, once and four times the interface stiffness.
+
+The interface stiffness is a property of the launcher that is known to a factor only. Both models
+have it, so both move with it, and the reference is not judged by it. The claim of agreement must
+hold for any value: both models are compared at each, on the coarse mesh and with the rail
+compliance of that same mesh, so that the mesh is no part of their difference.
+
+A condition is judged at a stiffness where the reference is converged and not chaotic. Chaos is
+looked for where the models miss a limit: there the reference also runs with 1 um more and less
+clearance.
+"""
+
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+from tipoff.mechanics.models import FINITE_ELEMENTS
+from tipoff.mechanics.trajectory import Trajectory
+from tipoff.studies.agreement import growth, verdicts
+from tipoff.studies.agreement.metrics import compare
+from tipoff.studies.agreement.verdicts import Context
+from tipoff.studies.core.store import Run
+from tipoff.studies.core.study import Study
+
+FACTORS = (0.25, 1.0, 4.0)
+CHAOTIC = "reference chaotic"
+
+
+class _Pair(NamedTuple):
+    """Both models on one condition at one factor of the stiffness."""
+
+    condition: str
+    factor: float
+    reference: Trajectory
+    surrogate: Trajectory
+
+
+def overrides(study: Study, factor: float) -> dict[str, float]:
+    """Changes of a scene with contact for ``factor`` times its interface stiffness."""
+    assert study.scene.contact is not None  # as for every caller
+    return {} if factor == 1.0 else study.scene.contact.stiffened(factor)
+
+
+def reference(study: Study, name: str, factor: float) -> Run:
+    """The run of the reference on the coarse mesh."""
+    tag = "" if factor == 1.0 else f"-interface-{factor:g}"
+    return study.coarse(name, overrides(study, factor), tag)
+
+
+def rows(study: Study, request: Callable[..., Run], context: Context) -> list[dict]:
+    """Verdicts on the scene's refined conditions; none without contact. ``request`` makes runs of
+    the surrogate on the compliance of the coarse mesh from condition, overrides and tag."""
+    if study.scene.contact is None:
+        return []
+    names = [name for name in study.conditions if name in study.scene.agreement.refined]
+    pairs = _pairs(study, request, names)
+    nominal = {pair.condition: pair for pair in pairs if pair.factor == 1.0}
+    found = [_row(study, pair, nominal[pair.condition], context) for pair in pairs]
+    missed = [row for row in found if row["reference_converged"] and not row["passes"]]
+    chaotic = _chaotic(study, [(row["condition"], row["factor"]) for row in missed], context)
+    for row in missed:
+        row["chaotic"] = chaotic[row["condition"], row["factor"]]
+        if row["chaotic"]:
+            row["verdict"] = CHAOTIC
+    return found
+
+
+def combined(agreement: Sequence[dict], found: Sequence[dict]) -> list[dict]:
+    """Rows of the agreement table with the verdicts at each factor under ``interface``. A condition
+    agrees where it does at every factor at which it is judged."""
+    return [
+        _combined(row, [item for item in found if item["condition"] == row["condition"]])
+        for row in agreement
+    ]
+
+
+def _combined(row: dict, own: list[dict]) -> dict:
+    misses = [
+        item
+        for item in own
+        if item["reference_converged"] and not item["passes"] and not item["chaotic"]
+    ]
+    verdicts_of = [{"factor": item["factor"], "verdict": item["verdict"]} for item in own]
+    if not (row["passes"] and row["reference_converged"] and misses):
+        return row | {"interface": verdicts_of}
+    where = ", ".join(f"{item['factor']:g}" for item in misses)
+    return row | {
+        "interface": verdicts_of,
+        "passes": False,
+        "verdict": f"misses at {where} times the interface stiffness",
+    }
+
+
+def _pairs(study: Study, request: Callable[..., Run], names: Sequence[str]) -> list[_Pair]:
+    places = [(name, factor) for name in names for factor in FACTORS]
+    wanted = [
+        run
+        for name, factor in places
+        for run in (
+            reference(study, name, factor),
+            request(study, name, overrides(study, factor), f"-interface-{factor:g}-coarse"),
+        )
+    ]
+    runs = iter(study.store.fill("interface stiffness", wanted))
+    return [_Pair(name, factor, next(runs), next(runs)) for name, factor in places]
+
+
+def _row(study: Study, pair: _Pair, nominal: _Pair, context: Context) -> dict:
+    assert study.scene.contact is not None
+    difference = compare(pair.reference, pair.surrogate)
+    gates = {
+        name: verdicts.gate(getattr(difference, name), limit)
+        for name, limit in context.limits(context.floor(pair.condition)[0]).items()
+    }
+    converged = context.converged(pair.condition)
+    return {
+        "condition": pair.condition,
+        "factor": pair.factor,
+        "interface_stiffness_n_m3": pair.factor * study.scene.contact.series_stiffness(),
+        "reference_change_deg_s": verdicts.settled_change(nominal.reference, pair.reference),
+        "surrogate_change_deg_s": verdicts.settled_change(nominal.surrogate, pair.surrogate),
+        "rate_relative_l2": difference.rate_relative_l2,
+        "velocity_relative_l2": difference.velocity_relative_l2,
+        "settled_rate_error_deg_s": difference.settled_rate_error_deg_s,
+        "reference_converged": converged,
+        "chaotic": None,
+        "passes": all(item["passes"] for item in gates.values()),
+        "verdict": verdicts.verdict(gates, converged, bool(pair.reference.pad_force.any())),
+    }
+
+
+def _chaotic(
+    study: Study, places: Sequence[tuple[str, float]], context: Context
+) -> dict[tuple[str, float], bool | None]:
+    """Whether 1 um of clearance grows from contact to contact of the reference, by condition and
+    factor; None where a run did not settle."""
+    assert study.scene.contact is not None
+    change = study.settings.clearance_change
+    clearances = [
+        value
+        for value in (
+            study.scene.contact.clearance + change,
+            study.scene.contact.clearance - change,
+        )
+        if value >= 0.0
+    ]
+    wanted = [
+        run
+        for name, factor in places
+        for run in (
+            reference(study, name, factor),
+            *(
+                study.coarse(
+                    name,
+                    overrides(study, factor) | {"contact.clearance": clearance},
+                    f"-interface-{factor:g}-clearance-{number}",
+                )
+                for number, clearance in enumerate(clearances)
+            ),
+        )
+    ]
+    runs = iter(study.store.fill("interface stiffness, chaos", wanted))
+    gate = context.gates["settled_rate_error_deg_s"]
+    found = {}
+    for name, factor in places:
+        nominal, *twins = (next(runs) for _ in range(1 + len(clearances)))
+        grown = growth.growth(name, FINITE_ELEMENTS, nominal, twins, change, gate)
+        found[name, factor] = grown.chaotic
+    return found
