@@ -4,11 +4,12 @@ import threading
 import time as clock
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
 
-from tipoff.highfi.dynamics import ending, observe, samples
+from tipoff.highfi.dynamics import ending, linear_range, observe, samples
 from tipoff.highfi.dynamics.checkpoint import Checkpoint, restore
 from tipoff.highfi.dynamics.loads import body_force_in_frame, thrust_load
 from tipoff.highfi.dynamics.step import advance, evaluate, kick_bodies
@@ -17,6 +18,7 @@ from tipoff.highfi.dynamics.system import System, build, initial_state
 from tipoff.highfi.faults import fault
 from tipoff.highfi.mesh.rail_mesh import RailMesh
 from tipoff.highfi.numerics import Numerics
+from tipoff.highfi.rail import spin
 from tipoff.highfi.rail.fit import check_fit
 from tipoff.highfi.rail.memory_check import check_before, check_mesh
 from tipoff.highfi.rail.scene_mesh import geometry, make_mesh
@@ -59,6 +61,7 @@ def prepare(scene: Scene, numerics: Numerics | None = None) -> RailMesh:
             MESHES[key] = mesh
         mesh = MESHES[key]
     check_fit(scene, mesh)
+    spin.check(scene, mesh)
     return mesh
 
 
@@ -131,6 +134,8 @@ class Loop:
         self.state, self.active = initial_state(system)
         self.exit, self.book = ending.build(system)
         self.walls = np.unique(system.surface.facets)
+        self.small = linear_range.small(system)  # m
+        self.slow = spin.rate_never_checked(scene, system.mesh)  # rad/s, of the platform
         self.milestones = outcome.milestones(scene, system.model)
         self.last = scene.output.last(scene.duration)
         self.most = int(scene.duration / stepping.dt_s * (1.0 + _ROUNDING))  # steps
@@ -250,6 +255,8 @@ class Loop:
         row = observe.sample(self.system, self.team, state, before, observe.moving(state))
         observe.restore(state, before)
         self.message = fault(self, row)
+        if keep and not self.message:
+            self.message = self._out_of_range(row)
         if keep and np.isfinite(row).all():
             self.rows.append(row)
             self.work.append(state.work.copy())
@@ -257,6 +264,23 @@ class Loop:
                 state.face_force @ rotation.matrices(state.platform.quaternion[None])[0].T
             )
             self._monitor_stress()
+
+    @cached_property
+    def lowest_frequency(self) -> float:
+        """That of the rails, held at their mounts (rad/s)."""
+        return spin.lowest_frequency(self.scene, self.system.mesh)
+
+    def _out_of_range(self, row: np.ndarray) -> str:
+        """Why the rails are no longer linear at the sample ``row``, or nothing."""
+        words = ""
+        if len(self.rows) % -(-linear_range.EVERY // self.stepping.steps_per_sample) == 0:
+            words = linear_range.fault(self.system, self.state.displacement, self.small)
+        rate = row[observe.PLATFORM_RATE : observe.PLATFORM_RATE + 3]
+        size = float(np.linalg.norm(rate))
+        if not words and self.system.frame is not None and size > self.slow:
+            found = spin.too_fast(size, self.lowest_frequency)
+            words = "; expected ".join(found) if found else ""
+        return f"{words}, at {self.steps * self.stepping.dt_s:.6g} s" if words else ""
 
     def _monitor_stress(self) -> None:
         """Stresses at the sample just taken."""
