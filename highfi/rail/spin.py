@@ -21,6 +21,7 @@ from tipoff.highfi.statics import assembly, vibration
 from tipoff.highfi.statics.solve import Clamped
 from tipoff.mechanics import model as scene_model
 from tipoff.scenes.effects import thrust
+from tipoff.scenes.effects.mount_stiffness import MountStiffness
 from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.rail import MaterialTable, MeshTable, SectionTable
 from tipoff.scenes.scene import Scene
@@ -52,7 +53,10 @@ def expected_rate(scene: Scene) -> float:
 
 def rate_never_checked(scene: Scene, mesh: RailMesh) -> float:
     """Rate (rad/s) of the platform that is surely within the limit: that for a strip as thin as one
-    element and as long as the rail, held at one end, which no held rail is softer than."""
+    element and as long as the rail, held at one end, which no rail on rigid mounts is softer than.
+    Zero on joints, which may be as soft as they like."""
+    if scene.rail.joint() is not None:
+        return 0.0
     material = scene.rail.material
     is_section = isinstance(scene.rail, SectionTable)
     thickness = scene.rail.thickness if is_section else spacing(mesh)
@@ -65,25 +69,34 @@ def lowest_frequency(scene: Scene, mesh: RailMesh) -> float:
     """Lowest frequency (rad/s) of the rails held at their mounts, on ``mesh``; where that is
     large, of a built-in section in elements of at least 4 mm, and of a mesh file in its own."""
     if len(mesh.points) <= _FEW:
-        return lowest_of(mesh, scene.rail.material)
-    key = (geometry(scene), scene.rail.material.model_dump_json())
+        return lowest_of(mesh, scene.rail.material, scene.rail.joint())
+    key = (geometry(scene), scene.rail.model_dump_json())
     if key not in _FREQUENCIES:
         if isinstance(scene.rail, SectionTable):
             mesh = make_mesh(scene, max(_COARSE, scene.rail.thickness))
         elif isinstance(scene.rail, MeshTable):
             mesh = read(scene.rail.path())
-        _FREQUENCIES[key] = lowest_of(mesh, scene.rail.material)
+        _FREQUENCIES[key] = lowest_of(mesh, scene.rail.material, scene.rail.joint())
     return _FREQUENCIES[key]
 
 
-def lowest_of(mesh: RailMesh, material: MaterialTable) -> float:
-    """Lowest frequency (rad/s) of all solids of ``mesh`` that mounts hold, infinite without one."""
+def lowest_of(
+    mesh: RailMesh, material: MaterialTable, joint: MountStiffness | None = None
+) -> float:
+    """Lowest frequency (rad/s) of all solids of ``mesh`` that mounts hold, rigid ones or on a
+    ``joint``; infinite without one."""
     found = [np.inf]
     for solid, _ in pieces.distinct(mesh):
+        if not solid.surfaces["mount"].size:
+            continue
         operator = assembly.build(
-            solid, material.density, material.youngs_modulus, material.poisson_ratio
+            solid,
+            material.density,
+            material.youngs_modulus,
+            material.poisson_ratio,
+            joint=joint,
         )
-        if operator.free.all() or not operator.free.any():
+        if not operator.free.any():
             continue
         clamped = Clamped(operator)
         mass = np.repeat(operator.mass, 3)[clamped.free]

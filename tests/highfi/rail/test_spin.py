@@ -7,6 +7,8 @@ from scipy.integrate import quad
 
 from tests.highfi.support import COARSE, bar_mesh, loop_on, tiny
 from tipoff import highfi
+from tipoff.highfi.elements import hexahedron
+from tipoff.highfi.mesh import facets
 from tipoff.highfi.rail import spin
 from tipoff.highfi.statics import assembly, vibration
 from tipoff.highfi.statics.solve import Clamped
@@ -60,7 +62,7 @@ def frequency_of(samples, interval, guess):
     return trials[int(np.argmin(misses))]
 
 
-@pytest.mark.case("O53")
+@pytest.mark.case("O57")
 @pytest.mark.parametrize("axis, kept, left_out", [("z", 0.0, 1.193), ("y", -1.0, 1.193)])
 def test_a_turning_bar_lacks_the_stiffening_of_its_tension(axis, kept, left_out):
     """At the limit a bar swings at w^2 + kept W^2, as its frame tells, and should at that and
@@ -122,6 +124,21 @@ def test_a_fast_platform_is_refused_with_both_numbers():
     (fault,) = caught.value.faults
     assert fault.key == "initial.platform_rate, thrust"
     assert f"{1.01 * most:.4g} rad/s" in fault.given and f"at most {most:.4g}" in fault.expected
+
+
+def test_soft_mounts_lower_the_limit():
+    """On joints so soft that the rails swing on them as rigid bodies, w is that of the softer of
+    their motions: rocking about a strip, below the translation across, (k A / m)^0.5."""
+    soft = {"rail__mount_stiffness": {"normal": 1e6, "shear": 1e6}}
+    scene = tiny(**soft)
+    mesh = highfi.prepare(scene, COARSE)
+    found = spin.lowest_frequency(scene, mesh)
+    area = facets.area(mesh.points, mesh.surfaces["mount"])
+    volume = hexahedron.basis(mesh.points[mesh.cells]).dx.sum()
+    across = np.sqrt(1e6 * area / (volume * scene.rail.material.density))
+    assert 0.05 * across < found <= across * (1.0 + 1e-9)
+    with pytest.raises(SceneError, match="lowest frequency of the rails"):
+        highfi.prepare(tiny(**soft, initial={"platform_rate": {"x": 0.11 * across}}), COARSE)
 
 
 def test_an_arm_of_ten_metres_is_refused_at_a_slow_rate():
