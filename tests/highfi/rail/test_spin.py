@@ -62,7 +62,7 @@ def frequency_of(samples, interval, guess):
     return trials[int(np.argmin(misses))]
 
 
-@pytest.mark.case("O57")
+@pytest.mark.case("O60")
 @pytest.mark.parametrize("axis, kept, left_out", [("z", 0.0, 1.193), ("y", -1.0, 1.193)])
 def test_a_turning_bar_lacks_the_stiffening_of_its_tension(axis, kept, left_out):
     """At the limit a bar swings at w^2 + kept W^2, as its frame tells, and should at that and
