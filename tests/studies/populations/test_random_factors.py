@@ -118,12 +118,23 @@ def test_a_case_has_the_same_bits_in_every_chunk_and_the_reading_is_part_of_the_
     assert 0.9 * SCENE.contact.clearance < np.abs(inside).max() <= SCENE.contact.clearance
 
 
+def test_the_interface_stiffness_is_known_to_a_factor():
+    """Its logarithm is uniform from a quarter to four times the scene's value. Control: the number
+    itself is not, and no other reading draws it."""
+    key = "contact.interface_stiffness"
+    factors = drawn(Reading(interface=True))[key] / SCENE.contact.interface_stiffness
+    assert stats.kstest(np.log2(factors), stats.uniform(-2.0, 4.0).cdf).pvalue > 1e-3
+    assert stats.kstest(factors, stats.uniform(0.25, 3.75).cdf).pvalue < 1e-6
+    assert key not in drawn(Reading(), 10)
+
+
 def test_contradicting_options_are_refused_with_every_fault():
     with pytest.raises(SceneError) as refused:
         random_factors.source(
-            free_flight.scene(), Reading("components", "shared", initial=True), 100, 1
+            free_flight.scene(), Reading("components", "shared", "redraw", True, True), 100, 1
         )
-    assert "--angles" in str(refused.value) and "--initial" in str(refused.value)
+    for option in ("--angles", "--initial", "--interface"):
+        assert option in str(refused.value)
 
 
 @pytest.mark.case("O47")

@@ -52,6 +52,10 @@ Rule = Annotated[
 Initial = Annotated[
     bool, typer.Option("--initial", help="Draw the initial position inside the clearance too.")
 ]
+Interface = Annotated[
+    bool,
+    typer.Option("--interface", help="Draw the interface stiffness too, within a factor of four."),
+]
 Limit = Annotated[
     list[str] | None,
     typer.Option(
@@ -77,6 +81,7 @@ def add(app: typer.Typer) -> None:
         angles: Direction = Angles.independent,
         rule: Rule = Rules.redraw,
         initial: Initial = False,
+        interface: Interface = False,
         limit: Limit = None,
         model: Surrogate = None,
         workers: Workers = None,
@@ -96,7 +101,7 @@ def add(app: typer.Typer) -> None:
             from tipoff.studies.montecarlo import stage
             from tipoff.studies.populations.random_factors import Reading
 
-            how = Reading(reading.value, angles.value, rule.value, initial)
+            how = Reading(reading.value, angles.value, rule.value, initial, interface)
             options = stage.Options(
                 cases, seed, how, tuple(limit or stage.Options.limits), model and model.value
             )

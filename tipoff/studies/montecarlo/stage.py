@@ -143,7 +143,7 @@ def _readings(study: Study, options: Options, model: Surrogate, found: Populatio
     rows, cases = [], min(_COMPARED, options.cases)
     here = [_settled(item, found, cases) for item in _RATES]
     for place, reading in enumerate(READINGS):
-        if reading.initial and study.scene.contact is None:
+        if reading.needs_contact and study.scene.contact is None:
             continue
         drawn = random_factors.source(study.scene, reading, cases, options.seed + 1 + place)
         other = population.run(study, f"{NAME}-reading", model, drawn)

@@ -23,6 +23,10 @@ from tipoff.scenes.scene import Scene
 from tipoff.scenes.uncertainty import Uncertainty
 from tipoff.studies.populations.derived import Derived, Numbers, around_zero, law
 
+# Known to this factor either way: ground metal under light pressure, docs/interface_stiffness.md.
+INTERFACE_FACTOR = 4.0
+_INTERFACE = "contact.interface_stiffness"
+_SCENE_KEYS = ("initial.", _INTERFACE)  # of draws that are overrides as they are
 VALUES, ANGLES, RULES = (
     ("signed", "half", "components"),
     ("independent", "shared"),
@@ -59,13 +63,15 @@ ERRORS = {
 
 @dataclass(frozen=True)
 class Reading:
-    """A reading of Table 3: ``values`` and ``angles`` as above, the ``rule`` of truncation, and
-    ``initial``, whether the initial position inside the clearance is random too."""
+    """A reading of Table 3: ``values`` and ``angles`` as above, the ``rule`` of truncation; whether
+    the ``initial`` position inside the clearance is random too, and the ``interface`` stiffness, its
+    logarithm uniform within a factor of ``INTERFACE_FACTOR``."""
 
     values: str = "signed"
     angles: str = "independent"
     rule: str = "redraw"
     initial: bool = False
+    interface: bool = False
 
     @property
     def words(self) -> str:
@@ -85,7 +91,14 @@ class Reading:
             "clip": "clipped at 3 sigma",
             "none": "not truncated",
         }[self.rule]
-        return f"{what}{where}, {cut}{', anywhere in the clearance' if self.initial else ''}"
+        place = ", anywhere in the clearance" if self.initial else ""
+        interface = ", any interface stiffness" if self.interface else ""
+        return f"{what}{where}, {cut}{place}{interface}"
+
+    @property
+    def needs_contact(self) -> bool:
+        """Whether a scene without contact has not what is drawn."""
+        return self.initial or self.interface
 
 
 # The readings that are compared, the default first.
@@ -98,6 +111,7 @@ READINGS = (
     Reading(rule="clip"),
     Reading(rule="none"),
     Reading(initial=True),
+    Reading(interface=True),
 )
 
 
@@ -116,6 +130,8 @@ def source(scene: Scene, reading: Reading, cases: int, seed: int) -> Derived:
         )
     if reading.initial and not (scene.contact is not None and scene.contact.clearance > 0.0):
         faults.append(Fault("--initial", "contact.clearance", "nothing", "a clearance"))
+    if reading.interface and scene.contact is None:
+        faults.append(Fault("--interface", "contact", "nothing", "contact"))
     if faults:
         raise SceneError(faults)
     return Derived(
@@ -143,12 +159,17 @@ def _laws(scene: Scene, reading: Reading) -> dict[str, Distribution]:
         assert scene.contact is not None  # or ``source`` has refused the reading
         gap = scene.contact.clearance
         found |= {f"initial.position.{axis}": law("uniform", low=-gap, high=gap) for axis in "yz"}
+    if reading.interface:
+        assert scene.contact is not None
+        nominal = scene.contact.interface_stiffness
+        low, high = nominal / INTERFACE_FACTOR, nominal * INTERFACE_FACTOR
+        found[_INTERFACE] = law("log-uniform", low=low, high=high)
     return found
 
 
 def _overrides(reading: Reading, drawn: Numbers) -> Numbers:
     """Overrides of the scene from the draws."""
-    found = {key: values for key, values in drawn.items() if key.startswith("initial.")}
+    found = {key: values for key, values in drawn.items() if key.startswith(_SCENE_KEYS)}
     for name, error in ERRORS.items():
         if reading.values == "components":
             size, angle = _polar(drawn[f"{name} y"], drawn[f"{name} z"])
