@@ -10,6 +10,7 @@ tetrahedra, on request, have ten nodes, about ``element_size`` apart, and edges 
 faces. Boxes that name parts of the faces are drawn onto them (``meshes.imprint``).
 """
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 
@@ -37,6 +38,9 @@ class Filling(NamedTuple):
     tetrahedra: bool = False  # else each is split into four hexahedra; bricks too have these
     cost: Cost = lambda points, cells: 0.0  # of a mesh, by which the best one is taken
     enough: float = 0.0  # cost below which no further mesh is tried
+    fits: Callable[[float], None] = lambda volume: (
+        None
+    )  # raises for a volume (m3) too large to mesh
 
 
 _HEXAHEDRA = Filling()
@@ -49,7 +53,7 @@ def build(
     the borders of the ``boxes`` between elements.
 
     Raises ValueError for a file without a solid that gmsh can read, imprint.Outside for boxes in
-    which no face lies, GmshUnavailable where gmsh does not load.
+    which no face lies, GmshUnavailable where gmsh does not load, and what ``filling.fits`` raises.
     """
     with generator.session("solid") as gmsh:
         gmsh.option.setString("Geometry.OCCTargetUnit", "M")
@@ -62,6 +66,7 @@ def build(
         if not gmsh.model.getEntities(3):
             raise ValueError("it holds no solid")
         areas = imprint.areas(gmsh, boxes)
+        filling.fits(sum(gmsh.model.occ.getMass(*solid) for solid in gmsh.model.getEntities(3)))
         try:
             return Meshed(*_elements(gmsh, element_size, boxes, filling), areas)
         except Exception as fault:  # gmsh knows no other class

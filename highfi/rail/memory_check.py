@@ -1,12 +1,12 @@
 """Memory check: a mesh that does not fit into the memory of this process is refused, before it is made
-where its size can be predicted."""
+where its size can be predicted (``memory_fault`` for files)."""
 
 from tipoff.highfi.mesh.rail_mesh import RailMesh
 from tipoff.highfi.rail import memory_estimate
+from tipoff.highfi.rail.memory_fault import too_large
 from tipoff.highfi.rail.scene_mesh import geometry
 from tipoff.highfi.statics import assembly
 from tipoff.meshes import l_rail
-from tipoff.scenes.faults import Fault, SceneError
 from tipoff.scenes.rail import SectionTable
 from tipoff.scenes.scene import Scene
 
@@ -30,7 +30,7 @@ def check_before(scene: Scene, element_size: float) -> None:
         size = element_size
         while needed(size) > left and size < _COARSEST:
             size *= _COARSER
-        raise _too_large(
+        raise too_large(
             scene,
             element_size,
             l_rail.elements(section, element_size),
@@ -51,17 +51,6 @@ def check_mesh(scene: Scene, element_size: float, mesh: RailMesh) -> None:
     if needed > left:  # an estimate as if no two elements were equal; count the classes only now
         needed = memory_estimate.of_mesh(elements, nodes, len(assembly.shape_classes(mesh)[1]))
     if needed > left:
-        raise _too_large(
+        raise too_large(
             scene, element_size, elements, needed, left, "a larger one, or a coarser file"
         )
-
-
-def _too_large(
-    scene: Scene, element_size: float, elements: int, needed: float, left: float, expected: str
-) -> SceneError:
-    given = (
-        f"{1e3 * element_size:.4g} mm: {elements:,} elements take about "
-        f"{memory_estimate.in_words(needed)} of memory, and "
-        f"{memory_estimate.in_words(left)} can be had"
-    )
-    return SceneError([Fault(scene.name, "element_size", given, expected)])

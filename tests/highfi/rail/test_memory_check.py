@@ -7,10 +7,12 @@ import pytest
 from typer.testing import CliRunner
 
 from tests.highfi.support import tiny
+from tests.meshes.test_solid import drawn, drilled, flat, scene_of
 from tipoff import highfi
 from tipoff.highfi import Numerics
+from tipoff.highfi.mesh import split
 from tipoff.highfi.rail import memory_estimate
-from tipoff.highfi.rail.scene_mesh import geometry
+from tipoff.highfi.rail.scene_mesh import geometry, make_mesh
 from tipoff.meshes import l_rail
 from tipoff.scenes import SceneError, load
 from tipoff.studies.cli import app
@@ -124,6 +126,31 @@ def test_mesh_of_a_file_that_leaves_too_little_is_refused(monkeypatch):
         lambda: 0.9 * memory_estimate.of_mesh(elements, nodes, elements),
     )
     assert highfi.prepare(scene).cells.shape == (elements, nodes)
+
+
+def test_a_file_is_not_split_where_its_parts_do_not_fit(monkeypatch):
+    """An element size of 4 um instead of 4 mm asks for 1e9 times the elements."""
+    monkeypatch.setattr(memory_estimate, "available", lambda: 8_000_000_000)
+    monkeypatch.setattr(split, "to_size", lambda *_: pytest.fail("split"))
+    with pytest.raises(SceneError) as caught:
+        highfi.prepare(load("channel"), Numerics(element_size=4e-6))
+    (fault,) = caught.value.faults
+    assert fault.key == "element_size" and "1,472,000,000,000 elements" in fault.given
+
+
+@pytest.mark.gmsh
+@pytest.mark.parametrize("elements", ["hex8", "tet10"])
+def test_a_solid_is_not_filled_where_its_elements_do_not_fit(tmp_path, monkeypatch, elements):
+    """40 x 20 x 8 mm less a hole of 10 mm through it, in elements of 10 um."""
+    monkeypatch.setattr(memory_estimate, "available", lambda: 8_000_000_000)
+    top, below = (flat(2, z, [(0, 0), (0.04, 0.02)]) for z in (0.008, 0.0))
+    scene = scene_of(
+        drawn(tmp_path / "block.step", drilled), {"contact_top": [top], "mount": [below]}, 0.0, 0.04
+    ).replace({"rail.elements": elements})
+    with pytest.raises(
+        SceneError, match=r"[56],\d{3},\d{3},\d{3} elements take about .* of memory"
+    ):
+        make_mesh(scene, 1e-5)
 
 
 @pytest.mark.parametrize("command", ["highfi", "bench"])
