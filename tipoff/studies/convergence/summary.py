@@ -4,6 +4,7 @@ from tipoff.highfi.numerics import Numerics
 from tipoff.studies.agreement import verdicts
 from tipoff.studies.convergence import equal_accuracy
 from tipoff.studies.convergence.quantities import RATE
+from tipoff.studies.core.extrapolation import NOT_CONVERGED
 
 
 def lines(found: dict) -> list[str]:
@@ -45,6 +46,7 @@ def refinements(found: dict) -> list[str]:
             f"{factor * worst['nominal_size']:.3g} {unit}{default}, "
             f"{max(row['uncertainty'] for row in rows):.2g} deg/s at "
             f"{factor * worst['sizes'][-1]:.3g} {unit}"
+            f"{f'; {NOT_CONVERGED}' if worst['method'] == NOT_CONVERGED else ''}"
         )
     return text
 

@@ -97,6 +97,7 @@ def _convergence(found: dict) -> list[Part]:
             *row["values"],
             number(row["order"], ".2g"),
             number(row["uncertainty"], ".2g"),
+            row["method"],
         )
         for row in sizes
     ]
@@ -104,7 +105,7 @@ def _convergence(found: dict) -> list[Part]:
     return [
         f"Error of the reference itself (`make convergence`, {found['condition']}):",
         Bullets(summary.lines(found)),
-        Table(["quantity", *columns, "order", f"± at {heads[-1]}"], rows),
+        Table(["quantity", *columns, "order", f"± at {heads[-1]}", "method"], rows),
         _changes(found),
     ]
 
