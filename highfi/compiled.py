@@ -1,6 +1,6 @@
 """Which effects the compiled time loop of a scene contains, read from its machine code."""
 
-from tipoff.highfi.contact import facet
+from tipoff.highfi.contact import cells
 from tipoff.highfi.dynamics import damping, loads, mounts
 from tipoff.highfi.dynamics.step import advance
 from tipoff.highfi.dynamics.step_size import choose
@@ -16,7 +16,7 @@ from tipoff.scenes.scene import Scene
 # A kernel that only this effect calls. Mass offset, initial state and temperature change numbers
 # alone and have no code of their own.
 LAWS = {
-    "contact": facet.press,
+    "contact": cells.press,
     "friction": coefficient_over_speed,
     BODY_FORCE: loads._add_weight,
     "platform": nodes._move_in_frame,

@@ -1,16 +1,18 @@
-"""Numerical parameters of the finite-element reference: mesh, quadrature and step."""
+"""Numerical parameters of the finite-element reference: mesh, contact cells and step."""
 
 import math
 from dataclasses import asdict, dataclass
 
+_MOST_CELLS = 1000
+
 
 @dataclass(frozen=True)
 class Numerics:
-    """Mesh, quadrature and step of one run. Raises ValueError outside their ranges."""
+    """Mesh, contact cells and step of one run. Raises ValueError outside their ranges."""
 
     element_size: float = 0.004  # m
-    # Gauss points per facet edge; None: points about 1 mm apart, between 2 and 8 per edge
-    quadrature: int | None = None
+    # cells along each edge of a pad face; None: at least 16, none longer than half a facet
+    cells: int | None = None
     safety: float = 0.9  # fraction of the critical step
     step: float | None = None  # s, requested; refused above the limit
 
@@ -20,9 +22,9 @@ class Numerics:
             faults.append(
                 f"element_size: given {self.element_size!r}, expected a length above zero (m)"
             )
-        if self.quadrature is not None and not 1 <= self.quadrature <= 12:
+        if self.cells is not None and not 1 <= self.cells <= _MOST_CELLS:
             faults.append(
-                f"quadrature: given {self.quadrature!r}, expected 1 to 12 points per edge"
+                f"cells: given {self.cells!r}, expected 1 to {_MOST_CELLS} along each edge of a pad"
             )
         if not 0.0 < self.safety <= 1.0:
             faults.append(
@@ -32,12 +34,6 @@ class Numerics:
             faults.append(f"step: given {self.step!r}, expected a time above zero (s)")
         if faults:
             raise ValueError("; ".join(faults))
-
-    def points_per_edge(self) -> int:
-        """Gauss points along one facet edge."""
-        if self.quadrature is not None:
-            return self.quadrature
-        return min(max(round(self.element_size / 1e-3), 2), 8)
 
     def as_dict(self) -> dict:
         """Plain values, as written into results."""

@@ -1,17 +1,25 @@
-"""Contact forces between the crowned, rigid pad faces and the Gauss points of the rail walls.
+"""Contact forces between the crowned, rigid pad faces and the deformed walls, from one potential.
 
-For a point y in payload axes, with local face coordinates xi, eta in [-1, 1] and outward height h
-over the flat face::
+A face is divided into cells. The wall w(X, Y) is seen along its nominal normal, the axis n of the
+frame (``contact.wall``). A cell with its middle at x, in the plane at (X, Y), has
 
-    p = -h - relief (xi^4 + eta^4),      potential k_p p^2 / 2 per area for p > 0
+    p = s (x_n - w(X, Y)),      E = k A c p^2 / 2 for p > 0
 
-The force on the rail is minus the full gradient of that potential, with the small tangential part
-of the crown's slope, so the contact stores energy exactly. The opposite force acts on the payload at
-the same point. Friction uses the shared law with the sliding velocity of the half step. Only what
-can touch is computed. A facet is skipped when its control points (``mesh.facets``) lie outside the
-uncrowned face plane: no Gauss point in their hull can have crossed it. A face whose nearest control
-point is a gap away is skipped until something that approaches at ``FASTEST_APPROACH`` could have
-closed it. That speed is checked at every sample.
+with s = +1 or -1 along the outward normal of the face, the area A of the cell, and the share c of
+it that is over the wall. Forces are minus the gradient of E: with respect to x on the payload, to
+the nodes' u on the rail::
+
+    on the payload   -k A c p s (n - dw/dX - dw/dY) - k A p^2 / 2 (dc/dX, dc/dY)
+    on node a        +k A c p s N_a n
+
+So contact stores energy exactly, also where a tilted face slides along its wall or over its end.
+The force on the payload is along the normal of the deformed wall. Its small parts along the wall
+act on the frame, and so does the moment by the distance of the cell from the wall, as with the
+elastic force of the rails (``dynamics.step``). Momentum is exact as well. Friction acts across that
+normal, at the sliding velocity of the half step, with opposite forces on both sides.
+
+A face whose nearest cell is a gap away is skipped until something that approaches at
+``FASTEST_APPROACH`` could have closed it. That speed is checked at every sample.
 
 A wall is a plate: a point behind its surface by its thickness or more is behind the wall, without
 contact force. A face that was over no wall, or behind it, may come over it with a penetration of
@@ -25,10 +33,18 @@ so threads take them one by one; their loads are added in the order of the group
 
 import numpy as np
 
-from tipoff.highfi.contact.facet import Touch, is_off, lowest, press, probe, rate_damping
+from tipoff.highfi.contact.cells import (
+    Touch,
+    face_of,
+    place_of,
+    press,
+    probe,
+    rate_damping,
+    spot_under,
+)
 from tipoff.highfi.state.nodes import follow_frame
 from tipoff.highfi.state.pose import triple
-from tipoff.highfi.state.records import AWAY, OVER, TOTAL, UNKNOWN
+from tipoff.highfi.state.records import AWAY, OVER, UNKNOWN
 from tipoff.highfi.state.threads import take
 from tipoff.kernels import rotation
 from tipoff.kernels.jit import inlined, kernel
@@ -39,7 +55,8 @@ ROUNDED = 1e-6  # m: no edge of a pad or a wall is sharper
 # m: over this length on either side a face comes over the first points of its wall, which deforms
 # by less
 _ENTRY = 1e-4
-_MARGIN = 1e-3  # m along the rail by which the searched window is wider than the face
+# m/s along the wall: a face this far from the border is skipped until it could arrive
+_FASTEST_SLIDE = 1000.0
 
 
 @inlined
@@ -57,7 +74,6 @@ def contact_forces(interface_stiffness, constants, state, active, pose, team):
 def _forces_of_group(constants, state, active, pose, group):
     rail, surface, groups = constants.rail, constants.surface, constants.surface.groups
     touch = Touch(
-        points=surface.places,
         inverse_mass=rail.inverse_mass,
         displacement=state.displacement,
         velocity=state.velocity,
@@ -75,7 +91,6 @@ def _forces_of_group(constants, state, active, pose, group):
     _clear(touch.load)
     first, last = groups.first_clamped[group], groups.first_clamped[group + 1]
     follow_frame(rail, state, constants.frame, groups.clamped, first, last)
-    _release_over_the_edge(touch)
     _forget(touch)
     for k in range(groups.first_face[group], groups.first_face[group + 1]):
         _forces_of_face(touch, constants.friction, groups.face[k])
@@ -87,7 +102,7 @@ def _clear(load):
     for i in range(3):
         load.normal_force[i] = load.friction_force[i] = 0.0
         load.moment[i] = load.moment_on_rail[i] = load.friction_moment[i] = 0.0
-    load.stored = load.damping_ratio = load.gained = 0.0
+    load.stored = load.damping_ratio = 0.0
 
 
 @inlined
@@ -100,89 +115,75 @@ def _forget(touch):
         active.node_damping[node] = 0.0
         for i in range(3):
             active.drag[node, i] = 0.0
-    active.point_count[group] = 0
     active.node_count[group] = 0
 
 
 @inlined
 def _forces_of_face(touch, friction, face):
     """Forces of one face, if it can touch by now."""
-    surface, faces, pose, active = touch.surface, touch.faces, touch.pose, touch.active
+    active = touch.active
     touch.face_force[face, 0], touch.face_force[face, 1], touch.face_force[face, 2] = 0.0, 0.0, 0.0
     if active.struck[face].depth > 0.0:
         active.struck[face].steps += 1.0
     elif active.wait[face] > 0:
         active.wait[face] -= 1
-    else:
-        place = rotation.rotate(pose.turn, triple(faces.centre[face]))
-        x = place[0] + pose.centre[0]
-        half = faces.half_length[face] + _MARGIN
-        first, last = surface.first[face], surface.first[face + 1]
-        window = surface.start[first:last]
-        low = first + np.searchsorted(window, x - half - surface.longest)
-        high = first + np.searchsorted(window, x + half)
-        gap = _MARGIN
-        _check_wall(touch, face, low, high, x, _overlap(touch, face, place))
-        for k in range(low, high):
-            facet = surface.reach[k]
-            height = lowest(touch, surface.control, face, facet)
-            gap = min(gap, height)
-            if height < 0.0 and active.struck[face].depth == 0.0:
-                press(touch, friction, face, facet)
-        active.wait[face] = max(0, int(gap / (FASTEST_APPROACH * touch.dt)) - 1)
+    elif touch.surface.search.wall[face] >= 0:
+        here = face_of(touch, face)
+        overlap = _overlap(touch, here)
+        _check_wall(touch, here, overlap)
+        if overlap < 0.0:
+            active.wait[face] = int(-overlap / (_FASTEST_SLIDE * touch.dt))
+        elif active.struck[face].depth == 0.0:
+            gap = _forces_of_cells(touch, friction, here)
+            active.wait[face] = max(0, int(gap / (FASTEST_APPROACH * touch.dt)) - 1)
 
 
 @inlined
-def _overlap(touch, face, place):
-    """By how much (m) a face reaches over the border of its wall's points, along or across the
-    rail, whichever is less."""
-    faces, centre = touch.faces, touch.pose.centre
-    axis, border = 3 - faces.axis[face], touch.surface.border[face]
-    x, y = (
-        place[0] + centre[0],
-        place[1] + centre[1] if axis == 1 else place[2] + centre[2],
-    )
-    along = min(x + faces.half_length[face] - border[0], border[1] - x + faces.half_length[face])
-    return min(
-        along, y + faces.half_width[face] - border[2], border[3] - y + faces.half_width[face]
-    )
+def _forces_of_cells(touch, friction, face):
+    """Forces of all cells of a face; the least gap (m), zero where a cell has no wall."""
+    cells, thickness, gap = touch.surface.cells, touch.surface.thickness, np.inf
+    for row in range(cells[face.number, 0]):
+        for column in range(cells[face.number, 1]):
+            place = place_of(touch, face, row, column)
+            spot = spot_under(touch, face, place)
+            gap = min(gap, -spot.penetration if spot.facet >= 0 else 0.0)
+            if spot.facet >= 0 and 0.0 < spot.penetration < thickness:
+                press(touch, friction, face, place, spot)
+    return gap
 
 
 @inlined
-def _check_wall(touch, face, low, high, x, overlap):
-    """Bring ``active.side`` up to date, and ``active.struck`` where a face with its middle at ``x``
-    (m) comes into its wall from the side; it can touch facets ``low`` to ``high``."""
-    surface, active = touch.surface, touch.active
+def _overlap(touch, face):
+    """By how much (m) a face reaches over the border of its wall, along or across the rail,
+    whichever is less."""
+    faces, border = touch.faces, touch.surface.border[face.number]
+    length, width = faces.half_length[face.number], faces.half_width[face.number]
+    x, y = face.middle[0], face.middle[1] if face.axis == 2 else face.middle[2]
+    along = min(x + length - border[0], border[1] - x + length)
+    return min(along, y + width - border[2], border[3] - y + width)
+
+
+@inlined
+def _check_wall(touch, face, overlap):
+    """Bring ``active.side`` up to date, and ``active.struck`` where a face comes into its wall from
+    the side."""
+    active, number = touch.active, face.number
     if overlap < -_ENTRY:
-        active.side[face] = AWAY
-    elif active.side[face] != OVER:
-        inside, behind = 0.0, 0.0
-        for k in range(low, high):
-            found = probe(touch, face, surface.reach[k])
-            inside, behind = max(inside, found[0]), max(behind, found[1])
-        if active.side[face] == AWAY and inside > ROUNDED:
-            active.struck[face].depth, active.struck[face].x = inside, x
-        elif behind >= surface.thickness:
-            active.side[face] = AWAY
-        elif overlap > _ENTRY or active.side[face] == UNKNOWN:
-            active.side[face] = OVER
-
-
-@inlined
-def _release_over_the_edge(touch):
-    """Release the energy of points that carried load a step ago and are no longer under their
-    face."""
-    active, first = touch.active, touch.surface.groups.first_point[touch.group]
-    for k in range(first, first + active.point_count[touch.group]):
-        point = active.edge_point[k]
-        if is_off(touch, point.face, point.facet, point.gauss_point):
-            touch.load.gained -= point.energy
+        active.side[number] = AWAY
+    elif active.side[number] != OVER:
+        inside, behind = probe(touch, face)
+        if active.side[number] == AWAY and inside > ROUNDED:
+            active.struck[number].depth, active.struck[number].x = inside, face.middle[0]
+        elif behind >= touch.surface.thickness:
+            active.side[number] = AWAY
+        elif overlap > _ENTRY or active.side[number] == UNKNOWN:
+            active.side[number] = OVER
 
 
 @kernel
 def collect_contact(rail, surface, state, active):
-    """Sum up loads, move contact forces of moving nodes into the resistance and ``state.reaction``,
-    released energy into work."""
+    """Sum up loads, move contact forces of moving nodes into the resistance and
+    ``state.reaction``."""
     load = state.load[0]
     _clear(load)
     for group in range(surface.groups.first_face.size - 1):
@@ -190,7 +191,6 @@ def collect_contact(rail, surface, state, active):
         first = surface.groups.first_node[group]
         for k in range(first, first + active.node_count[group]):
             _collect_node(rail, state, active.node[k])
-    state.work[TOTAL].released -= load.gained
 
 
 @inlined
@@ -203,7 +203,6 @@ def _add_load(total, part):
         total.friction_moment[i] += part.friction_moment[i]
     total.stored += part.stored
     total.damping_ratio = max(total.damping_ratio, part.damping_ratio)
-    total.gained += part.gained
 
 
 @inlined

@@ -1,13 +1,17 @@
-"""Gauss points of the rail walls, and for each pad face the facets it can touch."""
+"""Facets of the rail walls, for each pad face those it can touch, and the cells of the faces."""
 
 import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
+from tipoff.highfi.contact import search
 from tipoff.highfi.mesh import facets as geometry
 from tipoff.highfi.state.records import Groups, Surface
 
 _FACING = -0.9  # cosine between pad normal and facet normal below which the two can touch
+_CELLS = 16  # along each edge of a face, at least
+_CELLS_PER_FACET = 2  # along each edge of a facet, at least
+_GAUSS = 4  # points along each edge of a facet, for integrals of |N_a N_b|
 _MARGIN = 2e-3  # m, how far sideways and in depth a facet may lie from the face's own place
 
 
@@ -15,63 +19,136 @@ def build(
     surfaces: dict[str, np.ndarray],
     points: np.ndarray,
     faces,
-    quadrature: int,
+    cells: int | None,
     clamped: np.ndarray,
     thickness: float,
 ) -> Surface:
     """Surface record of all facets (m,k) in ``surfaces`` whose name starts with ``contact``.
 
-    ``points`` (n,3) m are in frame axes, ``faces`` the model's pad faces, ``clamped`` (k,) numbers
-    of nodes, ``thickness`` (m) that of the walls.
+    ``points`` (n,3) m are in frame axes, ``faces`` the model's pad faces, ``cells`` the number along
+    each edge of a face (None: see ``_cells``), ``clamped`` (k,) numbers of nodes, ``thickness`` (m)
+    that of the walls.
     """
     facets = np.concatenate(
         [group for name, group in sorted(surfaces.items()) if name.startswith("contact")]
     )
     nodes = points[facets]
-    shape, area = geometry.gauss(nodes, quadrature)
     found = [in_reach(nodes, faces, face) for face in range(faces.axis.size)]
-    extent = geometry.hull(nodes)[:, :, 0]
-    smallest = extent.min(axis=1)
-    found = [group[np.argsort(smallest[group], kind="stable")] for group in found]
-    reach = np.concatenate(found)
-    longest = float((extent.max(axis=1) - smallest).max())
-    first = np.cumsum([0] + [group.size for group in found])
-    groups = group_faces(
-        [np.unique(facets[group]) for group in found],
-        [group.size * len(shape) for group in found],
-        clamped,
+    axis = np.full(len(facets), 1)
+    for face, group in enumerate(found):
+        axis[group] = faces.axis[face]
+    corners = np.where(
+        axis[:, None, None] == 1,
+        search.in_plane(points, facets, 1),
+        search.in_plane(points, facets, 2),
     )
+    counts = np.array(
+        [_cells(faces, face, corners[group], cells) for face, group in enumerate(found)]
+    )
+    wall, planes = _planes(facets, points, corners, faces, found, counts)
     return Surface(
         places=points,
         facets=facets,
-        shape=shape,
-        spread=_spread(shape),
-        area=area,
-        first=first,
-        reach=reach,
-        start=smallest[reach],
-        longest=longest,
-        control=geometry.control(facets.shape[1]),
-        groups=groups,
-        border=_border(np.einsum("qk,mki->mqi", shape, nodes), found, faces),
+        map=search.facet_maps(corners),
+        quadratic=True if facets.shape[1] == 6 else None,
+        search=search.build(wall, planes),
+        cells=counts,
+        share=_share(points, facets, faces, found, counts),
+        groups=group_faces([np.unique(facets[group]) for group in found], clamped),
+        border=_border(corners, found),
         thickness=thickness,
     )
 
 
-def _border(points: np.ndarray, found: list[np.ndarray], faces) -> np.ndarray:
-    """Smallest and largest X and place across the rail (f,4) of the Gauss ``points`` (m,q,3) m of
-    the facets ``found`` for each face; from infinity to minus infinity without facets."""
-    border = np.tile([np.inf, -np.inf], (len(found), 2))
-    for row, group, axis in zip(border, found, faces.axis):
+def _cells(faces, face: int, corners: np.ndarray, cells: int | None) -> tuple[int, int]:
+    """Cells along the length and the width of a face over facets with ``corners`` (m,k,2) m: at
+    least ``_CELLS``, and no longer than half a facet."""
+    if cells is not None:
+        return cells, cells
+    if not len(corners):
+        return _CELLS, _CELLS
+    size = 2.0 * np.array([faces.half_length[face], faces.half_width[face]])
+    along, across = np.ceil(_CELLS_PER_FACET * size / search.extent(corners) - 1e-6).astype(int)
+    return max(_CELLS, int(along)), max(_CELLS, int(across))
+
+
+def _planes(
+    facets: np.ndarray,
+    points: np.ndarray,
+    corners: np.ndarray,
+    faces,
+    found: list[np.ndarray],
+    counts: np.ndarray,
+) -> tuple[np.ndarray, list[search.Plane]]:
+    """Number (f,) of the wall of each face, -1 without, and the walls. Faces that can come over the
+    same facets share one."""
+    sizes = 2.0 * np.column_stack([faces.half_length, faces.half_width]) / counts
+    wall = np.full(len(found), -1)
+    numbers: dict[bytes, int] = {}
+    planes: list[search.Plane] = []
+    for face, group in enumerate(found):
+        if not group.size:
+            continue
+        key = group.tobytes()
+        if key not in numbers:
+            numbers[key] = len(planes)
+            whole = facets[_facing(points[facets], faces, face)]
+            edges = search.border(whole[:, : corners.shape[1]])
+            ends = points[edges][:, :, [0, 3 - faces.axis[face]]]
+            planes.append(
+                search.Plane(
+                    facets=group,
+                    corners=corners[group],
+                    on_border=np.isin(facets[group][:, : corners.shape[1]], edges).sum(axis=1) > 1,
+                    ends=ends,
+                    overlap=0.0,
+                )
+            )
+        number = wall[face] = numbers[key]
+        # half the diagonal of a cell
+        overlap = max(planes[number].overlap, 0.5 * float(np.hypot(*sizes[face])))
+        planes[number] = planes[number]._replace(overlap=overlap)
+    return wall, planes
+
+
+def _share(
+    points: np.ndarray, facets: np.ndarray, faces, found: list[np.ndarray], counts: np.ndarray
+) -> np.ndarray:
+    """Largest sum over the cells on a node a of A |N_a| sum over b of |N_b| (n,) m2, wherever a
+    face lies.
+
+    It is the integral over the facets of the node, and what the sum over points in rows a distance d
+    apart may exceed it by: for a function that rises over a length h and falls again, half of (d/h)^2
+    in each direction.
+    """
+    shape, area = geometry.gauss(points[facets], _GAUSS)
+    spread = np.abs(shape) * np.abs(shape).sum(axis=1, keepdims=True)
+    share = np.zeros(len(points))
+    np.add.at(share, facets, area @ spread)
+    size = np.column_stack([faces.half_length, faces.half_width]) * 2.0 / counts
+    worst = 1.0
+    for face, group in enumerate(found):
         if group.size:
-            along, across = points[group][..., 0], points[group][..., 3 - axis]
-            row[:] = along.min(), along.max(), across.min(), across.max()
+            least = np.ptp(points[facets[group]][:, :, [0, 3 - faces.axis[face]]], axis=1).min(
+                axis=0
+            )
+            worst = max(worst, float((1.0 + 0.5 * (size[face] / least) ** 2).prod()))
+    return worst * share
+
+
+def _border(corners: np.ndarray, found: list[np.ndarray]) -> np.ndarray:
+    """Smallest and largest X and place across the rail (f,4) of the facets ``found`` for each face,
+    with ``corners`` (m,k,2) m; from infinity to minus infinity without facets."""
+    border = np.tile([np.inf, -np.inf], (len(found), 2))
+    for row, group in zip(border, found):
+        if group.size:
+            low, high = corners[group].min(axis=(0, 1)), corners[group].max(axis=(0, 1))
+            row[:] = low[0], high[0], low[1], high[1]
     return border
 
 
-def group_faces(nodes: list[np.ndarray], points: list[int], clamped: np.ndarray) -> Groups:
-    """Groups of faces, from the ``nodes`` that each face can touch and the number of Gauss
-    ``points`` within its reach."""
+def group_faces(nodes: list[np.ndarray], clamped: np.ndarray) -> Groups:
+    """Groups of faces, from the ``nodes`` that each face can touch."""
     face = np.repeat(np.arange(len(nodes)), [part.size for part in nodes])
     node = np.concatenate(nodes)
     size = len(nodes) + node.max(initial=0) + 1
@@ -88,9 +165,6 @@ def group_faces(nodes: list[np.ndarray], points: list[int], clamped: np.ndarray)
         clamped=np.concatenate(held),
         first_clamped=_starts(held),
         first_node=_starts(own)[:-1],
-        first_point=np.cumsum([0, *(sum(points[each] for each in faces) for faces in members)])[
-            :-1
-        ],
     )
 
 
@@ -99,34 +173,25 @@ def _starts(parts: list[np.ndarray]) -> np.ndarray:
     return np.cumsum([0, *(part.size for part in parts)])
 
 
-def capacity(surface: Surface) -> int:
-    """Most contact points that can carry load at once."""
-    return surface.reach.size * surface.shape.shape[0]
-
-
 def magnification(surface: Surface) -> float:
-    """How much faster than its fastest node a Gauss point can move: 1 where no shape function is
-    negative, else up to 5/3."""
-    return float(np.abs(surface.shape).sum(axis=1).max()) if (surface.shape < 0.0).any() else 1.0
+    """How much faster than its fastest node a point of a facet can move: 1 where no nodal function
+    is negative, else 5/3."""
+    return 1.0 if surface.quadratic is None else 5.0 / 3.0
 
 
 def in_reach(nodes: np.ndarray, faces, face: int) -> np.ndarray:
     """Numbers of the facets (nodes (m,k,3) m, axes of ``faces.wall``) that face ``face`` and lie
     beside the track of its pad."""
-    axis, sign = faces.axis[face], faces.sign[face]
-    across = 3 - axis
-    facing = sign * geometry.normals(nodes)[:, axis] < _FACING
-    depth = np.abs(nodes[:, :, axis].mean(axis=1) - faces.wall[face]) < _MARGIN
+    across = 3 - faces.axis[face]
     place, half = faces.centre[face, across], faces.half_width[face] + _MARGIN
     beside = (nodes[:, :, across].max(axis=1) > place - half) & (
         nodes[:, :, across].min(axis=1) < place + half
     )
-    return np.flatnonzero(facing & depth & beside)
+    return np.flatnonzero(_facing(nodes, faces, face) & beside)
 
 
-def _spread(shape: np.ndarray) -> np.ndarray:
-    """|N_a| sum over b of |N_b| (q,k), see ``step_limit``; the shape functions themselves where none is
-    negative."""
-    return (
-        np.abs(shape) * np.abs(shape).sum(axis=1, keepdims=True) if (shape < 0.0).any() else shape
-    )
+def _facing(nodes: np.ndarray, faces, face: int) -> np.ndarray:
+    """Whether each facet belongs to the wall that ``face`` faces."""
+    axis = faces.axis[face]
+    facing = faces.sign[face] * geometry.normals(nodes)[:, axis] < _FACING
+    return facing & (np.abs(nodes[:, :, axis].mean(axis=1) - faces.wall[face]) < _MARGIN)

@@ -1,16 +1,16 @@
 """Critical step of the coupled system: rail, contact, payload.
 
-Contact adds G k G' to the stiffness, where a column of G is the gap of one Gauss point. In the mass
+Contact adds G k G' to the stiffness, where a column of G is the gap of one cell. In the mass
 metric
 
-    lambda_max(rail + contact) <= lambda_max(rail) + k_p max over nodes (area_a / m_a)
-                                  + k_p sum over faces A (1/m + r'I^-1 r)
+    lambda_max(rail + contact) <= lambda_max(rail) + k max over nodes (area_a / m_a)
+                                  + k sum over faces A (1/m + r'I^-1 r)
 
 because the largest eigenvalue of a sum is at most the sum, and that of G k G' on the nodes alone is
 at most the largest sum of magnitudes in a row of M^-1 G k G' (Gershgorin):
 
-    sum over b of |sum over points of A N_a N_b| / m_a <= area_a / m_a
-    area_a = sum over points of A |N_a| sum over b of |N_b|
+    sum over b of |sum over cells of A N_a N_b| / m_a <= area_a / m_a
+    area_a = sum over cells of A |N_a| sum over b of |N_b|
 
 On bilinear facets no N is negative and their sum is one, so area_a is the node's own share of the
 area; on quadratic triangles the corners' N may be negative and the last sum reaches 5/3.
@@ -25,7 +25,7 @@ With C = alpha M + beta K of the rail, and friction c at the nodes, a step is st
 
     dt^2/4 (lambda_rail + lambda_contact) + dt/2 (alpha + beta lambda_rail) + dt/2 max(c/m) <= 1
 
-where c of a node is bounded by the same sum with each point's damping in place of its area. Every
+where c of a node is bounded by the same sum with each cell's damping in place of its area. Every
 term grows with lambda_rail, so its upper bound alone decides, however the damping ratio runs below
 it. The first two make the limit of a run: that of w^2 = lambda_rail + lambda_contact with the ratio
 (alpha + beta lambda_rail) / 2w. The third is checked during the run. Rail frequencies are those of
@@ -44,24 +44,11 @@ def contact_frequency_squared(system: System) -> float:
     """Upper bound (1/s2) of what contact adds to the largest squared frequency."""
     if system.model.interface_stiffness is None:
         return 0.0
-    surface, rail, payload = system.surface, system.rail, system.model.payload
-    area = np.zeros(rail.mass.size)
-    for node in range(surface.facets.shape[1]):
-        np.add.at(area, surface.facets[:, node], surface.area @ surface.spread[:, node])
-    faces = system.faces
+    rail, payload, faces = system.rail, system.model.payload, system.faces
     size = 4.0 * faces.half_length * faces.half_width
     reach = (faces.centre**2).sum(axis=1) * np.linalg.eigvalsh(payload.inverse_inertia)[-1]
-    # The crown tilts the normal by at most 4 relief / half length: its gradient is longer than one
-    # by this factor.
-    tilt = (
-        1.0
-        + (
-            (4.0 * faces.relief / faces.half_length) ** 2
-            + (4.0 * faces.relief / faces.half_width) ** 2
-        ).max()
-    )
     body = (size * (1.0 / payload.mass + reach)).sum()
-    return system.model.interface_stiffness * tilt * ((area * rail.inverse_mass).max() + body)
+    return system.model.interface_stiffness * ((system.surface.share * rail.inverse_mass).max() + body)
 
 
 def damping_ratio(damping: Damping | None, rail: float, contact: float) -> float:

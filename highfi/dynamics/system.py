@@ -67,8 +67,8 @@ def build(scene: Scene, numerics: Numerics, mesh: RailMesh) -> System:
     surfaces = {name: number[facets] for name, facets in mesh.surfaces.items()}
     warm = _warmed(scene, model, mesh, rail, number)
     places = rail.points if warm is None else rail.points + warm
-    gauss = surface.build(
-        surfaces, places, faces, numerics.points_per_edge(), rail.clamped, model.plate.thickness
+    walls = surface.build(
+        surfaces, places, faces, numerics.cells, rail.clamped, model.plate.thickness
     )
     drive = records.Drive(
         arm=model.thrust_arm,
@@ -82,7 +82,7 @@ def build(scene: Scene, numerics: Numerics, mesh: RailMesh) -> System:
         number=number,
         rail=rail,
         moving_mass=masses,
-        surface=gauss,
+        surface=walls,
         faces=faces,
         frame=frame,
         drive=drive,
@@ -261,9 +261,7 @@ def _active(system: System, groups: int) -> records.Active:
     """No contact yet."""
     nodes, faces = len(system.rail.points), system.faces.axis.size
     return records.Active(
-        point_count=np.zeros(groups, dtype=np.int64),
         node_count=np.zeros(groups, dtype=np.int64),
-        edge_point=np.zeros(surface.capacity(system.surface), records.EDGE_POINT),
         node=np.zeros(np.unique(system.surface.facets).size, dtype=np.int64),
         seen=np.zeros(nodes, dtype=np.bool_),
         drag=np.zeros((nodes, 3)),

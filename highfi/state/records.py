@@ -5,8 +5,7 @@ centre of the platform's *rigid part* (platform without the moving rail nodes); 
 it is the scene origin. Nodal arrays are (n,3) with contiguous columns: one component of all nodes
 after the other, as vector instructions want them.
 
-Sizes: n nodes, e elements, b blocks of nodes, m facets of k nodes, q Gauss points of a facet, f pad
-faces, g groups of faces.
+Sizes: n nodes, e elements, b blocks of nodes, m facets of k nodes, f pad faces, g groups of faces.
 """
 
 from typing import NamedTuple
@@ -67,24 +66,36 @@ class Groups(NamedTuple):
     clamped: np.ndarray  # (w,) clamped nodes within reach of pads, group by group
     first_clamped: np.ndarray  # (g+1,) place in ``clamped`` of the first one of each group
     first_node: np.ndarray  # (g,) where the part of a group begins in ``Active.node``
-    first_point: np.ndarray  # (g,) where the part of a group begins in ``Active.edge_point``
+
+
+class Search(NamedTuple):
+    """Equal rectangular bins over each of w walls, seen along its normal: a bins with the facets
+    over them, and e straight pieces of the walls' borders."""
+
+    wall: np.ndarray  # (f,) number of the wall of each face, -1 without
+    low: np.ndarray  # (w,2) m, least X and least place across of the bins
+    per_length: np.ndarray  # (w,2) 1/m, bins along X and across
+    bins: np.ndarray  # (w,2) their number along X and across
+    first_bin: np.ndarray  # (w,) number of the first bin of each wall
+    first_facet: np.ndarray  # (a+1,) place in ``facet`` of the first one of each bin
+    facet: np.ndarray  # numbers of facets, those nearest to the middle of the bin first
+    first_edge: np.ndarray  # (a+1,) place in ``edge`` of the first one of each bin
+    edge: np.ndarray  # numbers of pieces of the border that a cell over the bin can overlap
+    ends: np.ndarray  # (e,4) m, X and place across of both ends of each piece
 
 
 class Surface(NamedTuple):
-    """Facets of the rail walls and their Gauss points."""
+    """Facets of the rail walls, and the cells into which the pad faces are divided."""
 
     places: np.ndarray  # (n,3) m, nodes before any load: ``Rail.points`` and thermal displacement
     facets: np.ndarray  # (m,k) node numbers: four corners, or the six nodes of a triangle
-    shape: np.ndarray  # (q,k) shape functions at the Gauss points
-    spread: np.ndarray  # (q,k) bound of their products, see ``step_limit``
-    area: np.ndarray  # (m,q) m2 of each Gauss point
-    first: np.ndarray  # (f+1,) place in ``reach`` of the first facet of each face
-    reach: np.ndarray  # facets that each face can touch, in the order of ``start``
-    start: np.ndarray  # m, smallest X of each facet in ``reach``
-    longest: float  # m, longest facet along X
-    control: np.ndarray | None  # (6,6) control points of a triangle; None for four corners
+    map: np.ndarray  # (m,8) from the plane of the wall into the facet, see ``contact.wall``
+    quadratic: bool | None  # True: six nodes; None: four corners
+    search: Search
+    cells: np.ndarray  # (f,2) cells along the length and along the width of each face
+    share: np.ndarray  # (n,) m2, area of pad that a node carries at most, see ``step_limit``
     groups: Groups
-    # (f,4) m, smallest and largest X of the Gauss points that a face can touch, then across the rail
+    # (f,4) m, smallest and largest X of the wall of each face, then across the rail
     border: np.ndarray
     thickness: float  # m, of the walls
 
@@ -189,9 +200,7 @@ class State(NamedTuple):
 class Active(NamedTuple):
     """Where contact is now."""
 
-    point_count: np.ndarray  # (g,) entries of ``edge_point`` in use, of each group
     node_count: np.ndarray  # (g,) entries of ``node`` in use, of each group
-    edge_point: np.ndarray  # EDGE_POINT, loaded Gauss points near the edge of their face
     node: np.ndarray  # numbers of the nodes that carry load
     seen: np.ndarray  # (n,) whether a node is among them
     drag: np.ndarray  # (n,3) N, their share of the friction on the payload, frame axes
@@ -214,9 +223,6 @@ LOAD = np.dtype(
         ("friction_moment", float, 3),  # N m, about the payload's mass centre
         ("stored", float),  # J
         ("damping_ratio", float),  # largest step * friction damping / mass of a node
-        # J, energy of points that came under a pressed face over its edge in this step, less that
-        # of points that left so
-        ("gained", float),
     ]
 )
 
@@ -224,15 +230,6 @@ LOAD = np.dtype(
 # it, and the part that is axial motion.
 WORK = np.dtype([("body_force" if name == BODY_FORCE else name, float) for name in ENTRIES])
 TOTAL, AXIAL = 0, 1
-
-EDGE_POINT = np.dtype(
-    [
-        ("face", np.int64),
-        ("facet", np.int64),
-        ("gauss_point", np.int64),
-        ("energy", float),  # J, stored
-    ]
-)
 
 # A face that struck an edge or the back of a wall; zero before that.
 STRUCK = np.dtype(

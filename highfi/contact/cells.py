@@ -1,0 +1,271 @@
+"""Contact force between a crowned, rigid pad face and the deformed wall, cell by cell; see ``pads``
+for the law. Everything is in frame axes unless stated otherwise."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from tipoff.highfi.contact import wall
+from tipoff.highfi.state.pose import Pose, triple
+from tipoff.highfi.state.records import Active, Surface
+from tipoff.kernels import rotation
+from tipoff.kernels.jit import inlined, kernel
+from tipoff.mechanics.model import Faces
+from tipoff.scenes.effects.friction import coefficient_over_speed
+
+
+class Touch(NamedTuple):
+    """What contact of one group of faces reads and writes: the whole records would be costly to
+    compile."""
+
+    inverse_mass: np.ndarray  # (n,) 1/kg
+    displacement: np.ndarray  # (n,3) m
+    velocity: np.ndarray  # (n,3) m/s
+    contact: np.ndarray  # (n,3) N
+    face_force: np.ndarray  # (f,3) N
+    load: np.void  # LOAD of the group
+    group: int
+    surface: Surface
+    faces: Faces
+    active: Active
+    pose: Pose
+    interface_stiffness: float  # N/m3
+    dt: float  # s
+
+
+class Face(NamedTuple):
+    """A pad face in its present pose. The place of (xi, eta, depth) is middle + xi along + eta across
+    + depth inward."""
+
+    number: int
+    axis: int  # of the nominal normal of its wall
+    sign: float  # of the outward normal of the face along that axis
+    wall: int  # number of its wall
+    middle: tuple  # (3,) m, of the uncrowned face
+    along: tuple  # (3,) m, half of its length
+    across: tuple  # (3,) m, half of its width
+    inward: tuple  # (3,) unit vector
+    area: float  # m2, of a cell
+    size: tuple  # (2,) m, of a cell along X and across
+
+
+class Spot(NamedTuple):
+    """The wall under the middle of a cell."""
+
+    facet: int  # -1 where there is no wall
+    r: float  # place on the facet
+    s: float
+    penetration: float  # m, negative above the wall
+    share: float  # of the cell that is over the wall
+    by_x: float  # 1/m, slopes of the share along X and across
+    by_y: float
+
+
+@inlined
+def face_of(touch, face):
+    """The face in its present pose."""
+    faces, turn, cells = touch.faces, touch.pose.turn, touch.surface.cells
+    axis, sign = faces.axis[face], faces.sign[face]
+    wide = 3 - axis
+    length, width = faces.half_length[face], faces.half_width[face]
+    arm = rotation.rotate(turn, triple(faces.centre[face]))
+    centre = touch.pose.centre
+    return Face(
+        number=face,
+        axis=axis,
+        sign=sign,
+        wall=touch.surface.search.wall[face],
+        middle=(arm[0] + centre[0], arm[1] + centre[1], arm[2] + centre[2]),
+        along=(length * turn[0], length * turn[3], length * turn[6]),
+        across=(width * turn[wide], width * turn[3 + wide], width * turn[6 + wide]),
+        inward=(-sign * turn[axis], -sign * turn[3 + axis], -sign * turn[6 + axis]),
+        area=4.0 * length * width / (cells[face, 0] * cells[face, 1]),
+        size=(2.0 * length / cells[face, 0], 2.0 * width / cells[face, 1]),
+    )
+
+
+@inlined
+def fourth_power(index, count):
+    """Middle of a cell in xi from -1 to 1, and the mean of xi^4 over the cell."""
+    half = 1.0 / count
+    xi = (2 * index + 1) * half - 1.0
+    square, wide = xi * xi, half * half
+    return xi, square * square + 2.0 * square * wide + 0.2 * wide * wide
+
+
+@inlined
+def place_of(touch, face, row, column):
+    """Place (m) of the middle of a cell on the crowned face."""
+    cells = touch.surface.cells
+    xi, crown_x = fourth_power(row, cells[face.number, 0])
+    eta, crown_y = fourth_power(column, cells[face.number, 1])
+    depth = touch.faces.relief[face.number] * (crown_x + crown_y)
+    middle, along, across, inward = face.middle, face.along, face.across, face.inward
+    return (
+        middle[0] + xi * along[0] + eta * across[0] + depth * inward[0],
+        middle[1] + xi * along[1] + eta * across[1] + depth * inward[1],
+        middle[2] + xi * along[2] + eta * across[2] + depth * inward[2],
+    )
+
+
+@inlined
+def spot_under(touch, face, place):
+    """The wall under a place (m) of the face."""
+    surface, y = touch.surface, place[1] if face.axis == 2 else place[2]
+    facet, r, s, penetration = -1, 0.0, 0.0, -np.inf
+    share, by_x, by_y = 0.0, 0.0, 0.0
+    cell_bin = wall.bin_under(surface.search, face.wall, place[0], y)
+    if cell_bin >= 0:
+        facet, r, s, outside = wall.facet_under(surface, cell_bin, place[0], y)
+        if facet >= 0:
+            height = wall.heights(
+                surface, touch.displacement, face.axis, wall.nodes_of(surface, facet)
+            )
+            level = place[1] if face.axis == 1 else place[2]
+            penetration = face.sign * (
+                level - wall.blend(wall.functions(surface.quadratic, r, s), height)
+            )
+            share, by_x, by_y = wall.cover(
+                surface.search, cell_bin, place[0], y, face.size, outside
+            )
+            if share == 0.0:
+                facet = -1
+    return Spot(facet, r, s, penetration, share, by_x, by_y)
+
+
+@inlined
+def press(touch, friction, face, place, spot):
+    """Forces between a cell at ``place`` (m) and the wall at ``spot``, which it is inside."""
+    surface, centre = touch.surface, touch.pose.centre
+    nodes = wall.nodes_of(surface, spot.facet)
+    weight = wall.functions(surface.quadratic, spot.r, spot.s)
+    height = wall.heights(surface, touch.displacement, face.axis, nodes)
+    slope_x, slope_y = wall.slopes(surface, spot.facet, spot.r, spot.s, height)
+    # Outward gradient of the penetration.
+    g = _in_frame(face.axis, -face.sign * slope_x, face.sign, -face.sign * slope_y)
+    push = touch.interface_stiffness * face.area * spot.share * spot.penetration
+    touch.load.stored += 0.5 * push * spot.penetration
+    edge = 0.5 * touch.interface_stiffness * face.area * spot.penetration * spot.penetration
+    border = _in_frame(face.axis, edge * spot.by_x, 0.0, edge * spot.by_y)
+    arm = (place[0] - centre[0], place[1] - centre[1], place[2] - centre[2])
+    drag = _friction_on_payload(friction, touch, (nodes, weight), g, arm, push)
+    normal = (
+        -push * g[0] - border[0],
+        -push * g[1] - border[1],
+        -push * g[2] - border[2],
+    )
+    for corner in range(6 if surface.quadratic is not None else 4):
+        touch.contact[nodes[corner], face.axis] -= weight[corner] * push * face.sign
+    _add_to_payload(touch, face.number, place, arm, normal, drag)
+    _note_nodes(touch, nodes)
+
+
+@inlined
+def _in_frame(axis, x, normal, across):
+    """A vector by its components along X, the normal of a wall and across."""
+    found = (x, across, normal)
+    if axis == 1:
+        found = (x, normal, across)
+    return found
+
+
+@inlined
+def _friction_on_payload(friction, touch, node, g, arm, push):
+    """Friction force (N) on the payload; zero and not compiled when ``friction`` is None.
+
+    Also sums its moment and gives each node the opposite, and the damping (N s/m) it brings. ``g``:
+    gradient of the penetration; ``push`` (N): normal force over its length; ``node``: numbers and
+    weights of the nodes.
+    """
+    drag = (0.0, 0.0, 0.0)
+    if friction is not None:
+        nodes, weight = node
+        active = touch.active
+        slide = _sliding_velocity(touch, nodes, weight, arm)
+        size = np.sqrt(rotation.dot(g, g))
+        along = rotation.dot(slide, g) / (size * size)
+        t = (slide[0] - along * g[0], slide[1] - along * g[1], slide[2] - along * g[2])
+        damping = push * size * coefficient_over_speed(friction, np.sqrt(rotation.dot(t, t)))
+        drag = (-damping * t[0], -damping * t[1], -damping * t[2])
+        moment = rotation.cross(arm, drag)
+        for i in range(3):
+            touch.load.friction_force[i] += drag[i]
+            touch.load.friction_moment[i] += moment[i]
+        total = 0.0
+        for corner in range(6):
+            total += abs(weight[corner])
+        for corner in range(6 if touch.surface.quadratic is not None else 4):
+            number, share = nodes[corner], weight[corner]
+            active.node_damping[number] += abs(share) * total * damping
+            for i in range(3):
+                active.drag[number, i] += share * drag[i]
+                touch.contact[number, i] += share * drag[i]
+    return drag
+
+
+@inlined
+def _sliding_velocity(touch, nodes, weight, arm):
+    """Velocity (m/s) of the payload's material at ``arm`` (m) from its mass centre relative to that
+    of the wall."""
+    pose, velocity = touch.pose, touch.velocity
+    spin = rotation.cross(pose.rate, arm)
+    x, y, z = pose.velocity[0] + spin[0], pose.velocity[1] + spin[1], pose.velocity[2] + spin[2]
+    for corner in range(6 if touch.surface.quadratic is not None else 4):
+        number, share = nodes[corner], weight[corner]
+        x -= share * velocity[number, 0]
+        y -= share * velocity[number, 1]
+        z -= share * velocity[number, 2]
+    return x, y, z
+
+
+@inlined
+def _add_to_payload(touch, face, place, arm, normal, drag):
+    """Forces (N) on the payload at ``place`` (m); their opposite acts on rails and frame at the same
+    place."""
+    load = touch.load
+    total = (normal[0] + drag[0], normal[1] + drag[1], normal[2] + drag[2])
+    moment, about_origin = rotation.cross(arm, total), rotation.cross(place, total)
+    for i in range(3):
+        load.normal_force[i] += normal[i]
+        load.moment[i] += moment[i]
+        load.moment_on_rail[i] -= about_origin[i]
+        touch.face_force[face, i] += total[i]
+
+
+@inlined
+def _note_nodes(touch, nodes):
+    surface, active, group = touch.surface, touch.active, touch.group
+    for corner in range(6 if surface.quadratic is not None else 4):
+        node = nodes[corner]
+        if not active.seen[node]:
+            active.seen[node] = True
+            active.node[surface.groups.first_node[group] + active.node_count[group]] = node
+            active.node_count[group] += 1
+
+
+@kernel
+def probe(touch, face):
+    """Of the cells of a face over the wall: largest penetration (m) inside the
+    wall, and largest of all."""
+    cells, inside, behind = touch.surface.cells, 0.0, 0.0
+    for row in range(cells[face.number, 0]):
+        for column in range(cells[face.number, 1]):
+            spot = spot_under(touch, face, place_of(touch, face, row, column))
+            if spot.facet >= 0:
+                behind = max(behind, spot.penetration)
+                if spot.penetration < touch.surface.thickness:
+                    inside = max(inside, spot.penetration)
+    return inside, behind
+
+
+@inlined
+def rate_damping(touch, friction):
+    """Largest step * damping / mass of a node, for the stability check."""
+    if friction is not None:
+        active, load = touch.active, touch.load
+        first = touch.surface.groups.first_node[touch.group]
+        for k in range(first, first + active.node_count[touch.group]):
+            node = active.node[k]
+            load.damping_ratio = max(
+                load.damping_ratio, touch.dt * active.node_damping[node] * touch.inverse_mass[node]
+            )

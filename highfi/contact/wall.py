@@ -1,0 +1,219 @@
+"""The deformed wall under a place: its facet there, its height and slope, and the share of a cell
+that is over it.
+
+The wall is seen along its nominal normal, the axis ``a`` of the frame. At a place (X, Y) of its plane
+
+    w = sum over nodes of N_a (x_a + u_a),      dw/dX, dw/dY
+
+with the coordinates x_a + u_a along the normal and the nodal functions N_a of the facet that lies
+there before any load. Displacement in the plane would change which material is at the place, by
+some 1e-5 m; that is of second order in a linear rail and left out. So w is linear in u, and a force
+on the wall has exactly the shares N_a.
+
+A facet maps (X, Y) to its own coordinates (r, s) with q = A [(X, Y) - o] and (r, s) = q - b r s: o, A
+and b are a row of ``Surface.map``. They run from -1 to 1 over four corners, where b is zero for a
+parallelogram. Over six nodes they are the barycentric coordinates of the second and third corner, and
+edges are taken as straight.
+"""
+
+import numpy as np
+
+from tipoff.kernels.jit import inlined
+
+INSIDE = 1e-9  # in (r, s): no further outside a facet is inside
+_GAP = 1e-6  # in (r, s): as wide a gap between facets, far from the border, is rounding
+_TWISTED = 8  # steps of the iteration for b, each of which gains the digits by which b is below one
+
+
+@inlined
+def bin_under(search, wall, x, y):
+    """Number of the bin at a place (m) of a wall; -1 outside."""
+    along = (x - search.low[wall, 0]) * search.per_length[wall, 0]
+    across = (y - search.low[wall, 1]) * search.per_length[wall, 1]
+    found = -1
+    if 0.0 <= along < search.bins[wall, 0] and 0.0 <= across < search.bins[wall, 1]:
+        found = search.first_bin[wall] + int(along) * search.bins[wall, 1] + int(across)
+    return found
+
+
+@inlined
+def facet_under(surface, cell_bin, x, y):
+    """Facet at a place (m) over a bin, its (r, s) there, and how far in (r, s) the place is outside
+    it. Where there is none it is the nearest one of the bin, and -1 where the bin has none."""
+    search = surface.search
+    found, best, first, second = -1, np.inf, 0.0, 0.0
+    for k in range(search.first_facet[cell_bin], search.first_facet[cell_bin + 1]):
+        facet = search.facet[k]
+        r, s = _local(surface.quadratic, surface.map[facet], x, y)
+        outside = _outside(surface.quadratic, r, s)
+        if outside < best:
+            found, best, first, second = facet, outside, r, s
+            if outside <= INSIDE:
+                break
+    return found, first, second, best
+
+
+@inlined
+def _local(quadratic, row, x, y):
+    dx, dy = x - row[0], y - row[1]
+    first, second = row[2] * dx + row[3] * dy, row[4] * dx + row[5] * dy
+    r, s = first, second
+    if quadratic is None:
+        if row[6] != 0.0 or row[7] != 0.0:
+            for _ in range(_TWISTED):
+                r, s = first - row[6] * r * s, second - row[7] * r * s
+    return r, s
+
+
+@inlined
+def _outside(quadratic, r, s):
+    outside = max(abs(r), abs(s)) - 1.0
+    if quadratic is not None:
+        outside = max(-r, -s, r + s - 1.0)
+    return outside
+
+
+@inlined
+def functions(quadratic, r, s):
+    """Nodal functions at (r, s), the last two zero for four corners."""
+    t = 1.0 - r - s
+    found = (
+        t * (2.0 * t - 1.0),
+        r * (2.0 * r - 1.0),
+        s * (2.0 * s - 1.0),
+        4.0 * t * r,
+        4.0 * r * s,
+        4.0 * s * t,
+    )
+    if quadratic is None:
+        a, b, c, d = 0.5 * (1.0 - r), 0.5 * (1.0 + r), 0.5 * (1.0 - s), 0.5 * (1.0 + s)
+        found = (a * c, b * c, b * d, a * d, 0.0, 0.0)
+    return found
+
+
+@inlined
+def nodes_of(surface, facet):
+    """Numbers of the nodes of a facet, the last two meaningless where it has only four.
+
+    Unsigned, because an index that might be negative would need a test.
+    """
+    facets = surface.facets
+    fifth, sixth = np.uint64(0), np.uint64(0)
+    if surface.quadratic is not None:
+        fifth, sixth = np.uint64(facets[facet, 4]), np.uint64(facets[facet, 5])
+    return (
+        np.uint64(facets[facet, 0]),
+        np.uint64(facets[facet, 1]),
+        np.uint64(facets[facet, 2]),
+        np.uint64(facets[facet, 3]),
+        fifth,
+        sixth,
+    )
+
+
+@inlined
+def heights(surface, displacement, axis, nodes):
+    """Coordinates (m) of the nodes of a facet along ``axis``, zeros where it has only four."""
+    places = surface.places
+    fifth, sixth = 0.0, 0.0
+    if surface.quadratic is not None:
+        fifth = places[nodes[4], axis] + displacement[nodes[4], axis]
+        sixth = places[nodes[5], axis] + displacement[nodes[5], axis]
+    return (
+        places[nodes[0], axis] + displacement[nodes[0], axis],
+        places[nodes[1], axis] + displacement[nodes[1], axis],
+        places[nodes[2], axis] + displacement[nodes[2], axis],
+        places[nodes[3], axis] + displacement[nodes[3], axis],
+        fifth,
+        sixth,
+    )
+
+
+@inlined
+def blend(weight, value):
+    """Sum of the values of six nodes times their weights."""
+    return (
+        weight[0] * value[0]
+        + weight[1] * value[1]
+        + weight[2] * value[2]
+        + weight[3] * value[3]
+        + weight[4] * value[4]
+        + weight[5] * value[5]
+    )
+
+
+@inlined
+def slopes(surface, facet, r, s, height):
+    """Slopes dw/dX and dw/dY at (r, s) of the facet whose nodes have these heights (m)."""
+    by_r, by_s = _derivatives(surface.quadratic, r, s, height)
+    row = surface.map[facet]
+    if surface.quadratic is None:
+        # d(q)/d(r, s) = 1 + b (s, r)
+        m00, m01 = 1.0 + row[6] * s, row[6] * r
+        m10, m11 = row[7] * s, 1.0 + row[7] * r
+        scale = 1.0 / (m00 * m11 - m01 * m10)
+        by_r, by_s = scale * (m11 * by_r - m10 * by_s), scale * (m00 * by_s - m01 * by_r)
+    return row[2] * by_r + row[4] * by_s, row[3] * by_r + row[5] * by_s
+
+
+@inlined
+def _derivatives(quadratic, r, s, h):
+    t = 1.0 - r - s
+    by_r = (
+        (1.0 - 4.0 * t) * h[0]
+        + (4.0 * r - 1.0) * h[1]
+        + 4.0 * ((t - r) * h[3] + s * h[4] - s * h[5])
+    )
+    by_s = (
+        (1.0 - 4.0 * t) * h[0]
+        + (4.0 * s - 1.0) * h[2]
+        + 4.0 * (r * h[4] - r * h[3] + (t - s) * h[5])
+    )
+    if quadratic is None:
+        by_r = 0.25 * ((1.0 - s) * (h[1] - h[0]) + (1.0 + s) * (h[2] - h[3]))
+        by_s = 0.25 * ((1.0 - r) * (h[3] - h[0]) + (1.0 + r) * (h[2] - h[1]))
+    return by_r, by_s
+
+
+@inlined
+def cover(search, cell_bin, x, y, size, outside):
+    """Share of a cell of ``size`` (m along X, m across) with its middle at a place (m) that is over
+    the wall, and the slopes of the share (1/m). ``outside``: of the place, see ``facet_under``.
+
+    The share is one half and the least distance from a piece of the border, over the width of the
+    cell in that direction. So it is continuous, and exact where a straight border runs along an edge
+    of the cell.
+    """
+    least, by_x, by_y = np.inf, 0.0, 0.0
+    for k in range(search.first_edge[cell_bin], search.first_edge[cell_bin + 1]):
+        ratio, slope_x, slope_y = _distance(search.ends[search.edge[k]], x, y, size)
+        if ratio < least:
+            least, by_x, by_y = ratio, slope_x, slope_y
+    sign = 1.0 if outside <= INSIDE else -1.0
+    if least == np.inf and outside < _GAP:
+        sign = 1.0
+    share = 0.5 + sign * least
+    if share >= 1.0 or share <= 0.0:
+        share, by_x, by_y = min(1.0, max(0.0, share)), 0.0, 0.0
+    return share, sign * by_x, sign * by_y
+
+
+@inlined
+def _distance(end, x, y, size):
+    """Distance of a place from a piece of the border over the width of a cell in that direction,
+    and its slopes (1/m)."""
+    along_x, along_y = end[2] - end[0], end[3] - end[1]
+    from_x, from_y = x - end[0], y - end[1]
+    way = (from_x * along_x + from_y * along_y) / (along_x * along_x + along_y * along_y)
+    held = min(1.0, max(0.0, way))
+    dx, dy = from_x - held * along_x, from_y - held * along_y
+    square, width = dx * dx + dy * dy, abs(dx) * size[0] + abs(dy) * size[1]
+    ratio, by_x, by_y = 0.0, 0.0, 0.0
+    if width > 0.0:
+        ratio = square / width
+        if way == held:
+            by_x, by_y = dx / width, dy / width
+        else:
+            by_x = (2.0 * dx - ratio * np.copysign(size[0], dx)) / width
+            by_y = (2.0 * dy - ratio * np.copysign(size[1], dy)) / width
+    return ratio, by_x, by_y
