@@ -48,7 +48,9 @@ def contact_frequency_squared(system: System) -> float:
     size = 4.0 * faces.half_length * faces.half_width
     reach = (faces.centre**2).sum(axis=1) * np.linalg.eigvalsh(payload.inverse_inertia)[-1]
     body = (size * (1.0 / payload.mass + reach)).sum()
-    return system.model.interface_stiffness * ((system.surface.share * rail.inverse_mass).max() + body)
+    return system.model.interface_stiffness * (
+        (system.surface.share * rail.inverse_mass).max() + body
+    )
 
 
 def damping_ratio(damping: Damping | None, rail: float, contact: float) -> float:

@@ -40,18 +40,18 @@ def test_oscillation_at_another_frequency_is_background():
 
 
 @pytest.mark.parametrize(
-    "size, bound", [(0.004, 0.01), pytest.param(0.002, 0.005, marks=pytest.mark.slow)]
+    "size, bound", [(0.004, 0.002), pytest.param(0.002, 0.001, marks=pytest.mark.slow)]
 )
 def test_facet_boundaries_leave_no_ripple(size, bound):
-    """Measured: 0.5 % at 4 mm, 0.3 % at 2 mm. Control: with one Gauss point a facet, 2.6 and 1.5
+    """Measured: 0.1 % at 4 mm, 0.05 % at 2 mm. Control: with three cells an edge of a pad, 2.8 and 2.3
     %."""
     scene = scenes.load("reference")
     found = ripple.measure(scene, Numerics(element_size=size))
-    single = ripple.measure(scene, Numerics(element_size=size, quadrature=1))
+    few = ripple.measure(scene, Numerics(element_size=size, cells=3))
     assert found.frequency == pytest.approx(6.0 / size) and found.facets == round(0.044 / size)
     assert found.load > 100.0
     assert found.ripple <= bound
-    assert single.ripple > 4.0 * found.ripple
+    assert few.ripple > 10.0 * found.ripple
 
 
 def test_nothing_is_told_where_there_is_nothing_to_tell(monkeypatch):

@@ -55,7 +55,7 @@ def test_values_without_order_are_told_apart(study):
     assert line.endswith("0.9 deg/s at 4 mm; not converged: changes do not fall")
 
 
-def test_interface_stiffness_and_quadrature_are_compared_with_the_nominal_run(study):
+def test_interface_stiffness_and_contact_cells_are_compared_with_the_nominal_run(study):
     found = convergence.run(study)
     assert [item["factor"] for item in found["interface_stiffness"]] == [0.25, 1.0, 4.0, 16.0]
     assert [
@@ -66,20 +66,20 @@ def test_interface_stiffness_and_quadrature_are_compared_with_the_nominal_run(st
         == 16.0 * stub.NOMINAL_INTERFACE_STIFFNESS
     )
     changes = {
-        item["points_per_edge"]: item["settled_rate_change_deg_s"] for item in found["quadrature"]
+        item["cells_per_edge"]: item["settled_rate_change_deg_s"] for item in found["contact_cells"]
     }
-    assert changes == {2: 0.0, 4: 0.0, 8: 0.0}
+    assert changes == {8: 0.0, 32: 0.0}
     assert summary.lines(found)[2:4] == [
         "interface stiffness, times 0.25 to 16: a settled rate changes by up to 0.04 deg/s",
-        "Gauss points per facet edge, 2 to 8: a settled rate changes by up to 0 deg/s",
+        "Contact cells along each edge of a pad, 8 to 32: a settled rate changes by up to 0 deg/s",
     ]
 
 
-def test_ripple_of_both_meshes_beside_that_of_a_single_point(study):
+def test_ripple_of_both_meshes_beside_that_of_few_cells(study):
     found = convergence.run(study)
     assert [
-        (row["element_size_m"], row["points_per_edge"], row["ripple"]) for row in found["ripple"]
-    ] == [(0.016, 1, 0.04), (0.016, 8, 0.005), (0.008, 8, 0.005)]
+        (row["element_size_m"], row["cells_per_edge"], row["ripple"]) for row in found["ripple"]
+    ] == [(0.016, 3, 0.04 / 3), (0.016, 16, 0.0025), (0.008, 16, 0.0025)]
     line = summary.lines(found)[-2]
     assert line.startswith("ripple") and "750 Hz, facets of 8 mm: 0.5 %" in line
     shown = document.markdown(draw(page_of(study, found)))
@@ -120,8 +120,8 @@ def test_no_run_is_made_twice_and_none_again(study, asked):
                 "-interface-4-coarse",
                 # the last is the surrogate
                 "-interface-16-coarse",
-                "-quadrature-2-coarse",
-                "-quadrature-4-coarse",
+                "-cells-8-coarse",
+                "-cells-32-coarse",
             )
         ]
         + ["phi15"]
@@ -163,7 +163,7 @@ def test_scene_without_contact_has_no_loads_and_no_interface_stiffness(tmp_path,
     scene = scenes.load("tiny").replace({"contact": None, "friction": None})
     found = convergence.run(Study(scene, tmp_path, defaults("tiny")))
     assert (
-        found["interface_stiffness"] == found["quadrature"] == []
+        found["interface_stiffness"] == found["contact_cells"] == []
         and found["equal_accuracy"] is None
         and len(summary.lines(found)) == 2
     )

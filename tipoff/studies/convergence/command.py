@@ -30,7 +30,7 @@ def convergence(
     workers: Workers = None,
     json_: Json = False,
 ) -> None:
-    """Error of the reference by mesh, step, interface stiffness and quadrature; takes minutes;
+    """Error of the reference by mesh, step, interface stiffness and contact cells; takes minutes;
     writes convergence.json."""
 
     def work() -> dict:

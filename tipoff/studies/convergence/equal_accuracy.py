@@ -57,5 +57,5 @@ def sentence(found: dict) -> str:
         f"{found['highfi_wall_s']:.3g} s of the reference to {1e3 * found['lowfi_wall_s']:.3g} ms of "
         f"compliant contact. The error of compliant contact is {found['error_deg_s']:.2g} deg/s from "
         f"the finest mesh; {mesh} ({found['mesh_uncertainty_deg_s']:.2g} deg/s, without "
-        "interface stiffness and quadrature)"
+        "interface stiffness and contact cells)"
     )

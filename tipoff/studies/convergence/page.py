@@ -119,12 +119,12 @@ def _meshes(document: dict) -> str:
 
 
 def _changes(document: dict) -> list[Part]:
-    """Ripple, interface stiffness and quadrature; nothing without contact."""
+    """Ripple, interface stiffness and contact cells; nothing without contact."""
     if not document["interface_stiffness"]:
         return []
     slides = {
         "element_size_m": Column("element size", "mm", "g", 1e3),
-        "points_per_edge": Column("Gauss points per facet edge"),
+        "cells_per_edge": Column("contact cells along each edge of a pad"),
         "frequency": Column("facet frequency", "Hz", ".4g"),
         "facets": Column("facets"),
         "ripple": Column("ripple", "%", ".2g", 100.0),
@@ -139,7 +139,7 @@ def _changes(document: dict) -> list[Part]:
         "factor": Column("factor", form="g"),
         "interface_stiffness_n_m3": Column("interface stiffness", "N/m³"),
     } | settled
-    points = {"points_per_edge": Column("Gauss points per facet edge")} | settled
+    faces = {"cells_per_edge": Column("contact cells along each edge of a pad")} | settled
     size = f"{1e3 * document['coarse_size_m']:g} mm"
 
     def fold(title: str, columns: dict[str, Column], rows: list[dict], *notes: str) -> list[Part]:
@@ -149,5 +149,5 @@ def _changes(document: dict) -> list[Part]:
     return [
         *fold("Ripple of a constant contact force", slides, document["ripple"], _RIPPLE),
         *fold(f"Interface stiffness, {size} elements", stiffness, document["interface_stiffness"]),
-        *fold(f"Contact quadrature, {size} elements", points, document["quadrature"]),
+        *fold(f"Contact cells, {size} elements", faces, document["contact_cells"]),
     ]

@@ -2,8 +2,8 @@
 
 A constant load presses the payload into a corner of the rails; the payload comes to rest and then
 slides along the rails without friction at a constant speed v. The walls are straight, so the force
-of a face at v / h and its multiples, h the length of a facet, comes from elements and quadrature
-alone::
+of a face at v / h and its multiples, h the length of a facet, comes from elements and
+contact cells alone::
 
     ripple = 2 |sum of w (F - trend) exp(-2 pi i k v t / h)| / (sum of w  mean F),   w Hann's window, k = 1 .. HARMONICS
 
@@ -39,13 +39,14 @@ _FRICTIONLESS = {"static": 1e-9, "dynamic": 1e-9, "static_speed": 0.01, "dynamic
 class Ripple(NamedTuple):
     """``ripple`` (1) of the face with the largest one, ``background`` (1) half-way between the
     multiples; ``frequency`` (Hz) of the first multiple, ``facets`` crossed, ``load`` (N) of that
-    face."""
+    face, ``cells_per_edge`` of a pad."""
 
     ripple: float
     background: float
     frequency: float
     facets: int
     load: float
+    cells_per_edge: int = 0  # not known to ``judge``
 
 
 def measure(scene: Scene, numerics: Numerics) -> Ripple | None:
@@ -64,7 +65,8 @@ def measure(scene: Scene, numerics: Numerics) -> Ripple | None:
         return None
     loop = Loop(pressed, system, choose(system, pressed, numerics), processors())
     force = slide(loop, round(facets * length / _SPEED / _INTERVAL))
-    return judge(force, _SPEED / length, facets)
+    cells = int(system.surface.cells[:, 0].max())
+    return judge(force, _SPEED / length, facets)._replace(cells_per_edge=cells)
 
 
 def pressing(scene: Scene) -> Scene:

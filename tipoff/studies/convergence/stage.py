@@ -36,7 +36,7 @@ _LONG = 60.0  # s, a run of the reference that is timed once only
 
 def run(study: Study, condition: str | None = None) -> dict:
     """``quantities`` over element size and time step with order and uncertainty,
-    ``interface_stiffness``, ``quadrature``, ``ripple`` and ``equal_accuracy``. Raises SceneError
+    ``interface_stiffness``, ``contact_cells``, ``ripple`` and ``equal_accuracy``. Raises SceneError
     for an unknown condition, StudyError where a mesh or a step fails."""
     name = condition or (study.scene.agreement.refined or tuple(study.conditions))[0]
     scene = study.condition(name)
@@ -53,9 +53,9 @@ def run(study: Study, condition: str | None = None) -> dict:
             *_judged(_Parameter("element size", "m", sizes, nominal), by_mesh),
             *_judged(_time_step(steps), quantities(scene, steps)),
         ]
-        interface_stiffness, quadrature, ripples = (
+        interface_stiffness, contact_cells, ripples = (
             _interfaces(study, name),
-            _quadratures(study, name),
+            _cells(study, name),
             _ripples(study, scene),
         )
         equal = _at_equal_accuracy(study, name, judged, dict(zip(sizes, meshes)))
@@ -75,7 +75,7 @@ def run(study: Study, condition: str | None = None) -> dict:
             ],
             "quantities": judged,
             "interface_stiffness": interface_stiffness,
-            "quadrature": quadrature,
+            "contact_cells": contact_cells,
             "ripple": ripples,
             "equal_accuracy": equal,
         }, []
@@ -152,8 +152,8 @@ def _interfaces(study: Study, name: str) -> list[dict]:
     return _compared(study, "convergence, interface stiffness", name, heads, wanted)
 
 
-def _quadratures(study: Study, name: str) -> list[dict]:
-    """Rows by Gauss points per facet edge; none without contact."""
+def _cells(study: Study, name: str) -> list[dict]:
+    """Rows by contact cells along each edge of a pad; none without contact."""
     if study.condition(name).contact is None:
         return []
     wanted = refined.quadratures(study, name, study.settings.quadratures)
@@ -162,20 +162,19 @@ def _quadratures(study: Study, name: str) -> list[dict]:
 
 
 def _ripples(study: Study, scene: Scene) -> list[dict]:
-    """Rows by element size, the first with a single Gauss point a facet for comparison; none where
+    """Rows by element size, the first with few contact cells for comparison; none where
     ``ripple.measure`` gives None."""
     rows = []
-    for size, points in (
-        (study.settings.coarse_size, 1),
+    for size, cells in (
+        (study.settings.coarse_size, _FEW_CELLS),
         (study.settings.coarse_size, None),
         (study.settings.element_size, None),
     ):
-        numerics = Numerics(element_size=size, quadrature=points)
+        numerics = Numerics(element_size=size, cells=cells)
         if found := ripple.measure(scene, numerics):
             rows.append(
                 {
                     "element_size_m": size,
-                    "points_per_edge": numerics.points_per_edge(),
                     **found._asdict(),
                 }
             )

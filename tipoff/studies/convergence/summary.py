@@ -8,13 +8,15 @@ from tipoff.studies.core.extrapolation import NOT_CONVERGED
 
 
 def lines(found: dict) -> list[str]:
-    """One sentence for each of: meshes, steps, interface stiffness, quadrature, ripple, equal
+    """One sentence for each of: meshes, steps, interface stiffness, contact cells, ripple, equal
     accuracy, where the result ``found`` has it."""
     equal = found["equal_accuracy"]
     return [
         *refinements(found),
         *_changes("interface stiffness, times", "factor", found["interface_stiffness"]),
-        *_changes("Gauss points per facet edge,", "points_per_edge", found["quadrature"]),
+        *_changes(
+            "Contact cells along each edge of a pad,", "cells_per_edge", found["contact_cells"]
+        ),
         *_ripple(found["ripple"]),
         *([equal_accuracy.sentence(equal)] if equal else []),
     ]

@@ -23,7 +23,7 @@ class Settings:
     surrogate whose rails vibrate; ``workers`` side by side; ``checkpoint_every`` seconds (wall
     clock) of a run of the reference, and whether one that was interrupted may ``resume``. What the
     convergence study compares, coarsest first: meshes by ``mesh_ratios`` to ``element_size``, one
-    of them 1; ``safeties`` of the step, from that of every other stage down; ``quadratures``; and
+    of them 1; ``safeties`` of the step, from that of every other stage down; ``contact_cells``; and
     factors of the scene's interface stiffness."""
 
     element_size: float = 0.002
@@ -34,7 +34,7 @@ class Settings:
     rail_modes: int = 4
     mesh_ratios: tuple[float, ...] = (4.0, 2.0, 1.0, 0.5)
     safeties: tuple[float, ...] = (0.9, 0.45, 0.225)
-    quadratures: tuple[int, ...] = (2, 4, 8)
+    contact_cells: tuple[int, ...] = (8, 32)
     interface_stiffness_factors: tuple[float, ...] = (0.25, 1.0, 4.0, 16.0)
     workers: int = os.cpu_count() or 1
     checkpoint_every: float = 60.0

@@ -111,13 +111,13 @@ def _convergence(found: dict) -> list[Part]:
 
 
 def _changes(found: dict) -> Table:
-    """Changes by interface stiffness and quadrature."""
+    """Changes by interface stiffness and contact cells."""
     changed = [
         (f"{row['interface_stiffness_n_m3']:.3g} N/m³, {row['factor']:g} times the scene's", row)
         for row in found["interface_stiffness"]
     ] + [
-        (f"{row['points_per_edge']} x {row['points_per_edge']} Gauss points per facet", row)
-        for row in found["quadrature"]
+        (f"{row['cells_per_edge']} x {row['cells_per_edge']} contact cells per pad face", row)
+        for row in found["contact_cells"]
     ]
     return Table(
         [
