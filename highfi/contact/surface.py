@@ -49,7 +49,7 @@ def build(
     return Surface(
         places=points,
         facets=facets,
-        map=search.facet_maps(corners),
+        map=_maps(corners, found),
         quadratic=True if facets.shape[1] == 6 else None,
         search=search.build(wall, planes),
         cells=counts,
@@ -58,6 +58,14 @@ def build(
         border=_border(corners, found),
         thickness=thickness,
     )
+
+
+def _maps(corners: np.ndarray, found: list[np.ndarray]) -> np.ndarray:
+    """``Surface.map`` of facets with ``corners`` (m,k,2) m; zeros for those that no face comes over,
+    which may be seen from their edge."""
+    maps, reached = np.zeros((len(corners), 8)), np.unique(np.concatenate(found))
+    maps[reached] = search.facet_maps(corners[reached])
+    return maps
 
 
 def _cells(faces, face: int, corners: np.ndarray, cells: int | None) -> tuple[int, int]:

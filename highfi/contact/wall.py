@@ -180,15 +180,14 @@ def cover(search, cell_bin, x, y, size, outside):
     """Share of a cell of ``size`` (m along X, m across) with its middle at a place (m) that is over
     the wall, and the slopes of the share (1/m). ``outside``: of the place, see ``facet_under``.
 
-    The share is one half and the least distance from a piece of the border, over the width of the
-    cell in that direction. So it is continuous, and exact where a straight border runs along an edge
-    of the cell.
+    With lengths in cells, the share is one half and the distance from the border. So it is
+    continuous, and exact where a straight border runs along an edge of the cell.
     """
     least, by_x, by_y = np.inf, 0.0, 0.0
     for k in range(search.first_edge[cell_bin], search.first_edge[cell_bin + 1]):
-        ratio, slope_x, slope_y = _distance(search.ends[search.edge[k]], x, y, size)
-        if ratio < least:
-            least, by_x, by_y = ratio, slope_x, slope_y
+        distance, slope_x, slope_y = _distance(search.ends[search.edge[k]], x, y, size)
+        if distance < least:
+            least, by_x, by_y = distance, slope_x, slope_y
     sign = 1.0 if outside <= INSIDE else -1.0
     if least == np.inf and outside < _GAP:
         sign = 1.0
@@ -200,20 +199,12 @@ def cover(search, cell_bin, x, y, size, outside):
 
 @inlined
 def _distance(end, x, y, size):
-    """Distance of a place from a piece of the border over the width of a cell in that direction,
-    and its slopes (1/m)."""
-    along_x, along_y = end[2] - end[0], end[3] - end[1]
-    from_x, from_y = x - end[0], y - end[1]
-    way = (from_x * along_x + from_y * along_y) / (along_x * along_x + along_y * along_y)
-    held = min(1.0, max(0.0, way))
-    dx, dy = from_x - held * along_x, from_y - held * along_y
-    square, width = dx * dx + dy * dy, abs(dx) * size[0] + abs(dy) * size[1]
-    ratio, by_x, by_y = 0.0, 0.0, 0.0
-    if width > 0.0:
-        ratio = square / width
-        if way == held:
-            by_x, by_y = dx / width, dy / width
-        else:
-            by_x = (2.0 * dx - ratio * np.copysign(size[0], dx)) / width
-            by_y = (2.0 * dy - ratio * np.copysign(size[1], dy)) / width
-    return ratio, by_x, by_y
+    """Distance in cells of a place from a piece of the border, and its slopes (1/m)."""
+    along_x, along_y = (end[2] - end[0]) / size[0], (end[3] - end[1]) / size[1]
+    dx, dy = (x - end[0]) / size[0], (y - end[1]) / size[1]
+    way = (dx * along_x + dy * along_y) / (along_x * along_x + along_y * along_y)
+    way = min(1.0, max(0.0, way))
+    dx, dy = dx - way * along_x, dy - way * along_y
+    distance = np.sqrt(dx * dx + dy * dy)
+    scale = 1.0 / distance if distance > 0.0 else 0.0
+    return distance, scale * dx / size[0], scale * dy / size[1]

@@ -13,11 +13,11 @@ from tipoff.kernels import rotation
 from tipoff.kernels.jit import inlined
 from tipoff.lowfi import state as slot
 from tipoff.lowfi.contact import stick_slip
-from tipoff.lowfi.contact.compliant.loads import axial_force, side_force
+from tipoff.lowfi.contact.compliant.loads import axial_force, wall_force
 from tipoff.lowfi.contact.compliant.loads import load as compliant_load
 from tipoff.lowfi.contact.compliant.modes import vibrate
 from tipoff.lowfi.contact.compliant.solution import solve
-from tipoff.lowfi.contact.springs import load, penetration, relative_pose, relative_velocity
+from tipoff.lowfi.contact.springs import load, penetration, relative_pose
 from tipoff.lowfi.state import IMPULSE, MOMENT, PAYLOAD, PLACE, PLATFORM, QUATERNION, TURN, VELOCITY
 from tipoff.lowfi.system import Body
 from tipoff.scenes.effects.friction import Friction
@@ -216,12 +216,10 @@ def add_compliant_contact(compliance, faces, touching, bodies, state, out):
                         compliance, bodies.friction, platform, faces, face, body, base
                     )
                     _add_pad(pad, bodies, out)
-                    aside, point = side_force(compliance, faces, face, body, base)
+                    aside, point = wall_force(compliance, faces, face, body, base)
                     _add_wall_force(aside, point, bodies, out)
             if count > 0:
-                size, fading = axial_force(compliance, count)
-                along = rotation.rotate(base.turn, (size, 0.0, 0.0))
-                _add_released(bodies.ledger, fading, bodies, out)
+                along = rotation.rotate(base.turn, (axial_force(compliance, count), 0.0, 0.0))
                 _add_wall_force(along, body.place, bodies, out)
             _add_modes(
                 compliance.modes, compliance.workspace, (rail, count), bodies.ledger, state, out
@@ -250,15 +248,6 @@ def _add_wall_force(force, point, bodies, out):
 def _add_axial_power(ledger, power, out):
     if ledger is not None:
         out[slot.CONTACT_AXIAL] += power
-
-
-@inlined
-def _add_released(ledger, fading, bodies, out):
-    """Add the power that is lost over an end of the rail: ``fading`` (J/m) at the axial speed."""
-    if ledger is not None:
-        body, base = bodies.payload, bodies.base
-        velocity = relative_velocity(bodies.platform, body, base, body.place)
-        out[slot.RELEASED] += fading * rotation.unrotate(base.turn, velocity)[0]
 
 
 @inlined

@@ -9,7 +9,7 @@ from tipoff.lowfi import state as slot
 from tipoff.lowfi.contact import stick_slip
 from tipoff.lowfi.contact.compliant.loads import energy as energy_in_compliance
 from tipoff.lowfi.contact.compliant.loads import load as compliant_load
-from tipoff.lowfi.contact.compliant.loads import side_force
+from tipoff.lowfi.contact.compliant.loads import wall_force
 from tipoff.lowfi.contact.compliant.modes import energies
 from tipoff.lowfi.contact.compliant.solution import solve
 from tipoff.lowfi.contact.springs import along, load, penetration, relative_pose
@@ -165,7 +165,7 @@ def _observe_compliance(compliance, system, loop, body, base, forces):
                     pad = compliant_load(
                         compliance, system.friction, system.platform, system.faces, i, body, base
                     )
-                    aside, _ = side_force(compliance, system.faces, i, body, base)
+                    aside, _ = wall_force(compliance, system.faces, i, body, base)
                     for j in range(3):
                         forces[i, j] = pad.normal[j] + pad.drag[j] + aside[j]
         _copy_rows(workspace.saved_displacement, workspace.displacement)

@@ -80,6 +80,15 @@ def bar_mesh(length: float, width: float, layers: int, across: int = 1) -> RailM
     )
 
 
+def reachable(surface, face: int) -> np.ndarray:
+    """Numbers of the facets that a pad face can come over."""
+    search = surface.search
+    wall = search.wall[face]
+    first = search.first_bin[wall]
+    begin, end = search.first_facet[[first, first + search.bins[wall].prod()]]
+    return np.unique(search.facet[begin:end])
+
+
 def loop_on(scene, mesh: RailMesh, numerics: Numerics = Numerics()) -> Loop:
     """A run in progress on a mesh of the test's own."""
     system = build(scene, numerics, mesh)

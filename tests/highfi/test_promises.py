@@ -86,20 +86,16 @@ def test_spurious_contact_energy_is_seen():
     )
 
 
-def test_energy_of_points_that_cross_the_edge_is_released():
-    """Pads without a crown are pressed up to their edge and slide, so points enter and leave
-    contact under load. The ledger closes only with their energy; with crowned pads none is
-    released."""
+@pytest.mark.parametrize("relief", ["flat", "crowned"])
+def test_energy_of_sliding_pads_is_kept(relief):
+    """Pads without a crown are pressed up to their edge, tilt and slide. No energy is released."""
     early = {"duration": "14 ms", "contact__clearance": "0.05 mm"}
-    flat = [pad.model_dump() | {"relief": 0.0} for pad in tiny().pads]
-    entry = ledger.ENTRIES.index("released")
-    crowned, found = highfi.run(tiny(**early), COARSE), highfi.run(tiny(pads=flat, **early), COARSE)
-    assert np.abs(crowned.pad_force).max() > 100.0 and (crowned.energy[:, entry] == 0.0).all()
-    assert found.status == "time_limit" and found.checks["transverse_energy_error"] <= 1e-3
-    assert (
-        np.abs(found.energy[:, entry]).max()
-        > 0.1 * np.abs(found.transverse_energy[:, ledger.ENTRIES.index("kinetic")]).max()
-    )
+    if relief == "flat":
+        early["pads"] = [pad.model_dump() | {"relief": 0.0} for pad in tiny().pads]
+    found = highfi.run(tiny(**early), COARSE)
+    assert np.abs(found.pad_force).max() > 100.0 and found.status == "time_limit"
+    assert (found.energy[:, ledger.ENTRIES.index("released")] == 0.0).all()
+    assert found.checks["transverse_energy_error"] <= 1e-4
 
 
 def test_mirror_image():

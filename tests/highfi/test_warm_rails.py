@@ -4,7 +4,7 @@ contact is with the bowed walls, the ledgers close."""
 import numpy as np
 import pytest
 
-from tests.highfi.support import COARSE, begun, stopped, tiny
+from tests.highfi.support import COARSE, begun, reachable, stopped, tiny
 from tipoff import highfi
 from tipoff.highfi import compliance
 from tipoff.highfi.elements import hexahedral_recovery
@@ -31,7 +31,7 @@ def test_no_difference_of_temperature_leaves_contact_where_it_was():
     zero, plain = (begun(scene).system.surface for scene in (tiny(thermal__mean=0.0), tiny()))
     assert all(
         np.array_equal(getattr(zero, name), getattr(plain, name))
-        for name in ("places", "area", "reach", "start")
+        for name in ("places", "map", "border", "share")
     )
 
 
@@ -126,9 +126,7 @@ def test_warm_walls_of_the_surrogate_are_those_of_the_reference():
         system.surface,
     )
     for face in range(0, faces.axis.size, 3):
-        nodes = np.unique(
-            surface.facets[surface.reach[surface.first[face] : surface.first[face + 1]]]
-        )
+        nodes = np.unique(surface.facets[reachable(surface, face)])
         axis = faces.axis[face]
         plane = [0, 3 - axis]
         local = (system.rail.points[nodes] + system.origin - faces.centre[face])[

@@ -34,7 +34,9 @@ def take_lever(compliance, faces, face, place, turn):
     lever[BY_XI] = half[0] * (y * turn[3] + z * turn[6])
     # a face along y is wide along z, and the other way round
     lever[BY_ETA] = half[1] * (y * turn[5] + z * turn[7])
-    middle = place[0] + faces[face, 0]
+    middle = (
+        place[0] + turn[0] * faces[face, 0] + turn[1] * faces[face, 1] + turn[2] * faces[face, 2]
+    )
     lever[MIDDLE] = middle
     over_end, by_end = eased((middle - compliance.end) / half[0] + 1.0)
     over_start, by_start = eased((compliance.start - middle) / half[0] + 1.0)
@@ -179,8 +181,8 @@ def deepest(compliance, face, displacement):
 
 @kernel
 def stored(compliance, face):
-    """Energy (J) in the interface of the face, and what of it is lost per metre of travel over an
-    end of the rail."""
+    """Energy (J) in the interface of the face, and its decrease per metre of travel (N) as the face
+    slides over an end of the rail."""
     lever, relief, half = (
         compliance.workspace.lever[face],
         compliance.relief[face],

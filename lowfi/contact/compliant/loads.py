@@ -3,17 +3,16 @@
     E = sum over cells of k dA max(0, p)^2 / 2 + P' F P / 2
 
 (modes have a potential of their own). They are: P_1 against the normal, at the centre of pressure;
-and along X, where the rail is softer or stiffer ahead and where its bent wall slopes (xi' moves
-with the pad where a face overhangs an end)::
+and along X, where the rail is softer or stiffer ahead::
 
-    X = P' F' P / 2 + P' (T' + W' q) + sum of pressure d(xi')/dx du/dxi'
+    X = P' F' P / 2 + P' (T' + W' q)
 
-which acts on payload and platform at the payload's mass centre, whose travel it belongs to. Where
-the pad moves across the rail, eta' moves with its middle, and the slope of the wall pushes::
+which acts on payload and platform at the payload's mass centre, whose travel it belongs to. Two more
+act at the middle of the pad, whose place they belong to: along X where the face overhangs an end, so
+that xi' moves with the pad and cells leave the wall; and across, where the wall slopes::
 
+    X = sum of pressure d(xi')/dx du/dxi' - dE/dx of the shares of the cells over the wall
     Y = sum of pressure d(eta')/dy du/deta'
-
-Energy still under the part of a pad that leaves the wall is lost.
 """
 
 from tipoff.kernels import rotation
@@ -63,28 +62,28 @@ def load(compliance, friction, platform, faces, face, body, base):
 
 
 @inlined
-def side_force(compliance, faces, face, body, base):
-    """Force (N) across the rail on the payload by the slope of the wall under a pressed face, and
-    where it acts (m), in scene axes."""
+def wall_force(compliance, faces, face, body, base):
+    """Force (N) along the wall on the payload by a pressed face, by the slope of the wall and by its
+    end, and where it acts (m), in scene axes."""
     u, force = compliance.workspace.displacement[face], compliance.workspace.force[face]
+    drift, along = compliance.workspace.lever[face, DRIFT], 0.0
+    if drift != 0.0:  # else all of it is over the wall
+        along = drift * (u[1] * force[0] + 2.0 * u[3] * force[1] + u[4] * force[2])
+        along += stored(compliance, face)[1]
     size = (u[2] * force[0] + u[4] * force[1] + 2.0 * u[5] * force[2]) / compliance.half[face, 1]
-    return rotation.rotate(base.turn, along_width(faces[face], size)), pad_point(faces[face], body)
+    across = along_width(faces[face], size)
+    turned = rotation.rotate(base.turn, (along, across[1], across[2]))
+    return turned, pad_point(faces[face], body)
 
 
 @kernel
 def axial_force(compliance, count):
-    """Force (N) along the rail on the payload by the ``count`` faces solved for, and the energy lost
-    per metre of travel (J/m)."""
-    workspace, pull, fading = compliance.workspace, 0.0, 0.0
+    """Force (N) along the rail on the payload's mass centre by the ``count`` faces solved for."""
+    workspace, pull = compliance.workspace, 0.0
     for i in range(count):
         face = workspace.order[i]
-        u, force = workspace.displacement[face], workspace.force[face]
-        pull += workspace.lever[face, DRIFT] * (
-            u[1] * force[0] + 2.0 * u[3] * force[1] + u[4] * force[2]
-        )
+        force = workspace.force[face]
         pull += thermal_offset.axial_force(compliance.thermal_offset, face, force)
-        if workspace.lever[face, DRIFT] != 0.0:  # else all of it is over the wall
-            fading += stored(compliance, face)[1]
         for a in range(PATTERNS):
             total = 0.0
             for j in range(count):
@@ -94,7 +93,7 @@ def axial_force(compliance, count):
                         * workspace.force[workspace.order[j], b]
                     )
             pull += force[a] * (0.5 * total + slope(compliance.modes, face, a))
-    return pull, fading
+    return pull
 
 
 @kernel

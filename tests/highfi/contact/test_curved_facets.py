@@ -70,39 +70,35 @@ def rail(bulge: float, divisions=(2, 1, 2)) -> RailMesh:
     return RailMesh(points, mesh.cells, {"contact_y": touched, "mount": far})
 
 
-def pressed(mesh, depth, numerics=Numerics(), only_corners=False):
+def pressed(mesh, depth, numerics=Numerics()):
     """Force (N) on a payload whose face stands ``depth`` (m) beyond the plane y = 0, and the
     loop."""
     found = scene(1.0, 0.0, INTERFACE_STIFFNESS, 1e-4, 1e-6).replace(
         {"initial.position.y": GAP + depth}
     )
     system = build(found, numerics, mesh)
-    if only_corners:
-        system = system._replace(
-            surface=system.surface._replace(control=np.eye(6)[[0, 1, 2, 0, 1, 2]])
-        )
     loop = Loop(found, system, choose(system, found, numerics))
     loop.begin()
     return np.array(loop.forces)[0, 0], loop
 
 
 def test_a_bulge_is_touched_before_the_corners_are():
-    """Control: a search among the corners alone misses the facets that carry the load."""
+    """Control: a wall without the bulge is not touched there."""
     bulge = 2e-6
     force, _ = pressed(rail(bulge), -0.5 * bulge)
     assert force[1] < -1.0
-    missed, _ = pressed(rail(bulge), -0.5 * bulge, only_corners=True)
-    assert not missed.any()
+    flat, _ = pressed(rail(0.0), -0.5 * bulge)
+    assert not flat.any()
     outside, _ = pressed(rail(bulge), -3.0 * bulge)
     assert not outside.any()
 
 
-@pytest.mark.parametrize("quadrature", [2, 4])
-def test_an_even_press_gives_pressure_times_area(quadrature):
+@pytest.mark.parametrize("cells", [7, 16, None])
+def test_an_even_press_gives_pressure_times_area(cells):
     """k p A on the payload, and its opposite on the rail, where the corners of triangles may carry
     negative shares."""
     depth = 1e-6
-    force, loop = pressed(rail(0.0), depth, Numerics(quadrature=quadrature))
+    force, loop = pressed(rail(0.0), depth, Numerics(cells=cells))
     assert force == pytest.approx(
         [0.0, -INTERFACE_STIFFNESS * depth * WIDTH**2, 0.0], rel=1e-9, abs=1e-9
     )
@@ -111,33 +107,36 @@ def test_an_even_press_gives_pressure_times_area(quadrature):
 
 
 def contact_share(system) -> np.ndarray:
-    """M^-1/2 G k G' M^-1/2 (n,n) of all Gauss points of the rail, along the normal."""
+    """M^-1/2 G k G' M^-1/2 (n,n) of all cells of the pad over the rail, along the normal."""
     surface, mass = system.surface, system.rail.mass
     root = np.where(system.rail.inverse_mass > 0.0, np.sqrt(system.rail.inverse_mass), 0.0)
-    matrix = np.zeros((mass.size, mass.size))
-    for nodes, area in zip(surface.facets, surface.area):
-        np.add.at(
-            matrix,
-            (nodes[:, None], nodes),
-            np.einsum("q,qa,qb->ab", area, surface.shape, surface.shape),
-        )
+    matrix, count = np.zeros((mass.size, mass.size)), int(surface.cells[0, 0])
+    middles = WIDTH * (2.0 * np.arange(count) + 1.0 - count) / count  # the pad is twice as wide
+    over = middles[np.abs(middles) < 0.5 * WIDTH]
+    places = np.stack(np.meshgrid(over, over), axis=-1).reshape(-1, 2)
+    left = np.ones(len(places), dtype=bool)
+    for nodes in surface.facets:
+        plane = np.broadcast_to(surface.places[nodes][:, [0, 2]], (left.sum(), 6, 2))
+        values, inside = facets.weights(plane, places[left])
+        left[np.flatnonzero(left)[inside]] = False
+        part = values[inside].T @ values[inside] * (2.0 * WIDTH / count) ** 2
+        np.add.at(matrix, (nodes[:, None], nodes), part)
+    assert not left.any()
     return system.model.interface_stiffness * root[:, None] * matrix * root
 
 
 @pytest.mark.parametrize("divisions", [(1, 1, 1), (2, 1, 2), (3, 4, 3)])
 def test_the_bound_on_contact_stiffness_holds(divisions):
-    """The bound is at most three times the stiffness. Sums with signs come within 9 %, but they are
-    not proven to be bounds."""
+    """The bound is at most 3.5 times the stiffness."""
     system = build(
         scene(1e9, 0.0, INTERFACE_STIFFNESS, 1e-4, 1e-6), Numerics(), rail(0.0, divisions)
     )
     highest = np.linalg.eigvalsh(contact_share(system))[-1]
-    assert highest <= contact_frequency_squared(system) <= 3.0 * highest
+    assert highest <= contact_frequency_squared(system) <= 3.5 * highest
 
 
 def test_points_between_nodes_can_be_faster_than_nodes():
-    """At most 5/3 as fast, at the centre of a triangle; on bilinear facets never."""
-    system = build(
-        scene(1.0, 0.0, INTERFACE_STIFFNESS, 1e-4, 1e-6), Numerics(quadrature=5), rail(0.0)
-    )
-    assert 1.0 < magnification(system.surface) <= 5.0 / 3.0
+    """At most 5/3 as fast, at the centre of a triangle."""
+    system = build(scene(1.0, 0.0, INTERFACE_STIFFNESS, 1e-4, 1e-6), Numerics(), rail(0.0))
+    shape, _ = facets.gauss(TRIANGLE[None], 12)
+    assert 1.6 < np.abs(shape).sum(axis=1).max() <= magnification(system.surface) <= 5.0 / 3.0

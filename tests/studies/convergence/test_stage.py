@@ -81,7 +81,7 @@ def test_ripple_of_both_meshes_beside_that_of_few_cells(study):
         (row["element_size_m"], row["cells_per_edge"], row["ripple"]) for row in found["ripple"]
     ] == [(0.016, 3, 0.04 / 3), (0.016, 16, 0.0025), (0.008, 16, 0.0025)]
     line = summary.lines(found)[-2]
-    assert line.startswith("ripple") and "750 Hz, facets of 8 mm: 0.5 %" in line
+    assert line.startswith("ripple") and "750 Hz, facets of 8 mm: 0.25 %" in line
     shown = document.markdown(draw(page_of(study, found)))
     assert "ripple (%)" in shown
 
