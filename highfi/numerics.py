@@ -3,6 +3,7 @@
 import math
 from dataclasses import asdict, dataclass
 
+LEAST_CELLS = 16  # along each edge of a pad face, by default
 _MOST_CELLS = 1000
 
 
@@ -11,7 +12,8 @@ class Numerics:
     """Mesh, contact cells and step of one run. Raises ValueError outside their ranges."""
 
     element_size: float = 0.004  # m
-    # cells along each edge of a pad face; None: at least 16, none longer than half a facet
+    # contact cells along each edge of a pad face; None: ``LEAST_CELLS`` or more, so that none is
+    # longer than half a facet
     cells: int | None = None
     safety: float = 0.9  # fraction of the critical step
     step: float | None = None  # s, requested; refused above the limit

@@ -6,10 +6,10 @@ from scipy.sparse.csgraph import connected_components
 
 from tipoff.highfi.contact import search
 from tipoff.highfi.mesh import facets as geometry
+from tipoff.highfi.numerics import LEAST_CELLS
 from tipoff.highfi.state.records import Groups, Surface
 
 _FACING = -0.9  # cosine between pad normal and facet normal below which the two can touch
-_CELLS = 16  # along each edge of a face, at least
 _CELLS_PER_FACET = 2  # along each edge of a facet, at least
 _GAUSS = 4  # points along each edge of a facet, for integrals of |N_a N_b|
 _MARGIN = 2e-3  # m, how far sideways and in depth a facet may lie from the face's own place
@@ -70,14 +70,14 @@ def _maps(corners: np.ndarray, found: list[np.ndarray]) -> np.ndarray:
 
 def _cells(faces, face: int, corners: np.ndarray, cells: int | None) -> tuple[int, int]:
     """Cells along the length and the width of a face over facets with ``corners`` (m,k,2) m: at
-    least ``_CELLS``, and no longer than half a facet."""
+    least ``LEAST_CELLS``, and no longer than half a facet."""
     if cells is not None:
         return cells, cells
     if not len(corners):
-        return _CELLS, _CELLS
+        return LEAST_CELLS, LEAST_CELLS
     size = 2.0 * np.array([faces.half_length[face], faces.half_width[face]])
     along, across = np.ceil(_CELLS_PER_FACET * size / search.extent(corners) - 1e-6).astype(int)
-    return max(_CELLS, int(along)), max(_CELLS, int(across))
+    return max(LEAST_CELLS, int(along)), max(LEAST_CELLS, int(across))
 
 
 def _planes(

@@ -176,8 +176,7 @@ def test_refinements_change_one_thing_each(tmp_path):
     assert [run.numerics for run in groups["mesh"].runs] == [coarse.numerics, nominal.numerics]
     half = replace(coarse.numerics, safety=0.5 * coarse.numerics.safety)
     assert [run.numerics for run in groups["step"].runs] == [coarse.numerics, half]
-    own = coarse.numerics.points_per_edge()
-    assert [run.numerics.points_per_edge() for run in groups["cells"].runs] == [own // 2, own, 12]
+    assert [run.numerics.cells for run in groups["cells"].runs] == [8, None, 32]
     for group in groups.values():
         assert list(group.sizes) == sorted(group.sizes, reverse=True)
         assert {run.scene.hash for run in group.runs} == {nominal.scene.hash}

@@ -56,8 +56,9 @@ def motion(run, **parts):
 
 
 def rippling(scene, numerics):
-    """A ripple that falls with the points on a facet; none without contact."""
-    return scene.contact and Ripple(0.04 / numerics.points_per_edge(), 1e-3, 750.0, 6, 200.0)
+    """A ripple that falls with the cells of a pad; none without contact."""
+    cells = numerics.cells or 16
+    return scene.contact and Ripple(0.04 / cells, 1e-3, 750.0, 6, 200.0, cells)
 
 
 def resting(scene, sizes):

@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 from typing import NamedTuple
 
-from tipoff.highfi.numerics import Numerics
+from tipoff.highfi.numerics import LEAST_CELLS, Numerics
 from tipoff.highfi.rail import refinement as mesh_files
 from tipoff.scenes.scene import Scene
 from tipoff.studies.agreement.refinement import (
@@ -18,7 +18,6 @@ from tipoff.studies.core.store import Run
 from tipoff.studies.core.study import Study
 
 _TWO = 2  # meshes show a change
-_MOST_POINTS = 12  # of ``Numerics``
 _SAFETIES = (Numerics().safety, 0.45)
 
 
@@ -78,20 +77,14 @@ def steps(study: Study, name: str, safeties: Iterable[float]) -> list[Run]:
     ]
 
 
-def quadratures(study: Study, name: str, points: Iterable[int]) -> list[Run]:
-    """One run on the coarse mesh for each number of contact points along an edge."""
-    own = own_points(study)  # this rule needs no second run
+def contact_cells(study: Study, name: str, counts: Iterable[int]) -> list[Run]:
+    """One run on the coarse mesh for each number of contact cells along an edge of a pad."""
     return [
         study.coarse(name)
-        if number == own
-        else study.coarse(name, tag=f"-quadrature-{number}", quadrature=number)
-        for number in points
+        if count == LEAST_CELLS  # what every run has
+        else study.coarse(name, tag=f"-cells-{count}", cells=count)
+        for count in counts
     ]
-
-
-def own_points(study: Study) -> int:
-    """Contact points along an edge of the coarse mesh."""
-    return Numerics(element_size=study.settings.coarse_size).points_per_edge()
 
 
 def groups(study: Study, name: str) -> dict[str, Group]:
@@ -103,10 +96,9 @@ def groups(study: Study, name: str) -> dict[str, Group]:
     if name in study.scene.agreement.refined:
         found[STEP] = Group(list(_SAFETIES), steps(study, name, _SAFETIES), 0)
         if study.scene.contact is not None:
-            own = own_points(study)
-            points = sorted({max(own // 2, 1), own, min(2 * own, _MOST_POINTS)})
-            spacing = [1.0 / number for number in points]
-            found[CELLS] = Group(spacing, quadratures(study, name, points), points.index(own))
+            counts = (LEAST_CELLS // 2, LEAST_CELLS, 2 * LEAST_CELLS)
+            spacing = [1.0 / count for count in counts]
+            found[CELLS] = Group(spacing, contact_cells(study, name, counts), 1)
     return found
 
 

@@ -2,11 +2,10 @@
 
 Meshes and steps are refined separately, and the uncertainty of every quantity is estimated from its
 observed order (``studies.core.extrapolation``). Deflection and natural frequencies of the rail
-(``studies.convergence.statics``) stand beside the settled rates. Interface stiffness and quadrature
+(``studies.convergence.statics``) stand beside the settled rates. Interface stiffness and contact cells
 are changed and compared. A straight slide shows the ripple of a constant force by the facets
-(``studies.convergence.ripple``). A finer mesh has a smaller step and fewer Gauss points per facet,
-which stay about 1 mm apart, so that their error appears in the quadrature alone. A wall has at
-least one element through its thickness, so coarse meshes differ in length and width only;
+(``studies.convergence.ripple``). A finer mesh has a smaller step, and contact cells no longer than
+half a facet. A wall has at least one element through its thickness, so coarse meshes differ in length and width only;
 ``meshes`` holds the numbers of elements. Finally both fidelities are timed at equal accuracy
 (``studies.convergence.equal_accuracy``)."""
 
@@ -31,6 +30,7 @@ from tipoff.studies.cost.timing import speedups
 
 NAME = "convergence"
 _LEAST = 3  # meshes, of which an order can be observed
+_FEW_CELLS = 3  # along each edge of a pad: longer than the facets it slides over
 _LONG = 60.0  # s, a run of the reference that is timed once only
 
 
@@ -156,9 +156,9 @@ def _cells(study: Study, name: str) -> list[dict]:
     """Rows by contact cells along each edge of a pad; none without contact."""
     if study.condition(name).contact is None:
         return []
-    wanted = refined.quadratures(study, name, study.settings.quadratures)
-    heads = [{"points_per_edge": points} for points in study.settings.quadratures]
-    return _compared(study, "convergence, quadrature", name, heads, wanted)
+    wanted = refined.contact_cells(study, name, study.settings.contact_cells)
+    heads = [{"cells_per_edge": count} for count in study.settings.contact_cells]
+    return _compared(study, "convergence, contact cells", name, heads, wanted)
 
 
 def _ripples(study: Study, scene: Scene) -> list[dict]:

@@ -34,7 +34,7 @@ class Settings:
     rail_modes: int = 4
     mesh_ratios: tuple[float, ...] = (4.0, 2.0, 1.0, 0.5)
     safeties: tuple[float, ...] = (0.9, 0.45, 0.225)
-    contact_cells: tuple[int, ...] = (8, 32)
+    contact_cells: tuple[int, ...] = (8, 16, 32)
     interface_stiffness_factors: tuple[float, ...] = (0.25, 1.0, 4.0, 16.0)
     workers: int = os.cpu_count() or 1
     checkpoint_every: float = 60.0
