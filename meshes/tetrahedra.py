@@ -19,6 +19,7 @@ _EDGES = {
     for node, edge in enumerate(((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3)), start=4)
 }
 _FACES = list(combinations(range(4), 3))
+_POOR = 0.7  # quality up to which gmsh optimises an element
 _PER_TURN = 8  # edges of elements around a cylinder
 _STRAIGHT = 0.05  # scaled Jacobian below which the edges of an element become straight
 _PASSES = 20
@@ -33,10 +34,17 @@ class Way(NamedTuple):
     """One way to fill a solid."""
 
     per_turn: int  # smaller elements where a face turns, so many in a full turn; 0: none
-    optimised: bool  # by Netgen
+    optimisers: tuple[str, ...]  # of gmsh, one after the other; its own has no name
 
 
-_WAYS = (Way(_PER_TURN, False), Way(_PER_TURN, True), Way(0, True), Way(0, False))
+_NETGEN, _BOTH = ("Netgen",), ("Netgen", "", "Netgen")
+_WAYS = (
+    Way(_PER_TURN, ()),
+    Way(_PER_TURN, _NETGEN),
+    Way(_PER_TURN, _BOTH),
+    Way(0, _BOTH),
+    Way(0, ()),
+)
 
 
 def filled(
@@ -47,8 +55,10 @@ def filled(
     with the lowest."""
     gmsh.option.setNumber("Mesh.MeshSizeMin", 0.5 * element_size)
     gmsh.option.setNumber("Mesh.MeshSizeMax", 2.0 * element_size)
+    gmsh.option.setNumber("Mesh.OptimizeThreshold", _POOR)
     best, lowest = None, np.inf
-    for way in _WAYS:
+    curved = any(gmsh.model.getType(2, face) != "Plane" for _, face in gmsh.model.getEntities(2))
+    for way in (way for way in _WAYS if way.per_turn or curved):
         points, cells = _straightened(*_made(gmsh, way))
         if hexahedra:
             points, cells = as_hexahedra(points, cells)
@@ -65,8 +75,8 @@ def _made(gmsh, way: Way) -> tuple[np.ndarray, np.ndarray]:
     gmsh.model.mesh.clear()
     gmsh.option.setNumber("Mesh.MeshSizeFromCurvature", way.per_turn)
     gmsh.model.mesh.generate(3)
-    if way.optimised:
-        gmsh.model.mesh.optimize("Netgen")
+    for method in way.optimisers:
+        gmsh.model.mesh.optimize(method)
     gmsh.model.mesh.setOrder(2)
     gmsh.model.mesh.optimize("HighOrderElastic")
     tags, places, _ = gmsh.model.mesh.getNodes()
