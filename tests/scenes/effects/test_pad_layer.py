@@ -26,6 +26,7 @@ def compression(modulus, nu, confined):
     return stiffness[0, 0] if confined else 1.0 / compliance[0, 0]
 
 
+@pytest.mark.case("O71")
 @pytest.mark.parametrize("nu", [None, 0.0, 0.3, 0.46])
 def test_layer_and_interface_are_springs_in_series(nu):
     """One metre squared under one pascal: the approaches add. Control: the interface alone is

@@ -14,6 +14,7 @@ from tipoff.studies.core import extrapolation
 SIZES, RECOVERY = (4.0, 2.0, 1.0), (0.96178, 0.96854, 0.97050)
 
 
+@pytest.mark.case("O72")
 def test_published_check():
     order = extrapolation.observed_order(SIZES, RECOVERY)
     assert order == pytest.approx(1.786170, abs=5e-7)
@@ -82,6 +83,7 @@ def test_values_that_show_no_order_say_so(values, order, uncertainty, words):
     assert found.order == (None if order is None else pytest.approx(order, abs=1e-9))
 
 
+@pytest.mark.case("O72")
 @given(
     limit=st.floats(0.5, 5.0),
     slope=st.sampled_from([-0.3, 0.3]),
