@@ -28,10 +28,11 @@ from tipoff.highfi.mesh import pieces
 from tipoff.highfi.mesh.rail_mesh import RailMesh
 from tipoff.highfi.numerics import Numerics
 from tipoff.highfi.run import prepare
-from tipoff.highfi.statics import assembly, thermal, vibration
+from tipoff.highfi.statics import assembly, joint_terms, thermal, vibration
 from tipoff.highfi.statics.pressure import Pressed, pressed
 from tipoff.highfi.statics.solve import Clamped
 from tipoff.mechanics import model as scene_model
+from tipoff.mechanics.joint_terms import JointTerms
 from tipoff.mechanics.rail_compliance import MODES, PATTERNS, RailCompliance, digest
 from tipoff.scenes.effects.mount_stiffness import MountStiffness
 from tipoff.scenes.effects.thermal import FIELDS
@@ -60,6 +61,7 @@ class Compliance(NamedTuple):
     shape: np.ndarray  # (s,f,p,n) 1/kg^0.5, V
     # (s,f,p,t) m, mean displacement away from the payload by one of each of the t thermal fields
     warm: np.ndarray
+    joints: JointTerms | None  # of rails on joints, where modes are asked for
 
 
 def condense(
@@ -67,10 +69,12 @@ def condense(
 ) -> RailCompliance:
     """Flexibility and lowest ``modes`` of the rails of ``scene`` in elements of about
     ``element_size`` (m), at stations about ``spacing`` (m) apart from ignition until the last pad
-    begins to leave.
+    begins to leave. It holds for any factor on the stiffness of the mounts.
 
     Raises SceneError or MeshError.
     """
+    if scene.rail.mount_stiffness is not None:
+        scene = scene.replace({"rail.mount_stiffness.factor": 1.0})
     faces = scene_model.built(scene).nominal
     way = scene.rail.end - faces.half_length - faces.centre[:, 0]
     stations = np.linspace(0.0, way.max(), int(np.ceil(way.max() / spacing)) + 1)
@@ -87,6 +91,10 @@ def condense(
         inverse @ found.shape,
         digest(scene),
         warm,
+        found.joints
+        and found.joints._replace(
+            moved=inverse @ found.joints.moved, shape=inverse @ found.joints.shape
+        ),
     )
 
 
@@ -149,6 +157,7 @@ def of_mesh(
     )
     rail_of, shape = np.full(count, -1), np.zeros((stations.size, count, patterns, modes))
     frequencies: list[np.ndarray] = []
+    parts: list[joint_terms.Part] = []
     warm = np.zeros((stations.size, count, patterns, FIELDS))
     for rail, images in pieces.distinct(mesh):
         patches = _Patches(rail, patterns)
@@ -156,7 +165,7 @@ def of_mesh(
         if not patches.found:
             continue
         # One more that answers nothing is what a face without a wall, number -1, points at.
-        answer, heated, frequency, swung = patches.solved(
+        answer, heated, frequency, swung, terms = patches.solved(
             material, joint, 0.5 * (reach[0] + reach[1]), modes
         )
         between = np.pad(answer, [(0, 1), (0, 0), (0, 1), (0, 0)])
@@ -177,6 +186,8 @@ def of_mesh(
             if here.any():
                 rail_of[here] = len(frequencies)
                 frequencies.append(frequency)
+                if terms is not None:
+                    parts.append(joint_terms.Part(number, signs, terms))
     return Compliance(
         travel=stations,
         matrix=matrix,
@@ -186,6 +197,7 @@ def of_mesh(
         frequency=np.array(frequencies).reshape(len(frequencies), modes),
         shape=shape,
         warm=warm,
+        joints=joint_terms.together(parts, patterns) if parts else None,
     )
 
 
@@ -243,10 +255,11 @@ class _Patches:
 
     def solved(
         self, material: MaterialTable, joint: MountStiffness | None, middle: float, modes: int
-    ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, joint_terms.Terms | None]:
         """Displacement (m,p,m,p) in m of all places under the loads of all, normals of the faces
         positive, and (m,p,t) under one of each field of temperature around X = ``middle`` (m);
-        frequencies (n,) rad/s of the lowest modes and their displacement (m,p,n)."""
+        frequencies (n,) rad/s of the lowest modes and their displacement (m,p,n); the terms of a
+        ``joint`` where there are modes."""
         operator = assembly.build(
             self._rail,
             material.density,
@@ -255,9 +268,8 @@ class _Patches:
             joint=joint,
         )
         clamped, loads = Clamped(operator), self._loads()
-        warm = loads.T @ thermal.of_fields(self._rail, operator, material, clamped, middle).reshape(
-            -1, FIELDS
-        )
+        load, held = thermal.of_each_field(self._rail, operator, material, middle)
+        warm = loads.T @ clamped.displaced(load, held)
         loads = loads[clamped.free]
         answer = [
             loads.T @ clamped.solve(loads[:, start : start + _BATCH].toarray())
@@ -266,12 +278,17 @@ class _Patches:
         frequency, shape = vibration.modes(
             clamped.stiffness, np.repeat(operator.mass, 3)[clamped.free], clamped.solve, modes
         )
+        terms = None
+        if operator.joints is not None and modes:
+            heat = load + operator.joints @ held
+            terms = joint_terms.solved(operator, clamped, loads, heat, shape)
         under = len(self.found), self._patterns
         return (
             np.concatenate(answer, axis=1).reshape(2 * under),
             warm.reshape(*under, FIELDS),
             frequency,
             (loads.T @ shape).reshape(*under, modes),
+            terms,
         )
 
     def _loads(self) -> csc_array:

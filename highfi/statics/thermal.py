@@ -57,11 +57,20 @@ def of_fields(
 ) -> np.ndarray:
     """Displacement (n,3,FIELDS) m of one rail under one of each of the fields around X = ``middle``
     (m)."""
+    load, held = of_each_field(mesh, operator, material, middle)
+    return clamped.displaced(load, held).reshape(-1, 3, FIELDS)
+
+
+def of_each_field(
+    mesh: RailMesh, operator: assembly.Operator, material: MaterialTable, middle: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Loads (3n,FIELDS) N by one of each of the fields, and the displacement (3n,FIELDS) m of what
+    holds the rail."""
     strain = fields(mesh.points, middle)
     load, held = np.zeros((len(strain), 3, FIELDS)), np.zeros((len(strain), 3, FIELDS))
     # the last three are X - X_m
     load[..., :-1], held[..., -1] = loads(mesh, operator, material, strain), strain[:, 1:]
-    return clamped.displaced(load.reshape(-1, FIELDS), held.reshape(-1, FIELDS)).reshape(load.shape)
+    return load.reshape(-1, FIELDS), held.reshape(-1, FIELDS)
 
 
 def loads(

@@ -41,7 +41,7 @@ def under_pads(
     assert compliance is not None  # by require
     if compliance.flexibility is not None:
         return None
-    mean = compliance.moved(model.thermal.amounts) @ GRAM[0]
+    mean = compliance.of(scene).moved(model.thermal.amounts) @ GRAM[0]
     platform = model.platform.mass_centre[0] if model.platform is not None else 0.0
     origin = model.faces.centre[:, 0] + (model.payload.mass_centre[0] - platform)
     return ThermalOffset(

@@ -113,12 +113,13 @@ class Family:
 
     def _group(self, groups: dict, built: Built) -> _Group:
         scene, model = built.scene, built.model
-        # The damping of rails that vibrate is no part of a model.
+        # The damping of rails that vibrate and the stiffness of mounts are no part of a model.
         key = (
             self._shared(built),
             scene.thrust.kind,
             scene.duration,
             scene.rail.damping and scene.rail.damping.record(),
+            scene.rail.joint(),
         )
         if key not in groups:
             same = (

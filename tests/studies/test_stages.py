@@ -47,18 +47,19 @@ def test_ablation_takes_every_effect_away_once():
     for effect in effects:
         assert scene.replace(lines[f"without {effect}"]).absent_effects() == [effect]
     assert scene.replace(lines["as the scene asks"]).hash == scene.hash
-    assert len(scene.replace(lines["no effect"]).absent_effects()) == len(effects) == 9
+    assert len(scene.replace(lines["no effect"]).absent_effects()) == len(effects) == 10
     assert "without friction" not in ablation.variants(scene.replace({"friction": None}))
     assert "without thermal" not in ablation.variants(
         scene.replace({"rail.material.expansion": None})
     )
     # Every effect with code of its own is looked for in the compiled kernels of both models;
-    # sticking is a second law of friction, and the reference feels temperature before its kernels
-    # run.
+    # sticking is a second law of friction, the reference feels temperature before its kernels run,
+    # and the surrogate has damping and mounts in its modes and its rail compliance.
     assert (set(lowfi_laws) - {"sticking", "compliance", "modes"}) | {
         "mass_offset",
         "initial",
         "rail.damping",
+        "rail.mount_stiffness",
     } == set(effects)
     assert set(highfi_laws) | {"mass_offset", "initial", "thermal"} == set(effects)
 

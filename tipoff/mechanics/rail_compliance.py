@@ -18,7 +18,9 @@ is static::
 
 F_res is positive semidefinite: it is the part of the other modes. A warm rail
 (``scenes.effects.thermal``) has the thermal offset T = sum_t amount_t warm_t of the same patterns,
-to which U is added. Warm and rigid walls have T but no F.
+to which U is added. Warm and rigid walls have T but no F. On joints of finite stiffness all of this
+holds for the nominal stiffness, and ``RailCompliance.of`` gives it for the factor of a scene
+(``mechanics.joint_terms``).
 """
 
 import hashlib
@@ -31,6 +33,8 @@ from pathlib import Path
 import numpy as np
 
 from tipoff.files import DamageError, content_hash, require_whole, sealed
+from tipoff.mechanics import joint_terms
+from tipoff.mechanics.joint_terms import LEAST, MOST, JointTerms
 from tipoff.mechanics.models import COMPLIANT, SPRINGS
 from tipoff.scenes.effects.thermal import FIELDS
 from tipoff.scenes.faults import Fault, SceneError
@@ -39,6 +43,9 @@ from tipoff.scenes.scene import Scene
 MODES = 20  # of each rail, kept beside its compliance
 PATTERNS = 6  # phi: all products of powers of xi and eta up to the second degree
 POWERS = np.array([[0, 0], [1, 0], [0, 1], [2, 0], [1, 1], [0, 2]])  # of xi and eta
+
+_KEPT_FACTORS = 4  # compliances at other factors that are kept
+_JOINTS = "joints."  # before the names of their arrays in a file
 
 # of the largest eigenvalue of F: error of an eigenvalue of zero by the accuracy of the modes
 _ROUNDING = 1e-9
@@ -55,7 +62,8 @@ class RailCompliance:
     along xi and eta, negative where eta runs against the axis; frequency (r,n) rad/s of the lowest
     modes of each rail, ascending, and their shape W (s,f,p,n) 1/kg^0.5; made_for, digest of the
     rail and pads; warm (t,s,f,p) m away from the payload under one of each field of temperature,
-    or None. Rigid walls have no flexibility (None)."""
+    or None; joints, what a factor on the stiffness of the mounts changes, or None. Rigid walls have
+    no flexibility (None)."""
 
     travel: np.ndarray
     flexibility: np.ndarray | None
@@ -65,6 +73,41 @@ class RailCompliance:
     shape: np.ndarray
     made_for: str
     warm: np.ndarray | None = None
+    joints: JointTerms | None = None
+
+    def of(self, scene: Scene) -> "RailCompliance":
+        """This compliance at the factor that ``scene`` has on the stiffness of its mounts. Raises
+        SceneError as ``require`` does."""
+        self.require(scene)
+        factor = _factor(scene)
+        if factor == 1.0:
+            return self
+        if factor not in self._at_factors:
+            while len(self._at_factors) >= _KEPT_FACTORS:
+                self._at_factors.pop(next(iter(self._at_factors)))
+            self._at_factors[factor] = self._at(factor)
+        return self._at_factors[factor]
+
+    @cached_property
+    def _at_factors(self) -> dict[float, "RailCompliance"]:
+        return {}
+
+    def _at(self, factor: float) -> "RailCompliance":
+        terms, flexibility, heat = self.joints, self.flexibility, self.warm
+        assert terms is not None  # by require
+        if flexibility is not None:
+            flexibility = joint_terms.flexibility(terms, factor, flexibility, self.rail)
+        if heat is not None:
+            heat = joint_terms.warm(terms, factor, heat, self.rail)
+        frequency, shape = joint_terms.modes(terms, factor, self.frequency.shape[1], self.rail)
+        return replace(
+            self,
+            flexibility=flexibility,
+            frequency=frequency,
+            shape=shape,
+            warm=heat,
+            joints=None,
+        )
 
     def cubic(self, modes: int = 0) -> tuple[np.ndarray, np.ndarray]:
         """Flexibility (s-1,f,f,p,p,4) without the part of the first ``modes``, and their shapes
@@ -128,6 +171,7 @@ class RailCompliance:
             self.frequency,
             self.shape,
             self.warm,
+            *(self.joints or ()),
         ):
             if array is not None:
                 digest.update(np.ascontiguousarray(array).tobytes())
@@ -163,11 +207,12 @@ class RailCompliance:
         if not coupled:
             flexibility *= np.eye(len(self.rail))[None, :, None, :, None]
             frequency, shape = frequency[:, :0], shape[..., :0]
-        return replace(self, flexibility=flexibility, frequency=frequency, shape=shape)
+        return replace(self, flexibility=flexibility, frequency=frequency, shape=shape, joints=None)
 
     def require(self, scene: Scene) -> None:
         """Raises SceneError where ``scene`` has another rail or other pads than this compliance was
-        made for, or a temperature while this has no thermal offset."""
+        made for, a temperature while this has no thermal offset, or a factor on the stiffness of
+        its mounts that this does not cover."""
         if self.made_for != digest(scene):
             raise SceneError(
                 [
@@ -191,13 +236,30 @@ class RailCompliance:
                 ]
             )
 
+        factor = _factor(scene)
+        if factor != 1.0 and (self.joints is None or not LEAST <= factor <= MOST):
+            expected = (
+                "1, for a compliance of fewer patterns"
+                if self.joints is None
+                else f"{LEAST:g} to {MOST:g}: change normal and shear for others"
+            )
+            key = "rail.mount_stiffness.factor"
+            raise SceneError([Fault(scene.name, key, f"{factor:g}", expected)])
+
     def save(self, path: str | Path) -> None:
         """Write atomically, as arrays with their digest."""
         with sealed(path) as temporary, open(temporary, "wb") as stream:
             np.savez_compressed(
                 stream,
-                **{name: value for name, value in self.__getstate__().items() if value is not None},
+                **{name: value for name, value in self._arrays().items() if value is not None},
             )
+
+    def _arrays(self) -> dict:
+        """The fields by name, those of ``joints`` one by one."""
+        found = self.__getstate__()
+        terms = found.pop("joints")
+        parts = terms._asdict() if terms is not None else {}
+        return found | {f"{_JOINTS}{name}": part for name, part in parts.items()}
 
     @classmethod
     def load(cls, path: str | Path) -> "RailCompliance":
@@ -211,6 +273,9 @@ class RailCompliance:
                     for field in fields(cls)
                     if field.default is MISSING or field.name in found
                 }
+                names = [f"{_JOINTS}{name}" for name in JointTerms._fields]
+                if names[0] in found:
+                    arrays["joints"] = JointTerms(*(found[name] for name in names))
             compliance = cls(**arrays | {"made_for": str(arrays["made_for"])})
             compliance._require_whole()
         except DamageError as fault:
@@ -241,6 +306,9 @@ class RailCompliance:
                     f"{name}: given shape {array.shape}, expected finite numbers in the shape "
                     f"{shape}"
                 )
+        for name, array in (self.joints._asdict() if self.joints else {}).items():
+            if not np.isfinite(array).all():
+                raise ValueError(f"{_JOINTS}{name}: given numbers that are not finite")
         if stations < 2:
             raise ValueError(f"travel: given {stations} stations, expected at least 2")
 
@@ -277,11 +345,17 @@ def cubic(travel: np.ndarray, values: np.ndarray) -> np.ndarray:
     return np.ascontiguousarray(np.moveaxis(CubicSpline(travel, values).c[::-1], 0, -1))
 
 
+def _factor(scene: Scene) -> float:
+    table = scene.rail.mount_stiffness
+    return 1.0 if table is None else table.factor
+
+
 def digest(scene: Scene) -> str:
     """Hexadecimal digest of what the compliance depends on. The clearance is not part of it: it
     moves pads across a leg by a hundredth of its width."""
     described = scene.model_dump(mode="json", include={"rail", "pads"})
     described["rail"] |= scene.rail.contents()
     described["rail"].pop("damping", None)  # statics
+    described["rail"].get("mount_stiffness", {}).pop("factor", None)  # see ``RailCompliance.of``
     described["rail"]["material"].pop("expansion", None)  # the offset is per unit of each field
     return content_hash(described)

@@ -86,7 +86,7 @@ def under_pads(
     without these modes, and for friction that sticks."""
     if found is None or found.flexibility is None or model.contact is None:
         return None
-    found.require(scene)
+    found = found.of(scene)
     require_two_step(scene)
     data.require_modes(scene.name, found, modes)
     damping = scene.rail.damping.record() if scene.rail.damping is not None else None

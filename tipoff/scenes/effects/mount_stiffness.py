@@ -20,7 +20,7 @@ from typing import NamedTuple
 
 from tipoff.scenes.effects.effect import Effect
 from tipoff.scenes.table import Table
-from tipoff.scenes.units import InterfaceStiffness
+from tipoff.scenes.units import InterfaceStiffness, PositiveNumber
 
 EFFECT = Effect(
     "rail.mount_stiffness",
@@ -37,11 +37,12 @@ class MountStiffness(NamedTuple):
 
 class MountStiffnessTable(Table):
     """``[rail.mount_stiffness]``: stiffness per area (N/m3) of the joints along the normal of a
-    mount strip and across it."""
+    mount strip and across it. ``factor`` multiplies both; studies of uncertainty vary it."""
 
     normal: InterfaceStiffness
     shear: InterfaceStiffness
+    factor: PositiveNumber = 1.0
 
     def record(self) -> MountStiffness:
         """Plain record."""
-        return MountStiffness(self.normal, self.shear)
+        return MountStiffness(self.factor * self.normal, self.factor * self.shear)

@@ -14,6 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
+from tipoff.mechanics.rail_compliance import RailCompliance, digest
 from tipoff.mechanics.trajectory import Trajectory
 from tipoff.scenes.effects.registry import EFFECTS
 from tipoff.scenes.scene import Scene
@@ -68,17 +69,22 @@ def run(study: Study) -> dict:
 
 
 def surrogate_runs(study: Study, name: str, lines: dict[str, dict]) -> list[Run]:
-    """A run of the surrogate for each line: on the rail compliance, unless there is no contact."""
-    compliance = study.rail_compliance(study.condition(name))
+    """A run of the surrogate for each line: on the compliance of its rails, unless there is no
+    contact."""
+    scenes = {line: study.condition(name).replace(changes) for line, changes in lines.items()}
+    under: dict[str, RailCompliance | None] = {}
+    for scene in scenes.values():
+        if scene.contact is not None and digest(scene) not in under:
+            under[digest(scene)] = study.rail_compliance(scene)
     return [
         study.lowfi(
             name,
             None,
-            changes,
+            lines[line],
             _tag(line),
-            None if changes.get("contact", "kept") is None else compliance,
+            None if scene.contact is None else under[digest(scene)],
         )
-        for line, changes in lines.items()
+        for line, scene in scenes.items()
     ]
 
 

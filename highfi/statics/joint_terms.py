@@ -1,0 +1,131 @@
+"""Solutions from which ``mechanics.joint_terms`` finds the compliance of a rail on joints of any
+factor of their stiffness."""
+
+from collections.abc import Iterable
+from functools import reduce
+from typing import NamedTuple
+
+import numpy as np
+from scipy.linalg import cholesky, eigh, svd
+from scipy.sparse import csc_array
+
+from tipoff.highfi.statics import vibration
+from tipoff.highfi.statics.assembly import Operator
+from tipoff.highfi.statics.solve import Clamped
+from tipoff.mechanics.joint_terms import LEAST, MOST, TERMS, JointTerms
+
+_BATCH = 64  # loads solved for at once; bounds the memory
+
+
+class Terms(NamedTuple):
+    """Terms and shapes of one rail under l loads; see ``JointTerms``."""
+
+    share: np.ndarray  # (n,)
+    moved: np.ndarray  # (l,n)
+    heated: np.ndarray  # (n,t)
+    shape: np.ndarray  # (l,m)
+    stiffness: np.ndarray  # (m,m)
+    joint: np.ndarray  # (m,m)
+
+
+def solved(
+    operator: Operator, held: Clamped, loads: csc_array, heat: np.ndarray, modes: np.ndarray
+) -> Terms:
+    """Terms of a rail that its joints alone hold, under nodal ``loads`` (3n,l) and those of ``heat``
+    (3n,t) N, with its ``modes`` (3n,c)."""
+    assert operator.joints is not None
+    joints = operator.joints
+    own = np.flatnonzero(np.diff(joints.indptr))
+    root = cholesky(joints[own][:, own].toarray(), lower=True)
+    moved = np.empty((loads.shape[1], own.size))
+    inner, heated = np.empty((own.size, own.size)), np.empty((own.size, heat.shape[1]))
+    for start in range(0, own.size, _BATCH):
+        part = slice(start, start + _BATCH)
+        right = np.zeros((joints.shape[0], root[:, part].shape[1]))
+        right[own] = root[:, part]
+        answer = held.solve(right)
+        moved[:, part] = loads.T @ answer
+        inner[part], heated[part] = answer[own].T @ root, answer.T @ heat
+    share, turn = eigh(0.5 * (inner + inner.T))
+    moved = moved @ turn
+    kept = _large(moved, _direct(held, loads))
+    basis = _basis(operator, modes)
+    return Terms(
+        share=share[kept],
+        moved=moved[:, kept],
+        heated=(turn.T @ heated)[kept],
+        shape=loads.T @ basis,
+        stiffness=basis.T @ (held.stiffness @ basis),
+        joint=basis.T @ (joints @ basis),
+    )
+
+
+def _direct(held: Clamped, loads: csc_array) -> np.ndarray:
+    """Displacement (l,) by each load under itself."""
+    found = []
+    for start in range(0, loads.shape[1], _BATCH):
+        part = loads[:, start : start + _BATCH].toarray()
+        found.append((part * held.solve(part)).sum(axis=0))
+    return np.concatenate(found)
+
+
+def _large(moved: np.ndarray, direct: np.ndarray) -> np.ndarray:
+    """Numbers of the terms to keep: those left out hold at most ``TERMS`` of the displacement by
+    any load. A weight h is at most 1 / LEAST - 1."""
+    relative = moved**2 / direct[:, None]
+    order = np.argsort(relative.max(axis=0))
+    dropped = np.cumsum(relative[:, order], axis=1).max(axis=0) * (1.0 / LEAST - 1.0) < TERMS
+    return np.sort(order[~dropped])
+
+
+def _basis(operator: Operator, modes: np.ndarray) -> np.ndarray:
+    """Shapes (3n,m) of unit modal mass, orthogonal to each other, that hold the ``modes`` (3n,c)
+    and those at the least and the most factor."""
+    mass, joints = np.repeat(operator.mass, 3), operator.joints
+    assert joints is not None
+    found = [modes]
+    for factor in (LEAST, MOST):
+        other = Clamped(operator._replace(joints=factor * joints))
+        found.append(vibration.modes(other.stiffness, mass, other.solve, modes.shape[1])[1])
+    root = np.sqrt(mass)[:, None]
+    return svd(root * np.concatenate(found, axis=1), full_matrices=False)[0] / root
+
+
+class Part(NamedTuple):
+    """One rail with faces: the ``number`` (s,f) of the place under each face, -1 without, the
+    ``signs`` (3,) that make its image, and its ``terms``."""
+
+    number: np.ndarray
+    signs: np.ndarray
+    terms: Terms
+
+
+def together(parts: list[Part], patterns: int) -> JointTerms:
+    """Terms of rails in their order, under faces with so many ``patterns``."""
+    most = max(part.terms.share.size for part in parts)
+
+    def padded(values: np.ndarray, axis: int) -> np.ndarray:
+        width = [(0, 0)] * values.ndim
+        width[axis] = (0, most - values.shape[axis])
+        return np.pad(values, width)
+
+    def under(part: Part, values: np.ndarray) -> np.ndarray:
+        places = values.reshape(-1, patterns, values.shape[1])
+        # one more that does not move is what a face without a wall, number -1, points at
+        return np.pad(places, [(0, 1), (0, 0), (0, 0)])[part.number]
+
+    return JointTerms(
+        share=np.array([padded(part.terms.share, 0) for part in parts]),
+        moved=_sum(under(part, padded(part.terms.moved, 1)) for part in parts),
+        heated=np.array(
+            [padded(part.terms.heated * np.r_[1.0, part.signs, 1.0], 0) for part in parts]
+        ),
+        shape=_sum(under(part, part.terms.shape) for part in parts),
+        stiffness=np.array([part.terms.stiffness for part in parts]),
+        joint=np.array([part.terms.joint for part in parts]),
+    )
+
+
+def _sum(arrays: Iterable[np.ndarray]) -> np.ndarray:
+    """Sum of arrays of one shape."""
+    return reduce(np.add, arrays)

@@ -1,0 +1,74 @@
+"""Rail compliance at a factor on the stiffness of the mounts, against its condensation there."""
+
+import numpy as np
+import pytest
+
+from tests.highfi.support import tiny
+from tipoff import highfi
+from tipoff.mechanics.joint_terms import LEAST, MOST
+from tipoff.mechanics.rail_compliance import RailCompliance
+from tipoff.scenes import SceneError
+
+SIZE, KEY = 8e-3, "rail.mount_stiffness.factor"
+NORMAL, SHEAR = 1e13, 5e12
+
+
+def on_joints(factor=1.0, **changed):
+    return tiny(
+        rail__mount_stiffness__normal=NORMAL * factor,
+        rail__mount_stiffness__shear=SHEAR * factor,
+        rail__material__expansion=23.6e-6,
+        **changed,
+    )
+
+
+@pytest.fixture(scope="module")
+def nominal():
+    return highfi.condense(on_joints(), SIZE)
+
+
+def largest(found, exact):
+    return np.abs(found - exact).max() / np.abs(exact).max()
+
+
+@pytest.mark.parametrize("factor", [0.4, 2.0])
+def test_a_factor_gives_what_condensation_there_gives(nominal, factor):
+    """Flexibility and thermal offset to 1e-6, frequencies of the lowest modes to 1e-4. What is
+    left beside the modes is positive. Controls: the nominal stiffness is off by a tenth and more,
+    and linear interpolation in 1 / k between 1/4, 1 and 4 by more than 1e-4."""
+    found = nominal.of(on_joints().replace({KEY: factor}))
+    exact = highfi.condense(on_joints(factor), SIZE)
+    assert largest(found.flexibility, exact.flexibility) < 1e-6
+    assert largest(found.warm, exact.warm) < 1e-6
+    assert largest(nominal.flexibility, exact.flexibility) > 0.1
+    assert found.frequency[:, :10] == pytest.approx(exact.frequency[:, :10], rel=1e-4)
+    assert (found.frequency >= exact.frequency * (1.0 - 1e-9)).all()
+    found.residual(20)
+    softer, stiffer = ((LEAST, 1.0), (1.0, MOST))[int(factor > 1.0)]
+    ends = [nominal.of(on_joints().replace({KEY: end})).flexibility for end in (softer, stiffer)]
+    share = (1.0 / factor - 1.0 / stiffer) / (1.0 / softer - 1.0 / stiffer)
+    assert largest(share * ends[0] + (1.0 - share) * ends[1], exact.flexibility) > 1e-4
+
+
+def test_what_it_is_made_for(nominal):
+    """The nominal compliance serves every factor within its range, of the same two stiffnesses."""
+    scene = on_joints()
+    assert nominal.of(scene) is nominal
+    nominal.require(scene.replace({KEY: MOST}))
+    for factor in (0.99 * LEAST, 1.01 * MOST):
+        with pytest.raises(SceneError, match="0.25 to 4"):
+            nominal.require(scene.replace({KEY: factor}))
+    with pytest.raises(SceneError, match="another rail"):
+        nominal.require(on_joints(2.0))
+    with pytest.raises(SceneError, match="fewer patterns"):
+        nominal.restricted(1).require(scene.replace({KEY: 2.0}))
+    half = highfi.condense(scene.replace({KEY: 0.5}), SIZE)
+    np.testing.assert_array_equal(half.flexibility, nominal.flexibility)
+
+
+def test_a_file_holds_it(nominal, tmp_path):
+    nominal.save(tmp_path / "rail.npz")
+    read = RailCompliance.load(tmp_path / "rail.npz")
+    assert read.hash == nominal.hash
+    scene = on_joints().replace({KEY: 2.0})
+    np.testing.assert_array_equal(read.of(scene).flexibility, nominal.of(scene).flexibility)

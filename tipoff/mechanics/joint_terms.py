@@ -1,0 +1,78 @@
+"""Rail compliance on joints whose stiffness is multiplied by a factor g, from one set of solutions
+at g = 1.
+
+K is the stiffness of the rail on its joints, S = B B' that of the joints alone, and L the load of a
+pattern under a face. With B' K^-1 B = Q diag(a) Q' the formula of Woodbury gives, exactly::
+
+    L' [K + (g - 1) S]^-1 L = L' K^-1 L - sum_i h_i d_i d_i'
+    d_i = L' K^-1 B Q_i,    h_i = (g - 1) / (1 + (g - 1) a_i),    0 < a_i <= 1
+
+A term that is small under every pad is left out (``TERMS``). The thermal displacement follows in the
+same way. The modes are those of Rayleigh and Ritz among the modes at g = 1/4, 1 and 4: their part of
+the compliance is never more than the whole, so the rest stays positive semidefinite.
+
+Source: Golub and Van Loan, Matrix Computations, 4th ed. 2013, section 2.1.4; Bathe, Finite Element
+Procedures, 1996, section 11.3.2.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+LEAST, MOST = 0.25, 4.0  # factors between which the modes are accurate
+TERMS = 1e-7  # relative, of the displacement under a pad, that terms left out may hold
+
+
+class JointTerms(NamedTuple):
+    """What a factor on the stiffness of the joints changes, for r rails, n terms and m shapes."""
+
+    share: np.ndarray  # (r,n) a
+    moved: np.ndarray  # (s,f,p,n) 1/N^0.5 m^0.5, d under the faces
+    heated: np.ndarray  # (r,n,t) N^0.5 m^0.5, part of each term in the load of each thermal field
+    shape: np.ndarray  # (s,f,p,m) 1/kg^0.5, displacement in orthonormal shapes that hold the modes
+    stiffness: np.ndarray  # (r,m,m) 1/s2, of the rail on its joints among these shapes
+    joint: np.ndarray  # (r,m,m) 1/s2, of the joints alone
+
+
+def _weights(terms: JointTerms, factor: float) -> np.ndarray:
+    """h (r,n)."""
+    return (factor - 1.0) / (1.0 + (factor - 1.0) * terms.share)
+
+
+def flexibility(
+    terms: JointTerms, factor: float, nominal: np.ndarray, rail: np.ndarray
+) -> np.ndarray:
+    """Flexibility (s,f,p,f,p) m/N at a ``factor``, from the ``nominal`` one of faces on the rails of
+    number ``rail`` (f,)."""
+    found, weights = nominal.copy(), _weights(terms, factor)
+    for number in range(len(weights)):
+        own = np.flatnonzero(rail == number)
+        moved = terms.moved[:, own]
+        flat = moved.reshape(len(moved), -1, moved.shape[-1])
+        change = (flat * weights[number]) @ flat.transpose(0, 2, 1)
+        shape = (len(moved), *moved.shape[1:3], *moved.shape[1:3])
+        found[:, own[:, None], :, own[None, :], :] -= change.reshape(shape).transpose(1, 3, 0, 2, 4)
+    return found
+
+
+def modes(
+    terms: JointTerms, factor: float, count: int, rail: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Frequencies (r,n) rad/s of the lowest ``count`` modes at a ``factor``, and their shapes
+    (s,f,p,n) 1/kg^0.5."""
+    squares, vectors = np.linalg.eigh(terms.stiffness + (factor - 1.0) * terms.joint)
+    # The sign of the largest entry is positive, whatever the library returns.
+    vectors = vectors[..., :count]
+    largest = np.take_along_axis(vectors, np.abs(vectors).argmax(axis=1)[:, None], axis=1)
+    vectors = vectors * np.sign(largest)
+    shape = np.einsum("sfpm,fmn->sfpn", terms.shape, vectors[rail])
+    return np.sqrt(squares[:, :count]), shape
+
+
+def warm(terms: JointTerms, factor: float, nominal: np.ndarray, rail: np.ndarray) -> np.ndarray:
+    """Displacement (t,s,f,p) m by one of each thermal field at a ``factor``; the last field, the
+    strain of the platform, loads the joints alone."""
+    part = _weights(terms, factor)[:, :, None] * terms.heated
+    found = nominal - np.einsum("sfpn,fnt->tsfp", terms.moved, part[rail])
+    found[-1] *= factor
+    return found
