@@ -12,6 +12,8 @@ from tipoff.scenes.rail import SectionTable
 
 _WAVE_SPEED = (100.0, 10_000.0)
 _DENSITY = (10.0, 20_000.0)
+# N/m3: a millimetre of rubber, and ground surfaces under the highest pressure of a bolt
+_JOINT = (1e9, 1e16)
 _EXPANSION = 1e-4  # 1/K: polymers; metals expand by a third of it at most
 _FREE_STRAIN = 5e-3  # 200 K in aluminium, whose constants have changed by then
 
@@ -40,6 +42,7 @@ def warnings(scene) -> list[str]:
                 f"plausible {_DENSITY[0]:g} to {_DENSITY[1]:g} kg/m3"
             )
     found += _of_inertia(scene) + _of_mounts(scene.rail)
+    found += _of_joints(scene.rail.mount_stiffness)
     if scene.contact is not None:
         found += sinking.warnings(scene)
     if scene.thermal is not None:
@@ -116,6 +119,18 @@ def _of_mounts(rail) -> list[str]:
                 f"that between mounts"
             )
     return found
+
+
+def _of_joints(table) -> list[str]:
+    """Joints under the mounts in a wrong unit, or stiffer in shear than along their normal, which
+    no contact of asperities is (``scenes.effects.mount_stiffness``)."""
+    if table is None:
+        return []
+    keys, joint = "rail.mount_stiffness.normal, rail.mount_stiffness.shear", table.record()
+    given = f"{keys}: {joint.normal:.4g} and {joint.shear:.4g} N/m3, plausible"
+    if not (_JOINT[0] <= min(joint) and max(joint) <= _JOINT[1]):
+        return [f"{given} {_JOINT[0]:g} to {_JOINT[1]:g} N/m3"]
+    return [f"{given} a shear stiffness below the normal one"] if joint.shear > joint.normal else []
 
 
 def _of_temperature(scene) -> list[str]:

@@ -35,6 +35,29 @@ def test_both_keys_or_no_table():
     assert keys(refused(raw)) == ["rail.mount_stiffness.shear"]
 
 
+@pytest.mark.parametrize(
+    "normal, shear, words",
+    [
+        ("1e13 N/m^3", "8e12 N/m^3", None),
+        ("1e13 N/mm^3", "8e12 N/mm^3", "1e+22 and 8e+21 N/m3, plausible 1e+09 to 1e+16"),
+        ("1e13 N/m^3", "2e13 N/m^3", "a shear stiffness below the normal one"),
+    ],
+)
+def test_what_no_joint_has_is_warned_about(normal, shear, words):
+    found = [
+        line for line in parse(with_joint(normal=normal, shear=shear)).warnings if "mount_s" in line
+    ]
+    assert found == [] if words is None else len(found) == 1 and words in found[0]
+
+
+def test_a_factor_multiplies_both():
+    scene = parse(with_joint(factor=2.0))
+    assert scene.rail.joint() == MountStiffness(2e13, pytest.approx(1e13, rel=1e-14))
+    assert digest(scene) == digest(parse(with_joint()))
+    assert scene.hash != parse(with_joint()).hash
+    assert keys(refused(with_joint(factor=0.0))) == ["rail.mount_stiffness.factor"]
+
+
 def test_a_scene_without_it_is_the_same_as_before():
     """The key is in no record of such a scene; set and dropped again it leaves nothing."""
     plain = parse(small())
