@@ -158,11 +158,12 @@ def test_step_encloses_the_springs(tetrahedra):
     assert highest > 1.5 * stable_step.element_bound(rigid)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "change",
     [
         DAMPED,
-        pytest.param({"platform": None, "gravity__z": "-9.81 m/s**2"}, marks=pytest.mark.slow),
+        {"platform": None, "gravity__z": "-9.81 m/s**2"},
     ],
 )
 def test_ledgers_close_and_momenta_are_kept(change):
